@@ -1,0 +1,210 @@
+//! Which column of a foreign file means what.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use serde::Deserialize;
+
+/// The columns of a log that do not bear the native names.
+///
+/// An empty map reads the native names: `time_s`, `trial`, `<joint>.input`,
+/// `<joint>.output`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ColumnMap {
+    /// Column of the time in seconds.
+    pub time: Option<String>,
+    /// Column whose value names the trial of a row.
+    pub trial: Option<String>,
+    /// Seconds between samples, where the log has no time.
+    pub sample_period_s: Option<f64>,
+    /// Columns of each joint. None: every joint with native names.
+    pub joints: Vec<JointColumns>,
+}
+
+/// The columns of one joint.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct JointColumns {
+    /// Name that the joint gets.
+    pub name: String,
+    /// Column of its input.
+    pub input: String,
+    /// Column of its output.
+    pub output: String,
+    /// Unit of the input; else the bracketed one of the column's header.
+    pub input_unit: Option<String>,
+    /// Unit of the output; else the bracketed one of the column's header.
+    pub output_unit: Option<String>,
+    /// Further signals: their name and their column.
+    pub covariates: Vec<(String, String)>,
+}
+
+/// Why a column mapping cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ColumnMapError {
+    /// The mapping file cannot be opened or read.
+    #[error("{}: cannot read the column mapping", path.display())]
+    Read {
+        /// The mapping file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The mapping file is not the TOML that is expected.
+    #[error(
+        "{}: not a column mapping; it holds `time`, `trial`, `sample_period` and a table \
+         [joint.NAME] with `input` and `output` for each joint", path.display()
+    )]
+    Parse {
+        /// The mapping file.
+        path: PathBuf,
+        /// Line, column and cause.
+        source: Box<toml::de::Error>,
+    },
+    /// A joint on the command line is not `NAME=INPUT:OUTPUT`.
+    #[error("`{text}` is not NAME=INPUT_COLUMN:OUTPUT_COLUMN")]
+    Joint {
+        /// What was given.
+        text: String,
+    },
+}
+
+impl FromStr for JointColumns {
+    type Err = ColumnMapError;
+
+    /// Reads `NAME=INPUT_COLUMN:OUTPUT_COLUMN`.
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let parts = text
+            .split_once('=')
+            .and_then(|(name, columns)| Some((name, columns.split_once(':')?)))
+            .map(|(name, (input, output))| [name.trim(), input.trim(), output.trim()]);
+        match parts {
+            Some([name, input, output]) if ![name, input, output].contains(&"") => {
+                Ok(Self::new(name, input, output))
+            }
+            _ => Err(ColumnMapError::Joint {
+                text: text.to_owned(),
+            }),
+        }
+    }
+}
+
+impl JointColumns {
+    /// Joint `name`, driven by column `input`, measured in column `output`.
+    pub fn new(name: &str, input: &str, output: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            input: input.to_owned(),
+            output: output.to_owned(),
+            input_unit: None,
+            output_unit: None,
+            covariates: Vec::new(),
+        }
+    }
+}
+
+impl ColumnMap {
+    /// Reads a mapping from a TOML file.
+    ///
+    /// ```toml
+    /// time = "t_s"
+    /// trial = "test"
+    /// # sample_period = 0.01       # where there is no time column
+    /// [joint.arm]
+    /// input = "u_duty_pct"
+    /// output = "angle_deg"
+    /// input_unit = "%"
+    /// output_unit = "deg"
+    /// covariates = { pilot = "pilot_pos_bar" }
+    /// ```
+    ///
+    /// # Errors
+    /// [`ColumnMapError::Read`] and [`ColumnMapError::Parse`], with the file's name.
+    pub fn read(path: &Path) -> Result<Self, ColumnMapError> {
+        let text = std::fs::read_to_string(path).map_err(|source| ColumnMapError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        let file: MapFile = toml::from_str(&text).map_err(|source| ColumnMapError::Parse {
+            path: path.to_owned(),
+            source: Box::new(source),
+        })?;
+        Ok(file.into())
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MapFile {
+    time: Option<String>,
+    trial: Option<String>,
+    sample_period: Option<f64>,
+    #[serde(default)]
+    joint: BTreeMap<String, MapJoint>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MapJoint {
+    input: String,
+    output: String,
+    input_unit: Option<String>,
+    output_unit: Option<String>,
+    #[serde(default)]
+    covariates: BTreeMap<String, String>,
+}
+
+impl From<MapFile> for ColumnMap {
+    fn from(file: MapFile) -> Self {
+        let joints = file.joint.into_iter().map(|(name, joint)| JointColumns {
+            name,
+            input: joint.input,
+            output: joint.output,
+            input_unit: joint.input_unit,
+            output_unit: joint.output_unit,
+            covariates: joint.covariates.into_iter().collect(),
+        });
+        Self {
+            time: file.time,
+            trial: file.trial,
+            sample_period_s: file.sample_period,
+            joints: joints.collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_a_joint_from_the_command_line() {
+        let joint: JointColumns = "arm = u_duty : angle_deg".parse().unwrap();
+        assert_eq!(joint, JointColumns::new("arm", "u_duty", "angle_deg"));
+        for bad in ["arm", "arm=u", "arm=:y", "=u:y", "arm=u:"] {
+            assert!(bad.parse::<JointColumns>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn reads_a_mapping_file() {
+        let file: MapFile = toml::from_str(
+            "time = 't_s'\n[joint.arm]\ninput = 'u'\noutput = 'y'\noutput_unit = 'deg'\n\
+             covariates = { pilot = 'p_bar' }",
+        )
+        .unwrap();
+        let map = ColumnMap::from(file);
+        assert_eq!(map.time.as_deref(), Some("t_s"));
+        assert_eq!(map.joints[0].output_unit.as_deref(), Some("deg"));
+        assert_eq!(
+            map.joints[0].covariates,
+            [("pilot".to_owned(), "p_bar".to_owned())]
+        );
+    }
+
+    #[test]
+    fn a_key_that_is_unknown_is_refused() {
+        assert!(toml::from_str::<MapFile>("tiem = 't_s'").is_err());
+    }
+}

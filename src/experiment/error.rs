@@ -1,0 +1,306 @@
+//! Why a log could not be read, with the place and the remedy.
+
+use std::path::PathBuf;
+
+use super::TrialError;
+
+/// Why a log, or one joint of it, could not be read.
+///
+/// `row` is the line of the file, counted from 1, as an editor shows it.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// The file cannot be opened or read.
+    #[error("{}: cannot be read", path.display())]
+    Io {
+        /// The log.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file is not a table of text.
+    #[error("{}: not a CSV table", path.display())]
+    Csv {
+        /// The log.
+        path: PathBuf,
+        /// What the parser said.
+        source: csv::Error,
+    },
+    /// The file holds nothing.
+    #[error("{}: the file is empty; expected a header row and samples", path.display())]
+    Empty {
+        /// The log.
+        path: PathBuf,
+    },
+    /// There is a header and no sample.
+    #[error("{}: there is a header but no sample below it", path.display())]
+    HeaderOnly {
+        /// The log.
+        path: PathBuf,
+    },
+    /// A folder holds no log.
+    #[error("{}: no .csv, .tsv or .txt file in this folder", path.display())]
+    EmptyFolder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A row has more or fewer cells than the header.
+    #[error("{}, row {row}: {found} cells, but the header has {expected}", path.display())]
+    UnequalRow {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file.
+        row: u64,
+        /// Cells found.
+        found: usize,
+        /// Cells of the header.
+        expected: usize,
+    },
+    /// Two columns have the same name.
+    #[error(
+        "{}, row {row}: two columns are named `{column}`; rename one of them", path.display()
+    )]
+    DuplicateColumn {
+        /// The log.
+        path: PathBuf,
+        /// Line of the header.
+        row: u64,
+        /// The name they share.
+        column: String,
+    },
+    /// Two joints have the same name.
+    #[error("{}: two joints are named `{joint}`; give each its own name", path.display())]
+    DuplicateJoint {
+        /// The log.
+        path: PathBuf,
+        /// The name they share.
+        joint: String,
+    },
+    /// A column that is needed is not there.
+    #[error(
+        "{}, row {row}: column `{column}` is missing{}; the columns are: {available}",
+        path.display(), suggestion(nearest.as_deref())
+    )]
+    MissingColumn {
+        /// The log.
+        path: PathBuf,
+        /// Line of the header.
+        row: u64,
+        /// The name that was looked for.
+        column: String,
+        /// The column whose name is nearest.
+        nearest: Option<String>,
+        /// The names that are there.
+        available: String,
+    },
+    /// No column belongs to a joint.
+    #[error(
+        "{}, row {row}: no joint found; a joint needs the columns `<joint>.input` and \
+         `<joint>.output`, or `--joint NAME=INPUT_COLUMN:OUTPUT_COLUMN`; the columns are: \
+         {available}", path.display()
+    )]
+    NoJoints {
+        /// The log.
+        path: PathBuf,
+        /// Line of the header.
+        row: u64,
+        /// The names that are there.
+        available: String,
+    },
+    /// A joint that was asked for is not in the log.
+    #[error(
+        "{}: no joint `{joint}`{}; the joints are: {available}",
+        path.display(), suggestion(nearest.as_deref())
+    )]
+    UnknownJoint {
+        /// The log.
+        path: PathBuf,
+        /// The name that was asked for.
+        joint: String,
+        /// The joint whose name is nearest.
+        nearest: Option<String>,
+        /// The joints that are there.
+        available: String,
+    },
+    /// The log has no time, and no sample period was given.
+    #[error(
+        "{}, row {row}: no time column (`time_s`, `t_s`, `time` or `t`); name one with \
+         `--time COLUMN`, or give the period with `--sample-period SECONDS`", path.display()
+    )]
+    NoTime {
+        /// The log.
+        path: PathBuf,
+        /// Line of the header.
+        row: u64,
+    },
+    /// The sample period is not a positive number.
+    #[error("{}: a sample period of {seconds} s is not above zero", path.display())]
+    BadPeriod {
+        /// The log.
+        path: PathBuf,
+        /// What was given.
+        seconds: f64,
+    },
+    /// A cell holds text where a number belongs.
+    #[error("{}, row {row}, column `{column}`: `{text}` is not a number{}", path.display(), comma_hint(text))]
+    NotANumber {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file.
+        row: u64,
+        /// The column.
+        column: String,
+        /// What the cell holds.
+        text: String,
+    },
+    /// A cell is infinite.
+    #[error("{}, row {row}, column `{column}`: the value is infinite; remove the row or mend the value", path.display())]
+    Infinite {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file.
+        row: u64,
+        /// The column.
+        column: String,
+    },
+    /// A cell is empty or NaN.
+    #[error(
+        "{}, row {row}, column `{column}`: the cell is empty or NaN; `--fill SECONDS` fills \
+         gaps up to that length and splits the trial at longer ones", path.display()
+    )]
+    Missing {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file.
+        row: u64,
+        /// The column.
+        column: String,
+    },
+    /// Time does not increase.
+    #[error(
+        "{}, row {row}: time goes from {previous} s to {time} s, but it must increase; if a new \
+         trial starts here, mark it in a `trial` column", path.display()
+    )]
+    TimeNotIncreasing {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file.
+        row: u64,
+        /// Time of the row before.
+        previous: f64,
+        /// Time of this row.
+        time: f64,
+    },
+    /// A time step differs from the median by more than 1 %.
+    #[error(
+        "{}, row {row}: this sample comes {step} s after the one before, but the period is \
+         {period} s (median); `--resample {period}` puts the log on a uniform grid{}",
+        path.display(), gap_hint(*step, *period)
+    )]
+    NotUniform {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file.
+        row: u64,
+        /// Time since the row before, in seconds.
+        step: f64,
+        /// Median time step, in seconds.
+        period: f64,
+    },
+    /// The rows of one trial are not together.
+    #[error(
+        "{}, row {row}: trial `{trial}` starts again here after another one; keep the rows of a \
+         trial together, or give the parts different names", path.display()
+    )]
+    TrialNotContiguous {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file.
+        row: u64,
+        /// Its label.
+        trial: String,
+    },
+    /// A trial has a single row, so that it has no sample period.
+    #[error("{}, row {row}: trial `{trial}` has one row only", path.display())]
+    SingleRow {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file.
+        row: u64,
+        /// Its label.
+        trial: String,
+    },
+    /// A joint has no usable sample.
+    #[error("{}: joint `{joint}` has no usable sample", path.display())]
+    NoSamples {
+        /// The log.
+        path: PathBuf,
+        /// The joint.
+        joint: String,
+    },
+    /// Two logs give the same joint different units.
+    #[error(
+        "{}: joint `{joint}` is in [{found}] here but in [{expected}] in an earlier log",
+        path.display()
+    )]
+    UnitsDiffer {
+        /// The log.
+        path: PathBuf,
+        /// The joint.
+        joint: String,
+        /// Units of this log.
+        found: String,
+        /// Units of the logs before.
+        expected: String,
+    },
+    /// The samples do not make a trial.
+    #[error("{}: joint `{joint}`", path.display())]
+    Trial {
+        /// The log.
+        path: PathBuf,
+        /// The joint.
+        joint: String,
+        /// What is wrong with them.
+        source: TrialError,
+    },
+}
+
+fn suggestion(nearest: Option<&str>) -> String {
+    nearest.map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
+}
+
+fn comma_hint(text: &str) -> &'static str {
+    let decimal_comma = text.contains(',') && text.replace(',', ".").parse::<f64>().is_ok();
+    if decimal_comma {
+        "; write decimals with a point"
+    } else {
+        ""
+    }
+}
+
+/// A step of several periods looks like lost rows, which `--fill` mends.
+fn gap_hint(step: f64, period: f64) -> &'static str {
+    let periods = step / period;
+    let lost_rows = periods > 1.5 && (periods - periods.round()).abs() < 0.01;
+    if lost_rows {
+        ", `--fill SECONDS` fills lost rows"
+    } else {
+        ""
+    }
+}
+
+/// The name among `names` that `wanted` was probably meant to be.
+pub(super) fn nearest_name<'a>(
+    wanted: &str,
+    names: impl IntoIterator<Item = &'a str>,
+) -> Option<String> {
+    /// Jaro-Winkler similarity from which a name is offered; clap uses the same.
+    const SIMILAR: f64 = 0.7;
+    let score = |name: &'a str| (strsim::jaro_winkler(wanted, name), name);
+    let best = names
+        .into_iter()
+        .map(score)
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    best.filter(|(similarity, _)| *similarity > SIMILAR)
+        .map(|(_, name)| name.to_owned())
+}

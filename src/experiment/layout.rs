@@ -1,0 +1,229 @@
+//! Which column of a table is time, trial, and which signal of which joint.
+
+use super::error::nearest_name;
+use super::table::{Header, OpenTable};
+use super::{ColumnMap, JointColumns, ReadError, Signal};
+use crate::units::SamplePeriod;
+
+/// Names of a time column, the preferred first.
+const TIME_NAMES: [&str; 4] = ["time_s", "t_s", "time", "t"];
+/// Name of a column of sample numbers.
+const SAMPLE_NAME: &str = "sample";
+/// Names of a column that names the trial.
+const TRIAL_NAMES: [&str; 3] = ["trial", "test", "run"];
+
+/// Where the time of a row comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum TimeSource {
+    /// A column of seconds.
+    Seconds(usize),
+    /// A column of sample numbers, one period apart.
+    SampleNumbers(usize, SamplePeriod),
+    /// The rows themselves, one period apart.
+    Rows(SamplePeriod),
+}
+
+/// A signal of a joint and the column that holds it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct SignalColumn {
+    pub(super) signal: Signal,
+    pub(super) column: usize,
+}
+
+/// The columns of one joint.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct JointLayout {
+    pub(super) name: String,
+    pub(super) input: SignalColumn,
+    pub(super) output: SignalColumn,
+    pub(super) covariates: Vec<SignalColumn>,
+}
+
+/// What every column of a log means.
+pub(super) struct Layout {
+    pub(super) time: TimeSource,
+    pub(super) trial: Option<usize>,
+    pub(super) joints: Vec<JointLayout>,
+    /// Joints whose columns are not complete: name and reason.
+    pub(super) incomplete: Vec<(String, ReadError)>,
+}
+
+impl Layout {
+    /// Finds the columns of `map`, and those with native names, in `table`.
+    ///
+    /// `period` stands in for a time column.
+    pub(super) fn find(
+        table: &OpenTable,
+        map: &ColumnMap,
+        period: Option<SamplePeriod>,
+    ) -> Result<Self, ReadError> {
+        let trial = match &map.trial {
+            Some(name) => Some(find(table, name)?),
+            None => find_any(table, &TRIAL_NAMES),
+        };
+        let time = find_time(table, map, period)?;
+        let mut layout = Self {
+            time,
+            trial,
+            joints: Vec::new(),
+            incomplete: Vec::new(),
+        };
+        if map.joints.is_empty() {
+            layout.add_native_joints(table)?;
+        } else {
+            layout.add_mapped_joints(table, &map.joints)?;
+        }
+        Ok(layout)
+    }
+
+    fn add_mapped_joints(
+        &mut self,
+        table: &OpenTable,
+        joints: &[JointColumns],
+    ) -> Result<(), ReadError> {
+        let mut names: Vec<_> = joints.iter().map(|joint| &joint.name).collect();
+        names.sort();
+        if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+            let (path, joint) = (table.path.clone(), pair[0].clone());
+            return Err(ReadError::DuplicateJoint { path, joint });
+        }
+        for joint in joints {
+            match mapped_joint(table, joint) {
+                Ok(layout) => self.joints.push(layout),
+                Err(error) => self.incomplete.push((joint.name.clone(), error)),
+            }
+        }
+        Ok(())
+    }
+
+    fn add_native_joints(&mut self, table: &OpenTable) -> Result<(), ReadError> {
+        let mut names: Vec<&str> = Vec::new();
+        for (name, signal) in table.headers.iter().filter_map(native_name) {
+            if ["input", "output"].contains(&signal) && !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        if names.is_empty() {
+            let (path, row) = (table.path.clone(), table.header_row);
+            return Err(ReadError::NoJoints {
+                path,
+                row,
+                available: table.names(),
+            });
+        }
+        for name in names {
+            match native_joint(table, name) {
+                Ok(layout) => self.joints.push(layout),
+                Err(error) => self.incomplete.push((name.to_owned(), error)),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Joint and signal of a native column: `boom.output` is `("boom", "output")`.
+fn native_name(header: &Header) -> Option<(&str, &str)> {
+    header
+        .name
+        .rsplit_once('.')
+        .filter(|(joint, signal)| !joint.is_empty() && !signal.is_empty())
+}
+
+fn native_joint(table: &OpenTable, name: &str) -> Result<JointLayout, ReadError> {
+    let signal = |kind: &str| signal_column(table, &format!("{name}.{kind}"), kind, None);
+    let is_covariate = |header: &Header| {
+        native_name(header)
+            .filter(|(joint, kind)| *joint == name && !["input", "output"].contains(kind))
+            .map(|(_, kind)| kind.to_owned())
+    };
+    let covariates = table
+        .headers
+        .iter()
+        .filter_map(is_covariate)
+        .map(|kind| signal(&kind));
+    Ok(JointLayout {
+        name: name.to_owned(),
+        input: signal("input")?,
+        output: signal("output")?,
+        covariates: covariates.collect::<Result<_, _>>()?,
+    })
+}
+
+fn mapped_joint(table: &OpenTable, joint: &JointColumns) -> Result<JointLayout, ReadError> {
+    let covariate = |(name, column): &(String, String)| signal_column(table, column, name, None);
+    Ok(JointLayout {
+        name: joint.name.clone(),
+        input: signal_column(table, &joint.input, "input", joint.input_unit.as_ref())?,
+        output: signal_column(table, &joint.output, "output", joint.output_unit.as_ref())?,
+        covariates: joint
+            .covariates
+            .iter()
+            .map(covariate)
+            .collect::<Result<_, _>>()?,
+    })
+}
+
+fn signal_column(
+    table: &OpenTable,
+    column: &str,
+    name: &str,
+    unit: Option<&String>,
+) -> Result<SignalColumn, ReadError> {
+    let column = find(table, column)?;
+    let stated = table
+        .headers
+        .get(column)
+        .and_then(|header| header.unit.as_ref());
+    let signal = Signal {
+        name: name.to_owned(),
+        unit: unit.or(stated).cloned(),
+    };
+    Ok(SignalColumn { signal, column })
+}
+
+fn find_time(
+    table: &OpenTable,
+    map: &ColumnMap,
+    period: Option<SamplePeriod>,
+) -> Result<TimeSource, ReadError> {
+    if let Some(name) = &map.time {
+        return find(table, name).map(TimeSource::Seconds);
+    }
+    let numbers = find_any(table, &[SAMPLE_NAME]);
+    match (period, numbers, find_any(table, &TIME_NAMES)) {
+        // A period that was asked for stands above a time column: the user knows why.
+        (Some(period), Some(column), _) => Ok(TimeSource::SampleNumbers(column, period)),
+        (Some(period), None, _) => Ok(TimeSource::Rows(period)),
+        (None, _, Some(column)) => Ok(TimeSource::Seconds(column)),
+        (None, _, None) => Err(ReadError::NoTime {
+            path: table.path.clone(),
+            row: table.header_row,
+        }),
+    }
+}
+
+fn find(table: &OpenTable, wanted: &str) -> Result<usize, ReadError> {
+    let found = table
+        .headers
+        .iter()
+        .position(|header| header.is_named(wanted));
+    found.ok_or_else(|| ReadError::MissingColumn {
+        path: table.path.clone(),
+        row: table.header_row,
+        column: wanted.to_owned(),
+        nearest: nearest_name(
+            wanted,
+            table.headers.iter().map(|header| header.name.as_str()),
+        ),
+        available: table.names(),
+    })
+}
+
+fn find_any(table: &OpenTable, wanted: &[&str]) -> Option<usize> {
+    wanted.iter().find_map(|wanted| {
+        table
+            .headers
+            .iter()
+            .position(|header| header.name.eq_ignore_ascii_case(wanted))
+    })
+}

@@ -1,0 +1,489 @@
+//! Logs into an [`Experiment`]; what cannot be read is listed beside what can.
+
+use std::path::{Path, PathBuf};
+
+use super::error::nearest_name;
+use super::layout::{JointLayout, Layout, TimeSource};
+use super::sampling::{Fault, Grid, Repair, Signals};
+use super::table::{BadCell, Column, OpenTable, Table, TrialRows};
+use super::{ColumnMap, Joint, ReadError, Signal, Source, Trial};
+use crate::units::SamplePeriod;
+
+/// How logs are read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ReadOptions {
+    /// The columns of a foreign log.
+    pub columns: ColumnMap,
+    /// The joints to keep; all when empty.
+    pub joints: Vec<String>,
+    /// What may be done to gaps and to uneven sampling.
+    pub repair: Repair,
+}
+
+/// Everything that was measured, of one file or many.
+#[derive(Debug, Default)]
+pub struct Experiment {
+    /// The files that were read, in the order given.
+    pub sources: Vec<Source>,
+    /// The joints, in the order of the logs. Files with the same joint add trials to it.
+    pub joints: Vec<Joint>,
+    /// Files and joints that could not be read.
+    pub failures: Vec<Failure>,
+}
+
+/// A file, or a joint in it, that could not be read.
+#[derive(Debug)]
+pub struct Failure {
+    /// The joint, where the rest of the file could be read.
+    pub joint: Option<String>,
+    /// Why.
+    pub error: ReadError,
+}
+
+impl Experiment {
+    /// Reads `paths` in order. Never fails as a whole: see [`Experiment::failures`].
+    ///
+    /// With several files a trial is named after its file: `stem`, or `stem/trial`
+    /// where the file names its trials itself.
+    pub fn read(paths: &[PathBuf], options: &ReadOptions) -> Self {
+        let mut experiment = Self::default();
+        let mut stems: Vec<String> = Vec::new();
+        for path in paths {
+            let stem = (paths.len() > 1).then(|| unique_stem(path, &stems));
+            match read_log(path, stem.as_deref(), options) {
+                Ok(log) => experiment.add(log, path),
+                Err(error) => experiment.failures.push(Failure { joint: None, error }),
+            }
+            stems.extend(stem);
+        }
+        experiment
+    }
+
+    fn add(&mut self, log: Self, path: &Path) {
+        self.sources.extend(log.sources);
+        self.failures.extend(log.failures);
+        for joint in log.joints {
+            match self
+                .joints
+                .iter_mut()
+                .find(|known| known.name == joint.name)
+            {
+                None => self.joints.push(joint),
+                Some(known) => {
+                    if let Err(error) = merge(known, joint, path) {
+                        let joint = Some(known.name.clone());
+                        self.failures.push(Failure { joint, error });
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Adds the trials of `joint` to those of the same joint in earlier logs.
+fn merge(known: &mut Joint, joint: Joint, path: &Path) -> Result<(), ReadError> {
+    let units = |joint: &Joint| (joint.input_unit.clone(), joint.output_unit.clone());
+    if units(known) != units(&joint) || known.covariates != joint.covariates {
+        let describe = |joint: &Joint| {
+            let unit = |unit: &Option<String>| unit.clone().unwrap_or_else(|| "no unit".to_owned());
+            let mut parts = vec![unit(&joint.input_unit), unit(&joint.output_unit)];
+            parts.extend(
+                joint
+                    .covariates
+                    .iter()
+                    .map(|s| format!("{} {}", s.name, unit(&s.unit))),
+            );
+            parts.join(", ")
+        };
+        return Err(ReadError::UnitsDiffer {
+            path: path.to_owned(),
+            joint: joint.name.clone(),
+            found: describe(&joint),
+            expected: describe(known),
+        });
+    }
+    known.trials.extend(joint.trials);
+    Ok(())
+}
+
+fn unique_stem(path: &Path, taken: &[String]) -> String {
+    let stem = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    if !taken.contains(&stem) {
+        return stem;
+    }
+    let mut number = 2;
+    while taken.contains(&format!("{stem}~{number}")) {
+        number += 1;
+    }
+    format!("{stem}~{number}")
+}
+
+/// Files as they are; of a folder its logs (`.csv`, `.tsv`, `.txt`), sorted by name.
+///
+/// Truth files (`*.truth.csv`) are no logs and are left out.
+///
+/// # Errors
+/// [`ReadError::Io`] for a folder that cannot be listed, [`ReadError::EmptyFolder`] for
+/// one without a log.
+pub fn expand_folders(paths: &[PathBuf]) -> Result<Vec<PathBuf>, ReadError> {
+    let mut files = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            files.push(path.clone());
+            continue;
+        }
+        let io_error = |source| ReadError::Io {
+            path: path.clone(),
+            source,
+        };
+        let mut logs = Vec::new();
+        for entry in path.read_dir().map_err(io_error)? {
+            logs.push(entry.map_err(io_error)?.path());
+        }
+        logs.retain(|file| is_log(file));
+        logs.sort();
+        if logs.is_empty() {
+            return Err(ReadError::EmptyFolder { path: path.clone() });
+        }
+        files.extend(logs);
+    }
+    Ok(files)
+}
+
+fn is_log(path: &Path) -> bool {
+    let name = path
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_lowercase();
+    let named = [".csv", ".tsv", ".txt"]
+        .iter()
+        .any(|ending| name.ends_with(ending));
+    named && !name.ends_with(".truth.csv") && path.is_file()
+}
+
+fn read_log(
+    path: &Path,
+    stem: Option<&str>,
+    options: &ReadOptions,
+) -> Result<Experiment, ReadError> {
+    let table = OpenTable::open(path)?;
+    let period = sample_period(path, &options.columns)?;
+    let mut layout = Layout::find(&table, &options.columns, period)?;
+    let unknown = layout.keep(path, &options.joints);
+    let numeric = layout.numeric_columns();
+    let headers: Vec<String> = table
+        .headers
+        .iter()
+        .map(|header| header.name.clone())
+        .collect();
+    let table = table.read(&numeric, layout.trial)?;
+    let log = Log {
+        path,
+        headers: &headers,
+        numeric: &numeric,
+        table: &table,
+    };
+    let trials = log.trials(stem);
+    let grids = log.grids(layout.time, &trials, options.repair)?;
+    let failed = |(joint, error): (String, ReadError)| Failure {
+        joint: Some(joint),
+        error,
+    };
+    let mut failures: Vec<_> = layout
+        .incomplete
+        .into_iter()
+        .chain(unknown)
+        .map(failed)
+        .collect();
+    let mut joints = Vec::new();
+    for joint in &layout.joints {
+        match log.joint(joint, &trials, &grids, options.repair) {
+            Ok(joint) => joints.push(joint),
+            Err(error) => failures.push(failed((joint.name.clone(), error))),
+        }
+    }
+    let sources = vec![table.source];
+    Ok(Experiment {
+        sources,
+        joints,
+        failures,
+    })
+}
+
+fn sample_period(path: &Path, map: &ColumnMap) -> Result<Option<SamplePeriod>, ReadError> {
+    let Some(seconds) = map.sample_period_s else {
+        return Ok(None);
+    };
+    let bad = || ReadError::BadPeriod {
+        path: path.to_owned(),
+        seconds,
+    };
+    SamplePeriod::from_seconds(seconds)
+        .map(Some)
+        .ok_or_else(bad)
+}
+
+impl Layout {
+    /// Keeps the joints named in `wanted`; those that are not there come back as errors.
+    fn keep(&mut self, path: &Path, wanted: &[String]) -> Vec<(String, ReadError)> {
+        if wanted.is_empty() {
+            return Vec::new();
+        }
+        let names: Vec<String> = self.joints.iter().map(|joint| joint.name.clone()).collect();
+        self.joints.retain(|joint| wanted.contains(&joint.name));
+        self.incomplete.retain(|(name, _)| wanted.contains(name));
+        let incomplete = &self.incomplete;
+        let known = |name: &String| {
+            names.contains(name) || incomplete.iter().any(|(incomplete, _)| incomplete == name)
+        };
+        let error = |name: &String| ReadError::UnknownJoint {
+            path: path.to_owned(),
+            joint: name.clone(),
+            nearest: nearest_name(name, names.iter().map(String::as_str)),
+            available: names.join(", "),
+        };
+        wanted
+            .iter()
+            .filter(|name| !known(name))
+            .map(|name| (name.clone(), error(name)))
+            .collect()
+    }
+
+    /// Indices of all columns that hold numbers, each once.
+    fn numeric_columns(&self) -> Vec<usize> {
+        let mut columns = match self.time {
+            TimeSource::Seconds(column) | TimeSource::SampleNumbers(column, _) => vec![column],
+            TimeSource::Rows(_) => Vec::new(),
+        };
+        for joint in &self.joints {
+            columns.extend([joint.input.column, joint.output.column]);
+            columns.extend(joint.covariates.iter().map(|covariate| covariate.column));
+        }
+        columns.sort_unstable();
+        columns.dedup();
+        columns
+    }
+}
+
+/// A table that was read, with what is needed to speak of its cells.
+struct Log<'a> {
+    path: &'a Path,
+    headers: &'a [String],
+    numeric: &'a [usize],
+    table: &'a Table,
+}
+
+impl Log<'_> {
+    /// The trials' rows, named: the whole file is trial `1` unless it says otherwise.
+    fn trials(&self, stem: Option<&str>) -> Vec<TrialRows> {
+        let mut trials = self.table.trials.clone();
+        if trials.is_empty() {
+            let label = stem.unwrap_or("1").to_owned();
+            return vec![TrialRows {
+                label,
+                start: 0,
+                end: self.table.rows.len(),
+            }];
+        }
+        for trial in &mut trials {
+            if let Some(stem) = stem {
+                trial.label = format!("{stem}/{}", trial.label);
+            }
+        }
+        trials
+    }
+
+    fn grids(
+        &self,
+        time: TimeSource,
+        trials: &[TrialRows],
+        repair: Repair,
+    ) -> Result<Vec<Grid>, ReadError> {
+        let (column, scale) = match time {
+            TimeSource::Seconds(column) => (column, 1.0),
+            TimeSource::SampleNumbers(column, period) => (column, period.seconds()),
+            TimeSource::Rows(period) => {
+                let grid =
+                    |trial: &TrialRows| Grid::of_rows(trial.end - trial.start, period, repair);
+                return Ok(trials.iter().map(grid).collect());
+            }
+        };
+        let values = self.column(column).map_or(&[][..], |column| &column.values);
+        let times: Vec<f64> = values.iter().map(|value| value * scale).collect();
+        self.check_times(column, &times)?;
+        let lay = |trial: &TrialRows| {
+            let times = times.get(trial.start..trial.end).unwrap_or_default();
+            Grid::lay(times, repair).map_err(|fault| self.time_error(fault, trial, times))
+        };
+        trials.iter().map(lay).collect()
+    }
+
+    /// Every row needs a time.
+    fn check_times(&self, column: usize, times: &[f64]) -> Result<(), ReadError> {
+        if let Some(error) = self.bad_cell(column) {
+            return Err(error);
+        }
+        match times.iter().position(|time| time.is_nan()) {
+            Some(index) => Err(ReadError::NotANumber {
+                path: self.path.to_owned(),
+                row: self.row(index),
+                column: self.header(column),
+                text: String::new(),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    fn time_error(&self, fault: Fault, trial: &TrialRows, times: &[f64]) -> ReadError {
+        let path = self.path.to_owned();
+        let at = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
+        match fault {
+            Fault::NotIncreasing { row } => ReadError::TimeNotIncreasing {
+                path,
+                row: self.row(trial.start + row),
+                previous: at(row - 1),
+                time: at(row),
+            },
+            Fault::NotUniform { row, step, period } => ReadError::NotUniform {
+                path,
+                row: self.row(trial.start + row),
+                step,
+                period,
+            },
+            Fault::SingleRow => ReadError::SingleRow {
+                path,
+                row: self.row(trial.start),
+                trial: trial.label.clone(),
+            },
+        }
+    }
+
+    fn joint(
+        &self,
+        layout: &JointLayout,
+        trials: &[TrialRows],
+        grids: &[Grid],
+        repair: Repair,
+    ) -> Result<Joint, ReadError> {
+        self.check_joint(layout, repair)?;
+        let mut joint = Joint {
+            name: layout.name.clone(),
+            input_unit: layout.input.signal.unit.clone(),
+            output_unit: layout.output.signal.unit.clone(),
+            covariates: layout
+                .covariates
+                .iter()
+                .map(|c| c.signal.clone())
+                .collect::<Vec<Signal>>(),
+            trials: Vec::new(),
+        };
+        for (rows, grid) in trials.iter().zip(grids) {
+            let pieces = grid.pieces(&self.signals(layout, rows));
+            let several = pieces.len() > 1;
+            for (index, piece) in pieces.into_iter().enumerate() {
+                let part = if several {
+                    format!("#{}", index + 1)
+                } else {
+                    String::new()
+                };
+                let label = format!("{}{part}", rows.label);
+                let Signals {
+                    input,
+                    output,
+                    covariates,
+                } = piece.signals;
+                let trial = Trial::new(label, piece.start_s, grid.period(), input, output)
+                    .and_then(|trial| trial.with_covariates(covariates));
+                joint.trials.push(trial.map_err(|source| ReadError::Trial {
+                    path: self.path.to_owned(),
+                    joint: layout.name.clone(),
+                    source,
+                })?);
+            }
+        }
+        if joint.trials.is_empty() {
+            let (path, joint) = (self.path.to_owned(), layout.name.clone());
+            return Err(ReadError::NoSamples { path, joint });
+        }
+        Ok(joint)
+    }
+
+    /// Refuses bad cells, and missing ones unless they may be filled.
+    fn check_joint(&self, layout: &JointLayout, repair: Repair) -> Result<(), ReadError> {
+        let needed = [layout.input.column, layout.output.column];
+        let further = layout.covariates.iter().map(|covariate| covariate.column);
+        if let Some(error) = needed
+            .into_iter()
+            .chain(further)
+            .find_map(|c| self.bad_cell(c))
+        {
+            return Err(error);
+        }
+        if repair.fill_s.is_some() {
+            return Ok(());
+        }
+        let first_missing = |column: usize| {
+            let values = &self.column(column)?.values;
+            values
+                .iter()
+                .position(|value| value.is_nan())
+                .map(|index| (index, column))
+        };
+        match needed.into_iter().filter_map(first_missing).min() {
+            Some((index, column)) => Err(ReadError::Missing {
+                path: self.path.to_owned(),
+                row: self.row(index),
+                column: self.header(column),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    fn signals(&self, layout: &JointLayout, rows: &TrialRows) -> Signals {
+        let cut = |column: usize| {
+            let values = self.column(column).map_or(&[][..], |column| &column.values);
+            values
+                .get(rows.start..rows.end)
+                .unwrap_or_default()
+                .to_vec()
+        };
+        Signals {
+            input: cut(layout.input.column),
+            output: cut(layout.output.column),
+            covariates: layout.covariates.iter().map(|c| cut(c.column)).collect(),
+        }
+    }
+
+    fn column(&self, index: usize) -> Option<&Column> {
+        let place = self.numeric.binary_search(&index).ok()?;
+        self.table.columns.get(place)
+    }
+
+    fn header(&self, column: usize) -> String {
+        self.headers.get(column).cloned().unwrap_or_default()
+    }
+
+    fn row(&self, index: usize) -> u64 {
+        self.table.rows.get(index).copied().unwrap_or_default()
+    }
+
+    /// The first bad cell of a column.
+    fn bad_cell(&self, column: usize) -> Option<ReadError> {
+        let (row, bad) = self.column(column)?.error.clone()?;
+        let (path, column) = (self.path.to_owned(), self.header(column));
+        Some(match bad {
+            BadCell::Text(text) => ReadError::NotANumber {
+                path,
+                row,
+                column,
+                text,
+            },
+            BadCell::Infinite => ReadError::Infinite { path, row, column },
+        })
+    }
+}

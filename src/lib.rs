@@ -1,0 +1,4 @@
+//! tauscope
+#![forbid(unsafe_code)]
+pub mod experiment;
+pub mod units;

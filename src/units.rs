@@ -1,0 +1,51 @@
+//! Scalars that are valid once they exist.
+
+use std::fmt;
+
+use serde::Serialize;
+
+/// Seconds between two samples: finite and greater than zero.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Serialize)]
+#[serde(transparent)]
+pub struct SamplePeriod(f64);
+
+impl SamplePeriod {
+    /// The period of `seconds`, or `None` unless it is finite and positive.
+    pub fn from_seconds(seconds: f64) -> Option<Self> {
+        (seconds.is_finite() && seconds > 0.0).then_some(Self(seconds))
+    }
+
+    /// The period in seconds.
+    pub fn seconds(self) -> f64 {
+        self.0
+    }
+
+    /// Half the sample rate in Hz: nothing above it can be told apart.
+    pub fn nyquist_hz(self) -> f64 {
+        0.5 / self.0
+    }
+}
+
+impl fmt::Display for SamplePeriod {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} s", self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn refuses_what_is_no_period() {
+        for seconds in [0.0, -0.01, f64::NAN, f64::INFINITY] {
+            assert_eq!(SamplePeriod::from_seconds(seconds), None);
+        }
+    }
+
+    #[test]
+    fn nyquist_is_half_the_rate() {
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        assert!((period.nyquist_hz() - 50.0).abs() < 1e-12);
+    }
+}
