@@ -78,7 +78,7 @@ impl OpenTable {
             .comment(Some(b'#'))
             .flexible(true)
             .has_headers(false)
-            .from_reader(Hashing::new(Cursor::new(start).chain(file)).chain(&b"\n"[..]));
+            .from_reader(Hashing::new(Cursor::new(start).chain(file)).chain(ending.bytes()));
         let mut record = csv::StringRecord::new();
         let csv_error = |source| ReadError::Csv {
             path: path.to_owned(),
@@ -223,6 +223,13 @@ enum LineEnding {
 }
 
 impl LineEnding {
+    fn bytes(self) -> &'static [u8] {
+        match self {
+            Self::Lf => b"\n",
+            Self::CrLf => b"\r\n",
+        }
+    }
+
     fn sniff(start: &[u8]) -> Self {
         let first = start.iter().position(|&byte| byte == b'\n');
         match first.and_then(|index| start.get(index.wrapping_sub(1))) {
