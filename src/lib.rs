@@ -1,4 +1,5 @@
 //! tauscope
-#![forbid(unsafe_code)]
+pub mod delay;
 pub mod experiment;
+pub mod filter;
 pub mod units;

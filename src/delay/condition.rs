@@ -1,0 +1,218 @@
+//! The conditions a breakpoint must meet, each with the numbers that were compared.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::estimate::Settings;
+use super::search::Candidate;
+
+/// What a decision may fail, in the paper's order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Condition {
+    /// (1) The first and the last step of a trial have no neighbour to judge them by.
+    FirstOrLast,
+    /// (2) The output touches a limit in the segment.
+    OutputLimit,
+    /// (3) The breakpoint comes before the input step: `q < p`.
+    BeforeInput,
+    /// (4) The slope changes by less than the limit.
+    SlopeChange,
+    /// (5) The input is held for less than `τ_min`.
+    ShortHold,
+    /// (6) The squared error is not below the limit.
+    Sse,
+    /// There are fewer than two rows of β samples, so no candidate.
+    TooShort,
+}
+
+impl Condition {
+    /// All conditions, in the order they are reported.
+    pub const ALL: [Self; 7] = [
+        Self::FirstOrLast,
+        Self::OutputLimit,
+        Self::BeforeInput,
+        Self::SlopeChange,
+        Self::ShortHold,
+        Self::Sse,
+        Self::TooShort,
+    ];
+
+    /// Its name in files and tables.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::FirstOrLast => "first_or_last",
+            Self::OutputLimit => "output_limit",
+            Self::BeforeInput => "before_input",
+            Self::SlopeChange => "slope_change",
+            Self::ShortHold => "short_hold",
+            Self::Sse => "sse",
+            Self::TooShort => "too_short",
+        }
+    }
+
+    /// What is wrong when it fails, in words.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::FirstOrLast => "first or last step of the trial",
+            Self::OutputLimit => "output touches a limit",
+            Self::BeforeInput => "breakpoint before the input step",
+            Self::SlopeChange => "slope changes too little",
+            Self::ShortHold => "input held too short",
+            Self::Sse => "lines fit too badly",
+            Self::TooShort => "segment too short for two lines",
+        }
+    }
+}
+
+impl fmt::Display for Condition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.id())
+    }
+}
+
+/// How a condition came out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// Met.
+    Passed,
+    /// Not met.
+    Failed,
+    /// No limit is set, or there is no candidate to hold against it.
+    NotChecked,
+}
+
+/// A condition, the number it looked at, and the limit it was held against.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Check {
+    /// Which one.
+    pub condition: Condition,
+    /// The number of this step, where there is one.
+    pub value: Option<f64>,
+    /// The limit, where one is set.
+    pub limit: Option<f64>,
+    /// How it came out.
+    pub outcome: Outcome,
+}
+
+/// What the conditions look at.
+pub(super) struct Facts<'a> {
+    pub(super) step: usize,
+    pub(super) steps: usize,
+    pub(super) input_sample: usize,
+    /// Samples to the next step, or to the end of the trial.
+    pub(super) hold: usize,
+    /// Output over the segment.
+    pub(super) output: &'a [f64],
+    /// Whole rows of β samples in the segment.
+    pub(super) rows: usize,
+    pub(super) best: Option<Candidate>,
+}
+
+impl Facts<'_> {
+    /// All conditions, in the order of [`Condition::ALL`].
+    pub(super) fn check(&self, settings: &Settings) -> Vec<Check> {
+        vec![
+            self.first_or_last(settings),
+            self.output_limit(settings),
+            self.before_input(),
+            self.slope_change(settings),
+            self.short_hold(settings),
+            self.sse(settings),
+            self.too_short(),
+        ]
+    }
+
+    fn first_or_last(&self, settings: &Settings) -> Check {
+        let at_an_end = self.step == 1 || self.step == self.steps;
+        let outcome = match (settings.keep_first_last, at_an_end) {
+            (true, _) => Outcome::NotChecked,
+            (false, true) => Outcome::Failed,
+            (false, false) => Outcome::Passed,
+        };
+        check(
+            Condition::FirstOrLast,
+            Some(self.step as f64),
+            Some(self.steps as f64),
+            outcome,
+        )
+    }
+
+    /// The value is the sample that is farthest out of, or nearest to, the limits.
+    fn output_limit(&self, settings: &Settings) -> Check {
+        let Some((low, high)) = settings.output_limits else {
+            return check(Condition::OutputLimit, None, None, Outcome::NotChecked);
+        };
+        let room = |y: f64| (high - y).min(y - low);
+        let extreme = self
+            .output
+            .iter()
+            .copied()
+            .min_by(|a, b| room(*a).total_cmp(&room(*b)));
+        let limit = extreme.map(|y| if high - y <= y - low { high } else { low });
+        let inside = self.output.iter().all(|&y| y < high && y > low);
+        check(
+            Condition::OutputLimit,
+            extreme,
+            limit,
+            Outcome::from(inside),
+        )
+    }
+
+    fn before_input(&self) -> Check {
+        let limit = self.input_sample as f64;
+        let value = self.best.map(|best| best.breakpoint as f64);
+        let outcome = value.map_or(Outcome::NotChecked, |q| Outcome::from(q >= limit));
+        check(Condition::BeforeInput, value, Some(limit), outcome)
+    }
+
+    fn slope_change(&self, settings: &Settings) -> Check {
+        let limit = settings.min_slope_change;
+        let value = self.best.map(|best| best.slope_change().abs());
+        let outcome = value.map_or(Outcome::NotChecked, |change| Outcome::from(change >= limit));
+        check(Condition::SlopeChange, value, Some(limit), outcome)
+    }
+
+    fn short_hold(&self, settings: &Settings) -> Check {
+        let outcome = Outcome::from(self.hold >= settings.min_delay);
+        let limit = Some(settings.min_delay as f64);
+        check(Condition::ShortHold, Some(self.hold as f64), limit, outcome)
+    }
+
+    fn sse(&self, settings: &Settings) -> Check {
+        let value = self.best.map(|best| best.sse);
+        let outcome = match (value, settings.max_sse) {
+            (Some(sse), Some(limit)) => Outcome::from(sse < limit),
+            _ => Outcome::NotChecked,
+        };
+        check(Condition::Sse, value, settings.max_sse, outcome)
+    }
+
+    fn too_short(&self) -> Check {
+        let outcome = Outcome::from(self.best.is_some());
+        check(
+            Condition::TooShort,
+            Some(self.rows as f64),
+            Some(2.0),
+            outcome,
+        )
+    }
+}
+
+fn check(condition: Condition, value: Option<f64>, limit: Option<f64>, outcome: Outcome) -> Check {
+    Check {
+        condition,
+        value,
+        limit,
+        outcome,
+    }
+}
+
+impl From<bool> for Outcome {
+    /// `true` when the condition is met.
+    fn from(met: bool) -> Self {
+        if met { Self::Passed } else { Self::Failed }
+    }
+}

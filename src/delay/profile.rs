@@ -1,0 +1,62 @@
+//! The delay of every sample: `τ_k`.
+
+use serde::Serialize;
+
+use super::estimate::Decision;
+
+/// How `τ_k` goes on between two steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Interpolation {
+    /// `τ_k = δ_i` for `k = p_i … p_(i+1)`: the paper's.
+    #[default]
+    Hold,
+    /// From `δ_i` at `p_i` in a line to `δ_(i+1)` at `p_(i+1)`; held where the next step
+    /// was not accepted.
+    Linear,
+}
+
+/// The delay of every sample in samples; empty where none was recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DelayProfile {
+    /// NaN where nothing was recorded.
+    tau: Vec<f64>,
+}
+
+impl DelayProfile {
+    /// The profile of a trial of `samples`, from its `decisions` in order.
+    ///
+    /// At `p_(i+1)` two accepted steps meet; the later one counts.
+    pub(super) fn of(decisions: &[Decision], samples: usize, between: Interpolation) -> Self {
+        let mut tau = vec![f64::NAN; samples];
+        for (index, decision) in decisions.iter().enumerate() {
+            let Some(delta) = decision.accepted_delay() else {
+                continue;
+            };
+            let next = decisions.get(index + 1);
+            let end = next.map_or(samples, |next| next.input_step.sample);
+            let start = decision.input_step.sample;
+            let target = match between {
+                Interpolation::Hold => None,
+                Interpolation::Linear => next.and_then(Decision::accepted_delay),
+            };
+            let change = target.map_or(0.0, |target| target - delta) / (end - start).max(1) as f64;
+            let held = tau.get_mut(start - 1..end).unwrap_or_default();
+            for (offset, slot) in held.iter_mut().enumerate() {
+                *slot = delta + change * offset as f64;
+            }
+        }
+        Self { tau }
+    }
+
+    /// `τ_k` in samples at the sample number `k`, counted from 1.
+    pub fn at(&self, k: usize) -> Option<f64> {
+        let index = k.checked_sub(1)?;
+        self.tau.get(index).copied().filter(|tau| !tau.is_nan())
+    }
+
+    /// `τ_k` of all samples in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = Option<f64>> + '_ {
+        self.tau.iter().map(|&tau| (!tau.is_nan()).then_some(tau))
+    }
+}

@@ -1,0 +1,241 @@
+//! Every candidate breakpoint of a segment: both lines and their squared error.
+
+use super::line::{Line, RunningLine};
+
+/// Difference of two squared errors, as a part of the segment's total sum of squares,
+/// below which they tie and the earlier candidate wins. Rounding is four orders below.
+const TIE: f64 = 1e-12;
+
+/// All pairs of lines through a segment, the evidence behind a decision.
+///
+/// The segment is the matrix Φ of `rows` rows with β samples each. Candidate
+/// `f = 1 … rows − 1` fits one line to rows `1 … f` and another to rows `f+1 … rows`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Candidates {
+    first_sample: usize,
+    beta: usize,
+    sse: Vec<f64>,
+    before: Vec<Line>,
+    after: Vec<Line>,
+    best: Option<usize>,
+}
+
+/// One pair of lines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    /// `f`: rows of Φ before the breakpoint.
+    pub f: usize,
+    /// `q = r + f·β`: the first sample of the second line.
+    pub breakpoint: usize,
+    /// Sum of squared errors of both lines, output units squared.
+    pub sse: f64,
+    /// The line before the breakpoint.
+    pub before: Line,
+    /// The line from the breakpoint on.
+    pub after: Line,
+}
+
+impl Candidate {
+    /// Slope after minus slope before, output units per sample.
+    pub fn slope_change(&self) -> f64 {
+        self.after.slope - self.before.slope
+    }
+}
+
+impl Candidates {
+    /// Fits every pair of lines to `values`, the samples from `first_sample` on, in rows
+    /// of `beta`; what is left over behind the last whole row is dropped.
+    ///
+    /// Time and memory grow with the number of samples and candidates, not their product.
+    pub fn search(values: &[f64], first_sample: usize, beta: usize) -> Self {
+        let beta = beta.max(1);
+        let rows = values.len() / beta;
+        let values = values.get(..rows * beta).unwrap_or_default();
+        let mut found = Self {
+            first_sample,
+            beta,
+            ..Self::default()
+        };
+        let Some(&offset) = values.first() else {
+            return found;
+        };
+        if rows < 2 {
+            return found;
+        }
+        found.fit_before(values, offset);
+        found.fit_after(values, offset);
+        found.best = found.lowest(TIE * sum_of_squares(values, offset));
+        found
+    }
+
+    /// Fits the lines before each breakpoint, from the front.
+    fn fit_before(&mut self, values: &[f64], offset: f64) {
+        let count = values.len() / self.beta - 1;
+        self.sse.reserve_exact(count);
+        self.before.reserve_exact(count);
+        let mut line = RunningLine::default();
+        for (row, f) in values.chunks_exact(self.beta).take(count).zip(1..) {
+            for y in row {
+                line.push(y - offset);
+            }
+            let middle = self.first_sample as f64 + ((f * self.beta) as f64 - 1.0) / 2.0;
+            self.sse.push(line.sse());
+            self.before
+                .push(through(middle, line.mean() + offset, line.slope()));
+        }
+    }
+
+    /// Fits the lines after each breakpoint, from the back.
+    fn fit_after(&mut self, values: &[f64], offset: f64) {
+        let rows = values.len() / self.beta;
+        self.after = vec![Line::default(); rows - 1];
+        let last = self.first_sample as f64 + values.len() as f64 - 1.0;
+        let mut line = RunningLine::default();
+        let slots = self.after.iter_mut().rev().zip(self.sse.iter_mut().rev());
+        for ((row, (after, sse)), count) in values.rchunks_exact(self.beta).zip(slots).zip(1..) {
+            for y in row.iter().rev() {
+                line.push(y - offset);
+            }
+            let middle = last - ((count * self.beta) as f64 - 1.0) / 2.0;
+            *after = through(middle, line.mean() + offset, -line.slope());
+            *sse += line.sse();
+        }
+    }
+
+    /// The first candidate within `tie` of the lowest squared error.
+    fn lowest(&self, tie: f64) -> Option<usize> {
+        let lowest = self.sse.iter().copied().fold(f64::INFINITY, f64::min);
+        self.sse.iter().position(|&sse| sse <= lowest + tie)
+    }
+
+    /// Number of candidates: rows of Φ less one.
+    pub fn len(&self) -> usize {
+        self.sse.len()
+    }
+
+    /// Whether the segment was too short for two lines.
+    pub fn is_empty(&self) -> bool {
+        self.sse.is_empty()
+    }
+
+    /// The candidate at `index`, which is `f − 1`.
+    pub fn get(&self, index: usize) -> Option<Candidate> {
+        Some(Candidate {
+            f: index + 1,
+            breakpoint: self.first_sample + (index + 1) * self.beta,
+            sse: *self.sse.get(index)?,
+            before: *self.before.get(index)?,
+            after: *self.after.get(index)?,
+        })
+    }
+
+    /// All candidates, in the order of their breakpoints.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = Candidate> + '_ {
+        let lines = self.before.iter().zip(&self.after);
+        self.sse
+            .iter()
+            .zip(lines)
+            .enumerate()
+            .map(|(index, (&sse, (&before, &after)))| Candidate {
+                f: index + 1,
+                breakpoint: self.first_sample + (index + 1) * self.beta,
+                sse,
+                before,
+                after,
+            })
+    }
+
+    /// The candidate with the lowest squared error, the first of those that tie.
+    pub fn best(&self) -> Option<Candidate> {
+        self.best.and_then(|index| self.get(index))
+    }
+
+    /// Squared errors, output units squared, in the order of the breakpoints.
+    pub fn sse(&self) -> &[f64] {
+        &self.sse
+    }
+}
+
+/// The line of `slope` through `value` at sample `k`.
+fn through(k: f64, value: f64, slope: f64) -> Line {
+    Line {
+        slope,
+        intercept: value - slope * k,
+    }
+}
+
+/// Total sum of squares about the mean.
+fn sum_of_squares(values: &[f64], offset: f64) -> f64 {
+    let sum: f64 = values.iter().map(|y| y - offset).sum();
+    let mean = offset + sum / values.len() as f64;
+    values.iter().map(|y| (y - mean) * (y - mean)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A level line, then a slope of 2 from `kink` (an index) on.
+    fn kinked(length: usize, kink: usize) -> Vec<f64> {
+        (0..length)
+            .map(|k| 2.0 * (k.saturating_sub(kink)) as f64)
+            .collect()
+    }
+
+    #[test]
+    fn a_kink_is_found_where_it_is() {
+        let found = Candidates::search(&kinked(48, 25), 79, 5);
+        let best = found.best().unwrap();
+        assert_eq!((found.len(), best.f, best.breakpoint), (8, 5, 104));
+        assert!(best.sse < 1e-20);
+        assert!(best.before.slope.abs() < 1e-12 && (best.after.slope - 2.0).abs() < 1e-12);
+        assert!(
+            (best.after.at(104.0)).abs() < 1e-9,
+            "the lines are in sample numbers"
+        );
+    }
+
+    #[test]
+    fn the_rest_that_fills_no_row_is_dropped() {
+        let mut values = kinked(48, 25);
+        values[47] = 1e9;
+        values[46] = 1e9;
+        values[45] = 1e9;
+        assert_eq!(Candidates::search(&values, 79, 5).best().unwrap().f, 5);
+    }
+
+    #[test]
+    fn a_tie_goes_to_the_first() {
+        let flat = Candidates::search(&[3.25; 60], 1, 5);
+        assert_eq!(flat.best().unwrap().f, 1);
+        let line: Vec<f64> = (0..60).map(|k| 0.1 * f64::from(k)).collect();
+        assert_eq!(Candidates::search(&line, 1, 5).best().unwrap().f, 1);
+    }
+
+    #[test]
+    fn fewer_than_two_rows_have_no_candidate() {
+        for length in 0..10 {
+            assert!(Candidates::search(&vec![1.0; length], 1, 5).is_empty());
+        }
+        assert_eq!(Candidates::search(&[1.0; 10], 1, 5).len(), 1);
+    }
+
+    #[test]
+    fn a_joint_a_million_degrees_away_decides_alike() {
+        let noise = |k: usize| 0.01 * ((k * 7919 % 1000) as f64 / 500.0 - 1.0);
+        let near: Vec<f64> = kinked(4000, 2345)
+            .iter()
+            .zip(0..)
+            .map(|(y, k)| y + noise(k))
+            .collect();
+        let far: Vec<f64> = near.iter().map(|y| y + 1e6).collect();
+        let (near, far) = (
+            Candidates::search(&near, 1, 5),
+            Candidates::search(&far, 1, 5),
+        );
+        assert_eq!(near.best().unwrap().f, far.best().unwrap().f);
+        for (a, b) in near.sse().iter().zip(far.sse()) {
+            assert!((a - b).abs() <= 1e-6 * a, "{a} {b}");
+        }
+    }
+}
