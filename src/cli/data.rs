@@ -1,0 +1,123 @@
+//! The options of every command that reads logs.
+
+use std::path::PathBuf;
+
+use anyhow::Context as _;
+use clap::Args;
+use tauscope::experiment::{
+    ColumnMap, Experiment, JointColumns, ReadOptions, Repair, expand_folders,
+};
+use tauscope::units::SamplePeriod;
+
+/// Where the logs are and how they are read.
+#[derive(Args, Debug)]
+pub(super) struct DataArgs {
+    /// Logs (CSV), or folders of logs
+    #[arg(required = true, value_name = "DATA")]
+    data: Vec<PathBuf>,
+
+    /// A joint to use, by name; or `NAME=INPUT_COLUMN:OUTPUT_COLUMN` in a foreign log.
+    /// May be repeated
+    #[arg(long, value_name = "NAME[=IN:OUT]", help_heading = "Reading logs")]
+    joint: Vec<String>,
+
+    /// Column of the time in seconds
+    #[arg(long, value_name = "COLUMN", help_heading = "Reading logs")]
+    time: Option<String>,
+
+    /// Column that names the trial of a row
+    #[arg(long, value_name = "COLUMN", help_heading = "Reading logs")]
+    trial: Option<String>,
+
+    /// Seconds between samples, for a log without a time column
+    #[arg(long, value_name = "SECONDS", help_heading = "Reading logs")]
+    sample_period: Option<f64>,
+
+    /// A TOML file that maps the columns of a foreign log
+    #[arg(long, value_name = "FILE", help_heading = "Reading logs")]
+    columns: Option<PathBuf>,
+
+    /// Put unevenly sampled logs on a grid of this period: output linear, input held
+    #[arg(long, value_name = "SECONDS", value_parser = period, help_heading = "Reading logs")]
+    resample: Option<SamplePeriod>,
+
+    /// Fill gaps up to this long; longer ones split the trial in two
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, help_heading = "Reading logs")]
+    fill: Option<f64>,
+}
+
+fn period(text: &str) -> Result<SamplePeriod, String> {
+    let period = text.parse().ok().and_then(SamplePeriod::from_seconds);
+    period.ok_or_else(|| "expected a number of seconds above zero".to_owned())
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text
+        .parse()
+        .ok()
+        .filter(|s: &f64| s.is_finite() && *s >= 0.0);
+    seconds.ok_or_else(|| "expected a number of seconds from zero up".to_owned())
+}
+
+impl DataArgs {
+    /// Reads all logs. Failures of single files and joints are in the result.
+    ///
+    /// # Errors
+    /// When no joint at all can be read.
+    pub(super) fn read(&self) -> anyhow::Result<Experiment> {
+        let files = expand_folders(&self.data)?;
+        let mut experiment = Experiment::read(&files, &self.options()?);
+        if !experiment.joints.is_empty() {
+            return Ok(experiment);
+        }
+        let others = experiment.failures.len().saturating_sub(1);
+        let first = experiment
+            .failures
+            .drain(..)
+            .next()
+            .context("no joint in the logs")?;
+        let error = anyhow::Error::from(first.error);
+        Err(match others {
+            0 => error,
+            _ => error.context(format!("nothing could be read ({others} more like this)")),
+        })
+    }
+
+    fn options(&self) -> anyhow::Result<ReadOptions> {
+        let mut columns = match &self.columns {
+            Some(path) => ColumnMap::read(path)?,
+            None => ColumnMap::default(),
+        };
+        columns.time = self.time.clone().or(columns.time);
+        columns.trial = self.trial.clone().or(columns.trial);
+        columns.sample_period_s = self.sample_period.or(columns.sample_period_s);
+        let (mapped, named): (Vec<_>, Vec<_>) =
+            self.joint.iter().partition(|joint| joint.contains('='));
+        let mut joints: Vec<String> = named.into_iter().cloned().collect();
+        for text in mapped {
+            let joint: JointColumns = text.parse().context("--joint")?;
+            joints.push(joint.name.clone());
+            columns.joints.push(joint);
+        }
+        // Beside mapped joints, a native one is known by its columns' names.
+        if !columns.joints.is_empty() {
+            for name in &joints {
+                if columns.joints.iter().all(|joint| &joint.name != name) {
+                    let (input, output) = (format!("{name}.input"), format!("{name}.output"));
+                    columns
+                        .joints
+                        .push(JointColumns::new(name, &input, &output));
+                }
+            }
+        }
+        let repair = Repair {
+            resample: self.resample,
+            fill_s: self.fill,
+        };
+        Ok(ReadOptions {
+            columns,
+            joints,
+            repair,
+        })
+    }
+}

@@ -1,0 +1,90 @@
+//! Files that bear their final name only when they are whole.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use tempfile::NamedTempFile;
+
+/// A file that is being written. Dropped before [`commit`](Self::commit), it leaves
+/// nothing behind and what stood under the name before stays.
+#[derive(Debug)]
+pub(super) struct OutputFile {
+    path: PathBuf,
+    target: Target,
+}
+
+#[derive(Debug)]
+enum Target {
+    /// Written beside the final name and renamed.
+    Temporary(BufWriter<NamedTempFile>),
+    /// A pipe or a device: it cannot be replaced, only written to.
+    Direct(BufWriter<File>),
+}
+
+impl OutputFile {
+    /// Opens a file for `path`, so that a folder that is missing or cannot be written to
+    /// is told before the work is done.
+    pub(super) fn create(path: &Path) -> anyhow::Result<Self> {
+        // A link is written through, not replaced.
+        let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let target =
+            Self::open(&path).with_context(|| format!("{}: cannot be written", path.display()))?;
+        Ok(Self { path, target })
+    }
+
+    fn open(path: &Path) -> io::Result<Target> {
+        if path.is_dir() {
+            return Err(io::Error::from(io::ErrorKind::IsADirectory));
+        }
+        if path.exists() && !path.is_file() {
+            let device = OpenOptions::new().write(true).open(path)?;
+            return Ok(Target::Direct(BufWriter::new(device)));
+        }
+        let folder = path
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty());
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".tauscope-").suffix(".part");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt as _;
+            // As for any new file: the user's mask takes its share off.
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        let file = builder.tempfile_in(folder.unwrap_or_else(|| Path::new(".")))?;
+        Ok(Target::Temporary(BufWriter::new(file)))
+    }
+
+    /// The file under its final name, whole.
+    pub(super) fn commit(self) -> anyhow::Result<()> {
+        let finish = |target: Target| -> io::Result<()> {
+            match target {
+                Target::Direct(mut device) => device.flush(),
+                Target::Temporary(file) => {
+                    let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
+                    file.persist(&self.path).map_err(|error| error.error)?;
+                    Ok(())
+                }
+            }
+        };
+        finish(self.target).with_context(|| format!("{}: cannot be written", self.path.display()))
+    }
+}
+
+impl Write for OutputFile {
+    fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
+        match &mut self.target {
+            Target::Temporary(file) => file.write(buffer),
+            Target::Direct(file) => file.write(buffer),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.target {
+            Target::Temporary(file) => file.flush(),
+            Target::Direct(file) => file.flush(),
+        }
+    }
+}

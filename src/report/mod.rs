@@ -1,0 +1,25 @@
+//! Results as text, CSV and JSON: pure functions to bytes.
+
+mod decisions;
+mod delays;
+mod json;
+mod summary;
+mod text;
+
+pub use decisions::{DecisionRow, decision_rows, write_decisions};
+pub use delays::write_delays;
+pub use json::EstimateJson;
+pub use summary::{DelayRange, JointSummary};
+pub use text::estimate_table;
+
+use crate::batch::JointEstimate;
+use crate::experiment::Joint;
+
+/// A joint as it was measured, and its delays.
+#[derive(Clone, Copy, Debug)]
+pub struct EstimatedJoint<'a> {
+    /// What was measured.
+    pub joint: &'a Joint,
+    /// What was estimated from it.
+    pub estimate: &'a JointEstimate,
+}

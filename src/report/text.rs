@@ -1,0 +1,111 @@
+//! Tables for the terminal.
+
+use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+
+use super::{DelayRange, EstimatedJoint, JointSummary};
+use crate::delay::{Condition, Settings};
+use crate::filter::LowPass;
+
+/// The table of `estimate`: a row per joint, and the settings below it.
+pub fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings) -> String {
+    let mut table = Table::new();
+    table
+        .load_style(presets::UTF8_BORDERS_ONLY)
+        .set_content_arrangement(ContentArrangement::Disabled)
+        .set_header([
+            "joint",
+            "steps",
+            "accepted",
+            "rejected",
+            "delay min",
+            "median",
+            "max",
+        ]);
+    for joint in joints {
+        table.add_row(row(&joint.joint.name, &JointSummary::of(*joint)));
+    }
+    for right in [1, 2, 4, 5, 6] {
+        if let Some(column) = table.column_mut(right) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    format!("{table}\n{}\n", settings_line(settings))
+}
+
+fn row(name: &str, summary: &JointSummary) -> [String; 7] {
+    let JointSummary {
+        steps,
+        accepted,
+        rejected,
+        delay_s,
+        ..
+    } = summary;
+    let percent = |share: f64| format!("{accepted} ({:.0} %)", 100.0 * share);
+    let accepted = match steps {
+        0 => "-".to_owned(),
+        _ => percent(*accepted as f64 / *steps as f64),
+    };
+    let why = match (steps, rejected.is_empty()) {
+        (0, _) => "the input never changes".to_owned(),
+        (_, true) => "none".to_owned(),
+        (_, false) => reasons(rejected),
+    };
+    let seconds = |value: fn(&DelayRange) -> f64| {
+        delay_s
+            .as_ref()
+            .map_or_else(|| "-".to_owned(), |range| format!("{:.3} s", value(range)))
+    };
+    let [min, median, max] = [
+        seconds(|r| r.min),
+        seconds(|r| r.median),
+        seconds(|r| r.max),
+    ];
+    [
+        name.to_owned(),
+        steps.to_string(),
+        accepted,
+        why,
+        min,
+        median,
+        max,
+    ]
+}
+
+fn reasons(rejected: &[(Condition, usize)]) -> String {
+    let parts: Vec<_> = rejected
+        .iter()
+        .map(|(why, count)| format!("{why} {count}"))
+        .collect();
+    parts.join(", ")
+}
+
+/// The settings in one line, as a person would say them.
+fn settings_line(settings: &Settings) -> String {
+    let low_pass = settings.low_pass.map_or_else(
+        || "no low-pass".to_owned(),
+        |LowPass { cutoff_hz, order }| format!("zero-phase low-pass {cutoff_hz} Hz, order {order}"),
+    );
+    let mut parts = vec![
+        format!("α = {}, β = {} samples", settings.alpha, settings.beta),
+        low_pass,
+    ];
+    if let Some((low, high)) = settings.output_limits {
+        parts.push(format!("output between {low} and {high}"));
+    }
+    if settings.min_slope_change > 0.0 {
+        parts.push(format!(
+            "slope change ≥ {} per sample",
+            settings.min_slope_change
+        ));
+    }
+    if settings.min_delay > 0 {
+        parts.push(format!("hold ≥ {} samples", settings.min_delay));
+    }
+    if let Some(limit) = settings.max_sse {
+        parts.push(format!("SSE < {limit}"));
+    }
+    if settings.keep_first_last {
+        parts.push("first and last step kept".to_owned());
+    }
+    format!("two-line regression: {}", parts.join("; "))
+}

@@ -1,0 +1,87 @@
+//! Samples and the finer time steps between them.
+
+use crate::units::SamplePeriod;
+
+/// The times of a record.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clock {
+    period: SamplePeriod,
+    samples: usize,
+    substeps: u32,
+}
+
+impl Clock {
+    /// `samples` samples, `substeps` time steps from one to the next.
+    pub(super) fn new(period: SamplePeriod, samples: usize, substeps: u32) -> Self {
+        Self {
+            period,
+            samples,
+            substeps,
+        }
+    }
+
+    /// Seconds between samples.
+    pub(super) fn period(&self) -> SamplePeriod {
+        self.period
+    }
+
+    /// Samples in the record.
+    pub(super) fn samples(&self) -> usize {
+        self.samples
+    }
+
+    /// Length of one time step in seconds.
+    pub(super) fn substep_s(&self) -> f64 {
+        self.period.seconds() / f64::from(self.substeps)
+    }
+
+    /// Time of the sample with the 1-based number `sample`, in seconds.
+    pub(super) fn time_s(&self, sample: usize) -> f64 {
+        (sample as f64 - 1.0) * self.period.seconds()
+    }
+
+    /// Ends of the time steps between `sample` and the next one, in seconds.
+    pub(super) fn substep_ends(&self, sample: usize) -> impl Iterator<Item = f64> + use<> {
+        let (start, parts, period) = (sample as f64 - 1.0, self.substeps, self.period);
+        (1..=parts).map(move |j| (start + f64::from(j) / f64::from(parts)) * period.seconds())
+    }
+
+    /// Time of the sample `sample` as a fraction of the record's length.
+    pub(super) fn progress(&self, sample: usize) -> f64 {
+        (sample as f64 - 1.0) / (self.samples as f64 - 1.0).max(1.0)
+    }
+
+    /// Whole samples nearest to `seconds`.
+    pub(super) fn samples_in(&self, seconds: f64) -> usize {
+        whole(seconds / self.period.seconds())
+    }
+}
+
+/// The whole number nearest to `count`; 0 for a negative one.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the cast saturates, and what is out of reach of a record may be cut"
+)]
+pub(super) fn whole(count: f64) -> usize {
+    count.round() as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_time_step_ends_at_the_next_sample() {
+        let clock = Clock::new(SamplePeriod::from_seconds(0.01).unwrap(), 100, 20);
+        let ends: Vec<f64> = clock.substep_ends(7).collect();
+        assert_eq!(ends.len(), 20);
+        assert!((ends[0] - 0.0605).abs() < 1e-12);
+        assert!((ends[19] - clock.time_s(8)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn counts_what_is_out_of_reach_as_very_many_or_none() {
+        assert_eq!([whole(1e300), whole(-3.0), whole(2.5)], [usize::MAX, 0, 3]);
+    }
+}

@@ -1,0 +1,56 @@
+//! Independent random numbers for each purpose.
+
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+
+/// What random numbers are drawn for.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Purpose {
+    /// Levels and holds.
+    Input,
+    /// Delays.
+    Delay,
+    /// Noise of the sensor.
+    Noise,
+}
+
+/// The random numbers of joint number `joint`, from 0, for one purpose.
+///
+/// Key and stream are set bit by bit, so that they mean the same on every platform.
+pub(super) fn stream(seed: u64, joint: usize, purpose: Purpose) -> ChaCha8Rng {
+    let mut key = [0; 32];
+    let words = [seed, joint as u64];
+    for (byte, part) in key
+        .iter_mut()
+        .zip(words.iter().flat_map(|word| word.to_le_bytes()))
+    {
+        *byte = part;
+    }
+    let mut rng = ChaCha8Rng::from_seed(key);
+    rng.set_stream(match purpose {
+        Purpose::Input => 0,
+        Purpose::Delay => 1,
+        Purpose::Noise => 2,
+    });
+    rng
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::Rng as _;
+
+    use super::*;
+
+    #[test]
+    fn seed_joint_and_purpose_each_give_other_numbers() {
+        let draw = |seed, joint, purpose| stream(seed, joint, purpose).next_u64();
+        let base = draw(1, 0, Purpose::Input);
+        assert_eq!(base, draw(1, 0, Purpose::Input));
+        for other in [draw(2, 0, Purpose::Input), draw(1, 1, Purpose::Input)] {
+            assert_ne!(base, other);
+        }
+        for other in [draw(1, 0, Purpose::Delay), draw(1, 0, Purpose::Noise)] {
+            assert_ne!(base, other);
+        }
+    }
+}
