@@ -85,10 +85,7 @@ impl LowPass {
         }
         let nyquist_hz = period.nyquist_hz();
         if cutoff_hz >= nyquist_hz {
-            return Err(FilterError::AboveNyquist {
-                cutoff_hz,
-                nyquist_hz,
-            });
+            return Err(FilterError::AboveNyquist { cutoff_hz, nyquist_hz });
         }
         let filter = butter_dyn(
             order,
@@ -107,14 +104,8 @@ impl LowPass {
 
 /// Length of the extension at each end: three times the number of taps, as in SciPy.
 fn padding(sections: &[Sos<f64>]) -> usize {
-    let zeros_at_origin = sections
-        .iter()
-        .filter(|section| section.b[2] == 0.0)
-        .count();
-    let poles_at_origin = sections
-        .iter()
-        .filter(|section| section.a[2] == 0.0)
-        .count();
+    let zeros_at_origin = sections.iter().filter(|section| section.b[2] == 0.0).count();
+    let poles_at_origin = sections.iter().filter(|section| section.a[2] == 0.0).count();
     3 * (2 * sections.len() + 1 - zeros_at_origin.min(poles_at_origin))
 }
 
@@ -124,22 +115,9 @@ fn padding(sections: &[Sos<f64>]) -> usize {
 fn extend_odd(signal: &[f64], pad: usize, offset: f64) -> Vec<f64> {
     let first = signal.first().copied().unwrap_or_default();
     let last = signal.last().copied().unwrap_or_default();
-    let head = signal
-        .iter()
-        .skip(1)
-        .take(pad)
-        .rev()
-        .map(|value| 2.0 * first - value);
-    let tail = signal
-        .iter()
-        .rev()
-        .skip(1)
-        .take(pad)
-        .map(|value| 2.0 * last - value);
-    head.chain(signal.iter().copied())
-        .chain(tail)
-        .map(|value| value - offset)
-        .collect()
+    let head = signal.iter().skip(1).take(pad).rev().map(|value| 2.0 * first - value);
+    let tail = signal.iter().rev().skip(1).take(pad).map(|value| 2.0 * last - value);
+    head.chain(signal.iter().copied()).chain(tail).map(|value| value - offset).collect()
 }
 
 /// One run of the sections, from the steady state at the first value.
@@ -161,10 +139,7 @@ mod tests {
         SamplePeriod::from_seconds(0.01).unwrap()
     }
 
-    const DEFAULT: LowPass = LowPass {
-        cutoff_hz: 5.0,
-        order: 4,
-    };
+    const DEFAULT: LowPass = LowPass { cutoff_hz: 5.0, order: 4 };
 
     #[test]
     fn a_straight_line_passes_unchanged_but_for_its_ends() {
@@ -179,12 +154,7 @@ mod tests {
     fn a_symmetric_kink_stays_where_it_is() {
         let kink: Vec<f64> = (0..401).map(|k| f64::from((k - 200i32).abs())).collect();
         let smooth = DEFAULT.smooth(&kink, period()).unwrap();
-        let lowest = smooth
-            .iter()
-            .enumerate()
-            .min_by(|a, b| a.1.total_cmp(b.1))
-            .unwrap()
-            .0;
+        let lowest = smooth.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).unwrap().0;
         assert_eq!(lowest, 200);
     }
 
@@ -201,18 +171,9 @@ mod tests {
     #[test]
     fn what_cannot_be_designed_says_why() {
         let smooth = |cutoff_hz, order| LowPass { cutoff_hz, order }.smooth(&[1.0], period());
-        assert!(matches!(
-            smooth(50.0, 4),
-            Err(FilterError::AboveNyquist { .. })
-        ));
-        assert!(matches!(
-            smooth(0.0, 4),
-            Err(FilterError::NotPositive { .. })
-        ));
-        assert!(matches!(
-            smooth(f64::NAN, 4),
-            Err(FilterError::NotPositive { .. })
-        ));
+        assert!(matches!(smooth(50.0, 4), Err(FilterError::AboveNyquist { .. })));
+        assert!(matches!(smooth(0.0, 4), Err(FilterError::NotPositive { .. })));
+        assert!(matches!(smooth(f64::NAN, 4), Err(FilterError::NotPositive { .. })));
         assert!(matches!(smooth(5.0, 0), Err(FilterError::Order { .. })));
         assert!(smooth(5.0, MAX_ORDER).is_ok());
     }

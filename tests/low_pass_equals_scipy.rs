@@ -18,19 +18,9 @@ fn every_order_and_rate_agrees_to_1e_9_of_the_range() {
     let lowest = signal.iter().copied().fold(f64::MAX, f64::min);
     assert_eq!(headers.len(), 8);
     for (index, header) in headers.iter().enumerate().skip(1) {
-        let case: Vec<f64> = header
-            .split('/')
-            .map(|part| part.parse().unwrap())
-            .collect();
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "1 to 8"
-        )]
-        let filter = LowPass {
-            cutoff_hz: case[1],
-            order: case[0] as usize,
-        };
+        let case: Vec<f64> = header.split('/').map(|part| part.parse().unwrap()).collect();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 8")]
+        let filter = LowPass { cutoff_hz: case[1], order: case[0] as usize };
         let period = SamplePeriod::from_seconds(1.0 / case[2]).unwrap();
         let ours = filter.smooth(&signal, period).unwrap();
         let differences = ours.iter().zip(column(index)).map(|(a, b)| (a - b).abs());

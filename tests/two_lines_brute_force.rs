@@ -11,21 +11,11 @@ use tauscope::units::SamplePeriod;
 /// The line through `y` at the sample numbers from `first` on, and its squared error.
 fn line_fit(y: &[f64], first: usize) -> (Line, f64) {
     let k = |row: usize| (first + row) as f64;
-    let design = DMatrix::from_fn(
-        y.len(),
-        2,
-        |row, column| if column == 0 { 1.0 } else { k(row) },
-    );
+    let design = DMatrix::from_fn(y.len(), 2, |row, column| if column == 0 { 1.0 } else { k(row) });
     let y = DVector::from_column_slice(y);
     let solution = design.clone().svd(true, true).solve(&y, 1e-13).unwrap();
     let error = (&design * &solution - y).norm_squared();
-    (
-        Line {
-            intercept: solution[0],
-            slope: solution[1],
-        },
-        error,
-    )
+    (Line { intercept: solution[0], slope: solution[1] }, error)
 }
 
 /// Every pair of lines: `(breakpoint, squared error, before, after)`.
@@ -48,11 +38,7 @@ fn segment() -> impl Strategy<Value = Vec<f64>> {
         let kink = part * length as f64;
         prop::collection::vec(-1.0..1.0f64, length).prop_map(move |errors| {
             let line = |k: f64| level + before * k.min(kink) + after * (k - kink).max(0.0);
-            errors
-                .iter()
-                .enumerate()
-                .map(|(k, e)| line(k as f64) + noise * e)
-                .collect()
+            errors.iter().enumerate().map(|(k, e)| line(k as f64) + noise * e).collect()
         })
     })
 }

@@ -15,37 +15,21 @@ fn second_step(settings: &Settings) -> Decision {
 
 #[test]
 fn five_columns_break_at_the_fifth_row() {
-    let settings = Settings {
-        low_pass: None,
-        ..Settings::default()
-    };
+    let settings = Settings { low_pass: None, ..Settings::default() };
     let decision = second_step(&settings);
     assert_eq!((settings.alpha, settings.beta), (10, 5));
     assert_eq!(decision.input_step.sample, 89);
-    assert_eq!(
-        decision.segment,
-        Segment {
-            first: 79,
-            last: 126
-        }
-    );
+    assert_eq!(decision.segment, Segment { first: 79, last: 126 });
     assert_eq!(decision.segment.len(), 48);
     assert_eq!(decision.candidates.len(), 8, "M = 9 rows");
     let best = decision.breakpoint().unwrap();
-    assert_eq!(
-        (best.candidate.f, best.candidate.breakpoint, best.delay),
-        (5, 104, 15)
-    );
+    assert_eq!((best.candidate.f, best.candidate.breakpoint, best.delay), (5, 104, 15));
     assert_eq!(decision.verdict(), Verdict::Accepted);
 }
 
 #[test]
 fn two_columns_give_23_candidates() {
-    let settings = Settings {
-        low_pass: None,
-        beta: 2,
-        ..Settings::default()
-    };
+    let settings = Settings { low_pass: None, beta: 2, ..Settings::default() };
     let decision = second_step(&settings);
     assert_eq!(decision.candidates.len(), 23);
     assert!((decision.breakpoint().unwrap().delay - 15).abs() <= 1);

@@ -52,10 +52,7 @@ fn period(text: &str) -> Result<SamplePeriod, String> {
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
-    let seconds = text
-        .parse()
-        .ok()
-        .filter(|s: &f64| s.is_finite() && *s >= 0.0);
+    let seconds = text.parse().ok().filter(|s: &f64| s.is_finite() && *s >= 0.0);
     seconds.ok_or_else(|| "expected a number of seconds from zero up".to_owned())
 }
 
@@ -71,11 +68,7 @@ impl DataArgs {
             return Ok(experiment);
         }
         let others = experiment.failures.len().saturating_sub(1);
-        let first = experiment
-            .failures
-            .drain(..)
-            .next()
-            .context("no joint in the logs")?;
+        let first = experiment.failures.drain(..).next().context("no joint in the logs")?;
         let error = anyhow::Error::from(first.error);
         Err(match others {
             0 => error,
@@ -104,20 +97,11 @@ impl DataArgs {
             for name in &joints {
                 if columns.joints.iter().all(|joint| &joint.name != name) {
                     let (input, output) = (format!("{name}.input"), format!("{name}.output"));
-                    columns
-                        .joints
-                        .push(JointColumns::new(name, &input, &output));
+                    columns.joints.push(JointColumns::new(name, &input, &output));
                 }
             }
         }
-        let repair = Repair {
-            resample: self.resample,
-            fill_s: self.fill,
-        };
-        Ok(ReadOptions {
-            columns,
-            joints,
-            repair,
-        })
+        let repair = Repair { resample: self.resample, fill_s: self.fill };
+        Ok(ReadOptions { columns, joints, repair })
     }
 }

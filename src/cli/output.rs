@@ -42,9 +42,7 @@ impl OutputFile {
             let device = OpenOptions::new().write(true).open(path)?;
             return Ok(Target::Direct(BufWriter::new(device)));
         }
-        let folder = path
-            .parent()
-            .filter(|folder| !folder.as_os_str().is_empty());
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         let mut builder = tempfile::Builder::new();
         builder.prefix(".tauscope-").suffix(".part");
         #[cfg(unix)]

@@ -66,10 +66,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     log.commit()?;
     if !args.quiet {
         let (joints, steps) = (made.joints.len(), made.truth.len());
-        message(
-            "log",
-            &format!("{}: {joints} joints, {steps} steps", args.output.display()),
-        );
+        message("log", &format!("{}: {joints} joints, {steps} steps", args.output.display()));
     }
     Ok(Completion::Whole)
 }

@@ -132,12 +132,7 @@ impl Facts<'_> {
             (false, true) => Outcome::Failed,
             (false, false) => Outcome::Passed,
         };
-        check(
-            Condition::FirstOrLast,
-            Some(self.step as f64),
-            Some(self.steps as f64),
-            outcome,
-        )
+        check(Condition::FirstOrLast, Some(self.step as f64), Some(self.steps as f64), outcome)
     }
 
     /// The value is the sample that is farthest out of, or nearest to, the limits.
@@ -146,19 +141,10 @@ impl Facts<'_> {
             return check(Condition::OutputLimit, None, None, Outcome::NotChecked);
         };
         let room = |y: f64| (high - y).min(y - low);
-        let extreme = self
-            .output
-            .iter()
-            .copied()
-            .min_by(|a, b| room(*a).total_cmp(&room(*b)));
+        let extreme = self.output.iter().copied().min_by(|a, b| room(*a).total_cmp(&room(*b)));
         let limit = extreme.map(|y| if high - y <= y - low { high } else { low });
         let inside = self.output.iter().all(|&y| y < high && y > low);
-        check(
-            Condition::OutputLimit,
-            extreme,
-            limit,
-            Outcome::from(inside),
-        )
+        check(Condition::OutputLimit, extreme, limit, Outcome::from(inside))
     }
 
     fn before_input(&self) -> Check {
@@ -192,22 +178,12 @@ impl Facts<'_> {
 
     fn too_short(&self) -> Check {
         let outcome = Outcome::from(self.best.is_some());
-        check(
-            Condition::TooShort,
-            Some(self.rows as f64),
-            Some(2.0),
-            outcome,
-        )
+        check(Condition::TooShort, Some(self.rows as f64), Some(2.0), outcome)
     }
 }
 
 fn check(condition: Condition, value: Option<f64>, limit: Option<f64>, outcome: Outcome) -> Check {
-    Check {
-        condition,
-        value,
-        limit,
-        outcome,
-    }
+    Check { condition, value, limit, outcome }
 }
 
 impl From<bool> for Outcome {

@@ -40,10 +40,7 @@ impl Default for Settings {
         Self {
             alpha: 10,
             beta: 5,
-            low_pass: Some(LowPass {
-                cutoff_hz: 5.0,
-                order: 4,
-            }),
+            low_pass: Some(LowPass { cutoff_hz: 5.0, order: 4 }),
             min_delay: 0,
             output_limits: None,
             min_slope_change: 0.0,
@@ -104,10 +101,7 @@ impl Settings {
             ("max-sse", self.max_sse.unwrap_or_default()),
             ("min-step", self.min_step),
         ];
-        match thresholds
-            .into_iter()
-            .find(|(_, value)| value.is_nan() || *value < 0.0)
-        {
+        match thresholds.into_iter().find(|(_, value)| value.is_nan() || *value < 0.0) {
             Some((name, value)) => Err(SettingsError::Threshold { name, value }),
             None => Ok(()),
         }
@@ -195,28 +189,26 @@ impl Decision {
         Some(Breakpoint { candidate, delay })
     }
 
+    /// `p_(i+1)`: the sample of the next step, or the one behind the trial's last.
+    pub fn next_sample(&self) -> usize {
+        self.input_step.sample + self.hold
+    }
+
     /// Accepted, or the first condition that failed.
     pub fn verdict(&self) -> Verdict {
-        self.failed()
-            .next()
-            .map_or(Verdict::Accepted, Verdict::Rejected)
+        self.failed().next().map_or(Verdict::Accepted, Verdict::Rejected)
     }
 
     /// All conditions that failed.
     pub fn failed(&self) -> impl Iterator<Item = Condition> + '_ {
-        let failed = self
-            .checks
-            .iter()
-            .filter(|check| check.outcome == Outcome::Failed);
+        let failed = self.checks.iter().filter(|check| check.outcome == Outcome::Failed);
         failed.map(|check| check.condition)
     }
 
     /// The delay in samples, if it was accepted.
     pub fn accepted_delay(&self) -> Option<f64> {
         let accepted = self.verdict() == Verdict::Accepted;
-        self.breakpoint()
-            .filter(|_| accepted)
-            .map(|best| best.delay as f64)
+        self.breakpoint().filter(|_| accepted).map(|best| best.delay as f64)
     }
 }
 
@@ -241,11 +233,7 @@ pub fn estimate(trial: &Trial, settings: &Settings) -> Result<TrialEstimate, Est
     let (samples, needed) = (trial.len(), 2 * settings.beta);
     if samples < needed {
         let trial = trial.label().to_owned();
-        return Err(EstimateError::TooFewSamples {
-            trial,
-            samples,
-            needed,
-        });
+        return Err(EstimateError::TooFewSamples { trial, samples, needed });
     }
     let smooth = |filter: LowPass| filter.smooth(trial.output(), trial.period());
     let smoothed = settings.low_pass.map(smooth).transpose()?;
@@ -257,12 +245,7 @@ pub fn estimate(trial: &Trial, settings: &Settings) -> Result<TrialEstimate, Est
         decisions.extend(decision);
     }
     let profile = DelayProfile::of(&decisions, samples, settings.interpolation);
-    Ok(TrialEstimate {
-        label: trial.label().to_owned(),
-        smoothed,
-        decisions,
-        profile,
-    })
+    Ok(TrialEstimate { label: trial.label().to_owned(), smoothed, decisions, profile })
 }
 
 /// The decision on step `index`, after the one `before` it.
@@ -280,9 +263,7 @@ fn decide(
     let next = steps.get(index + 1).map_or(samples + 1, |next| next.sample);
     let accepted = before.filter(|before| before.verdict() == Verdict::Accepted);
     let previous = accepted.and_then(Decision::breakpoint);
-    let first = previous.map_or(p.saturating_sub(settings.alpha), |best| {
-        best.candidate.breakpoint
-    });
+    let first = previous.map_or(p.saturating_sub(settings.alpha), |best| best.candidate.breakpoint);
     let segment = Segment::clipped(first, next.saturating_add(settings.alpha), samples);
     let values = output.get(segment.indices()).unwrap_or_default();
     let candidates = Candidates::search(values, segment.first, settings.beta);
@@ -296,12 +277,5 @@ fn decide(
         best: candidates.best(),
     };
     let checks = facts.check(settings);
-    Some(Decision {
-        number: index + 1,
-        input_step,
-        hold: next - p,
-        segment,
-        candidates,
-        checks,
-    })
+    Some(Decision { number: index + 1, input_step, hold: next - p, segment, candidates, checks })
 }

@@ -51,11 +51,7 @@ impl Candidates {
         let beta = beta.max(1);
         let rows = values.len() / beta;
         let values = values.get(..rows * beta).unwrap_or_default();
-        let mut found = Self {
-            first_sample,
-            beta,
-            ..Self::default()
-        };
+        let mut found = Self { first_sample, beta, ..Self::default() };
         let Some(&offset) = values.first() else {
             return found;
         };
@@ -80,8 +76,7 @@ impl Candidates {
             }
             let middle = self.first_sample as f64 + ((f * self.beta) as f64 - 1.0) / 2.0;
             self.sse.push(line.sse());
-            self.before
-                .push(through(middle, line.mean() + offset, line.slope()));
+            self.before.push(through(middle, line.mean() + offset, line.slope()));
         }
     }
 
@@ -132,17 +127,13 @@ impl Candidates {
     /// All candidates, in the order of their breakpoints.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = Candidate> + '_ {
         let lines = self.before.iter().zip(&self.after);
-        self.sse
-            .iter()
-            .zip(lines)
-            .enumerate()
-            .map(|(index, (&sse, (&before, &after)))| Candidate {
-                f: index + 1,
-                breakpoint: self.first_sample + (index + 1) * self.beta,
-                sse,
-                before,
-                after,
-            })
+        self.sse.iter().zip(lines).enumerate().map(|(index, (&sse, (&before, &after)))| Candidate {
+            f: index + 1,
+            breakpoint: self.first_sample + (index + 1) * self.beta,
+            sse,
+            before,
+            after,
+        })
     }
 
     /// The candidate with the lowest squared error, the first of those that tie.
@@ -158,10 +149,7 @@ impl Candidates {
 
 /// The line of `slope` through `value` at sample `k`.
 fn through(k: f64, value: f64, slope: f64) -> Line {
-    Line {
-        slope,
-        intercept: value - slope * k,
-    }
+    Line { slope, intercept: value - slope * k }
 }
 
 /// Total sum of squares about the mean.
@@ -177,9 +165,7 @@ mod tests {
 
     /// A level line, then a slope of 2 from `kink` (an index) on.
     fn kinked(length: usize, kink: usize) -> Vec<f64> {
-        (0..length)
-            .map(|k| 2.0 * (k.saturating_sub(kink)) as f64)
-            .collect()
+        (0..length).map(|k| 2.0 * (k.saturating_sub(kink)) as f64).collect()
     }
 
     #[test]
@@ -189,10 +175,7 @@ mod tests {
         assert_eq!((found.len(), best.f, best.breakpoint), (8, 5, 104));
         assert!(best.sse < 1e-20);
         assert!(best.before.slope.abs() < 1e-12 && (best.after.slope - 2.0).abs() < 1e-12);
-        assert!(
-            (best.after.at(104.0)).abs() < 1e-9,
-            "the lines are in sample numbers"
-        );
+        assert!((best.after.at(104.0)).abs() < 1e-9, "the lines are in sample numbers");
     }
 
     #[test]
@@ -223,16 +206,10 @@ mod tests {
     #[test]
     fn a_joint_a_million_degrees_away_decides_alike() {
         let noise = |k: usize| 0.01 * ((k * 7919 % 1000) as f64 / 500.0 - 1.0);
-        let near: Vec<f64> = kinked(4000, 2345)
-            .iter()
-            .zip(0..)
-            .map(|(y, k)| y + noise(k))
-            .collect();
+        let near: Vec<f64> =
+            kinked(4000, 2345).iter().zip(0..).map(|(y, k)| y + noise(k)).collect();
         let far: Vec<f64> = near.iter().map(|y| y + 1e6).collect();
-        let (near, far) = (
-            Candidates::search(&near, 1, 5),
-            Candidates::search(&far, 1, 5),
-        );
+        let (near, far) = (Candidates::search(&near, 1, 5), Candidates::search(&far, 1, 5));
         assert_eq!(near.best().unwrap().f, far.best().unwrap().f);
         for (a, b) in near.sse().iter().zip(far.sse()) {
             assert!((a - b).abs() <= 1e-6 * a, "{a} {b}");

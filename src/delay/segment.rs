@@ -17,10 +17,7 @@ impl Segment {
     /// A segment that would end before it starts is its first sample alone.
     pub(super) fn clipped(first: usize, last: usize, samples: usize) -> Self {
         let first = first.clamp(1, samples.max(1));
-        Self {
-            first,
-            last: last.clamp(first, samples.max(first)),
-        }
+        Self { first, last: last.clamp(first, samples.max(first)) }
     }
 
     /// Number of samples.
@@ -49,12 +46,6 @@ mod tests {
     #[test]
     fn it_is_clipped_to_the_trial() {
         assert_eq!(Segment::clipped(0, 50, 40), Segment { first: 1, last: 40 });
-        assert_eq!(
-            Segment::clipped(45, 50, 40),
-            Segment {
-                first: 40,
-                last: 40
-            }
-        );
+        assert_eq!(Segment::clipped(45, 50, 40), Segment { first: 40, last: 40 });
     }
 }

@@ -24,11 +24,7 @@ pub fn input_steps(input: &[f64], min_step: f64) -> Vec<InputStep> {
     let mut steps = Vec::new();
     for (&value, sample) in samples {
         if (value - level).abs() > min_step {
-            steps.push(InputStep {
-                sample,
-                before: level,
-                after: value,
-            });
+            steps.push(InputStep { sample, before: level, after: value });
             level = value;
         }
     }

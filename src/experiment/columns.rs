@@ -83,9 +83,7 @@ impl FromStr for JointColumns {
             Some([name, input, output]) if ![name, input, output].contains(&"") => {
                 Ok(Self::new(name, input, output))
             }
-            _ => Err(ColumnMapError::Joint {
-                text: text.to_owned(),
-            }),
+            _ => Err(ColumnMapError::Joint { text: text.to_owned() }),
         }
     }
 }
@@ -122,10 +120,8 @@ impl ColumnMap {
     /// # Errors
     /// [`ColumnMapError::Read`] and [`ColumnMapError::Parse`], with the file's name.
     pub fn read(path: &Path) -> Result<Self, ColumnMapError> {
-        let text = std::fs::read_to_string(path).map_err(|source| ColumnMapError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| ColumnMapError::Read { path: path.to_owned(), source })?;
         let file: MapFile = toml::from_str(&text).map_err(|source| ColumnMapError::Parse {
             path: path.to_owned(),
             source: Box::new(source),
@@ -197,10 +193,7 @@ mod tests {
         let map = ColumnMap::from(file);
         assert_eq!(map.time.as_deref(), Some("t_s"));
         assert_eq!(map.joints[0].output_unit.as_deref(), Some("deg"));
-        assert_eq!(
-            map.joints[0].covariates,
-            [("pilot".to_owned(), "p_bar".to_owned())]
-        );
+        assert_eq!(map.joints[0].covariates, [("pilot".to_owned(), "p_bar".to_owned())]);
     }
 
     #[test]

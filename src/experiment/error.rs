@@ -271,22 +271,14 @@ fn suggestion(nearest: Option<&str>) -> String {
 
 fn comma_hint(text: &str) -> &'static str {
     let decimal_comma = text.contains(',') && text.replace(',', ".").parse::<f64>().is_ok();
-    if decimal_comma {
-        "; write decimals with a point"
-    } else {
-        ""
-    }
+    if decimal_comma { "; write decimals with a point" } else { "" }
 }
 
 /// A step of several periods looks like lost rows, which `--fill` mends.
 fn gap_hint(step: f64, period: f64) -> &'static str {
     let periods = step / period;
     let lost_rows = periods > 1.5 && (periods - periods.round()).abs() < 0.01;
-    if lost_rows {
-        ", `--fill SECONDS` fills lost rows"
-    } else {
-        ""
-    }
+    if lost_rows { ", `--fill SECONDS` fills lost rows" } else { "" }
 }
 
 /// The name among `names` that `wanted` was probably meant to be.
@@ -297,10 +289,6 @@ pub(super) fn nearest_name<'a>(
     /// Jaro-Winkler similarity from which a name is offered; clap uses the same.
     const SIMILAR: f64 = 0.7;
     let score = |name: &'a str| (strsim::jaro_winkler(wanted, name), name);
-    let best = names
-        .into_iter()
-        .map(score)
-        .max_by(|a, b| a.0.total_cmp(&b.0));
-    best.filter(|(similarity, _)| *similarity > SIMILAR)
-        .map(|(_, name)| name.to_owned())
+    let best = names.into_iter().map(score).max_by(|a, b| a.0.total_cmp(&b.0));
+    best.filter(|(similarity, _)| *similarity > SIMILAR).map(|(_, name)| name.to_owned())
 }

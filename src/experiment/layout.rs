@@ -62,12 +62,7 @@ impl Layout {
             None => find_any(table, &TRIAL_NAMES),
         };
         let time = find_time(table, map, period)?;
-        let mut layout = Self {
-            time,
-            trial,
-            joints: Vec::new(),
-            incomplete: Vec::new(),
-        };
+        let mut layout = Self { time, trial, joints: Vec::new(), incomplete: Vec::new() };
         if map.joints.is_empty() {
             layout.add_native_joints(table)?;
         } else {
@@ -105,11 +100,7 @@ impl Layout {
         }
         if names.is_empty() {
             let (path, row) = (table.path.clone(), table.header_row);
-            return Err(ReadError::NoJoints {
-                path,
-                row,
-                available: table.names(),
-            });
+            return Err(ReadError::NoJoints { path, row, available: table.names() });
         }
         for name in names {
             match native_joint(table, name) {
@@ -123,10 +114,7 @@ impl Layout {
 
 /// Joint and signal of a native column: `boom.output` is `("boom", "output")`.
 fn native_name(header: &Header) -> Option<(&str, &str)> {
-    header
-        .name
-        .rsplit_once('.')
-        .filter(|(joint, signal)| !joint.is_empty() && !signal.is_empty())
+    header.name.rsplit_once('.').filter(|(joint, signal)| !joint.is_empty() && !signal.is_empty())
 }
 
 fn native_joint(table: &OpenTable, name: &str) -> Result<JointLayout, ReadError> {
@@ -136,11 +124,7 @@ fn native_joint(table: &OpenTable, name: &str) -> Result<JointLayout, ReadError>
             .filter(|(joint, kind)| *joint == name && !["input", "output"].contains(kind))
             .map(|(_, kind)| kind.to_owned())
     };
-    let covariates = table
-        .headers
-        .iter()
-        .filter_map(is_covariate)
-        .map(|kind| signal(&kind));
+    let covariates = table.headers.iter().filter_map(is_covariate).map(|kind| signal(&kind));
     Ok(JointLayout {
         name: name.to_owned(),
         input: signal("input")?,
@@ -155,11 +139,7 @@ fn mapped_joint(table: &OpenTable, joint: &JointColumns) -> Result<JointLayout, 
         name: joint.name.clone(),
         input: signal_column(table, &joint.input, "input", joint.input_unit.as_ref())?,
         output: signal_column(table, &joint.output, "output", joint.output_unit.as_ref())?,
-        covariates: joint
-            .covariates
-            .iter()
-            .map(covariate)
-            .collect::<Result<_, _>>()?,
+        covariates: joint.covariates.iter().map(covariate).collect::<Result<_, _>>()?,
     })
 }
 
@@ -170,14 +150,8 @@ fn signal_column(
     unit: Option<&String>,
 ) -> Result<SignalColumn, ReadError> {
     let column = find(table, column)?;
-    let stated = table
-        .headers
-        .get(column)
-        .and_then(|header| header.unit.as_ref());
-    let signal = Signal {
-        name: name.to_owned(),
-        unit: unit.or(stated).cloned(),
-    };
+    let stated = table.headers.get(column).and_then(|header| header.unit.as_ref());
+    let signal = Signal { name: name.to_owned(), unit: unit.or(stated).cloned() };
     Ok(SignalColumn { signal, column })
 }
 
@@ -195,35 +169,25 @@ fn find_time(
         (Some(period), Some(column), _) => Ok(TimeSource::SampleNumbers(column, period)),
         (Some(period), None, _) => Ok(TimeSource::Rows(period)),
         (None, _, Some(column)) => Ok(TimeSource::Seconds(column)),
-        (None, _, None) => Err(ReadError::NoTime {
-            path: table.path.clone(),
-            row: table.header_row,
-        }),
+        (None, _, None) => {
+            Err(ReadError::NoTime { path: table.path.clone(), row: table.header_row })
+        }
     }
 }
 
 fn find(table: &OpenTable, wanted: &str) -> Result<usize, ReadError> {
-    let found = table
-        .headers
-        .iter()
-        .position(|header| header.is_named(wanted));
+    let found = table.headers.iter().position(|header| header.is_named(wanted));
     found.ok_or_else(|| ReadError::MissingColumn {
         path: table.path.clone(),
         row: table.header_row,
         column: wanted.to_owned(),
-        nearest: nearest_name(
-            wanted,
-            table.headers.iter().map(|header| header.name.as_str()),
-        ),
+        nearest: nearest_name(wanted, table.headers.iter().map(|header| header.name.as_str())),
         available: table.names(),
     })
 }
 
 fn find_any(table: &OpenTable, wanted: &[&str]) -> Option<usize> {
     wanted.iter().find_map(|wanted| {
-        table
-            .headers
-            .iter()
-            .position(|header| header.name.eq_ignore_ascii_case(wanted))
+        table.headers.iter().position(|header| header.name.eq_ignore_ascii_case(wanted))
     })
 }

@@ -112,30 +112,16 @@ impl Trial {
         let label = label.into();
         if input.len() != output.len() {
             let (input, output) = (input.len(), output.len());
-            return Err(TrialError::UnequalLengths {
-                label,
-                input,
-                output,
-            });
+            return Err(TrialError::UnequalLengths { label, input, output });
         }
         if input.is_empty() {
             return Err(TrialError::Empty { label });
         }
         let finite = |(u, y): (&f64, &f64)| u.is_finite() && y.is_finite();
         if let Some(index) = input.iter().zip(&output).position(|pair| !finite(pair)) {
-            return Err(TrialError::NotFinite {
-                label,
-                sample: index + 1,
-            });
+            return Err(TrialError::NotFinite { label, sample: index + 1 });
         }
-        Ok(Self {
-            label,
-            start_s,
-            period,
-            input,
-            output,
-            covariates: Vec::new(),
-        })
+        Ok(Self { label, start_s, period, input, output, covariates: Vec::new() })
     }
 
     /// This trial with further signals. Where one was not measured it holds NaN.
@@ -145,11 +131,7 @@ impl Trial {
     pub fn with_covariates(mut self, covariates: Vec<Vec<f64>>) -> Result<Self, TrialError> {
         if let Some(odd) = covariates.iter().find(|signal| signal.len() != self.len()) {
             let (input, output) = (odd.len(), self.len());
-            return Err(TrialError::UnequalLengths {
-                label: self.label,
-                input,
-                output,
-            });
+            return Err(TrialError::UnequalLengths { label: self.label, input, output });
         }
         self.covariates = covariates;
         Ok(self)
@@ -205,15 +187,9 @@ mod tests {
         let trial = |u: &[f64], y: &[f64]| Trial::new("a", 0.0, period(), u.to_vec(), y.to_vec());
         assert!(trial(&[1.0, 2.0], &[1.0, 2.0]).is_ok());
         assert!(matches!(trial(&[], &[]), Err(TrialError::Empty { .. })));
-        assert!(matches!(
-            trial(&[1.0], &[]),
-            Err(TrialError::UnequalLengths { .. })
-        ));
+        assert!(matches!(trial(&[1.0], &[]), Err(TrialError::UnequalLengths { .. })));
         let not_finite = trial(&[1.0, 1.0], &[0.0, f64::NAN]);
-        assert!(matches!(
-            not_finite,
-            Err(TrialError::NotFinite { sample: 2, .. })
-        ));
+        assert!(matches!(not_finite, Err(TrialError::NotFinite { sample: 2, .. })));
     }
 
     #[test]

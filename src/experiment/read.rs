@@ -63,11 +63,7 @@ impl Experiment {
         self.sources.extend(log.sources);
         self.failures.extend(log.failures);
         for joint in log.joints {
-            match self
-                .joints
-                .iter_mut()
-                .find(|known| known.name == joint.name)
-            {
+            match self.joints.iter_mut().find(|known| known.name == joint.name) {
                 None => self.joints.push(joint),
                 Some(known) => {
                     if let Err(error) = merge(known, joint, path) {
@@ -87,12 +83,7 @@ fn merge(known: &mut Joint, joint: Joint, path: &Path) -> Result<(), ReadError> 
         let describe = |joint: &Joint| {
             let unit = |unit: &Option<String>| unit.clone().unwrap_or_else(|| "no unit".to_owned());
             let mut parts = vec![unit(&joint.input_unit), unit(&joint.output_unit)];
-            parts.extend(
-                joint
-                    .covariates
-                    .iter()
-                    .map(|s| format!("{} {}", s.name, unit(&s.unit))),
-            );
+            parts.extend(joint.covariates.iter().map(|s| format!("{} {}", s.name, unit(&s.unit))));
             parts.join(", ")
         };
         return Err(ReadError::UnitsDiffer {
@@ -107,11 +98,7 @@ fn merge(known: &mut Joint, joint: Joint, path: &Path) -> Result<(), ReadError> 
 }
 
 fn unique_stem(path: &Path, taken: &[String]) -> String {
-    let stem = path
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     if !taken.contains(&stem) {
         return stem;
     }
@@ -136,10 +123,7 @@ pub fn expand_folders(paths: &[PathBuf]) -> Result<Vec<PathBuf>, ReadError> {
             files.push(path.clone());
             continue;
         }
-        let io_error = |source| ReadError::Io {
-            path: path.clone(),
-            source,
-        };
+        let io_error = |source| ReadError::Io { path: path.clone(), source };
         let mut logs = Vec::new();
         for entry in path.read_dir().map_err(io_error)? {
             logs.push(entry.map_err(io_error)?.path());
@@ -155,14 +139,8 @@ pub fn expand_folders(paths: &[PathBuf]) -> Result<Vec<PathBuf>, ReadError> {
 }
 
 fn is_log(path: &Path) -> bool {
-    let name = path
-        .file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .to_lowercase();
-    let named = [".csv", ".tsv", ".txt"]
-        .iter()
-        .any(|ending| name.ends_with(ending));
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    let named = [".csv", ".tsv", ".txt"].iter().any(|ending| name.ends_with(ending));
     named && !name.ends_with(".truth.csv") && path.is_file()
 }
 
@@ -176,30 +154,13 @@ fn read_log(
     let mut layout = Layout::find(&table, &options.columns, period)?;
     let unknown = layout.keep(path, &options.joints);
     let numeric = layout.numeric_columns();
-    let headers: Vec<String> = table
-        .headers
-        .iter()
-        .map(|header| header.name.clone())
-        .collect();
+    let headers: Vec<String> = table.headers.iter().map(|header| header.name.clone()).collect();
     let table = table.read(&numeric, layout.trial)?;
-    let log = Log {
-        path,
-        headers: &headers,
-        numeric: &numeric,
-        table: &table,
-    };
+    let log = Log { path, headers: &headers, numeric: &numeric, table: &table };
     let trials = log.trials(stem);
     let grids = log.grids(layout.time, &trials, options.repair)?;
-    let failed = |(joint, error): (String, ReadError)| Failure {
-        joint: Some(joint),
-        error,
-    };
-    let mut failures: Vec<_> = layout
-        .incomplete
-        .into_iter()
-        .chain(unknown)
-        .map(failed)
-        .collect();
+    let failed = |(joint, error): (String, ReadError)| Failure { joint: Some(joint), error };
+    let mut failures: Vec<_> = layout.incomplete.into_iter().chain(unknown).map(failed).collect();
     let mut joints = Vec::new();
     for joint in &layout.joints {
         match log.joint(joint, &trials, &grids, options.repair) {
@@ -208,24 +169,15 @@ fn read_log(
         }
     }
     let sources = vec![table.source];
-    Ok(Experiment {
-        sources,
-        joints,
-        failures,
-    })
+    Ok(Experiment { sources, joints, failures })
 }
 
 fn sample_period(path: &Path, map: &ColumnMap) -> Result<Option<SamplePeriod>, ReadError> {
     let Some(seconds) = map.sample_period_s else {
         return Ok(None);
     };
-    let bad = || ReadError::BadPeriod {
-        path: path.to_owned(),
-        seconds,
-    };
-    SamplePeriod::from_seconds(seconds)
-        .map(Some)
-        .ok_or_else(bad)
+    let bad = || ReadError::BadPeriod { path: path.to_owned(), seconds };
+    SamplePeriod::from_seconds(seconds).map(Some).ok_or_else(bad)
 }
 
 impl Layout {
@@ -247,11 +199,7 @@ impl Layout {
             nearest: nearest_name(name, names.iter().map(String::as_str)),
             available: names.join(", "),
         };
-        wanted
-            .iter()
-            .filter(|name| !known(name))
-            .map(|name| (name.clone(), error(name)))
-            .collect()
+        wanted.iter().filter(|name| !known(name)).map(|name| (name.clone(), error(name))).collect()
     }
 
     /// Indices of all columns that hold numbers, each once.
@@ -284,11 +232,7 @@ impl Log<'_> {
         let mut trials = self.table.trials.clone();
         if trials.is_empty() {
             let label = stem.unwrap_or("1").to_owned();
-            return vec![TrialRows {
-                label,
-                start: 0,
-                end: self.table.rows.len(),
-            }];
+            return vec![TrialRows { label, start: 0, end: self.table.rows.len() }];
         }
         for trial in &mut trials {
             if let Some(stem) = stem {
@@ -349,12 +293,9 @@ impl Log<'_> {
                 previous: at(row - 1),
                 time: at(row),
             },
-            Fault::NotUniform { row, step, period } => ReadError::NotUniform {
-                path,
-                row: self.row(trial.start + row),
-                step,
-                period,
-            },
+            Fault::NotUniform { row, step, period } => {
+                ReadError::NotUniform { path, row: self.row(trial.start + row), step, period }
+            }
             Fault::SingleRow => ReadError::SingleRow {
                 path,
                 row: self.row(trial.start),
@@ -375,28 +316,16 @@ impl Log<'_> {
             name: layout.name.clone(),
             input_unit: layout.input.signal.unit.clone(),
             output_unit: layout.output.signal.unit.clone(),
-            covariates: layout
-                .covariates
-                .iter()
-                .map(|c| c.signal.clone())
-                .collect::<Vec<Signal>>(),
+            covariates: layout.covariates.iter().map(|c| c.signal.clone()).collect::<Vec<Signal>>(),
             trials: Vec::new(),
         };
         for (rows, grid) in trials.iter().zip(grids) {
             let pieces = grid.pieces(&self.signals(layout, rows));
             let several = pieces.len() > 1;
             for (index, piece) in pieces.into_iter().enumerate() {
-                let part = if several {
-                    format!("#{}", index + 1)
-                } else {
-                    String::new()
-                };
+                let part = if several { format!("#{}", index + 1) } else { String::new() };
                 let label = format!("{}{part}", rows.label);
-                let Signals {
-                    input,
-                    output,
-                    covariates,
-                } = piece.signals;
+                let Signals { input, output, covariates } = piece.signals;
                 let trial = Trial::new(label, piece.start_s, grid.period(), input, output)
                     .and_then(|trial| trial.with_covariates(covariates));
                 joint.trials.push(trial.map_err(|source| ReadError::Trial {
@@ -417,11 +346,7 @@ impl Log<'_> {
     fn check_joint(&self, layout: &JointLayout, repair: Repair) -> Result<(), ReadError> {
         let needed = [layout.input.column, layout.output.column];
         let further = layout.covariates.iter().map(|covariate| covariate.column);
-        if let Some(error) = needed
-            .into_iter()
-            .chain(further)
-            .find_map(|c| self.bad_cell(c))
-        {
+        if let Some(error) = needed.into_iter().chain(further).find_map(|c| self.bad_cell(c)) {
             return Err(error);
         }
         if repair.fill_s.is_some() {
@@ -429,10 +354,7 @@ impl Log<'_> {
         }
         let first_missing = |column: usize| {
             let values = &self.column(column)?.values;
-            values
-                .iter()
-                .position(|value| value.is_nan())
-                .map(|index| (index, column))
+            values.iter().position(|value| value.is_nan()).map(|index| (index, column))
         };
         match needed.into_iter().filter_map(first_missing).min() {
             Some((index, column)) => Err(ReadError::Missing {
@@ -447,10 +369,7 @@ impl Log<'_> {
     fn signals(&self, layout: &JointLayout, rows: &TrialRows) -> Signals {
         let cut = |column: usize| {
             let values = self.column(column).map_or(&[][..], |column| &column.values);
-            values
-                .get(rows.start..rows.end)
-                .unwrap_or_default()
-                .to_vec()
+            values.get(rows.start..rows.end).unwrap_or_default().to_vec()
         };
         Signals {
             input: cut(layout.input.column),
@@ -477,12 +396,7 @@ impl Log<'_> {
         let (row, bad) = self.column(column)?.error.clone()?;
         let (path, column) = (self.path.to_owned(), self.header(column));
         Some(match bad {
-            BadCell::Text(text) => ReadError::NotANumber {
-                path,
-                row,
-                column,
-                text,
-            },
+            BadCell::Text(text) => ReadError::NotANumber { path, row, column, text },
             BadCell::Infinite => ReadError::Infinite { path, row, column },
         })
     }

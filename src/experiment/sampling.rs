@@ -39,11 +39,7 @@ pub(super) struct Grid {
 #[derive(Clone, Debug, PartialEq)]
 enum Placement {
     /// Each row has its own place on the grid; places without a row are gaps.
-    Rows {
-        start_s: f64,
-        places: Vec<usize>,
-        fill: f64,
-    },
+    Rows { start_s: f64, places: Vec<usize>, fill: f64 },
     /// The grid lies anew over the rows' times.
     Resampled { times: Vec<f64>, longest_gap_s: f64 },
 }
@@ -74,10 +70,7 @@ impl Grid {
         if let Some(period) = repair.resample {
             let default_gap = RESAMPLE_GAP_PERIODS * period.seconds().max(median);
             let longest_gap_s = repair.fill_s.unwrap_or(default_gap);
-            let placement = Placement::Resampled {
-                times: times.to_vec(),
-                longest_gap_s,
-            };
+            let placement = Placement::Resampled { times: times.to_vec(), longest_gap_s };
             return Ok(Self { period, placement });
         }
         let places = place_rows(&steps, median, repair)?;
@@ -86,24 +79,13 @@ impl Grid {
         let period = span / places.last().copied().unwrap_or(1) as f64;
         let period = SamplePeriod::from_seconds(tidy(period)).ok_or(Fault::SingleRow)?;
         let fill = repair.fill_s.map_or(1.0, |fill| fill / period.seconds());
-        Ok(Self {
-            period,
-            placement: Placement::Rows {
-                start_s,
-                places,
-                fill,
-            },
-        })
+        Ok(Self { period, placement: Placement::Rows { start_s, places, fill } })
     }
 
     /// A grid on which row follows row, where the log has no times.
     pub(super) fn of_rows(rows: usize, period: SamplePeriod, repair: Repair) -> Self {
         let fill = repair.fill_s.map_or(1.0, |fill| fill / period.seconds());
-        let placement = Placement::Rows {
-            start_s: 0.0,
-            places: (0..rows).collect(),
-            fill,
-        };
+        let placement = Placement::Rows { start_s: 0.0, places: (0..rows).collect(), fill };
         Self { period, placement }
     }
 
@@ -114,11 +96,7 @@ impl Grid {
     /// The signals of a joint on the grid, cut at its long gaps.
     pub(super) fn pieces(&self, signals: &Signals) -> Vec<Piece> {
         match &self.placement {
-            Placement::Rows {
-                start_s,
-                places,
-                fill,
-            } => {
+            Placement::Rows { start_s, places, fill } => {
                 let whole = spread(signals, places);
                 let ranges = runs(&whole.output, *fill);
                 let piece = |range: Range<usize>| Piece {
@@ -127,10 +105,9 @@ impl Grid {
                 };
                 ranges.into_iter().map(piece).collect()
             }
-            Placement::Resampled {
-                times,
-                longest_gap_s,
-            } => resampled(signals, times, *longest_gap_s, self.period),
+            Placement::Resampled { times, longest_gap_s } => {
+                resampled(signals, times, *longest_gap_s, self.period)
+            }
         }
     }
 }
@@ -147,17 +124,9 @@ fn place_rows(steps: &[f64], period: f64, repair: Repair) -> Result<Vec<usize>, 
         let pause = periods >= 1.0 / UNIFORMITY;
         let lost_rows = repair.fill_s.is_some() && (uniform || pause);
         if !(lost_rows || uniform && periods < 1.5) {
-            return Err(Fault::NotUniform {
-                row: index + 1,
-                step,
-                period: tidy(period),
-            });
+            return Err(Fault::NotUniform { row: index + 1, step, period: tidy(period) });
         }
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "≥ 1"
-        )]
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 1")]
         let periods = periods as usize;
         place += periods;
         places.push(place);
@@ -196,11 +165,7 @@ fn spread(signals: &Signals, places: &[usize]) -> Signals {
 /// `longest` places apart.
 fn runs(values: &[f64], longest: f64) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
-    for (place, _) in values
-        .iter()
-        .enumerate()
-        .filter(|(_, value)| !value.is_nan())
-    {
+    for (place, _) in values.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
         match runs.last_mut() {
             Some(run) if (place + 1 - run.end) as f64 <= longest.max(1.0) => run.end = place + 1,
             _ => runs.push(place..place + 1),
@@ -212,11 +177,7 @@ fn runs(values: &[f64], longest: f64) -> Vec<Range<usize>> {
 /// A range of the signals with its gaps filled: output linear, input held.
 fn filled(whole: &Signals, range: Range<usize>) -> Signals {
     let held_before = whole.input.get(..range.start).unwrap_or_default();
-    let held = held_before
-        .iter()
-        .rev()
-        .find(|value| !value.is_nan())
-        .copied();
+    let held = held_before.iter().rev().find(|value| !value.is_nan()).copied();
     let cut = |values: &Vec<f64>| values.get(range.clone()).unwrap_or_default().to_vec();
     let mut signals = Signals {
         input: cut(&whole.input),
@@ -290,19 +251,13 @@ fn resampled_piece(
     let time = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
     let start_s = rows.first().map_or(0.0, |&row| time(row));
     let span = rows.last().map_or(0.0, |&row| time(row)) - start_s;
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "span ≥ 0"
-    )]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "span ≥ 0")]
     let count = (span / period.seconds() + ON_TIME) as usize + 1;
     let grid = (0..count).map(|k| start_s + k as f64 * period.seconds());
     let late = ON_TIME * period.seconds();
     let (mut row, mut pair) = (0, 0);
-    let mut piece = Signals {
-        covariates: vec![Vec::new(); signals.covariates.len()],
-        ..Signals::default()
-    };
+    let mut piece =
+        Signals { covariates: vec![Vec::new(); signals.covariates.len()], ..Signals::default() };
     for now in grid {
         while row + 1 < times.len() && time(row + 1) <= now + late {
             row += 1;
@@ -327,10 +282,7 @@ fn resampled_piece(
     }
     let before = signals.input.iter().find(|value| !value.is_nan()).copied();
     hold(&mut piece.input, before);
-    Piece {
-        start_s,
-        signals: piece,
-    }
+    Piece { start_s, signals: piece }
 }
 
 fn median(steps: &[f64]) -> Option<f64> {
@@ -351,18 +303,11 @@ mod tests {
     const NAN: f64 = f64::NAN;
 
     fn signals(input: &[f64], output: &[f64]) -> Signals {
-        Signals {
-            input: input.to_vec(),
-            output: output.to_vec(),
-            covariates: Vec::new(),
-        }
+        Signals { input: input.to_vec(), output: output.to_vec(), covariates: Vec::new() }
     }
 
     fn repair(resample: Option<f64>, fill_s: Option<f64>) -> Repair {
-        Repair {
-            resample: resample.and_then(SamplePeriod::from_seconds),
-            fill_s,
-        }
+        Repair { resample: resample.and_then(SamplePeriod::from_seconds), fill_s }
     }
 
     #[test]
@@ -382,10 +327,7 @@ mod tests {
         assert_eq!(lay(&[0.0, 0.1, 0.05]), Err(Fault::NotIncreasing { row: 2 }));
         assert_eq!(lay(&[0.0]), Err(Fault::SingleRow));
         let off = lay(&[0.0, 0.1, 0.2, 0.3, 0.5, 0.6]);
-        assert!(
-            matches!(off, Err(Fault::NotUniform { row: 4, .. })),
-            "{off:?}"
-        );
+        assert!(matches!(off, Err(Fault::NotUniform { row: 4, .. })), "{off:?}");
     }
 
     #[test]
@@ -415,16 +357,10 @@ mod tests {
         let times = [0.0, 1.0, 2.0, 4.0, 5.0, 6.0];
         assert!(Grid::lay(&times, Repair::default()).is_err());
         let grid = Grid::lay(&times, repair(None, Some(2.0))).unwrap();
-        let log = signals(
-            &[1.0, 1.0, 1.0, 2.0, 2.0, 2.0],
-            &[0.0, 1.0, 2.0, 4.0, 5.0, 6.0],
-        );
+        let log = signals(&[1.0, 1.0, 1.0, 2.0, 2.0, 2.0], &[0.0, 1.0, 2.0, 4.0, 5.0, 6.0]);
         let pieces = grid.pieces(&log);
         assert_eq!(pieces.len(), 1);
-        assert_eq!(
-            pieces[0].signals.output,
-            [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
-        );
+        assert_eq!(pieces[0].signals.output, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
         assert_eq!(pieces[0].signals.input, [1.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0]);
     }
 

@@ -25,18 +25,12 @@ impl Header {
     /// Splits `boom.output [deg]` into a name and a unit.
     fn parse(cell: &str) -> Self {
         let text = cell.trim();
-        let split = text
-            .strip_suffix(']')
-            .and_then(|rest| rest.rsplit_once('['));
+        let split = text.strip_suffix(']').and_then(|rest| rest.rsplit_once('['));
         let (name, unit) = match split {
             Some((name, unit)) => (name.trim(), Some(unit.trim().to_owned())),
             None => (text, None),
         };
-        Self {
-            name: name.to_owned(),
-            unit,
-            text: text.to_owned(),
-        }
+        Self { name: name.to_owned(), unit, text: text.to_owned() }
     }
 
     pub(super) fn is_named(&self, wanted: &str) -> bool {
@@ -61,16 +55,10 @@ pub(super) struct OpenTable {
 impl OpenTable {
     /// Opens the log and reads its header.
     pub(super) fn open(path: &Path) -> Result<Self, ReadError> {
-        let io_error = |source| ReadError::Io {
-            path: path.to_owned(),
-            source,
-        };
+        let io_error = |source| ReadError::Io { path: path.to_owned(), source };
         let mut file = File::open(path).map_err(io_error)?;
         let mut start = Vec::new();
-        file.by_ref()
-            .take(SNIFFED_BYTES)
-            .read_to_end(&mut start)
-            .map_err(io_error)?;
+        file.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start).map_err(io_error)?;
         let delimiter = sniff_delimiter(&start);
         let ending = LineEnding::sniff(&start);
         let mut reader = csv::ReaderBuilder::new()
@@ -80,24 +68,13 @@ impl OpenTable {
             .has_headers(false)
             .from_reader(Hashing::new(Cursor::new(start).chain(file)).chain(ending.bytes()));
         let mut record = csv::StringRecord::new();
-        let csv_error = |source| ReadError::Csv {
-            path: path.to_owned(),
-            source,
-        };
+        let csv_error = |source| ReadError::Csv { path: path.to_owned(), source };
         if !reader.read_record(&mut record).map_err(csv_error)? {
-            return Err(ReadError::Empty {
-                path: path.to_owned(),
-            });
+            return Err(ReadError::Empty { path: path.to_owned() });
         }
         let header_row = row_just_read(&reader, ending);
         let headers = record.iter().map(Header::parse).collect();
-        let table = Self {
-            path: path.to_owned(),
-            headers,
-            header_row,
-            ending,
-            reader,
-        };
+        let table = Self { path: path.to_owned(), headers, header_row, ending, reader };
         table.check_names()?;
         Ok(table)
     }
@@ -105,10 +82,7 @@ impl OpenTable {
     fn check_names(&self) -> Result<(), ReadError> {
         let mut names: Vec<_> = self.headers.iter().map(|header| &header.name).collect();
         names.sort();
-        match names
-            .windows(2)
-            .find(|pair| pair[0] == pair[1] && !pair[0].is_empty())
-        {
+        match names.windows(2).find(|pair| pair[0] == pair[1] && !pair[0].is_empty()) {
             Some(pair) => Err(ReadError::DuplicateColumn {
                 path: self.path.clone(),
                 row: self.header_row,
@@ -120,11 +94,7 @@ impl OpenTable {
 
     /// The names of all columns, for messages.
     pub(super) fn names(&self) -> String {
-        let names: Vec<_> = self
-            .headers
-            .iter()
-            .map(|header| header.text.as_str())
-            .collect();
+        let names: Vec<_> = self.headers.iter().map(|header| header.text.as_str()).collect();
         names.join(", ")
     }
 
@@ -144,10 +114,7 @@ impl OpenTable {
         let mut record = csv::ByteRecord::new();
         loop {
             let more = self.reader.read_byte_record(&mut record);
-            if !more.map_err(|source| ReadError::Csv {
-                path: self.path.clone(),
-                source,
-            })? {
+            if !more.map_err(|source| ReadError::Csv { path: self.path.clone(), source })? {
                 break;
             }
             let row = row_just_read(&self.reader, self.ending);
@@ -164,12 +131,7 @@ impl OpenTable {
             return Err(ReadError::HeaderOnly { path: self.path });
         }
         let source = self.reader.into_inner().into_inner().0.finish(&self.path)?;
-        Ok(Table {
-            source,
-            rows,
-            columns,
-            trials: labels.map_or_else(Vec::new, |l| l.runs),
-        })
+        Ok(Table { source, rows, columns, trials: labels.map_or_else(Vec::new, |l| l.runs) })
     }
 
     fn check_width(&self, row: u64, found: usize) -> Result<(), ReadError> {
@@ -177,12 +139,7 @@ impl OpenTable {
         if found == expected {
             return Ok(());
         }
-        Err(ReadError::UnequalRow {
-            path: self.path.clone(),
-            row,
-            found,
-            expected,
-        })
+        Err(ReadError::UnequalRow { path: self.path.clone(), row, found, expected })
     }
 }
 
@@ -197,10 +154,7 @@ fn sniff_delimiter(start: &[u8]) -> u8 {
         .unwrap_or_default();
     let pieces = |delimiter: u8| line.split(|&byte| byte == delimiter).count();
     // The comma is last, so that it wins when nothing is found.
-    [b'\t', b';', b',']
-        .into_iter()
-        .max_by_key(|&delimiter| pieces(delimiter))
-        .unwrap_or(b',')
+    [b'\t', b';', b','].into_iter().max_by_key(|&delimiter| pieces(delimiter)).unwrap_or(b',')
 }
 
 /// Line of the record that was read last.
@@ -267,11 +221,7 @@ pub(super) struct Column {
 
 impl Column {
     fn new(index: usize) -> Self {
-        Self {
-            index,
-            values: Vec::new(),
-            error: None,
-        }
+        Self { index, values: Vec::new(), error: None }
     }
 
     fn push(&mut self, record: &csv::ByteRecord, row: u64) {
@@ -297,9 +247,7 @@ fn parse_cell(cell: &[u8]) -> Result<f64, BadCell> {
     if cell.is_empty() {
         return Ok(f64::NAN);
     }
-    let number = std::str::from_utf8(cell)
-        .ok()
-        .and_then(|text| text.parse::<f64>().ok());
+    let number = std::str::from_utf8(cell).ok().and_then(|text| text.parse::<f64>().ok());
     match number {
         Some(value) if value.is_infinite() => Err(BadCell::Infinite),
         Some(value) => Ok(value),
@@ -316,39 +264,22 @@ struct Labels {
 
 impl Labels {
     fn new(index: usize) -> Self {
-        Self {
-            index,
-            runs: Vec::new(),
-            seen: HashSet::new(),
-            rows: 0,
-        }
+        Self { index, runs: Vec::new(), seen: HashSet::new(), rows: 0 }
     }
 
     fn push(&mut self, record: &csv::ByteRecord, row: u64, path: &Path) -> Result<(), ReadError> {
         let cell = record.get(self.index).unwrap_or_default().trim_ascii();
         let index = self.rows;
         self.rows += 1;
-        if let Some(run) = self
-            .runs
-            .last_mut()
-            .filter(|run| run.label.as_bytes() == cell)
-        {
+        if let Some(run) = self.runs.last_mut().filter(|run| run.label.as_bytes() == cell) {
             run.end = self.rows;
             return Ok(());
         }
         let label = String::from_utf8_lossy(cell).into_owned();
         if !self.seen.insert(label.clone()) {
-            return Err(ReadError::TrialNotContiguous {
-                path: path.to_owned(),
-                row,
-                trial: label,
-            });
+            return Err(ReadError::TrialNotContiguous { path: path.to_owned(), row, trial: label });
         }
-        self.runs.push(TrialRows {
-            label,
-            start: index,
-            end: self.rows,
-        });
+        self.runs.push(TrialRows { label, start: index, end: self.rows });
         Ok(())
     }
 }
@@ -362,25 +293,15 @@ struct Hashing<R> {
 
 impl<R: Read> Hashing<R> {
     fn new(inner: R) -> Self {
-        Self {
-            inner,
-            hasher: Sha256::new(),
-            bytes: 0,
-        }
+        Self { inner, hasher: Sha256::new(), bytes: 0 }
     }
 
     /// Reads what is left and gives the hash of all of it.
     fn finish(mut self, path: &Path) -> Result<Source, ReadError> {
-        io::copy(&mut self, &mut io::sink()).map_err(|source| ReadError::Io {
-            path: path.to_owned(),
-            source,
-        })?;
+        io::copy(&mut self, &mut io::sink())
+            .map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
         let sha256 = base16ct::lower::encode_string(&self.hasher.finalize());
-        Ok(Source {
-            path: path.to_owned(),
-            sha256,
-            bytes: self.bytes,
-        })
+        Ok(Source { path: path.to_owned(), sha256, bytes: self.bytes })
     }
 }
 
@@ -407,10 +328,7 @@ mod tests {
 
     #[test]
     fn the_delimiter_is_told_from_the_header() {
-        assert_eq!(
-            sniff_delimiter(b"# a, b, c\n\nt;a.input;a.output\n1;2;3"),
-            b';'
-        );
+        assert_eq!(sniff_delimiter(b"# a, b, c\n\nt;a.input;a.output\n1;2;3"), b';');
         assert_eq!(sniff_delimiter(b"t\ta,b\tc"), b'\t');
         assert_eq!(sniff_delimiter(b"single"), b',');
     }
@@ -430,20 +348,13 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log.csv");
         let text = "# made by hand\nt,a\n0,1\n# pause\n\n1,2\n2,x";
-        for text in [
-            text.to_owned(),
-            format!("{text}\n"),
-            text.replace('\n', "\r\n"),
-        ] {
+        for text in [text.to_owned(), format!("{text}\n"), text.replace('\n', "\r\n")] {
             std::fs::write(&path, &text).unwrap();
             let open = OpenTable::open(&path).unwrap();
             assert_eq!(open.header_row, 2, "{text:?}");
             let table = open.read(&[0, 1], None).unwrap();
             assert_eq!(table.rows, [3, 6, 7], "{text:?}");
-            assert_eq!(
-                table.columns[1].error,
-                Some((7, BadCell::Text("x".to_owned())))
-            );
+            assert_eq!(table.columns[1].error, Some((7, BadCell::Text("x".to_owned()))));
         }
     }
 }

@@ -104,9 +104,7 @@ pub fn decision_rows(
 /// # Errors
 /// When `out` cannot be written.
 pub fn write_decisions(joints: &[EstimatedJoint<'_>], out: impl Write) -> csv::Result<()> {
-    let mut writer = csv::WriterBuilder::new()
-        .has_headers(false)
-        .from_writer(out);
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(out);
     writer.write_record(COLUMNS)?;
     for joint in joints {
         for (_, row) in decision_rows(*joint) {

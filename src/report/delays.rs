@@ -15,13 +15,8 @@ use crate::experiment::Trial;
 /// When `out` cannot be written.
 pub fn write_delays(joints: &[EstimatedJoint<'_>], out: impl Write) -> csv::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    let taus = joints
-        .iter()
-        .map(|joint| format!("{}.tau", joint.joint.name));
-    let header = ["trial", "sample", "time_s"]
-        .into_iter()
-        .map(str::to_owned)
-        .chain(taus);
+    let taus = joints.iter().map(|joint| format!("{}.tau", joint.joint.name));
+    let header = ["trial", "sample", "time_s"].into_iter().map(str::to_owned).chain(taus);
     writer.write_record(header)?;
     for label in labels(joints) {
         let columns: Vec<_> = joints.iter().map(|joint| find(*joint, label)).collect();
@@ -46,10 +41,7 @@ pub fn write_delays(joints: &[EstimatedJoint<'_>], out: impl Write) -> csv::Resu
 /// Labels of all trials, each once, in the order they first appear.
 fn labels<'a>(joints: &[EstimatedJoint<'a>]) -> Vec<&'a str> {
     let mut seen = HashSet::new();
-    let all = joints
-        .iter()
-        .flat_map(|joint| &joint.joint.trials)
-        .map(Trial::label);
+    let all = joints.iter().flat_map(|joint| &joint.joint.trials).map(Trial::label);
     all.filter(|label| seen.insert(*label)).collect()
 }
 

@@ -63,13 +63,8 @@ impl<'a> EstimateJson<'a> {
 
 impl<'a> JointJson<'a> {
     fn new(joint: EstimatedJoint<'a>) -> Self {
-        let JointSummary {
-            steps,
-            accepted,
-            rejected,
-            delay_samples,
-            delay_s,
-        } = JointSummary::of(joint);
+        let JointSummary { steps, accepted, rejected, delay_samples, delay_s } =
+            JointSummary::of(joint);
         let count = |(condition, count): (Condition, usize)| (condition.to_string(), count.into());
         Self {
             joint: &joint.joint.name,

@@ -3,12 +3,14 @@
 mod decisions;
 mod delays;
 mod json;
+mod number;
 mod summary;
 mod text;
 
 pub use decisions::{DecisionRow, decision_rows, write_decisions};
 pub use delays::write_delays;
 pub use json::EstimateJson;
+pub use number::number;
 pub use summary::{DelayRange, JointSummary};
 pub use text::estimate_table;
 

@@ -38,11 +38,7 @@ impl DelayRange {
         let (&min, &max) = (delays.first()?, delays.last()?);
         let upper = *delays.get(delays.len() / 2)?;
         let lower = *delays.get((delays.len() - 1) / 2)?;
-        Some(Self {
-            min,
-            median: f64::midpoint(lower, upper),
-            max,
-        })
+        Some(Self { min, median: f64::midpoint(lower, upper), max })
     }
 }
 
@@ -50,30 +46,17 @@ impl JointSummary {
     /// Counts the decisions of `joint`.
     pub fn of(joint: EstimatedJoint<'_>) -> Self {
         let rows: Vec<_> = decision_rows(joint).map(|(_, row)| row).collect();
-        let accepted: Vec<_> = rows
-            .iter()
-            .filter(|row| row.verdict == "accepted")
-            .collect();
-        let samples = accepted
-            .iter()
-            .filter_map(|row| row.delta)
-            .map(|delta| delta as f64);
+        let accepted: Vec<_> = rows.iter().filter(|row| row.verdict == "accepted").collect();
+        let samples = accepted.iter().filter_map(|row| row.delta).map(|delta| delta as f64);
         let seconds = accepted.iter().filter_map(|row| row.delta_s);
         let count = |condition: Condition| {
             let verdict = condition.id();
-            (
-                condition,
-                rows.iter().filter(|row| row.verdict == verdict).count(),
-            )
+            (condition, rows.iter().filter(|row| row.verdict == verdict).count())
         };
         Self {
             steps: rows.len(),
             accepted: accepted.len(),
-            rejected: Condition::ALL
-                .map(count)
-                .into_iter()
-                .filter(|(_, n)| *n > 0)
-                .collect(),
+            rejected: Condition::ALL.map(count).into_iter().filter(|(_, n)| *n > 0).collect(),
             delay_samples: DelayRange::of(samples.collect()),
             delay_s: DelayRange::of(seconds.collect()),
         }
@@ -87,10 +70,7 @@ mod tests {
     #[test]
     fn the_median_of_an_even_number_is_between_the_middle_two() {
         let range = DelayRange::of(vec![4.0, 1.0, 2.0, 10.0]).unwrap();
-        assert_eq!(
-            (range.min.to_string(), range.max.to_string()),
-            ("1".into(), "10".into())
-        );
+        assert_eq!((range.min.to_string(), range.max.to_string()), ("1".into(), "10".into()));
         assert!((range.median - 3.0).abs() < 1e-15);
         assert_eq!(DelayRange::of(Vec::new()), None);
     }

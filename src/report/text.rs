@@ -12,15 +12,7 @@ pub fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings) -> Str
     table
         .load_style(presets::UTF8_BORDERS_ONLY)
         .set_content_arrangement(ContentArrangement::Disabled)
-        .set_header([
-            "joint",
-            "steps",
-            "accepted",
-            "rejected",
-            "delay min",
-            "median",
-            "max",
-        ]);
+        .set_header(["joint", "steps", "accepted", "rejected", "delay min", "median", "max"]);
     for joint in joints {
         table.add_row(row(&joint.joint.name, &JointSummary::of(*joint)));
     }
@@ -33,13 +25,7 @@ pub fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings) -> Str
 }
 
 fn row(name: &str, summary: &JointSummary) -> [String; 7] {
-    let JointSummary {
-        steps,
-        accepted,
-        rejected,
-        delay_s,
-        ..
-    } = summary;
+    let JointSummary { steps, accepted, rejected, delay_s, .. } = summary;
     let percent = |share: f64| format!("{accepted} ({:.0} %)", 100.0 * share);
     let accepted = match steps {
         0 => "-".to_owned(),
@@ -51,31 +37,14 @@ fn row(name: &str, summary: &JointSummary) -> [String; 7] {
         (_, false) => reasons(rejected),
     };
     let seconds = |value: fn(&DelayRange) -> f64| {
-        delay_s
-            .as_ref()
-            .map_or_else(|| "-".to_owned(), |range| format!("{:.3} s", value(range)))
+        delay_s.as_ref().map_or_else(|| "-".to_owned(), |range| format!("{:.3} s", value(range)))
     };
-    let [min, median, max] = [
-        seconds(|r| r.min),
-        seconds(|r| r.median),
-        seconds(|r| r.max),
-    ];
-    [
-        name.to_owned(),
-        steps.to_string(),
-        accepted,
-        why,
-        min,
-        median,
-        max,
-    ]
+    let [min, median, max] = [seconds(|r| r.min), seconds(|r| r.median), seconds(|r| r.max)];
+    [name.to_owned(), steps.to_string(), accepted, why, min, median, max]
 }
 
 fn reasons(rejected: &[(Condition, usize)]) -> String {
-    let parts: Vec<_> = rejected
-        .iter()
-        .map(|(why, count)| format!("{why} {count}"))
-        .collect();
+    let parts: Vec<_> = rejected.iter().map(|(why, count)| format!("{why} {count}")).collect();
     parts.join(", ")
 }
 
@@ -85,18 +54,13 @@ fn settings_line(settings: &Settings) -> String {
         || "no low-pass".to_owned(),
         |LowPass { cutoff_hz, order }| format!("zero-phase low-pass {cutoff_hz} Hz, order {order}"),
     );
-    let mut parts = vec![
-        format!("α = {}, β = {} samples", settings.alpha, settings.beta),
-        low_pass,
-    ];
+    let mut parts =
+        vec![format!("α = {}, β = {} samples", settings.alpha, settings.beta), low_pass];
     if let Some((low, high)) = settings.output_limits {
         parts.push(format!("output between {low} and {high}"));
     }
     if settings.min_slope_change > 0.0 {
-        parts.push(format!(
-            "slope change ≥ {} per sample",
-            settings.min_slope_change
-        ));
+        parts.push(format!("slope change ≥ {} per sample", settings.min_slope_change));
     }
     if settings.min_delay > 0 {
         parts.push(format!("hold ≥ {} samples", settings.min_delay));

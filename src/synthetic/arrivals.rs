@@ -24,32 +24,14 @@ pub(super) struct Arrivals {
 impl Arrivals {
     /// Only the level before the first step, at time 0.
     pub(super) fn new(angle: f64, speed: f64) -> Self {
-        Self {
-            first: Arrival {
-                time_s: 0.0,
-                speed,
-                angle,
-            },
-            later: Vec::new(),
-        }
+        Self { first: Arrival { time_s: 0.0, speed, angle }, later: Vec::new() }
     }
 
     /// Lets step `index` act from `time_s` on; it must be the latest step.
     pub(super) fn push(&mut self, index: usize, time_s: f64, speed: f64) {
-        while self
-            .later
-            .pop_if(|(_, earlier)| earlier.time_s >= time_s)
-            .is_some()
-        {}
+        while self.later.pop_if(|(_, earlier)| earlier.time_s >= time_s).is_some() {}
         let angle = self.angle_at(time_s);
-        self.later.push((
-            index,
-            Arrival {
-                time_s,
-                speed,
-                angle,
-            },
-        ));
+        self.later.push((index, Arrival { time_s, speed, angle }));
     }
 
     /// What acts before the first step.
@@ -65,9 +47,7 @@ impl Arrivals {
     /// Angle that a joint without inertia has at `time_s`.
     pub(super) fn angle_at(&self, time_s: f64) -> f64 {
         let mut backwards = self.later.iter().rev().map(|(_, arrival)| arrival);
-        let acting = backwards
-            .find(|arrival| arrival.time_s < time_s)
-            .unwrap_or(&self.first);
+        let acting = backwards.find(|arrival| arrival.time_s < time_s).unwrap_or(&self.first);
         acting.angle + acting.speed * (time_s - acting.time_s)
     }
 

@@ -13,11 +13,7 @@ pub(super) struct Clock {
 impl Clock {
     /// `samples` samples, `substeps` time steps from one to the next.
     pub(super) fn new(period: SamplePeriod, samples: usize, substeps: u32) -> Self {
-        Self {
-            period,
-            samples,
-            substeps,
-        }
+        Self { period, samples, substeps }
     }
 
     /// Seconds between samples.

@@ -95,10 +95,7 @@ impl DelayLaw {
 
     /// A delay in seconds that no step exceeds.
     pub(super) fn longest_s(&self) -> f64 {
-        self.bounds()
-            .into_iter()
-            .map(|(_, seconds)| seconds)
-            .fold(0.0, f64::max)
+        self.bounds().into_iter().map(|(_, seconds)| seconds).fold(0.0, f64::max)
     }
 
     /// Refuses a negative delay, one that is not finite, and bounds in wrong order.
@@ -143,21 +140,12 @@ mod tests {
 
     /// Step 2 of a record, from 1 to `after`, a quarter through, with chance 0.5.
     fn delay_s(law: &str, after: f64) -> Option<f64> {
-        let at = Occasion {
-            index: 1,
-            before: 1.0,
-            after,
-            progress: 0.25,
-            chance: 0.5,
-        };
+        let at = Occasion { index: 1, before: 1.0, after, progress: 0.25, chance: 0.5 };
         toml::from_str::<DelayLaw>(law).unwrap().delay_s(&at)
     }
 
     fn assert_close(found: Option<f64>, expected: f64) {
-        assert!(
-            (found.unwrap() - expected).abs() < 1e-12,
-            "{found:?} is not {expected}"
-        );
+        assert!((found.unwrap() - expected).abs() < 1e-12, "{found:?} is not {expected}");
     }
 
     #[test]
@@ -169,10 +157,7 @@ mod tests {
         let by_direction = "law = 'direction'\nrising = 0.1\nfalling = 0.5";
         assert_close(delay_s(by_direction, 2.0), 0.1);
         assert_close(delay_s(by_direction, 0.0), 0.5);
-        assert_close(
-            delay_s("law = 'warming'\nfirst = 0.5\nlast = 0.1", 2.0),
-            0.4,
-        );
+        assert_close(delay_s("law = 'warming'\nfirst = 0.5\nlast = 0.1", 2.0), 0.4);
         assert_close(delay_s("law = 'listed'\nseconds = [0.1, 0.2]", 2.0), 0.2);
     }
 
@@ -183,10 +168,7 @@ mod tests {
 
     #[test]
     fn the_longest_delay_bounds_all() {
-        let law = DelayLaw::Direction {
-            rising: 0.1,
-            falling: 0.4,
-        };
+        let law = DelayLaw::Direction { rising: 0.1, falling: 0.4 };
         assert!((law.longest_s() - 0.4).abs() < 1e-15);
     }
 

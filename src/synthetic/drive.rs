@@ -108,18 +108,8 @@ impl<'a> Driver<'a> {
         let chain = StaticChain::of(joint);
         let initial = joint.input.initial();
         let arrivals = Arrivals::new(joint.start, chain.speed(initial));
-        let drive = Drive {
-            steps: Vec::new(),
-            arrivals,
-            initial,
-        };
-        Self {
-            joint,
-            clock,
-            chain,
-            delays,
-            drive,
-        }
+        let drive = Drive { steps: Vec::new(), arrivals, initial };
+        Self { joint, clock, chain, delays, drive }
     }
 
     /// Draws steps until the record ends.
@@ -150,11 +140,7 @@ impl<'a> Driver<'a> {
         rng: &mut ChaCha8Rng,
     ) -> Result<(f64, usize), PlantError> {
         let now = self.drive.level();
-        let others: Vec<f64> = levels
-            .iter()
-            .copied()
-            .filter(|level| differ(*level, now))
-            .collect();
+        let others: Vec<f64> = levels.iter().copied().filter(|level| differ(*level, now)).collect();
         for _ in 0..MAX_DRAWS {
             let hold = self.draw_hold(hold_s, rng);
             let drawn = others.choose(rng).copied();
@@ -164,10 +150,7 @@ impl<'a> Driver<'a> {
                 }
             }
         }
-        Err(PlantError::Range {
-            place: Place::joint(&self.joint.name),
-            sample,
-        })
+        Err(PlantError::Range { place: Place::joint(&self.joint.name), sample })
     }
 
     /// A hold in samples, at least one.
@@ -193,24 +176,15 @@ impl<'a> Driver<'a> {
         let moving_s = (next.min(self.clock.time_s(self.clock.samples())) - begin).max(0.0);
         let from = self.drive.arrivals.angle_at(begin);
         let to = from + self.chain.speed(level) * moving_s;
-        Ok([from, to]
-            .iter()
-            .all(|angle| (lowest..=highest).contains(angle)))
+        Ok([from, to].iter().all(|angle| (lowest..=highest).contains(angle)))
     }
 
     /// Sets `level` at `sample`.
     fn set(&mut self, sample: usize, level: f64, chance: f64) -> Result<(), PlantError> {
         let delay_s = self.delay_s(sample, level, chance)?;
-        let step = Step {
-            sample,
-            before: self.drive.level(),
-            after: level,
-            delay_s,
-        };
+        let step = Step { sample, before: self.drive.level(), after: level, delay_s };
         let acts_s = self.clock.time_s(sample) + delay_s;
-        self.drive
-            .arrivals
-            .push(self.drive.steps.len(), acts_s, self.chain.speed(level));
+        self.drive.arrivals.push(self.drive.steps.len(), acts_s, self.chain.speed(level));
         self.drive.steps.push(step);
         Ok(())
     }
@@ -219,21 +193,12 @@ impl<'a> Driver<'a> {
     fn delay_s(&self, sample: usize, level: f64, chance: f64) -> Result<f64, PlantError> {
         let (index, before) = (self.drive.steps.len(), self.drive.level());
         let progress = self.clock.progress(sample);
-        let at = Occasion {
-            index,
-            before,
-            after: level,
-            progress,
-            chance,
-        };
-        self.joint
-            .delay
-            .delay_s(&at)
-            .ok_or_else(|| PlantError::ListedDelays {
-                place: Place::joint(&self.joint.name),
-                given: index,
-                needed: index + 1,
-            })
+        let at = Occasion { index, before, after: level, progress, chance };
+        self.joint.delay.delay_s(&at).ok_or_else(|| PlantError::ListedDelays {
+            place: Place::joint(&self.joint.name),
+            given: index,
+            needed: index + 1,
+        })
     }
 }
 
@@ -249,10 +214,7 @@ mod tests {
 
     fn wandering(hold_s: [f64; 2]) -> JointSpec {
         let levels = vec![-2.0, -1.0, 0.0, 1.0, 2.0];
-        let law = DelayLaw::Uniform {
-            min: 0.01,
-            max: 0.8,
-        };
+        let law = DelayLaw::Uniform { min: 0.01, max: 0.8 };
         JointSpec::new("a", InputSpec::Levels { levels, hold_s }, law)
     }
 
@@ -261,24 +223,10 @@ mod tests {
         let drive = Drive::of(&wandering([0.9, 2.0]), 0, 3, clock(20_000)).unwrap();
         let samples = std::iter::once(1).chain(drive.steps().iter().map(|step| step.sample));
         let samples: Vec<usize> = samples.collect();
-        assert!(
-            samples
-                .windows(2)
-                .all(|w| (90..=200).contains(&(w[1] - w[0])))
-        );
-        assert!(
-            drive
-                .steps()
-                .iter()
-                .all(|step| differ(step.before, step.after))
-        );
+        assert!(samples.windows(2).all(|w| (90..=200).contains(&(w[1] - w[0]))));
+        assert!(drive.steps().iter().all(|step| differ(step.before, step.after)));
         assert!(!differ(drive.steps()[0].before, 0.0));
-        assert!(
-            drive
-                .steps()
-                .iter()
-                .all(|step| (0.01..0.8).contains(&step.delay_s))
-        );
+        assert!(drive.steps().iter().all(|step| (0.01..0.8).contains(&step.delay_s)));
     }
 
     #[test]
@@ -295,70 +243,41 @@ mod tests {
 
     #[test]
     fn the_range_is_kept_at_all_times() {
-        let joint = JointSpec {
-            range: Some([-60.0, 70.0]),
-            ..wandering([0.9, 2.0])
-        };
+        let joint = JointSpec { range: Some([-60.0, 70.0]), ..wandering([0.9, 2.0]) };
         for seed in 0..20 {
             let drive = Drive::of(&joint, 0, seed, clock(12_000)).unwrap();
             let angles = (0..12_000).map(|k| drive.arrivals().angle_at(f64::from(k) * 0.01));
-            assert!(
-                { angles }.all(|angle| (-60.0..=70.0).contains(&angle)),
-                "seed {seed}"
-            );
+            assert!({ angles }.all(|angle| (-60.0..=70.0).contains(&angle)), "seed {seed}");
         }
     }
 
     #[test]
     fn a_range_that_no_level_keeps_is_an_error() {
         let levels = vec![-1.0, 1.0];
-        let input = InputSpec::Levels {
-            levels,
-            hold_s: [5.0, 5.0],
-        };
+        let input = InputSpec::Levels { levels, hold_s: [5.0, 5.0] };
         let law = DelayLaw::Constant { seconds: 0.0 };
-        let joint = JointSpec {
-            range: Some([-1.0, 1.0]),
-            ..JointSpec::new("a", input, law)
-        };
+        let joint = JointSpec { range: Some([-1.0, 1.0]), ..JointSpec::new("a", input, law) };
         let found = Drive::of(&joint, 0, 0, clock(2000));
         assert!(matches!(found, Err(PlantError::Range { sample: 501, .. })));
     }
 
     #[test]
     fn given_steps_stand_where_they_are_given() {
-        let input = InputSpec::Steps {
-            steps: vec![(3, 1.0), (5, -1.0)],
-            initial: 0.5,
-        };
+        let input = InputSpec::Steps { steps: vec![(3, 1.0), (5, -1.0)], initial: 0.5 };
         let joint = JointSpec::new("a", input, DelayLaw::Constant { seconds: 0.15 });
         let drive = Drive::of(&joint, 0, 0, clock(6)).unwrap();
         assert_eq!(drive.input(6), [0.5, 0.5, 1.0, 1.0, -1.0, -1.0]);
-        let first = Step {
-            sample: 3,
-            before: 0.5,
-            after: 1.0,
-            delay_s: 0.15,
-        };
+        let first = Step { sample: 3, before: 0.5, after: 1.0, delay_s: 0.15 };
         assert_eq!(drive.steps()[0], first);
     }
 
     #[test]
     fn drawn_steps_beyond_the_list_of_delays_are_an_error() {
         let joint = JointSpec {
-            delay: DelayLaw::Listed {
-                seconds: vec![0.1; 2],
-            },
+            delay: DelayLaw::Listed { seconds: vec![0.1; 2] },
             ..wandering([0.9, 2.0])
         };
         let found = Drive::of(&joint, 0, 0, clock(2000));
-        assert!(matches!(
-            found,
-            Err(PlantError::ListedDelays {
-                given: 2,
-                needed: 3,
-                ..
-            })
-        ));
+        assert!(matches!(found, Err(PlantError::ListedDelays { given: 2, needed: 3, .. })));
     }
 }

@@ -37,20 +37,9 @@ struct State {
 ///
 /// The joint has long been at its first level: its speed is steady.
 pub(super) fn angles(joint: &JointSpec, arrivals: &Arrivals, clock: &Clock) -> Vec<f64> {
-    let dynamics = Dynamics {
-        lag_s: joint.lag_s,
-        ringing: joint.ringing,
-    };
-    let mut pending = arrivals
-        .later()
-        .iter()
-        .map(|(_, arrival)| arrival)
-        .peekable();
-    let Arrival {
-        speed: mut command,
-        angle: start,
-        ..
-    } = arrivals.first();
+    let dynamics = Dynamics { lag_s: joint.lag_s, ringing: joint.ringing };
+    let mut pending = arrivals.later().iter().map(|(_, arrival)| arrival).peekable();
+    let Arrival { speed: mut command, angle: start, .. } = arrivals.first();
     let mut state = State::steady(start, command);
     let mut angles = Vec::with_capacity(clock.samples());
     let mut now = 0.0;
@@ -81,43 +70,22 @@ impl Dynamics {
 
     /// Derivative of `state` by time.
     fn rate(&self, state: State, command: f64) -> State {
-        let lagged = self
-            .lag_s
-            .map_or(0.0, |lag_s| (command - state.lagged) / lag_s);
-        let drive = if self.lag_s.is_some() {
-            state.lagged
-        } else {
-            command
-        };
+        let lagged = self.lag_s.map_or(0.0, |lag_s| (command - state.lagged) / lag_s);
+        let drive = if self.lag_s.is_some() { state.lagged } else { command };
         let Some(Ringing { period_s, damping }) = self.ringing else {
-            return State {
-                lagged,
-                speed: 0.0,
-                acceleration: 0.0,
-                angle: drive,
-            };
+            return State { lagged, speed: 0.0, acceleration: 0.0, angle: drive };
         };
         let omega = TAU / period_s;
         let pull = omega * omega * (drive - state.speed);
         let acceleration = pull - 2.0 * damping * omega * state.acceleration;
-        State {
-            lagged,
-            speed: state.acceleration,
-            acceleration,
-            angle: state.speed,
-        }
+        State { lagged, speed: state.acceleration, acceleration, angle: state.speed }
     }
 }
 
 impl State {
     /// At `angle`, moving steadily at `speed`.
     fn steady(angle: f64, speed: f64) -> Self {
-        Self {
-            lagged: speed,
-            speed,
-            acceleration: 0.0,
-            angle,
-        }
+        Self { lagged: speed, speed, acceleration: 0.0, angle }
     }
 
     /// This state after `dt` seconds of change at `rate`.
@@ -139,16 +107,9 @@ mod tests {
 
     /// Angles at 1 kHz for 4 s with the speed stepping from 0 to 10 at 0.5 s.
     fn step_response(lag_s: Option<f64>, ringing: Option<Ringing>) -> (Clock, Vec<f64>) {
-        let input = InputSpec::Steps {
-            steps: Vec::new(),
-            initial: 0.0,
-        };
+        let input = InputSpec::Steps { steps: Vec::new(), initial: 0.0 };
         let law = DelayLaw::Constant { seconds: 0.0 };
-        let joint = JointSpec {
-            lag_s,
-            ringing,
-            ..JointSpec::new("a", input, law)
-        };
+        let joint = JointSpec { lag_s, ringing, ..JointSpec::new("a", input, law) };
         let clock = Clock::new(SamplePeriod::from_seconds(1e-3).unwrap(), 4000, 20);
         let mut arrivals = Arrivals::new(0.0, 0.0);
         arrivals.push(0, 0.5, 10.0);
@@ -168,19 +129,13 @@ mod tests {
         for sample in [501, 520, 600, 900] {
             let t = clock.time_s(sample) - 0.5;
             let expected = 10.0 * (t - 0.1 * (1.0 - (-t / 0.1).exp()));
-            assert!(
-                (angles[sample - 1] - expected).abs() < 1e-9,
-                "sample {sample}"
-            );
+            assert!((angles[sample - 1] - expected).abs() < 1e-9, "sample {sample}");
         }
     }
 
     /// 1-based samples and heights of the peaks of the speed above the steady one.
     fn peaks(angles: &[f64]) -> Vec<(usize, f64)> {
-        let speeds: Vec<f64> = angles
-            .windows(2)
-            .map(|w| (w[1] - w[0]) * 1e3 - 10.0)
-            .collect();
+        let speeds: Vec<f64> = angles.windows(2).map(|w| (w[1] - w[0]) * 1e3 - 10.0).collect();
         let tops = (1..speeds.len() - 1).filter(|k| {
             speeds[*k] > 1e-3 && speeds[*k] > speeds[k - 1] && speeds[*k] >= speeds[k + 1]
         });
@@ -195,29 +150,17 @@ mod tests {
         let root = (1.0_f64 - damping * damping).sqrt();
         // Peaks are found to a sample, here 1 ms.
         let spacing = (peaks[3].0 - peaks[0].0) as f64 * 1e-3 / 3.0;
-        assert!(
-            (spacing - period_s / root).abs() < 1e-3,
-            "peaks {spacing} s apart"
-        );
+        assert!((spacing - period_s / root).abs() < 1e-3, "peaks {spacing} s apart");
         // A mean over 1 ms near a peak differs from its top by some 1e-5 of it.
         let decay = (peaks[0].1 / peaks[1].1).ln();
-        assert!(
-            (decay - TAU * damping / root).abs() < 1e-3,
-            "decays by {decay}"
-        );
+        assert!((decay - TAU * damping / root).abs() < 1e-3, "decays by {decay}");
     }
 
     #[test]
     fn a_joint_that_already_moves_starts_steady() {
-        let input = InputSpec::Steps {
-            steps: Vec::new(),
-            initial: 0.0,
-        };
+        let input = InputSpec::Steps { steps: Vec::new(), initial: 0.0 };
         let law = DelayLaw::Constant { seconds: 0.0 };
-        let joint = JointSpec {
-            lag_s: Some(0.1),
-            ..JointSpec::new("a", input, law)
-        };
+        let joint = JointSpec { lag_s: Some(0.1), ..JointSpec::new("a", input, law) };
         let clock = Clock::new(SamplePeriod::from_seconds(0.01).unwrap(), 11, 20);
         let angles = angles(&joint, &Arrivals::new(3.0, 5.0), &clock);
         assert!((angles[10] - 3.5).abs() < 1e-12);

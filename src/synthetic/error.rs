@@ -88,11 +88,7 @@ impl Place {
         allowed: &'static str,
         fits: impl FnOnce(&T) -> bool,
     ) -> Result<(), PlantError> {
-        if fits(&value) {
-            Ok(())
-        } else {
-            Err(self.refuse(key, value, allowed))
-        }
+        if fits(&value) { Ok(()) } else { Err(self.refuse(key, value, allowed)) }
     }
 
     /// The error that `key` has a value other than `allowed`.
@@ -103,12 +99,7 @@ impl Place {
         allowed: &'static str,
     ) -> PlantError {
         let (place, value) = (self.clone(), format!("{value:?}"));
-        PlantError::Value {
-            place,
-            key,
-            value,
-            allowed,
-        }
+        PlantError::Value { place, key, value, allowed }
     }
 }
 
@@ -119,9 +110,7 @@ pub(super) fn above_zero(
     value: Option<f64>,
 ) -> Result<(), PlantError> {
     let Some(value) = value else { return Ok(()) };
-    place.require(key, value, "finite, above zero", |value| {
-        value.is_finite() && *value > 0.0
-    })
+    place.require(key, value, "finite, above zero", |value| value.is_finite() && *value > 0.0)
 }
 
 impl fmt::Display for Place {
@@ -141,9 +130,6 @@ mod tests {
     fn a_bad_value_is_told_with_joint_key_value_and_what_is_allowed() {
         let refused = Place::joint("elbow").require("gain", 0.0, "finite, not zero", |_| false);
         let text = refused.unwrap_err().to_string();
-        assert_eq!(
-            text,
-            "joint `elbow`: `gain` is 0.0; allowed: finite, not zero"
-        );
+        assert_eq!(text, "joint `elbow`: `gain` is 0.0; allowed: finite, not zero");
     }
 }

@@ -48,10 +48,9 @@ impl TryFrom<RawInput> for InputSpec {
     fn try_from(raw: RawInput) -> Result<Self, Self::Error> {
         match (raw.levels, raw.hold_s, raw.steps, raw.initial) {
             (Some(levels), Some(hold_s), None, None) => Ok(Self::Levels { levels, hold_s }),
-            (None, None, Some(steps), initial) => Ok(Self::Steps {
-                steps,
-                initial: initial.unwrap_or(0.0),
-            }),
+            (None, None, Some(steps), initial) => {
+                Ok(Self::Steps { steps, initial: initial.unwrap_or(0.0) })
+            }
             _ => Err("`input` holds `levels` and `hold_s`, or `steps` and perhaps `initial`"),
         }
     }
@@ -59,23 +58,14 @@ impl TryFrom<RawInput> for InputSpec {
 
 impl From<InputSpec> for RawInput {
     fn from(input: InputSpec) -> Self {
-        let empty = Self {
-            levels: None,
-            hold_s: None,
-            steps: None,
-            initial: None,
-        };
+        let empty = Self { levels: None, hold_s: None, steps: None, initial: None };
         match input {
-            InputSpec::Levels { levels, hold_s } => Self {
-                levels: Some(levels),
-                hold_s: Some(hold_s),
-                ..empty
-            },
-            InputSpec::Steps { steps, initial } => Self {
-                steps: Some(steps),
-                initial: Some(initial),
-                ..empty
-            },
+            InputSpec::Levels { levels, hold_s } => {
+                Self { levels: Some(levels), hold_s: Some(hold_s), ..empty }
+            }
+            InputSpec::Steps { steps, initial } => {
+                Self { steps: Some(steps), initial: Some(initial), ..empty }
+            }
         }
     }
 }
@@ -100,9 +90,7 @@ impl InputSpec {
                 })
             }
             Self::Steps { steps, initial } => {
-                place.require("input.initial", *initial, "finite", |level| {
-                    level.is_finite()
-                })?;
+                place.require("input.initial", *initial, "finite", |level| level.is_finite())?;
                 check_steps(steps, *initial, clock, place)
             }
         }
@@ -118,16 +106,9 @@ fn check_levels(levels: &[f64], place: &Place) -> Result<(), PlantError> {
     for level in levels {
         place.require("input.levels", *level, "finite", |level| level.is_finite())?;
     }
-    place.require(
-        "input.levels",
-        levels,
-        "two levels or more that differ",
-        |levels| {
-            levels
-                .windows(2)
-                .any(|pair| matches!(pair, &[a, b] if differ(a, b)))
-        },
-    )
+    place.require("input.levels", levels, "two levels or more that differ", |levels| {
+        levels.windows(2).any(|pair| matches!(pair, &[a, b] if differ(a, b)))
+    })
 }
 
 fn check_steps(
@@ -158,32 +139,15 @@ mod tests {
     #[test]
     fn reads_both_forms() {
         let drawn = toml::from_str("levels = [-1, 0.5]\nhold_s = [1, 2]").unwrap();
-        assert_eq!(
-            InputSpec::Levels {
-                levels: vec![-1.0, 0.5],
-                hold_s: [1.0, 2.0]
-            },
-            drawn
-        );
+        assert_eq!(InputSpec::Levels { levels: vec![-1.0, 0.5], hold_s: [1.0, 2.0] }, drawn);
         let given = toml::from_str("steps = [[40, 1], [89, -1.5]]").unwrap();
         let steps = vec![(40, 1.0), (89, -1.5)];
-        assert_eq!(
-            InputSpec::Steps {
-                steps,
-                initial: 0.0
-            },
-            given
-        );
+        assert_eq!(InputSpec::Steps { steps, initial: 0.0 }, given);
     }
 
     #[test]
     fn a_mixture_of_both_forms_is_refused() {
-        for text in [
-            "levels = [1, 2]",
-            "hold_s = [1, 2]\nsteps = [[2, 1]]",
-            "",
-            "initial = 1",
-        ] {
+        for text in ["levels = [1, 2]", "hold_s = [1, 2]\nsteps = [[2, 1]]", "", "initial = 1"] {
             assert!(toml::from_str::<InputSpec>(text).is_err(), "{text}");
         }
     }

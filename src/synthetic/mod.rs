@@ -92,12 +92,7 @@ pub fn simulate(spec: &PlantSpec) -> Result<Synthetic, PlantError> {
         let mut noise = stream(spec.seed, index, Purpose::Noise);
         let angles = dynamics::angles(joint, drive.arrivals(), &clock);
         let output = sensor::measure(joint, angles, &mut noise);
-        joints.push(recorded(
-            joint,
-            &clock,
-            drive.input(clock.samples()),
-            output,
-        )?);
+        joints.push(recorded(joint, &clock, drive.input(clock.samples()), output)?);
     }
     Ok(Synthetic { joints, truth })
 }
@@ -109,12 +104,8 @@ fn recorded(
     input: Vec<f64>,
     output: Vec<f64>,
 ) -> Result<Joint, PlantError> {
-    let trial = Trial::new(TRIAL, 0.0, clock.period(), input, output).map_err(|source| {
-        PlantError::Trial {
-            place: Place::joint(&spec.name),
-            source,
-        }
-    })?;
+    let trial = Trial::new(TRIAL, 0.0, clock.period(), input, output)
+        .map_err(|source| PlantError::Trial { place: Place::joint(&spec.name), source })?;
     Ok(Joint {
         name: spec.name.clone(),
         input_unit: Some(spec.input_unit.clone()),
@@ -132,27 +123,14 @@ mod tests {
 
     /// A joint of gain 10 with `steps`, all delayed by `delay_s`.
     fn stepped(steps: &[(usize, f64)], delay_s: f64) -> JointSpec {
-        let input = InputSpec::Steps {
-            steps: steps.to_vec(),
-            initial: 0.0,
-        };
+        let input = InputSpec::Steps { steps: steps.to_vec(), initial: 0.0 };
         JointSpec::new("a", input, DelayLaw::Constant { seconds: delay_s })
     }
 
     /// A joint that wanders between whole volts.
     fn wandering(name: &str) -> JointSpec {
-        let input = InputSpec::Levels {
-            levels: vec![-1.0, 0.0, 1.0],
-            hold_s: [0.9, 2.0],
-        };
-        JointSpec::new(
-            name,
-            input,
-            DelayLaw::Uniform {
-                min: 0.01,
-                max: 0.8,
-            },
-        )
+        let input = InputSpec::Levels { levels: vec![-1.0, 0.0, 1.0], hold_s: [0.9, 2.0] };
+        JointSpec::new(name, input, DelayLaw::Uniform { min: 0.01, max: 0.8 })
     }
 
     /// What 2 s of `joint` look like.
@@ -170,10 +148,7 @@ mod tests {
     }
 
     fn inputs(made: &Synthetic) -> Vec<&[f64]> {
-        made.joints
-            .iter()
-            .map(|joint| joint.trials[0].input())
-            .collect()
+        made.joints.iter().map(|joint| joint.trials[0].input()).collect()
     }
 
     /// Time at which the lines through two pairs of samples around a kink cross.
@@ -194,10 +169,7 @@ mod tests {
             for p in [40, 89] {
                 let expected = (p as f64 - 1.0) * PERIOD_S + delay_s;
                 let found = kink_s(output(&made), p, p + 30);
-                assert!(
-                    (found - expected).abs() < 1e-9,
-                    "{found} s, not {expected} s"
-                );
+                assert!((found - expected).abs() < 1e-9, "{found} s, not {expected} s");
             }
         }
     }
@@ -213,13 +185,7 @@ mod tests {
         };
         let made = short(joint);
         // Acting at 0.2, 0.7, 1.2 and 1.7 s: 0, 1.0, 1.5 and -0.7 V after the statics.
-        let cases = [
-            (71, 5.0),
-            (121, 10.0),
-            (171, 17.5),
-            (181, 16.8),
-            (200, 15.47),
-        ];
+        let cases = [(71, 5.0), (121, 10.0), (171, 17.5), (181, 16.8), (200, 15.47)];
         for (sample, angle) in cases {
             let found = output(&made)[sample - 1];
             assert!((found - angle).abs() < 1e-9, "{found} at sample {sample}");
@@ -232,14 +198,9 @@ mod tests {
 
     #[test]
     fn an_overtaken_step_leaves_no_trace_in_the_output() {
-        let law = DelayLaw::Listed {
-            seconds: vec![0.1, 0.8, 0.1],
-        };
+        let law = DelayLaw::Listed { seconds: vec![0.1, 0.8, 0.1] };
         let steps = [(11, 1.0), (51, 2.0), (101, -1.0)];
-        let with = short(JointSpec {
-            delay: law,
-            ..stepped(&steps, 0.0)
-        });
+        let with = short(JointSpec { delay: law, ..stepped(&steps, 0.0) });
         let without = short(stepped(&[(11, 1.0), (101, -1.0)], 0.1));
         assert_eq!(output(&with), output(&without));
         let overtaken: Vec<bool> = with.truth.iter().map(|step| step.overtaken).collect();
@@ -263,10 +224,7 @@ mod tests {
 
     #[test]
     fn the_same_seed_gives_the_same_data_and_another_one_does_not() {
-        let joints = [JointSpec {
-            noise: 0.05,
-            ..wandering("a")
-        }];
+        let joints = [JointSpec { noise: 0.05, ..wandering("a") }];
         assert_eq!(long(1, &joints), long(1, &joints));
         assert_ne!(long(1, &joints), long(2, &joints));
     }
@@ -274,25 +232,13 @@ mod tests {
     #[test]
     fn joints_are_driven_apart() {
         let made = long(1, &[wandering("a"), wandering("b")]);
-        assert_ne!(
-            made.joints[0].trials[0].input(),
-            made.joints[1].trials[0].input()
-        );
+        assert_ne!(made.joints[0].trials[0].input(), made.joints[1].trials[0].input());
     }
 
     #[test]
     fn noise_and_further_joints_change_neither_input_nor_delays() {
         let quiet = long(1, &[wandering("a")]);
-        let noisy = long(
-            1,
-            &[
-                JointSpec {
-                    noise: 0.1,
-                    ..wandering("a")
-                },
-                wandering("b"),
-            ],
-        );
+        let noisy = long(1, &[JointSpec { noise: 0.1, ..wandering("a") }, wandering("b")]);
         assert_eq!(inputs(&quiet)[0], inputs(&noisy)[0]);
         assert_eq!(quiet.truth, noisy.truth[..quiet.truth.len()]);
     }
@@ -300,22 +246,13 @@ mod tests {
     #[test]
     fn another_law_of_delay_leaves_the_input_as_it_was() {
         let law = DelayLaw::Constant { seconds: 0.1 };
-        let other = long(
-            1,
-            &[JointSpec {
-                delay: law,
-                ..wandering("a")
-            }],
-        );
+        let other = long(1, &[JointSpec { delay: law, ..wandering("a") }]);
         assert_eq!(inputs(&other), inputs(&long(1, &[wandering("a")])));
     }
 
     #[test]
     fn the_range_is_kept_in_the_log() {
-        let joint = JointSpec {
-            range: Some([-30.0, 40.0]),
-            ..wandering("a")
-        };
+        let joint = JointSpec { range: Some([-30.0, 40.0]), ..wandering("a") };
         for seed in 0..10 {
             let made = long(seed, std::slice::from_ref(&joint));
             // 1e-9: what the sum of the time steps may round.
@@ -326,27 +263,15 @@ mod tests {
 
     #[test]
     fn an_angle_beyond_all_numbers_is_an_error() {
-        let joint = JointSpec {
-            gain: f64::MAX,
-            ..stepped(&[(2, 100.0)], 0.0)
-        };
+        let joint = JointSpec { gain: f64::MAX, ..stepped(&[(2, 100.0)], 0.0) };
         let found = simulate(&PlantSpec::new(1, 2.0, vec![joint]));
         assert!(matches!(found, Err(PlantError::Trial { .. })));
     }
 
     #[test]
     fn odd_numbers_give_data_or_an_error_but_no_panic() {
-        const ODD: [f64; 9] = [
-            0.0,
-            -1.0,
-            1e300,
-            -1e300,
-            5e-324,
-            1e-9,
-            f64::NAN,
-            f64::INFINITY,
-            f64::MAX,
-        ];
+        const ODD: [f64; 9] =
+            [0.0, -1.0, 1e300, -1e300, 5e-324, 1e-9, f64::NAN, f64::INFINITY, f64::MAX];
         let changes: [fn(&mut PlantSpec, f64); 12] = [
             |spec, odd| spec.sample_period_s = odd,
             |spec, odd| spec.duration_s = odd,
@@ -367,10 +292,7 @@ mod tests {
                 spec.joints[0].input = InputSpec::Levels { levels, hold_s };
             },
         ];
-        for (change, odd) in changes
-            .iter()
-            .flat_map(|change| ODD.map(|odd| (change, odd)))
-        {
+        for (change, odd) in changes.iter().flat_map(|change| ODD.map(|odd| (change, odd))) {
             let mut spec = PlantSpec::new(1, 2.0, vec![wandering("a")]);
             change(&mut spec, odd);
             let finite = |made: Synthetic| output(&made).iter().all(|y| y.is_finite());
@@ -380,18 +302,9 @@ mod tests {
 
     #[test]
     fn first_numbers_of_a_seed_stay_the_same() {
-        let made = long(
-            1,
-            &[JointSpec {
-                noise: 0.1,
-                ..wandering("a")
-            }],
-        );
+        let made = long(1, &[JointSpec { noise: 0.1, ..wandering("a") }]);
         let step = &made.truth[0];
-        let found = (
-            step.p,
-            format!("{:.9} {:.9}", step.delay_s, output(&made)[0]),
-        );
+        let found = (step.p, format!("{:.9} {:.9}", step.delay_s, output(&made)[0]));
         assert_eq!(found, (133, "0.091791180 -0.010836652".to_owned()));
     }
 }

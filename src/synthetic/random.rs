@@ -20,10 +20,7 @@ pub(super) enum Purpose {
 pub(super) fn stream(seed: u64, joint: usize, purpose: Purpose) -> ChaCha8Rng {
     let mut key = [0; 32];
     let words = [seed, joint as u64];
-    for (byte, part) in key
-        .iter_mut()
-        .zip(words.iter().flat_map(|word| word.to_le_bytes()))
-    {
+    for (byte, part) in key.iter_mut().zip(words.iter().flat_map(|word| word.to_le_bytes())) {
         *byte = part;
     }
     let mut rng = ChaCha8Rng::from_seed(key);

@@ -41,21 +41,10 @@ mod tests {
 
     /// What `noise` and `noise_correlation` make of an angle of zero.
     fn noise_of(noise: f64, noise_correlation: f64) -> Vec<f64> {
-        let input = InputSpec::Steps {
-            steps: Vec::new(),
-            initial: 0.0,
-        };
+        let input = InputSpec::Steps { steps: Vec::new(), initial: 0.0 };
         let law = DelayLaw::Constant { seconds: 0.0 };
-        let joint = JointSpec {
-            noise,
-            noise_correlation,
-            ..JointSpec::new("a", input, law)
-        };
-        measure(
-            &joint,
-            vec![0.0; SAMPLES],
-            &mut stream(7, 0, Purpose::Noise),
-        )
+        let joint = JointSpec { noise, noise_correlation, ..JointSpec::new("a", input, law) };
+        measure(&joint, vec![0.0; SAMPLES], &mut stream(7, 0, Purpose::Noise))
     }
 
     /// Standard deviation, and correlation of neighbours.
@@ -69,10 +58,7 @@ mod tests {
     fn white_noise_has_its_deviation_and_no_correlation() {
         let (deviation, correlation) = moments(&noise_of(0.05, 0.0));
         // Standard errors at 40 000 samples: 0.35 % and 0.005; four of each.
-        assert!(
-            (deviation / 0.05 - 1.0).abs() < 0.014,
-            "deviation {deviation}"
-        );
+        assert!((deviation / 0.05 - 1.0).abs() < 0.014, "deviation {deviation}");
         assert!(correlation.abs() < 0.02, "correlation {correlation}");
     }
 
@@ -80,14 +66,8 @@ mod tests {
     fn correlated_noise_keeps_its_deviation() {
         let (deviation, correlation) = moments(&noise_of(0.05, 0.8));
         // Standard errors: 0.35 % × sqrt((1 + φ²) / (1 - φ²)) = 0.75 %, and 0.003.
-        assert!(
-            (deviation / 0.05 - 1.0).abs() < 0.03,
-            "deviation {deviation}"
-        );
-        assert!(
-            (correlation - 0.8).abs() < 0.012,
-            "correlation {correlation}"
-        );
+        assert!((deviation / 0.05 - 1.0).abs() < 0.03, "deviation {deviation}");
+        assert!((correlation - 0.8).abs() < 0.012, "correlation {correlation}");
     }
 
     #[test]

@@ -176,9 +176,7 @@ impl PlantSpec {
     /// ```
     pub fn from_toml(text: &str) -> Result<Self, PlantError> {
         let parsed = toml::from_str::<Self>(text);
-        let spec = parsed.map_err(|source| PlantError::Parse {
-            source: Box::new(source),
-        })?;
+        let spec = parsed.map_err(|source| PlantError::Parse { source: Box::new(source) })?;
         spec.check()?;
         Ok(spec)
     }
@@ -191,18 +189,14 @@ impl PlantSpec {
     /// and delays are listed, but not one for each.
     pub fn check(&self) -> Result<(), PlantError> {
         if self.schema != SCHEMA {
-            return Err(PlantError::Schema {
-                found: self.schema.clone(),
-            });
+            return Err(PlantError::Schema { found: self.schema.clone() });
         }
         let clock = self.clock()?;
         let mut names = HashSet::new();
         for joint in &self.joints {
             let place = Place::joint(&joint.name);
             let allowed = "a name that no other joint has";
-            place.require("name", joint.name.as_str(), allowed, |name| {
-                names.insert(*name)
-            })?;
+            place.require("name", joint.name.as_str(), allowed, |name| names.insert(*name))?;
             joint.check(&clock, &place)?;
         }
         Ok(())
@@ -212,9 +206,7 @@ impl PlantSpec {
     pub(super) fn clock(&self) -> Result<Clock, PlantError> {
         let plant = Place::Plant;
         let count = self.joints.len();
-        plant.require("joint", count, "one table [[joint]] or more", |count| {
-            *count > 0
-        })?;
+        plant.require("joint", count, "one table [[joint]] or more", |count| *count > 0)?;
         let period_s = self.sample_period_s;
         let period = SamplePeriod::from_seconds(period_s)
             .filter(|period| period.seconds() >= MIN_SAMPLE_PERIOD_S);
@@ -273,10 +265,7 @@ impl JointSpec {
         place.require("name", &self.name, "letters, digits, `_` and `-`", |name| {
             !name.is_empty() && name.chars().all(fits)
         })?;
-        for (key, unit) in [
-            ("input_unit", &self.input_unit),
-            ("output_unit", &self.output_unit),
-        ] {
+        for (key, unit) in [("input_unit", &self.input_unit), ("output_unit", &self.output_unit)] {
             let bad = |c: char| c == '[' || c == ']' || c.is_control();
             place.require(key, unit, "a unit without brackets", |unit| {
                 !unit.trim().is_empty() && !unit.contains(bad)
@@ -291,11 +280,7 @@ impl JointSpec {
                 if steps.len() != seconds.len() =>
             {
                 let (given, needed) = (seconds.len(), steps.len());
-                Err(PlantError::ListedDelays {
-                    place: place.clone(),
-                    given,
-                    needed,
-                })
+                Err(PlantError::ListedDelays { place: place.clone(), given, needed })
             }
             _ => Ok(()),
         }
@@ -313,12 +298,9 @@ impl JointSpec {
         place.require("start", self.start, "an angle within `range`", |start| {
             (lowest..=highest).contains(start)
         })?;
-        place.require(
-            "range",
-            range,
-            "none, as `input.steps` are given, not drawn",
-            |_| matches!(self.input, InputSpec::Levels { .. }),
-        )
+        place.require("range", range, "none, as `input.steps` are given, not drawn", |_| {
+            matches!(self.input, InputSpec::Levels { .. })
+        })
     }
 
     fn check_statics(&self, place: &Place) -> Result<(), PlantError> {
@@ -326,12 +308,9 @@ impl JointSpec {
             gain.is_finite() && gain.abs() > 0.0
         })?;
         if let Some(band) = self.dead_band {
-            place.require(
-                "dead_band",
-                band,
-                "[lower, upper], finite",
-                |[lower, upper]| lower <= upper && lower.is_finite() && upper.is_finite(),
-            )?;
+            place.require("dead_band", band, "[lower, upper], finite", |[lower, upper]| {
+                lower <= upper && lower.is_finite() && upper.is_finite()
+            })?;
         }
         above_zero(place, "saturation", self.saturation)
     }
@@ -341,9 +320,7 @@ impl JointSpec {
             |seconds: f64, steps: f64| seconds.is_finite() && seconds >= steps * clock.substep_s();
         if let Some(lag_s) = self.lag_s {
             let allowed = "finite seconds, four time steps or more (sample_period_s / substeps)";
-            place.require("lag_s", lag_s, allowed, |lag_s| {
-                lasts(*lag_s, MIN_STEPS_PER_LAG)
-            })?;
+            place.require("lag_s", lag_s, allowed, |lag_s| lasts(*lag_s, MIN_STEPS_PER_LAG))?;
         }
         let Some(Ringing { period_s, damping }) = self.ringing else {
             return Ok(());
@@ -352,12 +329,9 @@ impl JointSpec {
         place.require("ringing.period_s", period_s, allowed, |period_s| {
             lasts(*period_s, MIN_STEPS_PER_PERIOD)
         })?;
-        place.require(
-            "ringing.damping",
-            damping,
-            "0 or more, below 1",
-            |damping| (0.0..1.0).contains(damping),
-        )
+        place.require("ringing.damping", damping, "0 or more, below 1", |damping| {
+            (0.0..1.0).contains(damping)
+        })
     }
 
     fn check_sensor(&self, place: &Place) -> Result<(), PlantError> {
@@ -396,15 +370,9 @@ mod tests {
     #[test]
     fn a_short_file_gets_the_defaults() {
         let spec = joint(&[INPUT, DELAY]).unwrap();
-        let input = InputSpec::Levels {
-            levels: vec![-1.0, 1.0],
-            hold_s: [1.0, 2.0],
-        };
+        let input = InputSpec::Levels { levels: vec![-1.0, 1.0], hold_s: [1.0, 2.0] };
         let delay = DelayLaw::Constant { seconds: 0.1 };
-        assert_eq!(
-            spec,
-            PlantSpec::new(1, 10.0, vec![JointSpec::new("a", input, delay)])
-        );
+        assert_eq!(spec, PlantSpec::new(1, 10.0, vec![JointSpec::new("a", input, delay)]));
         assert_eq!(spec.clock().unwrap().samples(), 1000);
     }
 
@@ -423,29 +391,17 @@ mod tests {
         let tables = ["zeta", "alpha", "mid"]
             .map(|name| format!("[[joint]]\nname = '{name}'\n{INPUT}{DELAY}"));
         let spec = PlantSpec::from_toml(&format!("{HEAD}{}", tables.concat())).unwrap();
-        let names: Vec<&str> = spec
-            .joints
-            .iter()
-            .map(|joint| joint.name.as_str())
-            .collect();
+        let names: Vec<&str> = spec.joints.iter().map(|joint| joint.name.as_str()).collect();
         assert_eq!(names, ["zeta", "alpha", "mid"]);
     }
 
     #[test]
     fn text_that_is_no_plant_is_refused() {
-        for text in [
-            "",
-            "seed",
-            "schema = 'tauscope/plant/1'\nseed = -1\nduration_s = 1",
-        ] {
+        for text in ["", "seed", "schema = 'tauscope/plant/1'\nseed = -1\nduration_s = 1"] {
             let found = PlantSpec::from_toml(text);
             assert!(matches!(found, Err(PlantError::Parse { .. })), "{text}");
         }
-        for part in [
-            "gian = 1\n",
-            "ringing = { period_s = 1 }\n",
-            "dead_band = [0.1]\n",
-        ] {
+        for part in ["gian = 1\n", "ringing = { period_s = 1 }\n", "dead_band = [0.1]\n"] {
             let found = joint(&[part, INPUT, DELAY]);
             assert!(matches!(found, Err(PlantError::Parse { .. })), "{part}");
         }
@@ -466,18 +422,9 @@ mod tests {
             spec.check().map(|()| spec)
         };
         assert_refused(with(|spec| spec.joints.clear()), "joint");
-        assert_refused(
-            with(|spec| spec.joints.push(spec.joints[0].clone())),
-            "name",
-        );
-        assert_refused(
-            with(|spec| spec.sample_period_s = f64::NAN),
-            "sample_period_s",
-        );
-        assert_refused(
-            with(|spec| spec.sample_period_s = f64::INFINITY),
-            "sample_period_s",
-        );
+        assert_refused(with(|spec| spec.joints.push(spec.joints[0].clone())), "name");
+        assert_refused(with(|spec| spec.sample_period_s = f64::NAN), "sample_period_s");
+        assert_refused(with(|spec| spec.sample_period_s = f64::INFINITY), "sample_period_s");
         assert_refused(with(|spec| spec.sample_period_s = -0.01), "sample_period_s");
         assert_refused(with(|spec| spec.duration_s = 0.01), "duration_s");
         assert_refused(with(|spec| spec.duration_s = 1e9), "duration_s");
@@ -498,14 +445,8 @@ mod tests {
             ("dead_band = [0.1, -0.1]\n", "dead_band"),
             ("saturation = 0\n", "saturation"),
             ("lag_s = 0.001\n", "lag_s"),
-            (
-                "ringing = { period_s = 0.01, damping = 0.2 }\n",
-                "ringing.period_s",
-            ),
-            (
-                "ringing = { period_s = 0.4, damping = 1.0 }\n",
-                "ringing.damping",
-            ),
+            ("ringing = { period_s = 0.01, damping = 0.2 }\n", "ringing.period_s"),
+            ("ringing = { period_s = 0.4, damping = 1.0 }\n", "ringing.damping"),
             ("noise = -0.1\n", "noise"),
             ("noise_correlation = 1\n", "noise_correlation"),
             ("resolution = 0\n", "resolution"),
@@ -541,14 +482,8 @@ mod tests {
             ("law = 'constant', seconds = -0.1", "delay.seconds"),
             ("law = 'uniform', min = 0.5, max = 0.1", "delay.min"),
             ("law = 'uniform', min = 0.5, max = inf", "delay.max"),
-            (
-                "law = 'step_size', min = 0.1, max = 0.5, scale = 0",
-                "delay.scale",
-            ),
-            (
-                "law = 'direction', rising = nan, falling = 0.1",
-                "delay.rising",
-            ),
+            ("law = 'step_size', min = 0.1, max = 0.5, scale = 0", "delay.scale"),
+            ("law = 'direction', rising = nan, falling = 0.1", "delay.rising"),
             ("law = 'warming', first = 0.1, last = -1", "delay.last"),
             ("law = 'listed', seconds = [0.1, -0.1]", "delay.seconds"),
         ];
@@ -560,13 +495,6 @@ mod tests {
     #[test]
     fn a_list_of_delays_must_fit_the_steps() {
         let found = joint(&[STEPS, "delay = { law = 'listed', seconds = [0.1] }\n"]);
-        assert!(matches!(
-            found,
-            Err(PlantError::ListedDelays {
-                given: 1,
-                needed: 2,
-                ..
-            })
-        ));
+        assert!(matches!(found, Err(PlantError::ListedDelays { given: 1, needed: 2, .. })));
     }
 }

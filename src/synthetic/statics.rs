@@ -23,11 +23,7 @@ impl StaticChain {
     pub(super) fn of(joint: &JointSpec) -> Self {
         let dead_band = joint.dead_band.unwrap_or([0.0; 2]);
         let limit = joint.saturation.unwrap_or(f64::INFINITY);
-        Self {
-            dead_band,
-            limit,
-            gain: joint.gain,
-        }
+        Self { dead_band, limit, gain: joint.gain }
     }
 
     /// Steady speed at a held `level`, in output units per second.
@@ -48,19 +44,8 @@ mod tests {
 
     #[test]
     fn is_zero_inside_the_band_shifted_outside_and_flat_beyond_the_limit() {
-        let chain = StaticChain {
-            dead_band: [-0.2, 0.3],
-            limit: 1.0,
-            gain: 10.0,
-        };
-        let cases = [
-            (-0.1, 0.0),
-            (0.3, 0.0),
-            (0.5, 2.0),
-            (-0.7, -5.0),
-            (2.0, 10.0),
-            (-2.0, -10.0),
-        ];
+        let chain = StaticChain { dead_band: [-0.2, 0.3], limit: 1.0, gain: 10.0 };
+        let cases = [(-0.1, 0.0), (0.3, 0.0), (0.5, 2.0), (-0.7, -5.0), (2.0, 10.0), (-2.0, -10.0)];
         for (level, speed) in cases {
             assert!((chain.speed(level) - speed).abs() < 1e-12, "at {level}");
         }

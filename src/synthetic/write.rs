@@ -42,11 +42,7 @@ pub fn write_log(made: &Synthetic, out: impl Write) -> Result<(), csv::Error> {
     let mut header = vec!["time_s".to_owned()];
     header.extend(made.joints.iter().flat_map(column_names));
     table.write_record(header)?;
-    let trials: Vec<&Trial> = made
-        .joints
-        .iter()
-        .filter_map(|joint| joint.trials.first())
-        .collect();
+    let trials: Vec<&Trial> = made.joints.iter().filter_map(|joint| joint.trials.first()).collect();
     if let Some(first) = trials.first() {
         for index in 0..first.len() {
             let mut row = vec![decimal(first.time_s(index + 1), TIME_DECIMALS)];
@@ -101,10 +97,7 @@ fn column_names(joint: &Joint) -> [String; 2] {
 /// Input and output of one row; empty beyond the end of the trial.
 fn cells(trial: &Trial, index: usize) -> [String; 2] {
     let input = trial.input().get(index).map(f64::to_string);
-    let output = trial
-        .output()
-        .get(index)
-        .map(|value| decimal(*value, OUTPUT_DECIMALS));
+    let output = trial.output().get(index).map(|value| decimal(*value, OUTPUT_DECIMALS));
     [input.unwrap_or_default(), output.unwrap_or_default()]
 }
 
@@ -112,11 +105,7 @@ fn cells(trial: &Trial, index: usize) -> [String; 2] {
 fn decimal(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let short = text.trim_end_matches('0').trim_end_matches('.');
-    if short == "-0" {
-        "0".to_owned()
-    } else {
-        short.to_owned()
-    }
+    if short == "-0" { "0".to_owned() } else { short.to_owned() }
 }
 
 #[cfg(test)]
@@ -125,15 +114,9 @@ mod tests {
     use super::*;
 
     fn made() -> Synthetic {
-        let input = InputSpec::Steps {
-            steps: vec![(2, 0.5)],
-            initial: 0.0,
-        };
+        let input = InputSpec::Steps { steps: vec![(2, 0.5)], initial: 0.0 };
         let delay = DelayLaw::Constant { seconds: 0.29 };
-        let joint = JointSpec {
-            start: 1.0 / 3.0,
-            ..JointSpec::new("arm", input, delay)
-        };
+        let joint = JointSpec { start: 1.0 / 3.0, ..JointSpec::new("arm", input, delay) };
         simulate(&PlantSpec::new(0, 0.03, vec![joint])).unwrap()
     }
 
@@ -159,12 +142,7 @@ mod tests {
 
     #[test]
     fn decimals_are_rounded_and_short() {
-        let cases = [
-            (0.07 + 1e-17, "0.07"),
-            (100.0, "100"),
-            (-1e-9, "0"),
-            (-2.5, "-2.5"),
-        ];
+        let cases = [(0.07 + 1e-17, "0.07"), (100.0, "100"), (-1e-9, "0"), (-2.5, "-2.5")];
         for (value, expected) in cases {
             assert_eq!(decimal(value, 6), expected);
         }

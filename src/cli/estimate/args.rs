@@ -82,7 +82,7 @@ pub(super) struct AlgorithmArgs {
 #[command(next_help_heading = "Output")]
 pub(super) struct OutputArgs {
     /// Record every decision for the Rerun viewer
-    #[arg(short, long = "output", value_name = "FILE.rrd")]
+    #[arg(short = 'o', long = "output", value_name = "FILE.rrd")]
     pub(super) recording: Option<PathBuf>,
 
     /// Write the table of decisions
@@ -140,10 +140,7 @@ fn at_least_one(text: &str) -> Result<usize, String> {
 }
 
 fn threshold(text: &str) -> Result<f64, String> {
-    let number = text
-        .parse()
-        .ok()
-        .filter(|x: &f64| x.is_finite() && *x >= 0.0);
+    let number = text.parse().ok().filter(|x: &f64| x.is_finite() && *x >= 0.0);
     number.ok_or_else(|| "expected a number from 0 up".to_owned())
 }
 
@@ -151,19 +148,13 @@ fn passband(text: &str) -> Result<Passband, String> {
     if text == "none" {
         return Ok(Passband::None);
     }
-    let hz = text
-        .parse()
-        .ok()
-        .filter(|hz: &f64| hz.is_finite() && *hz > 0.0);
-    hz.map(Passband::Hz)
-        .ok_or_else(|| "expected a frequency in Hz, or `none`".to_owned())
+    let hz = text.parse().ok().filter(|hz: &f64| hz.is_finite() && *hz > 0.0);
+    hz.map(Passband::Hz).ok_or_else(|| "expected a frequency in Hz, or `none`".to_owned())
 }
 
 fn limits(text: &str) -> Result<(f64, f64), String> {
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| !x.is_nan());
-    let pair = text
-        .split_once(',')
-        .and_then(|(low, high)| Some((number(low)?, number(high)?)));
+    let pair = text.split_once(',').and_then(|(low, high)| Some((number(low)?, number(high)?)));
     match pair {
         Some((low, high)) if low < high => Ok((low, high)),
         Some(_) => Err("the lower limit comes first".to_owned()),
@@ -175,10 +166,7 @@ impl AlgorithmArgs {
     pub(super) fn settings(&self) -> Settings {
         let Method::TwoLine = self.method;
         let low_pass = match self.passband {
-            Passband::Hz(cutoff_hz) => Some(LowPass {
-                cutoff_hz,
-                order: self.filter_order,
-            }),
+            Passband::Hz(cutoff_hz) => Some(LowPass { cutoff_hz, order: self.filter_order }),
             Passband::None => None,
         };
         Settings {
@@ -201,10 +189,6 @@ impl AlgorithmArgs {
 
 impl OutputArgs {
     pub(super) fn verbosity(&self) -> Verbosity {
-        if self.quiet {
-            Verbosity::Quiet
-        } else {
-            Verbosity::Normal
-        }
+        if self.quiet { Verbosity::Quiet } else { Verbosity::Normal }
     }
 }

@@ -19,11 +19,8 @@ pub(super) struct Files {
 
 impl Files {
     pub(super) fn create(args: &OutputArgs) -> anyhow::Result<Self> {
-        let open = |path: &Option<PathBuf>| {
-            path.as_ref()
-                .map(|path| OutputFile::create(path))
-                .transpose()
-        };
+        let open =
+            |path: &Option<PathBuf>| path.as_ref().map(|path| OutputFile::create(path)).transpose();
         let recording = open(&args.recording)?;
         Ok(Self {
             recording: args.recording.clone().zip(recording),
@@ -46,10 +43,7 @@ impl Files {
             record(result, file)?;
             if verbosity == Verbosity::Normal {
                 let path = path.display();
-                message(
-                    "recording",
-                    &format!("{path}; look at it with: rerun {path}"),
-                );
+                message("recording", &format!("{path}; look at it with: rerun {path}"));
             }
         }
         Ok(())
@@ -57,8 +51,15 @@ impl Files {
 }
 
 #[cfg(feature = "rrd")]
-fn record(result: &Estimated<'_>, file: OutputFile) -> anyhow::Result<()> {
-    todo!()
+fn record(result: &Estimated<'_>, mut file: OutputFile) -> anyhow::Result<()> {
+    let recording = tauscope::recording::EstimateRecording {
+        joints: result.joints,
+        settings: result.settings,
+        sources: &result.experiment.sources,
+        detail: tauscope::recording::Detail::Full,
+    };
+    tauscope::recording::write_estimate(&recording, &mut file)?;
+    file.commit()
 }
 
 #[cfg(not(feature = "rrd"))]

@@ -27,11 +27,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
         let _bar = progress::bar(verbosity, "reading", 0);
         args.data.read()?
     };
-    let trials = experiment
-        .joints
-        .iter()
-        .map(|joint| joint.trials.len() as u64)
-        .sum();
+    let trials = experiment.joints.iter().map(|joint| joint.trials.len() as u64).sum();
     let bar = progress::bar(verbosity, "estimating", trials);
     let work = || estimate_joints(&experiment.joints, &settings, || bar.inc(1));
     let results = with_threads(args.output.threads, work).context("threads cannot be started")?;
@@ -39,10 +35,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let failures = failures(&experiment, &results);
     let estimated = estimated(&experiment, &results);
     if estimated.is_empty() {
-        let first = results
-            .into_iter()
-            .find_map(Result::err)
-            .context("no joint")?;
+        let first = results.into_iter().find_map(Result::err).context("no joint")?;
         return Err(anyhow::Error::from(first).context("no joint could be estimated"));
     }
     for failure in &failures {
@@ -53,18 +46,10 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
             message("note", &note);
         }
     }
-    let result = Estimated {
-        experiment: &experiment,
-        joints: &estimated,
-        settings: &settings,
-    };
+    let result = Estimated { experiment: &experiment, joints: &estimated, settings: &settings };
     files.write(&result, verbosity)?;
     print(args.output.format, &result, &failures)?;
-    Ok(if failures.is_empty() {
-        Completion::Whole
-    } else {
-        Completion::Partial
-    })
+    Ok(if failures.is_empty() { Completion::Whole } else { Completion::Partial })
 }
 
 /// What was read and what came out.
@@ -82,9 +67,7 @@ fn estimated<'a>(
 ) -> Vec<EstimatedJoint<'a>> {
     let joints = experiment.joints.iter().zip(results);
     let estimated = joints.filter_map(|(joint, result)| Some((joint, result.as_ref().ok()?)));
-    estimated
-        .map(|(joint, estimate)| EstimatedJoint { joint, estimate })
-        .collect()
+    estimated.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect()
 }
 
 /// A message on each file and joint that failed.
@@ -107,10 +90,7 @@ fn failures(experiment: &Experiment, results: &[JointResult]) -> Vec<String> {
 /// An error with its causes, in one line.
 fn anyhow_chain(error: &(dyn std::error::Error + 'static)) -> String {
     let causes = std::iter::successors(Some(error), |error| error.source());
-    causes
-        .map(ToString::to_string)
-        .collect::<Vec<_>>()
-        .join(": ")
+    causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
 }
 
 /// What a person should know who looks at the numbers.
@@ -119,19 +99,10 @@ fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
     for EstimatedJoint { joint, estimate } in joints {
         let name = &joint.name;
         for error in estimate.failed() {
-            notes.push(format!(
-                "joint `{name}`: {error}; the other trials are used"
-            ));
+            notes.push(format!("joint `{name}`: {error}; the other trials are used"));
         }
-        let steps: usize = estimate
-            .estimated()
-            .map(|trial| trial.decisions.len())
-            .sum();
-        let samples: usize = joint
-            .trials
-            .iter()
-            .map(tauscope::experiment::Trial::len)
-            .sum();
+        let steps: usize = estimate.estimated().map(|trial| trial.decisions.len()).sum();
+        let samples: usize = joint.trials.iter().map(tauscope::experiment::Trial::len).sum();
         if 2 * steps > samples {
             notes.push(format!(
                 "joint `{name}`: the input changes at {steps} of {samples} samples, so it is \

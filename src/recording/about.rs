@@ -1,0 +1,113 @@
+//! What the recording was made from and with: one page.
+
+use std::fmt::Write as _;
+
+use rerun::{EntityPath, TextDocument};
+
+use super::EstimateRecording;
+use super::chunk::Chunks;
+use super::error::RecordError;
+use super::layout::{Detail, JointLayout};
+use crate::delay::Settings;
+use crate::report::{DelayRange, JointSummary};
+
+/// Adds the page at `/about`.
+pub(super) fn add(
+    chunks: &mut Chunks,
+    recording: &EstimateRecording<'_>,
+    layouts: &[JointLayout<'_>],
+) -> Result<(), RecordError> {
+    let text = page(recording, layouts).unwrap_or_default();
+    let document = TextDocument::from_markdown(text);
+    chunks.push_static(EntityPath::from("about"), &document)
+}
+
+fn page(
+    recording: &EstimateRecording<'_>,
+    layouts: &[JointLayout<'_>],
+) -> Result<String, std::fmt::Error> {
+    let mut page = String::new();
+    writeln!(page, "# Delays of {} joints\n", recording.joints.len())?;
+    writeln!(page, "| joint | steps | accepted | rejected | delay min | median | max |")?;
+    writeln!(page, "|---|---|---|---|---|---|---|")?;
+    for joint in recording.joints {
+        let summary = JointSummary::of(*joint);
+        let why: Vec<_> = summary.rejected.iter().map(|(why, n)| format!("{why} {n}")).collect();
+        let seconds = |value: fn(&DelayRange) -> f64| {
+            summary
+                .delay_s
+                .as_ref()
+                .map_or("-".to_owned(), |range| format!("{:.3} s", value(range)))
+        };
+        let (min, median, max) = (seconds(|r| r.min), seconds(|r| r.median), seconds(|r| r.max));
+        let JointSummary { steps, accepted, .. } = summary;
+        let (name, why) = (&joint.joint.name, why.join(", "));
+        writeln!(page, "| {name} | {steps} | {accepted} | {why} | {min} | {median} | {max} |")?;
+    }
+    writeln!(page, "\n## Settings\n\n| setting | value |\n|---|---|")?;
+    for (name, value) in settings(recording.settings) {
+        writeln!(page, "| {name} | {value} |")?;
+    }
+    writeln!(page, "\n{}", detail(recording, layouts))?;
+    writeln!(page, "\n## Made from\n")?;
+    for source in recording.sources {
+        let path = source.path.display();
+        writeln!(page, "- `{path}`, {} bytes, SHA-256 `{}`", source.bytes, source.sha256)?;
+    }
+    writeln!(page, "\nMade by tauscope {}.\n", env!("CARGO_PKG_VERSION"))?;
+    writeln!(page, "{HOW_TO_READ}")?;
+    Ok(page)
+}
+
+const HOW_TO_READ: &str = "\
+## How to read it
+
+- **Right and left arrow** step through every candidate of every segment (timeline \
+`decision`). Orange is the candidate under the cursor; green is the chosen pair of an \
+accepted segment, red that of a rejected one.
+- **A click on the number in a row** of the list of decisions jumps to that verdict.
+- The timeline `segment` goes from step to step; `sample` and `time` run through the record.
+- Sample numbers count from 1 within the trial, as in the paper: p is the input step, r the \
+first sample of the segment, q the breakpoint, δ = q − p the delay.";
+
+fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
+    let low_pass = settings.low_pass.map_or_else(
+        || "none".to_owned(),
+        |filter| {
+            let (hz, order) = (filter.cutoff_hz, filter.order);
+            format!("Butterworth, {hz} Hz, order {order}, forward and backward")
+        },
+    );
+    let limits = settings.output_limits;
+    let not_set = || "not set".to_owned();
+    vec![
+        ("method", "two-line regression (Albrecht and Taylor, Algorithm 1)".to_owned()),
+        ("α", format!("{} samples", settings.alpha)),
+        ("β", format!("{} samples", settings.beta)),
+        ("low-pass", low_pass),
+        ("shortest hold τ_min", format!("{} samples", settings.min_delay)),
+        ("output limits", limits.map_or_else(not_set, |(low, high)| format!("{low} … {high}"))),
+        ("smallest slope change", format!("{} per sample", settings.min_slope_change)),
+        ("largest SSE", settings.max_sse.map_or_else(not_set, |limit| limit.to_string())),
+        (
+            "first and last step",
+            if settings.keep_first_last { "judged" } else { "left out" }.to_owned(),
+        ),
+        ("smallest input step", settings.min_step.to_string()),
+        ("τ between steps", format!("{:?}", settings.interpolation).to_lowercase()),
+    ]
+}
+
+/// How many candidates of how many are in the recording.
+fn detail(recording: &EstimateRecording<'_>, layouts: &[JointLayout<'_>]) -> String {
+    let segments = || layouts.iter().flat_map(JointLayout::segments);
+    let all: usize = segments().map(|(_, s)| s.decision.candidates.len()).sum();
+    let kept: usize = segments().map(|(_, s)| s.kept.len()).sum();
+    match recording.detail {
+        Detail::Full => format!("All {all} candidates are recorded."),
+        Detail::Lean => format!(
+            "**{kept} of {all} candidates are recorded** (`--detail lean`): all of rejected \
+             segments, of accepted ones the best, its neighbours, and some of the others."
+        ),
+    }
+}

@@ -1,0 +1,141 @@
+//! Blueprints with view properties, which Rerun's own builder does not make.
+//!
+//! A blueprint is a recording of its own: `view/<id>` and `container/<id>` hold what the
+//! viewer shows, `viewport` the root.
+
+use rerun::datatypes::{TimeRange, TimeRangeBoundary};
+use rerun::external::re_sdk_types::blueprint::archetypes::{
+    ContainerBlueprint, PanelBlueprint, TimeAxis, TimePanelBlueprint, ViewBlueprint, ViewContents,
+    ViewportBlueprint,
+};
+use rerun::external::re_sdk_types::blueprint::components::{
+    ContainerKind, IncludedContent, PanelState, PlayState, QueryExpression, RootContainer,
+};
+use rerun::external::uuid::Uuid;
+use rerun::log::LogMsg;
+use rerun::{ApplicationId, AsComponents, EntityPath, StoreId, StoreKind};
+
+use crate::recording::chunk::Chunks;
+use crate::recording::error::RecordError;
+use crate::recording::message::{chunk_message, store_message};
+
+/// Namespace of the blueprint's rows; it is a store of its own.
+const NAMESPACE: u64 = 1;
+
+/// Where the viewer keeps the axis that linked plots share (a fixed id of its own).
+const LINKED_TIME_AXIS: &str = "view/5c0dca6a-e63f-9cf7-f657-2602590474cc/TimeAxis";
+
+/// Collects views and containers.
+pub(super) struct Builder {
+    chunks: Chunks,
+    nodes: u64,
+}
+
+/// A view or a container that was added.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    id: Uuid,
+    path: String,
+}
+
+/// What a view shows, and how.
+pub(super) struct View<'a> {
+    class: &'static str,
+    name: &'a str,
+    contents: Vec<QueryExpression>,
+    properties: Vec<(&'static str, Box<dyn AsComponents>)>,
+}
+
+impl<'a> View<'a> {
+    /// A view of Rerun's class `class` on the entities `paths`.
+    pub(super) fn new<S: AsRef<str>>(class: &'static str, name: &'a str, paths: &[S]) -> Self {
+        let contents = paths.iter().map(|path| QueryExpression::from(path.as_ref())).collect();
+        Self { class, name, contents, properties: Vec::new() }
+    }
+
+    /// Sets a property, such as `VisualBounds2D`.
+    pub(super) fn with(mut self, name: &'static str, value: impl AsComponents + 'static) -> Self {
+        self.properties.push((name, Box::new(value)));
+        self
+    }
+}
+
+impl Builder {
+    pub(super) fn new() -> Self {
+        Self { chunks: Chunks::new(NAMESPACE), nodes: 0 }
+    }
+
+    fn node(&mut self, kind: &str) -> Node {
+        self.nodes += 1;
+        // Any id will do, as long as it is the same in every run.
+        let id = Uuid::from_u64_pair(0x7461_7573_636f_4070, 0x8000_0000_0000_0000 | self.nodes);
+        Node { id, path: format!("{kind}/{id}") }
+    }
+
+    fn log(&mut self, path: &str, data: &dyn AsComponents) -> Result<(), RecordError> {
+        self.chunks.push_blueprint(EntityPath::from(path), data)
+    }
+
+    pub(super) fn view(&mut self, view: View<'_>) -> Result<Node, RecordError> {
+        let node = self.node("view");
+        let path = &node.path;
+        self.log(&format!("{path}/ViewContents"), &ViewContents::new(view.contents))?;
+        self.log(path, &ViewBlueprint::new(view.class).with_display_name(view.name))?;
+        for (property, value) in view.properties {
+            self.log(&format!("{path}/{property}"), value.as_ref())?;
+        }
+        Ok(node)
+    }
+
+    /// A container; `shares` are the parts of its height or width, or none.
+    pub(super) fn container(
+        &mut self,
+        kind: ContainerKind,
+        name: &str,
+        children: &[Node],
+        shares: &[f32],
+    ) -> Result<Node, RecordError> {
+        let node = self.node("container");
+        let contents = children.iter().map(|child| IncludedContent::from(child.path.clone()));
+        let mut container =
+            ContainerBlueprint::new(kind).with_display_name(name).with_contents(contents);
+        let shares = shares.iter().copied();
+        container = match (kind, children.first()) {
+            (ContainerKind::Horizontal, _) => container.with_col_shares(shares),
+            (ContainerKind::Vertical, _) => container.with_row_shares(shares),
+            (ContainerKind::Tabs, Some(first)) => container.with_active_tab(first.path.clone()),
+            _ => container,
+        };
+        self.log(&node.path, &container)?;
+        Ok(node)
+    }
+
+    /// The messages of the whole blueprint, which opens paused on the first decision.
+    pub(super) fn finish(
+        mut self,
+        root: &Node,
+        application: &ApplicationId,
+        id: &str,
+    ) -> Result<Vec<LogMsg>, RecordError> {
+        let root = rerun::datatypes::Uuid { bytes: *root.id.as_bytes() };
+        let viewport = ViewportBlueprint::new().with_root_container(RootContainer(root));
+        self.log("viewport", &viewport.with_auto_layout(false).with_auto_views(false))?;
+        let collapsed = PanelBlueprint::new().with_state(PanelState::Collapsed);
+        self.log("blueprint_panel", &collapsed)?;
+        self.log("selection_panel", &collapsed)?;
+        let time = TimePanelBlueprint::new()
+            .with_state(PanelState::Collapsed)
+            .with_timeline("decision")
+            .with_fps(20.0)
+            .with_play_state(PlayState::Paused);
+        self.log("time_panel", &time)?;
+        // Plots with a linked time axis start with all of it in view.
+        let infinite = TimeRangeBoundary::Infinite;
+        let all = TimeRange { start: infinite.clone(), end: infinite };
+        self.log(LINKED_TIME_AXIS, &TimeAxis::new().with_view_range(all))?;
+        let store = StoreId::new(StoreKind::Blueprint, application.clone(), format!("{id}-views"));
+        let chunks = self.chunks.into_chunks();
+        let messages = chunks.iter().map(|chunk| chunk_message(&store, chunk));
+        std::iter::once(Ok(store_message(&store))).chain(messages).collect()
+    }
+}

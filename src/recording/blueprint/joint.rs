@@ -1,0 +1,227 @@
+//! The views of one joint: its decisions, its record, its table.
+
+use rerun::components::Visible;
+use rerun::datatypes::{Range2D, TimeInt, TimeRange, TimeRangeBoundary, Utf8, VisibleTimeRange};
+use rerun::external::re_sdk_types::blueprint::archetypes::{
+    DataframeQuery, PlotLegend, TextLogColumns, TimeAxis, VisibleTimeRanges, VisualBounds2D,
+};
+use rerun::external::re_sdk_types::blueprint::components::{
+    ContainerKind, Corner2D, FilterIsNotNull, LinkAxis,
+};
+use rerun::external::re_sdk_types::blueprint::datatypes::{
+    ComponentColumnSelector, SelectedColumns, TextLogColumn, TextLogColumnKind, TimelineColumn,
+};
+
+use super::builder::{Builder, Node, View};
+use crate::experiment::Joint;
+use crate::recording::canvas::SHEET;
+use crate::recording::entity::{below, joint_root};
+use crate::recording::error::RecordError;
+use crate::recording::overview::{MAP_HEIGHT, MAP_WIDTH};
+
+/// The tab of `joint`: three pages, the decisions first.
+pub(super) fn tab(builder: &mut Builder, joint: &Joint) -> Result<Node, RecordError> {
+    let mut views = Views { builder, joint };
+    let pages = [views.decisions()?, views.record()?, views.table()?];
+    views.builder.container(ContainerKind::Tabs, &joint.name, &pages, &[])
+}
+
+struct Views<'b> {
+    builder: &'b mut Builder,
+    joint: &'b Joint,
+}
+
+/// Entities of the drawing, from back to front. A pattern would not do: `*` inside an
+/// entity query does not match.
+const DRAWING: [&str; 12] = [
+    "grid",
+    "ticks",
+    "borders",
+    "input_step",
+    "measured",
+    "smoothed",
+    "sse",
+    "accepted",
+    "rejected",
+    "names",
+    "candidate",
+    "candidate/numbers",
+];
+
+const MAP: [&str; 7] = ["grid", "ticks", "input", "output", "accepted", "rejected", "here"];
+
+/// Columns of the table of decisions, in the order of `--decisions`.
+const DECISION_COLUMNS: [&str; 11] =
+    ["i", "p", "r", "end", "f", "q", "delta", "sse", "slope_before", "slope_after", "accepted"];
+
+/// Columns of the table of candidates.
+const CANDIDATE_COLUMNS: [&str; 8] =
+    ["i", "j", "q", "delta", "sse", "slope_before", "slope_after", "f"];
+
+impl Views<'_> {
+    /// The entity below the joint, as a query.
+    fn path(&self, parts: &[&str]) -> String {
+        below(&joint_root(&self.joint.name), parts).to_string()
+    }
+
+    fn view(&mut self, view: View<'_>) -> Result<Node, RecordError> {
+        self.builder.view(view)
+    }
+
+    /// What a reviewer steps through.
+    fn decisions(&mut self) -> Result<Node, RecordError> {
+        let drawing = self.view(self.drawing())?;
+        let errors = self.view(self.errors())?;
+        let map = self.view(self.map())?;
+        let lanes = self.view(self.lanes())?;
+        let verdict = [self.path(&["verdict"])];
+        let verdict = self.view(View::new("TextDocument", "Verdict", &verdict))?;
+        let list = self.view(self.list())?;
+        let left = [drawing, errors, map, lanes];
+        let builder = &mut *self.builder;
+        let left =
+            builder.container(ContainerKind::Vertical, "Segment", &left, &[6.0, 1.2, 1.6, 1.5])?;
+        let right = [verdict, list];
+        let right = builder.container(ContainerKind::Vertical, "Verdicts", &right, &[6.3, 3.7])?;
+        let columns = [left, right];
+        builder.container(ContainerKind::Horizontal, "Decisions", &columns, &[7.1, 2.9])
+    }
+
+    fn drawing(&self) -> View<'static> {
+        let paths: Vec<_> = DRAWING
+            .iter()
+            .map(|name| {
+                let parts: Vec<_> = std::iter::once("drawing").chain(name.split('/')).collect();
+                self.path(&parts)
+            })
+            .collect();
+        View::new("2D", "The segment, its candidates, their squared error", &paths)
+            .with("VisualBounds2D", bounds(SHEET.0, SHEET.1))
+    }
+
+    fn map(&self) -> View<'static> {
+        let paths: Vec<_> = MAP.iter().map(|name| self.path(&["map", name])).collect();
+        View::new("2D", "Whole record: the framed segment is shown above", &paths)
+            .with("VisualBounds2D", bounds(MAP_WIDTH, MAP_HEIGHT))
+    }
+
+    fn errors(&self) -> View<'static> {
+        let paths = [
+            self.path(&["decision", "log10_sse"]),
+            self.path(&["decision", "minimum", "accepted"]),
+            self.path(&["decision", "minimum", "rejected"]),
+        ];
+        let around = |timeline: &str, reach: i64| {
+            let at = |offset| TimeRangeBoundary::CursorRelative(TimeInt(offset));
+            let range = TimeRange { start: at(-reach), end: at(reach) };
+            VisibleTimeRange { timeline: Utf8::from(timeline), range }
+        };
+        let windows = [
+            around("decision", 80),
+            around("segment", 3),
+            around("sample", 500),
+            around("time", 5_000_000_000),
+        ];
+        View::new(
+            "TimeSeries",
+            "log10 of the squared error around the cursor (click to jump)",
+            &paths,
+        )
+        .with("VisibleTimeRanges", VisibleTimeRanges::new(windows))
+        .with("PlotLegend", PlotLegend::new().with_visible(Visible::from(false)))
+    }
+
+    fn lanes(&self) -> View<'static> {
+        let mut paths = vec![self.path(&["segment"]), self.path(&["verdict"])];
+        if self.joint.trials.len() > 1 {
+            paths.insert(0, self.path(&["trial"]));
+        }
+        View::new("StateTimeline", "Steps and verdicts", &paths)
+    }
+
+    fn list(&self) -> View<'static> {
+        let paths = [self.path(&["verdict", "log"])];
+        let shown = |timeline: &str| TimelineColumn {
+            visible: true.into(),
+            timeline: Utf8::from(timeline),
+        };
+        let columns =
+            TextLogColumns::new().with_timeline_columns([shown("decision")]).with_text_log_columns(
+                [TextLogColumn { visible: true.into(), kind: TextLogColumnKind::Body }],
+            );
+        View::new("TextLog", "All decisions: click a number on the left to go there", &paths)
+            .with("TextLogColumns", columns)
+    }
+
+    /// The whole record on the time axis.
+    fn record(&mut self) -> Result<Node, RecordError> {
+        let input = self.plot("Input", &[&["input"]])?;
+        let output = self.plot(
+            "Output, chosen lines, breakpoints",
+            &[
+                &["output", "raw"],
+                &["output", "smoothed"],
+                &["line", "before"],
+                &["line", "after"],
+                &["breakpoint", "accepted"],
+                &["breakpoint", "rejected"],
+            ],
+        )?;
+        let delay = self.plot(
+            "Delay [samples]",
+            &[&["delay", "tau"], &["delay", "accepted"], &["delay", "rejected"]],
+        )?;
+        let mut rows = vec![input, output, delay];
+        let mut shares = vec![1.2, 3.5, 1.8];
+        if !self.joint.covariates.is_empty() {
+            let names: Vec<[&str; 2]> =
+                self.joint.covariates.iter().map(|c| ["covariate", c.name.as_str()]).collect();
+            let paths: Vec<&[&str]> = names.iter().map(<[&str; 2]>::as_slice).collect();
+            rows.push(self.plot("Covariates", &paths)?);
+            shares.push(1.5);
+        }
+        rows.push(self.view(self.lanes())?);
+        shares.push(1.2);
+        self.builder.container(ContainerKind::Vertical, "Record", &rows, &shares)
+    }
+
+    /// A plot whose time axis moves with those of the other plots.
+    fn plot(&mut self, name: &str, parts: &[&[&str]]) -> Result<Node, RecordError> {
+        let paths: Vec<_> = parts.iter().map(|parts| self.path(parts)).collect();
+        let view = View::new("TimeSeries", name, &paths)
+            .with("TimeAxis", TimeAxis::new().with_link(LinkAxis::LinkToGlobal))
+            .with("PlotLegend", PlotLegend::new().with_corner(Corner2D::RightTop));
+        self.view(view)
+    }
+
+    /// Every number: a row per decision, and a row per candidate.
+    fn table(&mut self) -> Result<Node, RecordError> {
+        let path = self.path(&["decision", "table"]);
+        let entity = below(&joint_root(&self.joint.name), &["decision", "table"]);
+        let verdicts = FilterIsNotNull::new(true, &entity, "accepted".to_owned());
+        let query = |columns: &[&str]| {
+            let select = |name: &&str| ComponentColumnSelector::new(&entity, (*name).to_owned());
+            let select = SelectedColumns {
+                time_columns: vec![Utf8::from("decision")],
+                component_columns: columns.iter().map(select).collect(),
+            };
+            DataframeQuery::new()
+                .with_timeline("decision")
+                .with_auto_scroll(true)
+                .with_select(select)
+        };
+        let whole = query(&DECISION_COLUMNS).with_filter_is_not_null(verdicts);
+        let decisions = View::new("Dataframe", "Decisions", &[&path]);
+        let decisions = self.view(decisions.with("DataframeQuery", whole))?;
+        let candidates = View::new("Dataframe", "Candidates", &[&path]);
+        let candidates = candidates.with("DataframeQuery", query(&CANDIDATE_COLUMNS));
+        let candidates = self.view(candidates)?;
+        let rows = [decisions, candidates];
+        self.builder.container(ContainerKind::Horizontal, "Table", &rows, &[1.1, 0.9])
+    }
+}
+
+fn bounds(width: f32, height: f32) -> VisualBounds2D {
+    let (width, height) = (f64::from(width), f64::from(height));
+    VisualBounds2D::new(Range2D { x_range: [0.0, width].into(), y_range: [0.0, height].into() })
+}

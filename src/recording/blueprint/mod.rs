@@ -1,0 +1,28 @@
+//! Which view shows what: tabs, panels, and the timeline the viewer opens on.
+
+mod builder;
+mod joint;
+
+use rerun::ApplicationId;
+use rerun::external::re_sdk_types::blueprint::components::ContainerKind;
+use rerun::log::LogMsg;
+
+use self::builder::{Builder, View};
+use super::EstimateRecording;
+use super::error::RecordError;
+
+/// The messages of the blueprint of `recording`: a tab per joint and one about it all.
+pub(super) fn messages(
+    recording: &EstimateRecording<'_>,
+    application: &ApplicationId,
+    id: &str,
+) -> Result<Vec<LogMsg>, RecordError> {
+    let mut builder = Builder::new();
+    let mut tabs = Vec::new();
+    for joint in recording.joints {
+        tabs.push(joint::tab(&mut builder, joint.joint)?);
+    }
+    tabs.push(builder.view(View::new("TextDocument", "About", &["/about"]))?);
+    let root = builder.container(ContainerKind::Tabs, "Joints", &tabs, &[])?;
+    builder.finish(&root, application, id)
+}

@@ -1,0 +1,205 @@
+//! A sheet to draw a plot on in a 2D view: Rerun has no x-y plot that follows a cursor.
+//!
+//! The view's y axis points down, both axes have the same scale, and there are no
+//! ticks, so data are mapped onto a sheet of fixed size with a grid of its own.
+
+use std::ops::RangeInclusive;
+
+use rerun::datatypes::Vec2D;
+
+/// Width and height of the sheet.
+pub(super) const SHEET: (f32, f32) = (1600.0, 640.0);
+
+/// Part of the sheet that data are mapped onto.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plot {
+    left: f32,
+    right: f32,
+    top: f32,
+    bottom: f32,
+    x: Span,
+    y: Span,
+}
+
+/// Data range of an axis; never empty.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Span {
+    pub(super) low: f64,
+    pub(super) high: f64,
+}
+
+impl Span {
+    pub(super) fn new(low: f64, high: f64) -> Self {
+        let wide = high - low > 0.0;
+        let room = if wide { 0.0 } else { low.abs().max(1.0) * 1e-6 };
+        Self { low: low - room, high: high + room }
+    }
+
+    /// The range of `values`, with a part of it added on both sides.
+    pub(super) fn around(values: impl Iterator<Item = f64>, margin: f64) -> Self {
+        let wider = |(low, high): (f64, f64), y: f64| (low.min(y), high.max(y));
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), wider);
+        if low > high {
+            return Self { low: 0.0, high: 1.0 };
+        }
+        let room = margin * (high - low);
+        Self::new(low - room, high + room)
+    }
+
+    fn part(self, value: f64) -> f64 {
+        (value - self.low) / (self.high - self.low)
+    }
+
+    /// Round numbers in the range, about `count` of them.
+    pub(super) fn ticks(self, count: f64) -> Vec<f64> {
+        let rough = (self.high - self.low) / count;
+        let power = 10f64.powf(rough.log10().floor());
+        let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|s| *s >= rough);
+        let step = step.unwrap_or(rough);
+        let first = (self.low / step).ceil();
+        let ticks = (0..100).map(|n| (first + f64::from(n)) * step);
+        ticks.take_while(|tick| *tick <= self.high).collect()
+    }
+}
+
+/// How far below its point the middle of a text is drawn.
+const LABEL_DROP: f32 = 14.0;
+
+/// Left and right end of all plots: room for labels on the left.
+const SIDES: (f32, f32) = (120.0, SHEET.0 - 15.0);
+
+impl Plot {
+    /// A plot over the whole width, from `rows.start` to `rows.end` of the sheet.
+    pub(super) fn new(rows: RangeInclusive<f32>, x: Span, y: Span) -> Self {
+        let (left, right) = SIDES;
+        Self { left, right, top: *rows.start(), bottom: *rows.end(), x, y }
+    }
+
+    pub(super) fn x_span(&self) -> Span {
+        self.x
+    }
+
+    pub(super) fn y_span(&self) -> Span {
+        self.y
+    }
+
+    pub(super) fn x(&self, value: f64) -> f32 {
+        #[expect(clippy::cast_possible_truncation, reason = "a place on the sheet")]
+        let part = self.x.part(value) as f32;
+        self.left + part * (self.right - self.left)
+    }
+
+    /// A place on the sheet; what is off the plot is drawn on its edge.
+    pub(super) fn y(&self, value: f64) -> f32 {
+        #[expect(clippy::cast_possible_truncation, reason = "a place on the sheet")]
+        let part = self.y.part(value).clamp(-0.04, 1.04) as f32;
+        self.bottom - part * (self.bottom - self.top)
+    }
+
+    pub(super) fn at(&self, x: f64, y: f64) -> Vec2D {
+        Vec2D::new(self.x(x), self.y(y))
+    }
+
+    /// A line from edge to edge at `x`.
+    pub(super) fn vertical(&self, x: f64) -> [Vec2D; 2] {
+        [Vec2D::new(self.x(x), self.top), Vec2D::new(self.x(x), self.bottom)]
+    }
+
+    fn horizontal(&self, y: f64) -> [Vec2D; 2] {
+        [Vec2D::new(self.left, self.y(y)), Vec2D::new(self.right, self.y(y))]
+    }
+
+    fn frame(&self) -> Vec<Vec2D> {
+        let corner = |x, y| Vec2D::new(x, y);
+        vec![
+            corner(self.left, self.top),
+            corner(self.right, self.top),
+            corner(self.right, self.bottom),
+            corner(self.left, self.bottom),
+            corner(self.left, self.top),
+        ]
+    }
+
+    /// Frame and grid lines, with labels at the left and, if asked for, at the bottom.
+    pub(super) fn grid(
+        &self,
+        x_ticks: &[f64],
+        y_ticks: &[(f64, String)],
+        labels: &mut Labels,
+    ) -> Vec<Vec<Vec2D>> {
+        let mut strips = vec![self.frame()];
+        strips.extend(x_ticks.iter().map(|x| self.vertical(*x).to_vec()));
+        for (y, text) in y_ticks {
+            strips.push(self.horizontal(*y).to_vec());
+            labels.put(Vec2D::new(self.left - 55.0, self.y(*y) - LABEL_DROP), text.clone());
+        }
+        strips
+    }
+
+    pub(super) fn below(&self, x: f64, distance: f32) -> Vec2D {
+        Vec2D::new(self.x(x), self.bottom + distance)
+    }
+
+    pub(super) fn above(&self, x: f64, distance: f32) -> Vec2D {
+        Vec2D::new(self.x(x), self.top - distance)
+    }
+}
+
+/// Texts at places of the sheet.
+#[derive(Debug, Default)]
+pub(super) struct Labels {
+    pub(super) places: Vec<Vec2D>,
+    pub(super) texts: Vec<String>,
+}
+
+impl Labels {
+    pub(super) fn put(&mut self, place: Vec2D, text: impl Into<String>) {
+        self.places.push(place);
+        self.texts.push(text.into());
+    }
+}
+
+/// At most this many points of one curve: a screen has no more columns.
+const CURVE_POINTS: usize = 2000;
+
+/// Indices that keep the shape of `values`: all of them, or of each of a thousand parts
+/// the lowest and the highest.
+pub(super) fn thinned(values: &[f64]) -> Vec<usize> {
+    if values.len() <= CURVE_POINTS {
+        return (0..values.len()).collect();
+    }
+    let part = values.len().div_ceil(CURVE_POINTS / 2);
+    let mut kept = Vec::with_capacity(CURVE_POINTS);
+    for (chunk, start) in values.chunks(part).zip((0..).step_by(part)) {
+        let by_value = |a: &(usize, &f64), b: &(usize, &f64)| a.1.total_cmp(b.1);
+        let lowest = chunk.iter().enumerate().min_by(by_value).map_or(0, |(index, _)| index);
+        let highest = chunk.iter().enumerate().max_by(by_value).map_or(0, |(index, _)| index);
+        kept.push(start + lowest.min(highest));
+        if lowest != highest {
+            kept.push(start + lowest.max(highest));
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_inside() {
+        assert_eq!(Span::new(0.3, 4.2).ticks(5.0), [1.0, 2.0, 3.0, 4.0]);
+        assert_eq!(Span::new(-3.0, 12.0).ticks(4.0), [0.0, 5.0, 10.0]);
+        assert!(Span::new(7.0, 7.0).ticks(4.0).len() < 10);
+    }
+
+    #[test]
+    fn thinning_keeps_the_peaks() {
+        let mut values = vec![0.0; 100_000];
+        values[54_321] = 1.0;
+        let kept = thinned(&values);
+        assert!(kept.len() <= CURVE_POINTS);
+        assert!(kept.contains(&54_321));
+        assert!(kept.is_sorted());
+    }
+}

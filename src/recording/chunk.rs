@@ -1,0 +1,172 @@
+//! Columns of rows, with ids that are the same in every run.
+//!
+//! Rerun's own calls draw ids from the clock, so that two runs never compare equal. Here
+//! an id is a namespace (one per joint) and a counter.
+
+use std::sync::Arc;
+
+use rerun::external::arrow::array::{Array as _, ArrayRef, Float64Array, Int64Array, ListArray};
+use rerun::external::arrow::buffer::{NullBuffer, OffsetBuffer, ScalarBuffer};
+use rerun::external::arrow::datatypes::Field;
+use rerun::external::re_log_types::external::re_tuid::Tuid;
+use rerun::log::{Chunk, ChunkId, RowId, TimeColumn};
+use rerun::{AsComponents, ComponentDescriptor, EntityPath, SerializedComponentColumn};
+
+use super::error::RecordError;
+
+/// Where rows lie on the timelines; one value per row and timeline.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Index {
+    pub(super) decision: Vec<i64>,
+    pub(super) segment: Vec<i64>,
+    pub(super) sample: Vec<i64>,
+    pub(super) time_ns: Vec<i64>,
+}
+
+/// Where one row lies on the timelines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Moment {
+    pub(super) decision: i64,
+    pub(super) segment: i64,
+    pub(super) sample: i64,
+    pub(super) time_ns: i64,
+}
+
+impl Extend<Moment> for Index {
+    fn extend<T: IntoIterator<Item = Moment>>(&mut self, moments: T) {
+        for moment in moments {
+            self.decision.push(moment.decision);
+            self.segment.push(moment.segment);
+            self.sample.push(moment.sample);
+            self.time_ns.push(moment.time_ns);
+        }
+    }
+}
+
+impl FromIterator<Moment> for Index {
+    fn from_iter<T: IntoIterator<Item = Moment>>(moments: T) -> Self {
+        let mut index = Self::default();
+        index.extend(moments);
+        index
+    }
+}
+
+impl Index {
+    pub(super) fn len(&self) -> usize {
+        self.sample.len()
+    }
+
+    fn columns(self) -> [TimeColumn; 4] {
+        [
+            TimeColumn::new_sequence("decision", self.decision),
+            TimeColumn::new_sequence("segment", self.segment),
+            TimeColumn::new_sequence("sample", self.sample),
+            TimeColumn::new_duration_nanos("time", self.time_ns),
+        ]
+    }
+}
+
+/// Collects chunks of one namespace.
+pub(super) struct Chunks {
+    namespace: u64,
+    rows: u64,
+    made: Vec<Chunk>,
+}
+
+impl Chunks {
+    /// Namespaces of one recording must differ; 0 is not allowed.
+    pub(super) fn new(namespace: u64) -> Self {
+        Self { namespace, rows: 0, made: Vec::new() }
+    }
+
+    /// Rows of `columns` at the moments of `index`; nothing when there is none.
+    pub(super) fn push(
+        &mut self,
+        entity: EntityPath,
+        index: Index,
+        columns: impl IntoIterator<Item = SerializedComponentColumn>,
+    ) -> Result<(), RecordError> {
+        let rows = index.len();
+        self.push_rows(entity, rows, index.columns(), columns)
+    }
+
+    /// Data that is there at all times.
+    pub(super) fn push_static(
+        &mut self,
+        entity: EntityPath,
+        data: &dyn AsComponents,
+    ) -> Result<(), RecordError> {
+        let columns = data.as_serialized_batches().into_iter().map(Into::into);
+        self.push_rows(entity, 1, [], columns)
+    }
+
+    /// One row on the timeline of blueprints, by which the viewer knows them.
+    pub(super) fn push_blueprint(
+        &mut self,
+        entity: EntityPath,
+        data: &dyn AsComponents,
+    ) -> Result<(), RecordError> {
+        let columns = data.as_serialized_batches().into_iter().map(Into::into);
+        self.push_rows(entity, 1, [TimeColumn::new_sequence("blueprint", [0])], columns)
+    }
+
+    fn push_rows<const N: usize>(
+        &mut self,
+        entity: EntityPath,
+        rows: usize,
+        timelines: [TimeColumn; N],
+        columns: impl IntoIterator<Item = SerializedComponentColumn>,
+    ) -> Result<(), RecordError> {
+        if rows == 0 {
+            return Ok(());
+        }
+        let id = ChunkId::from_tuid(self.tuid(0x8000_0000_0000_0000 | self.made.len() as u64));
+        let first = self.rows;
+        self.rows += rows as u64;
+        let row_ids: Vec<_> =
+            (first..self.rows).map(|row| RowId::from_tuid(self.tuid(row + 1))).collect();
+        let timelines = timelines.into_iter().map(|column| (*column.timeline().name(), column));
+        let components = columns.into_iter().map(|c| (c.descriptor, c.list_array)).collect();
+        let timelines = timelines.collect();
+        let chunk = Chunk::from_native_row_ids(id, entity, None, &row_ids, timelines, components)?;
+        self.made.push(chunk);
+        Ok(())
+    }
+
+    fn tuid(&self, counter: u64) -> Tuid {
+        Tuid::from_nanos_and_inc(self.namespace, counter)
+    }
+
+    pub(super) fn into_chunks(self) -> Vec<Chunk> {
+        self.made
+    }
+}
+
+/// A column of numbers named `name`; `None` is null.
+pub(super) fn numbers(name: &'static str, values: &[Option<f64>]) -> SerializedComponentColumn {
+    let items: Float64Array = values.iter().flatten().copied().collect::<Vec<_>>().into();
+    list_column(name, Arc::new(items), values.iter().map(Option::is_some))
+}
+
+/// A column of whole numbers named `name`; `None` is null.
+pub(super) fn integers(name: &'static str, values: &[Option<i64>]) -> SerializedComponentColumn {
+    let items: Int64Array = values.iter().flatten().copied().collect::<Vec<_>>().into();
+    list_column(name, Arc::new(items), values.iter().map(Option::is_some))
+}
+
+fn list_column(
+    name: &'static str,
+    items: ArrayRef,
+    filled: impl Iterator<Item = bool> + Clone,
+) -> SerializedComponentColumn {
+    let ends = filled.clone().scan(0, |end, filled| {
+        *end += i32::from(filled);
+        Some(*end)
+    });
+    let offsets: Vec<i32> = std::iter::once(0).chain(ends).collect();
+    let field = Field::new_list_field(items.data_type().clone(), true);
+    let offsets = OffsetBuffer::new(ScalarBuffer::from(offsets));
+    let nulls = NullBuffer::from_iter(filled);
+    let list = ListArray::new(Arc::new(field), offsets, items, Some(nulls));
+    SerializedComponentColumn::new(list, ComponentDescriptor::partial(name))
+}

@@ -1,0 +1,158 @@
+//! The numbers of every candidate and every decision.
+
+use rerun::{EntityPath, Scalars, SeriesLines, SeriesPoints, components::MarkerShape};
+
+use super::chunk::{Chunks, Index, integers, numbers};
+use super::entity::below;
+use super::error::RecordError;
+use super::layout::{JointLayout, SegmentLayout, TrialLayout, signed};
+use super::palette::{self, color};
+use crate::delay::{Candidate, Verdict};
+
+/// Adds `/decision/sse`, its logarithm for the plot, and `/decision/table`.
+pub(super) fn add(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    layout: &JointLayout<'_>,
+) -> Result<(), RecordError> {
+    add_errors(chunks, root, layout)?;
+    add_minimum(chunks, root, layout)?;
+    add_table(chunks, root, layout)
+}
+
+/// SSE at each candidate's tick; empty at the first and last tick of a segment.
+fn add_errors(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    layout: &JointLayout<'_>,
+) -> Result<(), RecordError> {
+    let mut index = Index::default();
+    let (mut errors, mut lengths) = (Vec::new(), Vec::new());
+    for (trial, segment) in layout.segments() {
+        index.extend([trial.opening(segment)]);
+        lengths.push(0);
+        for (moment, candidate) in trial.candidates(segment) {
+            index.extend([moment]);
+            errors.push(candidate.sse);
+            lengths.push(1);
+        }
+        index.extend([trial.verdict(segment)]);
+        lengths.push(0);
+    }
+    let logarithms: Vec<f64> = errors.iter().map(|sse| log10(*sse)).collect();
+    let entity = below(root, &["decision", "sse"]);
+    let name = SeriesLines::new().with_names(["SSE"]);
+    chunks.push_static(entity.clone(), &name)?;
+    let columns = Scalars::new(errors).columns(lengths.clone())?;
+    chunks.push(entity, index.clone(), columns)?;
+    let entity = below(root, &["decision", "log10_sse"]);
+    let name = SeriesLines::new().with_names(["log10 SSE"]);
+    let name = name.with_colors([color(palette::ERROR)]).with_widths([2.0]);
+    chunks.push_static(entity.clone(), &name)?;
+    chunks.push(entity, index, Scalars::new(logarithms).columns(lengths)?)
+}
+
+/// Errors below this are drawn at it: the lines fit exactly.
+const SMALLEST_DRAWN: f64 = 1e-20;
+
+fn log10(sse: f64) -> f64 {
+    sse.max(SMALLEST_DRAWN).log10()
+}
+
+/// A mark at the minimum of each segment, where the plot has the best candidate.
+fn add_minimum(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    layout: &JointLayout<'_>,
+) -> Result<(), RecordError> {
+    for (name, rgb, accepted) in
+        [("accepted", palette::ACCEPTED, true), ("rejected", palette::REJECTED, false)]
+    {
+        let mut index = Index::default();
+        let mut values = Vec::new();
+        for (trial, segment) in layout.segments() {
+            let is_accepted = segment.decision.verdict() == Verdict::Accepted;
+            let Some(best) = segment.decision.candidates.best().filter(|_| is_accepted == accepted)
+            else {
+                continue;
+            };
+            let mut ticks = trial.candidates(segment).filter(|(_, c)| c.f == best.f);
+            index.extend(ticks.next().map(|(moment, _)| moment));
+            values.push(log10(best.sse));
+        }
+        let entity = below(root, &["decision", "minimum", name]);
+        let style = SeriesPoints::new().with_names([format!("minimum, {name}")]);
+        let style = style.with_colors([color(rgb)]).with_markers([MarkerShape::Circle]);
+        chunks.push_static(entity.clone(), &style.with_marker_sizes([4.0]))?;
+        chunks.push(entity, index, Scalars::new(values).columns_of_unit_batches()?)?;
+    }
+    Ok(())
+}
+
+/// Rows of `/decision/table`, column by column.
+#[derive(Default)]
+struct Table {
+    index: Index,
+    whole: [Vec<Option<i64>>; 8],
+    real: [Vec<Option<f64>>; 3],
+    accepted: Vec<Option<i64>>,
+}
+
+impl Table {
+    const WHOLE: [&str; 8] = ["i", "p", "r", "end", "f", "j", "q", "delta"];
+    const REAL: [&str; 3] = ["sse", "slope_before", "slope_after"];
+
+    /// The numbers of `candidate`; `j` is its number, empty on the row of the verdict.
+    fn row(&mut self, segment: &SegmentLayout<'_>, j: Option<usize>, candidate: Option<Candidate>) {
+        let decision = segment.decision;
+        let p = decision.input_step.sample;
+        let best = decision.candidates.best();
+        let breakpoint = candidate.map(|candidate| signed(candidate.breakpoint));
+        let whole = [
+            Some(signed(decision.number)),
+            Some(signed(p)),
+            Some(signed(decision.segment.first)),
+            Some(signed(decision.segment.last)),
+            best.map(|best| signed(best.f)),
+            j.map(signed),
+            breakpoint,
+            breakpoint.map(|q| q - signed(p)),
+        ];
+        let real = [
+            candidate.map(|candidate| candidate.sse),
+            candidate.map(|candidate| candidate.before.slope),
+            candidate.map(|candidate| candidate.after.slope),
+        ];
+        self.whole.iter_mut().zip(whole).for_each(|(column, value)| column.push(value));
+        self.real.iter_mut().zip(real).for_each(|(column, value)| column.push(value));
+        let accepted = i64::from(decision.verdict() == Verdict::Accepted);
+        self.accepted.push(j.is_none().then_some(accepted));
+    }
+
+    fn segment(&mut self, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) {
+        for (moment, candidate) in trial.candidates(segment) {
+            self.index.extend([moment]);
+            self.row(segment, Some(candidate.f), Some(candidate));
+        }
+        self.index.extend([trial.verdict(segment)]);
+        self.row(segment, None, segment.decision.candidates.best());
+    }
+}
+
+/// A row per candidate, and one per verdict whose `j` is empty and whose `accepted` is
+/// 1 or 0.
+fn add_table(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    layout: &JointLayout<'_>,
+) -> Result<(), RecordError> {
+    let mut table = Table::default();
+    for (trial, segment) in layout.segments() {
+        table.segment(trial, segment);
+    }
+    let whole = Table::WHOLE.iter().zip(&table.whole).map(|(name, values)| integers(name, values));
+    let real = Table::REAL.iter().zip(&table.real).map(|(name, values)| numbers(name, values));
+    let columns: Vec<_> =
+        whole.chain(real).chain([integers("accepted", &table.accepted)]).collect();
+    chunks.push(below(root, &["decision", "table"]), table.index, columns)
+}

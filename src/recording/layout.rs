@@ -1,0 +1,243 @@
+//! Where trials, samples and decisions lie on the timelines.
+//!
+//! - `sample`: the paper's sample number. Trials follow one another with one empty
+//!   sample between, so the first trial has its own numbers.
+//! - `time`: the same in seconds since the start of the record.
+//! - `decision`: per segment an opening tick, one tick per recorded candidate and a
+//!   verdict tick, counted from 1 without a gap; each joint counts for itself.
+//! - `segment`: the number of the step, counted on over the trials.
+//!
+//! Every row carries all four, so that one cursor moves all views and no view is empty
+//! when another timeline is chosen. A plain sample lies at the tick of the candidate
+//! whose breakpoint it has reached.
+
+use std::collections::HashMap;
+
+use super::chunk::Moment;
+use crate::delay::{Decision, TrialEstimate, Verdict};
+use crate::experiment::Trial;
+use crate::report::EstimatedJoint;
+
+/// How many candidates of each segment are recorded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Detail {
+    /// All.
+    #[default]
+    Full,
+    /// All of rejected segments; of accepted ones the best, its neighbours, and every
+    /// so-manieth, 25 at most.
+    Lean,
+}
+
+/// Candidates that [`Detail::Lean`] keeps of an accepted segment.
+const LEAN_CANDIDATES: usize = 25;
+
+/// Where each trial starts, the same for all joints.
+#[derive(Debug, Default)]
+pub(super) struct TrialStarts {
+    starts: HashMap<String, Start>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Start {
+    samples_before: i64,
+    seconds_before: f64,
+}
+
+impl TrialStarts {
+    pub(super) fn of(joints: &[EstimatedJoint<'_>]) -> Self {
+        let mut longest: Vec<&Trial> = Vec::new();
+        let mut place: HashMap<&str, usize> = HashMap::new();
+        for trial in joints.iter().flat_map(|joint| &joint.joint.trials) {
+            match place.get(trial.label()).and_then(|&index| longest.get_mut(index)) {
+                Some(known) if known.len() < trial.len() => *known = trial,
+                Some(_) => {}
+                None => {
+                    place.insert(trial.label(), longest.len());
+                    longest.push(trial);
+                }
+            }
+        }
+        let mut next = Start { samples_before: 0, seconds_before: 0.0 };
+        let mut starts = HashMap::new();
+        for trial in longest {
+            starts.insert(trial.label().to_owned(), next);
+            next.samples_before += signed(trial.len()) + 1;
+            next.seconds_before += (trial.len() + 1) as f64 * trial.period().seconds();
+        }
+        Self { starts }
+    }
+
+    fn of_trial(&self, trial: &Trial) -> Start {
+        let first = Start { samples_before: 0, seconds_before: 0.0 };
+        self.starts.get(trial.label()).copied().unwrap_or(first)
+    }
+}
+
+/// One joint on the timelines.
+#[derive(Debug)]
+pub(super) struct JointLayout<'a> {
+    pub(super) trials: Vec<TrialLayout<'a>>,
+}
+
+/// One trial of a joint on the timelines.
+#[derive(Debug)]
+pub(super) struct TrialLayout<'a> {
+    pub(super) trial: &'a Trial,
+    pub(super) estimate: &'a TrialEstimate,
+    pub(super) segments: Vec<SegmentLayout<'a>>,
+    start: Start,
+    /// Tick and segment of the samples before the first step.
+    idle: (i64, i64),
+}
+
+/// One segment on the timelines.
+#[derive(Debug)]
+pub(super) struct SegmentLayout<'a> {
+    pub(super) decision: &'a Decision,
+    /// Number of the segment over all trials, from 1.
+    pub(super) number: i64,
+    /// Its first tick.
+    pub(super) opening: i64,
+    /// Indices of the candidates that are recorded, ascending.
+    pub(super) kept: Vec<usize>,
+}
+
+impl SegmentLayout<'_> {
+    /// Its last tick.
+    pub(super) fn verdict(&self) -> i64 {
+        self.opening + signed(self.kept.len()) + 1
+    }
+
+    /// The tick that belongs to a sample of the trial.
+    fn tick_at(&self, sample: usize) -> i64 {
+        let r = self.decision.segment.first;
+        let best = self.decision.candidates.get(0);
+        let beta = best.map_or(1, |first| first.breakpoint - r);
+        let reached = sample.saturating_sub(r) / beta;
+        self.opening + signed(self.kept.partition_point(|&index| index < reached))
+    }
+}
+
+impl<'a> JointLayout<'a> {
+    pub(super) fn of(joint: EstimatedJoint<'a>, starts: &TrialStarts, detail: Detail) -> Self {
+        let mut tick = 1;
+        let mut number = 0;
+        let mut trials = Vec::new();
+        let results = joint.joint.trials.iter().zip(&joint.estimate.trials);
+        for (trial, estimate) in results.filter_map(|(t, result)| Some((t, result.as_ref().ok()?)))
+        {
+            let idle = (tick, number.max(1));
+            let mut segments = Vec::with_capacity(estimate.decisions.len());
+            for decision in &estimate.decisions {
+                number += 1;
+                let kept = kept(decision, detail);
+                let segment = SegmentLayout { decision, number, opening: tick, kept };
+                tick = segment.verdict() + 1;
+                segments.push(segment);
+            }
+            let start = starts.of_trial(trial);
+            trials.push(TrialLayout { trial, estimate, segments, start, idle });
+        }
+        Self { trials }
+    }
+
+    /// All segments, with the trial they lie in.
+    pub(super) fn segments(&self) -> impl Iterator<Item = (&TrialLayout<'a>, &SegmentLayout<'a>)> {
+        self.trials.iter().flat_map(|t| t.segments.iter().map(move |segment| (t, segment)))
+    }
+}
+
+fn kept(decision: &Decision, detail: Detail) -> Vec<usize> {
+    let count = decision.candidates.len();
+    let thin = detail == Detail::Lean
+        && decision.verdict() == Verdict::Accepted
+        && count > LEAN_CANDIDATES;
+    if !thin {
+        return (0..count).collect();
+    }
+    let best = decision.candidates.best().map_or(0, |best| best.f - 1);
+    let spread = LEAN_CANDIDATES - 3;
+    let mut kept: Vec<_> = (0..spread).map(|step| step * (count - 1) / (spread - 1)).collect();
+    kept.extend([best.saturating_sub(1), best, (best + 1).min(count - 1)]);
+    kept.sort_unstable();
+    kept.dedup();
+    kept
+}
+
+impl<'a> TrialLayout<'a> {
+    /// The smoothed output, or the measured one where nothing was smoothed.
+    pub(super) fn output(&self) -> &'a [f64] {
+        self.estimate.smoothed.as_deref().unwrap_or(self.trial.output())
+    }
+
+    pub(super) fn sample(&self, k: usize) -> i64 {
+        self.start.samples_before + signed(k)
+    }
+
+    pub(super) fn time_ns(&self, k: usize) -> i64 {
+        let period = self.trial.period().seconds();
+        let seconds = self.start.seconds_before + (k as f64 - 1.0) * period;
+        #[expect(clippy::cast_possible_truncation, reason = "292 years fit")]
+        let nanoseconds = (seconds * 1e9).round() as i64;
+        nanoseconds
+    }
+
+    /// The moment of the samples `1 …  last`, in order.
+    ///
+    /// `last` may be one beyond the trial: the empty sample between two trials.
+    pub(super) fn moments(&self, last: usize) -> impl Iterator<Item = Moment> + '_ {
+        let mut coming = self.segments.iter().peekable();
+        let mut current: Option<&SegmentLayout<'_>> = None;
+        (1..=last).map(move |k| {
+            if let Some(segment) = coming.next_if(|next| next.decision.input_step.sample <= k) {
+                current = Some(segment);
+            }
+            let (decision, segment) =
+                current.map_or(self.idle, |segment| (segment.tick_at(k), segment.number));
+            Moment { decision, segment, sample: self.sample(k), time_ns: self.time_ns(k) }
+        })
+    }
+
+    /// The moment of one sample; see [`moments`](Self::moments).
+    pub(super) fn moment_of(&self, k: usize) -> Moment {
+        let after = self.segments.partition_point(|s| s.decision.input_step.sample <= k);
+        let current = after.checked_sub(1).and_then(|index| self.segments.get(index));
+        let (decision, segment) = current.map_or(self.idle, |s| (s.tick_at(k), s.number));
+        Moment { decision, segment, sample: self.sample(k), time_ns: self.time_ns(k) }
+    }
+
+    /// A tick of a segment, at the sample it speaks of.
+    pub(super) fn moment(&self, segment: &SegmentLayout<'_>, decision: i64, k: usize) -> Moment {
+        let (sample, time_ns) = (self.sample(k), self.time_ns(k));
+        Moment { decision, segment: segment.number, sample, time_ns }
+    }
+
+    /// The opening tick, at the input step.
+    pub(super) fn opening(&self, segment: &SegmentLayout<'_>) -> Moment {
+        self.moment(segment, segment.opening, segment.decision.input_step.sample)
+    }
+
+    /// The verdict tick, at the breakpoint where there is one.
+    pub(super) fn verdict(&self, segment: &SegmentLayout<'_>) -> Moment {
+        let best = segment.decision.candidates.best();
+        let k = best.map_or(segment.decision.input_step.sample, |best| best.breakpoint);
+        self.moment(segment, segment.verdict(), k)
+    }
+
+    /// The ticks of the recorded candidates, each at its breakpoint.
+    pub(super) fn candidates<'s>(
+        &'s self,
+        segment: &'s SegmentLayout<'_>,
+    ) -> impl Iterator<Item = (Moment, crate::delay::Candidate)> + 's {
+        segment.kept.iter().zip(1..).filter_map(move |(&index, tick)| {
+            let candidate = segment.decision.candidates.get(index)?;
+            let decision = segment.opening + tick;
+            Some((self.moment(segment, decision, candidate.breakpoint), candidate))
+        })
+    }
+}
+
+pub(super) fn signed(count: usize) -> i64 {
+    i64::try_from(count).unwrap_or(i64::MAX)
+}

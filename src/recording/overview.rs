@@ -1,0 +1,265 @@
+//! The whole record of a joint: chosen lines, breakpoints, delays; and a map of it on
+//! which the segment under the cursor is framed.
+
+use rerun::components::{Color, MarkerShape};
+use rerun::datatypes::Vec2D;
+use rerun::{Boxes2D, EntityPath, LineStrips2D, Points2D, Scalars, SeriesLines, SeriesPoints};
+
+use super::canvas::{Labels, Plot, SHEET, Span, thinned};
+use super::chunk::{Chunks, Index, Moment};
+use super::entity::below;
+use super::error::RecordError;
+use super::layout::{JointLayout, SegmentLayout, TrialLayout};
+use super::palette::{self, Rgb, color};
+use crate::delay::Verdict;
+use crate::report::number;
+
+/// Adds everything of the overview below `root`.
+pub(super) fn add(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    layout: &JointLayout<'_>,
+) -> Result<(), RecordError> {
+    add_lines(chunks, root, layout)?;
+    for (name, rgb, marker, verdict) in [
+        ("accepted", palette::ACCEPTED, MarkerShape::Circle, Kind::Accepted),
+        ("rejected", palette::REJECTED, MarkerShape::Cross, Kind::Rejected),
+    ] {
+        let style = Marks { name, color: color(rgb), marker };
+        let breakpoint = |s: &SegmentLayout<'_>| {
+            let best = s.decision.candidates.best()?;
+            Some((best.breakpoint, best.after.at(best.breakpoint as f64)))
+        };
+        style.add(chunks, below(root, &["breakpoint", name]), layout, verdict, breakpoint)?;
+        let delay = |s: &SegmentLayout<'_>| {
+            let best = s.decision.breakpoint()?;
+            Some((s.decision.input_step.sample, best.delay as f64))
+        };
+        style.add(chunks, below(root, &["delay", name]), layout, verdict, delay)?;
+    }
+    Map::of(layout).add(chunks, &below(root, &["map"]), layout)
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Accepted,
+    Rejected,
+}
+
+impl Kind {
+    fn of(segment: &SegmentLayout<'_>) -> Self {
+        match segment.decision.verdict() {
+            Verdict::Accepted => Self::Accepted,
+            Verdict::Rejected(_) => Self::Rejected,
+        }
+    }
+}
+
+struct Marks {
+    name: &'static str,
+    color: Color,
+    marker: MarkerShape,
+}
+
+impl Marks {
+    /// A mark per segment of one kind, at the sample and value that `place` gives.
+    fn add(
+        &self,
+        chunks: &mut Chunks,
+        entity: EntityPath,
+        layout: &JointLayout<'_>,
+        kind: Kind,
+        place: impl Fn(&SegmentLayout<'_>) -> Option<(usize, f64)>,
+    ) -> Result<(), RecordError> {
+        let segments = layout.segments().filter(|(_, segment)| Kind::of(segment) == kind);
+        let marks: Vec<(Moment, f64)> = segments
+            .filter_map(|(trial, segment)| {
+                let (k, value) = place(segment)?;
+                Some((trial.moment_of(k), value))
+            })
+            .collect();
+        let style = SeriesPoints::new().with_names([self.name]).with_colors([self.color]);
+        let style = style.with_markers([self.marker]).with_marker_sizes([4.0]);
+        chunks.push_static(entity.clone(), &style)?;
+        let index: Index = marks.iter().map(|(moment, _)| *moment).collect();
+        let values = Scalars::new(marks.iter().map(|(_, value)| *value));
+        chunks.push(entity, index, values.columns_of_unit_batches()?)
+    }
+}
+
+/// The chosen pair of lines of every segment, each from end to end.
+fn add_lines(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    layout: &JointLayout<'_>,
+) -> Result<(), RecordError> {
+    for (name, rgb) in [("before", palette::CANDIDATE), ("after", palette::ACCEPTED)] {
+        let mut index = Index::default();
+        let (mut values, mut lengths) = (Vec::new(), Vec::new());
+        for (trial, segment) in layout.segments() {
+            let Some(best) = segment.decision.candidates.best() else {
+                continue;
+            };
+            let q = best.breakpoint;
+            // Where the next segment starts before this one ends, its lines take over.
+            let end = segment.decision.segment.last.min(q + segment.decision.hold).max(q);
+            let (line, ends) = match name {
+                "before" => (best.before, [segment.decision.segment.first, q]),
+                _ => (best.after, [q, end]),
+            };
+            let steps = [segment.decision.input_step.sample, segment.decision.next_sample()];
+            for k in vertices(ends, steps) {
+                index.extend([trial.moment_of(k)]);
+                values.push(line.at(k as f64));
+                lengths.push(1);
+            }
+            index.extend([trial.moment_of(ends[1])]);
+            lengths.push(0);
+        }
+        let entity = below(root, &["line", name]);
+        let style = SeriesLines::new().with_names([format!("line {name}")]);
+        let style = style.with_colors([color(rgb)]).with_widths([2.0]);
+        chunks.push_static(entity.clone(), &style)?;
+        chunks.push(entity, index, Scalars::new(values).columns(lengths)?)?;
+    }
+    Ok(())
+}
+
+/// Both ends of a line and, between them, both sides of each step: there the timeline of
+/// decisions jumps, and the line with it.
+fn vertices([first, last]: [usize; 2], steps: [usize; 2]) -> Vec<usize> {
+    let inside = |k: &usize| first < *k && *k < last;
+    let between = steps.into_iter().flat_map(|step| [step - 1, step]).filter(inside);
+    std::iter::once(first).chain(between).chain([last]).collect()
+}
+
+/// The record on one sheet, drawn once: it stays whatever the timeline.
+struct Map {
+    output: Plot,
+    input: Plot,
+    /// Height of the frame that marks a segment.
+    rows: (f32, f32),
+}
+
+/// Height of the map on its sheet.
+pub(super) const MAP_HEIGHT: f32 = 168.0;
+
+impl Map {
+    fn of(layout: &JointLayout<'_>) -> Self {
+        let last = layout.trials.iter().map(|trial| trial.sample(trial.trial.len())).max();
+        let x = Span::new(1.0, last.unwrap_or(1) as f64);
+        let span = |values: for<'t> fn(&'t TrialLayout<'_>) -> &'t [f64]| {
+            Span::around(layout.trials.iter().flat_map(|t| values(t).iter().copied()), 0.08)
+        };
+        let output = span(|trial| trial.trial.output());
+        let input = span(|trial| trial.trial.input());
+        Self {
+            output: Plot::new(6.0..=96.0, x, output),
+            input: Plot::new(104.0..=138.0, x, input),
+            rows: (2.0, 142.0),
+        }
+    }
+
+    fn add(
+        &self,
+        chunks: &mut Chunks,
+        root: &EntityPath,
+        layout: &JointLayout<'_>,
+    ) -> Result<(), RecordError> {
+        let mut labels = Labels::default();
+        let named = |span: Span, count| {
+            span.ticks(count).into_iter().map(|y| (y, number(y))).collect::<Vec<_>>()
+        };
+        let x_ticks = self.output.x_span().ticks(12.0);
+        let mut grid = self.output.grid(&x_ticks, &named(self.output.y_span(), 3.0), &mut labels);
+        grid.extend(self.input.grid(&x_ticks, &named(self.input.y_span(), 1.5), &mut labels));
+        for k in x_ticks {
+            labels.put(self.input.below(k, 4.0), number(k));
+        }
+        strips(chunks, below(root, &["grid"]), palette::GRID, 0.7, grid)?;
+        let outputs = layout.trials.iter().map(|trial| self.output_curve(trial)).collect();
+        strips(chunks, below(root, &["output"]), palette::SMOOTHED, 1.2, outputs)?;
+        let inputs = layout.trials.iter().map(|trial| self.input_curve(trial)).collect();
+        strips(chunks, below(root, &["input"]), palette::INPUT, 1.2, inputs)?;
+        for (name, rgb, kind) in [
+            ("accepted", palette::ACCEPTED, Kind::Accepted),
+            ("rejected", palette::REJECTED, Kind::Rejected),
+        ] {
+            let breaks = layout.segments().filter(|(_, segment)| Kind::of(segment) == kind);
+            let places: Vec<_> = breaks.filter_map(|(t, s)| self.breakpoint(t, s)).collect();
+            let points = Points2D::new(places).with_colors([color(rgb)]).with_radii([3.0]);
+            chunks.push_static(below(root, &[name]), &points)?;
+        }
+        let texts = Points2D::new(labels.places).with_labels(labels.texts).with_radii([0.01]);
+        let texts = texts.with_colors([color(palette::BORDER)]).with_show_labels(true);
+        chunks.push_static(below(root, &["ticks"]), &texts)?;
+        self.add_frames(chunks, &below(root, &["here"]), layout)
+    }
+
+    fn output_curve(&self, trial: &TrialLayout<'_>) -> Vec<Vec2D> {
+        let output = trial.trial.output();
+        let place = |index: usize| {
+            let y = output.get(index).copied().unwrap_or_default();
+            self.output.at(trial.sample(index + 1) as f64, y)
+        };
+        thinned(output).into_iter().map(place).collect()
+    }
+
+    /// The levels of the input, with an edge at every step.
+    fn input_curve(&self, trial: &TrialLayout<'_>) -> Vec<Vec2D> {
+        let first = trial.trial.input().first().copied().unwrap_or_default();
+        let mut curve = vec![self.input.at(trial.sample(1) as f64, first)];
+        let mut level = first;
+        for segment in &trial.segments {
+            let step = segment.decision.input_step;
+            let k = trial.sample(step.sample) as f64;
+            curve.extend([self.input.at(k, level), self.input.at(k, step.after)]);
+            level = step.after;
+        }
+        curve.push(self.input.at(trial.sample(trial.trial.len()) as f64, level));
+        curve
+    }
+
+    fn breakpoint(&self, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> Option<Vec2D> {
+        let best = segment.decision.candidates.best()?;
+        let y = best.after.at(best.breakpoint as f64);
+        Some(self.output.at(trial.sample(best.breakpoint) as f64, y))
+    }
+
+    fn add_frames(
+        &self,
+        chunks: &mut Chunks,
+        entity: &EntityPath,
+        layout: &JointLayout<'_>,
+    ) -> Result<(), RecordError> {
+        let mut index = Index::default();
+        let (mut centers, mut halves) = (Vec::new(), Vec::new());
+        for (trial, segment) in layout.segments() {
+            index.extend([trial.opening(segment)]);
+            let ends = segment.decision.segment;
+            let [left, right] =
+                [ends.first, ends.last].map(|k| self.output.x(trial.sample(k) as f64));
+            let (top, bottom) = self.rows;
+            centers.push([f32::midpoint(left, right), f32::midpoint(top, bottom)]);
+            halves.push([(right - left).max(4.0) / 2.0, (bottom - top) / 2.0]);
+        }
+        let style = Boxes2D::update_fields().with_colors([color(palette::CANDIDATE)]);
+        chunks.push_static(entity.clone(), &style.with_radii([1.5]))?;
+        let boxes = Boxes2D::update_fields().with_centers(centers).with_half_sizes(halves);
+        chunks.push(entity.clone(), index, boxes.columns_of_unit_batches()?)
+    }
+}
+
+fn strips(
+    chunks: &mut Chunks,
+    entity: EntityPath,
+    rgb: Rgb,
+    radius: f32,
+    strips: Vec<Vec<Vec2D>>,
+) -> Result<(), RecordError> {
+    let strips = LineStrips2D::new(strips).with_colors([color(rgb)]).with_radii([radius]);
+    chunks.push_static(entity, &strips)
+}
+
+/// Width of the sheet, for the view's bounds.
+pub(super) const MAP_WIDTH: f32 = SHEET.0;

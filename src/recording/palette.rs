@@ -1,0 +1,34 @@
+//! Colours: one meaning each, told apart by colour-blind readers too.
+//!
+//! Taken from Okabe and Ito's set, on the viewer's dark ground.
+
+use rerun::Color;
+
+const fn rgb(r: u8, g: u8, b: u8) -> (u8, u8, u8) {
+    (r, g, b)
+}
+
+pub(super) type Rgb = (u8, u8, u8);
+
+/// What drove the joint.
+pub(super) const INPUT: Rgb = rgb(240, 228, 66);
+/// What was measured.
+pub(super) const RAW: Rgb = rgb(150, 150, 150);
+/// What the lines were fitted to.
+pub(super) const SMOOTHED: Rgb = rgb(86, 180, 233);
+/// The candidate under the cursor.
+pub(super) const CANDIDATE: Rgb = rgb(255, 165, 40);
+/// Accepted.
+pub(super) const ACCEPTED: Rgb = rgb(0, 190, 140);
+/// Rejected.
+pub(super) const REJECTED: Rgb = rgb(235, 85, 60);
+/// The error curve.
+pub(super) const ERROR: Rgb = rgb(204, 121, 167);
+/// Borders of a segment.
+pub(super) const BORDER: Rgb = rgb(225, 225, 225);
+/// Grid lines.
+pub(super) const GRID: Rgb = rgb(60, 62, 66);
+
+pub(super) fn color((r, g, b): Rgb) -> Color {
+    Color::from_rgb(r, g, b)
+}

@@ -1,0 +1,343 @@
+//! The drawing of one decision: the segment, both lines, the error curve, the cursor.
+//!
+//! What belongs to the segment is set at its opening tick and stays until the next one;
+//! what belongs to a candidate is set at each of its ticks and cleared before and after,
+//! so that nothing leaks into the next segment.
+
+use rerun::datatypes::Vec2D;
+use rerun::{EntityPath, LineStrips2D, Points2D};
+
+use super::canvas::{Labels, Plot, Span, thinned};
+use super::chunk::{Chunks, Index};
+use super::entity::below;
+use super::error::RecordError;
+use super::layout::{JointLayout, SegmentLayout, TrialLayout};
+use super::palette::{self, Rgb, color};
+use crate::delay::{Candidate, Line, Verdict};
+use crate::experiment::Joint;
+use crate::report::number;
+
+/// Radius of a text's own point: too small to be seen.
+const HIDDEN: f32 = 0.01;
+
+/// Adds the drawings of all segments below `root`/drawing.
+pub(super) fn add(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    joint: &Joint,
+    layout: &JointLayout<'_>,
+) -> Result<(), RecordError> {
+    let drawings: Vec<_> =
+        layout.segments().map(|(trial, segment)| Drawing::new(trial, segment)).collect();
+    let root = below(root, &["drawing"]);
+    let opening: Index = drawings.iter().map(|d| d.trial.opening(d.segment)).collect();
+    let mut sheet = Sheet { chunks, root: &root, opening: &opening };
+    sheet.strips("grid", palette::GRID, 0.8, drawings.iter().map(|d| d.grid().0))?;
+    sheet.texts("ticks", palette::BORDER, drawings.iter().map(|d| d.grid().1))?;
+    sheet.points("measured", palette::RAW, 1.6, drawings.iter().map(Drawing::measured))?;
+    sheet.strips(
+        "smoothed",
+        palette::SMOOTHED,
+        1.4,
+        drawings.iter().map(|d| vec![d.smoothed()]),
+    )?;
+    sheet.strips("borders", palette::BORDER, 1.2, drawings.iter().map(Drawing::borders))?;
+    sheet.strips("input_step", palette::INPUT, 1.6, drawings.iter().map(Drawing::input_step))?;
+    sheet.strips("sse", palette::ERROR, 1.6, drawings.iter().map(|d| vec![d.errors()]))?;
+    let best = |wanted: Verdict| {
+        move |d: &Drawing<'_, '_>| {
+            let same = (d.segment.decision.verdict() == Verdict::Accepted)
+                == (wanted == Verdict::Accepted);
+            if same { d.best() } else { Vec::new() }
+        }
+    };
+    let rejected = Verdict::Rejected(crate::delay::Condition::Sse);
+    sheet.strips(
+        "accepted",
+        palette::ACCEPTED,
+        2.4,
+        drawings.iter().map(best(Verdict::Accepted)),
+    )?;
+    sheet.strips("rejected", palette::REJECTED, 2.4, drawings.iter().map(best(rejected)))?;
+    sheet.texts("names", palette::BORDER, drawings.iter().map(|d| d.names(joint)))?;
+    add_candidates(chunks, &root, &drawings)
+}
+
+/// Rows for all segments at once, one call per entity.
+struct Sheet<'c> {
+    chunks: &'c mut Chunks,
+    root: &'c EntityPath,
+    opening: &'c Index,
+}
+
+impl Sheet<'_> {
+    fn strips(
+        &mut self,
+        name: &str,
+        rgb: Rgb,
+        radius: f32,
+        rows: impl Iterator<Item = Vec<Vec<Vec2D>>>,
+    ) -> Result<(), RecordError> {
+        let entity = below(self.root, &[name]);
+        let (strips, lengths) = flattened(rows);
+        let style = LineStrips2D::update_fields().with_colors([color(rgb)]).with_radii([radius]);
+        self.chunks.push_static(entity.clone(), &style)?;
+        let columns = LineStrips2D::update_fields().with_strips(strips).columns(lengths)?;
+        self.chunks.push(entity, self.opening.clone(), columns)
+    }
+
+    fn points(
+        &mut self,
+        name: &str,
+        rgb: Rgb,
+        radius: f32,
+        rows: impl Iterator<Item = Vec<Vec2D>>,
+    ) -> Result<(), RecordError> {
+        let entity = below(self.root, &[name]);
+        let (points, lengths) = flattened(rows);
+        let style = Points2D::update_fields().with_colors([color(rgb)]).with_radii([radius]);
+        self.chunks.push_static(entity.clone(), &style)?;
+        let columns = Points2D::update_fields().with_positions(points).columns(lengths)?;
+        self.chunks.push(entity, self.opening.clone(), columns)
+    }
+
+    fn texts(
+        &mut self,
+        name: &str,
+        rgb: Rgb,
+        rows: impl Iterator<Item = Labels>,
+    ) -> Result<(), RecordError> {
+        let entity = below(self.root, &[name]);
+        let style = Points2D::update_fields().with_colors([color(rgb)]).with_radii([HIDDEN]);
+        self.chunks.push_static(entity.clone(), &style.with_show_labels(true))?;
+        let (mut places, mut texts, mut lengths) = (Vec::new(), Vec::new(), Vec::new());
+        for labels in rows {
+            lengths.push(labels.places.len());
+            places.extend(labels.places);
+            texts.extend(labels.texts);
+        }
+        let points = Points2D::update_fields().with_positions(places).with_labels(texts);
+        self.chunks.push(entity, self.opening.clone(), points.columns(lengths)?)
+    }
+}
+
+fn flattened<T>(rows: impl Iterator<Item = Vec<T>>) -> (Vec<T>, Vec<usize>) {
+    let (mut all, mut lengths) = (Vec::new(), Vec::new());
+    for row in rows {
+        lengths.push(row.len());
+        all.extend(row);
+    }
+    (all, lengths)
+}
+
+/// One segment on its sheet: the output above, the error curve below.
+struct Drawing<'l, 'a> {
+    trial: &'l TrialLayout<'a>,
+    segment: &'l SegmentLayout<'a>,
+    /// First and last sample that are drawn.
+    window: (usize, usize),
+    output: Plot,
+    error: Plot,
+    error_span: Span,
+}
+
+/// Errors less than this part of the largest are drawn at it: the fit is exact there.
+const EXACT: f64 = 1e-9;
+
+impl<'l, 'a> Drawing<'l, 'a> {
+    fn new(trial: &'l TrialLayout<'a>, segment: &'l SegmentLayout<'a>) -> Self {
+        let decision = segment.decision;
+        let margin = (decision.segment.len() / 12).max(3);
+        let first = decision.segment.first.min(decision.input_step.sample);
+        let first = first.saturating_sub(margin).max(1);
+        let last = (decision.segment.last + margin).min(trial.trial.len());
+        let x = Span::new(first as f64, last as f64);
+        let measured = trial.trial.output().get(first - 1..last).unwrap_or_default();
+        let smoothed = trial.output().get(first - 1..last).unwrap_or_default();
+        let values = measured.iter().chain(smoothed).copied();
+        let y = Span::around(values, 0.06);
+        let sse = decision.candidates.sse();
+        let highest = sse.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let logs = sse.iter().map(|sse| sse.max(EXACT * highest).log10());
+        let error_span = Span::around(logs, 0.12);
+        Self {
+            trial,
+            segment,
+            window: (first, last),
+            output: Plot::new(64.0..=400.0, x, y),
+            error: Plot::new(474.0..=598.0, x, error_span),
+            error_span,
+        }
+    }
+
+    fn samples(&self) -> impl Fn(&[f64]) -> Vec<Vec2D> + '_ {
+        let (first, last) = self.window;
+        move |values: &[f64]| {
+            let window = values.get(first - 1..last).unwrap_or_default();
+            let place = |index: usize| {
+                let y = window.get(index).copied().unwrap_or_default();
+                self.output.at((first + index) as f64, y)
+            };
+            thinned(window).into_iter().map(place).collect()
+        }
+    }
+
+    fn measured(&self) -> Vec<Vec2D> {
+        self.samples()(self.trial.trial.output())
+    }
+
+    fn smoothed(&self) -> Vec<Vec2D> {
+        self.samples()(self.trial.output())
+    }
+
+    fn grid(&self) -> (Vec<Vec<Vec2D>>, Labels) {
+        let (first, last) = self.window;
+        let x_ticks = Span::new(first as f64, last as f64).ticks(9.0);
+        let x_ticks: Vec<f64> = x_ticks.into_iter().filter(|k| k.fract() == 0.0).collect();
+        let mut labels = Labels::default();
+        let named = |ticks: Vec<f64>| ticks.into_iter().map(|y| (y, number(y))).collect::<Vec<_>>();
+        let y_ticks = named(self.output.y_span().ticks(5.0));
+        let mut strips = self.output.grid(&x_ticks, &y_ticks, &mut labels);
+        let errors = self.error_span.ticks(3.0);
+        let errors: Vec<_> = errors.into_iter().map(|e| (e, number(10f64.powf(e)))).collect();
+        strips.extend(self.error.grid(&x_ticks, &errors, &mut labels));
+        for k in x_ticks {
+            labels.put(self.error.below(k, 4.0), number(k));
+        }
+        (strips, labels)
+    }
+
+    fn borders(&self) -> Vec<Vec<Vec2D>> {
+        let segment = self.segment.decision.segment;
+        let line = |k: usize| self.output.vertical(k as f64).to_vec();
+        vec![line(segment.first), line(segment.last)]
+    }
+
+    fn input_step(&self) -> Vec<Vec<Vec2D>> {
+        let p = self.segment.decision.input_step.sample as f64;
+        vec![self.output.vertical(p).to_vec(), self.error.vertical(p).to_vec()]
+    }
+
+    fn errors(&self) -> Vec<Vec2D> {
+        let candidates = &self.segment.decision.candidates;
+        let places =
+            thinned(candidates.sse()).into_iter().filter_map(|index| candidates.get(index));
+        places.map(|candidate| self.error_at(&candidate)).collect()
+    }
+
+    fn error_at(&self, candidate: &Candidate) -> Vec2D {
+        let log = candidate.sse.max(f64::MIN_POSITIVE).log10().max(self.error_span.low);
+        self.error.at(candidate.breakpoint as f64, log)
+    }
+
+    /// Both lines of a candidate and a line down through its breakpoint.
+    fn pair(&self, candidate: &Candidate) -> Vec<Vec<Vec2D>> {
+        let segment = self.segment.decision.segment;
+        let q = candidate.breakpoint as f64;
+        let at = |line: &Line, k: f64| self.output.at(k, line.at(k));
+        let first = segment.first as f64;
+        let before = vec![at(&candidate.before, first), at(&candidate.before, q)];
+        let after = vec![at(&candidate.after, q), at(&candidate.after, segment.last as f64)];
+        vec![before, after, self.output.vertical(q).to_vec(), self.error.vertical(q).to_vec()]
+    }
+
+    /// The chosen pair, a mark on the error curve, and the delay as a distance.
+    fn best(&self) -> Vec<Vec<Vec2D>> {
+        let Some(best) = self.segment.decision.candidates.best() else {
+            return Vec::new();
+        };
+        let mut strips = self.pair(&best);
+        strips.push(diamond(self.error_at(&best), 6.0));
+        let p = self.segment.decision.input_step.sample as f64;
+        let [from, to] = [p, best.breakpoint as f64].map(|k| self.output.above(k, 8.0));
+        strips.push(vec![from, to]);
+        strips
+    }
+
+    fn names(&self, joint: &Joint) -> Labels {
+        let decision = self.segment.decision;
+        let mut labels = Labels::default();
+        let p = decision.input_step.sample as f64;
+        if let Some(best) = decision.breakpoint() {
+            let q = best.candidate.breakpoint as f64;
+            let seconds = best.delay as f64 * self.trial.trial.period().seconds();
+            let delay = format!("δ = {} samples = {} s", best.delay, number(seconds));
+            labels.put(self.output.above(f64::midpoint(p, q), 48.0), delay);
+            let text =
+                format!("q = {}, SSE = {}", best.candidate.breakpoint, number(best.candidate.sse));
+            labels.put(self.output.below(q, 2.0), text);
+        }
+        labels.put(self.output.below(p, 24.0), format!("p = {}", decision.input_step.sample));
+        let (first, last) = (decision.segment.first, decision.segment.last);
+        labels.put(self.output.below(first as f64, 2.0), format!("r = {first}"));
+        labels.put(self.output.below(last as f64, 2.0), format!("end = {last}"));
+        let unit = joint.output_unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}]"));
+        labels.put(Vec2D::new(62.0, 22.0), format!("output{unit}"));
+        labels.put(Vec2D::new(62.0, 430.0), "SSE (log)".to_owned());
+        labels
+    }
+
+    /// What moves with the cursor.
+    fn cursor(&self, candidate: &Candidate) -> Vec<Vec<Vec2D>> {
+        let mut strips = self.pair(candidate);
+        strips.push(diamond(self.error_at(candidate), 8.0));
+        strips
+    }
+}
+
+fn diamond(Vec2D([x, y]): Vec2D, radius: f32) -> Vec<Vec2D> {
+    let corner = |dx: f32, dy: f32| Vec2D::new(x + dx * radius, y + dy * radius);
+    [(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]
+        .map(|(dx, dy)| corner(dx, dy))
+        .to_vec()
+}
+
+/// A row per candidate; empty ones at the opening and the verdict tick.
+fn add_candidates(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    drawings: &[Drawing<'_, '_>],
+) -> Result<(), RecordError> {
+    let mut index = Index::default();
+    let (mut strips, mut strip_lengths) = (Vec::new(), Vec::new());
+    let mut labels = Labels::default();
+    let mut label_lengths = Vec::new();
+    for drawing in drawings {
+        let (trial, segment) = (drawing.trial, drawing.segment);
+        index.extend([trial.opening(segment)]);
+        strip_lengths.push(0);
+        label_lengths.push(0);
+        for (moment, candidate) in trial.candidates(segment) {
+            index.extend([moment]);
+            let cursor = drawing.cursor(&candidate);
+            strip_lengths.push(cursor.len());
+            strips.extend(cursor);
+            let delay = moment_delay(segment, &candidate);
+            let text = format!(
+                "q = {}, δ = {delay}, SSE = {}",
+                candidate.breakpoint,
+                number(candidate.sse)
+            );
+            labels.put(drawing.error.above(candidate.breakpoint as f64, 28.0), text);
+            label_lengths.push(1);
+        }
+        index.extend([trial.verdict(segment)]);
+        strip_lengths.push(0);
+        label_lengths.push(0);
+    }
+    let lines = below(root, &["candidate"]);
+    let style = LineStrips2D::update_fields().with_colors([color(palette::CANDIDATE)]);
+    chunks.push_static(lines.clone(), &style.with_radii([2.0]))?;
+    let columns = LineStrips2D::update_fields().with_strips(strips).columns(strip_lengths)?;
+    chunks.push(lines, index.clone(), columns)?;
+    let text = below(root, &["candidate", "numbers"]);
+    let style = Points2D::update_fields().with_colors([color(palette::CANDIDATE)]);
+    chunks.push_static(text.clone(), &style.with_radii([HIDDEN]).with_show_labels(true))?;
+    let points = Points2D::update_fields().with_positions(labels.places).with_labels(labels.texts);
+    chunks.push(text, index, points.columns(label_lengths)?)
+}
+
+fn moment_delay(segment: &SegmentLayout<'_>, candidate: &Candidate) -> i64 {
+    super::layout::signed(candidate.breakpoint)
+        - super::layout::signed(segment.decision.input_step.sample)
+}

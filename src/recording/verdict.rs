@@ -1,0 +1,282 @@
+//! Each verdict in words, with every number that was compared.
+
+use rerun::{Color, EntityPath, StateChange, StateConfiguration, TextDocument, TextLog};
+
+use super::chunk::{Chunks, Index};
+use super::entity::below;
+use super::error::RecordError;
+use super::layout::{JointLayout, SegmentLayout, TrialLayout};
+use super::palette::{self, color};
+use crate::delay::{Breakpoint, Check, Condition, Outcome, Settings, Verdict};
+use crate::experiment::Joint;
+use crate::report::number;
+
+/// Adds `/verdict` (text, log line and lane), `/segment` and `/trial` (lanes).
+pub(super) fn add(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    joint: &Joint,
+    layout: &JointLayout<'_>,
+    settings: &Settings,
+) -> Result<(), RecordError> {
+    let segments: Vec<_> = layout.segments().collect();
+    let opening: Index = segments.iter().map(|(trial, segment)| trial.opening(segment)).collect();
+    let text = |(trial, segment): &Placed<'_, '_>| document(joint, trial, segment, settings);
+    let texts: Vec<String> = segments.iter().map(text).collect();
+    let markdown = std::iter::repeat_n("text/markdown", texts.len());
+    let documents =
+        TextDocument::update_fields().with_many_text(texts).with_many_media_type(markdown);
+    let states: Vec<String> = segments.iter().map(|(_, segment)| state(segment)).collect();
+    let states = StateChange::new().with_state(states).columns_of_unit_batches()?;
+    let entity = below(root, &["verdict"]);
+    let columns = documents.columns_of_unit_batches()?.chain(states);
+    chunks.push(entity.clone(), opening.clone(), columns)?;
+    chunks.push_static(entity, &lane_colors())?;
+    add_log(chunks, root, joint, &segments)?;
+    add_lanes(chunks, root, layout, &segments, opening)
+}
+
+fn state(segment: &SegmentLayout<'_>) -> String {
+    match segment.decision.verdict() {
+        Verdict::Accepted => "accepted".to_owned(),
+        Verdict::Rejected(condition) => condition.id().to_owned(),
+    }
+}
+
+fn lane_colors() -> StateConfiguration {
+    let values = std::iter::once("accepted").chain(Condition::ALL.map(Condition::id));
+    let labels = Condition::ALL.map(|condition| format!("rejected: {condition}"));
+    let labels = std::iter::once("accepted".to_owned()).chain(labels);
+    let rejected = std::iter::repeat_n(color(palette::REJECTED), Condition::ALL.len());
+    let colors: Vec<Color> = std::iter::once(color(palette::ACCEPTED)).chain(rejected).collect();
+    StateConfiguration::new().with_values(values).with_labels(labels).with_colors(colors)
+}
+
+type Placed<'l, 'a> = (&'l TrialLayout<'a>, &'l SegmentLayout<'a>);
+
+/// One line per segment, at its verdict tick: a click on it goes there.
+fn add_log(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    joint: &Joint,
+    segments: &[Placed<'_, '_>],
+) -> Result<(), RecordError> {
+    let index: Index = segments.iter().map(|(trial, segment)| trial.verdict(segment)).collect();
+    let lines: Vec<_> = segments.iter().map(|(t, s)| log_line(joint, t, s)).collect();
+    let accepted = |segment: &SegmentLayout<'_>| segment.decision.verdict() == Verdict::Accepted;
+    let levels = segments.iter().map(|(_, s)| if accepted(s) { "INFO" } else { "WARN" });
+    let log = TextLog::update_fields().with_many_text(lines).with_many_level(levels);
+    chunks.push(below(root, &["verdict", "log"]), index, log.columns_of_unit_batches()?)
+}
+
+fn log_line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
+    let decision = segment.decision;
+    let trials =
+        if joint.trials.len() > 1 { format!("{} ", trial.trial.label()) } else { String::new() };
+    let step = format!("{trials}step {:>3}", decision.number);
+    let period = trial.trial.period().seconds();
+    let delay = |best: Breakpoint| format!("δ {:.3} s", best.delay as f64 * period);
+    let verdict = match (decision.verdict(), decision.breakpoint()) {
+        (Verdict::Rejected(condition), _) => format!("✗ {}", condition.meaning()),
+        (Verdict::Accepted, best) => format!("✓ {}", best.map_or_else(String::new, delay)),
+    };
+    let at = format!("p {}", decision.input_step.sample);
+    let found = decision.breakpoint().map_or_else(String::new, |best| {
+        let (q, sse) = (best.candidate.breakpoint, number(best.candidate.sse));
+        format!(", q {q}, δ {}, SSE {sse}", best.delay)
+    });
+    format!("{step}  {verdict}   ({at}{found})")
+}
+
+fn add_lanes(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    layout: &JointLayout<'_>,
+    segments: &[Placed<'_, '_>],
+    opening: Index,
+) -> Result<(), RecordError> {
+    let names: Vec<_> =
+        segments.iter().map(|(_, segment)| format!("step {}", segment.decision.number)).collect();
+    // Two greys in turn: the border between two steps is seen, and nothing else shouts.
+    let greys = (0..names.len()).map(|n| {
+        if n % 2 == 0 { Color::from_rgb(72, 84, 96) } else { Color::from_rgb(98, 110, 122) }
+    });
+    let style = StateConfiguration::new().with_values(names.clone()).with_colors(greys);
+    let entity = below(root, &["segment"]);
+    chunks.push_static(entity.clone(), &style)?;
+    chunks.push(
+        entity,
+        opening,
+        StateChange::new().with_state(names).columns_of_unit_batches()?,
+    )?;
+    let starts = layout.trials.iter().filter_map(|trial| trial.moments(1).next());
+    let labels: Vec<_> = layout.trials.iter().map(|trial| trial.trial.label().to_owned()).collect();
+    let states = StateChange::new().with_state(labels).columns_of_unit_batches()?;
+    chunks.push(below(root, &["trial"]), starts.collect(), states)
+}
+
+/// The page beside the drawing: verdict first, then what it was made of.
+fn document(
+    joint: &Joint,
+    trial: &TrialLayout<'_>,
+    segment: &SegmentLayout<'_>,
+    settings: &Settings,
+) -> String {
+    let decision = segment.decision;
+    let of = trial.segments.len();
+    let in_trial = match joint.trials.len() {
+        1 => String::new(),
+        _ => format!(", trial {}", trial.trial.label()),
+    };
+    let title = format!("### {}{in_trial}: step {} of {of}", joint.name, decision.number);
+    let facts = Facts { joint, trial, segment, settings };
+    format!("{title}\n{}\n\n{}\n\n{}\n", facts.headline(), facts.quantities(), facts.conditions())
+}
+
+struct Facts<'l, 'a> {
+    joint: &'l Joint,
+    trial: &'l TrialLayout<'a>,
+    segment: &'l SegmentLayout<'a>,
+    settings: &'l Settings,
+}
+
+impl Facts<'_, '_> {
+    fn seconds(&self, samples: f64) -> String {
+        format!("{:.3} s", samples * self.trial.trial.period().seconds())
+    }
+
+    fn at(&self, sample: usize) -> String {
+        format!("sample {sample} = {:.3} s", self.trial.trial.time_s(sample))
+    }
+
+    fn output(&self, value: f64) -> String {
+        with_unit(value, self.joint.output_unit.as_deref(), "")
+    }
+
+    fn headline(&self) -> String {
+        let decision = self.segment.decision;
+        match (decision.verdict(), decision.breakpoint()) {
+            (Verdict::Accepted, Some(best)) => {
+                let delay = self.seconds(best.delay as f64);
+                format!("## ✓ accepted: delay {delay}")
+            }
+            (Verdict::Accepted, None) => "## ✓ accepted".to_owned(),
+            (Verdict::Rejected(first), _) => {
+                let failed = decision.checks.iter().filter(|c| c.outcome == Outcome::Failed);
+                let whys: Vec<_> = failed.map(|check| format!("- {}", self.why(check))).collect();
+                format!("## ✗ rejected: {}\n{}", first.meaning(), whys.join("\n"))
+            }
+        }
+    }
+
+    /// A failed condition as a sentence with its numbers.
+    fn why(&self, check: &Check) -> String {
+        let (value, limit) = self.compared(check);
+        format!("**{}**: {value}, but needs {limit}", check.condition)
+    }
+
+    fn quantities(&self) -> String {
+        let decision = self.segment.decision;
+        let step = decision.input_step;
+        let unit = self.joint.input_unit.as_deref();
+        let input = |value| with_unit(value, unit, "");
+        let (first, last) = (decision.segment.first, decision.segment.last);
+        let mut rows = vec![
+            ("input step p".to_owned(), self.at(step.sample)),
+            ("input".to_owned(), format!("{} → {}", input(step.before), input(step.after))),
+            (
+                "held for".to_owned(),
+                format!("{} samples = {}", decision.hold, self.seconds(decision.hold as f64)),
+            ),
+            (
+                "segment r … end".to_owned(),
+                format!("{first} … {last}: {} samples", decision.segment.len()),
+            ),
+        ];
+        if let Some(best) = decision.breakpoint() {
+            let candidate = best.candidate;
+            let slope = |slope| with_unit(slope, self.joint.output_unit.as_deref(), "/sample");
+            let delay = format!("**{} samples = {}**", best.delay, self.seconds(best.delay as f64));
+            let count = decision.candidates.len();
+            rows.extend([
+                ("breakpoint q".to_owned(), self.at(candidate.breakpoint)),
+                ("candidate f".to_owned(), format!("{} of {count}", candidate.f)),
+                ("**delay δ = q − p**".to_owned(), delay),
+                (
+                    "SSE of both lines".to_owned(),
+                    with_unit(candidate.sse, self.joint.output_unit.as_deref(), "²"),
+                ),
+                ("slope before".to_owned(), slope(candidate.before.slope)),
+                ("slope after".to_owned(), slope(candidate.after.slope)),
+            ]);
+        }
+        let rows: Vec<_> =
+            rows.iter().map(|(name, value)| format!("| {name} | {value} |")).collect();
+        format!("| quantity | value |\n|---|---|\n{}", rows.join("\n"))
+    }
+
+    fn conditions(&self) -> String {
+        let row = |check: &Check| {
+            let mark = match check.outcome {
+                Outcome::Passed => "✓",
+                Outcome::Failed => "✗",
+                Outcome::NotChecked => "–",
+            };
+            let (value, limit) = self.compared(check);
+            format!("| {mark} | {} | {value} | {limit} |", check.condition)
+        };
+        let rows: Vec<_> = self.segment.decision.checks.iter().map(row).collect();
+        format!("| | condition | value | limit |\n|---|---|---|---|\n{}", rows.join("\n"))
+    }
+
+    /// Value and limit of a condition, as a person reads them.
+    fn compared(&self, check: &Check) -> (String, String) {
+        let missing = || "none".to_owned();
+        let value = check.value.map(number);
+        let limit = check.limit.map(number);
+        let not_set = limit.clone().unwrap_or_else(|| "not set".to_owned());
+        let unit = |text: &str| match &self.joint.output_unit {
+            Some(unit) => format!(" {unit}{text}"),
+            None => String::new(),
+        };
+        match check.condition {
+            Condition::FirstOrLast => {
+                let value =
+                    format!("step {} of {}", value.unwrap_or_default(), limit.unwrap_or_default());
+                let kept = self.settings.keep_first_last;
+                (value, if kept { "any" } else { "a step on each side" }.to_owned())
+            }
+            Condition::OutputLimit => {
+                let limits = self.settings.output_limits;
+                let between = limits.map_or(not_set, |(low, high)| {
+                    format!("{} < y < {}", self.output(low), self.output(high))
+                });
+                (value.map_or_else(missing, |y| format!("y = {y}{}", unit(""))), between)
+            }
+            Condition::BeforeInput => {
+                let p = limit.unwrap_or_default();
+                (value.map_or_else(missing, |q| format!("q = {q}")), format!("q ≥ p = {p}"))
+            }
+            Condition::SlopeChange => (
+                value.map_or_else(missing, |change| format!("{change}{}", unit("/sample"))),
+                format!("≥ {not_set}"),
+            ),
+            Condition::ShortHold => {
+                (format!("{} samples", value.unwrap_or_default()), format!("≥ {not_set}"))
+            }
+            Condition::Sse => {
+                let below = limit.map_or(not_set, |limit| format!("< {limit}"));
+                (value.map_or_else(missing, |sse| format!("{sse}{}", unit("²"))), below)
+            }
+            Condition::TooShort => (
+                format!("{} rows of β = {}", value.unwrap_or_default(), self.settings.beta),
+                format!("≥ {not_set} rows"),
+            ),
+        }
+    }
+}
+
+fn with_unit(value: f64, unit: Option<&str>, per: &str) -> String {
+    let value = number(value);
+    unit.map_or_else(|| value.clone(), |unit| format!("{value} {unit}{per}"))
+}

@@ -1,0 +1,152 @@
+//! A recording into a file, or beside the caller's own data.
+
+use std::io::Write;
+
+use rerun::external::re_build_info::CrateVersion;
+use rerun::external::re_log_encoding::{Encoder, EncodingOptions};
+use rerun::external::re_log_types::BlueprintActivationCommand;
+use rerun::log::{Chunk, LogMsg};
+use rerun::{EntityPath, RecordingInfo, RecordingStream, StoreId, StoreKind};
+
+use super::chunk::Chunks;
+use super::entity::joint_root;
+use super::error::RecordError;
+use super::layout::{JointLayout, TrialStarts};
+use super::message::{chunk_message, store_message};
+use super::{
+    EstimateRecording, about, blueprint, decisions, overview, segment_view, signals, verdict,
+};
+use crate::report::EstimatedJoint;
+
+/// The application's name in the viewer; blueprints are kept per application.
+const APPLICATION: &str = "tauscope";
+
+/// Writes `recording` to `out` as a whole `.rrd` file, footer included.
+///
+/// The same recording gives the same messages in the same order.
+///
+/// # Errors
+/// [`RecordError::Encode`] when `out` cannot be written; what was written then is of no
+/// use.
+pub fn write_estimate(
+    recording: &EstimateRecording<'_>,
+    out: impl Write,
+) -> Result<(), RecordError> {
+    let id = recording_id(recording);
+    let store = StoreId::new(StoreKind::Recording, APPLICATION, id.clone());
+    let options = EncodingOptions::PROTOBUF_COMPRESSED;
+    let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, options, out)?;
+    encoder.append(&store_message(&store))?;
+    let mut chunks = Chunks::new(1);
+    let info = RecordingInfo::new().with_name(recording_name(recording));
+    chunks.push_static(EntityPath::properties(), &info)?;
+    for chunk in chunks.into_chunks() {
+        encoder.append(&chunk_message(&store, &chunk)?)?;
+    }
+    for_each_chunk(recording, |chunk| {
+        encoder.append(&chunk_message(&store, chunk)?)?;
+        Ok(())
+    })?;
+    for message in blueprint_messages(recording, &id)? {
+        encoder.append(&message)?;
+    }
+    encoder.finish()?;
+    encoder.flush_blocking()?;
+    Ok(())
+}
+
+/// Sends `recording` to a stream of the caller's own, with its views.
+///
+/// Entities lie at `/<joint>/…` and `/about`, beside whatever the caller logs.
+///
+/// # Errors
+/// [`RecordError::Chunk`] and [`RecordError::Serialize`], which would be bugs. What
+/// becomes of the data is the stream's business.
+pub fn log_estimate(
+    recording: &EstimateRecording<'_>,
+    stream: &RecordingStream,
+) -> Result<(), RecordError> {
+    for_each_chunk(recording, |chunk| {
+        stream.send_chunk(chunk.clone());
+        Ok(())
+    })?;
+    let Some(info) = stream.store_info() else {
+        return Ok(());
+    };
+    let application = info.store_id.application_id().clone();
+    let messages = blueprint::messages(recording, &application, &recording_id(recording))?;
+    if let Some(blueprint_id) = messages.first().map(|message| message.store_id().clone()) {
+        let activation = activation(blueprint_id);
+        stream.send_blueprint(messages, activation);
+    }
+    Ok(())
+}
+
+fn blueprint_messages(
+    recording: &EstimateRecording<'_>,
+    id: &str,
+) -> Result<Vec<LogMsg>, RecordError> {
+    let mut messages = blueprint::messages(recording, &APPLICATION.into(), id)?;
+    let blueprint_id = messages.first().map(|message| message.store_id().clone());
+    messages.extend(blueprint_id.map(|id| LogMsg::from(activation(id))));
+    Ok(messages)
+}
+
+fn activation(blueprint_id: StoreId) -> BlueprintActivationCommand {
+    BlueprintActivationCommand { blueprint_id, make_active: true, make_default: true }
+}
+
+/// Makes the chunks joint by joint, so that only one joint's are in memory.
+fn for_each_chunk(
+    recording: &EstimateRecording<'_>,
+    mut take: impl FnMut(&Chunk) -> Result<(), RecordError>,
+) -> Result<(), RecordError> {
+    let starts = TrialStarts::of(recording.joints);
+    let layout = |joint| JointLayout::of(joint, &starts, recording.detail);
+    let layouts: Vec<_> = recording.joints.iter().copied().map(layout).collect();
+    let mut chunks = Chunks::new(2);
+    about::add(&mut chunks, recording, &layouts)?;
+    for (namespace, (joint, layout)) in (3..).zip(recording.joints.iter().zip(&layouts)) {
+        chunks.into_chunks().iter().try_for_each(&mut take)?;
+        chunks = Chunks::new(namespace);
+        add_joint(&mut chunks, recording, *joint, layout)?;
+    }
+    chunks.into_chunks().iter().try_for_each(&mut take)
+}
+
+fn add_joint(
+    chunks: &mut Chunks,
+    recording: &EstimateRecording<'_>,
+    joint: EstimatedJoint<'_>,
+    layout: &JointLayout<'_>,
+) -> Result<(), RecordError> {
+    let joint = joint.joint;
+    let root = joint_root(&joint.name);
+    signals::add(chunks, &root, joint, layout)?;
+    decisions::add(chunks, &root, layout)?;
+    verdict::add(chunks, &root, joint, layout, recording.settings)?;
+    segment_view::add(chunks, &root, joint, layout)?;
+    overview::add(chunks, &root, layout)
+}
+
+fn recording_name(recording: &EstimateRecording<'_>) -> String {
+    let names = recording.sources.iter().filter_map(|source| source.path.file_stem());
+    names.map(|name| name.to_string_lossy()).collect::<Vec<_>>().join(", ")
+}
+
+/// The same for the same logs, settings and version, so that two recordings of one
+/// experiment stand side by side when either differs.
+fn recording_id(recording: &EstimateRecording<'_>) -> String {
+    use sha2::{Digest as _, Sha256};
+    let mut hash = Sha256::new();
+    for source in recording.sources {
+        hash.update(&source.sha256);
+    }
+    for joint in recording.joints {
+        hash.update(&joint.joint.name);
+    }
+    hash.update(format!("{:?}{:?}", recording.settings, recording.detail));
+    hash.update(env!("CARGO_PKG_VERSION"));
+    let digest = base16ct::lower::encode_string(&hash.finalize());
+    digest.chars().take(32).collect()
+}
