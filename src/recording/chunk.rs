@@ -166,7 +166,7 @@ fn list_column(
     let offsets: Vec<i32> = std::iter::once(0).chain(ends).collect();
     let field = Field::new_list_field(items.data_type().clone(), true);
     let offsets = OffsetBuffer::new(ScalarBuffer::from(offsets));
-    let nulls = NullBuffer::from_iter(filled);
+    let nulls: NullBuffer = filled.collect();
     let list = ListArray::new(Arc::new(field), offsets, items, Some(nulls));
     SerializedComponentColumn::new(list, ComponentDescriptor::partial(name))
 }

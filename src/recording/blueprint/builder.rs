@@ -131,7 +131,7 @@ impl Builder {
         self.log("time_panel", &time)?;
         // Plots with a linked time axis start with all of it in view.
         let infinite = TimeRangeBoundary::Infinite;
-        let all = TimeRange { start: infinite.clone(), end: infinite };
+        let all = TimeRange { start: infinite, end: infinite };
         self.log(LINKED_TIME_AXIS, &TimeAxis::new().with_view_range(all))?;
         let store = StoreId::new(StoreKind::Blueprint, application.clone(), format!("{id}-views"));
         let chunks = self.chunks.into_chunks();
