@@ -1,5 +1,4 @@
 //! The low-pass against SciPy's numbers; `golden/low_pass.py` made them.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use tauscope::filter::LowPass;
 use tauscope::units::SamplePeriod;

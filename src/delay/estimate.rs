@@ -21,6 +21,10 @@ pub struct Settings {
     pub low_pass: Option<LowPass>,
     /// `τ_min`: the shortest hold, in samples, that is accepted.
     pub min_delay: usize,
+    /// The longest delay that is looked for, in samples; a segment then ends at
+    /// `p_i + max_delay + α` at the latest. For holds so long that the output meets
+    /// something else on its way, such as an end stop. The paper has no such limit.
+    pub max_delay: Option<usize>,
     /// Lower and upper limit that the output must stay between.
     pub output_limits: Option<(f64, f64)>,
     /// Smallest change of slope that is accepted, output units per sample.
@@ -42,6 +46,7 @@ impl Default for Settings {
             beta: 5,
             low_pass: Some(LowPass { cutoff_hz: 5.0, order: 4 }),
             min_delay: 0,
+            max_delay: None,
             output_limits: None,
             min_slope_change: 0.0,
             max_sse: None,
@@ -264,7 +269,8 @@ fn decide(
     let accepted = before.filter(|before| before.verdict() == Verdict::Accepted);
     let previous = accepted.and_then(Decision::breakpoint);
     let first = previous.map_or(p.saturating_sub(settings.alpha), |best| best.candidate.breakpoint);
-    let segment = Segment::clipped(first, next.saturating_add(settings.alpha), samples);
+    let latest = settings.max_delay.map_or(next, |delay| next.min(p.saturating_add(delay)));
+    let segment = Segment::clipped(first, latest.saturating_add(settings.alpha), samples);
     let values = output.get(segment.indices()).unwrap_or_default();
     let candidates = Candidates::search(values, segment.first, settings.beta);
     let facts = Facts {

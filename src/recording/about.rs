@@ -86,6 +86,7 @@ fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
         ("β", format!("{} samples", settings.beta)),
         ("low-pass", low_pass),
         ("shortest hold τ_min", format!("{} samples", settings.min_delay)),
+        ("longest delay", settings.max_delay.map_or_else(not_set, |n| format!("{n} samples"))),
         ("output limits", limits.map_or_else(not_set, |(low, high)| format!("{low} … {high}"))),
         ("smallest slope change", format!("{} per sample", settings.min_slope_change)),
         ("largest SSE", settings.max_sse.map_or_else(not_set, |limit| limit.to_string())),

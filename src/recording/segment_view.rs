@@ -32,35 +32,25 @@ pub(super) fn add(
     let root = below(root, &["drawing"]);
     let opening: Index = drawings.iter().map(|d| d.trial.opening(d.segment)).collect();
     let mut sheet = Sheet { chunks, root: &root, opening: &opening };
-    sheet.strips("grid", palette::GRID, 0.8, drawings.iter().map(|d| d.grid().0))?;
-    sheet.texts("ticks", palette::BORDER, drawings.iter().map(|d| d.grid().1))?;
-    sheet.points("measured", palette::RAW, 1.6, drawings.iter().map(Drawing::measured))?;
-    sheet.strips(
-        "smoothed",
-        palette::SMOOTHED,
-        1.4,
-        drawings.iter().map(|d| vec![d.smoothed()]),
-    )?;
-    sheet.strips("borders", palette::BORDER, 1.2, drawings.iter().map(Drawing::borders))?;
-    sheet.strips("input_step", palette::INPUT, 1.6, drawings.iter().map(Drawing::input_step))?;
-    sheet.strips("sse", palette::ERROR, 1.6, drawings.iter().map(|d| vec![d.errors()]))?;
-    let best = |wanted: Verdict| {
-        move |d: &Drawing<'_, '_>| {
-            let same = (d.segment.decision.verdict() == Verdict::Accepted)
-                == (wanted == Verdict::Accepted);
-            if same { d.best() } else { Vec::new() }
-        }
-    };
-    let rejected = Verdict::Rejected(crate::delay::Condition::Sse);
-    sheet.strips(
-        "accepted",
-        palette::ACCEPTED,
-        2.4,
-        drawings.iter().map(best(Verdict::Accepted)),
-    )?;
-    sheet.strips("rejected", palette::REJECTED, 2.4, drawings.iter().map(best(rejected)))?;
-    sheet.texts("names", palette::BORDER, drawings.iter().map(|d| d.names(joint)))?;
+    let rows = || drawings.iter();
+    sheet.strips("grid", palette::GRID, 0.8, rows().map(|d| d.grid().0))?;
+    sheet.texts("ticks", palette::BORDER, rows().map(|d| d.grid().1))?;
+    sheet.points("measured", palette::RAW, 1.6, rows().map(Drawing::measured))?;
+    sheet.strips("smoothed", palette::SMOOTHED, 1.4, rows().map(|d| vec![d.smoothed()]))?;
+    sheet.strips("borders", palette::BORDER, 1.2, rows().map(Drawing::borders))?;
+    sheet.strips("input_step", palette::INPUT, 1.6, rows().map(Drawing::input_step))?;
+    sheet.strips("sse", palette::ERROR, 1.6, rows().map(|d| vec![d.errors()]))?;
+    sheet.strips("accepted", palette::ACCEPTED, 2.4, rows().map(|d| d.chosen(Chosen::Accepted)))?;
+    sheet.strips("rejected", palette::REJECTED, 2.4, rows().map(|d| d.chosen(Chosen::Rejected)))?;
+    sheet.texts("names", palette::BORDER, rows().map(|d| d.names(joint)))?;
     add_candidates(chunks, &root, &drawings)
+}
+
+/// Whether the best pair of lines was accepted.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Chosen {
+    Accepted,
+    Rejected,
 }
 
 /// Rows for all segments at once, one call per entity.
@@ -252,6 +242,15 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let [from, to] = [p, best.breakpoint as f64].map(|k| self.output.above(k, 8.0));
         strips.push(vec![from, to]);
         strips
+    }
+
+    /// The chosen pair if its verdict is the wanted one.
+    fn chosen(&self, wanted: Chosen) -> Vec<Vec<Vec2D>> {
+        let verdict = match self.segment.decision.verdict() {
+            Verdict::Accepted => Chosen::Accepted,
+            Verdict::Rejected(_) => Chosen::Rejected,
+        };
+        if verdict == wanted { self.best() } else { Vec::new() }
     }
 
     fn names(&self, joint: &Joint) -> Labels {

@@ -65,6 +65,9 @@ fn settings_line(settings: &Settings) -> String {
     if settings.min_delay > 0 {
         parts.push(format!("hold ≥ {} samples", settings.min_delay));
     }
+    if let Some(delay) = settings.max_delay {
+        parts.push(format!("delay ≤ {delay} samples"));
+    }
     if let Some(limit) = settings.max_sse {
         parts.push(format!("SSE < {limit}"));
     }

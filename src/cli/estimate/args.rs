@@ -47,9 +47,14 @@ pub(super) struct AlgorithmArgs {
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = at_least_one)]
     filter_order: usize,
 
-    /// Reject a step that is held for fewer samples (τ_min)
+    /// Reject a step that is held for fewer samples (`τ_min`)
     #[arg(long, value_name = "SAMPLES", default_value_t = 0)]
     min_delay: usize,
+
+    /// Look for delays up to this many samples only: for holds so long that the output
+    /// meets an end stop on its way
+    #[arg(long, value_name = "SAMPLES", value_parser = at_least_one)]
+    max_delay: Option<usize>,
 
     /// Reject a step when the output touches a limit
     #[arg(long, value_name = "LO,HI", value_parser = limits, allow_hyphen_values = true)]
@@ -84,6 +89,10 @@ pub(super) struct OutputArgs {
     /// Record every decision for the Rerun viewer
     #[arg(short = 'o', long = "output", value_name = "FILE.rrd")]
     pub(super) recording: Option<PathBuf>,
+
+    /// Candidates in the recording: all, or fewer of accepted segments
+    #[arg(long, value_enum, default_value_t = Detail::Full)]
+    pub(super) detail: Detail,
 
     /// Write the table of decisions
     #[arg(long, value_name = "FILE.csv")]
@@ -126,6 +135,15 @@ pub(super) enum Format {
     Text,
     /// JSON, schema `tauscope/estimate/1`
     Json,
+}
+
+/// How many candidates are recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Detail {
+    /// Every candidate of every segment
+    Full,
+    /// At most 25 candidates of an accepted segment: for long logs
+    Lean,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -174,6 +192,7 @@ impl AlgorithmArgs {
             beta: self.beta,
             low_pass,
             min_delay: self.min_delay,
+            max_delay: self.max_delay,
             output_limits: self.output_limits,
             min_slope_change: self.min_slope_change,
             max_sse: self.max_sse,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use tauscope::report::{write_decisions, write_delays};
 
 use super::Estimated;
-use super::args::OutputArgs;
+use super::args::{Detail, OutputArgs};
 use crate::cli::message;
 use crate::cli::output::OutputFile;
 use crate::cli::progress::Verbosity;
@@ -13,6 +13,7 @@ use crate::cli::progress::Verbosity;
 /// The files that were asked for, open before the work starts.
 pub(super) struct Files {
     recording: Option<(PathBuf, OutputFile)>,
+    detail: Detail,
     decisions: Option<OutputFile>,
     delays: Option<OutputFile>,
 }
@@ -24,6 +25,7 @@ impl Files {
         let recording = open(&args.recording)?;
         Ok(Self {
             recording: args.recording.clone().zip(recording),
+            detail: args.detail,
             decisions: open(&args.decisions)?,
             delays: open(&args.delays)?,
         })
@@ -40,7 +42,7 @@ impl Files {
             file.commit()?;
         }
         if let Some((path, file)) = self.recording {
-            record(result, file)?;
+            record(result, file, self.detail)?;
             if verbosity == Verbosity::Normal {
                 let path = path.display();
                 message("recording", &format!("{path}; look at it with: rerun {path}"));
@@ -51,18 +53,21 @@ impl Files {
 }
 
 #[cfg(feature = "rrd")]
-fn record(result: &Estimated<'_>, mut file: OutputFile) -> anyhow::Result<()> {
-    let recording = tauscope::recording::EstimateRecording {
-        joints: result.joints,
-        settings: result.settings,
-        sources: &result.experiment.sources,
-        detail: tauscope::recording::Detail::Full,
+fn record(result: &Estimated<'_>, mut file: OutputFile, detail: Detail) -> anyhow::Result<()> {
+    use tauscope::recording::{self, EstimateRecording, write_estimate};
+
+    let detail = match detail {
+        Detail::Full => recording::Detail::Full,
+        Detail::Lean => recording::Detail::Lean,
     };
-    tauscope::recording::write_estimate(&recording, &mut file)?;
+    let (joints, settings) = (result.joints, result.settings);
+    let sources = &result.experiment.sources;
+    let recording = EstimateRecording { joints, settings, sources, detail };
+    write_estimate(&recording, &mut file)?;
     file.commit()
 }
 
 #[cfg(not(feature = "rrd"))]
-fn record(_: &Estimated<'_>, _: OutputFile) -> anyhow::Result<()> {
-    anyhow::bail!("this program was built without recordings (feature `rrd`)")
+fn record(_: &Estimated<'_>, _: OutputFile, _: Detail) -> anyhow::Result<()> {
+    anyhow::bail!("this program was built without recordings: build it with feature `rrd`")
 }

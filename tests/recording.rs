@@ -1,0 +1,357 @@
+//! A recording read back holds the numbers of the log and of `--decisions`, exactly.
+#![cfg(feature = "rrd")]
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
+
+use std::collections::BTreeMap;
+use std::io::{self, Cursor, Write};
+use std::path::PathBuf;
+
+use rerun::external::arrow::array::{Array as _, AsArray as _, Float64Array, Int64Array};
+use rerun::external::re_log_encoding::DecoderApp;
+use rerun::log::{Chunk, LogMsg};
+use tauscope::batch::{JointEstimate, estimate_joints};
+use tauscope::delay::Settings;
+use tauscope::experiment::{Experiment, ReadOptions};
+use tauscope::recording::{Detail, EstimateRecording, RecordError, write_estimate};
+use tauscope::report::{DecisionRow, EstimatedJoint, decision_rows};
+use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate, write_log};
+
+/// Two joints, half a minute, with the estimate of their delays.
+struct Recorded {
+    experiment: Experiment,
+    estimates: Vec<JointEstimate>,
+    settings: Settings,
+}
+
+impl Recorded {
+    fn with(settings: Settings) -> Self {
+        let joint = |name: &str, law| {
+            let input =
+                InputSpec::Levels { levels: vec![-1.0, -0.5, 0.5, 1.0], hold_s: [0.6, 1.5] };
+            JointSpec { noise: 0.02, ..JointSpec::new(name, input, law) }
+        };
+        let joints = vec![
+            joint("boom", DelayLaw::Constant { seconds: 0.2 }),
+            joint("stick", DelayLaw::Uniform { min: 0.02, max: 0.4 }),
+        ];
+        let made = simulate(&PlantSpec::new(5, 30.0, joints)).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        write_log(&made, std::fs::File::create(&path).unwrap()).unwrap();
+        let experiment = Experiment::read(&[path], &ReadOptions::default());
+        let estimates = estimate_joints(&experiment.joints, &settings, || ());
+        let estimates = estimates.into_iter().map(Result::unwrap).collect();
+        Self { experiment, estimates, settings }
+    }
+
+    fn joints(&self) -> Vec<EstimatedJoint<'_>> {
+        let pairs = self.experiment.joints.iter().zip(&self.estimates);
+        pairs.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect()
+    }
+
+    fn write(&self, detail: Detail, out: impl Write) -> Result<(), RecordError> {
+        let joints = self.joints();
+        let (settings, sources) = (&self.settings, self.experiment.sources.as_slice());
+        write_estimate(&EstimateRecording { joints: &joints, settings, sources, detail }, out)
+    }
+
+    fn read_back(&self, detail: Detail) -> ReadBack {
+        let mut bytes = Vec::new();
+        self.write(detail, &mut bytes).unwrap();
+        ReadBack::of(&bytes)
+    }
+}
+
+/// The chunks of a recording, by entity; the blueprint apart.
+struct ReadBack {
+    chunks: BTreeMap<String, Vec<Chunk>>,
+    blueprint: usize,
+}
+
+impl ReadBack {
+    fn of(bytes: &[u8]) -> Self {
+        let mut chunks: BTreeMap<String, Vec<Chunk>> = BTreeMap::new();
+        let mut blueprint = 0;
+        for message in DecoderApp::decode_lazy(Cursor::new(bytes)) {
+            if let LogMsg::ArrowMsg(store, message) = message.unwrap() {
+                if store.is_blueprint() {
+                    blueprint += 1;
+                    continue;
+                }
+                let chunk = Chunk::from_arrow_msg(&message).unwrap();
+                chunks.entry(chunk.entity_path().to_string()).or_default().push(chunk);
+            }
+        }
+        Self { chunks, blueprint }
+    }
+
+    /// Each row of a component that has one value: its times and the value.
+    fn rows<T>(
+        &self,
+        entity: &str,
+        component: &'static str,
+        value: impl Fn(&dyn rerun::external::arrow::array::Array) -> T,
+    ) -> Vec<(BTreeMap<String, i64>, T)> {
+        let mut rows = Vec::new();
+        for chunk in self.chunks.get(entity).into_iter().flatten() {
+            let Some(list) = chunk.components().get_array(component.into()) else { continue };
+            if chunk.is_static() {
+                continue;
+            }
+            for row in 0..list.len() {
+                if list.is_null(row) || list.value(row).is_empty() {
+                    continue;
+                }
+                let times = chunk.timelines().iter();
+                let times = times.map(|(name, column)| (name.to_string(), column.times_raw()[row]));
+                rows.push((times.collect(), value(&list.value(row))));
+            }
+        }
+        rows
+    }
+
+    fn scalars(&self, entity: &str) -> Vec<(BTreeMap<String, i64>, f64)> {
+        self.rows(entity, "Scalars:scalars", |cell| {
+            cell.as_any().downcast_ref::<Float64Array>().unwrap().value(0)
+        })
+    }
+
+    fn integers(&self, entity: &str, name: &'static str) -> Vec<(BTreeMap<String, i64>, i64)> {
+        self.rows(entity, name, |cell| cell.as_any().downcast_ref::<Int64Array>().unwrap().value(0))
+    }
+
+    fn numbers(&self, entity: &str, name: &'static str) -> Vec<(BTreeMap<String, i64>, f64)> {
+        self.rows(entity, name, |cell| {
+            cell.as_any().downcast_ref::<Float64Array>().unwrap().value(0)
+        })
+    }
+
+    fn texts(&self, entity: &str, component: &'static str) -> Vec<(BTreeMap<String, i64>, String)> {
+        self.rows(entity, component, |cell| cell.as_string::<i32>().value(0).to_owned())
+    }
+}
+
+fn whole(number: usize) -> i64 {
+    i64::try_from(number).unwrap()
+}
+
+#[test]
+fn signals_are_those_of_the_log_sample_by_sample() {
+    let recorded = Recorded::with(Settings::default());
+    let back = recorded.read_back(Detail::Full);
+    for (joint, estimate) in recorded.experiment.joints.iter().zip(&recorded.estimates) {
+        let (trial, estimate) = (&joint.trials[0], estimate.trials[0].as_ref().unwrap());
+        let smoothed = estimate.smoothed.as_ref().unwrap();
+        for (entity, expected) in [
+            ("input", trial.input()),
+            ("output/raw", trial.output()),
+            ("output/smoothed", smoothed),
+        ] {
+            let rows = back.scalars(&format!("/{}/{entity}", joint.name));
+            assert_eq!(rows.len(), expected.len());
+            for ((times, value), (sample, expected)) in rows.iter().zip((1..).zip(expected)) {
+                assert_eq!(times["sample"], sample);
+                assert_eq!(times["time"], (sample - 1) * 10_000_000);
+                assert_eq!(value.to_bits(), expected.to_bits());
+            }
+        }
+        let tau = back.scalars(&format!("/{}/delay/tau", joint.name));
+        let recorded: Vec<_> = (1..).zip(estimate.profile.iter()).collect();
+        let expected = recorded.iter().filter_map(|(sample, tau)| Some((*sample, (*tau)?)));
+        assert!(tau.iter().map(|(times, tau)| (times["sample"], *tau)).eq(expected));
+    }
+}
+
+#[test]
+fn the_table_holds_every_decision_and_every_candidate() {
+    let recorded = Recorded::with(Settings::default());
+    let back = recorded.read_back(Detail::Full);
+    for joint in recorded.joints() {
+        let entity = format!("/{}/decision/table", joint.joint.name);
+        let rows: Vec<DecisionRow<'_>> = decision_rows(joint).map(|(_, row)| row).collect();
+        let verdict_ticks: Vec<i64> =
+            back.integers(&entity, "accepted").iter().map(|(times, _)| times["decision"]).collect();
+        assert_eq!(verdict_ticks.len(), rows.len());
+        let of_verdicts = |all: Vec<(BTreeMap<String, i64>, i64)>| -> Vec<i64> {
+            let on_verdict =
+                |times: &BTreeMap<String, i64>| verdict_ticks.contains(&times["decision"]);
+            all.into_iter().filter(|(times, _)| on_verdict(times)).map(|(_, value)| value).collect()
+        };
+        for (name, expected) in [
+            ("i", rows.iter().map(|row| whole(row.i)).collect::<Vec<_>>()),
+            ("p", rows.iter().map(|row| whole(row.p)).collect()),
+            ("r", rows.iter().map(|row| whole(row.r)).collect()),
+            ("end", rows.iter().map(|row| whole(row.end)).collect()),
+            ("f", rows.iter().filter_map(|row| row.f_opt).map(whole).collect()),
+            ("q", rows.iter().filter_map(|row| row.q).map(whole).collect()),
+            ("delta", rows.iter().filter_map(|row| row.delta).collect()),
+        ] {
+            assert_eq!(of_verdicts(back.integers(&entity, name)), expected, "{name}");
+        }
+        for (name, expected) in [
+            ("sse", rows.iter().map(|row| row.sse.unwrap()).collect::<Vec<_>>()),
+            ("slope_before", rows.iter().map(|row| row.slope_before.unwrap()).collect()),
+            ("slope_after", rows.iter().map(|row| row.slope_after.unwrap()).collect()),
+        ] {
+            let numbers = back.numbers(&entity, name).into_iter();
+            let numbers = numbers.filter(|(times, _)| verdict_ticks.contains(&times["decision"]));
+            assert!(numbers.map(|(_, value)| value).eq(expected), "{name}");
+        }
+        let candidates: usize = rows.iter().map(|row| row.candidates).sum();
+        assert_eq!(back.integers(&entity, "j").len(), candidates);
+    }
+}
+
+#[test]
+fn every_candidate_has_a_tick_and_no_tick_is_dead() {
+    let recorded = Recorded::with(Settings::default());
+    let back = recorded.read_back(Detail::Full);
+    for (joint, estimate) in recorded.experiment.joints.iter().zip(&recorded.estimates) {
+        let decisions = &estimate.trials[0].as_ref().unwrap().decisions;
+        let mut tick = 0;
+        let mut expected = Vec::new();
+        for decision in decisions {
+            tick += 1;
+            for candidate in decision.candidates.iter() {
+                tick += 1;
+                expected.push((tick, whole(candidate.breakpoint), candidate.sse));
+            }
+            tick += 1;
+        }
+        let rows = back.scalars(&format!("/{}/decision/sse", joint.name));
+        let found: Vec<_> =
+            rows.iter().map(|(times, sse)| (times["decision"], times["sample"], *sse)).collect();
+        assert_eq!(found, expected);
+        let lines = format!("/{}/drawing/candidate", joint.name);
+        let drawn = back.rows(&lines, "LineStrips2D:strips", |_| ());
+        assert!(drawn.iter().map(|(times, ())| times["decision"]).eq(expected.iter().map(|e| e.0)));
+    }
+}
+
+#[test]
+fn each_verdict_says_why() {
+    let settings = Settings { min_slope_change: 0.12, ..Settings::default() };
+    let recorded = Recorded::with(settings);
+    let back = recorded.read_back(Detail::Full);
+    for joint in recorded.joints() {
+        let texts = back.texts(&format!("/{}/verdict", joint.joint.name), "TextDocument:text");
+        let rows: Vec<_> = decision_rows(joint).map(|(_, row)| row).collect();
+        assert_eq!(texts.len(), rows.len());
+        assert!(rows.iter().any(|row| row.verdict == "slope_change"), "the limit rejects some");
+        for (row, (times, text)) in rows.iter().zip(&texts) {
+            assert_eq!(times["segment"], whole(row.i));
+            match row.verdict {
+                "accepted" => assert!(text.contains("✓ accepted"), "{text}"),
+                failed => assert!(text.contains(&format!("**{failed}**")), "{text}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn the_page_about_it_names_settings_version_and_input() {
+    let recorded = Recorded::with(Settings::default());
+    let back = recorded.read_back(Detail::Full);
+    let chunk = &back.chunks["/about"][0];
+    let text = chunk.components().get_array("TextDocument:text".into()).unwrap().value(0);
+    let text = text.as_string::<i32>().value(0).to_owned();
+    for wanted in [
+        recorded.experiment.sources[0].sha256.as_str(),
+        env!("CARGO_PKG_VERSION"),
+        "5 samples",
+        "Butterworth, 5 Hz",
+        "All ",
+    ] {
+        assert!(text.contains(wanted), "{wanted} is not in {text}");
+    }
+    assert!(back.blueprint > 20, "the views come with it");
+}
+
+#[test]
+fn lean_keeps_rejected_segments_whole_and_says_so() {
+    let settings = Settings { min_slope_change: 0.12, beta: 1, ..Settings::default() };
+    let recorded = Recorded::with(settings);
+    let back = recorded.read_back(Detail::Lean);
+    for joint in recorded.joints() {
+        let entity = format!("/{}/decision/table", joint.joint.name);
+        let numbers = back.integers(&entity, "i");
+        let candidates = back.integers(&entity, "j");
+        for row in decision_rows(joint).map(|(_, row)| row) {
+            let ticks: Vec<_> = numbers.iter().filter(|(_, i)| *i == whole(row.i)).collect();
+            let kept = ticks.len() - 1;
+            match row.verdict {
+                "accepted" => assert!(kept <= 25 && kept < row.candidates),
+                _ => assert_eq!(kept, row.candidates),
+            }
+            let best = candidates.iter().any(|(times, j)| {
+                Some(*j) == row.f_opt.map(whole) && times["segment"] == whole(row.i)
+            });
+            assert!(best, "the best candidate is always there");
+        }
+    }
+    let about =
+        back.chunks["/about"][0].components().get_array("TextDocument:text".into()).unwrap();
+    assert!(about.value(0).as_string::<i32>().value(0).contains("--detail lean"));
+}
+
+#[test]
+fn two_runs_give_the_same_chunks_in_the_same_order() {
+    // Not the same bytes: the encoder writes a column's metadata in no fixed order.
+    let recorded = Recorded::with(Settings::default());
+    let batches = || {
+        let mut bytes = Vec::new();
+        recorded.write(Detail::Full, &mut bytes).unwrap();
+        let messages = DecoderApp::decode_lazy(Cursor::new(bytes)).map(Result::unwrap);
+        let batch = |message| match message {
+            LogMsg::ArrowMsg(store, message) => Some((store, message.chunk_id, message.batch)),
+            _ => None,
+        };
+        messages.filter_map(batch).collect::<Vec<_>>()
+    };
+    assert!(batches() == batches());
+}
+
+#[test]
+fn a_disk_that_is_full_is_an_error() {
+    struct Full(usize);
+    impl Write for Full {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0 = self.0.checked_sub(bytes.len()).ok_or(io::ErrorKind::StorageFull)?;
+            Ok(bytes.len())
+        }
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+    let recorded = Recorded::with(Settings::default());
+    for room in [0, 1000, 100_000] {
+        let result = recorded.write(Detail::Full, Full(room));
+        assert!(matches!(result, Err(RecordError::Encode(_))), "{room}");
+    }
+}
+
+#[test]
+fn trials_follow_one_another_with_an_empty_row_between() {
+    let folder = tempfile::tempdir().unwrap();
+    let path: PathBuf = folder.path().join("two.csv");
+    let mut text = String::from("trial,time_s,a.input,a.output\n");
+    for trial in ["first", "second"] {
+        for k in 0..100 {
+            let (u, y) = (i32::from(k >= 40), f64::from((k - 50).max(0)));
+            text += &format!("{trial},{},{u},{y}\n", f64::from(k) / 100.0);
+        }
+    }
+    std::fs::write(&path, text).unwrap();
+    let experiment = Experiment::read(&[path], &ReadOptions::default());
+    let settings = Settings { keep_first_last: true, low_pass: None, ..Settings::default() };
+    let estimates: Vec<_> = estimate_joints(&experiment.joints, &settings, || ());
+    let estimates = estimates.into_iter().map(Result::unwrap).collect();
+    let recorded = Recorded { experiment, estimates, settings };
+    let back = recorded.read_back(Detail::Full);
+    let samples: Vec<_> = back.scalars("/a/output/raw").iter().map(|(t, _)| t["sample"]).collect();
+    assert!(samples.iter().copied().eq((1..=100).chain(102..=201)));
+    let lanes = back.texts("/a/trial", "StateChange:state");
+    let lanes: Vec<_> =
+        lanes.iter().map(|(times, name)| (times["sample"], name.as_str())).collect();
+    assert_eq!(lanes, [(1, "first"), (102, "second")]);
+}
