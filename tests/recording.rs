@@ -303,7 +303,9 @@ fn two_runs_give_the_same_chunks_in_the_same_order() {
         recorded.write(Detail::Full, &mut bytes).unwrap();
         let messages = DecoderApp::decode_lazy(Cursor::new(bytes)).map(Result::unwrap);
         let batch = |message| match message {
-            LogMsg::ArrowMsg(store, message) => Some((store, message.chunk_id, message.batch)),
+            LogMsg::ArrowMsg(store, message) => {
+                Some((store, message.chunk_id, message.batch.clone()))
+            }
             _ => None,
         };
         messages.filter_map(batch).collect::<Vec<_>>()
