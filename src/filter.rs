@@ -68,11 +68,18 @@ impl LowPass {
         let pad = padding(&sections).min(signal.len() - 1);
         sosfilt_zi_dyn::<_, _, Sos<f64>>(sections.iter_mut());
         let extended = extend_odd(signal, pad, offset);
-        let forward = one_pass(&sections, &extended);
-        let reversed: Vec<f64> = forward.into_iter().rev().collect();
-        let backward = one_pass(&sections, &reversed);
-        let inner = backward.into_iter().rev().skip(pad).take(signal.len());
-        Ok(inner.map(|value| value + offset).collect())
+        let mut once = one_pass(&sections, &extended);
+        drop(extended);
+        once.reverse();
+        let mut twice = one_pass(&sections, &once);
+        drop(once);
+        twice.reverse();
+        twice.truncate(pad + signal.len());
+        twice.drain(..pad);
+        for value in &mut twice {
+            *value += offset;
+        }
+        Ok(twice)
     }
 
     fn design(&self, period: SamplePeriod) -> Result<Vec<Sos<f64>>, FilterError> {

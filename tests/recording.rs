@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 use std::io::{self, Cursor, Write};
 use std::path::PathBuf;
 
@@ -340,7 +341,7 @@ fn trials_follow_one_another_with_an_empty_row_between() {
     for trial in ["first", "second"] {
         for k in 0..100 {
             let (u, y) = (i32::from(k >= 40), f64::from((k - 50).max(0)));
-            text += &format!("{trial},{},{u},{y}\n", f64::from(k) / 100.0);
+            writeln!(text, "{trial},{},{u},{y}", f64::from(k) / 100.0).unwrap();
         }
     }
     std::fs::write(&path, text).unwrap();

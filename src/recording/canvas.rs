@@ -100,6 +100,11 @@ impl Plot {
         Vec2D::new(self.x(x), self.y(y))
     }
 
+    /// Down through this plot and the one `under` it.
+    pub(super) fn through(&self, under: &Self, x: f64) -> [Vec2D; 2] {
+        [Vec2D::new(self.x(x), self.top), Vec2D::new(self.x(x), under.bottom)]
+    }
+
     /// A line from edge to edge at `x`.
     pub(super) fn vertical(&self, x: f64) -> [Vec2D; 2] {
         [Vec2D::new(self.x(x), self.top), Vec2D::new(self.x(x), self.bottom)]
@@ -182,6 +187,38 @@ pub(super) fn thinned(values: &[f64]) -> Vec<usize> {
     kept
 }
 
+/// Leaves out points of a curve (x ascending) that the line between their neighbours
+/// meets to within [`INVISIBLE`]: a swinging door that opens no wider than that.
+pub(super) fn simplified(points: Vec<Vec2D>) -> Vec<Vec2D> {
+    let mut kept: Vec<Vec2D> = Vec::new();
+    let mut door = (f32::NEG_INFINITY, f32::INFINITY);
+    let mut last: Option<Vec2D> = None;
+    for point in points {
+        let Some(&anchor) = kept.last() else {
+            kept.push(point);
+            continue;
+        };
+        let slope =
+            |from: Vec2D, shift: f32| (point.y() + shift - from.y()) / (point.x() - from.x());
+        let here = slope(anchor, 0.0);
+        let (anchor, fresh) = match last.filter(|_| here < door.0 || here > door.1) {
+            Some(corner) => {
+                kept.push(corner);
+                (corner, true)
+            }
+            None => (anchor, false),
+        };
+        let (low, high) = if fresh { (f32::NEG_INFINITY, f32::INFINITY) } else { door };
+        door = (low.max(slope(anchor, -INVISIBLE)), high.min(slope(anchor, INVISIBLE)));
+        last = Some(point);
+    }
+    kept.extend(last);
+    kept
+}
+
+/// A third of a screen's pixel, on the sheet.
+const INVISIBLE: f32 = 0.5;
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -191,6 +228,29 @@ mod tests {
         assert_eq!(Span::new(0.3, 4.2).ticks(5.0), [1.0, 2.0, 3.0, 4.0]);
         assert_eq!(Span::new(-3.0, 12.0).ticks(4.0), [0.0, 5.0, 10.0]);
         assert!(Span::new(7.0, 7.0).ticks(4.0).len() < 10);
+    }
+
+    #[test]
+    fn a_straight_line_needs_its_ends_only() {
+        let line: Vec<_> = (0..50).map(|k| Vec2D::new(k as f32, 3.0 * k as f32)).collect();
+        assert_eq!(simplified(line), [Vec2D::new(0.0, 0.0), Vec2D::new(49.0, 147.0)]);
+        assert_eq!(simplified(Vec::new()), []);
+    }
+
+    #[test]
+    fn a_simplified_curve_stays_where_it_was() {
+        let curve = |x: f32| 40.0 * (x / 30.0).sin();
+        let points: Vec<_> = (0..400).map(|k| Vec2D::new(k as f32, curve(k as f32))).collect();
+        let kept = simplified(points.clone());
+        assert!(kept.len() < 80, "{}", kept.len());
+        for pair in kept.windows(2) {
+            let inside = points.iter().filter(|p| p.x() > pair[0].x() && p.x() < pair[1].x());
+            for point in inside {
+                let part = (point.x() - pair[0].x()) / (pair[1].x() - pair[0].x());
+                let line = pair[0].y() + part * (pair[1].y() - pair[0].y());
+                assert!((line - point.y()).abs() < 2.0 * INVISIBLE, "{point:?}");
+            }
+        }
     }
 
     #[test]

@@ -4,14 +4,16 @@
 //! what belongs to a candidate is set at each of its ticks and cleared before and after,
 //! so that nothing leaks into the next segment.
 
+use std::iter;
+
 use rerun::datatypes::Vec2D;
 use rerun::{EntityPath, LineStrips2D, Points2D};
 
-use super::canvas::{Labels, Plot, Span, thinned};
+use super::canvas::{Labels, Plot, Span, simplified, thinned};
 use super::chunk::{Chunks, Index};
 use super::entity::below;
 use super::error::RecordError;
-use super::layout::{JointLayout, SegmentLayout, TrialLayout};
+use super::layout::{JointLayout, SegmentLayout, TrialLayout, signed};
 use super::palette::{self, Rgb, color};
 use crate::delay::{Candidate, Line, Verdict};
 use crate::experiment::Joint;
@@ -177,7 +179,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
     }
 
     fn smoothed(&self) -> Vec<Vec2D> {
-        self.samples()(self.trial.output())
+        simplified(self.samples()(self.trial.output()))
     }
 
     fn grid(&self) -> (Vec<Vec<Vec2D>>, Labels) {
@@ -220,15 +222,15 @@ impl<'l, 'a> Drawing<'l, 'a> {
         self.error.at(candidate.breakpoint as f64, log)
     }
 
-    /// Both lines of a candidate and a line down through its breakpoint.
-    fn pair(&self, candidate: &Candidate) -> Vec<Vec<Vec2D>> {
+    /// Both lines of a candidate, and a line down through its breakpoint.
+    fn pair(&self, candidate: &Candidate) -> [Vec<Vec2D>; PAIR_STRIPS] {
         let segment = self.segment.decision.segment;
         let q = candidate.breakpoint as f64;
         let at = |line: &Line, k: f64| self.output.at(k, line.at(k));
         let first = segment.first as f64;
         let before = vec![at(&candidate.before, first), at(&candidate.before, q)];
         let after = vec![at(&candidate.after, q), at(&candidate.after, segment.last as f64)];
-        vec![before, after, self.output.vertical(q).to_vec(), self.error.vertical(q).to_vec()]
+        [before, after, self.output.through(&self.error, q).to_vec()]
     }
 
     /// The chosen pair, a mark on the error curve, and the delay as a distance.
@@ -236,7 +238,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let Some(best) = self.segment.decision.candidates.best() else {
             return Vec::new();
         };
-        let mut strips = self.pair(&best);
+        let mut strips = self.pair(&best).to_vec();
         strips.push(diamond(self.error_at(&best), 6.0));
         let p = self.segment.decision.input_step.sample as f64;
         let [from, to] = [p, best.breakpoint as f64].map(|k| self.output.above(k, 8.0));
@@ -275,13 +277,6 @@ impl<'l, 'a> Drawing<'l, 'a> {
         labels.put(Vec2D::new(62.0, 430.0), "SSE (log)".to_owned());
         labels
     }
-
-    /// What moves with the cursor.
-    fn cursor(&self, candidate: &Candidate) -> Vec<Vec<Vec2D>> {
-        let mut strips = self.pair(candidate);
-        strips.push(diamond(self.error_at(candidate), 8.0));
-        strips
-    }
 }
 
 fn diamond(Vec2D([x, y]): Vec2D, radius: f32) -> Vec<Vec2D> {
@@ -298,45 +293,35 @@ fn add_candidates(
     drawings: &[Drawing<'_, '_>],
 ) -> Result<(), RecordError> {
     let mut index = Index::default();
-    let (mut strips, mut strip_lengths) = (Vec::new(), Vec::new());
-    let mut labels = Labels::default();
-    let mut label_lengths = Vec::new();
+    let (mut strips, mut marks) = (Vec::new(), Labels::default());
+    let (mut strip_lengths, mut mark_lengths) = (Vec::new(), Vec::new());
     for drawing in drawings {
         let (trial, segment) = (drawing.trial, drawing.segment);
+        let p = signed(segment.decision.input_step.sample);
         index.extend([trial.opening(segment)]);
-        strip_lengths.push(0);
-        label_lengths.push(0);
         for (moment, candidate) in trial.candidates(segment) {
             index.extend([moment]);
-            let cursor = drawing.cursor(&candidate);
-            strip_lengths.push(cursor.len());
-            strips.extend(cursor);
-            let delay = moment_delay(segment, &candidate);
-            let text = format!(
-                "q = {}, δ = {delay}, SSE = {}",
-                candidate.breakpoint,
-                number(candidate.sse)
-            );
-            labels.put(drawing.error.above(candidate.breakpoint as f64, 28.0), text);
-            label_lengths.push(1);
+            strips.extend(drawing.pair(&candidate));
+            let (q, sse) = (signed(candidate.breakpoint), number(candidate.sse));
+            marks.put(drawing.error_at(&candidate), format!("q {q}, δ {}, SSE {sse}", q - p));
         }
         index.extend([trial.verdict(segment)]);
-        strip_lengths.push(0);
-        label_lengths.push(0);
+        let ticks = segment.kept.len();
+        let cleared = |each| iter::once(0).chain(iter::repeat_n(each, ticks)).chain([0]);
+        strip_lengths.extend(cleared(PAIR_STRIPS));
+        mark_lengths.extend(cleared(1));
     }
     let lines = below(root, &["candidate"]);
     let style = LineStrips2D::update_fields().with_colors([color(palette::CANDIDATE)]);
     chunks.push_static(lines.clone(), &style.with_radii([2.0]))?;
     let columns = LineStrips2D::update_fields().with_strips(strips).columns(strip_lengths)?;
     chunks.push(lines, index.clone(), columns)?;
-    let text = below(root, &["candidate", "numbers"]);
+    let mark = below(root, &["candidate", "mark"]);
     let style = Points2D::update_fields().with_colors([color(palette::CANDIDATE)]);
-    chunks.push_static(text.clone(), &style.with_radii([HIDDEN]).with_show_labels(true))?;
-    let points = Points2D::update_fields().with_positions(labels.places).with_labels(labels.texts);
-    chunks.push(text, index, points.columns(label_lengths)?)
+    chunks.push_static(mark.clone(), &style.with_radii([7.0]).with_show_labels(true))?;
+    let points = Points2D::update_fields().with_positions(marks.places).with_labels(marks.texts);
+    chunks.push(mark, index, points.columns(mark_lengths)?)
 }
 
-fn moment_delay(segment: &SegmentLayout<'_>, candidate: &Candidate) -> i64 {
-    super::layout::signed(candidate.breakpoint)
-        - super::layout::signed(segment.decision.input_step.sample)
-}
+/// Strips that a pair of lines is drawn with.
+const PAIR_STRIPS: usize = 3;

@@ -15,7 +15,7 @@ pub const SCHEMA: &str = "tauscope/plant/1";
 
 /// Samples of all joints together: 14 hours of a joint at 100 Hz. Keeps a slip of
 /// the pen from filling the memory.
-const MAX_SAMPLES: f64 = 5e6;
+const MAX_SAMPLES: f64 = 5e7;
 
 /// Shortest sample period in seconds: a log tells the time to a nanosecond.
 const MIN_SAMPLE_PERIOD_S: f64 = 1e-6;
@@ -215,7 +215,7 @@ impl PlantSpec {
             return Err(plant.refuse("sample_period_s", period_s, allowed));
         };
         let samples = (self.duration_s / period_s).round();
-        let allowed = "two sample periods or more; five million samples of all joints or fewer";
+        let allowed = "two sample periods or more; fifty million samples of all joints or fewer";
         plant.require("duration_s", self.duration_s, allowed, |_| {
             samples >= 2.0 && samples * count as f64 <= MAX_SAMPLES
         })?;

@@ -45,7 +45,7 @@ const DRAWING: [&str; 12] = [
     "rejected",
     "names",
     "candidate",
-    "candidate/numbers",
+    "candidate/mark",
 ];
 
 const MAP: [&str; 7] = ["grid", "ticks", "input", "output", "accepted", "rejected", "here"];
