@@ -20,6 +20,10 @@ pub struct LowPass {
 /// Highest order that is designed; above it the design itself is badly conditioned.
 pub const MAX_ORDER: usize = 12;
 
+/// Lowest cutoff, as a part of the Nyquist frequency: at order 4 a constant then still
+/// passes to 1e-9 of its value, and below it the digits go fast.
+const LOWEST_CUTOFF: f64 = 1e-4;
+
 /// Why a [`LowPass`] cannot be designed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -34,6 +38,17 @@ pub enum FilterError {
         cutoff_hz: f64,
         /// Half the sample rate.
         nyquist_hz: f64,
+    },
+    /// The cutoff is so low that the filter cannot be computed with enough digits.
+    #[error(
+        "a passband of {cutoff_hz:e} Hz is too low for this sample rate; choose {lowest_hz:e} Hz \
+         or more, or `--passband none`"
+    )]
+    TooLow {
+        /// What was asked for.
+        cutoff_hz: f64,
+        /// The lowest that can be computed at this sample rate.
+        lowest_hz: f64,
     },
     /// The cutoff is not a positive number.
     #[error("a passband of {cutoff_hz} Hz is not above zero")]
@@ -93,6 +108,10 @@ impl LowPass {
         let nyquist_hz = period.nyquist_hz();
         if cutoff_hz >= nyquist_hz {
             return Err(FilterError::AboveNyquist { cutoff_hz, nyquist_hz });
+        }
+        let lowest_hz = LOWEST_CUTOFF * nyquist_hz;
+        if cutoff_hz < lowest_hz || !nyquist_hz.is_finite() {
+            return Err(FilterError::TooLow { cutoff_hz, lowest_hz });
         }
         let filter = butter_dyn(
             order,
@@ -176,9 +195,20 @@ mod tests {
     }
 
     #[test]
+    fn at_the_lowest_cutoff_a_ramp_keeps_its_place() {
+        let ramp: Vec<f64> = (0..20_000).map(f64::from).collect();
+        let lowest = LowPass { cutoff_hz: 50.0 * LOWEST_CUTOFF, order: 4 };
+        let smooth = lowest.smooth(&ramp, period()).unwrap();
+        assert!(smooth.iter().all(|value| value.is_finite() && value.abs() < 30_000.0));
+        let constant = lowest.smooth(&vec![1e6; 20_000], period()).unwrap();
+        assert!(constant.iter().all(|value| (value - 1e6).abs() < 1e-3));
+    }
+
+    #[test]
     fn what_cannot_be_designed_says_why() {
         let smooth = |cutoff_hz, order| LowPass { cutoff_hz, order }.smooth(&[1.0], period());
         assert!(matches!(smooth(50.0, 4), Err(FilterError::AboveNyquist { .. })));
+        assert!(matches!(smooth(1e-9, 4), Err(FilterError::TooLow { .. })));
         assert!(matches!(smooth(0.0, 4), Err(FilterError::NotPositive { .. })));
         assert!(matches!(smooth(f64::NAN, 4), Err(FilterError::NotPositive { .. })));
         assert!(matches!(smooth(5.0, 0), Err(FilterError::Order { .. })));

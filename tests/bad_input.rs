@@ -438,7 +438,7 @@ fn settings_out_of_range_are_refused_with_their_name() {
         ("--threads 0", "--threads"),
         ("--resample 0", "--resample"),
         ("--fill=-1", "--fill"),
-        ("--sample-period 0", "sample period"),
+        ("--sample-period 0", "--sample-period"),
     ] {
         desk.estimate(&format!("log.csv {setting}")).is_refused().says(&[name]);
     }

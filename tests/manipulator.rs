@@ -1,7 +1,7 @@
 //! The demonstration log against the true delay of every step.
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use serde::Deserialize;
@@ -24,13 +24,13 @@ struct Judged {
     error: Option<f64>,
 }
 
-fn judged() -> HashMap<String, Vec<Judged>> {
+fn judged() -> BTreeMap<String, Vec<Judged>> {
     let path = PathBuf::from("data/manipulator.csv");
     let experiment = Experiment::read(&[path], &ReadOptions::default());
     let settings = Settings { beta: 2, ..Settings::default() };
     let estimates = estimate_joints(&experiment.joints, &settings, || ());
     let mut truth = csv::Reader::from_path("data/manipulator.truth.csv").unwrap();
-    let mut judged: HashMap<String, Vec<Judged>> = HashMap::new();
+    let mut judged: BTreeMap<String, Vec<Judged>> = BTreeMap::new();
     for step in truth.deserialize().map(Result::<Truth, _>::unwrap) {
         let joint = experiment.joints.iter().position(|joint| joint.name == step.joint).unwrap();
         let trial = estimates[joint].as_ref().unwrap().trials[0].as_ref().unwrap();

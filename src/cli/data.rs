@@ -30,19 +30,29 @@ pub(super) struct DataArgs {
     trial: Option<String>,
 
     /// Seconds between samples, for a log without a time column
-    #[arg(long, value_name = "SECONDS", help_heading = "Reading logs")]
-    sample_period: Option<f64>,
+    #[arg(
+        long, value_name = "SECONDS", value_parser = period, allow_negative_numbers = true,
+        help_heading = "Reading logs"
+    )]
+    sample_period: Option<SamplePeriod>,
 
     /// A TOML file that maps the columns of a foreign log
     #[arg(long, value_name = "FILE", help_heading = "Reading logs")]
     columns: Option<PathBuf>,
 
     /// Put unevenly sampled logs on a grid of this period: output linear, input held
-    #[arg(long, value_name = "SECONDS", value_parser = period, help_heading = "Reading logs")]
+    #[arg(
+        long, value_name = "SECONDS", value_parser = period, allow_negative_numbers = true,
+        help_heading = "Reading logs"
+    )]
     resample: Option<SamplePeriod>,
 
-    /// Fill gaps up to this long; longer ones split the trial in two
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, help_heading = "Reading logs")]
+    /// Fill gaps of the output up to this long; longer ones split the trial in two. An
+    /// input that is missing is held
+    #[arg(
+        long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true,
+        help_heading = "Reading logs"
+    )]
     fill: Option<f64>,
 }
 
@@ -62,8 +72,9 @@ impl DataArgs {
     /// # Errors
     /// When no joint at all can be read.
     pub(super) fn read(&self) -> anyhow::Result<Experiment> {
-        let files = expand_folders(&self.data)?;
+        let (files, unlisted) = expand_folders(&self.data);
         let mut experiment = Experiment::read(&files, &self.options()?);
+        experiment.failures.splice(0..0, unlisted);
         if !experiment.joints.is_empty() {
             return Ok(experiment);
         }
@@ -72,8 +83,16 @@ impl DataArgs {
         let error = anyhow::Error::from(first.error);
         Err(match others {
             0 => error,
-            _ => error.context(format!("nothing could be read ({others} more like this)")),
+            1 => error.context("nothing could be read (and one more failed)"),
+            _ => error.context(format!("nothing could be read (and {others} more failed)")),
         })
+    }
+
+    /// The files that are read, where they really are.
+    pub(super) fn files(&self) -> Vec<PathBuf> {
+        let (files, _) = expand_folders(&self.data);
+        let files = files.iter().chain(&self.columns);
+        files.filter_map(|file| file.canonicalize().ok()).collect()
     }
 
     fn options(&self) -> anyhow::Result<ReadOptions> {
@@ -83,7 +102,8 @@ impl DataArgs {
         };
         columns.time = self.time.clone().or(columns.time);
         columns.trial = self.trial.clone().or(columns.trial);
-        columns.sample_period_s = self.sample_period.or(columns.sample_period_s);
+        let period = self.sample_period.map(SamplePeriod::seconds);
+        columns.sample_period_s = period.or(columns.sample_period_s);
         let (mapped, named): (Vec<_>, Vec<_>) =
             self.joint.iter().partition(|joint| joint.contains('='));
         let mut joints: Vec<String> = named.into_iter().cloned().collect();

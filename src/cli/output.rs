@@ -23,15 +23,33 @@ enum Target {
     Direct(BufWriter<File>),
 }
 
+/// The file that `path` leads to: a link is written through, not replaced.
+pub(super) fn target_of(path: &Path) -> PathBuf {
+    // The target of a link may not be there yet.
+    let path = path.read_link().map_or_else(|_| path.to_owned(), |to| folder_of(path).join(to));
+    let parent = folder_of(&path).canonicalize().ok();
+    let place = parent.zip(path.file_name()).map(|(folder, name)| folder.join(name));
+    path.canonicalize().ok().or(place).unwrap_or(path)
+}
+
+fn folder_of(path: &Path) -> &Path {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    folder.unwrap_or_else(|| Path::new("."))
+}
+
 impl OutputFile {
-    /// Opens a file for `path`, so that a folder that is missing or cannot be written to
-    /// is told before the work is done.
+    /// Whether `path` can be written to, found out by trying: a folder that is missing is
+    /// told before the work is done.
+    pub(super) fn probe(path: &Path) -> anyhow::Result<()> {
+        Self::create(path).map(drop)
+    }
+
+    /// Opens a file for `path`.
     pub(super) fn create(path: &Path) -> anyhow::Result<Self> {
-        // A link is written through, not replaced.
-        let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        let target =
-            Self::open(&path).with_context(|| format!("{}: cannot be written", path.display()))?;
-        Ok(Self { path, target })
+        let target = target_of(path);
+        let opened = Self::open(&target);
+        let opened = opened.with_context(|| format!("{}: cannot be written", path.display()))?;
+        Ok(Self { path: target, target: opened })
     }
 
     fn open(path: &Path) -> io::Result<Target> {
@@ -42,7 +60,6 @@ impl OutputFile {
             let device = OpenOptions::new().write(true).open(path)?;
             return Ok(Target::Direct(BufWriter::new(device)));
         }
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         let mut builder = tempfile::Builder::new();
         builder.prefix(".tauscope-").suffix(".part");
         #[cfg(unix)]
@@ -51,7 +68,10 @@ impl OutputFile {
             // As for any new file: the user's mask takes its share off.
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
-        let file = builder.tempfile_in(folder.unwrap_or_else(|| Path::new(".")))?;
+        let file = builder.tempfile_in(folder_of(path))?;
+        if let Ok(existing) = path.metadata() {
+            file.as_file().set_permissions(existing.permissions())?;
+        }
         Ok(Target::Temporary(BufWriter::new(file)))
     }
 

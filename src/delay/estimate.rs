@@ -235,7 +235,7 @@ fn signed(samples: usize) -> i64 {
 /// Albrecht and Taylor, Algorithm 1 (time-varying delays of hydraulic manipulators).
 pub fn estimate(trial: &Trial, settings: &Settings) -> Result<TrialEstimate, EstimateError> {
     settings.check()?;
-    let (samples, needed) = (trial.len(), 2 * settings.beta);
+    let (samples, needed) = (trial.len(), settings.beta.saturating_mul(2));
     if samples < needed {
         let trial = trial.label().to_owned();
         return Err(EstimateError::TooFewSamples { trial, samples, needed });

@@ -17,7 +17,7 @@ pub enum Interpolation {
 }
 
 /// The delay of every sample in samples; empty where none was recorded.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct DelayProfile {
     /// NaN where nothing was recorded.
     tau: Vec<f64>,
@@ -58,5 +58,12 @@ impl DelayProfile {
     /// `τ_k` of all samples in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = Option<f64>> + '_ {
         self.tau.iter().map(|&tau| (!tau.is_nan()).then_some(tau))
+    }
+}
+
+impl PartialEq for DelayProfile {
+    /// Equal where both are empty, too.
+    fn eq(&self, other: &Self) -> bool {
+        self.iter().eq(other.iter())
     }
 }

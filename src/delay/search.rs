@@ -58,30 +58,34 @@ impl Candidates {
         if rows < 2 {
             return found;
         }
-        found.fit_before(values, offset);
-        found.fit_after(values, offset);
-        found.best = found.lowest(TIE * sum_of_squares(values, offset));
+        let scale = Scale::of(values, offset);
+        found.fit_before(values, scale);
+        found.fit_after(values, scale);
+        found.best = found.lowest(TIE * sum_of_squares(values, scale));
+        for sse in &mut found.sse {
+            *sse *= scale.unit * scale.unit;
+        }
         found
     }
 
     /// Fits the lines before each breakpoint, from the front.
-    fn fit_before(&mut self, values: &[f64], offset: f64) {
+    fn fit_before(&mut self, values: &[f64], scale: Scale) {
         let count = values.len() / self.beta - 1;
         self.sse.reserve_exact(count);
         self.before.reserve_exact(count);
         let mut line = RunningLine::default();
         for (row, f) in values.chunks_exact(self.beta).take(count).zip(1..) {
             for y in row {
-                line.push(y - offset);
+                line.push(scale.apply(*y));
             }
             let middle = self.first_sample as f64 + ((f * self.beta) as f64 - 1.0) / 2.0;
             self.sse.push(line.sse());
-            self.before.push(through(middle, line.mean() + offset, line.slope()));
+            self.before.push(scale.line(middle, line.mean(), line.slope()));
         }
     }
 
     /// Fits the lines after each breakpoint, from the back.
-    fn fit_after(&mut self, values: &[f64], offset: f64) {
+    fn fit_after(&mut self, values: &[f64], scale: Scale) {
         let rows = values.len() / self.beta;
         self.after = vec![Line::default(); rows - 1];
         let last = self.first_sample as f64 + values.len() as f64 - 1.0;
@@ -89,10 +93,10 @@ impl Candidates {
         let slots = self.after.iter_mut().rev().zip(self.sse.iter_mut().rev());
         for ((row, (after, sse)), count) in values.rchunks_exact(self.beta).zip(slots).zip(1..) {
             for y in row.iter().rev() {
-                line.push(y - offset);
+                line.push(scale.apply(*y));
             }
             let middle = last - ((count * self.beta) as f64 - 1.0) / 2.0;
-            *after = through(middle, line.mean() + offset, -line.slope());
+            *after = scale.line(middle, line.mean(), -line.slope());
             *sse += line.sse();
         }
     }
@@ -147,16 +151,42 @@ impl Candidates {
     }
 }
 
-/// The line of `slope` through `value` at sample `k`.
-fn through(k: f64, value: f64, slope: f64) -> Line {
-    Line { slope, intercept: value - slope * k }
+/// Values about the first one, in a unit in which their squares are still numbers.
+#[derive(Clone, Copy, Debug)]
+struct Scale {
+    offset: f64,
+    /// A power of two, so that nothing is rounded; 1 for all but absurd outputs.
+    unit: f64,
+    per_unit: f64,
 }
 
-/// Total sum of squares about the mean.
-fn sum_of_squares(values: &[f64], offset: f64) -> f64 {
-    let sum: f64 = values.iter().map(|y| y - offset).sum();
-    let mean = offset + sum / values.len() as f64;
-    values.iter().map(|y| (y - mean) * (y - mean)).sum()
+impl Scale {
+    fn of(values: &[f64], offset: f64) -> Self {
+        /// Exponents of two whose fourth power is still a number.
+        const USUAL: std::ops::Range<f64> = -200.0..200.0;
+        let largest = values.iter().fold(0.0, |largest: f64, y| largest.max((y - offset).abs()));
+        let exponent = largest.log2().floor();
+        let usual = largest == 0.0 || USUAL.contains(&exponent);
+        let unit = if usual { 1.0 } else { exponent.clamp(-1000.0, 1000.0).exp2() };
+        Self { offset, unit, per_unit: 1.0 / unit }
+    }
+
+    fn apply(&self, y: f64) -> f64 {
+        (y - self.offset) * self.per_unit
+    }
+
+    /// The line of `slope` through `value` at sample `k`, back in the output's unit.
+    fn line(&self, k: f64, value: f64, slope: f64) -> Line {
+        let slope = slope * self.unit;
+        Line { slope, intercept: value * self.unit + self.offset - slope * k }
+    }
+}
+
+/// Total sum of squares about the mean, in the scale's unit.
+fn sum_of_squares(values: &[f64], scale: Scale) -> f64 {
+    let sum: f64 = values.iter().map(|y| scale.apply(*y)).sum();
+    let mean = sum / values.len() as f64;
+    values.iter().map(|y| (scale.apply(*y) - mean) * (scale.apply(*y) - mean)).sum()
 }
 
 #[cfg(test)]

@@ -45,7 +45,10 @@ pub enum ReadError {
         path: PathBuf,
     },
     /// A row has more or fewer cells than the header.
-    #[error("{}, row {row}: {found} cells, but the header has {expected}", path.display())]
+    #[error(
+        "{}, row {row}: {found} cells, but the header has {expected}; give every row a cell per \
+         column{}", path.display(), quotation_hint(*lines)
+    )]
     UnequalRow {
         /// The log.
         path: PathBuf,
@@ -55,8 +58,10 @@ pub enum ReadError {
         found: usize,
         /// Cells of the header.
         expected: usize,
+        /// Lines that the row takes up; more than one where a cell is quoted.
+        lines: u64,
     },
-    /// Two columns have the same name.
+    /// Two columns have the name that is looked for.
     #[error(
         "{}, row {row}: two columns are named `{column}`; rename one of them", path.display()
     )]
@@ -67,6 +72,34 @@ pub enum ReadError {
         row: u64,
         /// The name they share.
         column: String,
+    },
+    /// The header is not UTF-8.
+    #[error(
+        "{}, row {row}, column {column}: the name is not UTF-8 text; choose UTF-8 when saving it",
+        path.display()
+    )]
+    NotUtf8 {
+        /// The log.
+        path: PathBuf,
+        /// Line of the header.
+        row: u64,
+        /// Number of the column, from 1.
+        column: usize,
+    },
+    /// Time is in a unit that is not known.
+    #[error(
+        "{}, row {row}, column `{column}`: time in [{unit}] is not known; expected [s], [ms], \
+         [us], [ns], [min] or no unit", path.display()
+    )]
+    TimeUnit {
+        /// The log.
+        path: PathBuf,
+        /// Line of the header.
+        row: u64,
+        /// The column.
+        column: String,
+        /// Its unit.
+        unit: String,
     },
     /// Two joints have the same name.
     #[error("{}: two joints are named `{joint}`; give each its own name", path.display())]
@@ -142,7 +175,7 @@ pub enum ReadError {
         seconds: f64,
     },
     /// A cell holds text where a number belongs.
-    #[error("{}, row {row}, column `{column}`: `{text}` is not a number{}", path.display(), comma_hint(text))]
+    #[error("{}, row {row}, column `{column}`: `{}` is not a number{}", path.display(), shown(text), number_hint(text))]
     NotANumber {
         /// The log.
         path: PathBuf,
@@ -178,8 +211,8 @@ pub enum ReadError {
     },
     /// Time does not increase.
     #[error(
-        "{}, row {row}: time goes from {previous} s to {time} s, but it must increase; if a new \
-         trial starts here, mark it in a `trial` column", path.display()
+        "{}, row {row}: time goes from {previous} s to {time} s, but it must increase; remove \
+         the row if it is there twice, or mark a new trial in a `trial` column", path.display()
     )]
     TimeNotIncreasing {
         /// The log.
@@ -221,7 +254,10 @@ pub enum ReadError {
         trial: String,
     },
     /// A trial has a single row, so that it has no sample period.
-    #[error("{}, row {row}: trial `{trial}` has one row only", path.display())]
+    #[error(
+        "{}, row {row}: trial `{trial}` has one row only, but needs two for a sample period",
+        path.display()
+    )]
     SingleRow {
         /// The log.
         path: PathBuf,
@@ -229,6 +265,39 @@ pub enum ReadError {
         row: u64,
         /// Its label.
         trial: String,
+    },
+    /// A row has no time.
+    #[error("{}, row {row}, column `{column}`: the time is missing; remove the row or write it", path.display())]
+    NoTimeInRow {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file.
+        row: u64,
+        /// The column.
+        column: String,
+    },
+    /// A column that is needed holds no number at all.
+    #[error("{}, column `{column}`: there is no number in it; choose another column", path.display())]
+    NeverMeasured {
+        /// The log.
+        path: PathBuf,
+        /// The column.
+        column: String,
+    },
+    /// A trial would have more samples than can be handled.
+    #[error(
+        "{}: trial `{trial}` would have {samples:e} samples on a grid of {period} s; choose a \
+         longer `--resample`, or check the times", path.display()
+    )]
+    TooManySamples {
+        /// The log.
+        path: PathBuf,
+        /// Its label.
+        trial: String,
+        /// Samples it would have.
+        samples: f64,
+        /// Seconds between them.
+        period: f64,
     },
     /// A joint has no usable sample.
     #[error("{}: joint `{joint}` has no usable sample", path.display())]
@@ -269,9 +338,21 @@ fn suggestion(nearest: Option<&str>) -> String {
     nearest.map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
 }
 
-fn comma_hint(text: &str) -> &'static str {
+fn number_hint(text: &str) -> &'static str {
     let decimal_comma = text.contains(',') && text.replace(',', ".").parse::<f64>().is_ok();
-    if decimal_comma { "; write decimals with a point" } else { "" }
+    if decimal_comma { "; write decimals with a point" } else { "; write a number, or none at all" }
+}
+
+fn quotation_hint(lines: u64) -> &'static str {
+    if lines > 1 { "; is a quotation mark never closed?" } else { "" }
+}
+
+/// The start of a cell, without characters that a terminal obeys.
+fn shown(text: &str) -> String {
+    /// Characters that tell a cell from another.
+    const ENOUGH: usize = 40;
+    let start: String = text.chars().take(ENOUGH).flat_map(char::escape_debug).collect();
+    if text.chars().count() > ENOUGH { format!("{start}…") } else { start }
 }
 
 /// A step of several periods looks like lost rows, which `--fill` mends.
@@ -279,6 +360,18 @@ fn gap_hint(step: f64, period: f64) -> &'static str {
     let periods = step / period;
     let lost_rows = periods > 1.5 && (periods - periods.round()).abs() < 0.01;
     if lost_rows { ", `--fill SECONDS` fills lost rows" } else { "" }
+}
+
+/// Names as a list, cut where nobody reads on.
+pub(super) fn listed<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
+    /// Names that are shown.
+    const SHOWN: usize = 30;
+    let all = names.len();
+    let mut list = names.take(SHOWN).map(shown).collect::<Vec<_>>().join(", ");
+    if all > SHOWN {
+        list += " and more";
+    }
+    list
 }
 
 /// The name among `names` that `wanted` was probably meant to be.

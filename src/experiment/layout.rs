@@ -15,8 +15,8 @@ const TRIAL_NAMES: [&str; 3] = ["trial", "test", "run"];
 /// Where the time of a row comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum TimeSource {
-    /// A column of seconds.
-    Seconds(usize),
+    /// A column of times, and the seconds in its unit.
+    Times(usize, f64),
     /// A column of sample numbers, one period apart.
     SampleNumbers(usize, SamplePeriod),
     /// The rows themselves, one period apart.
@@ -161,29 +161,60 @@ fn find_time(
     period: Option<SamplePeriod>,
 ) -> Result<TimeSource, ReadError> {
     if let Some(name) = &map.time {
-        return find(table, name).map(TimeSource::Seconds);
+        return find(table, name).and_then(|column| times(table, column));
     }
     let numbers = find_any(table, &[SAMPLE_NAME]);
     match (period, numbers, find_any(table, &TIME_NAMES)) {
         // A period that was asked for stands above a time column: the user knows why.
         (Some(period), Some(column), _) => Ok(TimeSource::SampleNumbers(column, period)),
         (Some(period), None, _) => Ok(TimeSource::Rows(period)),
-        (None, _, Some(column)) => Ok(TimeSource::Seconds(column)),
+        (None, _, Some(column)) => times(table, column),
         (None, _, None) => {
             Err(ReadError::NoTime { path: table.path.clone(), row: table.header_row })
         }
     }
 }
 
+/// A column of times in the unit that its header states; seconds without one.
+fn times(table: &OpenTable, column: usize) -> Result<TimeSource, ReadError> {
+    let header = table.headers.get(column);
+    let unit = header.and_then(|header| header.unit.as_deref()).unwrap_or("s");
+    let scale = match unit {
+        "s" | "sec" | "second" | "seconds" => 1.0,
+        "ms" => 1e-3,
+        "us" | "µs" | "μs" => 1e-6,
+        "ns" => 1e-9,
+        "min" => 60.0,
+        _ => {
+            return Err(ReadError::TimeUnit {
+                path: table.path.clone(),
+                row: table.header_row,
+                column: header.map_or_else(String::new, |header| header.name.clone()),
+                unit: unit.to_owned(),
+            });
+        }
+    };
+    Ok(TimeSource::Times(column, scale))
+}
+
+/// The column whose whole header is `wanted`, else the one whose name it is.
 fn find(table: &OpenTable, wanted: &str) -> Result<usize, ReadError> {
-    let found = table.headers.iter().position(|header| header.is_named(wanted));
-    found.ok_or_else(|| ReadError::MissingColumn {
-        path: table.path.clone(),
-        row: table.header_row,
-        column: wanted.to_owned(),
-        nearest: nearest_name(wanted, table.headers.iter().map(|header| header.name.as_str())),
-        available: table.names(),
-    })
+    let matching = |is_match: fn(&Header) -> &str| {
+        let headers = table.headers.iter().enumerate();
+        headers.filter(|(_, header)| is_match(header) == wanted).map(|(index, _)| index).collect()
+    };
+    let whole: Vec<usize> = matching(|header| &header.text);
+    let found = if whole.is_empty() { matching(|header| &header.name) } else { whole };
+    let (path, row, column) = (table.path.clone(), table.header_row, wanted.to_owned());
+    match found.as_slice() {
+        [index] => Ok(*index),
+        [_, ..] => Err(ReadError::DuplicateColumn { path, row, column }),
+        [] => {
+            let names = table.headers.iter().map(|header| header.name.as_str());
+            let (nearest, available) = (nearest_name(wanted, names), table.names());
+            Err(ReadError::MissingColumn { path, row, column, nearest, available })
+        }
+    }
 }
 
 fn find_any(table: &OpenTable, wanted: &[&str]) -> Option<usize> {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::error::nearest_name;
+use super::error::{listed, nearest_name};
 use super::layout::{JointLayout, Layout, TimeSource};
 use super::sampling::{Fault, Grid, Repair, Signals};
 use super::table::{BadCell, Column, OpenTable, Table, TrialRows};
@@ -113,29 +113,47 @@ fn unique_stem(path: &Path, taken: &[String]) -> String {
 ///
 /// Truth files (`*.truth.csv`) are no logs and are left out.
 ///
-/// # Errors
-/// [`ReadError::Io`] for a folder that cannot be listed, [`ReadError::EmptyFolder`] for
-/// one without a log.
-pub fn expand_folders(paths: &[PathBuf]) -> Result<Vec<PathBuf>, ReadError> {
-    let mut files = Vec::new();
+/// Beside the files, the folders that cannot be listed ([`ReadError::Io`]) or hold no log
+/// ([`ReadError::EmptyFolder`]).
+pub fn expand_folders(paths: &[PathBuf]) -> (Vec<PathBuf>, Vec<Failure>) {
+    let (mut files, mut failures) = (Vec::new(), Vec::new());
     for path in paths {
-        if !path.is_dir() {
-            files.push(path.clone());
-            continue;
+        match logs_in(path) {
+            Ok(logs) => files.extend(logs),
+            Err(error) => failures.push(Failure { joint: None, error }),
         }
-        let io_error = |source| ReadError::Io { path: path.clone(), source };
-        let mut logs = Vec::new();
-        for entry in path.read_dir().map_err(io_error)? {
-            logs.push(entry.map_err(io_error)?.path());
-        }
-        logs.retain(|file| is_log(file));
-        logs.sort();
-        if logs.is_empty() {
-            return Err(ReadError::EmptyFolder { path: path.clone() });
-        }
-        files.extend(logs);
     }
-    Ok(files)
+    (files, failures)
+}
+
+fn logs_in(path: &Path) -> Result<Vec<PathBuf>, ReadError> {
+    if !path.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let io_error = |source| ReadError::Io { path: path.to_owned(), source };
+    let mut logs = Vec::new();
+    for entry in path.read_dir().map_err(io_error)? {
+        logs.push(entry.map_err(io_error)?.path());
+    }
+    logs.retain(|file| is_log(file));
+    logs.sort();
+    if logs.is_empty() {
+        return Err(ReadError::EmptyFolder { path: path.to_owned() });
+    }
+    Ok(logs)
+}
+
+/// Names of the parts of a trial that was split: `a#1`, `a#2`, with as many marks as it
+/// takes to meet no other trial.
+fn part_labels(label: &str, parts: usize, trials: &[TrialRows]) -> Vec<String> {
+    if parts == 1 {
+        return vec![label.to_owned()];
+    }
+    let mut stem = format!("{label}#");
+    while trials.iter().any(|trial| trial.label.starts_with(&stem)) {
+        stem.push('#');
+    }
+    (1..=parts).map(|part| format!("{stem}{part}")).collect()
 }
 
 fn is_log(path: &Path) -> bool {
@@ -197,7 +215,7 @@ impl Layout {
             path: path.to_owned(),
             joint: name.clone(),
             nearest: nearest_name(name, names.iter().map(String::as_str)),
-            available: names.join(", "),
+            available: listed(names.iter().map(String::as_str)),
         };
         wanted.iter().filter(|name| !known(name)).map(|name| (name.clone(), error(name))).collect()
     }
@@ -205,7 +223,7 @@ impl Layout {
     /// Indices of all columns that hold numbers, each once.
     fn numeric_columns(&self) -> Vec<usize> {
         let mut columns = match self.time {
-            TimeSource::Seconds(column) | TimeSource::SampleNumbers(column, _) => vec![column],
+            TimeSource::Times(column, _) | TimeSource::SampleNumbers(column, _) => vec![column],
             TimeSource::Rows(_) => Vec::new(),
         };
         for joint in &self.joints {
@@ -249,7 +267,7 @@ impl Log<'_> {
         repair: Repair,
     ) -> Result<Vec<Grid>, ReadError> {
         let (column, scale) = match time {
-            TimeSource::Seconds(column) => (column, 1.0),
+            TimeSource::Times(column, scale) => (column, scale),
             TimeSource::SampleNumbers(column, period) => (column, period.seconds()),
             TimeSource::Rows(period) => {
                 let grid =
@@ -273,11 +291,10 @@ impl Log<'_> {
             return Err(error);
         }
         match times.iter().position(|time| time.is_nan()) {
-            Some(index) => Err(ReadError::NotANumber {
+            Some(index) => Err(ReadError::NoTimeInRow {
                 path: self.path.to_owned(),
                 row: self.row(index),
                 column: self.header(column),
-                text: String::new(),
             }),
             None => Ok(()),
         }
@@ -295,6 +312,10 @@ impl Log<'_> {
             },
             Fault::NotUniform { row, step, period } => {
                 ReadError::NotUniform { path, row: self.row(trial.start + row), step, period }
+            }
+            Fault::TooMany { samples, period } => {
+                let trial = trial.label.clone();
+                ReadError::TooManySamples { path, trial, samples, period }
             }
             Fault::SingleRow => ReadError::SingleRow {
                 path,
@@ -321,10 +342,8 @@ impl Log<'_> {
         };
         for (rows, grid) in trials.iter().zip(grids) {
             let pieces = grid.pieces(&self.signals(layout, rows));
-            let several = pieces.len() > 1;
-            for (index, piece) in pieces.into_iter().enumerate() {
-                let part = if several { format!("#{}", index + 1) } else { String::new() };
-                let label = format!("{}{part}", rows.label);
+            let labels = part_labels(&rows.label, pieces.len(), trials);
+            for (label, piece) in labels.into_iter().zip(pieces) {
                 let Signals { input, output, covariates } = piece.signals;
                 let trial = Trial::new(label, piece.start_s, grid.period(), input, output)
                     .and_then(|trial| trial.with_covariates(covariates));
@@ -348,6 +367,13 @@ impl Log<'_> {
         let further = layout.covariates.iter().map(|covariate| covariate.column);
         if let Some(error) = needed.into_iter().chain(further).find_map(|c| self.bad_cell(c)) {
             return Err(error);
+        }
+        let empty = |column: &usize| {
+            self.column(*column).is_some_and(|c| c.values.iter().all(|value| value.is_nan()))
+        };
+        if let Some(column) = needed.into_iter().find(empty) {
+            let (path, column) = (self.path.to_owned(), self.header(column));
+            return Err(ReadError::NeverMeasured { path, column });
         }
         if repair.fill_s.is_some() {
             return Ok(());

@@ -1,7 +1,5 @@
 //! From rows with times to a uniform grid: checks, filling, splitting, resampling.
 
-use std::ops::Range;
-
 use crate::units::SamplePeriod;
 
 /// What may be done to a log that is not uniform or not complete.
@@ -27,6 +25,7 @@ pub(super) enum Fault {
     NotIncreasing { row: usize },
     NotUniform { row: usize, step: f64, period: f64 },
     SingleRow,
+    TooMany { samples: f64, period: f64 },
 }
 
 /// Times of a trial's rows, checked, and the grid they are put on.
@@ -38,7 +37,8 @@ pub(super) struct Grid {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Placement {
-    /// Each row has its own place on the grid; places without a row are gaps.
+    /// Each row has its own place on the grid; places without a row are gaps, and those
+    /// of `fill` places and less may be filled.
     Rows { start_s: f64, places: Vec<usize>, fill: f64 },
     /// The grid lies anew over the rows' times.
     Resampled { times: Vec<f64>, longest_gap_s: f64 },
@@ -70,6 +70,9 @@ impl Grid {
         if let Some(period) = repair.resample {
             let default_gap = RESAMPLE_GAP_PERIODS * period.seconds().max(median);
             let longest_gap_s = repair.fill_s.unwrap_or(default_gap);
+            let bridged = steps.iter().filter(|step| is_within(**step, longest_gap_s));
+            let samples = bridged.sum::<f64>() / period.seconds();
+            check_size(samples, period.seconds())?;
             let placement = Placement::Resampled { times: times.to_vec(), longest_gap_s };
             return Ok(Self { period, placement });
         }
@@ -79,6 +82,8 @@ impl Grid {
         let period = span / places.last().copied().unwrap_or(1) as f64;
         let period = SamplePeriod::from_seconds(tidy(period)).ok_or(Fault::SingleRow)?;
         let fill = repair.fill_s.map_or(1.0, |fill| fill / period.seconds());
+        let gaps = places.windows(2).map(|pair| (pair[1] - pair[0]) as f64);
+        check_size(gaps.filter(|gap| is_within(*gap, fill)).sum(), period.seconds())?;
         Ok(Self { period, placement: Placement::Rows { start_s, places, fill } })
     }
 
@@ -95,21 +100,47 @@ impl Grid {
 
     /// The signals of a joint on the grid, cut at its long gaps.
     pub(super) fn pieces(&self, signals: &Signals) -> Vec<Piece> {
+        let mut signals = signals.clone();
+        hold(&mut signals.input);
         match &self.placement {
             Placement::Rows { start_s, places, fill } => {
-                let whole = spread(signals, places);
-                let ranges = runs(&whole.output, *fill);
-                let piece = |range: Range<usize>| Piece {
-                    start_s: start_s + range.start as f64 * self.period.seconds(),
-                    signals: filled(&whole, range),
+                let place_s = |place: usize| start_s + place as f64 * self.period.seconds();
+                let measured = measured_rows(&signals);
+                let joined = |&from: &usize, &to: &usize| match (places.get(from), places.get(to)) {
+                    (Some(from), Some(to)) => is_within((to - from) as f64, fill.max(1.0)),
+                    _ => false,
                 };
-                ranges.into_iter().map(piece).collect()
+                let piece = |rows: &[usize]| {
+                    let (first, last) = (*rows.first()?, *rows.last()?);
+                    let places = places.get(first..=last)?;
+                    let start_s = place_s(*places.first()?);
+                    Some(Piece { start_s, signals: on_grid(&signals, first, places) })
+                };
+                measured.chunk_by(joined).filter_map(piece).collect()
             }
             Placement::Resampled { times, longest_gap_s } => {
-                resampled(signals, times, *longest_gap_s, self.period)
+                resampled(&signals, times, *longest_gap_s, self.period)
             }
         }
     }
+}
+
+/// Rows with an output.
+fn measured_rows(signals: &Signals) -> Vec<usize> {
+    let rows = signals.output.iter().enumerate().filter(|(_, y)| !y.is_nan());
+    rows.map(|(row, _)| row).collect()
+}
+
+/// Samples of one trial that are still handled: 8 GB as numbers.
+const MOST_SAMPLES: f64 = 1e9;
+
+fn check_size(samples: f64, period: f64) -> Result<(), Fault> {
+    if samples > MOST_SAMPLES { Err(Fault::TooMany { samples, period }) } else { Ok(()) }
+}
+
+/// Whether a gap is no longer than the limit, rounding left aside.
+fn is_within(gap: f64, limit: f64) -> bool {
+    gap <= limit * (1.0 + 1e-9)
 }
 
 /// The place of each row on a grid of `period`, from the steps between rows.
@@ -134,68 +165,34 @@ fn place_rows(steps: &[f64], period: f64, repair: Repair) -> Result<Vec<usize>, 
     Ok(places)
 }
 
-/// Places longer than this in one gap are not spread out: the trial is split there
-/// whatever the limit, so that a clock set anew does not fill the memory.
-const LONGEST_GAP: usize = 10_000_000;
-
-/// Signals on every place of the grid, NaN where no row has one.
-fn spread(signals: &Signals, places: &[usize]) -> Signals {
-    let length = places.last().map_or(0, |last| last + 1);
-    if length == places.len() {
-        return signals.clone();
-    }
-    let length = length.min(places.len() + LONGEST_GAP);
-    let spread_one = |values: &Vec<f64>| {
-        let mut spread = vec![f64::NAN; length];
-        for (&value, &place) in values.iter().zip(places) {
-            if let Some(slot) = spread.get_mut(place) {
-                *slot = value;
+/// The signals of the rows from `first` on at their `places`, gaps between them filled:
+/// output linear, input held.
+fn on_grid(signals: &Signals, first: usize, places: &[usize]) -> Signals {
+    let start = places.first().copied().unwrap_or_default();
+    let length = places.last().map_or(0, |last| last + 1 - start);
+    let spread = |values: &Vec<f64>| {
+        let mut grid = vec![f64::NAN; length];
+        for (value, place) in values.iter().skip(first).zip(places) {
+            if let Some(slot) = grid.get_mut(place - start) {
+                *slot = *value;
             }
         }
-        spread
+        grid
     };
-    Signals {
-        input: spread_one(&signals.input),
-        output: spread_one(&signals.output),
-        covariates: signals.covariates.iter().map(spread_one).collect(),
-    }
-}
-
-/// Runs of `values` from number to number in which no two numbers are more than
-/// `longest` places apart.
-fn runs(values: &[f64], longest: f64) -> Vec<Range<usize>> {
-    let mut runs: Vec<Range<usize>> = Vec::new();
-    for (place, _) in values.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
-        match runs.last_mut() {
-            Some(run) if (place + 1 - run.end) as f64 <= longest.max(1.0) => run.end = place + 1,
-            _ => runs.push(place..place + 1),
-        }
-    }
-    runs
-}
-
-/// A range of the signals with its gaps filled: output linear, input held.
-fn filled(whole: &Signals, range: Range<usize>) -> Signals {
-    let held_before = whole.input.get(..range.start).unwrap_or_default();
-    let held = held_before.iter().rev().find(|value| !value.is_nan()).copied();
-    let cut = |values: &Vec<f64>| values.get(range.clone()).unwrap_or_default().to_vec();
-    let mut signals = Signals {
-        input: cut(&whole.input),
-        output: cut(&whole.output),
-        covariates: whole.covariates.iter().map(cut).collect(),
+    let mut grid = Signals {
+        input: spread(&signals.input),
+        output: spread(&signals.output),
+        covariates: signals.covariates.iter().map(spread).collect(),
     };
-    hold(&mut signals.input, held);
-    interpolate(&mut signals.output);
-    signals
+    hold(&mut grid.input);
+    interpolate(&mut grid.output);
+    grid
 }
 
-/// Replaces each NaN by the number before it; the first ones by `before` or, without
-/// it, by the first number that comes.
-fn hold(values: &mut [f64], before: Option<f64>) {
+/// Replaces each NaN by the number before it, the first ones by the first number.
+fn hold(values: &mut [f64]) {
     let first = values.iter().find(|value| !value.is_nan()).copied();
-    let Some(mut last) = before.or(first) else {
-        return;
-    };
+    let mut last = first.unwrap_or(f64::NAN);
     for value in values {
         if value.is_nan() {
             *value = last;
@@ -227,12 +224,9 @@ fn resampled(
     longest_gap_s: f64,
     period: SamplePeriod,
 ) -> Vec<Piece> {
-    let measured: Vec<usize> = (0..times.len())
-        .filter(|&row| signals.output.get(row).is_some_and(|y| !y.is_nan()))
-        .collect();
     let time = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
-    let joined = |&from: &usize, &to: &usize| time(to) - time(from) <= longest_gap_s;
-    measured
+    let joined = |&from: &usize, &to: &usize| is_within(time(to) - time(from), longest_gap_s);
+    measured_rows(signals)
         .chunk_by(joined)
         .filter(|rows| rows.len() > 1)
         .map(|rows| resampled_piece(signals, times, rows, period))
@@ -280,8 +274,6 @@ fn resampled_piece(
             target.push(between(source));
         }
     }
-    let before = signals.input.iter().find(|value| !value.is_nan()).copied();
-    hold(&mut piece.input, before);
     Piece { start_s, signals: piece }
 }
 

@@ -3,13 +3,14 @@
 //! Knows nothing of joints beyond "this column is wanted": what the columns mean is
 //! decided in [`super::layout`].
 
-use std::collections::HashSet;
+use std::collections::{HashSet, VecDeque};
 use std::fs::File;
 use std::io::{self, Cursor, Read};
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest as _, Sha256};
 
+use super::error::listed;
 use super::{ReadError, Source};
 
 /// Name and unit of a column.
@@ -32,10 +33,6 @@ impl Header {
         };
         Self { name: name.to_owned(), unit, text: text.to_owned() }
     }
-
-    pub(super) fn is_named(&self, wanted: &str) -> bool {
-        self.name == wanted || self.text == wanted
-    }
 }
 
 /// A file whose first bytes were looked at, and a line ending behind its last line,
@@ -48,7 +45,6 @@ pub(super) struct OpenTable {
     pub(super) headers: Vec<Header>,
     /// Line of the header in the file.
     pub(super) header_row: u64,
-    ending: LineEnding,
     reader: csv::Reader<Bytes>,
 }
 
@@ -59,43 +55,30 @@ impl OpenTable {
         let mut file = File::open(path).map_err(io_error)?;
         let mut start = Vec::new();
         file.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start).map_err(io_error)?;
-        let delimiter = sniff_delimiter(&start);
-        let ending = LineEnding::sniff(&start);
         let mut reader = csv::ReaderBuilder::new()
-            .delimiter(delimiter)
+            .delimiter(sniff_delimiter(&start))
             .comment(Some(b'#'))
             .flexible(true)
             .has_headers(false)
-            .from_reader(Hashing::new(Cursor::new(start).chain(file)).chain(ending.bytes()));
-        let mut record = csv::StringRecord::new();
+            .from_reader(Hashing::new(Cursor::new(start).chain(file)).chain(&b"\n"[..]));
+        let mut record = csv::ByteRecord::new();
         let csv_error = |source| ReadError::Csv { path: path.to_owned(), source };
-        if !reader.read_record(&mut record).map_err(csv_error)? {
+        if !reader.read_byte_record(&mut record).map_err(csv_error)? {
             return Err(ReadError::Empty { path: path.to_owned() });
         }
-        let header_row = row_just_read(&reader, ending);
-        let headers = record.iter().map(Header::parse).collect();
-        let table = Self { path: path.to_owned(), headers, header_row, ending, reader };
-        table.check_names()?;
-        Ok(table)
-    }
-
-    fn check_names(&self) -> Result<(), ReadError> {
-        let mut names: Vec<_> = self.headers.iter().map(|header| &header.name).collect();
-        names.sort();
-        match names.windows(2).find(|pair| pair[0] == pair[1] && !pair[0].is_empty()) {
-            Some(pair) => Err(ReadError::DuplicateColumn {
-                path: self.path.clone(),
-                row: self.header_row,
-                column: pair[0].clone(),
-            }),
-            None => Ok(()),
-        }
+        let header_row = place_just_read(&mut reader, &record).row;
+        let text = |(cell, column): (&[u8], usize)| {
+            let not_utf8 =
+                |_| ReadError::NotUtf8 { path: path.to_owned(), row: header_row, column };
+            std::str::from_utf8(cell).map(Header::parse).map_err(not_utf8)
+        };
+        let headers = record.iter().zip(1..).map(text).collect::<Result<_, _>>()?;
+        Ok(Self { path: path.to_owned(), headers, header_row, reader })
     }
 
     /// The names of all columns, for messages.
     pub(super) fn names(&self) -> String {
-        let names: Vec<_> = self.headers.iter().map(|header| header.text.as_str()).collect();
-        names.join(", ")
+        listed(self.headers.iter().map(|header| header.text.as_str()))
     }
 
     /// Reads the columns `numeric` as numbers and `label` as text.
@@ -117,8 +100,8 @@ impl OpenTable {
             if !more.map_err(|source| ReadError::Csv { path: self.path.clone(), source })? {
                 break;
             }
-            let row = row_just_read(&self.reader, self.ending);
-            self.check_width(row, record.len())?;
+            let Place { row, lines } = place_just_read(&mut self.reader, &record);
+            self.check_width(row, record.len(), lines)?;
             rows.push(row);
             for column in &mut columns {
                 column.push(&record, row);
@@ -134,63 +117,64 @@ impl OpenTable {
         Ok(Table { source, rows, columns, trials: labels.map_or_else(Vec::new, |l| l.runs) })
     }
 
-    fn check_width(&self, row: u64, found: usize) -> Result<(), ReadError> {
+    fn check_width(&self, row: u64, found: usize, lines: u64) -> Result<(), ReadError> {
         let expected = self.headers.len();
         if found == expected {
             return Ok(());
         }
-        Err(ReadError::UnequalRow { path: self.path.clone(), row, found, expected })
+        Err(ReadError::UnequalRow { path: self.path.clone(), row, found, expected, lines })
     }
 }
 
 /// Bytes that are looked at to tell the delimiter.
 const SNIFFED_BYTES: u64 = 64 * 1024;
 
-/// The delimiter that is most frequent in the first line that is no comment.
+/// The delimiter that is most frequent in the first line that is no comment, units and
+/// quoted cells left out.
 fn sniff_delimiter(start: &[u8]) -> u8 {
-    let line = start
+    let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
+    let line = text
         .split(|&byte| byte == b'\n')
         .find(|line| !line.starts_with(b"#") && !line.trim_ascii().is_empty())
         .unwrap_or_default();
-    let pieces = |delimiter: u8| line.split(|&byte| byte == delimiter).count();
+    let mut enclosed = None;
+    let mut counts = [(b'\t', 0), (b';', 0), (b',', 0)];
+    for &byte in line {
+        enclosed = match (enclosed, byte) {
+            (None, b'[') => Some(b']'),
+            (None, b'"') => Some(b'"'),
+            (Some(end), byte) if end == byte => None,
+            (enclosed, _) => enclosed,
+        };
+        for (delimiter, count) in &mut counts {
+            *count += usize::from(enclosed.is_none() && *delimiter == byte);
+        }
+    }
     // The comma is last, so that it wins when nothing is found.
-    [b'\t', b';', b','].into_iter().max_by_key(|&delimiter| pieces(delimiter)).unwrap_or(b',')
+    counts.into_iter().max_by_key(|(_, count)| *count).map_or(b',', |(delimiter, _)| delimiter)
 }
 
-/// Line of the record that was read last.
+/// Where a record stands in the file.
+struct Place {
+    /// Its first line, counted from 1.
+    row: u64,
+    /// Lines it takes up.
+    lines: u64,
+}
+
+/// The place of the record that was read last.
 ///
-/// A record's own position is that of the comment lines before it, so the line is
-/// counted back from where the reader stands now.
-fn row_just_read<R: Read>(reader: &csv::Reader<R>, ending: LineEnding) -> u64 {
-    let line = reader.position().line();
-    match ending {
-        LineEnding::Lf => line.saturating_sub(1).max(1),
-        // The parser has only taken the first half and is still on the line.
-        LineEnding::CrLf => line,
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum LineEnding {
-    Lf,
-    CrLf,
-}
-
-impl LineEnding {
-    fn bytes(self) -> &'static [u8] {
-        match self {
-            Self::Lf => b"\n",
-            Self::CrLf => b"\r\n",
-        }
-    }
-
-    fn sniff(start: &[u8]) -> Self {
-        let first = start.iter().position(|&byte| byte == b'\n');
-        match first.and_then(|index| start.get(index.wrapping_sub(1))) {
-            Some(b'\r') => Self::CrLf,
-            _ => Self::Lf,
-        }
-    }
+/// The parser's own count is that of the comment lines before it, and takes "\r\n" in
+/// two halves; so the lines before the end of the record are counted here.
+fn place_just_read(reader: &mut csv::Reader<Bytes>, record: &csv::ByteRecord) -> Place {
+    let end = reader.position().byte().saturating_sub(1);
+    let file = &mut reader.get_mut().get_mut().0;
+    let before_end = file.lines_before(end);
+    // In a quotation that is never closed, the line end behind the file is one of its own.
+    let text = record.as_slice();
+    let text = if end == file.bytes { text.strip_suffix(b"\n").unwrap_or(text) } else { text };
+    let inside = text.iter().filter(|&&byte| byte == b'\n').fold(0, |count, _| count + 1);
+    Place { row: before_end + 1 - inside, lines: inside + 1 }
 }
 
 /// The columns that were asked for.
@@ -289,11 +273,23 @@ struct Hashing<R> {
     inner: R,
     hasher: Sha256,
     bytes: u64,
+    /// Places of the line ends that no record has passed yet.
+    line_ends: VecDeque<u64>,
+    lines_passed: u64,
 }
 
 impl<R: Read> Hashing<R> {
     fn new(inner: R) -> Self {
-        Self { inner, hasher: Sha256::new(), bytes: 0 }
+        let line_ends = VecDeque::new();
+        Self { inner, hasher: Sha256::new(), bytes: 0, line_ends, lines_passed: 0 }
+    }
+
+    /// Number of line ends before the byte `place`, which never goes back.
+    fn lines_before(&mut self, place: u64) -> u64 {
+        while self.line_ends.pop_front_if(|end| *end < place).is_some() {
+            self.lines_passed += 1;
+        }
+        self.lines_passed
     }
 
     /// Reads what is left and gives the hash of all of it.
@@ -308,7 +304,10 @@ impl<R: Read> Hashing<R> {
 impl<R: Read> Read for Hashing<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.inner.read(buffer)?;
-        self.hasher.update(buffer.get(..count).unwrap_or_default());
+        let new = buffer.get(..count).unwrap_or_default();
+        self.hasher.update(new);
+        let ends = new.iter().zip(self.bytes..).filter(|(byte, _)| **byte == b'\n');
+        self.line_ends.extend(ends.map(|(_, place)| place));
         self.bytes += count as u64;
         Ok(count)
     }
@@ -331,6 +330,8 @@ mod tests {
         assert_eq!(sniff_delimiter(b"# a, b, c\n\nt;a.input;a.output\n1;2;3"), b';');
         assert_eq!(sniff_delimiter(b"t\ta,b\tc"), b'\t');
         assert_eq!(sniff_delimiter(b"single"), b',');
+        assert_eq!(sniff_delimiter(b"\xef\xbb\xbf# a, b, c\nt;x;y"), b';');
+        assert_eq!(sniff_delimiter(b"t,x [a;b;c]"), b',');
     }
 
     #[test]
@@ -348,7 +349,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log.csv");
         let text = "# made by hand\nt,a\n0,1\n# pause\n\n1,2\n2,x";
-        for text in [text.to_owned(), format!("{text}\n"), text.replace('\n', "\r\n")] {
+        let mixed = text.replacen('\n', "\r\n", 2);
+        for text in [text.to_owned(), format!("{text}\n"), text.replace('\n', "\r\n"), mixed] {
             std::fs::write(&path, &text).unwrap();
             let open = OpenTable::open(&path).unwrap();
             assert_eq!(open.header_row, 2, "{text:?}");

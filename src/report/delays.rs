@@ -18,14 +18,12 @@ pub fn write_delays(joints: &[EstimatedJoint<'_>], out: impl Write) -> csv::Resu
     let taus = joints.iter().map(|joint| format!("{}.tau", joint.joint.name));
     let header = ["trial", "sample", "time_s"].into_iter().map(str::to_owned).chain(taus);
     writer.write_record(header)?;
-    for label in labels(joints) {
-        let columns: Vec<_> = joints.iter().map(|joint| find(*joint, label)).collect();
+    for run in runs(joints) {
+        let columns: Vec<_> = joints.iter().map(|joint| find(*joint, run)).collect();
         let trials = columns.iter().flatten().map(|(trial, _)| *trial);
-        let Some(longest) = trials.max_by_key(|trial| trial.len()) else {
-            continue;
-        };
+        let Some(longest) = trials.max_by_key(|trial| trial.len()) else { continue };
         for sample in 1..=longest.len() {
-            writer.write_field(label)?;
+            writer.write_field(run.label())?;
             writer.write_field(sample.to_string())?;
             writer.write_field(tidy_seconds(longest.time_s(sample)).to_string())?;
             for column in &columns {
@@ -38,17 +36,23 @@ pub fn write_delays(joints: &[EstimatedJoint<'_>], out: impl Write) -> csv::Resu
     Ok(writer.flush()?)
 }
 
-/// Labels of all trials, each once, in the order they first appear.
-fn labels<'a>(joints: &[EstimatedJoint<'a>]) -> Vec<&'a str> {
+/// All trials, each once, in the order they first appear. Where joints were split at
+/// gaps of their own, parts of one name that start apart are different trials.
+fn runs<'a>(joints: &[EstimatedJoint<'a>]) -> Vec<&'a Trial> {
     let mut seen = HashSet::new();
-    let all = joints.iter().flat_map(|joint| &joint.joint.trials).map(Trial::label);
-    all.filter(|label| seen.insert(*label)).collect()
+    let all = joints.iter().flat_map(|joint| &joint.joint.trials);
+    all.filter(|trial| seen.insert(key(trial))).collect()
 }
 
-/// The joint's trial with this label, and its delays.
-fn find<'a>(joint: EstimatedJoint<'a>, label: &str) -> Option<(&'a Trial, &'a DelayProfile)> {
+/// What tells one run from another: name, start and sample period.
+fn key(trial: &Trial) -> (&str, u64, u64) {
+    (trial.label(), trial.time_s(1).to_bits(), trial.period().seconds().to_bits())
+}
+
+/// The joint's share of `run`, and its delays.
+fn find<'a>(joint: EstimatedJoint<'a>, run: &Trial) -> Option<(&'a Trial, &'a DelayProfile)> {
     let trials = joint.joint.trials.iter().zip(&joint.estimate.trials);
-    let mut named = trials.filter(|(trial, _)| trial.label() == label);
-    let (trial, result) = named.next()?;
+    let mut same = trials.filter(|(trial, _)| key(trial) == key(run));
+    let (trial, result) = same.next()?;
     Some((trial, &result.as_ref().ok()?.profile))
 }

@@ -32,28 +32,28 @@ pub(super) struct AlgorithmArgs {
     method: Method,
 
     /// Samples that a segment reaches beyond its input steps
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = at_least_one)]
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = at_least_one, allow_negative_numbers = true)]
     alpha: usize,
 
     /// Samples between two candidate breakpoints
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = at_least_one)]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = at_least_one, allow_negative_numbers = true)]
     beta: usize,
 
     /// Zero-phase low-pass on the output: its cutoff, or `none`
-    #[arg(long, value_name = "HZ|none", default_value = "5", value_parser = passband)]
+    #[arg(long, value_name = "HZ|none", default_value = "5", value_parser = passband, allow_negative_numbers = true)]
     passband: Passband,
 
     /// Order of the low-pass
-    #[arg(long, value_name = "N", default_value_t = 4, value_parser = at_least_one)]
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = at_least_one, allow_negative_numbers = true)]
     filter_order: usize,
 
     /// Reject a step that is held for fewer samples (`τ_min`)
-    #[arg(long, value_name = "SAMPLES", default_value_t = 0)]
+    #[arg(long, value_name = "SAMPLES", default_value_t = 0, allow_negative_numbers = true)]
     min_delay: usize,
 
     /// Look for delays up to this many samples only: for holds so long that the output
     /// meets an end stop on its way
-    #[arg(long, value_name = "SAMPLES", value_parser = at_least_one)]
+    #[arg(long, value_name = "SAMPLES", value_parser = at_least_one, allow_negative_numbers = true)]
     max_delay: Option<usize>,
 
     /// Reject a step when the output touches a limit
@@ -61,11 +61,11 @@ pub(super) struct AlgorithmArgs {
     output_limits: Option<(f64, f64)>,
 
     /// Reject a step when the slope changes by less, in output units per sample
-    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = threshold)]
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = threshold, allow_negative_numbers = true)]
     min_slope_change: f64,
 
     /// Reject a step unless the squared error of its lines is below this
-    #[arg(long, value_name = "X", value_parser = threshold)]
+    #[arg(long, value_name = "X", value_parser = threshold, allow_negative_numbers = true)]
     max_sse: Option<f64>,
 
     /// Judge the first and the last step like the others
@@ -74,7 +74,7 @@ pub(super) struct AlgorithmArgs {
 
     /// Count a change of the input as a step when it is more than this: for an input
     /// that was measured
-    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = threshold)]
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = threshold, allow_negative_numbers = true)]
     min_step: f64,
 
     /// The delay between two steps
@@ -107,7 +107,7 @@ pub(super) struct OutputArgs {
     pub(super) format: Format,
 
     /// Threads to use [default: all processors]
-    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    #[arg(long, value_name = "N", value_parser = at_least_one, allow_negative_numbers = true)]
     pub(super) threads: Option<usize>,
 
     /// No progress, no notices

@@ -5,7 +5,7 @@ mod files;
 
 use std::io::{self, Write as _};
 
-use anyhow::Context as _;
+use anyhow::{Context as _, anyhow};
 use tauscope::batch::{JointEstimate, estimate_joints, with_threads};
 use tauscope::delay::{EstimateError, Settings};
 use tauscope::experiment::Experiment;
@@ -22,7 +22,7 @@ type JointResult = Result<JointEstimate, EstimateError>;
 pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let verbosity = args.output.verbosity();
     let settings = args.algorithm.settings();
-    let files = Files::create(&args.output)?;
+    let files = Files::check(&args.output, &args.data.files())?;
     let experiment = {
         let _bar = progress::bar(verbosity, "reading", 0);
         args.data.read()?
@@ -30,13 +30,14 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let trials = experiment.joints.iter().map(|joint| joint.trials.len() as u64).sum();
     let bar = progress::bar(verbosity, "estimating", trials);
     let work = || estimate_joints(&experiment.joints, &settings, || bar.inc(1));
-    let results = with_threads(args.output.threads, work).context("threads cannot be started")?;
+    let results = with_threads(args.output.threads, work)
+        .map_err(|error| anyhow!("threads cannot be started: {error}"))?;
     drop(bar);
     let failures = failures(&experiment, &results);
     let estimated = estimated(&experiment, &results);
     if estimated.is_empty() {
-        let first = results.into_iter().find_map(Result::err).context("no joint")?;
-        return Err(anyhow::Error::from(first).context("no joint could be estimated"));
+        let first = failures.into_iter().next_back();
+        return Err(anyhow!(first.unwrap_or_else(|| "no joint in the logs".to_owned())));
     }
     for failure in &failures {
         message("warning", failure);
@@ -48,7 +49,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     }
     let result = Estimated { experiment: &experiment, joints: &estimated, settings: &settings };
     files.write(&result, verbosity)?;
-    print(args.output.format, &result, &failures)?;
+    print(args.output.format, &result, &failures).context("standard output cannot be written")?;
     Ok(if failures.is_empty() { Completion::Whole } else { Completion::Partial })
 }
 
@@ -70,25 +71,34 @@ fn estimated<'a>(
     estimated.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect()
 }
 
-/// A message on each file and joint that failed.
+/// A message on each file, joint and trial that failed.
 fn failures(experiment: &Experiment, results: &[JointResult]) -> Vec<String> {
     let unread = experiment.failures.iter().map(|failure| {
-        let error = anyhow_chain(&failure.error);
+        let error = with_causes(&failure.error);
         match &failure.joint {
             Some(joint) => format!("joint `{joint}` is left out: {error}"),
-            None => format!("file is left out: {error}"),
+            None => format!("left out: {error}"),
         }
     });
+    // With several files a trial's name tells which one it is from.
+    let file = match experiment.sources.as_slice() {
+        [source] => format!("{}: ", source.path.display()),
+        _ => String::new(),
+    };
     let joints = experiment.joints.iter().zip(results);
-    let unestimated = joints.filter_map(|(joint, result)| {
-        let error = result.as_ref().err()?;
-        Some(format!("joint `{}` is left out: {error}", joint.name))
+    let unestimated = joints.flat_map(|(joint, result)| {
+        let name = &joint.name;
+        let whole = result.as_ref().err();
+        let whole = whole.map(|error| format!("joint `{name}` is left out: {file}{error}"));
+        let parts = result.iter().flat_map(JointEstimate::failed);
+        let part = |error| format!("joint `{name}`, one trial is left out: {file}{error}");
+        whole.into_iter().chain(parts.map(part)).collect::<Vec<_>>()
     });
     unread.chain(unestimated).collect()
 }
 
 /// An error with its causes, in one line.
-fn anyhow_chain(error: &(dyn std::error::Error + 'static)) -> String {
+fn with_causes(error: &(dyn std::error::Error + 'static)) -> String {
     let causes = std::iter::successors(Some(error), |error| error.source());
     causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
 }
@@ -98,9 +108,6 @@ fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
     let mut notes = Vec::new();
     for EstimatedJoint { joint, estimate } in joints {
         let name = &joint.name;
-        for error in estimate.failed() {
-            notes.push(format!("joint `{name}`: {error}; the other trials are used"));
-        }
         let steps: usize = estimate.estimated().map(|trial| trial.decisions.len()).sum();
         let samples: usize = joint.trials.iter().map(tauscope::experiment::Trial::len).sum();
         if 2 * steps > samples {
