@@ -168,7 +168,7 @@ struct Place {
 /// two halves; so the lines before the end of the record are counted here.
 fn place_just_read(reader: &mut csv::Reader<Bytes>, record: &csv::ByteRecord) -> Place {
     let end = reader.position().byte().saturating_sub(1);
-    let file = &mut reader.get_mut().get_mut().0;
+    let file = reader.get_mut().get_mut().0;
     let before_end = file.lines_before(end);
     // In a quotation that is never closed, the line end behind the file is one of its own.
     let text = record.as_slice();
