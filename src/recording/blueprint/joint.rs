@@ -82,7 +82,7 @@ impl Views<'_> {
         let left =
             builder.container(ContainerKind::Vertical, "Segment", &left, &[6.0, 1.2, 1.6, 1.5])?;
         let right = [verdict, list];
-        let right = builder.container(ContainerKind::Vertical, "Verdicts", &right, &[6.3, 3.7])?;
+        let right = builder.container(ContainerKind::Vertical, "Verdicts", &right, &[7.0, 3.0])?;
         let columns = [left, right];
         builder.container(ContainerKind::Horizontal, "Decisions", &columns, &[7.1, 2.9])
     }

@@ -1,0 +1,70 @@
+//! What the documents say is true: commands run as printed and print what is printed.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
+
+use std::fs;
+use std::process::Command;
+
+/// The blocks of `text` that are fenced as `language`.
+fn blocks(text: &str, language: &str) -> Vec<String> {
+    let fence = format!("```{language}\n");
+    let starts = text.match_indices(&fence).map(|(start, _)| start + fence.len());
+    starts.map(|start| text[start..].split("```").next().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn the_readme_has_two_commands_and_the_first_prints_its_table() {
+    let readme = fs::read_to_string("README.md").unwrap();
+    let commands = blocks(&readme, "sh");
+    assert_eq!(commands.len(), 2);
+    assert_eq!(commands[1].trim(), "cargo test");
+    let arguments = commands[0].trim().strip_prefix("cargo run --release -- ").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = arguments.replace("manipulator.rrd", "recording");
+    let file = folder.path().join("recording");
+    let mut arguments: Vec<String> = arguments.split(' ').map(str::to_owned).collect();
+    if cfg!(feature = "rrd") {
+        *arguments.last_mut().unwrap() = file.to_str().unwrap().to_owned();
+    } else {
+        arguments.truncate(arguments.len() - 2);
+    }
+    let output = Command::new(env!("CARGO_BIN_EXE_tauscope")).args(&arguments).output().unwrap();
+    assert!(output.status.success());
+    assert_eq!(file.exists(), cfg!(feature = "rrd"));
+    let printed = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(blocks(&readme, "text"), [printed]);
+}
+
+#[test]
+fn commands_in_the_documents_print_what_is_printed() {
+    trycmd::TestCases::new().case("docs/*.md").case("tests/cli/*.md");
+}
+
+#[test]
+fn every_link_of_the_documents_leads_somewhere() {
+    let folders = [".", "docs", "data", "benches"];
+    for folder in folders {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_none_or(|extension| extension != "md") {
+                continue;
+            }
+            let text = fs::read_to_string(&path).unwrap();
+            for (start, _) in text.match_indices("](") {
+                let link = text[start + 2..].split(')').next().unwrap();
+                if !link.starts_with("http") {
+                    let target = path.parent().unwrap().join(link);
+                    assert!(target.exists(), "{} links to {link}", path.display());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_example_is_in_the_readme() {
+    let readme = fs::read_to_string("README.md").unwrap();
+    for entry in fs::read_dir("examples").unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        assert!(readme.contains(&format!("examples/{name}")), "{name}");
+    }
+}

@@ -1,0 +1,112 @@
+//! Measured logs of real machines, read with options alone. They are not part of this
+//! project: the folder that holds them is `TAUSCOPE_REAL_LOGS`, or `../shared/data`.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde::Deserialize;
+
+#[derive(Deserialize)]
+struct Row {
+    joint: String,
+    trial: String,
+    i: usize,
+    q: Option<f64>,
+    delta_s: Option<f64>,
+    verdict: String,
+}
+
+/// The log, or `None` after saying that the test is skipped.
+fn log(name: &str) -> Option<PathBuf> {
+    let folder = std::env::var_os("TAUSCOPE_REAL_LOGS");
+    let folder = folder.map_or_else(|| PathBuf::from("../shared/data"), PathBuf::from);
+    let path = folder.join(name);
+    if path.exists() {
+        return Some(path);
+    }
+    // Not `eprintln`, which the test runner keeps to itself.
+    let mut stderr = std::io::stderr();
+    writeln!(stderr, "skipped: {} is not here", path.display()).unwrap();
+    None
+}
+
+/// The decisions of `estimate` with these options.
+fn decisions(log: &Path, options: &str) -> Vec<Row> {
+    let folder = tempfile::tempdir().unwrap();
+    let table = folder.path().join("decisions.csv");
+    let output = Command::new(env!("CARGO_BIN_EXE_tauscope"))
+        .args(["estimate", "--quiet", "--keep-first-last", "--decisions"])
+        .arg(&table)
+        .arg(log)
+        .args(options.split(' '))
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    csv::Reader::from_path(&table).unwrap().deserialize().map(Result::unwrap).collect()
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+#[test]
+fn the_arm_of_an_excavator_starts_late_and_later_at_low_duty() {
+    let Some(log) = log("excavator_full_arm_single.csv") else { return };
+    let options = "--joint arm=u_duty_pct:angle_deg --beta 2 --max-delay 100";
+    let rows = decisions(&log, options);
+    let starts: Vec<_> = rows.iter().filter(|row| row.i == 1).collect();
+    assert_eq!(starts.len(), 28);
+    assert!(starts.iter().all(|row| row.verdict == "accepted"));
+    // Motion begins 0.15 s to 0.8 s after the valve was told to; the lag adds to that.
+    let delay = |row: &&Row| row.delta_s.unwrap();
+    assert!(starts.iter().map(delay).all(|delay| (0.15..1.2).contains(&delay)));
+    let at = |duty: &str| {
+        let of_duty = starts.iter().filter(|row| row.trial.contains(duty));
+        median(of_duty.map(delay).collect())
+    };
+    assert!(at("-40-") > at("-100-") + 0.2, "{} {}", at("-40-"), at("-100-"));
+}
+
+#[test]
+fn the_cylinders_of_a_model_excavator_start_within_a_quarter_second() {
+    let Some(log) = log("excavator_rc_steps.csv") else { return };
+    let options = "--joint boom=u_boom_duty:y_boom --joint stick=u_stick_duty:y_stick \
+                   --joint bucket=u_bucket_duty:y_bucket --trial run --resample 0.02 --fill 2 \
+                   --max-delay 30 --beta 2";
+    let rows = decisions(&log, options);
+    assert_eq!(rows.len(), 9, "one step in each run, of the joint it is named after");
+    assert!(rows.iter().all(|row| row.verdict == "accepted"));
+    assert!(rows.iter().all(|row| (0.1..0.25).contains(&row.delta_s.unwrap())));
+    assert!(rows.iter().any(|row| row.joint == "boom"));
+}
+
+#[derive(Deserialize)]
+struct Label {
+    stroke: String,
+    k_onset_twoline: f64,
+}
+
+#[test]
+fn a_rotary_actuator_breaks_away_where_its_labels_say() {
+    let Some(log) = log("rotary_hydraulic_strokes.csv") else { return };
+    let options = "--trial stroke --joint rotary=p_drive_cnt:angle_cnt --sample-period 0.004 \
+                   --min-step 4000 --beta 1 --passband none --max-delay 40";
+    let rows = decisions(&log, options);
+    let labels = log.with_file_name("rotary_hydraulic_labels.csv");
+    let labels: Vec<Label> =
+        csv::Reader::from_path(labels).unwrap().deserialize().map(Result::unwrap).collect();
+    let error = |row: &Row| {
+        let label = labels.iter().find(|label| label.stroke == row.trial)?;
+        // Labels count samples from 0.
+        Some(row.q? - 1.0 - label.k_onset_twoline)
+    };
+    let first = rows.iter().filter(|row| row.i == 1 && row.verdict == "accepted");
+    let errors: Vec<f64> = first.filter_map(error).collect();
+    assert_eq!(errors.len(), 120);
+    let mean = errors.iter().sum::<f64>() / 120.0;
+    let spread = (errors.iter().map(|e| (e - mean).powi(2)).sum::<f64>() / 119.0).sqrt();
+    assert!(mean.abs() < 3.0 && spread < 2.5, "mean {mean}, spread {spread}");
+}
