@@ -4,12 +4,10 @@
 //! joint has its signals, its decisions and a drawing of every segment; four timelines
 //! (`decision`, `segment`, `sample`, `time`) move through all of them together.
 //!
-//! - [`layout`]: where samples, trials and decisions lie on the timelines
-//! - [`chunk`]: columns of rows with reproducible ids
-//! - [`signals`], [`decisions`], [`verdict`], [`canvas`], [`overview`], [`about`]: one
-//!   part of the content each
-//! - [`blueprint`]: which view shows what
-//! - [`write`](write_estimate): into a file or a stream of the caller's own
+//! Inside, `layout` says where samples, trials and decisions lie on the timelines, `chunk`
+//! makes columns of rows with reproducible ids, `signals`, `decisions`, `verdict`,
+//! `segment_view`, `overview` and `about` are one part of the content each, `blueprint`
+//! says which view shows what, and `write` brings it into a file or a stream.
 
 mod about;
 mod blueprint;
