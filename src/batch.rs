@@ -6,7 +6,10 @@
 use rayon::prelude::*;
 
 use crate::delay::{EstimateError, Settings, TrialEstimate, estimate};
+use crate::diagnosis::{Comparison, compare};
 use crate::experiment::Joint;
+use crate::fit::{Fit, FitError, Horizon, Record, Split, assess, fit};
+use crate::model::{JointModel, integrators};
 
 /// The delays of one joint in all its trials.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,6 +52,52 @@ pub fn estimate_joints(
         }
     };
     joints.par_iter().map(one_joint).collect()
+}
+
+/// What becomes of a model before it is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// A plain integrator that the estimated delays suggest, fitted.
+    Integrator,
+    /// The given model, fitted from its values.
+    Fit,
+    /// The given model as it is.
+    AsItIs,
+}
+
+/// Compares each joint with its model: `None` where it has none.
+///
+/// `models` gives the model of a joint; it is not asked for plain integrators.
+pub fn compare_joints(
+    joints: &[Joint],
+    estimates: &[Result<JointEstimate, EstimateError>],
+    models: impl Fn(&Joint) -> Option<JointModel> + Sync,
+    mode: Mode,
+    split: Option<Split>,
+    horizon: Horizon,
+) -> Vec<Option<Result<Comparison, FitError>>> {
+    let one_joint = |(joint, estimate): (&Joint, &Result<JointEstimate, EstimateError>)| {
+        let estimated: Vec<_> = estimate.iter().flat_map(JointEstimate::estimated).collect();
+        let split = split.unwrap_or_else(|| Split::of(joint));
+        let record = Record::new(joint, split, horizon);
+        let levels = record.input_levels();
+        let starts = match mode {
+            Mode::Integrator => integrators(joint, &estimated),
+            Mode::Fit | Mode::AsItIs => vec![models(joint)?],
+        };
+        let top = levels.last().copied().unwrap_or(1.0);
+        let speed = starts.first().map_or(1.0, |model| model.gain.value.abs() * top);
+        let range = record.range(&levels, speed);
+        let fits = starts.iter().map(|start| match mode {
+            Mode::Integrator | Mode::Fit => fit(&record, start, &range),
+            Mode::AsItIs => assess(&record, start, &range),
+        });
+        let cost =
+            |result: &Result<Fit, FitError>| result.as_ref().map_or(f64::MAX, |fit| fit.cost);
+        let best = fits.min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
+        Some(best.map(|fit| compare(&record, fit)))
+    };
+    joints.par_iter().zip(estimates).map(one_joint).collect()
 }
 
 /// Runs `work` on `threads` threads; on as many as there are processors without a number.

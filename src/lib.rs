@@ -5,18 +5,26 @@
 //! Each module uses only those above it.
 //!
 //! - [`units`]: scalars that are valid once they exist
+//! - [`effect`]: the catalogue of physical effects
 //! - [`filter`]: the zero-phase low-pass
 //! - [`experiment`]: logs, joints, trials
 //! - [`delay`]: the delay of every step of one joint
+//! - [`model`]: the grey-box model of a joint, and its simulation
 //! - [`synthetic`]: logs of joints with known delays
+//! - [`fit`]: models fitted to measurements
+//! - [`diagnosis`]: how good a model is, and where it fails
 //! - [`batch`]: all joints in parallel
 //! - [`report`]: results as text, CSV and JSON
 //! - `recording`: results as a Rerun recording (feature `rrd`)
 
 pub mod batch;
 pub mod delay;
+pub mod diagnosis;
+pub mod effect;
 pub mod experiment;
 pub mod filter;
+pub mod fit;
+pub mod model;
 #[cfg(feature = "rrd")]
 pub mod recording;
 pub mod report;

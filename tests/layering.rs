@@ -5,8 +5,20 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The library's modules; each may use those before it.
-const ORDER: [&str; 8] =
-    ["units", "filter", "experiment", "delay", "synthetic", "batch", "report", "recording"];
+const ORDER: [&str; 12] = [
+    "units",
+    "effect",
+    "filter",
+    "experiment",
+    "delay",
+    "model",
+    "synthetic",
+    "fit",
+    "diagnosis",
+    "batch",
+    "report",
+    "recording",
+];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();

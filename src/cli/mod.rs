@@ -1,6 +1,8 @@
 //! Arguments, printing and exit status; no mathematics.
 
+mod compare;
 mod data;
+mod effects;
 mod estimate;
 mod output;
 mod progress;
@@ -10,6 +12,7 @@ use std::io::{self, Write as _};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use tauscope::experiment::{Experiment, Failure};
 
 /// Estimate the variable delay of hydraulic joints, and record every decision.
 #[derive(Debug, Parser)]
@@ -22,6 +25,8 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Estimate(Box<estimate::Args>),
+    Compare(Box<compare::Args>),
+    Effects(effects::Args),
     Simulate(simulate::Args),
 }
 
@@ -40,6 +45,8 @@ enum Completion {
 pub(crate) fn run() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Estimate(args) => estimate::run(&args),
+        Command::Compare(args) => compare::run(&args),
+        Command::Effects(args) => effects::run(&args),
         Command::Simulate(args) => simulate::run(&args),
     };
     match outcome {
@@ -60,6 +67,24 @@ fn is_broken_pipe(error: &anyhow::Error) -> bool {
         io == Some(io::ErrorKind::BrokenPipe)
     };
     error.chain().any(is_pipe)
+}
+
+/// A message on each file and joint that could not be read.
+fn read_failures(experiment: &Experiment) -> Vec<String> {
+    let failure = |failure: &Failure| {
+        let error = with_causes(&failure.error);
+        match &failure.joint {
+            Some(joint) => format!("joint `{joint}` is left out: {error}"),
+            None => format!("left out: {error}"),
+        }
+    };
+    experiment.failures.iter().map(failure).collect()
+}
+
+/// An error with its causes, in one line.
+fn with_causes(error: &(dyn std::error::Error + 'static)) -> String {
+    let causes = std::iter::successors(Some(error), |error| error.source());
+    causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
 }
 
 /// Prints one line on stderr. That stderr is closed is no reason to stop.

@@ -1,5 +1,6 @@
 //! Results as text, CSV and JSON: pure functions to bytes.
 
+mod compare;
 mod decisions;
 mod delays;
 mod json;
@@ -7,6 +8,7 @@ mod number;
 mod summary;
 mod text;
 
+pub use compare::{CompareJson, ComparedJoint, compare_table};
 pub use decisions::{DecisionRow, decision_rows, write_decisions};
 pub use delays::write_delays;
 pub use json::EstimateJson;

@@ -12,7 +12,7 @@ use tauscope::experiment::Experiment;
 use tauscope::report::{EstimateJson, EstimatedJoint, estimate_table};
 
 use super::progress::{self, Verbosity};
-use super::{Completion, message};
+use super::{Completion, message, read_failures};
 use files::Files;
 
 pub(super) use args::Args;
@@ -73,13 +73,6 @@ fn estimated<'a>(
 
 /// A message on each file, joint and trial that failed.
 fn failures(experiment: &Experiment, results: &[JointResult]) -> Vec<String> {
-    let unread = experiment.failures.iter().map(|failure| {
-        let error = with_causes(&failure.error);
-        match &failure.joint {
-            Some(joint) => format!("joint `{joint}` is left out: {error}"),
-            None => format!("left out: {error}"),
-        }
-    });
     // With several files a trial's name tells which one it is from.
     let file = match experiment.sources.as_slice() {
         [source] => format!("{}: ", source.path.display()),
@@ -94,13 +87,7 @@ fn failures(experiment: &Experiment, results: &[JointResult]) -> Vec<String> {
         let part = |error| format!("joint `{name}`, one trial is left out: {file}{error}");
         whole.into_iter().chain(parts.map(part)).collect::<Vec<_>>()
     });
-    unread.chain(unestimated).collect()
-}
-
-/// An error with its causes, in one line.
-fn with_causes(error: &(dyn std::error::Error + 'static)) -> String {
-    let causes = std::iter::successors(Some(error), |error| error.source());
-    causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
+    read_failures(experiment).into_iter().chain(unestimated).collect()
 }
 
 /// What a person should know who looks at the numbers.

@@ -1,0 +1,194 @@
+//! `tauscope compare`: a model beside the measurement.
+
+use std::io::{self, Write as _};
+use std::path::PathBuf;
+
+use anyhow::{Context as _, anyhow};
+use clap::{Args as ClapArgs, ValueEnum};
+use tauscope::batch::{compare_joints, estimate_joints, with_threads};
+use tauscope::delay::Settings;
+use tauscope::experiment::Joint;
+use tauscope::fit::{FitError, Horizon, Split};
+use tauscope::model::{JointModel, ModelFile};
+use tauscope::report::{CompareJson, ComparedJoint, compare_table};
+
+use super::data::DataArgs;
+use super::{Completion, message};
+
+/// Compare a model with the measurement
+///
+/// Without a model file each joint is compared with a plain integrator, whose gain and
+/// delay are fitted.
+#[derive(ClapArgs, Debug)]
+pub(super) struct Args {
+    #[command(flatten)]
+    data: DataArgs,
+
+    /// A model file (TOML, schema `tauscope/model/1`). May be repeated
+    #[arg(short, long, value_name = "MODEL.toml", help_heading = "Model")]
+    model: Vec<PathBuf>,
+
+    /// Fit the free parameters of the model files, starting at their values
+    #[arg(long, help_heading = "Model")]
+    fit: bool,
+
+    /// How long a simulation runs before its angle is set to the measured one: `free`
+    /// (never), `steps` (at every step of the input), or seconds
+    #[arg(long, value_name = "free|steps|SECONDS", default_value = "free", value_parser = horizon, help_heading = "Model")]
+    horizon: Horizon,
+
+    /// Share of each trial's time that is for training, or `trials`: every third trial is
+    /// for validation [default: trials from six on, else 0.7]
+    #[arg(long, value_name = "SHARE|trials", value_parser = split, help_heading = "Model")]
+    split: Option<Split>,
+
+    /// How results are printed
+    #[arg(long, value_enum, default_value_t = Format::Text, help_heading = "Output")]
+    format: Format,
+
+    /// Threads to use [default: all processors]
+    #[arg(long, value_name = "N", help_heading = "Output")]
+    threads: Option<usize>,
+
+    /// No notices
+    #[arg(short, long, help_heading = "Output")]
+    quiet: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Format {
+    /// A table
+    Text,
+    /// JSON, schema `tauscope/compare/1`
+    Json,
+}
+
+fn horizon(text: &str) -> Result<Horizon, String> {
+    match text {
+        "free" => Ok(Horizon::FreeRun),
+        "steps" => Ok(Horizon::Steps),
+        _ => {
+            let seconds = text.parse().ok().filter(|s: &f64| s.is_finite() && *s > 0.0);
+            seconds
+                .map(Horizon::Seconds)
+                .ok_or_else(|| "expected free, steps, or seconds".to_owned())
+        }
+    }
+}
+
+fn split(text: &str) -> Result<Split, String> {
+    if text == "trials" {
+        return Ok(Split::Trials);
+    }
+    let share = text.parse().ok().filter(|share: &f64| *share > 0.0 && *share <= 1.0);
+    share
+        .map(Split::Time)
+        .ok_or_else(|| "expected a share above 0 and up to 1, or trials".to_owned())
+}
+
+/// A model by the name it has in the output.
+struct Named {
+    name: String,
+    /// None: plain integrators.
+    file: Option<ModelFile>,
+}
+
+pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
+    let models = models(&args.model)?;
+    let experiment = args.data.read()?;
+    let joints = &experiment.joints;
+    let mut failures: Vec<String> = super::read_failures(&experiment);
+    let work = || -> Vec<_> {
+        let estimates = estimate_joints(joints, &Settings::default(), || ());
+        let one = |named: &Named| {
+            let starts = |joint: &Joint| named.starts(joint);
+            compare_joints(joints, &estimates, starts, named.mode(args), args.split, args.horizon)
+        };
+        models.iter().map(one).collect()
+    };
+    let results = with_threads(args.threads, work)
+        .map_err(|error| anyhow!("threads cannot be started: {error}"))?;
+    let mut compared = Vec::new();
+    for (named, results) in models.iter().zip(&results) {
+        for (joint, result) in joints.iter().zip(results) {
+            let revision = named.file.as_ref().and_then(|file| file.revision(&joint.name));
+            match result {
+                Some(Ok(comparison)) => compared.push(ComparedJoint {
+                    joint,
+                    model: &named.name,
+                    revision: revision.unwrap_or(0),
+                    comparison,
+                }),
+                Some(Err(error)) => failures.push(failure(joint, error)),
+                None => {
+                    failures.push(format!("joint `{}`: not in model `{}`", joint.name, named.name))
+                }
+            }
+        }
+    }
+    let Some(first) = failures.first().filter(|_| compared.is_empty()) else {
+        return finish(args, &compared, &failures);
+    };
+    Err(anyhow!(first.clone()))
+}
+
+fn failure(joint: &Joint, error: &FitError) -> String {
+    format!("joint `{}` is left out: {error}", joint.name)
+}
+
+fn finish(
+    args: &Args,
+    compared: &[ComparedJoint<'_>],
+    failures: &[String],
+) -> anyhow::Result<Completion> {
+    for failure in failures {
+        message("warning", failure);
+    }
+    print(args, compared, failures).context("standard output cannot be written")?;
+    Ok(if failures.is_empty() { Completion::Whole } else { Completion::Partial })
+}
+
+fn models(paths: &[PathBuf]) -> anyhow::Result<Vec<Named>> {
+    if paths.is_empty() {
+        return Ok(vec![Named { name: "integrator".to_owned(), file: None }]);
+    }
+    let named = |path: &PathBuf| {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Named { name, file: Some(ModelFile::read(path)?) })
+    };
+    paths.iter().map(named).collect()
+}
+
+impl Named {
+    /// The model of `joint` in the file; none without a file, where there is none to ask.
+    fn starts(&self, joint: &Joint) -> Option<JointModel> {
+        self.file.as_ref().and_then(|file| file.joint(&joint.name)).cloned()
+    }
+
+    fn mode(&self, args: &Args) -> tauscope::batch::Mode {
+        match (&self.file, args.fit) {
+            (None, _) => tauscope::batch::Mode::Integrator,
+            (Some(_), true) => tauscope::batch::Mode::Fit,
+            (Some(_), false) => tauscope::batch::Mode::AsItIs,
+        }
+    }
+}
+
+fn print(args: &Args, compared: &[ComparedJoint<'_>], failures: &[String]) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    match args.format {
+        Format::Text => {
+            let horizon = match args.horizon {
+                Horizon::FreeRun => "free run".to_owned(),
+                Horizon::Steps => "restarted at every step of the input".to_owned(),
+                Horizon::Seconds(seconds) => format!("restarted every {seconds} s"),
+            };
+            out.write_all(compare_table(compared, &horizon).as_bytes())?;
+        }
+        Format::Json => {
+            serde_json::to_writer(&mut out, &CompareJson::new(compared, failures))?;
+            out.write_all(b"\n")?;
+        }
+    }
+    out.flush()
+}

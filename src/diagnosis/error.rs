@@ -1,0 +1,37 @@
+//! How large the error of a model is.
+
+use serde::Serialize;
+
+use crate::fit::{Evaluation, Part, Record};
+
+/// The error of a model on one part of a record.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ErrorFigures {
+    /// Root of the mean squared residual, output units.
+    pub rmse: f64,
+    /// `100 · (1 − ‖y − ŷ‖ / ‖y − mean(y)‖)`: 100 for a perfect model, 0 for one that is
+    /// no better than the mean of each window.
+    pub fit_percent: f64,
+    /// Largest residual, output units.
+    pub max: f64,
+}
+
+impl ErrorFigures {
+    /// The error of an evaluated model on `part`; `None` where it has no sample.
+    pub fn of(record: &Record<'_>, evaluation: &Evaluation, part: Part) -> Option<Self> {
+        let (mut samples, mut squares, mut spread, mut max) = (0, 0.0, 0.0, 0.0_f64);
+        for window in record.part(part) {
+            let residuals =
+                evaluation.residuals.get(window.trial)?.get(window.start..window.end)?;
+            let measured = record.joint().trials.get(window.trial)?.output();
+            let measured = measured.get(window.start..window.end)?;
+            samples += residuals.len();
+            squares += residuals.iter().map(|r| r * r).sum::<f64>();
+            max = residuals.iter().fold(max, |max, r| max.max(r.abs()));
+            let mean = measured.iter().sum::<f64>() / measured.len() as f64;
+            spread += measured.iter().map(|y| (y - mean) * (y - mean)).sum::<f64>();
+        }
+        let fit_percent = 100.0 * (1.0 - (squares / spread.max(f64::MIN_POSITIVE)).sqrt());
+        (samples > 0).then(|| Self { rmse: (squares / samples as f64).sqrt(), fit_percent, max })
+    }
+}

@@ -1,0 +1,16 @@
+//! Is a model good enough, and if not, where does it fail?
+//!
+//! - [`compare`]: all figures of one model on one record
+//! - [`noise_floor`]: what the measurement itself cannot tell
+//! - [`lack_of_fit`]: whether the residual is more than noise
+
+mod compare;
+mod error;
+mod lack_of_fit;
+mod noise;
+mod shapes;
+
+pub use compare::{Comparison, compare};
+pub use error::ErrorFigures;
+pub use lack_of_fit::{LackOfFit, SIGNIFICANCE, TestColumns, lack_of_fit};
+pub use noise::noise_floor;

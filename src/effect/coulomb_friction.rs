@@ -1,0 +1,180 @@
+//! Coulomb friction: a constant force against the motion, and rest while it suffices.
+//!
+//! ```text
+//! time_constant · v' + v = in − positive   while v > 0
+//! time_constant · v' + v = in + negative   while v < 0
+//! v = 0                                    while −negative ≤ in ≤ positive at rest
+//! ```
+//!
+//! ```text
+#![doc = include_str!("drawing/coulomb_friction.txt")]
+//! ```
+//!
+//! `v` is the speed in input units (the gain follows), `in` the driving force in units of
+//! the input that makes it. With `time_constant = 0` there is no inertia, and what is
+//! left is exactly a [dead band](super::DeadBand) from `−negative` to `positive`: only
+//! inertia tells the two apart, since a joint that coasts is braked to a stop, and does
+//! not fade out.
+//!
+//! The inertia is therefore part of this effect, and it contains
+//! [`ActuatorLag`](super::ActuatorLag): a friction before a separate lag would have to
+//! guess when the lag's speed passes zero, and would be wrong by up to
+//! `gain · positive · dt` in the angle at each stop. Here the time of the stop is found in
+//! closed form, and the mean over the interval is exact with any number of the events
+//! stop, rest and start in it:
+//!
+//! ```text
+//! t_stop = T · ln(1 + |v(0)| / |in ∓ level|)      ∫v dt = (in ∓ level) · t − T · Δv
+//! ```
+//!
+//! The direction of motion is that of the effect's own speed. Loads that follow it in the
+//! model, such as leakage, do not move the joint against its friction. Breakaway above
+//! the sliding level is [stiction](super::Stiction), and not in here.
+//!
+//! # References
+//! Armstrong-Hélouvry, B., Dupont, P., and Canudas de Wit, C., 1994, A survey of models,
+//! analysis tools and compensation methods for the control of machines with friction,
+//! Automatica 30; Åström, K. J., and Canudas de Wit, C., 2008, Revisiting the `LuGre`
+//! friction model, IEEE Control Systems Magazine 28.
+
+use super::dead_band::shifted;
+use super::decay::{DECAY_MEMORY, Decay};
+use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+
+/// See the [module](self).
+#[derive(Clone, Copy, Debug)]
+pub struct CoulombFriction;
+
+static SPEC: Spec = Spec {
+    id: "coulomb_friction",
+    summary: "a constant force against the motion, which may differ by direction",
+    equation: "time_constant dv/dt + v = in - positive where v > 0, in + negative where v < 0; \
+               v = 0 while -negative <= in <= positive",
+    source: "Armstrong-Hélouvry, Dupont and Canudas de Wit, 1994, A survey of models, analysis \
+             tools and compensation methods for the control of machines with friction, \
+             Automatica 30; Åström and Canudas de Wit, 2008, Revisiting the LuGre friction model",
+    stage: Stage::Dynamics,
+    drawing: Some(include_str!("drawing/coulomb_friction.txt")),
+    parameters: &[
+        Parameter::new("positive", "level against positive motion", Dimension::Input)
+            .between(0.0, UNLIMITED),
+        Parameter::new("negative", "level against negative motion", Dimension::Input)
+            .between(0.0, UNLIMITED),
+        Parameter::new("time_constant", "inertia: time to 63 % of a change", Dimension::Seconds)
+            .between(0.0, UNLIMITED),
+    ],
+    memory: 1 + DECAY_MEMORY,
+    confused_with: &["dead_band", "stiction"],
+    absorbs: &["actuator_lag"],
+    acts_on_state: false,
+};
+
+/// Gaps between input levels in which a fit starts.
+const GAPS: usize = 3;
+
+impl Effect for CoulombFriction {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    /// The memory is the speed in input units, and the decay that was computed last.
+    fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
+        let (&[positive, negative, time_constant], [speed, known @ ..]) = (parameters, memory)
+        else {
+            return at.signal;
+        };
+        let force = shifted(at.signal, -negative, positive);
+        if time_constant <= 0.0 {
+            *speed = force;
+            return force;
+        }
+        let drive = if *speed > 0.0 {
+            at.signal - positive
+        } else if *speed < 0.0 {
+            at.signal + negative
+        } else {
+            force
+        };
+        let stop_s = stop_time(*speed, drive, time_constant);
+        if stop_s < at.dt_s {
+            let braking = drive * stop_s + time_constant * *speed;
+            let rest_s = at.dt_s - stop_s;
+            let decay = Decay::over(rest_s, time_constant);
+            *speed = force * (1.0 - decay.left);
+            return (braking + rest_s * force * (1.0 - decay.mean)) / at.dt_s;
+        }
+        let decay = Decay::recall(known, at.dt_s, time_constant);
+        let deviation = *speed - drive;
+        *speed = drive + deviation * decay.left;
+        drive + deviation * decay.mean
+    }
+
+    fn settle(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) {
+        if let (&[positive, negative, _], [speed, ..]) = (parameters, memory) {
+            *speed = shifted(at.signal, -negative, positive);
+        }
+    }
+
+    fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
+        let levels = record.thresholds(GAPS);
+        let pair = |level: f64| [0.0, 0.1].map(|time_constant| vec![level, level, time_constant]);
+        levels.into_iter().flat_map(pair).collect()
+    }
+}
+
+/// Seconds until the speed is zero, infinite where `drive` does not brake it.
+fn stop_time(speed: f64, drive: f64, time_constant: f64) -> f64 {
+    let braked = if speed > 0.0 { drive < 0.0 } else { speed < 0.0 && drive > 0.0 };
+    if braked { time_constant * (-speed / drive).ln_1p() } else { f64::INFINITY }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{assert_close, moment, run};
+    use super::*;
+
+    #[test]
+    fn without_inertia_it_is_a_dead_band() {
+        let outputs = run(&CoulombFriction, &[0.3, 0.2, 0.0], &[1.0, 0.3, -0.1, -1.0, 1.0]);
+        assert_close(&outputs, &[0.7, 0.0, 0.0, -0.8, 0.7]);
+    }
+
+    #[test]
+    fn without_friction_it_is_a_lag() {
+        let inputs = [1.0, 1.0, -2.0, -2.0, 0.0];
+        let lag = run(&super::super::ActuatorLag, &[0.03], &inputs);
+        assert_close(&run(&CoulombFriction, &[0.0, 0.0, 0.03], &inputs), &lag);
+    }
+
+    #[test]
+    fn coasts_to_a_stop_and_rests() {
+        // T = 1 s, level 1, from v = e − 1 without input: v = e^(1 − t) − 1, so it stops
+        // after 1 s, having gone T v(0) − level · 1 s = e − 2.
+        let mut memory = [0.0; 5];
+        memory[0] = std::f64::consts::E - 1.0;
+        let at = Moment { dt_s: 4.0, ..moment(0.0) };
+        let mean = CoulombFriction.step(&[1.0, 1.0, 1.0], &mut memory, &at);
+        assert_close(&[4.0 * mean, memory[0]], &[std::f64::consts::E - 2.0, 0.0]);
+        assert_close(&[CoulombFriction.step(&[1.0, 1.0, 1.0], &mut memory, &at)], &[0.0]);
+    }
+
+    #[test]
+    fn turns_within_an_interval() {
+        // T = 1 s, levels 1, input −2, v = 3(e − 1): the drive −3 brakes for 1 s, over a
+        // way of 3(e − 1) − 3; then the force is −1, for 1 s a way of −(1 − (1 − 1/e)).
+        let mut memory = [0.0; 5];
+        memory[0] = 3.0 * (std::f64::consts::E - 1.0);
+        let at = Moment { dt_s: 2.0, ..moment(-2.0) };
+        let mean = CoulombFriction.step(&[1.0, 1.0, 1.0], &mut memory, &at);
+        let e = (-1.0_f64).exp();
+        let way = 3.0 * (std::f64::consts::E - 2.0) - e;
+        assert_close(&[2.0 * mean, memory[0]], &[way, e - 1.0]);
+    }
+
+    #[test]
+    fn the_smallest_inertia_is_almost_none() {
+        let inputs = [1.0, 0.1, -1.0, -0.1, 0.5];
+        let none = run(&CoulombFriction, &[0.3, 0.2, 0.0], &inputs);
+        assert_close(&run(&CoulombFriction, &[0.3, 0.2, 1e-16], &inputs), &none);
+    }
+}

@@ -1,0 +1,87 @@
+//! Dead band of the valve: its lands overlap the ports, so that it opens late.
+//!
+//! ```text
+//! out = in − upper   where in > upper
+//! out = 0            where lower ≤ in ≤ upper,   lower ≤ 0 ≤ upper
+//! out = in − lower   where in < lower
+//! ```
+//!
+//! ```text
+#![doc = include_str!("drawing/dead_band.txt")]
+//! ```
+//!
+//! Its output has a corner at each end of the band. An input held at few levels shows
+//! the ends only through the speeds at the levels outside.
+//!
+//! # References
+//! Tao, G., and Kokotović, P. V., 1996, Adaptive Control of Systems with Actuator and
+//! Sensor Nonlinearities; Merritt, H. E., 1967, Hydraulic Control Systems (overlapped
+//! valves).
+
+use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+
+/// See the [module](self).
+#[derive(Clone, Copy, Debug)]
+pub struct DeadBand;
+
+static SPEC: Spec = Spec {
+    id: "dead_band",
+    summary: "valve overlap: no flow in a band about zero, shifted outside",
+    equation: "out = max(in - upper, 0) + min(in - lower, 0)",
+    source: "Tao and Kokotović, 1996, Adaptive Control of Systems with Actuator and Sensor \
+             Nonlinearities; Merritt, 1967, Hydraulic Control Systems",
+    stage: Stage::Input,
+    drawing: Some(include_str!("drawing/dead_band.txt")),
+    parameters: &[
+        Parameter::new("lower", "lower end of the band", Dimension::Input).between(-UNLIMITED, 0.0),
+        Parameter::new("upper", "upper end of the band", Dimension::Input).between(0.0, UNLIMITED),
+    ],
+    memory: 0,
+    confused_with: &["stiction", "flow_curve", "coulomb_friction"],
+    absorbs: &[],
+    acts_on_state: false,
+};
+
+/// Gaps between input levels in which a fit starts.
+const GAPS: usize = 4;
+
+impl Effect for DeadBand {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
+        let &[lower, upper] = parameters else { return at.signal };
+        shifted(at.signal, lower, upper)
+    }
+
+    fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
+        record.thresholds(GAPS).into_iter().map(|end| vec![-end, end]).collect()
+    }
+}
+
+/// `signal` less the band from `lower` to `upper`.
+pub(super) fn shifted(signal: f64, lower: f64, upper: f64) -> f64 {
+    (signal - upper).max(0.0) + (signal - lower).min(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{assert_close, run};
+    use super::*;
+
+    #[test]
+    fn is_zero_inside_the_band_and_shifted_outside() {
+        let inputs = [-1.0, -0.2, -0.1, 0.0, 0.3, 0.5, 2.0];
+        let outputs = [-0.8, 0.0, 0.0, 0.0, 0.0, 0.2, 1.7];
+        assert_close(&run(&DeadBand, &[-0.2, 0.3], &inputs), &outputs);
+    }
+
+    #[test]
+    fn a_fit_starts_once_in_each_gap_between_levels() {
+        let levels = [0.5, 1.0];
+        let record =
+            RecordRange { input_levels: &levels, input_abs_max: 1.0, ..RecordRange::default() };
+        assert_eq!(DeadBand.starts(&record), [[-0.25, 0.25], [-0.75, 0.75]]);
+    }
+}

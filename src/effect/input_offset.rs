@@ -1,0 +1,55 @@
+//! Null offset of the valve: its spool is not centred when the input is zero.
+//!
+//! ```text
+//! out = in + offset
+//! ```
+//!
+//! The joint creeps at `gain · offset` when the input is zero, at every angle alike.
+//! The offset lies before the dead band, which may hide it.
+//!
+//! # References
+//! Merritt, H. E., 1967, Hydraulic Control Systems (null shift of a valve).
+
+use super::{Dimension, Effect, Moment, Parameter, Spec, Stage};
+
+/// See the [module](self).
+#[derive(Clone, Copy, Debug)]
+pub struct InputOffset;
+
+static SPEC: Spec = Spec {
+    id: "input_offset",
+    summary: "null offset: the valve is not centred at zero input",
+    equation: "out = in + offset",
+    source: "Merritt, 1967, Hydraulic Control Systems",
+    stage: Stage::Input,
+    drawing: None,
+    parameters: &[
+        Parameter::new("offset", "what is added to the input", Dimension::Input).typical(0.02)
+    ],
+    memory: 0,
+    confused_with: &["direction_gain", "leakage"],
+    absorbs: &[],
+    acts_on_state: false,
+};
+
+impl Effect for InputOffset {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
+        let &[offset] = parameters else { return at.signal };
+        at.signal + offset
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{assert_close, run};
+    use super::*;
+
+    #[test]
+    fn adds_the_offset() {
+        assert_close(&run(&InputOffset, &[-0.25], &[0.0, 1.0, -2.0]), &[-0.25, 0.75, -2.25]);
+    }
+}

@@ -1,0 +1,68 @@
+//! Leakage: oil that passes the piston lets the joint drift toward an angle.
+//!
+//! ```text
+//! out = in − rate · (y − y0)
+//! ```
+//!
+//! `y0` is the angle at which the load is in balance; the load is taken as linear in the
+//! angle about it. Where the drift hardly changes over the angles of the record, `y0` lies
+//! far outside and only `rate · y0` is determined: an [offset](super::InputOffset).
+//!
+//! # References
+//! Merritt, H. E., 1967, Hydraulic Control Systems (leakage past the piston).
+
+use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage};
+
+/// See the [module](self).
+#[derive(Clone, Copy, Debug)]
+pub struct Leakage;
+
+static SPEC: Spec = Spec {
+    id: "leakage",
+    summary: "drifts toward an angle, whatever the input",
+    equation: "out = in - rate (y - y0)",
+    source: "Merritt, 1967, Hydraulic Control Systems",
+    stage: Stage::Load,
+    drawing: None,
+    parameters: &[
+        Parameter::new("rate", "speed of the drift per distance", Dimension::PerSecond)
+            .between(0.0, 10.0),
+        Parameter::new("y0", "angle toward which it drifts", Dimension::Output),
+    ],
+    memory: 0,
+    confused_with: &["gravity_load", "input_offset"],
+    absorbs: &[],
+    acts_on_state: false,
+};
+
+impl Effect for Leakage {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
+        let &[rate, y0] = parameters else { return at.signal };
+        at.signal - rate * (at.position - y0)
+    }
+
+    /// Toward either end of the record and toward its middle.
+    fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
+        let speed = record.size(Dimension::OutputPerSecond);
+        let rate = 0.05 * speed / record.output_span();
+        let angles = [record.output_min, record.output_middle(), record.output_max];
+        angles.into_iter().map(|y0| vec![rate, y0]).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{assert_close, moment};
+    use super::*;
+
+    #[test]
+    fn drifts_toward_its_angle() {
+        let speed =
+            |position| Leakage.step(&[0.1, 20.0], &mut [], &Moment { position, ..moment(5.0) });
+        assert_close(&[20.0, 40.0, 0.0].map(speed), &[5.0, 3.0, 7.0]);
+    }
+}

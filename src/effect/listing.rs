@@ -1,0 +1,179 @@
+//! The catalogue as text for people and as data for programs.
+
+use serde::Serialize;
+
+use super::{Effect, Parameter, REGISTRY, Spec, UNLIMITED};
+
+/// Narrowest text, in columns: below it lines would hold a word or two.
+const NARROWEST: usize = 40;
+
+/// Columns by which everything under an effect's name is moved in.
+const INDENT: usize = 4;
+
+/// The whole catalogue as text, in lines of at most `width` columns where words allow.
+pub fn listing(width: usize) -> String {
+    let entries = REGISTRY.iter().map(|effect| lines_of(effect.spec(), width).join("\n"));
+    entries.map(|entry| entry + "\n").collect::<Vec<_>>().join("\n")
+}
+
+/// One effect as text, with its drawing and its source.
+pub fn sheet(effect: &dyn Effect, width: usize) -> String {
+    let spec = effect.spec();
+    let mut lines = lines_of(spec, width);
+    lines.push(String::new());
+    if let Some(drawing) = spec.drawing {
+        lines.extend(drawing.lines().map(|line| format!("{:INDENT$}{line}", "")));
+        lines.push(String::new());
+    }
+    lines.extend(wrapped(&format!("source: {}", spec.source), width));
+    lines.join("\n") + "\n"
+}
+
+/// The catalogue as data, schema `tauscope/effects/1`.
+#[derive(Clone, Debug, Serialize)]
+pub struct EffectsJson {
+    schema: &'static str,
+    version: &'static str,
+    effects: Vec<EffectJson>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct EffectJson {
+    #[serde(flatten)]
+    spec: &'static Spec,
+    units: Vec<String>,
+}
+
+impl EffectsJson {
+    /// Collects `effects`; `units` stand in the order of the parameters.
+    pub fn new(effects: &[&dyn Effect]) -> Self {
+        let units = |spec: &Spec| spec.parameters.iter().map(unit).collect();
+        let effect = |effect: &&dyn Effect| {
+            let spec = effect.spec();
+            EffectJson { spec, units: units(spec) }
+        };
+        Self {
+            schema: "tauscope/effects/1",
+            version: env!("CARGO_PKG_VERSION"),
+            effects: effects.iter().map(effect).collect(),
+        }
+    }
+}
+
+fn lines_of(spec: &Spec, width: usize) -> Vec<String> {
+    let mut texts = vec![spec.summary.to_owned(), spec.equation.to_owned()];
+    texts.extend(spec.parameters.iter().map(parameter));
+    if !spec.confused_with.is_empty() {
+        texts.push(format!("confused with: {}", spec.confused_with.join(", ")));
+    }
+    let head = format!("{} ({})", spec.id, spec.stage.id());
+    let below = texts.iter().flat_map(|text| wrapped(text, width));
+    std::iter::once(head).chain(below).collect()
+}
+
+/// `upper [input unit]: upper end of the band, at least 0, neutral 0`
+fn parameter(parameter: &Parameter) -> String {
+    let Parameter { name, meaning, neutral, .. } = parameter;
+    let unit = match unit(parameter) {
+        unit if unit.is_empty() => unit,
+        unit => format!(" [{unit}]"),
+    };
+    let neutral = if neutral.abs() < UNLIMITED {
+        format!("neutral {neutral}")
+    } else {
+        "neutral without limit".to_owned()
+    };
+    let not_fitted = (!parameter.fitted).then(|| "not fitted".to_owned());
+    let head = format!("{name}{unit}: {meaning}");
+    let parts = [Some(head), range(parameter), Some(neutral), not_fitted];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+fn unit(parameter: &Parameter) -> String {
+    parameter.dimension.unit(None, None)
+}
+
+fn range(parameter: &Parameter) -> Option<String> {
+    let Parameter { min, max, .. } = parameter;
+    match (*min > -UNLIMITED, *max < UNLIMITED) {
+        (true, true) => Some(format!("{min} to {max}")),
+        (true, false) => Some(format!("at least {min}")),
+        (false, true) => Some(format!("at most {max}")),
+        (false, false) => None,
+    }
+}
+
+/// `text` in lines of at most `width` columns, moved in; those that go on twice as far.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let width = width.max(NARROWEST);
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            None => lines.push(format!("{:INDENT$}{word}", "")),
+            Some(_) => lines.push(format!("{:1$}{word}", "", 2 * INDENT)),
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{InputSaturation, PositionGain};
+    use super::*;
+
+    #[test]
+    fn a_sheet_reads_so() {
+        let expected = "\
+input_saturation (input)
+    flow limit, hard or with a soft knee
+    abs(out) = min(abs(in), limit), rounded within limit (1
+        -+ softness)
+    limit [input unit]: largest magnitude that passes, at
+        least 0, neutral without limit
+    softness: half the width of the knee, as a part of the
+        limit, 0 to 1, neutral 0
+    confused with: flow_curve, rate_limit
+
+              out |    ______ limit
+                  |  .'  softness rounds the knee
+                  | /
+    --------------+---------- in
+                / |
+      ______ .'   |
+
+    source: Jelali and Kroll, 2003, Hydraulic Servo-systems
+";
+        assert_eq!(sheet(&InputSaturation, 60), expected);
+    }
+
+    #[test]
+    fn what_is_not_fitted_says_so() {
+        let text = sheet(&PositionGain, 200);
+        assert!(text.contains("slope [1/output unit]: change of the gain with the angle, neutral"));
+        assert!(text.contains("reference [output unit]: angle at which"));
+        assert!(text.contains(", not fitted\n"));
+    }
+
+    #[test]
+    fn the_listing_keeps_the_width_and_names_all() {
+        for width in [40, 80, 120] {
+            let text = listing(width);
+            assert!(text.lines().all(|line| line.chars().count() <= width), "{text}");
+            assert!(REGISTRY.iter().all(|effect| text.contains(effect.spec().id)));
+        }
+    }
+
+    #[test]
+    fn the_data_have_a_schema_and_units() {
+        let json = serde_json::to_value(EffectsJson::new(REGISTRY)).unwrap();
+        assert_eq!(json["schema"], "tauscope/effects/1");
+        assert_eq!(json["effects"][7]["id"], "variable_delay");
+        assert_eq!(json["effects"][7]["units"][0], "s/input unit");
+        assert_eq!(json["effects"][7]["parameters"][0]["dimension"], "seconds_per_input");
+        assert_eq!(json["effects"][16]["parameters"][1]["neutral"], 1e12);
+    }
+}

@@ -1,0 +1,82 @@
+//! Linkage: how far the joint turns for the same way of the cylinder depends on the angle.
+//!
+//! ```text
+//! out = in · max(1 + slope · (y − reference) + curvature · (y − reference)², 0.05)
+//! ```
+//!
+//! The parabola stands for the lever arm of the cylinder about the joint. The gain of the
+//! joint is that at `reference`, which is a choice and not fitted: the middle of the
+//! record, so that the gain is known best. Outside the angles of the record the parabola
+//! says nothing, and the floor only keeps the joint from turning round.
+//!
+//! # References
+//! Koivo, A. J., 1994, Kinematics of excavators (backhoes) for transferring surface
+//! material, Journal of Aerospace Engineering 7 (the lever arms in full).
+
+use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage};
+
+/// See the [module](self).
+#[derive(Clone, Copy, Debug)]
+pub struct PositionGain;
+
+static SPEC: Spec = Spec {
+    id: "position_gain",
+    summary: "linkage: the gain depends on the angle",
+    equation: "out = in (1 + slope (y - reference) + curvature (y - reference)^2)",
+    source: "Koivo, 1994, Kinematics of excavators (backhoes) for transferring surface material, \
+             Journal of Aerospace Engineering 7",
+    stage: Stage::Load,
+    drawing: None,
+    parameters: &[
+        Parameter::new("slope", "change of the gain with the angle", Dimension::PerOutput),
+        Parameter::new(
+            "curvature",
+            "change of the gain with its square",
+            Dimension::PerOutputSquared,
+        ),
+        Parameter::new(
+            "reference",
+            "angle at which the gain is that of the joint",
+            Dimension::Output,
+        )
+        .not_fitted(),
+    ],
+    memory: 0,
+    confused_with: &["gravity_load"],
+    absorbs: &[],
+    acts_on_state: false,
+};
+
+/// Smallest factor that is left of the gain.
+const SMALLEST_FACTOR: f64 = 0.05;
+
+impl Effect for PositionGain {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
+        let &[slope, curvature, reference] = parameters else { return at.signal };
+        let away = at.position - reference;
+        at.signal * (1.0 + away * (slope + curvature * away)).max(SMALLEST_FACTOR)
+    }
+
+    fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
+        vec![vec![0.0, 0.0, record.output_middle()]]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{assert_close, moment};
+    use super::*;
+
+    #[test]
+    fn is_a_parabola_about_the_reference_with_a_floor() {
+        let gain = |position| {
+            let at = Moment { position, ..moment(-10.0) };
+            PositionGain.step(&[0.01, -0.001, 20.0], &mut [], &at)
+        };
+        assert_close(&[20.0, 30.0, 0.0, 100.0].map(gain), &[-10.0, -10.0, -4.0, -0.5]);
+    }
+}

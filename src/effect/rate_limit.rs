@@ -1,0 +1,94 @@
+//! Slew rate of the spool: the opening follows the input at a limited speed.
+//!
+//! ```text
+//! seconds_per_input · x' = sign(in − x) until x = in,   x' = 0 from then on
+//! ```
+//!
+//! ```text
+#![doc = include_str!("drawing/rate_limit.txt")]
+//! ```
+//!
+//! The parameter is the time the spool takes for one input unit, so that "no limit" is
+//! the number 0. The mean over an interval is exact: a ramp, and where the ramp ends in
+//! it a constant behind. The joint is late by half the time of the ramp; a log sampled
+//! more slowly than the ramp lasts shows little more than that delay.
+//!
+//! # References
+//! Jelali, M., and Kroll, A., 2003, Hydraulic Servo-systems: Modelling, Identification
+//! and Control (velocity limit of the valve spool).
+
+use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+
+/// See the [module](self).
+#[derive(Clone, Copy, Debug)]
+pub struct RateLimit;
+
+static SPEC: Spec = Spec {
+    id: "rate_limit",
+    summary: "slew rate of the spool",
+    equation: "abs(d out/dt) <= 1 / seconds_per_input, toward in",
+    source: "Jelali and Kroll, 2003, Hydraulic Servo-systems",
+    stage: Stage::Dynamics,
+    drawing: Some(include_str!("drawing/rate_limit.txt")),
+    parameters: &[Parameter::new(
+        "seconds_per_input",
+        "time for a change of one input unit",
+        Dimension::SecondsPerInput,
+    )
+    .between(0.0, UNLIMITED)],
+    memory: 1,
+    confused_with: &["actuator_lag", "variable_delay"],
+    absorbs: &[],
+    acts_on_state: false,
+};
+
+impl Effect for RateLimit {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    /// The memory is the opening in input units.
+    fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
+        let (&[seconds_per_input], [opening]) = (parameters, memory) else { return at.signal };
+        let way = at.signal - *opening;
+        let ramp_s = way.abs() * seconds_per_input;
+        if ramp_s <= at.dt_s {
+            *opening = at.signal;
+            return if ramp_s > 0.0 {
+                at.signal - way * (0.5 * ramp_s / at.dt_s)
+            } else {
+                at.signal
+            };
+        }
+        let moved = (at.dt_s / seconds_per_input).copysign(way);
+        *opening += moved;
+        *opening - 0.5 * moved
+    }
+
+    fn settle(&self, _parameters: &[f64], memory: &mut [f64], at: &Moment) {
+        memory.fill(at.signal);
+    }
+
+    fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
+        let size = record.size(Dimension::SecondsPerInput);
+        [0.1, 0.5].into_iter().map(|full_s| vec![full_s * size]).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{assert_close, run};
+    use super::*;
+
+    #[test]
+    fn ramps_and_stops_within_an_interval() {
+        // 0.5 input units per interval of 10 ms; the last one is reached halfway.
+        let outputs = run(&RateLimit, &[0.02], &[1.25, 1.25, 1.25, 1.25]);
+        assert_close(&outputs, &[0.25, 0.75, 1.1875, 1.25]);
+    }
+
+    #[test]
+    fn ramps_down_as_fast_as_up() {
+        assert_close(&run(&RateLimit, &[0.02], &[-1.0, -1.0, 0.0]), &[-0.25, -0.75, -0.75]);
+    }
+}

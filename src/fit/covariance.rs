@@ -1,0 +1,195 @@
+//! How sure fitted parameters are, when residuals are correlated.
+//!
+//! With the Jacobian `J` of the simulated output and the residuals `r`, the covariance is
+//! `(JᵀJ)⁻¹ · S · (JᵀJ)⁻¹`, where `S` is the long-run covariance of `g_k = J_k r_k`:
+//! `S = Γ₀ + Σ_l w_l (Γ_l + Γ_lᵀ)` with Bartlett's weights. On white residuals it is the
+//! usual `σ² (JᵀJ)⁻¹`; where residuals are correlated the usual one is too small.
+//!
+//! # References
+//! W. K. Newey and K. D. West, "A simple, positive semi-definite, heteroskedasticity and
+//! autocorrelation consistent covariance matrix", Econometrica 55 (1987), 703-708.
+//! D. W. K. Andrews, "Heteroskedasticity and autocorrelation consistent covariance matrix
+//! estimation", Econometrica 59 (1991), 817-858 (the choice of the number of lags).
+
+use nalgebra::{DMatrix, DVector};
+
+use super::record::{Part, Record};
+use crate::model::JointModel;
+
+/// The covariance of fitted parameters.
+#[derive(Clone, Debug)]
+pub(super) struct Covariance {
+    /// `None` for a parameter that the data do not determine.
+    std_errors: Vec<Option<f64>>,
+}
+
+impl Covariance {
+    /// The covariance at `model` of its parameters with the indices `free`; `step` gives
+    /// the step for differences of a free parameter at its value.
+    pub(super) fn of(
+        record: &Record<'_>,
+        model: &JointModel,
+        free: &[usize],
+        step: impl Fn(usize, f64) -> f64,
+    ) -> Self {
+        let values: Vec<f64> = model.values().iter().map(|value| value.value).collect();
+        let residuals = stacked(record, model);
+        let column = |(place, index): (usize, &usize)| {
+            let value = values.get(*index).copied().unwrap_or_default();
+            let step = step(place, value);
+            let at = |shift: f64| {
+                let mut values = values.clone();
+                if let Some(value) = values.get_mut(*index) {
+                    *value += shift;
+                }
+                stacked(record, &model.with_values(&values))
+            };
+            (at(-step) - at(step)) / (2.0 * step)
+        };
+        let columns: Vec<DVector<f64>> = free.iter().enumerate().map(column).collect();
+        Self { std_errors: std_errors(&columns, &residuals) }
+    }
+
+    pub(super) fn std_error(&self, place: usize) -> Option<f64> {
+        self.std_errors.get(place).copied().flatten()
+    }
+}
+
+fn stacked(record: &Record<'_>, model: &JointModel) -> DVector<f64> {
+    let evaluation = record.evaluate(model);
+    let windows = record.part(Part::Training);
+    let values = windows.filter_map(|w| evaluation.residuals.get(w.trial)?.get(w.start..w.end));
+    DVector::from_vec(values.flatten().copied().collect())
+}
+
+/// Singular values below this part of the largest, columns being of length one, mean
+/// that a combination of parameters changes nothing.
+const RANK: f64 = 1e-6;
+
+fn std_errors(columns: &[DVector<f64>], residuals: &DVector<f64>) -> Vec<Option<f64>> {
+    let lengths: Vec<f64> = columns.iter().map(DVector::norm).collect();
+    let scaled =
+        columns.iter().zip(&lengths).map(|(c, n)| if *n > 0.0 { c / *n } else { c.clone() });
+    let scaled: Vec<_> = scaled.collect();
+    if scaled.is_empty() {
+        return Vec::new();
+    }
+    let jacobian = DMatrix::from_columns(&scaled);
+    let decomposed = jacobian.tr_mul(&jacobian).symmetric_eigen();
+    let largest = decomposed.eigenvalues.max();
+    let inverses =
+        decomposed.eigenvalues.map(|v| if v > RANK * RANK * largest { 1.0 / v } else { 0.0 });
+    let vectors = &decomposed.eigenvectors;
+    let inverse = vectors * DMatrix::from_diagonal(&inverses) * vectors.transpose();
+    let middle = long_run(&jacobian, residuals);
+    let covariance = &inverse * middle * &inverse;
+    let freedom =
+        residuals.len() as f64 / (residuals.len().saturating_sub(columns.len()).max(1)) as f64;
+    let determined = |index: usize| {
+        // Its share in directions that change nothing.
+        let row = vectors.row(index);
+        let lost = row.iter().zip(inverses.iter()).filter(|(_, inverse)| **inverse == 0.0);
+        lost.map(|(v, _)| v * v).sum::<f64>() < 1e-3
+    };
+    let error = |(index, length): (usize, &f64)| {
+        let variance = covariance.get((index, index)).copied().unwrap_or(f64::NAN) * freedom;
+        let error = variance.max(0.0).sqrt() / length;
+        (determined(index) && error.is_finite()).then_some(error)
+    };
+    lengths.iter().enumerate().map(error).collect()
+}
+
+/// The long-run covariance of `J_k r_k`.
+fn long_run(jacobian: &DMatrix<f64>, residuals: &DVector<f64>) -> DMatrix<f64> {
+    let mut scores = jacobian.clone();
+    for mut column in scores.column_iter_mut() {
+        column.component_mul_assign(residuals);
+    }
+    let lags = bandwidth(residuals.as_slice());
+    let mut sum = scores.tr_mul(&scores);
+    for lag in 1..=lags {
+        let rows = scores.nrows() - lag;
+        let product = scores.rows(0, rows).tr_mul(&scores.rows(lag, rows));
+        let weight = 1.0 - lag as f64 / (lags + 1) as f64;
+        sum += (&product + product.transpose()) * weight;
+    }
+    sum
+}
+
+/// Andrews' number of lags for Bartlett's weights: `1.1447 (α n)^(1/3)` with
+/// `α = 4ρ²/((1 − ρ)²(1 + ρ)²)` of a first-order process.
+fn bandwidth(residuals: &[f64]) -> usize {
+    /// Lags that are still affordable.
+    const MOST: f64 = 400.0;
+    let n = residuals.len() as f64;
+    let power: f64 = residuals.iter().map(|r| r * r).sum();
+    let products = residuals.iter().zip(residuals.iter().skip(1)).map(|(a, b)| a * b);
+    let rho = (products.sum::<f64>() / power.max(f64::MIN_POSITIVE)).clamp(-0.99, 0.99);
+    let alpha = 4.0 * rho * rho / ((1.0 - rho).powi(2) * (1.0 + rho).powi(2));
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 400")]
+    let lags = (1.1447 * (alpha * n).cbrt()).min(MOST).min(n / 4.0) as usize;
+    lags
+}
+
+/// The standard deviation of normal values, from their median distance from zero.
+pub(super) fn robust_scale(values: &[f64]) -> f64 {
+    /// Median distance of a normal variable in standard deviations.
+    const NORMAL: f64 = 0.674_489_750_196_081_7;
+    let mut distances: Vec<f64> = values.iter().map(|value| value.abs()).collect();
+    let middle = distances.len() / 2;
+    if distances.is_empty() {
+        return 0.0;
+    }
+    *distances.select_nth_unstable_by(middle, f64::total_cmp).1 / NORMAL
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A reproducible stand-in for noise, uniform with variance 1.
+    fn noise(count: usize) -> Vec<f64> {
+        let mut state = 88_172_645_463_325_252_u64;
+        let mut next = || {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5) * 12f64.sqrt()
+        };
+        (0..count).map(|_| next()).collect()
+    }
+
+    #[test]
+    fn on_white_residuals_it_is_the_usual_standard_error() {
+        let n = 20_000;
+        let residuals = DVector::from_vec(noise(n));
+        let ones = DVector::from_element(n, 1.0);
+        let error = std_errors(&[ones], &residuals)[0].unwrap();
+        let usual = 1.0 / (n as f64).sqrt();
+        assert!((error / usual - 1.0).abs() < 0.15, "{error} {usual}");
+    }
+
+    #[test]
+    fn correlation_makes_the_mean_less_sure() {
+        // First order with ρ = 0.9: the mean's variance is (1+ρ)/(1−ρ) = 19 times greater.
+        let n = 40_000;
+        let mut value = 0.0;
+        let filter = |e: f64| {
+            value = 0.9 * value + (1.0 - 0.81f64).sqrt() * e;
+            value
+        };
+        let residuals = DVector::from_vec(noise(n).into_iter().map(filter).collect());
+        let error = std_errors(&[DVector::from_element(n, 1.0)], &residuals)[0].unwrap();
+        let expected = (19.0 / n as f64).sqrt();
+        assert!((error / expected - 1.0).abs() < 0.2, "{error} {expected}");
+    }
+
+    #[test]
+    fn what_changes_nothing_has_no_standard_error() {
+        let n = 1000;
+        let residuals = DVector::from_vec(noise(n));
+        let ramp = DVector::from_fn(n, |k, _| k as f64);
+        let errors = std_errors(&[ramp.clone(), ramp * 2.0, DVector::zeros(n)], &residuals);
+        assert_eq!(errors, [None, None, None]);
+    }
+}

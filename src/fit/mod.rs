@@ -1,0 +1,14 @@
+//! Models fitted to measurements: nonlinear least squares on the simulated output.
+//!
+//! - [`Record`]: a joint's trials, cut into windows for training and for validation
+//! - [`fit`]: the parameters that make the training error least, with standard errors
+//!
+//! What the numbers mean for the model is the business of the module `diagnosis`.
+
+mod bounds;
+mod covariance;
+mod least_squares;
+mod record;
+
+pub use least_squares::{Fit, FitError, Parameter, Status, Termination, assess, fit};
+pub use record::{Evaluation, Horizon, Part, Record, Split, Window};

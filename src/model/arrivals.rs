@@ -1,0 +1,67 @@
+//! When each level of the input begins to act.
+
+use super::JointModel;
+use crate::effect::{InputChange, Stage};
+use crate::experiment::Trial;
+
+/// A level of the input and the time from which it acts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival {
+    /// Seconds since the first sample.
+    pub time_s: f64,
+    /// The level, input units.
+    pub level: f64,
+}
+
+/// What acts on a joint over a trial: a level at the start, and changes in order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arrivals {
+    /// The level before the first change.
+    pub initial: f64,
+    /// The changes, in ascending time.
+    pub changes: Vec<Arrival>,
+}
+
+/// The input of `trial` as it arrives at the joint: change `i` at `t_i + delay + extra_i`.
+///
+/// `extra` comes from the effects of the transport stage. With `per_step`, delays in
+/// seconds for each change of the input (`None` where it is not known), the model's own
+/// delay stands in only for those that are not known.
+///
+/// A change that would act before an earlier one takes its place: an earlier level never
+/// comes back. Delays are not below zero.
+pub fn arrivals(model: &JointModel, trial: &Trial, per_step: Option<&[Option<f64>]>) -> Arrivals {
+    let period = trial.period().seconds();
+    let mut levels = trial.input().iter();
+    let initial = levels.next().copied().unwrap_or_default();
+    let mut arrivals = Arrivals { initial, changes: Vec::new() };
+    let (mut before, mut since, mut number) = (initial, 0.0, 0);
+    for (&level, sample) in levels.zip(1..) {
+        #[expect(clippy::float_cmp, reason = "a step is any change")]
+        if level == before {
+            continue;
+        }
+        let time_s = f64::from(sample) * period;
+        let change = InputChange { before, after: level, held_s: time_s - since, time_s };
+        let known = per_step.and_then(|delays| delays.get(number).copied().flatten());
+        let delay = known.unwrap_or_else(|| delay_of(model, &change));
+        arrivals.insert(Arrival { time_s: time_s + delay.max(0.0), level });
+        (before, since, number) = (level, time_s, number + 1);
+    }
+    arrivals
+}
+
+fn delay_of(model: &JointModel, change: &InputChange) -> f64 {
+    let extra = model.stage(Stage::Transport).map(|component| component.extra_delay_s(change));
+    model.delay.value + extra.sum::<f64>()
+}
+
+impl Arrivals {
+    /// Adds a change that was commanded after all others.
+    fn insert(&mut self, arrival: Arrival) {
+        while self.changes.last().is_some_and(|last| last.time_s >= arrival.time_s) {
+            self.changes.pop();
+        }
+        self.changes.push(arrival);
+    }
+}

@@ -1,0 +1,133 @@
+//! Structure and parameters of one joint's model.
+
+use crate::effect::{Effect, InputChange, Stage};
+
+/// A parameter: its value, whether a fit may change it, and within which bounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Value {
+    /// The value, in the unit of its parameter.
+    pub value: f64,
+    /// A fit leaves it as it is.
+    pub fixed: bool,
+    /// Lowest value of a fit, where it is not the parameter's own.
+    pub min: Option<f64>,
+    /// Highest value of a fit, where it is not the parameter's own.
+    pub max: Option<f64>,
+}
+
+impl From<f64> for Value {
+    fn from(value: f64) -> Self {
+        Self { value, fixed: false, min: None, max: None }
+    }
+}
+
+/// An effect in a model, with its parameters in the order of its specification.
+#[derive(Clone, Debug)]
+pub struct Component {
+    effect: &'static dyn Effect,
+    parameters: Vec<Value>,
+}
+
+impl Component {
+    /// `effect` with these values, or `None` when their number is not that of its
+    /// parameters.
+    pub fn new(effect: &'static dyn Effect, parameters: Vec<Value>) -> Option<Self> {
+        let expected = effect.spec().parameters.len();
+        (parameters.len() == expected).then_some(Self { effect, parameters })
+    }
+
+    /// `effect` at its neutral values: it changes nothing yet.
+    pub fn neutral(effect: &'static dyn Effect) -> Self {
+        let neutral = |parameter: &crate::effect::Parameter| Value::from(parameter.neutral);
+        let parameters = effect.spec().parameters.iter().map(neutral).collect();
+        Self { effect, parameters }
+    }
+
+    /// The effect.
+    pub fn effect(&self) -> &'static dyn Effect {
+        self.effect
+    }
+
+    /// Its parameters, in the order of its specification.
+    pub fn parameters(&self) -> &[Value] {
+        &self.parameters
+    }
+
+    /// The values alone.
+    pub(super) fn plain(&self) -> Vec<f64> {
+        self.parameters.iter().map(|parameter| parameter.value).collect()
+    }
+
+    /// What the effect adds to the delay of a change; see [`Effect::extra_delay_s`].
+    pub(super) fn extra_delay_s(&self, change: &InputChange) -> f64 {
+        self.effect.extra_delay_s(&self.plain(), change)
+    }
+}
+
+/// The model of one joint: an integrator with effects on it.
+///
+/// `dy/dt = gain · s(t)`, where `s` is the input, `delay` late, after the effects of the
+/// input and dynamics stages; effects of the load stage change the velocity, those of the
+/// output stage the angle. Within a stage, effects act in the order they were added.
+#[derive(Clone, Debug)]
+pub struct JointModel {
+    /// Output units per second and input unit.
+    pub gain: Value,
+    /// Seconds.
+    pub delay: Value,
+    components: Vec<Component>,
+}
+
+impl JointModel {
+    /// The plain integrator.
+    pub fn integrator(gain: f64, delay: f64) -> Self {
+        Self { gain: gain.into(), delay: delay.into(), components: Vec::new() }
+    }
+
+    /// This model with another effect behind those it has.
+    #[must_use]
+    pub fn with(&self, component: Component) -> Self {
+        let mut model = self.clone();
+        model.components.push(component);
+        model
+    }
+
+    /// The effects, in the order they were added.
+    pub fn components(&self) -> &[Component] {
+        &self.components
+    }
+
+    /// All parameters: gain, delay, then those of each effect.
+    pub fn values(&self) -> Vec<Value> {
+        let own = [self.gain, self.delay].into_iter();
+        own.chain(self.components.iter().flat_map(|c| c.parameters.iter().copied())).collect()
+    }
+
+    /// This model with other values, in the order of [`values`](Self::values); what is
+    /// missing at the end keeps its value.
+    #[must_use]
+    pub fn with_values(&self, values: &[f64]) -> Self {
+        let mut model = self.clone();
+        let parameters = model.components.iter_mut().flat_map(|c| &mut c.parameters);
+        let all = [&mut model.gain, &mut model.delay].into_iter().chain(parameters);
+        for (parameter, value) in all.zip(values) {
+            parameter.value = *value;
+        }
+        model
+    }
+
+    /// Names of all parameters, as `gain` or `dead_band.lower`.
+    pub fn names(&self) -> Vec<String> {
+        let own = ["gain", "delay"].map(str::to_owned).into_iter();
+        let named = |component: &Component| {
+            let spec = component.effect.spec();
+            spec.parameters.iter().map(|p| format!("{}.{}", spec.id, p.name)).collect::<Vec<_>>()
+        };
+        own.chain(self.components.iter().flat_map(named)).collect()
+    }
+
+    /// The effects of one stage.
+    pub(super) fn stage(&self, stage: Stage) -> impl Iterator<Item = &Component> {
+        self.components.iter().filter(move |component| component.effect.spec().stage == stage)
+    }
+}

@@ -1,0 +1,22 @@
+//! The grey-box model of a joint, and its simulation.
+//!
+//! A joint integrates: `dy/dt = gain · s`, where `s` is the input after its delay and
+//! after the effects of the catalogue. Models are plain values; adding an effect makes a
+//! new one.
+//!
+//! - [`JointModel`]: structure, effects, parameters
+//! - [`ModelFile`]: models in TOML, as users write them
+//! - [`simulate`]: what the model says the output is
+//! - [`Arrivals`]: when each level of the input begins to act
+
+mod arrivals;
+mod file;
+mod joint_model;
+mod simulate;
+mod start;
+
+pub use arrivals::{Arrival, Arrivals, arrivals};
+pub use file::{ModelError, ModelFile};
+pub use joint_model::{Component, JointModel, Value};
+pub use simulate::{Restart, Simulated, Surroundings, simulate};
+pub use start::integrators;

@@ -1,0 +1,63 @@
+//! The plain integrator that the estimated delays suggest: where a model begins.
+
+use super::JointModel;
+use crate::delay::{Decision, TrialEstimate};
+use crate::experiment::Joint;
+
+/// The delay of a joint of which nothing is known, in seconds.
+const UNKNOWN_DELAY_S: f64 = 0.1;
+
+/// Plain integrators for `joint`: one gain, and delays from short to long.
+///
+/// The gain is the regression of the output's slope behind each accepted step on the
+/// input there, `Σ u·v / Σ u²`; the delays are the quartiles of the accepted ones.
+/// Without an accepted step they come from the whole record.
+pub fn integrators(joint: &Joint, estimates: &[&TrialEstimate]) -> Vec<JointModel> {
+    let trials = joint.trials.iter().filter_map(|trial| {
+        let estimate = estimates.iter().find(|estimate| estimate.label == trial.label())?;
+        Some((trial.period().seconds(), *estimate))
+    });
+    let (mut delays, mut with_speed, mut squared) = (Vec::new(), 0.0, 0.0);
+    for (period, estimate) in trials {
+        for decision in estimate.decisions.iter().filter(|d| d.accepted_delay().is_some()) {
+            delays.extend(decision.accepted_delay().map(|samples| samples * period));
+            let speed = slope_after(decision) / period;
+            with_speed += decision.input_step.after * speed;
+            squared += decision.input_step.after.powi(2);
+        }
+    }
+    let gain = if squared > 0.0 { with_speed / squared } else { overall_gain(joint) };
+    let mut delays: Vec<f64> = quartiles(delays);
+    delays.dedup();
+    delays.into_iter().map(|delay| JointModel::integrator(gain, delay.max(0.0))).collect()
+}
+
+fn slope_after(decision: &Decision) -> f64 {
+    decision.breakpoint().map_or(0.0, |best| best.candidate.after.slope)
+}
+
+/// The quartiles of `delays`; without any, a delay that is not unusual.
+fn quartiles(mut delays: Vec<f64>) -> Vec<f64> {
+    delays.sort_by(f64::total_cmp);
+    let last = delays.len().saturating_sub(1);
+    let quartiles = [1, 2, 3].map(|part| delays.get(part * last / 4).copied());
+    let found: Vec<f64> = quartiles.into_iter().flatten().collect();
+    if found.is_empty() { vec![UNKNOWN_DELAY_S] } else { found }
+}
+
+/// Speed over input, from the steps of the output between samples.
+fn overall_gain(joint: &Joint) -> f64 {
+    let (mut with_speed, mut squared) = (0.0, 0.0);
+    for trial in &joint.trials {
+        let speeds = trial.output().windows(2).map(|pair| match pair {
+            [from, to] => (to - from) / trial.period().seconds(),
+            _ => 0.0,
+        });
+        for (speed, input) in speeds.zip(trial.input()) {
+            with_speed += speed * input;
+            squared += input * input;
+        }
+    }
+    let gain = with_speed / squared;
+    if gain.is_finite() { gain } else { 1.0 }
+}

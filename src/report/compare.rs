@@ -1,0 +1,185 @@
+//! `compare` as text and JSON.
+
+use comfy_table::{CellAlignment, Table, presets};
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+
+use super::number;
+use crate::diagnosis::{Comparison, ErrorFigures, LackOfFit};
+use crate::effect::Dimension;
+use crate::experiment::Joint;
+use crate::fit::{Parameter, Status};
+use crate::model::JointModel;
+
+/// A joint, its model, and how the two compare.
+#[derive(Clone, Copy, Debug)]
+pub struct ComparedJoint<'a> {
+    /// What was measured.
+    pub joint: &'a Joint,
+    /// Name of the model: that of its file.
+    pub model: &'a str,
+    /// Number of its revision.
+    pub revision: u32,
+    /// The figures.
+    pub comparison: &'a Comparison,
+}
+
+/// The document of `compare --format json`, schema `tauscope/compare/1`.
+#[derive(Debug, Serialize)]
+pub struct CompareJson<'a> {
+    schema: &'static str,
+    version: &'static str,
+    joints: Vec<JointJson<'a>>,
+    failures: &'a [String],
+}
+
+#[derive(Debug, Serialize)]
+struct JointJson<'a> {
+    joint: &'a str,
+    model: &'a str,
+    revision: u32,
+    effects: Vec<&'static str>,
+    parameters: Map<String, Value>,
+    error: ErrorJson,
+    lack_of_fit: Option<LackOfFit>,
+    termination: String,
+}
+
+#[derive(Debug, Serialize)]
+struct ErrorJson {
+    train: Option<ErrorFigures>,
+    validation: Option<ErrorFigures>,
+    noise_floor: Option<f64>,
+}
+
+impl<'a> CompareJson<'a> {
+    /// Collects the results; `failures` are messages on joints and files that failed.
+    pub fn new(joints: &[ComparedJoint<'a>], failures: &'a [String]) -> Self {
+        let joints = joints.iter().map(JointJson::new).collect();
+        let version = env!("CARGO_PKG_VERSION");
+        Self { schema: "tauscope/compare/1", version, joints, failures }
+    }
+}
+
+impl<'a> JointJson<'a> {
+    fn new(compared: &ComparedJoint<'a>) -> Self {
+        let comparison = compared.comparison;
+        let units = units(compared.joint, &comparison.fit.model);
+        let parameter = |(parameter, unit): (&Parameter, String)| {
+            let Parameter { name, value, std_error, status } = parameter;
+            let status = status_id(*status);
+            let value = json!({
+                "value": value, "std_error": std_error, "unit": unit, "status": status,
+            });
+            (name.clone(), value)
+        };
+        Self {
+            joint: &compared.joint.name,
+            model: compared.model,
+            revision: compared.revision,
+            effects: effects(&comparison.fit.model),
+            parameters: comparison.fit.parameters.iter().zip(units).map(parameter).collect(),
+            error: ErrorJson {
+                train: comparison.training,
+                validation: comparison.validation,
+                noise_floor: comparison.noise_floor,
+            },
+            lack_of_fit: comparison.lack_of_fit,
+            termination: comparison.fit.termination.to_string(),
+        }
+    }
+}
+
+fn effects(model: &JointModel) -> Vec<&'static str> {
+    model.components().iter().map(|component| component.effect().spec().id).collect()
+}
+
+fn status_id(status: Status) -> &'static str {
+    match status {
+        Status::Fitted => "fitted",
+        Status::Fixed => "fixed",
+        Status::AtBound => "at_bound",
+        Status::Undetermined => "undetermined",
+    }
+}
+
+/// Units of a model's parameters, in the order of [`JointModel::values`].
+fn units(joint: &Joint, model: &JointModel) -> Vec<String> {
+    let unit = |unit: &Option<String>, kind: &str| unit.clone().unwrap_or_else(|| kind.to_owned());
+    let (input, output) = (unit(&joint.input_unit, "input"), unit(&joint.output_unit, "output"));
+    let own = [format!("{output}/s/{input}"), "s".to_owned()].into_iter();
+    let of = |dimension: Dimension| dimension.unit(Some(&input), Some(&output));
+    let parameters = model.components().iter().flat_map(|c| c.effect().spec().parameters);
+    own.chain(parameters.map(|parameter| of(parameter.dimension))).collect()
+}
+
+/// A table of errors, one row per joint and model, and the parameters below it.
+pub fn compare_table(joints: &[ComparedJoint<'_>], horizon: &str) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_BORDERS_ONLY).set_header([
+        "joint",
+        "model",
+        "training",
+        "validation",
+        "fit",
+        "noise",
+        "lack of fit",
+    ]);
+    for compared in joints {
+        table.add_row(row(compared));
+    }
+    for right in 2..6 {
+        if let Some(column) = table.column_mut(right) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    let parameters: Vec<_> = joints.iter().map(parameters).collect();
+    format!("{table}\nroot-mean-square errors, {horizon}\n\n{}\n", parameters.join("\n"))
+}
+
+fn row(compared: &ComparedJoint<'_>) -> [String; 7] {
+    let Comparison { training, validation, noise_floor, lack_of_fit, fit } = compared.comparison;
+    let unit = compared.joint.output_unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
+    let dash = || "-".to_owned();
+    let rmse = |error: &Option<ErrorFigures>| {
+        error.map_or_else(dash, |error| format!("{}{unit}", number(error.rmse)))
+    };
+    let percent = validation.map_or_else(dash, |error| format!("{:.1} %", error.fit_percent));
+    let verdict = lack_of_fit.map_or_else(dash, |test| {
+        let shown = if test.adequate { "not shown" } else { "shown" };
+        match test.p_value {
+            p if p < 1e-4 => format!("{shown} (p < 0.0001)"),
+            p => format!("{shown} (p = {p:.4})"),
+        }
+    });
+    let effects = effects(&fit.model);
+    let effects = if effects.is_empty() { "integrator".to_owned() } else { effects.join(" + ") };
+    [
+        compared.joint.name.clone(),
+        effects,
+        rmse(training),
+        rmse(validation),
+        percent,
+        noise_floor.map_or_else(dash, |noise| format!("{}{unit}", number(noise))),
+        verdict,
+    ]
+}
+
+/// The parameters of a model in one line.
+fn parameters(compared: &ComparedJoint<'_>) -> String {
+    let fit = &compared.comparison.fit;
+    let units = units(compared.joint, &fit.model);
+    let parameter = |(parameter, unit): (&Parameter, String)| {
+        let Parameter { name, value, std_error, status } = parameter;
+        let error = std_error.map_or_else(String::new, |error| format!(" ± {}", number(error)));
+        let remark = match status {
+            Status::Fitted => "",
+            Status::Fixed => " (fixed)",
+            Status::AtBound => " (at its bound)",
+            Status::Undetermined => " (not determined by this record)",
+        };
+        format!("{name} {}{error} {unit}{remark}", number(*value)).trim_end().to_owned()
+    };
+    let parameters: Vec<_> = fit.parameters.iter().zip(units).map(parameter).collect();
+    format!("{}: {}; {}", compared.joint.name, parameters.join(", "), fit.termination)
+}
