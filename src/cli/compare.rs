@@ -121,7 +121,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
                 }),
                 Some(Err(error)) => failures.push(failure(joint, error)),
                 None => {
-                    failures.push(format!("joint `{}`: not in model `{}`", joint.name, named.name))
+                    failures.push(format!("joint `{}`: not in model `{}`", joint.name, named.name));
                 }
             }
         }
