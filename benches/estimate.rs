@@ -74,7 +74,7 @@ fn record(
     joints: &[Joint],
     settings: &Settings,
 ) {
-    use tauscope::recording::{Detail, EstimateRecording, write_estimate};
+    use tauscope::recording::{Detail, Recording, write_recording};
     use tauscope::report::EstimatedJoint;
 
     let estimates = estimated(joints, settings);
@@ -82,11 +82,11 @@ fn record(
     let joints: Vec<_> =
         pairs.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect();
     for (name, detail) in [("full", Detail::Full), ("lean", Detail::Lean)] {
-        let recording = EstimateRecording { joints: &joints, settings, sources: &[], detail };
+        let recording = Recording { joints: &joints, settings, sources: &[], detail, models: &[] };
         group.bench_function(BenchmarkId::new("record", name), |bencher| {
             bencher.iter(|| {
                 let file = std::io::BufWriter::new(tempfile::tempfile().unwrap());
-                write_estimate(&recording, file).unwrap();
+                write_recording(&recording, file).unwrap();
             });
         });
     }

@@ -7,7 +7,7 @@ use rerun::{RecordingStreamBuilder, Scalars};
 use tauscope::batch::estimate_joints;
 use tauscope::delay::Settings;
 use tauscope::experiment::{Experiment, ReadOptions};
-use tauscope::recording::{Detail, EstimateRecording, log_estimate};
+use tauscope::recording::{Detail, Recording, log_recording};
 use tauscope::report::EstimatedJoint;
 
 fn main() -> anyhow::Result<()> {
@@ -30,13 +30,14 @@ fn main() -> anyhow::Result<()> {
     let pairs = experiment.joints.iter().zip(&estimates);
     let joints: Vec<_> =
         pairs.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect();
-    let recording = EstimateRecording {
+    let recording = Recording {
         joints: &joints,
         settings: &settings,
         sources: &experiment.sources,
         detail: Detail::Full,
+        models: &[],
     };
-    log_estimate(&recording, &stream)?;
+    log_recording(&recording, &stream)?;
     stream.flush_blocking()?;
     println!("look at it with: rerun {}", file.display());
     Ok(())

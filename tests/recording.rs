@@ -13,7 +13,7 @@ use rerun::log::{Chunk, LogMsg};
 use tauscope::batch::{JointEstimate, estimate_joints};
 use tauscope::delay::Settings;
 use tauscope::experiment::{Experiment, ReadOptions};
-use tauscope::recording::{Detail, EstimateRecording, RecordError, write_estimate};
+use tauscope::recording::{Detail, RecordError, Recording, write_recording};
 use tauscope::report::{DecisionRow, EstimatedJoint, decision_rows};
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate, write_log};
 
@@ -53,7 +53,7 @@ impl Recorded {
     fn write(&self, detail: Detail, out: impl Write) -> Result<(), RecordError> {
         let joints = self.joints();
         let (settings, sources) = (&self.settings, self.experiment.sources.as_slice());
-        write_estimate(&EstimateRecording { joints: &joints, settings, sources, detail }, out)
+        write_recording(&Recording { joints: &joints, settings, sources, detail, models: &[] }, out)
     }
 
     fn read_back(&self, detail: Detail) -> ReadBack {

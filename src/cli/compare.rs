@@ -7,12 +7,16 @@ use anyhow::{Context as _, anyhow};
 use clap::{Args as ClapArgs, ValueEnum};
 use tauscope::batch::{compare_joints, estimate_joints, with_threads};
 use tauscope::delay::Settings;
+use tauscope::diagnosis::Comparison;
 use tauscope::experiment::Joint;
 use tauscope::fit::{FitError, Horizon, Split};
 use tauscope::model::{JointModel, ModelFile};
-use tauscope::report::{CompareJson, ComparedJoint, compare_table};
+use tauscope::report::{CompareJson, ComparedJoint, EstimatedJoint, compare_table};
 
 use super::data::DataArgs;
+use super::output::OutputFile;
+use super::progress::Verbosity;
+use super::record::{Contents, Detail};
 use super::{Completion, message};
 
 /// Compare a model with the measurement
@@ -41,6 +45,10 @@ pub(super) struct Args {
     /// for validation [default: trials from six on, else 0.7]
     #[arg(long, value_name = "SHARE|trials", value_parser = split, help_heading = "Model")]
     split: Option<Split>,
+
+    /// Record models and decisions for the Rerun viewer
+    #[arg(short = 'o', long = "output", value_name = "FILE.rrd", help_heading = "Output")]
+    recording: Option<PathBuf>,
 
     /// How results are printed
     #[arg(long, value_enum, default_value_t = Format::Text, help_heading = "Output")]
@@ -95,45 +103,47 @@ struct Named {
 
 pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let models = models(&args.model)?;
+    if let Some(path) = &args.recording {
+        OutputFile::probe(path)?;
+    }
     let experiment = args.data.read()?;
     let joints = &experiment.joints;
-    let mut failures: Vec<String> = super::read_failures(&experiment);
-    let work = || -> Vec<_> {
-        let estimates = estimate_joints(joints, &Settings::default(), || ());
+    let settings = Settings::default();
+    let work = || {
+        let estimates = estimate_joints(joints, &settings, || ());
         let one = |named: &Named| {
             let starts = |joint: &Joint| named.starts(joint);
             compare_joints(joints, &estimates, starts, named.mode(args), args.split, args.horizon)
         };
-        models.iter().map(one).collect()
+        let results = models.iter().map(one).collect::<Vec<_>>();
+        (estimates, results)
     };
-    let results = with_threads(args.threads, work)
+    let (estimates, results) = with_threads(args.threads, work)
         .map_err(|error| anyhow!("threads cannot be started: {error}"))?;
+    let mut failures = super::read_failures(&experiment);
     let mut compared = Vec::new();
     for (named, results) in models.iter().zip(&results) {
         for (joint, result) in joints.iter().zip(results) {
-            let revision = named.file.as_ref().and_then(|file| file.revision(&joint.name));
-            match result {
-                Some(Ok(comparison)) => compared.push(ComparedJoint {
-                    joint,
-                    model: &named.name,
-                    revision: revision.unwrap_or(0),
-                    comparison,
-                }),
-                Some(Err(error)) => failures.push(failure(joint, error)),
-                None => {
-                    failures.push(format!("joint `{}`: not in model `{}`", joint.name, named.name));
-                }
+            match named.compared(joint, result.as_ref()) {
+                Ok(joint) => compared.push(joint),
+                Err(failure) => failures.push(failure),
             }
         }
     }
-    let Some(first) = failures.first().filter(|_| compared.is_empty()) else {
-        return finish(args, &compared, &failures);
-    };
-    Err(anyhow!(first.clone()))
-}
-
-fn failure(joint: &Joint, error: &FitError) -> String {
-    format!("joint `{}` is left out: {error}", joint.name)
+    if let Some(first) = failures.first().filter(|_| compared.is_empty()) {
+        return Err(anyhow!(first.clone()));
+    }
+    if let Some(path) = &args.recording {
+        let pairs = joints.iter().zip(&estimates);
+        let pairs = pairs.filter_map(|(joint, estimate)| Some((joint, estimate.as_ref().ok()?)));
+        let joints: Vec<_> =
+            pairs.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect();
+        let (settings, sources) = (&settings, &experiment.sources);
+        let detail = Detail::Full;
+        let contents = Contents { joints: &joints, settings, sources, models: &compared, detail };
+        contents.record(path, if args.quiet { Verbosity::Quiet } else { Verbosity::Normal })?;
+    }
+    finish(args, &compared, &failures)
 }
 
 fn finish(
@@ -163,6 +173,22 @@ impl Named {
     /// The model of `joint` in the file; none without a file, where there is none to ask.
     fn starts(&self, joint: &Joint) -> Option<JointModel> {
         self.file.as_ref().and_then(|file| file.joint(&joint.name)).cloned()
+    }
+
+    /// A joint's result, or a message on why there is none.
+    fn compared<'a>(
+        &'a self,
+        joint: &'a Joint,
+        result: Option<&'a Result<Comparison, FitError>>,
+    ) -> Result<ComparedJoint<'a>, String> {
+        let name = &joint.name;
+        let result =
+            result.ok_or_else(|| format!("joint `{name}`: not in model `{}`", self.name))?;
+        let comparison = result.as_ref();
+        let comparison =
+            comparison.map_err(|error| format!("joint `{name}` is left out: {error}"))?;
+        let revision = self.file.as_ref().and_then(|file| file.revision(name)).unwrap_or(0);
+        Ok(ComparedJoint { joint, model: &self.name, revision, comparison })
     }
 
     fn mode(&self, args: &Args) -> tauscope::batch::Mode {

@@ -6,6 +6,7 @@ mod effects;
 mod estimate;
 mod output;
 mod progress;
+mod record;
 mod simulate;
 
 use std::io::{self, Write as _};

@@ -91,6 +91,16 @@ impl OutputFile {
     }
 }
 
+/// Lets `write` fill a file and gives it its name when that went well.
+pub(super) fn write_file(
+    path: &Path,
+    write: impl FnOnce(&mut OutputFile) -> anyhow::Result<()>,
+) -> anyhow::Result<()> {
+    let mut file = OutputFile::create(path)?;
+    write(&mut file).with_context(|| format!("{}: cannot be written", path.display()))?;
+    file.commit()
+}
+
 impl Write for OutputFile {
     fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
         match &mut self.target {

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use rerun::{EntityPath, TextDocument};
 
-use super::EstimateRecording;
+use super::Recording;
 use super::chunk::Chunks;
 use super::error::RecordError;
 use super::layout::{Detail, JointLayout};
@@ -14,7 +14,7 @@ use crate::report::{DelayRange, JointSummary};
 /// Adds the page at `/about`.
 pub(super) fn add(
     chunks: &mut Chunks,
-    recording: &EstimateRecording<'_>,
+    recording: &Recording<'_>,
     layouts: &[JointLayout<'_>],
 ) -> Result<(), RecordError> {
     let text = page(recording, layouts).unwrap_or_default();
@@ -22,10 +22,7 @@ pub(super) fn add(
     chunks.push_static(EntityPath::from("about"), &document)
 }
 
-fn page(
-    recording: &EstimateRecording<'_>,
-    layouts: &[JointLayout<'_>],
-) -> Result<String, std::fmt::Error> {
+fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String, std::fmt::Error> {
     let mut page = String::new();
     writeln!(page, "# Delays of {} joints\n", recording.joints.len())?;
     writeln!(page, "| joint | steps | accepted | rejected | delay min | median | max |")?;
@@ -100,7 +97,7 @@ fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
 }
 
 /// How many candidates of how many are in the recording.
-fn detail(recording: &EstimateRecording<'_>, layouts: &[JointLayout<'_>]) -> String {
+fn detail(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> String {
     let segments = || layouts.iter().flat_map(JointLayout::segments);
     let all: usize = segments().map(|(_, s)| s.decision.candidates.len()).sum();
     let kept: usize = segments().map(|(_, s)| s.kept.len()).sum();

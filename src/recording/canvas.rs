@@ -71,7 +71,16 @@ const SIDES: (f32, f32) = (120.0, SHEET.0 - 15.0);
 impl Plot {
     /// A plot over the whole width, from `rows.start` to `rows.end` of the sheet.
     pub(super) fn new(rows: RangeInclusive<f32>, x: Span, y: Span) -> Self {
-        let (left, right) = SIDES;
+        Self::within(SIDES, rows, x, y)
+    }
+
+    /// A plot between two columns and two rows of the sheet.
+    pub(super) fn within(
+        (left, right): (f32, f32),
+        rows: RangeInclusive<f32>,
+        x: Span,
+        y: Span,
+    ) -> Self {
         Self { left, right, top: *rows.start(), bottom: *rows.end(), x, y }
     }
 

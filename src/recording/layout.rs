@@ -83,6 +83,8 @@ pub(super) struct JointLayout<'a> {
 /// One trial of a joint on the timelines.
 #[derive(Debug)]
 pub(super) struct TrialLayout<'a> {
+    /// Its place among the joint's trials.
+    pub(super) index: usize,
     pub(super) trial: &'a Trial,
     pub(super) estimate: &'a TrialEstimate,
     pub(super) segments: Vec<SegmentLayout<'a>>,
@@ -124,9 +126,9 @@ impl<'a> JointLayout<'a> {
         let mut tick = 1;
         let mut number = 0;
         let mut trials = Vec::new();
-        let results = joint.joint.trials.iter().zip(&joint.estimate.trials);
-        for (trial, estimate) in results.filter_map(|(t, result)| Some((t, result.as_ref().ok()?)))
-        {
+        let results = joint.joint.trials.iter().zip(&joint.estimate.trials).enumerate();
+        for (index, (trial, result)) in results {
+            let Ok(estimate) = result else { continue };
             let idle = (tick, number.max(1));
             let mut segments = Vec::with_capacity(estimate.decisions.len());
             for decision in &estimate.decisions {
@@ -137,7 +139,7 @@ impl<'a> JointLayout<'a> {
                 segments.push(segment);
             }
             let start = starts.of_trial(trial);
-            trials.push(TrialLayout { trial, estimate, segments, start, idle });
+            trials.push(TrialLayout { index, trial, estimate, segments, start, idle });
         }
         Self { trials }
     }

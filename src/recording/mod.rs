@@ -18,8 +18,10 @@ mod entity;
 mod error;
 mod layout;
 mod message;
+mod model;
 mod overview;
 mod palette;
+mod scatter;
 mod segment_view;
 mod signals;
 mod verdict;
@@ -27,15 +29,15 @@ mod write;
 
 use crate::delay::Settings;
 use crate::experiment::Source;
-use crate::report::EstimatedJoint;
+use crate::report::{ComparedJoint, EstimatedJoint};
 
 pub use error::RecordError;
 pub use layout::Detail;
-pub use write::{log_estimate, write_estimate};
+pub use write::{log_recording, write_recording};
 
-/// Everything that a recording of delays holds.
+/// Everything that a recording holds.
 #[derive(Clone, Copy, Debug)]
-pub struct EstimateRecording<'a> {
+pub struct Recording<'a> {
     /// The joints, in the order of their tabs.
     pub joints: &'a [EstimatedJoint<'a>],
     /// The settings of the algorithm.
@@ -44,4 +46,6 @@ pub struct EstimateRecording<'a> {
     pub sources: &'a [Source],
     /// How many candidates are recorded.
     pub detail: Detail,
+    /// Models beside the measurement; those of a joint that is not recorded are left out.
+    pub models: &'a [ComparedJoint<'a>],
 }

@@ -29,6 +29,11 @@ pub(super) const BORDER: Rgb = rgb(225, 225, 225);
 /// Grid lines.
 pub(super) const GRID: Rgb = rgb(60, 62, 66);
 
+/// Models, one after the other; from the fifth on they repeat.
+pub(super) fn models() -> impl Iterator<Item = Rgb> {
+    [rgb(230, 159, 0), rgb(0, 158, 115), rgb(204, 121, 167), rgb(213, 94, 0)].into_iter().cycle()
+}
+
 pub(super) fn color((r, g, b): Rgb) -> Color {
     Color::from_rgb(r, g, b)
 }

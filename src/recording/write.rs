@@ -14,7 +14,7 @@ use super::error::RecordError;
 use super::layout::{JointLayout, TrialStarts};
 use super::message::{chunk_message, store_message};
 use super::{
-    EstimateRecording, about, blueprint, decisions, overview, segment_view, signals, verdict,
+    Recording, about, blueprint, decisions, model, overview, segment_view, signals, verdict,
 };
 use crate::report::EstimatedJoint;
 
@@ -28,10 +28,7 @@ const APPLICATION: &str = "tauscope";
 /// # Errors
 /// [`RecordError::Encode`] when `out` cannot be written; what was written then is of no
 /// use.
-pub fn write_estimate(
-    recording: &EstimateRecording<'_>,
-    out: impl Write,
-) -> Result<(), RecordError> {
+pub fn write_recording(recording: &Recording<'_>, out: impl Write) -> Result<(), RecordError> {
     let id = recording_id(recording);
     let store = StoreId::new(StoreKind::Recording, APPLICATION, id.clone());
     let options = EncodingOptions::PROTOBUF_COMPRESSED;
@@ -62,8 +59,8 @@ pub fn write_estimate(
 /// # Errors
 /// [`RecordError::Chunk`] and [`RecordError::Serialize`], which would be bugs. What
 /// becomes of the data is the stream's business.
-pub fn log_estimate(
-    recording: &EstimateRecording<'_>,
+pub fn log_recording(
+    recording: &Recording<'_>,
     stream: &RecordingStream,
 ) -> Result<(), RecordError> {
     for_each_chunk(recording, |chunk| {
@@ -82,10 +79,7 @@ pub fn log_estimate(
     Ok(())
 }
 
-fn blueprint_messages(
-    recording: &EstimateRecording<'_>,
-    id: &str,
-) -> Result<Vec<LogMsg>, RecordError> {
+fn blueprint_messages(recording: &Recording<'_>, id: &str) -> Result<Vec<LogMsg>, RecordError> {
     let mut messages = blueprint::messages(recording, &APPLICATION.into(), id)?;
     let blueprint_id = messages.first().map(|message| message.store_id().clone());
     messages.extend(blueprint_id.map(|id| LogMsg::from(activation(id))));
@@ -98,7 +92,7 @@ fn activation(blueprint_id: StoreId) -> BlueprintActivationCommand {
 
 /// Makes the chunks joint by joint, so that only one joint's are in memory.
 fn for_each_chunk(
-    recording: &EstimateRecording<'_>,
+    recording: &Recording<'_>,
     mut take: impl FnMut(&Chunk) -> Result<(), RecordError>,
 ) -> Result<(), RecordError> {
     let starts = TrialStarts::of(recording.joints);
@@ -116,7 +110,7 @@ fn for_each_chunk(
 
 fn add_joint(
     chunks: &mut Chunks,
-    recording: &EstimateRecording<'_>,
+    recording: &Recording<'_>,
     joint: EstimatedJoint<'_>,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
@@ -126,17 +120,19 @@ fn add_joint(
     decisions::add(chunks, &root, layout)?;
     verdict::add(chunks, &root, joint, layout, recording.settings)?;
     segment_view::add(chunks, &root, joint, layout)?;
-    overview::add(chunks, &root, layout)
+    overview::add(chunks, &root, layout)?;
+    let models = recording.models.iter().filter(|model| model.joint.name == joint.name);
+    model::add(chunks, &root, layout, &models.collect::<Vec<_>>())
 }
 
-fn recording_name(recording: &EstimateRecording<'_>) -> String {
+fn recording_name(recording: &Recording<'_>) -> String {
     let names = recording.sources.iter().filter_map(|source| source.path.file_stem());
     names.map(|name| name.to_string_lossy()).collect::<Vec<_>>().join(", ")
 }
 
 /// The same for the same logs, settings and version, so that two recordings of one
 /// experiment stand side by side when either differs.
-fn recording_id(recording: &EstimateRecording<'_>) -> String {
+fn recording_id(recording: &Recording<'_>) -> String {
     use sha2::{Digest as _, Sha256};
     let mut hash = Sha256::new();
     for source in recording.sources {

@@ -64,7 +64,7 @@ impl<'a> CompareJson<'a> {
 impl<'a> JointJson<'a> {
     fn new(compared: &ComparedJoint<'a>) -> Self {
         let comparison = compared.comparison;
-        let units = units(compared.joint, &comparison.fit.model);
+        let units = parameter_units(compared.joint, &comparison.fit.model);
         let parameter = |(parameter, unit): (&Parameter, String)| {
             let Parameter { name, value, std_error, status } = parameter;
             let status = status_id(*status);
@@ -104,7 +104,7 @@ fn status_id(status: Status) -> &'static str {
 }
 
 /// Units of a model's parameters, in the order of [`JointModel::values`].
-fn units(joint: &Joint, model: &JointModel) -> Vec<String> {
+pub fn parameter_units(joint: &Joint, model: &JointModel) -> Vec<String> {
     let unit = |unit: &Option<String>, kind: &str| unit.clone().unwrap_or_else(|| kind.to_owned());
     let (input, output) = (unit(&joint.input_unit, "input"), unit(&joint.output_unit, "output"));
     let own = [format!("{output}/s/{input}"), "s".to_owned()].into_iter();
@@ -168,7 +168,7 @@ fn row(compared: &ComparedJoint<'_>) -> [String; 7] {
 /// The parameters of a model in one line.
 fn parameters(compared: &ComparedJoint<'_>) -> String {
     let fit = &compared.comparison.fit;
-    let units = units(compared.joint, &fit.model);
+    let units = parameter_units(compared.joint, &fit.model);
     let parameter = |(parameter, unit): (&Parameter, String)| {
         let Parameter { name, value, std_error, status } = parameter;
         let error = std_error.map_or_else(String::new, |error| format!(" ± {}", number(error)));

@@ -8,7 +8,7 @@ mod number;
 mod summary;
 mod text;
 
-pub use compare::{CompareJson, ComparedJoint, compare_table};
+pub use compare::{CompareJson, ComparedJoint, compare_table, parameter_units};
 pub use decisions::{DecisionRow, decision_rows, write_decisions};
 pub use delays::write_delays;
 pub use json::EstimateJson;

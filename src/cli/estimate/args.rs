@@ -8,6 +8,7 @@ use tauscope::filter::LowPass;
 
 use crate::cli::data::DataArgs;
 use crate::cli::progress::Verbosity;
+use crate::cli::record::Detail;
 
 /// Estimate the delay of every input step of every joint
 ///
@@ -135,15 +136,6 @@ pub(super) enum Format {
     Text,
     /// JSON, schema `tauscope/estimate/1`
     Json,
-}
-
-/// How many candidates are recorded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Detail {
-    /// Every candidate of every segment
-    Full,
-    /// At most 25 candidates of an accepted segment: for long logs
-    Lean,
 }
 
 #[derive(Clone, Copy, Debug)]

@@ -1,15 +1,15 @@
 //! The files that `tauscope estimate` writes.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use anyhow::{Context as _, bail};
+use anyhow::bail;
 use tauscope::report::{write_decisions, write_delays};
 
 use super::Estimated;
-use super::args::{Detail, OutputArgs};
-use crate::cli::message;
-use crate::cli::output::{OutputFile, target_of};
+use super::args::OutputArgs;
+use crate::cli::output::{OutputFile, target_of, write_file};
 use crate::cli::progress::Verbosity;
+use crate::cli::record::Contents;
 
 /// The files that were asked for, found to be writable before the work starts.
 pub(super) struct Files<'a> {
@@ -46,41 +46,15 @@ impl<'a> Files<'a> {
             write_file(path, |file| Ok(write_delays(result.joints, file)?))?;
         }
         if let Some(path) = &self.args.recording {
-            write_file(path, |file| record(result, file, self.args.detail))?;
-            if verbosity == Verbosity::Normal {
-                let path = path.display();
-                message("recording", &format!("{path}; look at it with: rerun {path}"));
-            }
+            let contents = Contents {
+                joints: result.joints,
+                settings: result.settings,
+                sources: &result.experiment.sources,
+                models: &[],
+                detail: self.args.detail,
+            };
+            contents.record(path, verbosity)?;
         }
         Ok(())
     }
-}
-
-/// Lets `write` fill a file and gives it its name when that went well.
-fn write_file(
-    path: &Path,
-    write: impl FnOnce(&mut OutputFile) -> anyhow::Result<()>,
-) -> anyhow::Result<()> {
-    let mut file = OutputFile::create(path)?;
-    write(&mut file).with_context(|| format!("{}: cannot be written", path.display()))?;
-    file.commit()
-}
-
-#[cfg(feature = "rrd")]
-fn record(result: &Estimated<'_>, file: &mut OutputFile, detail: Detail) -> anyhow::Result<()> {
-    use tauscope::recording::{self, EstimateRecording, write_estimate};
-
-    let detail = match detail {
-        Detail::Full => recording::Detail::Full,
-        Detail::Lean => recording::Detail::Lean,
-    };
-    let (joints, settings) = (result.joints, result.settings);
-    let sources = &result.experiment.sources;
-    let recording = EstimateRecording { joints, settings, sources, detail };
-    Ok(write_estimate(&recording, file)?)
-}
-
-#[cfg(not(feature = "rrd"))]
-fn record(_: &Estimated<'_>, _: &mut OutputFile, _: Detail) -> anyhow::Result<()> {
-    anyhow::bail!("this program was built without recordings: build it with feature `rrd`")
 }

@@ -18,11 +18,21 @@ use crate::recording::canvas::SHEET;
 use crate::recording::entity::{below, joint_root};
 use crate::recording::error::RecordError;
 use crate::recording::overview::{MAP_HEIGHT, MAP_WIDTH};
+use crate::recording::scatter;
 
-/// The tab of `joint`: three pages, the decisions first.
-pub(super) fn tab(builder: &mut Builder, joint: &Joint) -> Result<Node, RecordError> {
+/// The tab of `joint`: its decisions, its record, its table; and its models, which then
+/// come first, where there are any.
+pub(super) fn tab(
+    builder: &mut Builder,
+    joint: &Joint,
+    models: &[&str],
+) -> Result<Node, RecordError> {
     let mut views = Views { builder, joint };
-    let pages = [views.decisions()?, views.record()?, views.table()?];
+    let mut pages = Vec::new();
+    if !models.is_empty() {
+        pages.push(views.models(models)?);
+    }
+    pages.extend([views.decisions()?, views.record()?, views.table()?]);
     views.builder.container(ContainerKind::Tabs, &joint.name, &pages, &[])
 }
 
@@ -183,6 +193,37 @@ impl Views<'_> {
         rows.push(self.view(self.lanes())?);
         shares.push(1.2);
         self.builder.container(ContainerKind::Vertical, "Record", &rows, &shares)
+    }
+
+    /// Models beside the measurement, and what is left.
+    fn models(&mut self, models: &[&str]) -> Result<Node, RecordError> {
+        let of_each = |part: &'static str| models.iter().map(move |name| ["model", *name, part]);
+        let simulated: Vec<_> = of_each("simulated").collect();
+        let residuals: Vec<_> = of_each("residual").collect();
+        let mut measured: Vec<&[&str]> = vec![&["output", "raw"]];
+        measured.extend(simulated.iter().map(<[&str; 3]>::as_slice));
+        let mut left: Vec<&[&str]> = vec![&["noise", "upper"], &["noise", "lower"]];
+        left.extend(residuals.iter().map(<[&str; 3]>::as_slice));
+        let rows = [
+            self.plot("Measured and simulated", &measured)?,
+            self.plot("Residual: measured − simulated, and the band of the noise", &left)?,
+            self.view(self.scatter(models.len()))?,
+        ];
+        let builder = &mut *self.builder;
+        let plots = builder.container(ContainerKind::Vertical, "Plots", &rows, &[3.0, 2.5, 4.5])?;
+        let page = [self.path(&["model_page"])];
+        let page = self.view(View::new("TextDocument", "Models", &page))?;
+        let columns = [plots, page];
+        self.builder.container(ContainerKind::Horizontal, "Models", &columns, &[7.2, 2.8])
+    }
+
+    fn scatter(&self, models: usize) -> View<'static> {
+        let mut paths: Vec<_> =
+            ["grid", "points", "texts"].iter().map(|name| self.path(&["scatter", name])).collect();
+        let curve = |number| self.path(&["scatter", "curve", &format!("{number}")]);
+        paths.extend((0..models).map(curve));
+        View::new("2D", "What the residual depends on: points, and their mean", &paths)
+            .with("VisualBounds2D", bounds(SHEET.0, scatter::HEIGHT))
     }
 
     /// A plot whose time axis moves with those of the other plots.

@@ -8,19 +8,21 @@ use rerun::external::re_sdk_types::blueprint::components::ContainerKind;
 use rerun::log::LogMsg;
 
 use self::builder::{Builder, View};
-use super::EstimateRecording;
+use super::Recording;
 use super::error::RecordError;
 
 /// The messages of the blueprint of `recording`: a tab per joint and one about it all.
 pub(super) fn messages(
-    recording: &EstimateRecording<'_>,
+    recording: &Recording<'_>,
     application: &ApplicationId,
     id: &str,
 ) -> Result<Vec<LogMsg>, RecordError> {
     let mut builder = Builder::new();
     let mut tabs = Vec::new();
     for joint in recording.joints {
-        tabs.push(joint::tab(&mut builder, joint.joint)?);
+        let models = recording.models.iter().filter(|m| m.joint.name == joint.joint.name);
+        let models: Vec<_> = models.map(|model| model.model).collect();
+        tabs.push(joint::tab(&mut builder, joint.joint, &models)?);
     }
     tabs.push(builder.view(View::new("TextDocument", "About", &["/about"]))?);
     let root = builder.container(ContainerKind::Tabs, "Joints", &tabs, &[])?;

@@ -1,0 +1,60 @@
+//! Recordings of any command.
+
+use std::path::Path;
+
+use tauscope::delay::Settings;
+use tauscope::experiment::Source;
+use tauscope::report::{ComparedJoint, EstimatedJoint};
+
+use super::message;
+use super::output::{OutputFile, write_file};
+use super::progress::Verbosity;
+
+/// How many candidates are recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Detail {
+    /// Every candidate of every segment
+    Full,
+    /// At most 25 candidates of an accepted segment: for long logs
+    Lean,
+}
+
+/// What a recording holds.
+pub(super) struct Contents<'a> {
+    pub(super) joints: &'a [EstimatedJoint<'a>],
+    pub(super) settings: &'a Settings,
+    pub(super) sources: &'a [Source],
+    pub(super) models: &'a [ComparedJoint<'a>],
+    pub(super) detail: Detail,
+}
+
+impl Contents<'_> {
+    /// Writes the recording to `path` and says how to look at it.
+    pub(super) fn record(&self, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
+        write_file(path, |file| self.write(file))?;
+        if verbosity == Verbosity::Normal {
+            let path = path.display();
+            message("recording", &format!("{path}; look at it with: rerun {path}"));
+        }
+        Ok(())
+    }
+
+    #[cfg(feature = "rrd")]
+    fn write(&self, file: &mut OutputFile) -> anyhow::Result<()> {
+        use tauscope::recording::{self, Recording, write_recording};
+
+        let Self { joints, settings, sources, models, detail } = *self;
+        let detail = match detail {
+            Detail::Full => recording::Detail::Full,
+            Detail::Lean => recording::Detail::Lean,
+        };
+        let recording = Recording { joints, settings, sources, detail, models };
+        Ok(write_recording(&recording, file)?)
+    }
+
+    #[cfg(not(feature = "rrd"))]
+    #[expect(clippy::unused_self, reason = "with recordings it is used")]
+    fn write(&self, _: &mut OutputFile) -> anyhow::Result<()> {
+        anyhow::bail!("this program was built without recordings: build it with feature `rrd`")
+    }
+}

@@ -1,0 +1,157 @@
+//! Models beside the measurement: what they simulate, what is left, how large it is.
+
+use std::fmt::Write as _;
+
+use rerun::{EntityPath, Scalars, SeriesLines, TextDocument};
+
+use super::chunk::{Chunks, Index};
+use super::entity::below;
+use super::error::RecordError;
+use super::layout::{JointLayout, TrialLayout};
+use super::palette::{self, Rgb, color};
+use super::scatter;
+use crate::diagnosis::{Comparison, ErrorFigures};
+use crate::fit::{Parameter, Status};
+use crate::report::{ComparedJoint, number, parameter_units};
+
+/// Width of the noise band in standard deviations on each side: 95 % of normal noise.
+const BAND: f64 = 1.96;
+
+/// Adds `/model/<name>/simulated`, `/residual` and the rest of the models' page.
+pub(super) fn add(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    layout: &JointLayout<'_>,
+    models: &[&ComparedJoint<'_>],
+) -> Result<(), RecordError> {
+    for (compared, rgb) in models.iter().zip(palette::models()) {
+        let evaluation = &compared.comparison.fit.evaluation;
+        let simulated = |trial: &TrialLayout<'_>| {
+            evaluation.simulated.get(trial.index).map_or(&[][..], |s| &s.output).to_vec()
+        };
+        let residual = |trial: &TrialLayout<'_>| {
+            evaluation.residuals.get(trial.index).cloned().unwrap_or_default()
+        };
+        let name = compared.model;
+        let entity = below(root, &["model", name, "simulated"]);
+        line(chunks, &entity, &format!("{name}: simulated"), rgb)?;
+        signal(chunks, entity, layout, simulated)?;
+        let entity = below(root, &["model", name, "residual"]);
+        line(chunks, &entity, &format!("{name}: measured − simulated"), rgb)?;
+        signal(chunks, entity, layout, residual)?;
+    }
+    if let Some(first) = models.first() {
+        band(chunks, root, layout, first.comparison.noise_floor)?;
+        let page = page(models).unwrap_or_default();
+        let document = TextDocument::from_markdown(page);
+        chunks.push_static(below(root, &["model_page"]), &document)?;
+        scatter::add(chunks, &below(root, &["scatter"]), models)?;
+    }
+    Ok(())
+}
+
+fn line(chunks: &mut Chunks, entity: &EntityPath, name: &str, rgb: Rgb) -> Result<(), RecordError> {
+    let style = SeriesLines::new().with_names([name]).with_colors([color(rgb)]);
+    chunks.push_static(entity.clone(), &style.with_widths([1.5]))
+}
+
+fn signal<'a>(
+    chunks: &mut Chunks,
+    entity: EntityPath,
+    layout: &JointLayout<'a>,
+    values: impl Fn(&TrialLayout<'a>) -> Vec<f64>,
+) -> Result<(), RecordError> {
+    let mut index = Index::default();
+    let (mut all, mut lengths) = (Vec::new(), Vec::new());
+    for trial in &layout.trials {
+        let values = values(trial);
+        index.extend(trial.moments(values.len() + 1));
+        lengths.extend(std::iter::repeat_n(1, values.len()).chain([0]));
+        all.extend(values);
+    }
+    chunks.push(entity, index, Scalars::new(all).columns(lengths)?)
+}
+
+/// Two level lines between which noise alone would keep the residual.
+fn band(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    layout: &JointLayout<'_>,
+    noise: Option<f64>,
+) -> Result<(), RecordError> {
+    let Some(noise) = noise else { return Ok(()) };
+    for (name, level) in [("upper", BAND * noise), ("lower", -BAND * noise)] {
+        let entity = below(root, &["noise", name]);
+        let style = SeriesLines::new().with_names([format!("noise, {name}")]);
+        let style = style.with_colors([color(palette::BORDER)]).with_widths([1.0]);
+        chunks.push_static(entity.clone(), &style)?;
+        let ends = layout.trials.iter().flat_map(|t| [t.moment_of(1), t.moment_of(t.trial.len())]);
+        let index: Index = ends.collect();
+        let values = Scalars::new(vec![level; index.len()]);
+        chunks.push(entity, index, values.columns_of_unit_batches()?)?;
+    }
+    Ok(())
+}
+
+/// All figures of all models of the joint.
+fn page(models: &[&ComparedJoint<'_>]) -> Result<String, std::fmt::Error> {
+    let mut page = String::new();
+    let Some(first) = models.first() else { return Ok(page) };
+    let joint = first.joint;
+    let unit = joint.output_unit.as_deref().unwrap_or("");
+    writeln!(page, "### {}: {}\n", joint.name, headline(first.comparison))?;
+    writeln!(page, "| model | training | validation | fit | lack of fit |\n|---|---|---|---|---|")?;
+    for compared in models {
+        let Comparison { training, validation, lack_of_fit, .. } = compared.comparison;
+        let rmse = |error: &Option<ErrorFigures>| {
+            error.map_or_else(|| "–".to_owned(), |e| format!("{} {unit}", number(e.rmse)))
+        };
+        let percent =
+            validation.map_or_else(|| "–".to_owned(), |e| format!("{:.1} %", e.fit_percent));
+        let shown = lack_of_fit.map_or("–", |t| if t.adequate { "not shown" } else { "shown" });
+        let (train, valid) = (rmse(training), rmse(validation));
+        writeln!(page, "| {} | {train} | {valid} | {percent} | {shown} |", compared.model)?;
+    }
+    if let Some(noise) = first.comparison.noise_floor {
+        writeln!(
+            page,
+            "\nNoise of the measurement: {} {unit}. Errors are root mean squares.",
+            number(noise)
+        )?;
+    }
+    for compared in models {
+        writeln!(
+            page,
+            "\n**{}**\n\n| parameter | value | standard error |\n|---|---|---|",
+            compared.model
+        )?;
+        let fit = &compared.comparison.fit;
+        for (parameter, unit) in fit.parameters.iter().zip(parameter_units(joint, &fit.model)) {
+            let (name, value) = (&parameter.name, number(parameter.value));
+            writeln!(page, "| {name} | {value} {unit} | {} |", certainty(parameter))?;
+        }
+    }
+    Ok(page)
+}
+
+/// What a reviewer should know first.
+fn headline(comparison: &Comparison) -> String {
+    let times = comparison.validation.zip(comparison.noise_floor);
+    let times = times.map(|(error, noise)| error.rmse / noise.max(f64::MIN_POSITIVE));
+    match (comparison.lack_of_fit, times) {
+        (Some(test), _) if test.adequate => "the model is adequate".to_owned(),
+        (_, Some(times)) => {
+            format!("the error is {} times the noise", number(times.max(0.0).round()))
+        }
+        _ => "the model fails".to_owned(),
+    }
+}
+
+fn certainty(parameter: &Parameter) -> String {
+    match (parameter.status, parameter.std_error) {
+        (Status::Fixed, _) => "fixed".to_owned(),
+        (Status::AtBound, _) => "at its bound".to_owned(),
+        (Status::Undetermined, _) | (Status::Fitted, None) => "not determined".to_owned(),
+        (Status::Fitted, Some(error)) => number(error),
+    }
+}

@@ -1,0 +1,143 @@
+//! The residual against what it may depend on: input, angle, speed, time since the step.
+
+use rerun::datatypes::Vec2D;
+use rerun::{EntityPath, LineStrips2D, Points2D};
+
+use super::canvas::{Labels, Plot, Span};
+use super::chunk::Chunks;
+use super::entity::below;
+use super::error::RecordError;
+use super::palette::{self, color};
+use crate::report::{ComparedJoint, number};
+
+/// Height of the sheet: two plots below one another.
+pub(super) const HEIGHT: f32 = 660.0;
+
+/// Points that are drawn of each plot; more hide one another.
+const POINTS: usize = 3000;
+
+/// Bins of the curve through the points.
+const BINS: usize = 24;
+
+/// A quantity and the residual, sample by sample.
+struct Pairs {
+    name: String,
+    x: Vec<f64>,
+    residual: Vec<f64>,
+}
+
+/// Draws the residuals of `models` against four quantities below `root`; the points are
+/// those of the first model, the curves those of all.
+pub(super) fn add(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    models: &[&ComparedJoint<'_>],
+) -> Result<(), RecordError> {
+    let Some(first) = models.first() else { return Ok(()) };
+    let (mut grid, mut labels, mut points) = (Vec::new(), Labels::default(), Vec::new());
+    let mut curves: Vec<Vec<Vec<Vec2D>>> = vec![Vec::new(); models.len()];
+    let others: Vec<Vec<Pairs>> = models.iter().map(|model| quantities(model)).collect();
+    for (place, pairs) in quantities(first).iter().enumerate() {
+        let plot = plot(place, pairs);
+        let ticks = |span: Span, count| span.ticks(count);
+        let named: Vec<_> = ticks(plot.y_span(), 4.0).into_iter().map(|y| (y, number(y))).collect();
+        let x_ticks = ticks(plot.x_span(), 6.0);
+        grid.extend(plot.grid(&x_ticks, &named, &mut labels));
+        for x in x_ticks {
+            labels.put(plot.below(x, 2.0), number(x));
+        }
+        labels.put(plot.above(middle(plot.x_span()), 26.0), pairs.name.clone());
+        let every = pairs.x.len().div_ceil(POINTS).max(1);
+        let places = pairs.x.iter().zip(&pairs.residual).step_by(every);
+        points.extend(places.map(|(x, r)| plot.at(*x, *r)));
+        for (curves, all) in curves.iter_mut().zip(&others) {
+            curves.extend(all.get(place).map(|pairs| curve(&plot, pairs)));
+        }
+    }
+    let strips = LineStrips2D::new(grid).with_colors([color(palette::GRID)]).with_radii([0.7]);
+    chunks.push_static(below(root, &["grid"]), &strips)?;
+    let dots = Points2D::new(points).with_colors([color(palette::RAW)]).with_radii([1.2]);
+    chunks.push_static(below(root, &["points"]), &dots)?;
+    let texts = Points2D::new(labels.places).with_labels(labels.texts).with_show_labels(true);
+    let texts = texts.with_radii([0.01]).with_colors([color(palette::BORDER)]);
+    chunks.push_static(below(root, &["texts"]), &texts)?;
+    for ((curves, rgb), number) in curves.into_iter().zip(palette::models()).zip(0..) {
+        let strips = LineStrips2D::new(curves).with_colors([color(rgb)]).with_radii([2.4]);
+        chunks.push_static(below(root, &["curve", &format!("{number}")]), &strips)?;
+    }
+    Ok(())
+}
+
+fn middle(span: Span) -> f64 {
+    f64::midpoint(span.low, span.high)
+}
+
+/// One of four places on the sheet.
+fn plot(place: usize, pairs: &Pairs) -> Plot {
+    let rows = if place < 2 { 40.0..=290.0 } else { 370.0..=620.0 };
+    let columns = if place.is_multiple_of(2) { (95.0, 780.0) } else { (905.0, 1590.0) };
+    let x = Span::around(pairs.x.iter().copied(), 0.03);
+    let y = Span::around(pairs.residual.iter().copied(), 0.05);
+    Plot::within(columns, rows, x, y)
+}
+
+fn quantities(compared: &ComparedJoint<'_>) -> Vec<Pairs> {
+    let joint = compared.joint;
+    let evaluation = &compared.comparison.fit.evaluation;
+    let unit = |unit: &Option<String>| unit.as_ref().map_or(String::new(), |u| format!(" [{u}]"));
+    let (input, output) = (unit(&joint.input_unit), unit(&joint.output_unit));
+    let speed = joint.output_unit.as_ref().map_or(String::new(), |u| format!(" [{u}/s]"));
+    let residual: Vec<f64> = evaluation.residuals.concat();
+    let all = |values: Vec<Vec<f64>>| values.concat();
+    let acting = all(evaluation.simulated.iter().map(|s| s.acting.clone()).collect());
+    let velocity = all(evaluation.simulated.iter().map(|s| s.velocity.clone()).collect());
+    let angle = all(joint.trials.iter().map(|trial| trial.output().to_vec()).collect());
+    let periods = joint.trials.iter().map(|trial| trial.period().seconds());
+    let since =
+        all(periods.zip(&evaluation.simulated).map(|(t, s)| since_step(&s.acting, t)).collect());
+    let quantity = |name: String, x: Vec<f64>| Pairs { name, x, residual: residual.clone() };
+    vec![
+        quantity(format!("residual{output} against the acting input{input}"), acting),
+        quantity(format!("residual{output} against the angle{output}"), angle),
+        quantity(format!("residual{output} against the speed{speed}"), velocity),
+        quantity(format!("residual{output} against the time since the step [s]"), since),
+    ]
+}
+
+/// Seconds since the acting input last changed.
+fn since_step(acting: &[f64], period_s: f64) -> Vec<f64> {
+    let (mut before, mut samples) = (f64::NAN, 0.0);
+    let since = |level: &f64| {
+        #[expect(clippy::float_cmp, reason = "a step is any change")]
+        let changed = *level != before;
+        samples = if changed { 0.0 } else { samples + 1.0 };
+        before = *level;
+        samples * period_s
+    };
+    acting.iter().map(since).collect()
+}
+
+/// The mean residual in each of [`BINS`] bins with as many samples each.
+fn curve(plot: &Plot, pairs: &Pairs) -> Vec<Vec2D> {
+    let mut sorted: Vec<(f64, f64)> =
+        pairs.x.iter().copied().zip(pairs.residual.iter().copied()).collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let size = sorted.len().div_ceil(BINS).max(1);
+    let mean = |bin: &[(f64, f64)]| {
+        let n = bin.len() as f64;
+        let (x, r) = bin.iter().fold((0.0, 0.0), |(x, r), pair| (x + pair.0 / n, r + pair.1 / n));
+        plot.at(x, r)
+    };
+    sorted.chunks(size).map(mean).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_since_a_step_starts_anew_at_each() {
+        let since = since_step(&[1.0, 1.0, 2.0, 2.0, 2.0], 0.1);
+        assert_eq!(since, [0.0, 0.1, 0.0, 0.1, 0.2]);
+    }
+}
