@@ -11,7 +11,7 @@ use super::palette::{self, color};
 use crate::report::{ComparedJoint, number};
 
 /// Height of the sheet: two plots below one another.
-pub(super) const HEIGHT: f32 = 660.0;
+pub(super) const HEIGHT: f32 = 480.0;
 
 /// Points that are drawn of each plot; more hide one another.
 const POINTS: usize = 3000;
@@ -40,7 +40,7 @@ pub(super) fn add(
     for (place, pairs) in quantities(first).iter().enumerate() {
         let plot = plot(place, pairs);
         let ticks = |span: Span, count| span.ticks(count);
-        let named: Vec<_> = ticks(plot.y_span(), 4.0).into_iter().map(|y| (y, number(y))).collect();
+        let named: Vec<_> = ticks(plot.y_span(), 3.0).into_iter().map(|y| (y, number(y))).collect();
         let x_ticks = ticks(plot.x_span(), 6.0);
         grid.extend(plot.grid(&x_ticks, &named, &mut labels));
         for x in x_ticks {
@@ -74,7 +74,7 @@ fn middle(span: Span) -> f64 {
 
 /// One of four places on the sheet.
 fn plot(place: usize, pairs: &Pairs) -> Plot {
-    let rows = if place < 2 { 40.0..=290.0 } else { 370.0..=620.0 };
+    let rows = if place < 2 { 36.0..=198.0 } else { 282.0..=444.0 };
     let columns = if place.is_multiple_of(2) { (95.0, 780.0) } else { (905.0, 1590.0) };
     let x = Span::around(pairs.x.iter().copied(), 0.03);
     let y = Span::around(pairs.residual.iter().copied(), 0.05);
