@@ -77,12 +77,20 @@ fn record(
     use tauscope::recording::{Detail, Recording, write_recording};
     use tauscope::report::EstimatedJoint;
 
+    let reading = ReadOptions::default();
     let estimates = estimated(joints, settings);
     let pairs = joints.iter().zip(&estimates);
     let joints: Vec<_> =
         pairs.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect();
     for (name, detail) in [("full", Detail::Full), ("lean", Detail::Lean)] {
-        let recording = Recording { joints: &joints, settings, sources: &[], detail, models: &[] };
+        let recording = Recording {
+            joints: &joints,
+            settings,
+            sources: &[],
+            reading: &reading,
+            detail,
+            models: &[],
+        };
         group.bench_function(BenchmarkId::new("record", name), |bencher| {
             bencher.iter(|| {
                 let file = std::io::BufWriter::new(tempfile::tempfile().unwrap());

@@ -34,6 +34,7 @@ fn main() -> anyhow::Result<()> {
         joints: &joints,
         settings: &settings,
         sources: &experiment.sources,
+        reading: &experiment.options,
         detail: Detail::Full,
         models: &[],
     };

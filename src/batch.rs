@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::delay::{EstimateError, Settings, TrialEstimate, estimate};
 use crate::diagnosis::{Comparison, compare};
-use crate::experiment::Joint;
+use crate::experiment::{Joint, Trial};
 use crate::fit::{Fit, FitError, Horizon, Record, Split, assess, fit};
 use crate::model::{JointModel, integrators};
 
@@ -32,8 +32,8 @@ impl JointEstimate {
 
 /// Estimates every trial of every joint; `done` is called after each of them.
 ///
-/// # Errors
-/// A joint fails when all its trials do, with the first trial's error.
+/// A joint fails when all its trials do, with the first trial's error, or when they are all
+/// too short for two lines.
 pub fn estimate_joints(
     joints: &[Joint],
     settings: &Settings,
@@ -45,6 +45,11 @@ pub fn estimate_joints(
             done();
             estimate
         };
+        let needed = settings.beta.saturating_mul(2);
+        let longest = joint.trials.iter().map(Trial::len).max();
+        if let Some(samples) = longest.filter(|samples| *samples < needed) {
+            return Err(EstimateError::TooFewSamples { samples, needed });
+        }
         let trials: Vec<_> = joint.trials.par_iter().map(one_trial).collect();
         match trials.first() {
             Some(Err(first)) if trials.iter().all(Result::is_err) => Err(first.clone()),

@@ -5,6 +5,7 @@
 //! Each module uses only those above it.
 //!
 //! - [`units`]: scalars that are valid once they exist
+//! - [`statistics`]: rank tests and tails of distributions
 //! - [`effect`]: the catalogue of physical effects
 //! - [`filter`]: the zero-phase low-pass
 //! - [`experiment`]: logs, joints, trials
@@ -28,5 +29,6 @@ pub mod model;
 #[cfg(feature = "rrd")]
 pub mod recording;
 pub mod report;
+pub mod statistics;
 pub mod synthetic;
 pub mod units;

@@ -73,6 +73,28 @@ fn without_lag_the_median_error_is_below_one_and_a_half_samples() {
 }
 
 #[test]
+fn the_table_of_the_document_is_what_comes_out() {
+    let document = std::fs::read_to_string("docs/accuracy.md").unwrap();
+    let judged = judged();
+    let all: Vec<_> = judged.values().flatten().collect();
+    let share = all.iter().filter(|step| step.accepted).count() as f64 / all.len() as f64;
+    assert!(document.contains(&format!("{:.1} % are accepted", 100.0 * share)), "{share}");
+    for (joint, steps) in &judged {
+        let accepted = steps.iter().filter(|step| step.accepted);
+        let errors: Vec<f64> = accepted.map(|step| step.error.unwrap()).collect();
+        let mut sizes: Vec<f64> = errors.iter().map(|error| error.abs()).collect();
+        sizes.sort_by(f64::total_cmp);
+        let count = sizes.len();
+        let median = f64::midpoint(sizes[(count - 1) / 2], sizes[count / 2]);
+        let mean = sizes.iter().sum::<f64>() / count as f64;
+        let bias = errors.iter().sum::<f64>() / count as f64;
+        let numbers = format!("| {median:.2} | {mean:.2} | {bias:+.2} |");
+        let row = document.lines().find(|line| line.starts_with(&format!("| {joint} "))).unwrap();
+        assert!(row.ends_with(&numbers), "{joint}: {numbers} is not in {row}");
+    }
+}
+
+#[test]
 fn the_files_in_data_are_what_their_plants_make() {
     for name in ["manipulator", "worked_example"] {
         let plant = std::fs::read_to_string(format!("data/{name}.plant.toml")).unwrap();

@@ -53,7 +53,11 @@ impl Recorded {
     fn write(&self, detail: Detail, out: impl Write) -> Result<(), RecordError> {
         let joints = self.joints();
         let (settings, sources) = (&self.settings, self.experiment.sources.as_slice());
-        write_recording(&Recording { joints: &joints, settings, sources, detail, models: &[] }, out)
+        let reading = &self.experiment.options;
+        write_recording(
+            &Recording { joints: &joints, settings, sources, reading, detail, models: &[] },
+            out,
+        )
     }
 
     fn read_back(&self, detail: Detail) -> ReadBack {
@@ -230,6 +234,28 @@ fn every_candidate_has_a_tick_and_no_tick_is_dead() {
 }
 
 #[test]
+fn a_drawing_never_shows_a_candidate_of_another_segment() {
+    let recorded = Recorded::with(Settings::default());
+    let back = recorded.read_back(Detail::Full);
+    for joint in &recorded.experiment.joints {
+        let of = |name: &str, component: &'static str| {
+            back.rows(&format!("/{}/drawing/{name}", joint.name), component, |_| ())
+        };
+        let openings = of("borders", "LineStrips2D:strips");
+        let candidates = of("candidate", "LineStrips2D:strips");
+        for timeline in ["sample", "time"] {
+            for (times, ()) in &candidates {
+                // The drawing that is seen at the candidate's moment is the latest before it.
+                let before =
+                    openings.iter().filter(|(opening, ())| opening[timeline] <= times[timeline]);
+                let seen = before.max_by_key(|(opening, ())| opening[timeline]).unwrap();
+                assert_eq!(seen.0["segment"], times["segment"], "{timeline}");
+            }
+        }
+    }
+}
+
+#[test]
 fn each_verdict_says_why() {
     let settings = Settings { min_slope_change: 0.12, ..Settings::default() };
     let recorded = Recorded::with(settings);
@@ -241,7 +267,7 @@ fn each_verdict_says_why() {
         assert!(rows.iter().any(|row| row.verdict == "slope_change"), "the limit rejects some");
         for (row, (times, text)) in rows.iter().zip(&texts) {
             assert_eq!(times["segment"], whole(row.i));
-            match row.verdict {
+            match row.verdict.as_str() {
                 "accepted" => assert!(text.contains("✓ accepted"), "{text}"),
                 failed => assert!(text.contains(&format!("**{failed}**")), "{text}"),
             }
@@ -280,7 +306,7 @@ fn lean_keeps_rejected_segments_whole_and_says_so() {
         for row in decision_rows(joint).map(|(_, row)| row) {
             let ticks: Vec<_> = numbers.iter().filter(|(_, i)| *i == whole(row.i)).collect();
             let kept = ticks.len() - 1;
-            match row.verdict {
+            match row.verdict.as_str() {
                 "accepted" => assert!(kept <= 25 && kept < row.candidates),
                 _ => assert_eq!(kept, row.candidates),
             }

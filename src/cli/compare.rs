@@ -14,7 +14,7 @@ use tauscope::model::{JointModel, ModelFile};
 use tauscope::report::{CompareJson, ComparedJoint, EstimatedJoint, compare_table};
 
 use super::data::DataArgs;
-use super::output::OutputFile;
+use super::output::check_outputs;
 use super::progress::Verbosity;
 use super::record::{Contents, Detail};
 use super::{Completion, message};
@@ -55,7 +55,7 @@ pub(super) struct Args {
     format: Format,
 
     /// Threads to use [default: all processors]
-    #[arg(long, value_name = "N", help_heading = "Output")]
+    #[arg(long, value_name = "N", value_parser = super::data::threads, help_heading = "Output")]
     threads: Option<usize>,
 
     /// No notices
@@ -104,7 +104,7 @@ struct Named {
 pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let models = models(&args.model)?;
     if let Some(path) = &args.recording {
-        OutputFile::probe(path)?;
+        check_outputs(&[path.as_path()], &args.data.files())?;
     }
     let experiment = args.data.read()?;
     let joints = &experiment.joints;
@@ -140,7 +140,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
             pairs.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect();
         let (settings, sources) = (&settings, &experiment.sources);
         let detail = Detail::Full;
-        let contents = Contents { joints: &joints, settings, sources, models: &compared, detail };
+        let (joints, models) = (joints.as_slice(), compared.as_slice());
+        let reading = &experiment.options;
+        let contents = Contents { joints, settings, sources, reading, models, detail };
         contents.record(path, if args.quiet { Verbosity::Quiet } else { Verbosity::Normal })?;
     }
     finish(args, &compared, &failures)

@@ -25,7 +25,7 @@ pub(super) struct DataArgs {
     #[arg(long, value_name = "COLUMN", help_heading = "Reading logs")]
     time: Option<String>,
 
-    /// Column that names the trial of a row
+    /// Column that names the trial of a row, or `none`
     #[arg(long, value_name = "COLUMN", help_heading = "Reading logs")]
     trial: Option<String>,
 
@@ -59,6 +59,14 @@ pub(super) struct DataArgs {
 fn period(text: &str) -> Result<SamplePeriod, String> {
     let period = text.parse().ok().and_then(SamplePeriod::from_seconds);
     period.ok_or_else(|| "expected a number of seconds above zero".to_owned())
+}
+
+/// A number of threads.
+pub(super) fn threads(text: &str) -> Result<usize, String> {
+    /// More than any machine has processors for.
+    const MOST: usize = 1024;
+    let number = text.parse().ok().filter(|number| (1..=MOST).contains(number));
+    number.ok_or_else(|| format!("expected a whole number from 1 to {MOST}"))
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

@@ -4,7 +4,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use tempfile::NamedTempFile;
 
 /// A file that is being written. Dropped before [`commit`](Self::commit), it leaves
@@ -89,6 +89,26 @@ impl OutputFile {
         };
         finish(self.target).with_context(|| format!("{}: cannot be written", self.path.display()))
     }
+}
+
+/// Refuses outputs that cannot be written, or would replace an input or one another.
+pub(super) fn check_outputs(outputs: &[&Path], inputs: &[PathBuf]) -> anyhow::Result<()> {
+    let mut taken: Vec<PathBuf> = Vec::new();
+    for path in outputs {
+        let target = target_of(path);
+        let name = path.display();
+        // A device, such as /dev/null, may take any number of outputs.
+        let is_file = !target.exists() || target.is_file();
+        if inputs.contains(&target) {
+            bail!("{name}: this is a file that is read; give the output another name");
+        }
+        if is_file && taken.contains(&target) {
+            bail!("{name}: two outputs have this name; give each its own");
+        }
+        OutputFile::probe(path)?;
+        taken.push(target);
+    }
+    Ok(())
 }
 
 /// Lets `write` fill a file and gives it its name when that went well.

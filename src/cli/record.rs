@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use tauscope::delay::Settings;
-use tauscope::experiment::Source;
+use tauscope::experiment::{ReadOptions, Source};
 use tauscope::report::{ComparedJoint, EstimatedJoint};
 
 use super::message;
@@ -20,10 +20,12 @@ pub(super) enum Detail {
 }
 
 /// What a recording holds.
+#[cfg_attr(not(feature = "rrd"), expect(dead_code, reason = "there is no recording then"))]
 pub(super) struct Contents<'a> {
     pub(super) joints: &'a [EstimatedJoint<'a>],
     pub(super) settings: &'a Settings,
     pub(super) sources: &'a [Source],
+    pub(super) reading: &'a ReadOptions,
     pub(super) models: &'a [ComparedJoint<'a>],
     pub(super) detail: Detail,
 }
@@ -43,12 +45,12 @@ impl Contents<'_> {
     fn write(&self, file: &mut OutputFile) -> anyhow::Result<()> {
         use tauscope::recording::{self, Recording, write_recording};
 
-        let Self { joints, settings, sources, models, detail } = *self;
+        let Self { joints, settings, sources, reading, models, detail } = *self;
         let detail = match detail {
             Detail::Full => recording::Detail::Full,
             Detail::Lean => recording::Detail::Lean,
         };
-        let recording = Recording { joints, settings, sources, detail, models };
+        let recording = Recording { joints, settings, sources, reading, detail, models };
         Ok(write_recording(&recording, file)?)
     }
 

@@ -6,7 +6,7 @@ use anyhow::Context as _;
 use clap::Args as ClapArgs;
 use tauscope::synthetic::{PlantSpec, simulate, write_log, write_truth};
 
-use super::output::OutputFile;
+use super::output::{OutputFile, check_outputs};
 use super::{Completion, message};
 
 /// Make a log of joints with known delays
@@ -33,11 +33,11 @@ pub(super) struct Args {
     seed: Option<u64>,
 
     /// Standard deviation of the noise of every joint, instead of the plant file's
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
     noise: Option<f64>,
 
     /// Length of the log, instead of the plant file's
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     duration: Option<f64>,
 
     /// No notices
@@ -55,6 +55,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     for joint in &mut spec.joints {
         joint.noise = args.noise.unwrap_or(joint.noise);
     }
+    let outputs: Vec<_> =
+        std::iter::once(args.output.as_path()).chain(args.truth.as_deref()).collect();
+    check_outputs(&outputs, &args.plant.canonicalize().into_iter().collect::<Vec<_>>())?;
     let mut log = OutputFile::create(&args.output)?;
     let truth = args.truth.as_deref().map(OutputFile::create).transpose()?;
     let made = simulate(&spec).with_context(|| format!("{plant}"))?;

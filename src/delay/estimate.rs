@@ -1,5 +1,7 @@
 //! Algorithm 1: step by step, since each segment hangs on the verdict before it.
 
+use std::fmt;
+
 use serde::Serialize;
 
 use super::condition::{Check, Condition, Facts, Outcome};
@@ -21,9 +23,10 @@ pub struct Settings {
     pub low_pass: Option<LowPass>,
     /// `τ_min`: the shortest hold, in samples, that is accepted.
     pub min_delay: usize,
-    /// The longest delay that is looked for, in samples; a segment then ends at
-    /// `p_i + max_delay + α` at the latest. For holds so long that the output meets
-    /// something else on its way, such as an end stop. The paper has no such limit.
+    /// The longest delay that is looked for, in samples; a segment then runs from
+    /// `p_i − α` at the earliest to `p_i + max_delay + α` at the latest. For holds so long
+    /// that the output meets something else on its way, such as an end stop. The paper has
+    /// no such limit.
     pub max_delay: Option<usize>,
     /// Lower and upper limit that the output must stay between.
     pub output_limits: Option<(f64, f64)>,
@@ -123,15 +126,13 @@ pub enum EstimateError {
     /// The output cannot be smoothed as asked.
     #[error(transparent)]
     Filter(#[from] FilterError),
-    /// The trial is shorter than two rows of β samples.
+    /// Every trial of a joint is shorter than two rows of β samples.
     #[error(
-        "trial `{trial}` has {samples} samples, but two lines need at least 2β = {needed}; \
+        "the longest trial has {samples} samples, but two lines need at least 2β = {needed}; \
          choose a smaller `--beta`"
     )]
     TooFewSamples {
-        /// The trial's label.
-        trial: String,
-        /// Samples it has.
+        /// Samples of the longest trial.
         samples: usize,
         /// Samples it needs.
         needed: usize,
@@ -186,6 +187,15 @@ pub enum Verdict {
     Rejected(Condition),
 }
 
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Accepted => f.write_str("accepted"),
+            Self::Rejected(condition) => f.write_str(condition.id()),
+        }
+    }
+}
+
 impl Decision {
     /// The best breakpoint, if there was a candidate.
     pub fn breakpoint(&self) -> Option<Breakpoint> {
@@ -228,18 +238,15 @@ fn signed(samples: usize) -> i64 {
 /// with the least squared error breaks at `q_i`; the delay is `δ_i = q_i − p_i`.
 ///
 /// # Errors
-/// [`EstimateError`] when the settings make no sense or do not fit this trial. An input
-/// without a step is no error: there are no decisions then.
+/// [`EstimateError`] when the settings make no sense or the filter does not fit this
+/// trial. An input without a step is no error: there are no decisions then; nor is a
+/// trial too short for two lines, whose decisions say so.
 ///
 /// # References
 /// Albrecht and Taylor, Algorithm 1 (time-varying delays of hydraulic manipulators).
 pub fn estimate(trial: &Trial, settings: &Settings) -> Result<TrialEstimate, EstimateError> {
     settings.check()?;
-    let (samples, needed) = (trial.len(), settings.beta.saturating_mul(2));
-    if samples < needed {
-        let trial = trial.label().to_owned();
-        return Err(EstimateError::TooFewSamples { trial, samples, needed });
-    }
+    let samples = trial.len();
     let smooth = |filter: LowPass| filter.smooth(trial.output(), trial.period());
     let smoothed = settings.low_pass.map(smooth).transpose()?;
     let output = smoothed.as_deref().unwrap_or(trial.output());
@@ -268,11 +275,19 @@ fn decide(
     let next = steps.get(index + 1).map_or(samples + 1, |next| next.sample);
     let accepted = before.filter(|before| before.verdict() == Verdict::Accepted);
     let previous = accepted.and_then(Decision::breakpoint);
-    let first = previous.map_or(p.saturating_sub(settings.alpha), |best| best.candidate.breakpoint);
-    let latest = settings.max_delay.map_or(next, |delay| next.min(p.saturating_add(delay)));
-    let segment = Segment::clipped(first, latest.saturating_add(settings.alpha), samples);
+    let before_step = p.saturating_sub(settings.alpha);
+    let breakpoint = previous.map(|best| best.candidate.breakpoint);
+    let latest = settings.max_delay.map_or(usize::MAX, |delay| p.saturating_add(delay));
+    let first = match (breakpoint, settings.max_delay) {
+        (None, _) => before_step,
+        (Some(breakpoint), None) => breakpoint,
+        // What came long before the step is none of its business.
+        (Some(breakpoint), Some(_)) => breakpoint.max(before_step),
+    };
+    let last = next.min(latest).saturating_add(settings.alpha);
+    let segment = Segment::clipped(first, last, samples);
     let values = output.get(segment.indices()).unwrap_or_default();
-    let candidates = Candidates::search(values, segment.first, settings.beta);
+    let candidates = Candidates::search_until(values, segment.first, settings.beta, latest);
     let facts = Facts {
         step: index + 1,
         steps: steps.len(),

@@ -10,9 +10,11 @@
 //! - [`Check`]: the conditions, with the numbers compared
 //! - [`estimate`]: all of it, in the order of the steps
 //! - [`DelayProfile`]: the delay of every sample
+//! - [`AgainstState`]: what the delay may depend on
 //!
 //! Sample numbers are the paper's: counted from 1 within the trial.
 
+mod against;
 mod condition;
 mod estimate;
 mod line;
@@ -21,6 +23,7 @@ mod search;
 mod segment;
 mod steps;
 
+pub use against::{AgainstState, Correlation, Direction, StepState};
 pub use condition::{Check, Condition, Outcome};
 pub use estimate::{
     Breakpoint, Decision, EstimateError, Settings, SettingsError, TrialEstimate, Verdict, estimate,

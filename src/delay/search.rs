@@ -48,6 +48,12 @@ impl Candidates {
     ///
     /// Time and memory grow with the number of samples and candidates, not their product.
     pub fn search(values: &[f64], first_sample: usize, beta: usize) -> Self {
+        Self::search_until(values, first_sample, beta, usize::MAX)
+    }
+
+    /// The same, with a best candidate that breaks at the sample `latest` at the latest;
+    /// later ones are evidence only.
+    pub fn search_until(values: &[f64], first_sample: usize, beta: usize, latest: usize) -> Self {
         let beta = beta.max(1);
         let rows = values.len() / beta;
         let values = values.get(..rows * beta).unwrap_or_default();
@@ -61,7 +67,7 @@ impl Candidates {
         let scale = Scale::of(values, offset);
         found.fit_before(values, scale);
         found.fit_after(values, scale);
-        found.best = found.lowest(TIE * sum_of_squares(values, scale));
+        found.best = found.lowest(TIE * sum_of_squares(values, scale), latest);
         for sse in &mut found.sse {
             *sse *= scale.unit * scale.unit;
         }
@@ -101,10 +107,12 @@ impl Candidates {
         }
     }
 
-    /// The first candidate within `tie` of the lowest squared error.
-    fn lowest(&self, tie: f64) -> Option<usize> {
-        let lowest = self.sse.iter().copied().fold(f64::INFINITY, f64::min);
-        self.sse.iter().position(|&sse| sse <= lowest + tie)
+    /// The first candidate within `tie` of the lowest squared error up to `latest`.
+    fn lowest(&self, tie: f64, latest: usize) -> Option<usize> {
+        let in_time = latest.saturating_sub(self.first_sample) / self.beta;
+        let sse = self.sse.get(..in_time).unwrap_or(&self.sse);
+        let lowest = sse.iter().copied().fold(f64::INFINITY, f64::min);
+        sse.iter().position(|&sse| sse <= lowest + tie)
     }
 
     /// Number of candidates: rows of Φ less one.

@@ -1,8 +1,11 @@
 //! A model beside the measurement: all figures of it.
 
+use std::ops::Range;
+
+use super::failure::{self, Diagnosis, Samples, diagnose};
 use super::shapes::shapes;
 use super::{ErrorFigures, LackOfFit, TestColumns, lack_of_fit, noise_floor};
-use crate::fit::{Evaluation, Fit, Part, Record};
+use crate::fit::{Evaluation, Fit, Horizon, Part, Record};
 use crate::model::{JointModel, arrivals};
 
 /// A fitted model beside the measurement.
@@ -19,6 +22,9 @@ pub struct Comparison {
     /// Whether the residual of the training part is more than noise; `None` where there
     /// are too few samples to tell.
     pub lack_of_fit: Option<LackOfFit>,
+    /// Where the error is, where a lack of fit is shown: of the model restarted at every
+    /// step of the input, so that an error counts where it is made.
+    pub failure: Option<Diagnosis>,
 }
 
 /// Sets all figures of `fit` on `record` beside one another.
@@ -32,13 +38,57 @@ pub fn compare(record: &Record<'_>, fit: Fit) -> Comparison {
         own: sensitivities(record, &fit),
         shapes: shapes(record, &fit.evaluation, Part::Training),
     };
+    let lack_of_fit = lack_of_fit(&columns);
+    let fails = lack_of_fit.is_some_and(|test| !test.adequate);
+    let failure = fails.then(|| failure_of(record, &fit.model)).flatten();
     Comparison {
         training: error(Part::Training),
         validation: error(Part::Validation),
         noise_floor,
-        lack_of_fit: lack_of_fit(&columns),
+        lack_of_fit,
+        failure,
         fit,
     }
+}
+
+/// Where `model` fails, restarted at every step of the input.
+fn failure_of(record: &Record<'_>, model: &JointModel) -> Option<Diagnosis> {
+    let restarted = record.with_horizon(Horizon::Steps);
+    let evaluation = restarted.evaluate(model);
+    let trials = &record.joint().trials;
+    let mut samples = Samples::default();
+    let mut segments = Vec::new();
+    for (index, (trial, simulated)) in trials.iter().zip(&evaluation.simulated).enumerate() {
+        let first = samples.residual.len();
+        let period = trial.period().seconds();
+        for level in levels(&simulated.acting) {
+            let held = level.len() as f64 * period;
+            samples.since_step_s.extend((0..level.len()).map(|k| k as f64 * period));
+            samples.hold_s.extend(std::iter::repeat_n(held, level.len()));
+            segments.push(first + level.start..first + level.end);
+        }
+        samples.residual.extend(evaluation.residuals.get(index)?);
+        samples.input.extend(&simulated.acting);
+        samples.output.extend(trial.output());
+        samples.speed.extend(&simulated.velocity);
+        samples.time_s.extend((1..=trial.len()).map(|k| trial.time_s(k)));
+        samples.trial.extend(std::iter::repeat_n(index, trial.len()));
+    }
+    let labels = trials.iter().map(|trial| trial.label().to_owned()).collect();
+    failure::Record::new(samples, labels, segments).ok().map(|record| diagnose(&record))
+}
+
+/// Spans of samples with one level.
+fn levels(acting: &[f64]) -> Vec<Range<usize>> {
+    #[expect(clippy::float_cmp, reason = "a step is any change")]
+    let same = |a: &f64, b: &f64| a == b;
+    let mut start = 0;
+    let span = |level: &[f64]| {
+        let span = start..start + level.len();
+        start = span.end;
+        span
+    };
+    acting.chunk_by(same).map(span).collect()
 }
 
 /// Residuals of the training windows, one list per window.

@@ -22,7 +22,8 @@
 
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
-use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
+
+use crate::statistics::fisher_tail;
 
 /// Whether a model can be told from the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -82,8 +83,7 @@ fn test(columns: &TestColumns, noise: &[f64]) -> Option<LackOfFit> {
     let added = full.rank.checked_sub(restricted.rank).filter(|added| *added > 0)?;
     let explained = (restricted.error - full.error).max(0.0) / added as f64;
     let statistic = explained / (full.error / freedom as f64).max(f64::MIN_POSITIVE);
-    let fisher = FisherSnedecor::new(added as f64, freedom as f64).ok()?;
-    let p_value = fisher.sf(statistic);
+    let p_value = fisher_tail(statistic, added, freedom)?;
     Some(LackOfFit { statistic, p_value, adequate: p_value >= SIGNIFICANCE })
 }
 

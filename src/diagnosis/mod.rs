@@ -3,9 +3,11 @@
 //! - [`compare`]: all figures of one model on one record
 //! - [`noise_floor`]: what the measurement itself cannot tell
 //! - [`lack_of_fit`]: whether the residual is more than noise
+//! - [`failure`]: where the error is
 
 mod compare;
 mod error;
+pub mod failure;
 mod lack_of_fit;
 mod noise;
 mod shapes;

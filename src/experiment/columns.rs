@@ -4,17 +4,18 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// The columns of a log that do not bear the native names.
 ///
 /// An empty map reads the native names: `time_s`, `trial`, `<joint>.input`,
 /// `<joint>.output`.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ColumnMap {
     /// Column of the time in seconds.
     pub time: Option<String>,
-    /// Column whose value names the trial of a row.
+    /// Column whose value names the trial of a row; `none` when there is no such column,
+    /// whatever the names.
     pub trial: Option<String>,
     /// Seconds between samples, where the log has no time.
     pub sample_period_s: Option<f64>,
@@ -23,7 +24,7 @@ pub struct ColumnMap {
 }
 
 /// The columns of one joint.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct JointColumns {
     /// Name that the joint gets.
     pub name: String,

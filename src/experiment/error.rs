@@ -243,7 +243,7 @@ pub enum ReadError {
     /// The rows of one trial are not together.
     #[error(
         "{}, row {row}: trial `{trial}` starts again here after another one; keep the rows of a \
-         trial together, or give the parts different names", path.display()
+         trial together, or choose `--trial none` if the column does not name trials", path.display()
     )]
     TrialNotContiguous {
         /// The log.

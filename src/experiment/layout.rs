@@ -12,6 +12,9 @@ const SAMPLE_NAME: &str = "sample";
 /// Names of a column that names the trial.
 const TRIAL_NAMES: [&str; 3] = ["trial", "test", "run"];
 
+/// Stands for "no column names the trial".
+const NO_TRIAL: &str = "none";
+
 /// Where the time of a row comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum TimeSource {
@@ -57,7 +60,8 @@ impl Layout {
         map: &ColumnMap,
         period: Option<SamplePeriod>,
     ) -> Result<Self, ReadError> {
-        let trial = match &map.trial {
+        let trial = match map.trial.as_deref() {
+            Some(NO_TRIAL) => None,
             Some(name) => Some(find(table, name)?),
             None => find_any(table, &TRIAL_NAMES),
         };

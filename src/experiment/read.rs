@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+
 use super::error::{listed, nearest_name};
 use super::layout::{JointLayout, Layout, TimeSource};
 use super::sampling::{Fault, Grid, Repair, Signals};
@@ -10,7 +12,7 @@ use super::{ColumnMap, Joint, ReadError, Signal, Source, Trial};
 use crate::units::SamplePeriod;
 
 /// How logs are read.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ReadOptions {
     /// The columns of a foreign log.
     pub columns: ColumnMap,
@@ -29,6 +31,10 @@ pub struct Experiment {
     pub joints: Vec<Joint>,
     /// Files and joints that could not be read.
     pub failures: Vec<Failure>,
+    /// How they were read.
+    pub options: ReadOptions,
+    /// What was done to the logs that their reader should know: trials that were split.
+    pub notes: Vec<String>,
 }
 
 /// A file, or a joint in it, that could not be read.
@@ -46,7 +52,7 @@ impl Experiment {
     /// With several files a trial is named after its file: `stem`, or `stem/trial`
     /// where the file names its trials itself.
     pub fn read(paths: &[PathBuf], options: &ReadOptions) -> Self {
-        let mut experiment = Self::default();
+        let mut experiment = Self { options: options.clone(), ..Self::default() };
         let mut stems: Vec<String> = Vec::new();
         for path in paths {
             let stem = (paths.len() > 1).then(|| unique_stem(path, &stems));
@@ -62,6 +68,7 @@ impl Experiment {
     fn add(&mut self, log: Self, path: &Path) {
         self.sources.extend(log.sources);
         self.failures.extend(log.failures);
+        self.notes.extend(log.notes);
         for joint in log.joints {
             match self.joints.iter_mut().find(|known| known.name == joint.name) {
                 None => self.joints.push(joint),
@@ -187,7 +194,24 @@ fn read_log(
         }
     }
     let sources = vec![table.source];
-    Ok(Experiment { sources, joints, failures })
+    let notes = joints.iter().flat_map(|joint| split_notes(joint, &trials)).collect();
+    Ok(Experiment { sources, joints, failures, notes, ..Experiment::default() })
+}
+
+/// A line on each trial of `joint` that was split at gaps.
+fn split_notes(joint: &Joint, trials: &[TrialRows]) -> Vec<String> {
+    let parts = |trial: &TrialRows| {
+        let parts = joint.trials.iter().filter(|part| {
+            let rest = part.label().strip_prefix(&trial.label);
+            rest.is_some_and(|rest| rest.starts_with('#'))
+        });
+        let whole = joint.trials.iter().any(|part| part.label() == trial.label);
+        let count = parts.count();
+        let (name, label) = (&joint.name, &trial.label);
+        (!whole && count > 1)
+            .then(|| format!("joint `{name}`: trial `{label}` is split in {count} at long gaps"))
+    };
+    trials.iter().filter_map(parts).collect()
 }
 
 fn sample_period(path: &Path, map: &ColumnMap) -> Result<Option<SamplePeriod>, ReadError> {

@@ -1,9 +1,11 @@
 //! From rows with times to a uniform grid: checks, filling, splitting, resampling.
 
+use serde::Serialize;
+
 use crate::units::SamplePeriod;
 
 /// What may be done to a log that is not uniform or not complete.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Repair {
     /// Put every trial on a grid of this period: output linear, input held.
     pub resample: Option<SamplePeriod>,
@@ -131,6 +133,9 @@ fn measured_rows(signals: &Signals) -> Vec<usize> {
     rows.map(|(row, _)| row).collect()
 }
 
+/// Places on the grid that are still told apart by their number.
+const MOST_PLACES: f64 = 1e12;
+
 /// Samples of one trial that are still handled: 8 GB as numbers.
 const MOST_SAMPLES: f64 = 1e9;
 
@@ -153,13 +158,14 @@ fn place_rows(steps: &[f64], period: f64, repair: Repair) -> Result<Vec<usize>, 
         let uniform = (step - periods * period).abs() <= UNIFORMITY * period;
         // Over a long pause the clock may drift by more than a part of one period.
         let pause = periods >= 1.0 / UNIFORMITY;
-        let lost_rows = repair.fill_s.is_some() && (uniform || pause);
+        let countable = periods < MOST_PLACES;
+        let lost_rows = repair.fill_s.is_some() && (uniform || pause) && countable;
         if !(lost_rows || uniform && periods < 1.5) {
             return Err(Fault::NotUniform { row: index + 1, step, period: tidy(period) });
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 1")]
         let periods = periods as usize;
-        place += periods;
+        place = periods.saturating_add(place);
         places.push(place);
     }
     Ok(places)

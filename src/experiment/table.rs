@@ -255,11 +255,12 @@ impl Labels {
         let cell = record.get(self.index).unwrap_or_default().trim_ascii();
         let index = self.rows;
         self.rows += 1;
-        if let Some(run) = self.runs.last_mut().filter(|run| run.label.as_bytes() == cell) {
+        let label = String::from_utf8_lossy(cell);
+        if let Some(run) = self.runs.last_mut().filter(|run| run.label == label) {
             run.end = self.rows;
             return Ok(());
         }
-        let label = String::from_utf8_lossy(cell).into_owned();
+        let label = label.into_owned();
         if !self.seen.insert(label.clone()) {
             return Err(ReadError::TrialNotContiguous { path: path.to_owned(), row, trial: label });
         }

@@ -66,6 +66,7 @@ const SHORTEST_WINDOW: usize = 10;
 #[derive(Clone, Debug)]
 pub struct Record<'a> {
     joint: &'a Joint,
+    split: Split,
     windows: Vec<Window>,
     /// Activity of the other joints, per trial; empty where there are none.
     others: Vec<Vec<f64>>,
@@ -91,7 +92,14 @@ impl<'a> Record<'a> {
         let windows = windows.flat_map(|(index, trial)| cut(trial, index, split, horizon));
         let others = vec![Vec::new(); joint.trials.len()];
         let radians_per_output_unit = radians(joint.output_unit.as_deref());
-        Self { joint, windows: windows.collect(), others, delays: None, radians_per_output_unit }
+        Self {
+            joint,
+            split,
+            windows: windows.collect(),
+            others,
+            delays: None,
+            radians_per_output_unit,
+        }
     }
 
     /// The same with the activity of the other joints, per trial and sample.
@@ -107,6 +115,16 @@ impl<'a> Record<'a> {
     pub fn with_delays(mut self, delays: Vec<Vec<Option<f64>>>) -> Self {
         self.delays = Some(delays);
         self
+    }
+
+    /// The same trials and surroundings with another horizon.
+    #[must_use]
+    pub fn with_horizon(&self, horizon: Horizon) -> Self {
+        let mut record = self.clone();
+        let windows = self.joint.trials.iter().enumerate();
+        let windows = windows.flat_map(|(index, trial)| cut(trial, index, self.split, horizon));
+        record.windows = windows.collect();
+        record
     }
 
     /// The joint.

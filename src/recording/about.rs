@@ -6,9 +6,11 @@ use rerun::{EntityPath, TextDocument};
 
 use super::Recording;
 use super::chunk::Chunks;
+use super::entity::plain;
 use super::error::RecordError;
 use super::layout::{Detail, JointLayout};
 use crate::delay::Settings;
+use crate::experiment::ReadOptions;
 use crate::report::{DelayRange, JointSummary};
 
 /// Adds the page at `/about`.
@@ -38,7 +40,7 @@ fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String
         };
         let (min, median, max) = (seconds(|r| r.min), seconds(|r| r.median), seconds(|r| r.max));
         let JointSummary { steps, accepted, .. } = summary;
-        let (name, why) = (&joint.joint.name, why.join(", "));
+        let (name, why) = (plain(&joint.joint.name), why.join(", "));
         writeln!(page, "| {name} | {steps} | {accepted} | {why} | {min} | {median} | {max} |")?;
     }
     writeln!(page, "\n## Settings\n\n| setting | value |\n|---|---|")?;
@@ -46,11 +48,24 @@ fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String
         writeln!(page, "| {name} | {value} |")?;
     }
     writeln!(page, "\n{}", detail(recording, layouts))?;
+    writeln!(page, "\n## Signals\n\n| joint | input | output | trials | sample period |")?;
+    writeln!(page, "|---|---|---|---|---|")?;
+    for joint in recording.joints.iter().map(|joint| joint.joint) {
+        let unit = |unit: &Option<String>| unit.as_deref().map_or("no unit".to_owned(), plain);
+        let (name, input, output) =
+            (plain(&joint.name), unit(&joint.input_unit), unit(&joint.output_unit));
+        let mut periods: Vec<_> =
+            joint.trials.iter().map(|trial| trial.period().to_string()).collect();
+        periods.dedup();
+        let (trials, periods) = (joint.trials.len(), periods.join(", "));
+        writeln!(page, "| {name} | {input} | {output} | {trials} | {periods} |")?;
+    }
     writeln!(page, "\n## Made from\n")?;
     for source in recording.sources {
         let path = source.path.display();
         writeln!(page, "- `{path}`, {} bytes, SHA-256 `{}`", source.bytes, source.sha256)?;
     }
+    writeln!(page, "\n{}", reading(recording))?;
     writeln!(page, "\nMade by tauscope {}.\n", env!("CARGO_PKG_VERSION"))?;
     writeln!(page, "{HOW_TO_READ}")?;
     Ok(page)
@@ -66,6 +81,27 @@ accepted segment, red that of a rejected one.
 - The timeline `segment` goes from step to step; `sample` and `time` run through the record.
 - Sample numbers count from 1 within the trial, as in the paper: p is the input step, r the \
 first sample of the segment, q the breakpoint, δ = q − p the delay.";
+
+/// How the files were read, where it was not as they are.
+fn reading(recording: &Recording<'_>) -> String {
+    let ReadOptions { columns, repair, .. } = recording.reading;
+    let mut parts = Vec::new();
+    parts.extend(repair.resample.map(|period| format!("resampled to {period}")));
+    parts.extend(
+        repair.fill_s.map(|fill| format!("gaps up to {fill} s filled, split at longer ones")),
+    );
+    parts.extend(columns.sample_period_s.map(|s| format!("a sample period of {s} s given")));
+    parts.extend(columns.time.iter().map(|time| format!("time from column `{time}`")));
+    parts.extend(columns.trial.iter().map(|trial| format!("trials from column `{trial}`")));
+    parts.extend(columns.joints.iter().map(|joint| {
+        format!("{} from `{}` and `{}`", plain(&joint.name), joint.input, joint.output)
+    }));
+    if parts.is_empty() {
+        "Read as they are.".to_owned()
+    } else {
+        format!("Read with: {}.", parts.join("; "))
+    }
+}
 
 fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
     let low_pass = settings.low_pass.map_or_else(

@@ -5,7 +5,9 @@
 
 use std::sync::Arc;
 
-use rerun::external::arrow::array::{Array as _, ArrayRef, Float64Array, Int64Array, ListArray};
+use rerun::external::arrow::array::{
+    Array as _, ArrayRef, Float64Array, Int64Array, ListArray, StringArray,
+};
 use rerun::external::arrow::buffer::{NullBuffer, OffsetBuffer, ScalarBuffer};
 use rerun::external::arrow::datatypes::Field;
 use rerun::external::re_log_types::external::re_tuid::Tuid;
@@ -151,6 +153,12 @@ pub(super) fn numbers(name: &'static str, values: &[Option<f64>]) -> SerializedC
 /// A column of whole numbers named `name`; `None` is null.
 pub(super) fn integers(name: &'static str, values: &[Option<i64>]) -> SerializedComponentColumn {
     let items: Int64Array = values.iter().flatten().copied().collect::<Vec<_>>().into();
+    list_column(name, Arc::new(items), values.iter().map(Option::is_some))
+}
+
+/// A column of texts named `name`; `None` is null.
+pub(super) fn texts(name: &'static str, values: &[Option<String>]) -> SerializedComponentColumn {
+    let items: StringArray = values.iter().flatten().map(|text| Some(text.as_str())).collect();
     list_column(name, Arc::new(items), values.iter().map(Option::is_some))
 }
 

@@ -2,7 +2,7 @@
 
 use rerun::{EntityPath, Scalars, SeriesLines, SeriesPoints, components::MarkerShape};
 
-use super::chunk::{Chunks, Index, integers, numbers};
+use super::chunk::{Chunks, Index, integers, numbers, texts};
 use super::entity::below;
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout, signed};
@@ -26,17 +26,21 @@ fn add_errors(
     root: &EntityPath,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
-    let mut index = Index::default();
+    let (mut index, mut within) = (Index::default(), Index::default());
     let (mut errors, mut lengths) = (Vec::new(), Vec::new());
     for (trial, segment) in layout.segments() {
-        index.extend([trial.opening(segment)]);
+        let mut place = |moment| {
+            index.extend([moment]);
+            within.extend([trial.within(segment, moment)]);
+        };
+        place(trial.opening(segment));
         lengths.push(0);
         for (moment, candidate) in trial.candidates(segment) {
-            index.extend([moment]);
+            place(moment);
             errors.push(candidate.sse);
             lengths.push(1);
         }
-        index.extend([trial.verdict(segment)]);
+        place(trial.verdict(segment));
         lengths.push(0);
     }
     let logarithms: Vec<f64> = errors.iter().map(|sse| log10(*sse)).collect();
@@ -44,12 +48,12 @@ fn add_errors(
     let name = SeriesLines::new().with_names(["SSE"]);
     chunks.push_static(entity.clone(), &name)?;
     let columns = Scalars::new(errors).columns(lengths.clone())?;
-    chunks.push(entity, index.clone(), columns)?;
+    chunks.push(entity, index, columns)?;
     let entity = below(root, &["decision", "log10_sse"]);
     let name = SeriesLines::new().with_names(["log10 SSE"]);
     let name = name.with_colors([color(palette::ERROR)]).with_widths([2.0]);
     chunks.push_static(entity.clone(), &name)?;
-    chunks.push(entity, index, Scalars::new(logarithms).columns(lengths)?)
+    chunks.push(entity, within, Scalars::new(logarithms).columns(lengths)?)
 }
 
 /// Errors below this are drawn at it: the lines fit exactly.
@@ -77,7 +81,7 @@ fn add_minimum(
                 continue;
             };
             let mut ticks = trial.candidates(segment).filter(|(_, c)| c.f == best.f);
-            index.extend(ticks.next().map(|(moment, _)| moment));
+            index.extend(ticks.next().map(|(moment, _)| trial.within(segment, moment)));
             values.push(log10(best.sse));
         }
         let entity = below(root, &["decision", "minimum", name]);
@@ -96,6 +100,8 @@ struct Table {
     whole: [Vec<Option<i64>>; 8],
     real: [Vec<Option<f64>>; 3],
     accepted: Vec<Option<i64>>,
+    /// Trial and verdict.
+    words: [Vec<Option<String>>; 2],
 }
 
 impl Table {
@@ -103,7 +109,12 @@ impl Table {
     const REAL: [&str; 3] = ["sse", "slope_before", "slope_after"];
 
     /// The numbers of `candidate`; `j` is its number, empty on the row of the verdict.
-    fn row(&mut self, segment: &SegmentLayout<'_>, j: Option<usize>, candidate: Option<Candidate>) {
+    fn row(
+        &mut self,
+        (trial, segment): (&TrialLayout<'_>, &SegmentLayout<'_>),
+        j: Option<usize>,
+        candidate: Option<Candidate>,
+    ) {
         let decision = segment.decision;
         let p = decision.input_step.sample;
         let best = decision.candidates.best();
@@ -127,20 +138,23 @@ impl Table {
         self.real.iter_mut().zip(real).for_each(|(column, value)| column.push(value));
         let accepted = i64::from(decision.verdict() == Verdict::Accepted);
         self.accepted.push(j.is_none().then_some(accepted));
+        let [trials, verdicts] = &mut self.words;
+        trials.push(j.is_none().then(|| trial.trial.label().to_owned()));
+        verdicts.push(j.is_none().then(|| decision.verdict().to_string()));
     }
 
     fn segment(&mut self, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) {
         for (moment, candidate) in trial.candidates(segment) {
             self.index.extend([moment]);
-            self.row(segment, Some(candidate.f), Some(candidate));
+            self.row((trial, segment), Some(candidate.f), Some(candidate));
         }
         self.index.extend([trial.verdict(segment)]);
-        self.row(segment, None, segment.decision.candidates.best());
+        self.row((trial, segment), None, segment.decision.candidates.best());
     }
 }
 
-/// A row per candidate, and one per verdict whose `j` is empty and whose `accepted` is
-/// 1 or 0.
+/// A row per candidate, and one per verdict: without `j`, but with `accepted` (1 or 0),
+/// `trial` and `verdict`.
 fn add_table(
     chunks: &mut Chunks,
     root: &EntityPath,
@@ -152,7 +166,9 @@ fn add_table(
     }
     let whole = Table::WHOLE.iter().zip(&table.whole).map(|(name, values)| integers(name, values));
     let real = Table::REAL.iter().zip(&table.real).map(|(name, values)| numbers(name, values));
-    let columns: Vec<_> =
-        whole.chain(real).chain([integers("accepted", &table.accepted)]).collect();
+    let [trials, verdicts] = &table.words;
+    let words = [texts("trial", trials), texts("verdict", verdicts)];
+    let accepted = [integers("accepted", &table.accepted)];
+    let columns: Vec<_> = whole.chain(real).chain(accepted).chain(words).collect();
     chunks.push(below(root, &["decision", "table"]), table.index, columns)
 }

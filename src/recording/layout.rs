@@ -8,8 +8,8 @@
 //! - `segment`: the number of the step, counted on over the trials.
 //!
 //! Every row carries all four, so that one cursor moves all views and no view is empty
-//! when another timeline is chosen. A plain sample lies at the tick of the candidate
-//! whose breakpoint it has reached.
+//! when another timeline is chosen. The samples from one step to the next are spread over
+//! the ticks of its segment.
 
 use std::collections::HashMap;
 
@@ -111,13 +111,13 @@ impl SegmentLayout<'_> {
         self.opening + signed(self.kept.len()) + 1
     }
 
-    /// The tick that belongs to a sample of the trial.
+    /// The tick that belongs to a sample of the trial: those between this step and the
+    /// next are spread evenly over the ticks.
     fn tick_at(&self, sample: usize) -> i64 {
-        let r = self.decision.segment.first;
-        let best = self.decision.candidates.get(0);
-        let beta = best.map_or(1, |first| first.breakpoint - r);
-        let reached = sample.saturating_sub(r) / beta;
-        self.opening + signed(self.kept.partition_point(|&index| index < reached))
+        let ticks = self.kept.len() + 2;
+        let passed = sample.saturating_sub(self.decision.input_step.sample);
+        let reached = (passed * ticks / self.decision.hold.max(1)).min(ticks - 1);
+        self.opening + signed(reached)
     }
 }
 
@@ -225,6 +225,17 @@ impl<'a> TrialLayout<'a> {
         let best = segment.decision.candidates.best();
         let k = best.map_or(segment.decision.input_step.sample, |best| best.breakpoint);
         self.moment(segment, segment.verdict(), k)
+    }
+
+    /// The same tick, at a sample between this step and the next: what is drawn of a
+    /// candidate is then never seen in the drawing of another segment, whatever the
+    /// timeline. Candidates reach into both neighbours.
+    pub(super) fn within(&self, segment: &SegmentLayout<'_>, moment: Moment) -> Moment {
+        let p = segment.decision.input_step.sample;
+        let (first, last) = (self.sample(p), self.sample(segment.decision.next_sample() - 1));
+        let sample = moment.sample.clamp(first, last.max(first));
+        let ahead = usize::try_from(sample - first).unwrap_or(0);
+        Moment { sample, time_ns: self.time_ns(p + ahead), ..moment }
     }
 
     /// The ticks of the recorded candidates, each at its breakpoint.

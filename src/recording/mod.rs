@@ -28,7 +28,7 @@ mod verdict;
 mod write;
 
 use crate::delay::Settings;
-use crate::experiment::Source;
+use crate::experiment::{ReadOptions, Source};
 use crate::report::{ComparedJoint, EstimatedJoint};
 
 pub use error::RecordError;
@@ -44,6 +44,8 @@ pub struct Recording<'a> {
     pub settings: &'a Settings,
     /// The files that were read.
     pub sources: &'a [Source],
+    /// How they were read.
+    pub reading: &'a ReadOptions,
     /// How many candidates are recorded.
     pub detail: Detail,
     /// Models beside the measurement; those of a joint that is not recorded are left out.

@@ -2,17 +2,17 @@
 
 use std::fmt::Write as _;
 
-use rerun::{EntityPath, Scalars, SeriesLines, TextDocument};
+use rerun::{EntityPath, Scalars, SeriesLines, StateChange, TextDocument};
 
 use super::chunk::{Chunks, Index};
-use super::entity::below;
+use super::entity::{below, plain};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialLayout};
 use super::palette::{self, Rgb, color};
 use super::scatter;
 use crate::diagnosis::{Comparison, ErrorFigures};
 use crate::fit::{Parameter, Status};
-use crate::report::{ComparedJoint, number, parameter_units};
+use crate::report::{ComparedJoint, number, parameter_units, sentences};
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
@@ -46,6 +46,7 @@ pub(super) fn add(
         let document = TextDocument::from_markdown(page);
         chunks.push_static(below(root, &["model_page"]), &document)?;
         scatter::add(chunks, &below(root, &["scatter"]), models)?;
+        worst(chunks, root, layout, first.comparison)?;
     }
     Ok(())
 }
@@ -70,6 +71,31 @@ fn signal<'a>(
         all.extend(values);
     }
     chunks.push(entity, index, Scalars::new(all).columns(lengths)?)
+}
+
+/// A lane that is marked where the first model's worst segments are.
+fn worst(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    layout: &JointLayout<'_>,
+    comparison: &Comparison,
+) -> Result<(), RecordError> {
+    let mut marks = Vec::new();
+    for (worst, rank) in comparison.failure.iter().flat_map(|f| &f.worst_segments).zip(1..) {
+        let of_label = layout.trials.iter().find(|trial| trial.trial.label() == worst.trial);
+        let Some(trial) = of_label else { continue };
+        let period = trial.trial.period().seconds();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "inside")]
+        let sample = |time_s: f64| ((time_s - trial.trial.time_s(1)) / period).round() as usize + 1;
+        let share = 100.0 * worst.share_of_squared_error;
+        let name = format!("worst {rank}: {share:.0} %");
+        marks.push((trial.moment_of(sample(worst.start_s)), name));
+        marks.push((trial.moment_of(sample(worst.end_s) + 1), String::new()));
+    }
+    marks.sort_by_key(|(moment, name)| (moment.sample, !name.is_empty()));
+    let (index, names): (Vec<_>, Vec<_>) = marks.into_iter().unzip();
+    let states = StateChange::new().with_state(names).columns_of_unit_batches()?;
+    chunks.push(below(root, &["worst"]), index.into_iter().collect(), states)
 }
 
 /// Two level lines between which noise alone would keep the residual.
@@ -99,7 +125,7 @@ fn page(models: &[&ComparedJoint<'_>]) -> Result<String, std::fmt::Error> {
     let Some(first) = models.first() else { return Ok(page) };
     let joint = first.joint;
     let unit = joint.output_unit.as_deref().unwrap_or("");
-    writeln!(page, "### {}: {}\n", joint.name, headline(first.comparison))?;
+    writeln!(page, "### {}: {}\n", plain(&joint.name), headline(first.comparison))?;
     writeln!(page, "| model | training | validation | fit | lack of fit |\n|---|---|---|---|---|")?;
     for compared in models {
         let Comparison { training, validation, lack_of_fit, .. } = compared.comparison;
@@ -118,6 +144,19 @@ fn page(models: &[&ComparedJoint<'_>]) -> Result<String, std::fmt::Error> {
             "\nNoise of the measurement: {} {unit}. Errors are root mean squares.",
             number(noise)
         )?;
+    }
+    for compared in models {
+        for sentence in sentences(compared) {
+            writeln!(page, "\n**Fails** ({}): {}", compared.model, plain(&sentence))?;
+        }
+    }
+    if let Some(failure) = &first.comparison.failure {
+        writeln!(page, "\n| worst segments | share of the error |\n|---|---|")?;
+        for worst in &failure.worst_segments {
+            let (from, to) = (number(worst.start_s), number(worst.end_s));
+            let share = 100.0 * worst.share_of_squared_error;
+            writeln!(page, "| trial {}, {from} … {to} s | {share:.0} % |", plain(&worst.trial))?;
+        }
     }
     for compared in models {
         writeln!(

@@ -32,7 +32,8 @@ pub(super) fn add(
         };
         style.add(chunks, below(root, &["breakpoint", name]), layout, verdict, breakpoint)?;
         let delay = |s: &SegmentLayout<'_>| {
-            let best = s.decision.breakpoint()?;
+            // A breakpoint before its step would stretch the plot for no delay at all.
+            let best = s.decision.breakpoint().filter(|best| best.delay >= 0)?;
             Some((s.decision.input_step.sample, best.delay as f64))
         };
         style.add(chunks, below(root, &["delay", name]), layout, verdict, delay)?;

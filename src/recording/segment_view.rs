@@ -300,12 +300,12 @@ fn add_candidates(
         let p = signed(segment.decision.input_step.sample);
         index.extend([trial.opening(segment)]);
         for (moment, candidate) in trial.candidates(segment) {
-            index.extend([moment]);
+            index.extend([trial.within(segment, moment)]);
             strips.extend(drawing.pair(&candidate));
             let (q, sse) = (signed(candidate.breakpoint), number(candidate.sse));
             marks.put(drawing.error_at(&candidate), format!("q {q}, δ {}, SSE {sse}", q - p));
         }
-        index.extend([trial.verdict(segment)]);
+        index.extend([trial.within(segment, trial.verdict(segment))]);
         let ticks = segment.kept.len();
         let cleared = |each| iter::once(0).chain(iter::repeat_n(each, ticks)).chain([0]);
         strip_lengths.extend(cleared(PAIR_STRIPS));

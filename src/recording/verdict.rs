@@ -3,7 +3,7 @@
 use rerun::{Color, EntityPath, StateChange, StateConfiguration, TextDocument, TextLog};
 
 use super::chunk::{Chunks, Index};
-use super::entity::below;
+use super::entity::{below, plain};
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::palette::{self, color};
@@ -26,21 +26,20 @@ pub(super) fn add(
     let markdown = std::iter::repeat_n("text/markdown", texts.len());
     let documents =
         TextDocument::update_fields().with_many_text(texts).with_many_media_type(markdown);
-    let states: Vec<String> = segments.iter().map(|(_, segment)| state(segment)).collect();
+    let verdict = |(_, segment): &Placed<'_, '_>| segment.decision.verdict().to_string();
+    let states: Vec<String> = segments.iter().map(verdict).collect();
     let states = StateChange::new().with_state(states).columns_of_unit_batches()?;
     let entity = below(root, &["verdict"]);
+    if segments.is_empty() {
+        let name = plain(&joint.name);
+        let text = format!("### {name}\n## nothing to decide: the input never changes\n");
+        chunks.push_static(entity.clone(), &TextDocument::from_markdown(text))?;
+    }
     let columns = documents.columns_of_unit_batches()?.chain(states);
     chunks.push(entity.clone(), opening.clone(), columns)?;
     chunks.push_static(entity, &lane_colors())?;
     add_log(chunks, root, joint, &segments)?;
     add_lanes(chunks, root, layout, &segments, opening)
-}
-
-fn state(segment: &SegmentLayout<'_>) -> String {
-    match segment.decision.verdict() {
-        Verdict::Accepted => "accepted".to_owned(),
-        Verdict::Rejected(condition) => condition.id().to_owned(),
-    }
 }
 
 fn lane_colors() -> StateConfiguration {
@@ -126,9 +125,10 @@ fn document(
     let of = trial.segments.len();
     let in_trial = match joint.trials.len() {
         1 => String::new(),
-        _ => format!(", trial {}", trial.trial.label()),
+        _ => format!(", trial {}", plain(trial.trial.label())),
     };
-    let title = format!("### {}{in_trial}: step {} of {of}", joint.name, decision.number);
+    let name = plain(&joint.name);
+    let title = format!("### {name}{in_trial}: step {} of {of}", decision.number);
     let facts = Facts { joint, trial, segment, settings };
     format!("{title}\n{}\n\n{}\n\n{}\n", facts.headline(), facts.quantities(), facts.conditions())
 }

@@ -130,19 +130,31 @@ fn recording_name(recording: &Recording<'_>) -> String {
     names.map(|name| name.to_string_lossy()).collect::<Vec<_>>().join(", ")
 }
 
-/// The same for the same logs, settings and version, so that two recordings of one
-/// experiment stand side by side when either differs.
+/// The same for the same logs, read in the same way, the same settings and version, so
+/// that two recordings of one experiment stand side by side when any of it differs.
 fn recording_id(recording: &Recording<'_>) -> String {
     use sha2::{Digest as _, Sha256};
     let mut hash = Sha256::new();
+    let mut part = |text: &str| {
+        hash.update(text);
+        hash.update([0]);
+    };
     for source in recording.sources {
-        hash.update(&source.sha256);
+        part(&source.sha256);
     }
-    for joint in recording.joints {
-        hash.update(&joint.joint.name);
+    for joint in recording.joints.iter().map(|joint| joint.joint) {
+        part(&joint.name);
+        for trial in &joint.trials {
+            let (start, period) = (trial.time_s(1), trial.period());
+            part(&format!("{} {} {start} {period}", trial.label(), trial.len()));
+        }
     }
-    hash.update(format!("{:?}{:?}", recording.settings, recording.detail));
-    hash.update(env!("CARGO_PKG_VERSION"));
+    for model in recording.models {
+        let values: Vec<_> = model.comparison.fit.model.values();
+        part(&format!("{} {:?} {values:?}", model.model, model.comparison.fit.model.names()));
+    }
+    part(&format!("{:?} {:?}", recording.settings, recording.detail));
+    part(env!("CARGO_PKG_VERSION"));
     let digest = base16ct::lower::encode_string(&hash.finalize());
     digest.chars().take(32).collect()
 }

@@ -5,6 +5,7 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::number;
+use crate::diagnosis::failure::{FailsWhere, Units, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures, LackOfFit};
 use crate::effect::Dimension;
 use crate::experiment::Joint;
@@ -42,6 +43,8 @@ struct JointJson<'a> {
     parameters: Map<String, Value>,
     error: ErrorJson,
     lack_of_fit: Option<LackOfFit>,
+    fails_where: &'a [FailsWhere],
+    worst_segments: &'a [WorstSegment],
     termination: String,
 }
 
@@ -85,6 +88,8 @@ impl<'a> JointJson<'a> {
                 noise_floor: comparison.noise_floor,
             },
             lack_of_fit: comparison.lack_of_fit,
+            fails_where: comparison.failure.as_ref().map_or(&[], |f| &f.fails_where),
+            worst_segments: comparison.failure.as_ref().map_or(&[], |f| &f.worst_segments),
             termination: comparison.fit.termination.to_string(),
         }
     }
@@ -134,11 +139,33 @@ pub fn compare_table(joints: &[ComparedJoint<'_>], horizon: &str) -> String {
         }
     }
     let parameters: Vec<_> = joints.iter().map(parameters).collect();
-    format!("{table}\nroot-mean-square errors, {horizon}\n\n{}\n", parameters.join("\n"))
+    let failures: Vec<_> = joints.iter().flat_map(failure_sentences).collect();
+    let failures = if failures.is_empty() {
+        String::new()
+    } else {
+        format!("\nwhere it fails (restarted at every step):\n{}\n", failures.join("\n"))
+    };
+    format!("{table}\nroot-mean-square errors, {horizon}\n\n{}\n{failures}", parameters.join("\n"))
+}
+
+/// Where a model fails, in sentences that start with the joint.
+fn failure_sentences(compared: &ComparedJoint<'_>) -> Vec<String> {
+    let joint = compared.joint;
+    let sentences = sentences(compared).into_iter();
+    sentences.map(|sentence| format!("{} ({}): {sentence}", joint.name, compared.model)).collect()
+}
+
+/// Where a model fails, a sentence for each condition.
+pub fn sentences(compared: &ComparedJoint<'_>) -> Vec<String> {
+    let joint = compared.joint;
+    let units = Units { input: joint.input_unit.clone(), output: joint.output_unit.clone() };
+    let conditions = compared.comparison.failure.iter().flat_map(|failure| &failure.fails_where);
+    conditions.map(|condition| condition.sentence(&units)).collect()
 }
 
 fn row(compared: &ComparedJoint<'_>) -> [String; 7] {
-    let Comparison { training, validation, noise_floor, lack_of_fit, fit } = compared.comparison;
+    let Comparison { training, validation, noise_floor, lack_of_fit, fit, .. } =
+        compared.comparison;
     let unit = compared.joint.output_unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
     let dash = || "-".to_owned();
     let rmse = |error: &Option<ErrorFigures>| {

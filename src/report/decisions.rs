@@ -5,7 +5,7 @@ use std::io::Write;
 use serde::Serialize;
 
 use super::EstimatedJoint;
-use crate::delay::{Condition, Decision, Verdict};
+use crate::delay::{Condition, Decision};
 use crate::experiment::Trial;
 
 /// One row of `--decisions`; sample numbers count from 1 within the trial.
@@ -44,7 +44,7 @@ pub struct DecisionRow<'a> {
     /// Its value at sample 0, output units.
     pub intercept_after: Option<f64>,
     /// `accepted`, or the first condition that failed.
-    pub verdict: &'static str,
+    pub verdict: String,
     /// All conditions that failed, separated by spaces.
     pub failed: String,
 }
@@ -72,10 +72,7 @@ impl<'a> DecisionRow<'a> {
             intercept_before: candidate.map(|candidate| candidate.before.intercept),
             slope_after: candidate.map(|candidate| candidate.after.slope),
             intercept_after: candidate.map(|candidate| candidate.after.intercept),
-            verdict: match decision.verdict() {
-                Verdict::Accepted => "accepted",
-                Verdict::Rejected(condition) => condition.id(),
-            },
+            verdict: decision.verdict().to_string(),
             failed: failed.join(" "),
         }
     }

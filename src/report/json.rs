@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{DecisionRow, DelayRange, EstimatedJoint, JointSummary, decision_rows};
 use crate::delay::{Condition, Settings};
-use crate::experiment::Source;
+use crate::experiment::{Experiment, ReadOptions, Source};
 
 /// The document of `estimate --format json`, schema `tauscope/estimate/1`.
 #[derive(Debug, Serialize)]
@@ -12,8 +12,10 @@ pub struct EstimateJson<'a> {
     schema: &'static str,
     version: &'static str,
     sources: Vec<SourceJson<'a>>,
+    reading: &'a ReadOptions,
     settings: &'a Settings,
     joints: Vec<JointJson<'a>>,
+    notes: &'a [String],
     failures: &'a [String],
 }
 
@@ -40,7 +42,7 @@ struct JointJson<'a> {
 impl<'a> EstimateJson<'a> {
     /// Collects the results; `failures` are messages on joints and files that failed.
     pub fn new(
-        sources: &'a [Source],
+        experiment: &'a Experiment,
         settings: &'a Settings,
         joints: &[EstimatedJoint<'a>],
         failures: &'a [String],
@@ -53,9 +55,11 @@ impl<'a> EstimateJson<'a> {
         Self {
             schema: "tauscope/estimate/1",
             version: env!("CARGO_PKG_VERSION"),
-            sources: sources.iter().map(source).collect(),
+            sources: experiment.sources.iter().map(source).collect(),
+            reading: &experiment.options,
             settings,
             joints: joints.iter().copied().map(JointJson::new).collect(),
+            notes: &experiment.notes,
             failures,
         }
     }

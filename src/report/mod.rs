@@ -1,5 +1,6 @@
 //! Results as text, CSV and JSON: pure functions to bytes.
 
+mod against;
 mod compare;
 mod decisions;
 mod delays;
@@ -8,7 +9,8 @@ mod number;
 mod summary;
 mod text;
 
-pub use compare::{CompareJson, ComparedJoint, compare_table, parameter_units};
+pub use against::against_table;
+pub use compare::{CompareJson, ComparedJoint, compare_table, parameter_units, sentences};
 pub use decisions::{DecisionRow, decision_rows, write_decisions};
 pub use delays::write_delays;
 pub use json::EstimateJson;

@@ -3,7 +3,7 @@
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
 use super::{DelayRange, EstimatedJoint, JointSummary};
-use crate::delay::{Condition, Settings};
+use crate::delay::{Condition, Interpolation, Settings};
 use crate::filter::LowPass;
 
 /// The table of `estimate`: a row per joint, and the settings below it.
@@ -70,6 +70,12 @@ fn settings_line(settings: &Settings) -> String {
     }
     if let Some(limit) = settings.max_sse {
         parts.push(format!("SSE < {limit}"));
+    }
+    if settings.min_step > 0.0 {
+        parts.push(format!("input steps > {}", settings.min_step));
+    }
+    if settings.interpolation == Interpolation::Linear {
+        parts.push("delay linear between steps".to_owned());
     }
     if settings.keep_first_last {
         parts.push("first and last step kept".to_owned());

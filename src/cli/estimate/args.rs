@@ -6,7 +6,7 @@ use clap::{Args as ClapArgs, ValueEnum};
 use tauscope::delay::{Interpolation, Settings};
 use tauscope::filter::LowPass;
 
-use crate::cli::data::DataArgs;
+use crate::cli::data::{DataArgs, threads};
 use crate::cli::progress::Verbosity;
 use crate::cli::record::Detail;
 
@@ -108,7 +108,7 @@ pub(super) struct OutputArgs {
     pub(super) format: Format,
 
     /// Threads to use [default: all processors]
-    #[arg(long, value_name = "N", value_parser = at_least_one, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub(super) threads: Option<usize>,
 
     /// No progress, no notices

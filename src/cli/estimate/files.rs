@@ -2,12 +2,11 @@
 
 use std::path::PathBuf;
 
-use anyhow::bail;
 use tauscope::report::{write_decisions, write_delays};
 
 use super::Estimated;
 use super::args::OutputArgs;
-use crate::cli::output::{OutputFile, target_of, write_file};
+use crate::cli::output::{check_outputs, write_file};
 use crate::cli::progress::Verbosity;
 use crate::cli::record::Contents;
 
@@ -19,21 +18,8 @@ pub(super) struct Files<'a> {
 impl<'a> Files<'a> {
     /// Refuses what cannot be written, or would replace an input or another output.
     pub(super) fn check(args: &'a OutputArgs, inputs: &[PathBuf]) -> anyhow::Result<Self> {
-        let mut taken: Vec<PathBuf> = inputs.to_vec();
-        for path in [&args.recording, &args.decisions, &args.delays].into_iter().flatten() {
-            let target = target_of(path);
-            let name = path.display();
-            // A device, such as /dev/null, may take any number of outputs.
-            let is_file = !target.exists() || target.is_file();
-            if inputs.contains(&target) {
-                bail!("{name}: this is a file that is read; give the output another name");
-            }
-            if is_file && taken.contains(&target) {
-                bail!("{name}: two outputs have this name; give each its own");
-            }
-            OutputFile::probe(path)?;
-            taken.push(target);
-        }
+        let outputs = [&args.recording, &args.decisions, &args.delays].into_iter().flatten();
+        check_outputs(&outputs.map(PathBuf::as_path).collect::<Vec<_>>(), inputs)?;
         Ok(Self { args })
     }
 
@@ -50,6 +36,7 @@ impl<'a> Files<'a> {
                 joints: result.joints,
                 settings: result.settings,
                 sources: &result.experiment.sources,
+                reading: &result.experiment.options,
                 models: &[],
                 detail: self.args.detail,
             };

@@ -7,9 +7,9 @@ use std::io::{self, Write as _};
 
 use anyhow::{Context as _, anyhow};
 use tauscope::batch::{JointEstimate, estimate_joints, with_threads};
-use tauscope::delay::{EstimateError, Settings};
+use tauscope::delay::{Condition, EstimateError, Settings};
 use tauscope::experiment::Experiment;
-use tauscope::report::{EstimateJson, EstimatedJoint, estimate_table};
+use tauscope::report::{EstimateJson, EstimatedJoint, JointSummary, estimate_table};
 
 use super::progress::{self, Verbosity};
 use super::{Completion, message, read_failures};
@@ -43,8 +43,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
         message("warning", failure);
     }
     if verbosity == Verbosity::Normal {
-        for note in notes(&estimated) {
-            message("note", &note);
+        for note in experiment.notes.iter().chain(&notes(&estimated)) {
+            message("note", note);
         }
     }
     let result = Estimated { experiment: &experiment, joints: &estimated, settings: &settings };
@@ -97,6 +97,13 @@ fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
         let name = &joint.name;
         let steps: usize = estimate.estimated().map(|trial| trial.decisions.len()).sum();
         let samples: usize = joint.trials.iter().map(tauscope::experiment::Trial::len).sum();
+        let summary = JointSummary::of(EstimatedJoint { joint, estimate });
+        if steps > 0 && summary.rejected == [(Condition::FirstOrLast, steps)] {
+            notes.push(format!(
+                "joint `{name}`: every step is the first or the last of its trial; \
+                 `--keep-first-last` judges them like the others"
+            ));
+        }
         if 2 * steps > samples {
             notes.push(format!(
                 "joint `{name}`: the input changes at {steps} of {samples} samples, so it is \
@@ -115,8 +122,8 @@ fn print(format: args::Format, result: &Estimated<'_>, failures: &[String]) -> a
             out.write_all(table.as_bytes())?;
         }
         args::Format::Json => {
-            let sources = &result.experiment.sources;
-            let json = EstimateJson::new(sources, result.settings, result.joints, failures);
+            let Estimated { experiment, joints, settings } = *result;
+            let json = EstimateJson::new(experiment, settings, joints, failures);
             serde_json::to_writer(&mut out, &json).map_err(io::Error::from)?;
             out.write_all(b"\n")?;
         }

@@ -61,8 +61,21 @@ const DRAWING: [&str; 12] = [
 const MAP: [&str; 7] = ["grid", "ticks", "input", "output", "accepted", "rejected", "here"];
 
 /// Columns of the table of decisions, in the order of `--decisions`.
-const DECISION_COLUMNS: [&str; 11] =
-    ["i", "p", "r", "end", "f", "q", "delta", "sse", "slope_before", "slope_after", "accepted"];
+const DECISION_COLUMNS: [&str; 13] = [
+    "trial",
+    "i",
+    "p",
+    "r",
+    "end",
+    "f",
+    "q",
+    "delta",
+    "sse",
+    "slope_before",
+    "slope_after",
+    "accepted",
+    "verdict",
+];
 
 /// Columns of the table of candidates.
 const CANDIDATE_COLUMNS: [&str; 8] =
@@ -88,9 +101,15 @@ impl Views<'_> {
         let verdict = self.view(View::new("TextDocument", "Verdict", &verdict))?;
         let list = self.view(self.list())?;
         let left = [drawing, errors, map, lanes];
+        // A lane more needs a little more room.
+        let lanes_share = if self.joint.trials.len() > 1 { 2.0 } else { 1.5 };
         let builder = &mut *self.builder;
-        let left =
-            builder.container(ContainerKind::Vertical, "Segment", &left, &[6.0, 1.2, 1.6, 1.5])?;
+        let left = builder.container(
+            ContainerKind::Vertical,
+            "Segment",
+            &left,
+            &[6.0, 1.2, 1.6, lanes_share],
+        )?;
         let right = [verdict, list];
         let right = builder.container(ContainerKind::Vertical, "Verdicts", &right, &[7.0, 3.0])?;
         let columns = [left, right];
@@ -142,9 +161,9 @@ impl Views<'_> {
     }
 
     fn lanes(&self) -> View<'static> {
-        let mut paths = vec![self.path(&["segment"]), self.path(&["verdict"])];
+        let mut paths = vec![self.path(&["verdict"]), self.path(&["segment"])];
         if self.joint.trials.len() > 1 {
-            paths.insert(0, self.path(&["trial"]));
+            paths.push(self.path(&["trial"]));
         }
         View::new("StateTimeline", "Steps and verdicts", &paths)
     }
@@ -191,7 +210,7 @@ impl Views<'_> {
             shares.push(1.5);
         }
         rows.push(self.view(self.lanes())?);
-        shares.push(1.2);
+        shares.push(1.6);
         self.builder.container(ContainerKind::Vertical, "Record", &rows, &shares)
     }
 
@@ -207,10 +226,12 @@ impl Views<'_> {
         let rows = [
             self.plot("Measured and simulated", &measured)?,
             self.plot("Residual: measured − simulated, and the band of the noise", &left)?,
+            self.view(View::new("StateTimeline", "Worst segments", &[self.path(&["worst"])]))?,
             self.view(self.scatter(models.len()))?,
         ];
         let builder = &mut *self.builder;
-        let plots = builder.container(ContainerKind::Vertical, "Plots", &rows, &[3.0, 2.5, 4.5])?;
+        let plots =
+            builder.container(ContainerKind::Vertical, "Plots", &rows, &[3.0, 2.5, 0.9, 4.0])?;
         let page = [self.path(&["model_page"])];
         let page = self.view(View::new("TextDocument", "Models", &page))?;
         let columns = [plots, page];

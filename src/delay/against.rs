@@ -1,0 +1,276 @@
+//! The accepted delays of a joint against its state: what the delay may depend on.
+//!
+//! Each accepted step is a point; each variable gets a rank correlation, which asks only
+//! whether the delay rises or falls with it.
+
+use serde::Serialize;
+
+use super::estimate::{Breakpoint, Decision, TrialEstimate};
+use crate::experiment::{Joint, Trial};
+use crate::statistics::{RankTest, holm, mann_whitney, spearman};
+
+/// Samples before an input step over which a further signal is averaged.
+const COVARIATE_SAMPLES: usize = 5;
+
+/// Chance of any false "depends" among all variables of a joint.
+const LEVEL: f64 = 0.05;
+
+/// An accepted step: its delay, and the joint's state.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepState {
+    /// Label of the trial.
+    pub trial: String,
+    /// `i`: number of the step in its trial, from 1.
+    pub number: usize,
+    /// The delay in seconds.
+    pub delay_s: f64,
+    /// Magnitude of the slope behind the breakpoint, output units per second.
+    pub average_speed: f64,
+    /// Change of the input, input units; its sign is the direction.
+    pub input_change: f64,
+    /// Seconds that the level before was held; none for the first step of a trial.
+    pub dwell_s: Option<f64>,
+    /// Output at the breakpoint, smoothed if the estimate was made so; output units.
+    pub angle: f64,
+    /// Time of the input step, in seconds of the log.
+    pub time_s: f64,
+    /// Mean of each further signal over the five samples before the input step, in the
+    /// order of [`Joint::covariates`]; none where it was not measured.
+    pub covariates: Vec<Option<f64>>,
+}
+
+/// How the delay goes with one variable.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Correlation {
+    /// Its name.
+    pub variable: String,
+    /// Its unit, where it is known.
+    pub unit: Option<String>,
+    /// Accepted steps for which it is known.
+    pub steps: usize,
+    /// Spearman's ρ; none when the variable or the delay is constant, or with fewer than
+    /// four steps.
+    pub rho: Option<f64>,
+    /// Two-sided p-value of ρ alone, see [`spearman`].
+    pub p_value: Option<f64>,
+    /// The p-value after Holm's correction for all variables of the joint.
+    pub p_holm: Option<f64>,
+    /// Whether that is at most 0.05.
+    pub significant: bool,
+}
+
+/// How the delay differs between steps up and steps down.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Direction {
+    /// Accepted steps to a higher level.
+    pub up: usize,
+    /// Accepted steps to a lower level.
+    pub down: usize,
+    /// Median delay of steps up minus that of steps down, seconds.
+    pub median_difference_s: Option<f64>,
+    /// Two-sided Mann-Whitney p-value, see [`mann_whitney`]; none with fewer than four
+    /// steps, as for a correlation.
+    pub p_value: Option<f64>,
+    /// The p-value after Holm's correction for all variables of the joint.
+    pub p_holm: Option<f64>,
+    /// Whether that is at most 0.05.
+    pub significant: bool,
+}
+
+/// The accepted delays of a joint against its state.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AgainstState {
+    /// The accepted steps of all trials, in their order.
+    pub steps: Vec<StepState>,
+    /// Average speed, step size, dwell, angle, time, then the further signals.
+    pub correlations: Vec<Correlation>,
+    /// Steps up against steps down.
+    pub direction: Direction,
+}
+
+impl AgainstState {
+    /// Compares the delays of `joint`; `estimates` has one entry per trial of it, in order,
+    /// none where there is no estimate.
+    pub fn of<'a>(
+        joint: &'a Joint,
+        estimates: impl IntoIterator<Item = Option<&'a TrialEstimate>>,
+    ) -> Self {
+        let trials = joint.trials.iter().zip(estimates);
+        let estimated = trials.filter_map(|(trial, estimate)| Some((trial, estimate?)));
+        let steps: Vec<_> =
+            estimated.flat_map(|(trial, estimate)| states(trial, estimate)).collect();
+        let mut correlations: Vec<_> =
+            variables(joint).into_iter().map(|variable| variable.correlate(&steps)).collect();
+        let mut direction = Direction::of(&steps);
+        correct(&mut correlations, &mut direction);
+        Self { steps, correlations, direction }
+    }
+}
+
+/// The accepted steps of a trial.
+fn states<'a>(
+    trial: &'a Trial,
+    estimate: &'a TrialEstimate,
+) -> impl Iterator<Item = StepState> + 'a {
+    let output = estimate.smoothed.as_deref().unwrap_or(trial.output());
+    let decisions = estimate.decisions.iter().enumerate();
+    let accepted = decisions.filter(|(_, decision)| decision.accepted_delay().is_some());
+    accepted.filter_map(move |(index, decision)| {
+        let before = index.checked_sub(1).and_then(|before| estimate.decisions.get(before));
+        state(trial, output, before, decision, decision.breakpoint()?)
+    })
+}
+
+fn state(
+    trial: &Trial,
+    output: &[f64],
+    before: Option<&Decision>,
+    decision: &Decision,
+    best: Breakpoint,
+) -> Option<StepState> {
+    let period_s = trial.period().seconds();
+    let step = decision.input_step;
+    let dwell = before.map(|before| step.sample - before.input_step.sample);
+    let covariate = |signal: &Vec<f64>| mean_before(signal, step.sample);
+    Some(StepState {
+        trial: trial.label().to_owned(),
+        number: decision.number,
+        delay_s: best.delay as f64 * period_s,
+        average_speed: best.candidate.after.slope.abs() / period_s,
+        input_change: step.after - step.before,
+        dwell_s: dwell.map(|samples| samples as f64 * period_s),
+        angle: *output.get(best.candidate.breakpoint.checked_sub(1)?)?,
+        time_s: trial.time_s(step.sample),
+        covariates: trial.covariates().iter().map(covariate).collect(),
+    })
+}
+
+/// Mean of the samples just before number `sample`, counted from 1, that were measured.
+fn mean_before(signal: &[f64], sample: usize) -> Option<f64> {
+    let end = sample.checked_sub(1)?;
+    let before = signal.get(end.saturating_sub(COVARIATE_SAMPLES)..end)?;
+    let (count, sum) = before
+        .iter()
+        .filter(|value| value.is_finite())
+        .fold((0.0, 0.0), |(count, sum), value| (count + 1.0, sum + value));
+    (count > 0.0).then(|| sum / count)
+}
+
+/// Looks a variable up in a step.
+type Lookup = Box<dyn Fn(&StepState) -> Option<f64>>;
+
+/// Something the delay may depend on.
+struct Variable<'a> {
+    name: &'a str,
+    unit: Option<String>,
+    value: Lookup,
+}
+
+fn variables(joint: &Joint) -> Vec<Variable<'_>> {
+    let seconds = || Some("s".to_owned());
+    let speed = joint.output_unit.as_ref().map(|unit| format!("{unit}/s"));
+    let known = |name, unit, value: fn(&StepState) -> Option<f64>| Variable {
+        name,
+        unit,
+        value: Box::new(value),
+    };
+    let own = [
+        known("average_speed", speed, |step| Some(step.average_speed)),
+        known("step_size", joint.input_unit.clone(), |step| Some(step.input_change.abs())),
+        known("dwell", seconds(), |step| step.dwell_s),
+        known("angle", joint.output_unit.clone(), |step| Some(step.angle)),
+        known("time", seconds(), |step| Some(step.time_s)),
+    ];
+    let further = joint.covariates.iter().enumerate().map(|(index, signal)| Variable {
+        name: &signal.name,
+        unit: signal.unit.clone(),
+        value: Box::new(move |step| step.covariates.get(index).copied().flatten()),
+    });
+    own.into_iter().chain(further).collect()
+}
+
+impl Variable<'_> {
+    fn correlate(&self, steps: &[StepState]) -> Correlation {
+        let known = steps.iter().filter_map(|step| Some(((self.value)(step)?, step.delay_s)));
+        let (values, delays): (Vec<f64>, Vec<f64>) = known.unzip();
+        let test = spearman(&values, &delays);
+        Correlation {
+            variable: self.name.to_owned(),
+            unit: self.unit.clone(),
+            steps: values.len(),
+            rho: test.map(|test| test.statistic),
+            p_value: test.map(|test| test.p_value),
+            p_holm: None,
+            significant: false,
+        }
+    }
+}
+
+impl Direction {
+    /// Steps below which neither variables nor directions are compared.
+    const MIN_STEPS: usize = 4;
+
+    fn of(steps: &[StepState]) -> Self {
+        let delays = |up: bool| {
+            let same = steps.iter().filter(|step| (step.input_change > 0.0) == up);
+            same.map(|step| step.delay_s).collect::<Vec<f64>>()
+        };
+        let (up, down) = (delays(true), delays(false));
+        let enough = steps.len() >= Self::MIN_STEPS;
+        let test: Option<RankTest> = mann_whitney(&up, &down).filter(|_| enough);
+        let medians = median(&up).zip(median(&down));
+        Self {
+            up: up.len(),
+            down: down.len(),
+            median_difference_s: medians.map(|(up, down)| up - down),
+            p_value: test.map(|test| test.p_value),
+            p_holm: None,
+            significant: false,
+        }
+    }
+}
+
+/// The middle value, or the mean of the two in the middle.
+fn median(values: &[f64]) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let upper = *sorted.get(sorted.len() / 2)?;
+    let lower = *sorted.get(sorted.len().checked_sub(1)? / 2)?;
+    Some(f64::midpoint(lower, upper))
+}
+
+/// Holm's correction over all tests of the joint.
+fn correct(correlations: &mut [Correlation], direction: &mut Direction) {
+    let tests =
+        correlations.iter_mut().map(|one| (one.p_value, &mut one.p_holm, &mut one.significant));
+    let last = (direction.p_value, &mut direction.p_holm, &mut direction.significant);
+    let (p_values, flags): (Vec<f64>, Vec<_>) = tests
+        .chain([last])
+        .filter_map(|(p_value, p_holm, significant)| Some((p_value?, (p_holm, significant))))
+        .unzip();
+    for (corrected, (p_holm, significant)) in holm(&p_values).into_iter().zip(flags) {
+        *p_holm = Some(corrected);
+        *significant = corrected <= LEVEL;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_signal_is_averaged_over_what_was_measured_before_the_step() {
+        let signal = [9.0, 1.0, f64::NAN, 2.0, 3.0, 6.0, 100.0];
+        assert!(mean_before(&signal, 7).is_some_and(|mean| (mean - 3.0).abs() < 1e-15));
+        assert!(mean_before(&signal, 2).is_some_and(|mean| (mean - 9.0).abs() < 1e-15));
+        assert_eq!(mean_before(&signal, 1), None);
+        assert_eq!(mean_before(&[f64::NAN; 9], 8), None);
+    }
+
+    #[test]
+    fn the_median_is_in_the_middle() {
+        assert_eq!(median(&[]), None);
+        assert!(median(&[3.0, 1.0, 2.0]).is_some_and(|median| (median - 2.0).abs() < 1e-15));
+        assert!(median(&[4.0, 1.0, 2.0, 9.0]).is_some_and(|median| (median - 3.0).abs() < 1e-15));
+    }
+}

@@ -1,0 +1,108 @@
+//! What the error is held against.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::record::{Samples, Units};
+
+/// Something that is known of every sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Feature {
+    /// Sign of the input.
+    Direction,
+    /// The input as it acts.
+    Input,
+    /// Its magnitude.
+    AbsInput,
+    /// The output.
+    Output,
+    /// Magnitude of the speed.
+    AbsSpeed,
+    /// Speed of the output.
+    Speed,
+    /// Time since the step that acts.
+    SinceStep,
+    /// How long its level is held.
+    Hold,
+    /// Time in the record.
+    Time,
+    /// The trial.
+    Trial,
+}
+
+impl Feature {
+    /// All features. Of conditions that say the same, the one that is first here is kept.
+    pub const ALL: [Self; 10] = [
+        Self::Direction,
+        Self::AbsInput,
+        Self::Input,
+        Self::Output,
+        Self::AbsSpeed,
+        Self::Speed,
+        Self::SinceStep,
+        Self::Hold,
+        Self::Time,
+        Self::Trial,
+    ];
+
+    /// Its name in a condition.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Direction | Self::Input => "input",
+            Self::AbsInput => "|input|",
+            Self::Output => "output",
+            Self::AbsSpeed => "|speed|",
+            Self::Speed => "speed",
+            Self::SinceStep => "time since step",
+            Self::Hold => "hold",
+            Self::Time => "time",
+            Self::Trial => "trial",
+        }
+    }
+
+    /// Its unit, where there is one.
+    pub fn unit(self, units: &Units) -> Option<String> {
+        match self {
+            Self::Direction | Self::Trial => None,
+            Self::Input | Self::AbsInput => units.input.clone(),
+            Self::Output => units.output.clone(),
+            Self::AbsSpeed | Self::Speed => units.output.as_ref().map(|unit| format!("{unit}/s")),
+            Self::SinceStep | Self::Hold | Self::Time => Some("s".to_owned()),
+        }
+    }
+
+    /// Its value at every sample; NaN where it is not known.
+    pub(super) fn values(self, samples: &Samples) -> Vec<f64> {
+        let magnitudes = |values: &[f64]| values.iter().map(|value| value.abs()).collect();
+        match self {
+            Self::Direction => samples.input.iter().map(|input| sign(*input)).collect(),
+            Self::Input => samples.input.clone(),
+            Self::AbsInput => magnitudes(&samples.input),
+            Self::Output => samples.output.clone(),
+            Self::AbsSpeed => magnitudes(&samples.speed),
+            Self::Speed => samples.speed.clone(),
+            Self::SinceStep => samples.since_step_s.clone(),
+            Self::Hold => samples.hold_s.clone(),
+            Self::Time => samples.time_s.clone(),
+            Self::Trial => samples.trial.iter().map(|trial| *trial as f64).collect(),
+        }
+    }
+
+    /// Whether its values are kinds, without more or less.
+    pub(super) fn has_kinds(self) -> bool {
+        matches!(self, Self::Direction | Self::Trial)
+    }
+}
+
+/// -1, 0, 1, or NaN where the value is not known.
+fn sign(value: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value.signum() }
+}
+
+impl fmt::Display for Feature {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}

@@ -1,0 +1,51 @@
+//! Where a model fails: the record cut into regions, and the conditions that hold most of
+//! the squared error in least of the time.
+//!
+//! - [`Record`]: the residual of one joint and what happened at each sample
+//! - [`regions`]: the share of the error in each part of each [`Feature`]
+//! - [`fails_where`]: the shortest conditions, `|input| < 1.2 and output > 20`
+//! - [`worst_segments`]: the segments with more than their share
+//!
+//! Only numbers go in. How the residual was made, and whether there is enough of it to
+//! call the model wrong, is decided elsewhere.
+
+mod axis;
+mod conditions;
+mod feature;
+mod grid;
+mod record;
+mod regions;
+mod segments;
+mod significance;
+mod threshold;
+
+pub use conditions::{Bound, Clause, FailsWhere, Relation, fails_where};
+pub use feature::Feature;
+pub use record::{Record, RecordError, Samples, Units};
+pub use regions::{Region, regions};
+pub use segments::{WorstSegment, worst_segments};
+
+use serde::Serialize;
+
+/// Where a model fails, in every form.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Diagnosis {
+    /// The conditions that hold most of the squared error, the best first.
+    pub fails_where: Vec<FailsWhere>,
+    /// The segments with more than their share, the worst first.
+    pub worst_segments: Vec<WorstSegment>,
+    /// Every part of every feature.
+    pub regions: Vec<Region>,
+}
+
+/// Segments that are named.
+const WORST: usize = 5;
+
+/// All of [`fails_where`], [`worst_segments`] (five of them) and [`regions`].
+pub fn diagnose(record: &Record) -> Diagnosis {
+    Diagnosis {
+        fails_where: fails_where(record),
+        worst_segments: worst_segments(record, WORST),
+        regions: regions(record),
+    }
+}

@@ -1,0 +1,236 @@
+//! The residual of one joint, and what happened at each of its samples.
+
+use std::ops::Range;
+
+/// What happened at each sample of one joint, over all its trials one after the other.
+///
+/// All columns have the same length. NaN stands where a value is not known, as the time
+/// since the last step is before the first one; the residual is always known.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Samples {
+    /// Measured minus simulated, output units.
+    pub residual: Vec<f64>,
+    /// The input as it acts, so delayed, input units.
+    pub input: Vec<f64>,
+    /// Output units.
+    pub output: Vec<f64>,
+    /// Speed of the output with its sign, output units per second.
+    pub speed: Vec<f64>,
+    /// Seconds in the record.
+    pub time_s: Vec<f64>,
+    /// Seconds since the step that acts.
+    pub since_step_s: Vec<f64>,
+    /// How long its level is held, seconds.
+    pub hold_s: Vec<f64>,
+    /// Index of the trial in [`Record::trials`].
+    pub trial: Vec<usize>,
+}
+
+/// Units of input and output, where they are known.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Units {
+    /// Unit of the input.
+    pub input: Option<String>,
+    /// Unit of the output.
+    pub output: Option<String>,
+}
+
+/// Why samples do not make a [`Record`].
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecordError {
+    /// A column is not as long as the residual.
+    #[error("`{column}` has {found} samples, the residual {expected}")]
+    UnequalLengths {
+        /// Name of the column.
+        column: &'static str,
+        /// Its samples.
+        found: usize,
+        /// Samples of the residual.
+        expected: usize,
+    },
+    /// A residual is NaN or infinite.
+    #[error("residual {index} is not a finite number")]
+    NotFinite {
+        /// Its index, from 0.
+        index: usize,
+    },
+    /// A sample belongs to a trial that has no label.
+    #[error("sample {index} is of trial {trial}, but there are {trials} trials")]
+    UnknownTrial {
+        /// Index of the sample, from 0.
+        index: usize,
+        /// The trial's index, from 0.
+        trial: usize,
+        /// Number of trials.
+        trials: usize,
+    },
+    /// A segment is empty, out of order, or reaches beyond the samples.
+    #[error("segment {number} is not a part of the {samples} samples behind the one before it")]
+    Segment {
+        /// Number of the segment, from 1.
+        number: usize,
+        /// Number of samples.
+        samples: usize,
+    },
+}
+
+/// The residual of one joint with all that it is held against.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    samples: Samples,
+    trials: Vec<String>,
+    segments: Vec<Range<usize>>,
+}
+
+impl Record {
+    /// A record of `samples`, whose trials have the labels `trials`.
+    ///
+    /// `segments` are the spans of samples, counted from 0, that belong to one input step
+    /// each. They are in order, do not overlap, and need not cover all samples.
+    ///
+    /// # Errors
+    /// [`RecordError`], the first that is found.
+    pub fn new(
+        samples: Samples,
+        trials: Vec<String>,
+        segments: Vec<Range<usize>>,
+    ) -> Result<Self, RecordError> {
+        let expected = samples.residual.len();
+        let odd = samples.lengths().into_iter().find(|(_, found)| *found != expected);
+        if let Some((column, found)) = odd {
+            return Err(RecordError::UnequalLengths { column, found, expected });
+        }
+        if let Some(index) = samples.residual.iter().position(|value| !value.is_finite()) {
+            return Err(RecordError::NotFinite { index });
+        }
+        let unknown = samples.trial.iter().position(|trial| *trial >= trials.len());
+        if let Some((index, &trial)) = unknown.and_then(|at| Some((at, samples.trial.get(at)?))) {
+            return Err(RecordError::UnknownTrial { index, trial, trials: trials.len() });
+        }
+        if let Some(number) = misplaced(&segments, expected) {
+            return Err(RecordError::Segment { number, samples: expected });
+        }
+        Ok(Self { samples, trials, segments })
+    }
+
+    /// The columns.
+    pub fn samples(&self) -> &Samples {
+        &self.samples
+    }
+
+    /// Labels of the trials.
+    pub fn trials(&self) -> &[String] {
+        &self.trials
+    }
+
+    /// The spans of samples, counted from 0, that belong to one input step each.
+    pub fn segments(&self) -> &[Range<usize>] {
+        &self.segments
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.samples.residual.len()
+    }
+
+    /// Whether there is no sample.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The squared residual of each sample, as a share of their sum; `None` when that is 0.
+    pub(super) fn error_shares(&self) -> Option<Vec<f64>> {
+        let largest = self.samples.residual.iter().fold(0.0, |max: f64, r| max.max(r.abs()));
+        if largest <= 0.0 {
+            return None;
+        }
+        let squares = self.samples.residual.iter().map(|r| (r / largest) * (r / largest));
+        let mut shares: Vec<f64> = squares.collect();
+        let sum: f64 = shares.iter().sum();
+        for share in &mut shares {
+            *share /= sum;
+        }
+        Some(shares)
+    }
+
+    /// Root mean square of all residuals, output units.
+    pub(super) fn rmse(&self) -> f64 {
+        let squares: f64 = self.samples.residual.iter().map(|r| r * r).sum();
+        (squares / self.len().max(1) as f64).sqrt()
+    }
+}
+
+impl Samples {
+    fn lengths(&self) -> [(&'static str, usize); 7] {
+        [
+            ("input", self.input.len()),
+            ("output", self.output.len()),
+            ("speed", self.speed.len()),
+            ("time_s", self.time_s.len()),
+            ("since_step_s", self.since_step_s.len()),
+            ("hold_s", self.hold_s.len()),
+            ("trial", self.trial.len()),
+        ]
+    }
+}
+
+/// The number, from 1, of the first segment that is not behind the one before it.
+fn misplaced(segments: &[Range<usize>], samples: usize) -> Option<usize> {
+    let mut end = 0;
+    for (segment, number) in segments.iter().zip(1..) {
+        if segment.start < end || segment.is_empty() || segment.end > samples {
+            return Some(number);
+        }
+        end = segment.end;
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn samples(count: usize) -> Samples {
+        let zeros = vec![0.0; count];
+        Samples {
+            residual: zeros.clone(),
+            input: zeros.clone(),
+            output: zeros.clone(),
+            speed: zeros.clone(),
+            time_s: zeros.clone(),
+            since_step_s: zeros.clone(),
+            hold_s: zeros,
+            trial: vec![0; count],
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_is_named() {
+        let record = |samples, segments| Record::new(samples, vec!["a".into()], segments);
+        assert!(record(samples(4), vec![0..2, 2..4]).is_ok());
+        let short = Samples { speed: vec![0.0; 3], ..samples(4) };
+        let expected = RecordError::UnequalLengths { column: "speed", found: 3, expected: 4 };
+        assert_eq!(record(short, vec![]), Err(expected));
+        let infinite = Samples { residual: vec![0.0, f64::INFINITY], ..samples(2) };
+        assert_eq!(record(infinite, vec![]), Err(RecordError::NotFinite { index: 1 }));
+        let strange = Samples { trial: vec![0, 1], ..samples(2) };
+        let expected = RecordError::UnknownTrial { index: 1, trial: 1, trials: 1 };
+        assert_eq!(record(strange, vec![]), Err(expected));
+        for segments in [vec![0..2, 1..3], vec![0..1, 3..5], vec![0..1, 2..2]] {
+            let number = segments.len();
+            let expected = RecordError::Segment { number, samples: 4 };
+            assert_eq!(record(samples(4), segments), Err(expected));
+        }
+    }
+
+    #[test]
+    fn shares_of_a_tiny_error_still_sum_to_one() {
+        let tiny = Samples { residual: vec![1e-200, 3e-200], ..samples(2) };
+        let record = Record::new(tiny, vec!["a".into()], vec![]).unwrap();
+        let shares = record.error_shares().unwrap();
+        assert!((shares[0] - 0.1).abs() < 1e-15 && (shares[1] - 0.9).abs() < 1e-15);
+        let none = Record::new(samples(2), vec!["a".into()], vec![]).unwrap();
+        assert_eq!(none.error_shares(), None);
+    }
+}

@@ -1,0 +1,55 @@
+//! The segments with more than their share of the error.
+
+use std::ops::Range;
+
+use serde::Serialize;
+
+use super::record::Record;
+
+/// A segment with a larger share of the squared error than of the time.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WorstSegment {
+    /// Label of its trial.
+    pub trial: String,
+    /// Time of its first sample, seconds.
+    pub start_s: f64,
+    /// Time of its last sample, seconds.
+    pub end_s: f64,
+    /// Root mean square of its residual, output units.
+    pub rmse: f64,
+    /// Its share of the sum of squared residuals.
+    pub share_of_squared_error: f64,
+    /// Its samples, counted from 0 over all trials.
+    #[serde(skip)]
+    pub samples: Range<usize>,
+}
+
+/// At most `count` segments, the one with the largest share of the squared error first.
+///
+/// Only those are named whose share is above what an even spread over the samples gives.
+pub fn worst_segments(record: &Record, count: usize) -> Vec<WorstSegment> {
+    let Some(shares) = record.error_shares() else { return Vec::new() };
+    let segments = record.segments().iter().filter_map(|span| segment(record, span, &shares));
+    let mut worst: Vec<_> = segments.collect();
+    worst.sort_by(|a, b| b.share_of_squared_error.total_cmp(&a.share_of_squared_error));
+    worst.truncate(count);
+    worst
+}
+
+fn segment(record: &Record, span: &Range<usize>, shares: &[f64]) -> Option<WorstSegment> {
+    let share: f64 = shares.get(span.clone())?.iter().sum();
+    let share_of_time = span.len() as f64 / record.len() as f64;
+    if share <= share_of_time {
+        return None;
+    }
+    let times = record.samples().time_s.get(span.clone())?;
+    let trial = *record.samples().trial.get(span.start)?;
+    Some(WorstSegment {
+        trial: record.trials().get(trial)?.clone(),
+        start_s: *times.first()?,
+        end_s: *times.last()?,
+        rmse: record.rmse() * (share / share_of_time).sqrt(),
+        share_of_squared_error: share,
+        samples: span.clone(),
+    })
+}

@@ -1,0 +1,84 @@
+//! The delay against the state, for the terminal.
+
+use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+
+use super::{EstimatedJoint, number};
+use crate::delay::{AgainstState, Correlation, Direction};
+
+impl EstimatedJoint<'_> {
+    /// The joint's accepted delays against its state.
+    pub fn against_state(&self) -> AgainstState {
+        let estimates = self.estimate.trials.iter().map(|trial| trial.as_ref().ok());
+        AgainstState::of(self.joint, estimates)
+    }
+}
+
+/// A row per joint and variable; `joints` are names and what was found.
+pub fn against_table<'a>(joints: impl IntoIterator<Item = (&'a str, &'a AgainstState)>) -> String {
+    let mut table = Table::new();
+    table
+        .load_style(presets::UTF8_BORDERS_ONLY)
+        .set_content_arrangement(ContentArrangement::Disabled)
+        .set_header(["joint", "delay against", "steps", "rank correlation", "p", "depends"]);
+    for (joint, found) in joints {
+        for correlation in &found.correlations {
+            table.add_row(correlation_row(joint, correlation));
+        }
+        table.add_row(direction_row(joint, &found.direction));
+    }
+    for right in [2, 3, 4] {
+        if let Some(column) = table.column_mut(right) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    format!("{table}\nSpearman's rank correlation; `yes`: p at most 0.05 after Holm's correction\n")
+}
+
+fn correlation_row(joint: &str, found: &Correlation) -> [String; 6] {
+    let Correlation { variable, unit, steps, rho, p_value, significant, .. } = found;
+    let variable = variable.replace('_', " ");
+    let name =
+        unit.as_ref().map_or_else(|| variable.clone(), |unit| format!("{variable} [{unit}]"));
+    let rho = rho.map_or_else(|| "-".to_owned(), |rho| format!("{rho:+.2}"));
+    [
+        joint.to_owned(),
+        name,
+        steps.to_string(),
+        rho,
+        p_text(*p_value),
+        answer(p_value.map(|_| *significant)),
+    ]
+}
+
+fn direction_row(joint: &str, found: &Direction) -> [String; 6] {
+    let Direction { up, down, median_difference_s, p_value, significant, .. } = found;
+    let difference = median_difference_s
+        .map_or_else(|| "-".to_owned(), |seconds| format!("up - down {seconds:+.3} s"));
+    let steps = format!("{up} up, {down} down");
+    let name = "direction".to_owned();
+    [
+        joint.to_owned(),
+        name,
+        steps,
+        difference,
+        p_text(*p_value),
+        answer(p_value.map(|_| *significant)),
+    ]
+}
+
+/// To the thousandth; a p-value is no better known.
+fn p_text(p_value: Option<f64>) -> String {
+    match p_value {
+        None => "-".to_owned(),
+        Some(p_value) if p_value < 0.001 => "< 0.001".to_owned(),
+        Some(p_value) => number((p_value * 1000.0).round() / 1000.0),
+    }
+}
+
+fn answer(significant: Option<bool>) -> String {
+    match significant {
+        None => "not known".to_owned(),
+        Some(true) => "yes".to_owned(),
+        Some(false) => "not shown".to_owned(),
+    }
+}

@@ -1,0 +1,7 @@
+//! Statistics that are no model's own: rank tests and the tails of distributions.
+
+mod fisher;
+mod rank;
+
+pub use fisher::fisher_tail;
+pub use rank::{RankTest, holm, mann_whitney, ranks, spearman};

@@ -1,0 +1,125 @@
+//! What the delay depends on: planted laws are found, and nothing else.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
+
+use tauscope::batch::estimate_joints;
+use tauscope::delay::{AgainstState, Settings};
+use tauscope::experiment::{Joint, Signal};
+use tauscope::report::{EstimatedJoint, against_table};
+use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate};
+
+fn joint(law: DelayLaw, duration_s: f64) -> Joint {
+    let levels = vec![-3.0, -1.5, 0.0, 1.0, 2.5, 4.0];
+    let input = InputSpec::Levels { levels, hold_s: [0.8, 1.6] };
+    let spec =
+        JointSpec { noise: 0.01, range: Some([-40.0, 40.0]), ..JointSpec::new("boom", input, law) };
+    simulate(&PlantSpec::new(3, duration_s, vec![spec])).unwrap().joints.remove(0)
+}
+
+fn found(joint: &Joint) -> AgainstState {
+    let settings = Settings { low_pass: None, beta: 1, ..Settings::default() };
+    let estimates = estimate_joints(std::slice::from_ref(joint), &settings, || ());
+    let estimate = estimates[0].as_ref().unwrap();
+    EstimatedJoint { joint, estimate }.against_state()
+}
+
+/// The variables that the delay is said to depend on.
+fn depends_on(found: &AgainstState) -> Vec<&str> {
+    let correlations = found.correlations.iter().filter(|one| one.significant);
+    let direction = found.direction.significant.then_some("direction");
+    correlations.map(|one| one.variable.as_str()).chain(direction).collect()
+}
+
+fn rho(found: &AgainstState, variable: &str) -> f64 {
+    let one = found.correlations.iter().find(|one| one.variable == variable);
+    one.unwrap().rho.unwrap()
+}
+
+#[test]
+fn a_delay_that_falls_with_the_step_is_seen_to() {
+    let found = found(&joint(DelayLaw::StepSize { min: 0.05, max: 0.5, scale: 3.0 }, 120.0));
+    assert!(rho(&found, "step_size") < -0.9, "{:?}", found.correlations);
+    assert!(depends_on(&found).contains(&"step_size"));
+    assert!(!depends_on(&found).contains(&"time"));
+}
+
+#[test]
+fn a_delay_that_falls_with_time_is_seen_to() {
+    let found = found(&joint(DelayLaw::Warming { first: 0.4, last: 0.1 }, 120.0));
+    assert!(rho(&found, "time") < -0.95);
+    assert_eq!(depends_on(&found), ["time"]);
+}
+
+#[test]
+fn a_delay_of_each_direction_is_seen() {
+    let found = found(&joint(DelayLaw::Direction { rising: 0.1, falling: 0.3 }, 120.0));
+    assert!(found.direction.significant);
+    assert!((found.direction.median_difference_s.unwrap() + 0.2).abs() < 0.011);
+    assert_eq!(found.direction.up + found.direction.down, found.steps.len());
+}
+
+#[test]
+fn a_drawn_delay_depends_on_nothing() {
+    assert_eq!(
+        depends_on(&found(&joint(DelayLaw::Uniform { min: 0.1, max: 0.4 }, 120.0))),
+        [""; 0]
+    );
+}
+
+#[test]
+fn a_further_signal_is_compared_where_it_was_measured() {
+    let mut joint = joint(DelayLaw::Warming { first: 0.4, last: 0.1 }, 120.0);
+    joint.covariates = vec![Signal { name: "oil".into(), unit: Some("degC".into()) }];
+    let trial = joint.trials.remove(0);
+    let oil = |sample: usize| if sample < 3000 { f64::NAN } else { 20.0 + sample as f64 / 600.0 };
+    let oil = (0..trial.len()).map(oil).collect();
+    joint.trials.push(trial.with_covariates(vec![oil]).unwrap());
+    let found = found(&joint);
+    let oil = found.correlations.last().unwrap();
+    assert_eq!((oil.variable.as_str(), oil.unit.as_deref()), ("oil", Some("degC")));
+    assert!(oil.steps < found.steps.len() && oil.rho.unwrap() < -0.9 && oil.significant);
+    assert!(found.steps[0].covariates[0].is_none());
+}
+
+#[test]
+fn steps_have_the_state_of_their_joint() {
+    let joint = joint(DelayLaw::Constant { seconds: 0.2 }, 60.0);
+    let found = found(&joint);
+    let trial = &joint.trials[0];
+    for step in &found.steps {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "few")]
+        let sample = (step.time_s / 0.01).round() as usize;
+        let change = trial.input()[sample] - trial.input()[sample - 1];
+        assert!((step.input_change - change).abs() < 1e-12);
+        assert!((step.average_speed - 10.0 * trial.input()[sample].abs()).abs() < 0.2);
+        assert!((step.delay_s - 0.2).abs() < 0.021);
+        assert!(step.dwell_s.is_some_and(|dwell| (0.79..1.61).contains(&dwell)));
+    }
+}
+
+#[test]
+fn the_table_says_what_is_not_known() {
+    let few = found(&joint(DelayLaw::Constant { seconds: 0.2 }, 4.0));
+    let table = against_table([("boom", &few)]);
+    let lines: Vec<&str> = table.lines().map(str::trim_end).collect();
+    assert!(few.steps.len() < 4 && few.correlations.iter().all(|one| one.rho.is_none()));
+    assert!(lines[1].contains("rank correlation"), "{table}");
+    assert!(
+        lines[3].contains("average speed [deg/s]") && lines[3].contains("not known"),
+        "{table}"
+    );
+    let law = DelayLaw::StepSize { min: 0.05, max: 0.5, scale: 3.0 };
+    let table = against_table([("boom", &found(&joint(law, 120.0)))]);
+    let row = table.lines().find(|line| line.contains("step size [V]")).unwrap();
+    assert!(row.contains("< 0.001") && row.contains("yes"), "{table}");
+    println!("{table}");
+}
+
+#[test]
+fn it_is_written_with_all_fields() {
+    let json =
+        serde_json::to_value(found(&joint(DelayLaw::Constant { seconds: 0.2 }, 30.0))).unwrap();
+    for field in ["variable", "unit", "steps", "rho", "p_value", "p_holm", "significant"] {
+        assert!(json["correlations"][0].get(field).is_some(), "{field}");
+    }
+    assert!(json["direction"].get("median_difference_s").is_some());
+}
