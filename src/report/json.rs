@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{DecisionRow, DelayRange, EstimatedJoint, JointSummary, decision_rows};
-use crate::delay::{Condition, Settings};
+use crate::delay::{AgainstState, Condition, Settings};
 use crate::experiment::{Experiment, ReadOptions, Source};
 
 /// The document of `estimate --format json`, schema `tauscope/estimate/1`.
@@ -36,6 +36,7 @@ struct JointJson<'a> {
     rejected: serde_json::Map<String, serde_json::Value>,
     delay_samples: Option<DelayRange>,
     delay_s: Option<DelayRange>,
+    against_state: AgainstState,
     decisions: Vec<DecisionRow<'a>>,
 }
 
@@ -79,6 +80,7 @@ impl<'a> JointJson<'a> {
             rejected: rejected.into_iter().map(count).collect(),
             delay_samples,
             delay_s,
+            against_state: joint.against_state(),
             decisions: decision_rows(joint).map(|(_, row)| row).collect(),
         }
     }

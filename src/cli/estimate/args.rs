@@ -103,6 +103,11 @@ pub(super) struct OutputArgs {
     #[arg(long, value_name = "FILE.csv")]
     pub(super) delays: Option<PathBuf>,
 
+    /// Show what the delays depend on: speed, step size, direction, dwell, angle, time and
+    /// further signals
+    #[arg(long)]
+    pub(super) against_state: bool,
+
     /// How results are printed
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(super) format: Format,

@@ -9,7 +9,7 @@ use anyhow::{Context as _, anyhow};
 use tauscope::batch::{JointEstimate, estimate_joints, with_threads};
 use tauscope::delay::{Condition, EstimateError, Settings};
 use tauscope::experiment::Experiment;
-use tauscope::report::{EstimateJson, EstimatedJoint, JointSummary, estimate_table};
+use tauscope::report::{EstimateJson, EstimatedJoint, JointSummary, against_table, estimate_table};
 
 use super::progress::{self, Verbosity};
 use super::{Completion, message, read_failures};
@@ -49,7 +49,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     }
     let result = Estimated { experiment: &experiment, joints: &estimated, settings: &settings };
     files.write(&result, verbosity)?;
-    print(args.output.format, &result, &failures).context("standard output cannot be written")?;
+    print(&args.output, &result, &failures).context("standard output cannot be written")?;
     Ok(if failures.is_empty() { Completion::Whole } else { Completion::Partial })
 }
 
@@ -114,12 +114,24 @@ fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
     notes
 }
 
-fn print(format: args::Format, result: &Estimated<'_>, failures: &[String]) -> anyhow::Result<()> {
+fn print(
+    args: &args::OutputArgs,
+    result: &Estimated<'_>,
+    failures: &[String],
+) -> anyhow::Result<()> {
     let mut out = io::stdout().lock();
-    match format {
+    match args.format {
         args::Format::Text => {
             let table = estimate_table(result.joints, result.settings);
             out.write_all(table.as_bytes())?;
+            if args.against_state {
+                let found =
+                    result.joints.iter().map(|j| (j.joint.name.as_str(), j.against_state()));
+                let found: Vec<_> = found.collect();
+                let table = against_table(found.iter().map(|(name, found)| (*name, found)));
+                out.write_all(b"\n")?;
+                out.write_all(table.as_bytes())?;
+            }
         }
         args::Format::Json => {
             let Estimated { experiment, joints, settings } = *result;

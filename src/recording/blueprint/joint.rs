@@ -210,7 +210,7 @@ impl Views<'_> {
             shares.push(1.5);
         }
         rows.push(self.view(self.lanes())?);
-        shares.push(1.6);
+        shares.push(if self.joint.trials.len() > 1 { 2.2 } else { 1.6 });
         self.builder.container(ContainerKind::Vertical, "Record", &rows, &shares)
     }
 
@@ -231,7 +231,7 @@ impl Views<'_> {
         ];
         let builder = &mut *self.builder;
         let plots =
-            builder.container(ContainerKind::Vertical, "Plots", &rows, &[3.0, 2.5, 0.9, 4.0])?;
+            builder.container(ContainerKind::Vertical, "Plots", &rows, &[3.0, 2.4, 1.1, 4.0])?;
         let page = [self.path(&["model_page"])];
         let page = self.view(View::new("TextDocument", "Models", &page))?;
         let columns = [plots, page];
