@@ -102,13 +102,13 @@ impl Views<'_> {
         let list = self.view(self.list())?;
         let left = [drawing, errors, map, lanes];
         // A lane more needs a little more room.
-        let lanes_share = if self.joint.trials.len() > 1 { 2.0 } else { 1.5 };
+        let lanes_share = if self.joint.trials.len() > 1 { 2.4 } else { 1.8 };
         let builder = &mut *self.builder;
         let left = builder.container(
             ContainerKind::Vertical,
             "Segment",
             &left,
-            &[6.0, 1.2, 1.6, lanes_share],
+            &[5.7, 1.1, 1.6, lanes_share],
         )?;
         let right = [verdict, list];
         let right = builder.container(ContainerKind::Vertical, "Verdicts", &right, &[7.0, 3.0])?;
