@@ -6,7 +6,7 @@ use super::failure::{self, Diagnosis, Samples, diagnose};
 use super::shapes::shapes;
 use super::{ErrorFigures, LackOfFit, TestColumns, lack_of_fit, noise_floor};
 use crate::fit::{Evaluation, Fit, Horizon, Part, Record};
-use crate::model::{JointModel, arrivals};
+use crate::model::JointModel;
 
 /// A fitted model beside the measurement.
 #[derive(Clone, Debug)]
@@ -31,7 +31,7 @@ pub struct Comparison {
 pub fn compare(record: &Record<'_>, fit: Fit) -> Comparison {
     let error = |part| ErrorFigures::of(record, &fit.evaluation, part);
     let arriving: Vec<_> =
-        record.joint().trials.iter().map(|trial| arrivals(&fit.model, trial, None)).collect();
+        (0..record.joint().trials.len()).map(|index| record.arrivals(&fit.model, index)).collect();
     let noise_floor = noise_floor(record.joint().trials.iter().zip(&arriving));
     let columns = TestColumns {
         residuals: cut(record, &fit.evaluation),

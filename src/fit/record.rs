@@ -2,7 +2,7 @@
 
 use crate::effect::RecordRange;
 use crate::experiment::{Joint, Trial};
-use crate::model::{JointModel, Restart, Simulated, Surroundings, arrivals, simulate};
+use crate::model::{Arrivals, JointModel, Restart, Simulated, Surroundings, arrivals, simulate};
 
 /// How long a simulation runs before its angle is set to the measured one again.
 ///
@@ -80,8 +80,8 @@ pub struct Record<'a> {
 pub struct Evaluation {
     /// One simulation per trial.
     pub simulated: Vec<Simulated>,
-    /// Measured minus simulated, per trial and sample, output units. In each window the
-    /// mean is taken off: it is the window's own starting angle.
+    /// Measured minus simulated, per trial and sample, output units. Each window is
+    /// simulated from the output that makes its own error least.
     pub residuals: Vec<Vec<f64>>,
 }
 
@@ -144,45 +144,43 @@ impl<'a> Record<'a> {
 
     /// Simulates `model` on all trials.
     pub fn evaluate(&self, model: &JointModel) -> Evaluation {
-        let indices = 0..self.joint.trials.len();
-        let simulated: Vec<_> = indices.map(|index| self.simulate(model, index)).collect();
-        let pairs = self.joint.trials.iter().zip(&simulated);
-        let mut residuals: Vec<Vec<f64>> = pairs
-            .map(|(trial, simulated)| differences(trial.output(), &simulated.output))
-            .collect();
-        for window in &self.windows {
-            let trial = residuals.get_mut(window.trial);
-            if let Some(values) = trial.and_then(|trial| trial.get_mut(window.start..window.end)) {
-                take_mean_off(values);
-            }
-        }
+        self.evaluate_weighted(model, None)
+    }
+
+    /// The same with a weight for each trial and sample where outputs of windows are set.
+    pub(super) fn evaluate_weighted(
+        &self,
+        model: &JointModel,
+        weights: Option<&[Vec<f64>]>,
+    ) -> Evaluation {
+        let trials = self.joint.trials.iter().enumerate();
+        let run = |(index, trial)| {
+            let weights = weights.and_then(|weights| weights.get(index)).map(Vec::as_slice);
+            Run::new(self, model, index, trial, weights).best()
+        };
+        let (simulated, residuals) = trials.map(run).unzip();
         Evaluation { simulated, residuals }
     }
 
-    fn simulate(&self, model: &JointModel, index: usize) -> Simulated {
-        let Some(trial) = self.joint.trials.get(index) else { return Simulated::default() };
-        let delays = self.delays.as_ref().and_then(|delays| delays.get(index));
-        let arrivals = arrivals(model, trial, delays.map(Vec::as_slice));
-        let surroundings = Surroundings {
-            others: self.others.get(index).map_or(&[], Vec::as_slice),
-            radians_per_output_unit: self.radians_per_output_unit,
-            start_s: trial.time_s(1),
-        };
-        let restart = |window: &Window| Restart {
-            sample: window.start,
-            output: trial.output().get(window.start).copied().unwrap_or_default(),
-        };
-        let own = self.windows.iter().filter(|window| window.trial == index);
-        let restarts: Vec<_> = own.map(restart).collect();
-        let period_s = trial.period().seconds();
-        simulate(model, &arrivals, trial.len(), period_s, &restarts, &surroundings)
+    /// When each level of the input of a trial begins to act.
+    pub fn arrivals(&self, model: &JointModel, trial: usize) -> Arrivals {
+        let Some(measured) = self.joint.trials.get(trial) else { return Arrivals::default() };
+        let delays = self.delays.as_ref().and_then(|delays| delays.get(trial));
+        arrivals(model, measured, self.start_s(measured), delays.map(Vec::as_slice))
+    }
+
+    /// Seconds from the start of the record to that of a trial.
+    fn start_s(&self, trial: &Trial) -> f64 {
+        let starts = self.joint.trials.iter().map(|trial| trial.time_s(1));
+        trial.time_s(1) - starts.fold(f64::INFINITY, f64::min)
     }
 
     /// How large the signals are; `levels` are the input's magnitudes, see
     /// [`input_levels`](Self::input_levels).
     pub fn range<'l>(&self, levels: &'l [f64], speed_abs_max: f64) -> RecordRange<'l> {
         let outputs = || self.joint.trials.iter().flat_map(|trial| trial.output().iter().copied());
-        let durations = self.joint.trials.iter().map(|t| t.len() as f64 * t.period().seconds());
+        let ends = self.joint.trials.iter();
+        let ends = ends.map(|t| self.start_s(t) + t.len() as f64 * t.period().seconds());
         let periods = self.joint.trials.iter().map(|trial| trial.period().seconds());
         RecordRange {
             input_abs_max: levels.last().copied().unwrap_or(1.0),
@@ -190,7 +188,7 @@ impl<'a> Record<'a> {
             output_min: outputs().fold(f64::INFINITY, f64::min),
             output_max: outputs().fold(f64::NEG_INFINITY, f64::max),
             speed_abs_max,
-            duration_s: durations.sum(),
+            duration_s: ends.fold(0.0, f64::max),
             sample_period_s: periods.fold(f64::INFINITY, f64::min),
             radians_per_output_unit: self.radians_per_output_unit,
         }
@@ -216,14 +214,105 @@ fn radians(unit: Option<&str>) -> f64 {
     }
 }
 
-fn differences(measured: &[f64], simulated: &[f64]) -> Vec<f64> {
-    measured.iter().zip(simulated).map(|(y, s)| y - s).collect()
+/// The simulation of one trial, each window from the output that suits it best.
+struct Run<'a> {
+    model: &'a JointModel,
+    trial: &'a Trial,
+    arrivals: Arrivals,
+    surroundings: Surroundings<'a>,
+    windows: Vec<Window>,
+    weights: Option<&'a [f64]>,
 }
 
-fn take_mean_off(values: &mut [f64]) {
-    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-    for value in values {
-        *value -= mean;
+impl<'a> Run<'a> {
+    fn new(
+        record: &'a Record<'_>,
+        model: &'a JointModel,
+        index: usize,
+        trial: &'a Trial,
+        weights: Option<&'a [f64]>,
+    ) -> Self {
+        let surroundings = Surroundings {
+            others: record.others.get(index).map_or(&[], Vec::as_slice),
+            radians_per_output_unit: record.radians_per_output_unit,
+            start_s: record.start_s(trial),
+        };
+        let windows = record.windows.iter().filter(|window| window.trial == index).copied();
+        let arrivals = record.arrivals(model, index);
+        Self { model, trial, arrivals, surroundings, windows: windows.collect(), weights }
+    }
+
+    /// The simulation and its residuals, the output at the start of each window being the
+    /// one of least squares.
+    ///
+    /// Where nothing depends on the angle, a window's mean residual is what its start is
+    /// wrong by. Else the slope `g` of the simulated output to its start tells, and the
+    /// simulation is repeated from there; what is then left of it is linear.
+    fn best(&self) -> (Simulated, Vec<f64>) {
+        let measured = self.trial.output();
+        let start = |w: &Window| measured.get(w.start).copied().unwrap_or_default();
+        let starts: Vec<f64> = self.windows.iter().map(start).collect();
+        let simulated = self.simulate(&starts);
+        if !self.model.depends_on_angle() {
+            return self.shifted(simulated, None);
+        }
+        let ahead: Vec<f64> = starts.iter().map(|start| start + self.nudge()).collect();
+        let ahead = self.simulate(&ahead).output;
+        let pairs = ahead.iter().zip(&simulated.output);
+        let slope: Vec<f64> = pairs.map(|(a, b)| (a - b) / self.nudge()).collect();
+        let wrong = self.shifts(&simulated.output, Some(&slope));
+        let starts: Vec<f64> = starts.iter().zip(wrong).map(|(start, by)| start + by).collect();
+        self.shifted(self.simulate(&starts), Some(&slope))
+    }
+
+    /// A small part of what the output spans.
+    fn nudge(&self) -> f64 {
+        /// Small against what changes an effect, large against rounding.
+        const PART: f64 = 1e-5;
+        let output = self.trial.output().iter().copied();
+        let (low, high) = output.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
+        PART * (high - low).max(f64::MIN_POSITIVE.sqrt())
+    }
+
+    fn simulate(&self, starts: &[f64]) -> Simulated {
+        let restart = |(window, output): (&Window, &f64)| Restart {
+            sample: window.start,
+            output: *output,
+            speed: None,
+        };
+        let restarts: Vec<_> = self.windows.iter().zip(starts).map(restart).collect();
+        let (samples, period_s) = (self.trial.len(), self.trial.period().seconds());
+        simulate(self.model, &self.arrivals, samples, period_s, &restarts, &self.surroundings)
+    }
+
+    /// By how much the start of each window is wrong: `Σ w g r / Σ w g²`, with the slope
+    /// `g` of the output to it (1 where there is none).
+    fn shifts(&self, simulated: &[f64], slope: Option<&[f64]>) -> Vec<f64> {
+        let shift = |window: &Window| {
+            let (mut with, mut square) = (0.0, f64::MIN_POSITIVE);
+            for index in window.start..window.end {
+                let at = |values: &[f64]| values.get(index).copied().unwrap_or(1.0);
+                let (g, w) = (slope.map_or(1.0, at), self.weights.map_or(1.0, at));
+                with += w * g * (at(self.trial.output()) - at(simulated));
+                square += w * g * g;
+            }
+            with / square
+        };
+        self.windows.iter().map(shift).collect()
+    }
+
+    /// Moves each window by what its start is wrong.
+    fn shifted(&self, mut simulated: Simulated, slope: Option<&[f64]>) -> (Simulated, Vec<f64>) {
+        let shifts = self.shifts(&simulated.output, slope);
+        for (window, shift) in self.windows.iter().zip(shifts) {
+            let values = simulated.output.get_mut(window.start..window.end).unwrap_or_default();
+            for (index, value) in (window.start..).zip(values) {
+                *value += shift * slope.map_or(1.0, |g| g.get(index).copied().unwrap_or(1.0));
+            }
+        }
+        let pairs = self.trial.output().iter().zip(&simulated.output);
+        let residuals = pairs.map(|(y, s)| y - s).collect();
+        (simulated, residuals)
     }
 }
 

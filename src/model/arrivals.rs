@@ -14,7 +14,7 @@ pub struct Arrival {
 }
 
 /// What acts on a joint over a trial: a level at the start, and changes in order.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Arrivals {
     /// The level before the first change.
     pub initial: f64,
@@ -29,8 +29,14 @@ pub struct Arrivals {
 /// delay stands in only for those that are not known.
 ///
 /// A change that would act before an earlier one takes its place: an earlier level never
-/// comes back. Delays are not below zero.
-pub fn arrivals(model: &JointModel, trial: &Trial, per_step: Option<&[Option<f64>]>) -> Arrivals {
+/// comes back. Delays are not below zero. `start_s` is the time of the record at the
+/// trial's first sample: effects may change with it.
+pub fn arrivals(
+    model: &JointModel,
+    trial: &Trial,
+    start_s: f64,
+    per_step: Option<&[Option<f64>]>,
+) -> Arrivals {
     let period = trial.period().seconds();
     let mut levels = trial.input().iter();
     let initial = levels.next().copied().unwrap_or_default();
@@ -42,7 +48,8 @@ pub fn arrivals(model: &JointModel, trial: &Trial, per_step: Option<&[Option<f64
             continue;
         }
         let time_s = f64::from(sample) * period;
-        let change = InputChange { before, after: level, held_s: time_s - since, time_s };
+        let held_s = time_s - since;
+        let change = InputChange { before, after: level, held_s, time_s: start_s + time_s };
         let known = per_step.and_then(|delays| delays.get(number).copied().flatten());
         let delay = known.unwrap_or_else(|| delay_of(model, &change));
         arrivals.insert(Arrival { time_s: time_s + delay.max(0.0), level });

@@ -53,6 +53,17 @@ impl Component {
         &self.parameters
     }
 
+    /// Takes the values of `other` for parameters of the same name.
+    fn take_over(&mut self, other: &Self) {
+        let theirs = other.effect.spec().parameters.iter().zip(&other.parameters);
+        for (name, value) in theirs.map(|(parameter, value)| (parameter.name, value)) {
+            let own = self.effect.spec().parameters.iter().zip(&mut self.parameters);
+            for (_, own) in own.filter(|(parameter, _)| parameter.name == name) {
+                *own = *value;
+            }
+        }
+    }
+
     /// The values alone.
     pub(super) fn plain(&self) -> Vec<f64> {
         self.parameters.iter().map(|parameter| parameter.value).collect()
@@ -85,11 +96,26 @@ impl JointModel {
     }
 
     /// This model with another effect behind those it has.
+    ///
+    /// Effects that it absorbs (see [`Spec::absorbs`](crate::effect::Spec::absorbs)) go,
+    /// and leave it their values for parameters of the same name.
     #[must_use]
-    pub fn with(&self, component: Component) -> Self {
+    pub fn with(&self, mut component: Component) -> Self {
+        let absorbs = component.effect.spec().absorbs;
         let mut model = self.clone();
+        for absorbed in model.components.extract_if(.., |c| absorbs.contains(&c.effect.spec().id)) {
+            component.take_over(&absorbed);
+        }
         model.components.push(component);
         model
+    }
+
+    /// Whether any effect can make the speed depend on the angle.
+    pub(crate) fn depends_on_angle(&self) -> bool {
+        let on_angle = |component: &Component| {
+            matches!(component.effect.spec().stage, Stage::Load | Stage::Output)
+        };
+        self.components.iter().any(on_angle)
     }
 
     /// The effects, in the order they were added.
@@ -129,5 +155,23 @@ impl JointModel {
     /// The effects of one stage.
     pub(super) fn stage(&self, stage: Stage) -> impl Iterator<Item = &Component> {
         self.components.iter().filter(move |component| component.effect.spec().stage == stage)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::{ActuatorLag, CoulombFriction, DeadBand};
+
+    #[test]
+    fn an_effect_takes_the_place_of_those_it_contains() {
+        let lag = Component::new(&ActuatorLag, vec![Value { fixed: true, ..0.3.into() }]).unwrap();
+        let model = JointModel::integrator(1.0, 0.1).with(lag).with(Component::neutral(&DeadBand));
+        let model = model.with(Component::neutral(&CoulombFriction));
+        let ids: Vec<_> = model.components().iter().map(|c| c.effect().spec().id).collect();
+        assert_eq!(ids, ["dead_band", "coulomb_friction"]);
+        let friction = model.components()[1].parameters();
+        assert_eq!(friction[2], Value { fixed: true, ..0.3.into() });
+        assert_eq!(friction[0], 0.0.into());
     }
 }
