@@ -47,12 +47,18 @@ impl Bounds {
         self.is_bounded() && (value < self.low + room || value > self.high - room)
     }
 
-    /// A step for differences at `value`, towards the middle of the range.
-    pub(super) fn step(self, value: f64) -> f64 {
-        /// The cube root of the rounding error is best for central differences.
+    /// Two values about `value` for a difference, within the bounds.
+    pub(super) fn around(self, value: f64) -> (f64, f64) {
+        /// Large against rounding, small against what curves.
         const PART: f64 = 1e-5;
         let size = if self.is_bounded() { self.high - self.low } else { value.abs().max(1e-3) };
-        PART * size.min(value.abs().max(0.01 * size))
+        let step = PART * size.min(value.abs().max(0.01 * size));
+        ((value - step).max(self.low), (value + step).min(self.high))
+    }
+
+    /// Whether an error of this size leaves the value anywhere within the bounds.
+    pub(super) fn is_lost_in(self, std_error: f64) -> bool {
+        self.is_bounded() && std_error > 0.5 * (self.high - self.low)
     }
 }
 

@@ -13,7 +13,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::record::{Part, Record};
+use super::bounds::Bounds;
+use super::record::{Evaluation, Record, Weights};
 use crate::model::JointModel;
 
 /// The covariance of fitted parameters.
@@ -24,42 +25,38 @@ pub(super) struct Covariance {
 }
 
 impl Covariance {
-    /// The covariance at `model` of its parameters with the indices `free`; `step` gives
-    /// the step for differences of a free parameter at its value.
+    /// The covariance at `model`, evaluated as `here`, of its parameters with the indices
+    /// `free`, which keep `bounds`.
     pub(super) fn of(
         record: &Record<'_>,
         model: &JointModel,
-        free: &[usize],
-        step: impl Fn(usize, f64) -> f64,
+        (here, weights): (&Evaluation, Option<&Weights>),
+        (free, bounds): (&[usize], &[Bounds]),
     ) -> Self {
         let values: Vec<f64> = model.values().iter().map(|value| value.value).collect();
-        let residuals = stacked(record, model);
-        let column = |(place, index): (usize, &usize)| {
-            let value = values.get(*index).copied().unwrap_or_default();
-            let step = step(place, value);
-            let at = |shift: f64| {
+        let roots = weights.map(|weights| record.training(weights).map(f64::sqrt));
+        let weighted = |residuals: &[Vec<f64>]| {
+            let residuals = record.training(residuals);
+            roots.as_ref().map_or_else(|| residuals.clone(), |roots| residuals.component_mul(roots))
+        };
+        let column = |(index, bounds): (&usize, &Bounds)| {
+            let (low, high) = bounds.around(values.get(*index).copied().unwrap_or_default());
+            let at = |there: f64| {
                 let mut values = values.clone();
                 if let Some(value) = values.get_mut(*index) {
-                    *value += shift;
+                    *value = there;
                 }
-                stacked(record, &model.with_values(&values))
+                weighted(&record.residuals_near(&model.with_values(&values), weights, here))
             };
-            (at(-step) - at(step)) / (2.0 * step)
+            (at(low) - at(high)) / (high - low)
         };
-        let columns: Vec<DVector<f64>> = free.iter().enumerate().map(column).collect();
-        Self { std_errors: std_errors(&columns, &residuals) }
+        let columns: Vec<DVector<f64>> = free.iter().zip(bounds).map(column).collect();
+        Self { std_errors: std_errors(&columns, &weighted(&here.residuals)) }
     }
 
     pub(super) fn std_error(&self, place: usize) -> Option<f64> {
         self.std_errors.get(place).copied().flatten()
     }
-}
-
-fn stacked(record: &Record<'_>, model: &JointModel) -> DVector<f64> {
-    let evaluation = record.evaluate(model);
-    let windows = record.part(Part::Training);
-    let values = windows.filter_map(|w| evaluation.residuals.get(w.trial)?.get(w.start..w.end));
-    DVector::from_vec(values.flatten().copied().collect())
 }
 
 /// Singular values below this part of the largest, columns being of length one, mean

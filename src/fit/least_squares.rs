@@ -1,5 +1,6 @@
 //! The parameters that make the training error least.
 
+use std::cell::{Cell, OnceCell};
 use std::fmt;
 
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
@@ -8,9 +9,9 @@ use nalgebra::{DMatrix, DVector, Dyn};
 
 use super::bounds::Bounds;
 use super::covariance::{Covariance, robust_scale};
-use super::record::{Evaluation, Part, Record};
+use super::record::{Evaluation, Part, Record, Weights};
 use crate::effect::RecordRange;
-use crate::model::JointModel;
+use crate::model::{Component, JointModel, Value};
 
 /// A fitted model, with how sure its parameters are and why the fit stopped.
 #[derive(Clone, Debug)]
@@ -96,13 +97,13 @@ pub enum FitError {
 /// Fits the free parameters of `model` to the training windows of `record`.
 ///
 /// Minimises `Σ w_k (y_k − ŷ_k)²` by Levenberg and Marquardt's method. `ŷ` is simulated
-/// from the start of each window; the starting angle is profiled out by taking the
-/// window's mean off the residual. Outliers are weighted down (Huber's weights at
-/// 1.345 times the robust standard deviation). Parameters stay in the bounds of their
-/// effect for this record, and in those of the model.
+/// from the start of each window, from the output that makes the window's error least.
+/// Outliers are weighted down (Huber's weights at 1.345 times the robust standard
+/// deviation). Parameters stay in the bounds of their effect for this record, and in those
+/// of the model.
 ///
-/// An effect still at its neutral values is started from each of its own starts, and the
-/// best result is kept.
+/// Parameters of an effect that are neutral start from each of the effect's own starts. All
+/// are followed until it is seen where they lead, and the best two to the end.
 ///
 /// Standard errors allow for correlated residuals, see [`super::covariance`].
 ///
@@ -119,11 +120,17 @@ pub fn fit(
 ) -> Result<Fit, FitError> {
     let space = Space::of(model, range);
     check_size(record, &space)?;
-    let starts = starts(model, range);
-    let fits = starts.iter().map(|start| descend(record, model, &space, start));
-    let best = fits.min_by(|a, b| a.cost.total_cmp(&b.cost));
-    let best = best.unwrap_or_else(|| descend(record, model, &space, &plain(model)));
-    Ok(best.into_fit(record, &space))
+    let begin = |start| Search::new(record, model, &space, start).descended(Depth::ROUGH);
+    let mut searches: Vec<_> = starts(model, range).into_iter().map(begin).collect();
+    searches.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let given_up = searches.split_off(FINALISTS.min(searches.len()));
+    let depth = Depth::whole(record.training_samples());
+    let mut finished: Vec<_> = searches.into_iter().map(|s| s.descended(depth)).collect();
+    finished.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let simulations = finished.iter().chain(&given_up).map(Search::simulations).sum();
+    let best = finished.into_iter().next();
+    let best = best.unwrap_or_else(|| Search::new(record, model, &space, plain(model)));
+    Ok(best.into_fit(simulations))
 }
 
 /// The model as it is, with the standard errors its free parameters would have if they
@@ -138,12 +145,11 @@ pub fn assess(
 ) -> Result<Fit, FitError> {
     let space = Space::of(model, range);
     check_size(record, &space)?;
-    let (model, cost, termination) = (model.clone(), f64::NAN, Termination::NothingToFit);
-    Ok(Descent { model, cost, termination, simulations: 0 }.into_fit(record, &space))
+    Ok(Search::new(record, model, &space, plain(model)).into_fit(0))
 }
 
 fn check_size(record: &Record<'_>, space: &Space) -> Result<(), FitError> {
-    let samples: usize = record.part(Part::Training).map(|w| w.end - w.start).sum();
+    let samples = record.training_samples();
     let parameters = space.free.len();
     if samples <= parameters + record.part(Part::Training).count() {
         return Err(FitError::TooFewSamples { samples, parameters });
@@ -155,22 +161,49 @@ fn plain(model: &JointModel) -> Vec<f64> {
     model.values().iter().map(|value| value.value).collect()
 }
 
-/// Start values: those of the model, or the starts of effects that are still neutral.
+/// Searches that are brought to their end; the others are given up when it is seen where
+/// they lead.
+const FINALISTS: usize = 2;
+
+/// Start values: those of the model, and the starts of effects that are still neutral.
 fn starts(model: &JointModel, range: &RecordRange<'_>) -> Vec<Vec<f64>> {
     /// Combinations that are tried at most.
-    const MOST: usize = 12;
+    const MOST: usize = 16;
     let mut starts = vec![vec![model.gain.value, model.delay.value]];
     for component in model.components() {
-        let values: Vec<f64> = component.parameters().iter().map(|p| p.value).collect();
-        let own = if values == component.effect().spec().neutral() {
-            component.effect().starts(range)
-        } else {
-            vec![values]
-        };
+        let own = component_starts(component, range);
         let with = |start: &Vec<f64>| {
             own.iter().map(|own| [start.as_slice(), own].concat()).collect::<Vec<_>>()
         };
         starts = starts.iter().flat_map(with).take(MOST).collect();
+    }
+    starts
+}
+
+/// The starts of one effect: its own for those of its parameters that are neutral and not
+/// fixed, and the values it has where any is not neutral.
+fn component_starts(component: &Component, range: &RecordRange<'_>) -> Vec<Vec<f64>> {
+    let given = component.parameters();
+    let neutral = component.effect().spec().neutral();
+    #[expect(clippy::float_cmp, reason = "neutral is a number that is set")]
+    let keeps = |(value, neutral): (&Value, &f64)| value.fixed || value.value != *neutral;
+    let keeps: Vec<bool> = given.iter().zip(&neutral).map(keeps).collect();
+    let plain: Vec<f64> = given.iter().map(|value| value.value).collect();
+    if keeps.iter().all(|keeps| *keeps) {
+        return vec![plain];
+    }
+    let mut starts = component.effect().starts(range);
+    for start in &mut starts {
+        for (value, (given, _)) in
+            start.iter_mut().zip(plain.iter().zip(&keeps)).filter(|(_, (_, keeps))| **keeps)
+        {
+            *value = *given;
+        }
+    }
+    starts.dedup();
+    let any_set = given.iter().zip(&keeps).any(|(value, keeps)| *keeps && !value.fixed);
+    if any_set {
+        starts.insert(0, plain);
     }
     starts
 }
@@ -225,37 +258,57 @@ struct Problem<'p, 'r> {
     record: &'p Record<'r>,
     model: &'p JointModel,
     space: &'p Space,
-    start: &'p [f64],
+    start: Vec<f64>,
     variables: DVector<f64>,
-    /// Square roots of the samples' weights.
-    weights: Option<DVector<f64>>,
-    simulations: std::cell::Cell<usize>,
+    /// Whether the optimiser has it: before, the start holds, also where it is on a bound.
+    moves: bool,
+    weights: Option<Weights>,
+    /// The evaluation at `variables`, once it is asked for.
+    here: OnceCell<Evaluation>,
+    evaluations: Cell<usize>,
 }
 
 impl Problem<'_, '_> {
     fn model_at(&self, variables: &DVector<f64>) -> JointModel {
-        self.model.with_values(&self.space.values(self.start, variables))
+        self.model.with_values(&self.space.values(&self.start, variables))
     }
 
-    /// Residuals of the training windows, one below the other.
-    fn residuals_at(&self, variables: &DVector<f64>) -> DVector<f64> {
-        self.simulations.set(self.simulations.get() + 1);
-        training(self.record, &self.record.evaluate(&self.model_at(variables)))
-    }
-
-    fn weighted(&self, residuals: DVector<f64>) -> DVector<f64> {
-        match &self.weights {
-            Some(weights) => residuals.component_mul(weights),
-            None => residuals,
+    fn model_now(&self) -> JointModel {
+        if self.moves {
+            self.model_at(&self.variables)
+        } else {
+            self.model.with_values(&self.start)
         }
     }
-}
 
-/// Residuals of the training windows.
-fn training(record: &Record<'_>, evaluation: &Evaluation) -> DVector<f64> {
-    let windows = record.part(Part::Training);
-    let values = windows.filter_map(|w| evaluation.residuals.get(w.trial)?.get(w.start..w.end));
-    DVector::from_vec(values.flatten().copied().collect())
+    fn here(&self) -> &Evaluation {
+        self.here.get_or_init(|| {
+            self.evaluations.set(self.evaluations.get() + 1);
+            self.record.evaluate_weighted(&self.model_now(), self.weights.as_ref())
+        })
+    }
+
+    /// The residuals of the training windows, one behind the other, times the roots of
+    /// their weights.
+    fn weighted(&self, residuals: &[Vec<f64>]) -> DVector<f64> {
+        let mut residuals = self.record.training(residuals);
+        if let Some(weights) = &self.weights {
+            let weights = self.record.training(weights);
+            residuals.zip_apply(&weights, |residual, weight| *residual *= weight.sqrt());
+        }
+        residuals
+    }
+
+    /// Sets weights anew from the residuals; whether there is any need to.
+    fn reweigh(&mut self) -> bool {
+        let weights = huber(self.record, &self.here().residuals);
+        let any = weights.is_some();
+        if any {
+            self.weights = weights;
+            self.here.take();
+        }
+        any
+    }
 }
 
 impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, '_> {
@@ -265,6 +318,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, '_> {
 
     fn set_params(&mut self, variables: &DVector<f64>) {
         self.variables.copy_from(variables);
+        self.here.take();
     }
 
     fn params(&self) -> DVector<f64> {
@@ -272,25 +326,25 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, '_> {
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        let residuals = self.residuals_at(&self.variables);
-        residuals.iter().all(|r| r.is_finite()).then(|| self.weighted(residuals))
+        let residuals = self.weighted(&self.here().residuals);
+        residuals.iter().all(|r| r.is_finite()).then_some(residuals)
     }
 
-    /// By central differences in the optimiser's variables.
+    /// By differences in the optimiser's variables, windows starting where they do here.
     fn jacobian(&self) -> Option<DMatrix<f64>> {
         /// A step in an angle, or in parts of a value.
-        const STEP: f64 = 1e-5;
+        const STEP: f64 = 1e-6;
+        let here = self.weighted(&self.here().residuals);
         let column = |index: usize| {
-            let size = self.variables.get(index).map_or(1.0, |v| v.abs().max(1e-2));
-            let step = STEP * size;
-            let at = |shift: f64| {
-                let mut variables = self.variables.clone();
-                if let Some(variable) = variables.get_mut(index) {
-                    *variable += shift;
-                }
-                self.residuals_at(&variables)
-            };
-            self.weighted((at(step) - at(-step)) / (2.0 * step))
+            let mut variables = self.variables.clone();
+            let step = variables.get(index).map_or(STEP, |v| STEP * v.abs().max(0.1));
+            if let Some(variable) = variables.get_mut(index) {
+                *variable += step;
+            }
+            self.evaluations.set(self.evaluations.get() + 1);
+            let (model, weights) = (self.model_at(&variables), self.weights.as_ref());
+            (self.weighted(&self.record.residuals_near(&model, weights, self.here())) - &here)
+                / step
         };
         let columns: Vec<_> = (0..self.variables.len()).map(column).collect();
         let finite = columns.iter().all(|column| column.iter().all(|value| value.is_finite()));
@@ -298,62 +352,100 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, '_> {
     }
 }
 
-/// A finished descent.
-struct Descent {
-    model: JointModel,
+/// A descent from one start.
+struct Search<'p, 'r> {
+    problem: Problem<'p, 'r>,
     cost: f64,
     termination: Termination,
-    simulations: usize,
 }
 
-/// Descends from one start, with weights set anew as the residuals become smaller.
-fn descend(record: &Record<'_>, model: &JointModel, space: &Space, start: &[f64]) -> Descent {
-    /// Rounds of weights; they hardly change after the second.
-    const ROUNDS: usize = 3;
+/// How far a descent goes.
+#[derive(Clone, Copy)]
+struct Depth {
+    /// It stops when a step makes the sum of squares less by a smaller part than this.
+    relative_gain: f64,
     /// Evaluations per variable.
-    const PATIENCE: usize = 40;
-    let free = space.free.iter().zip(&space.bounds);
-    let variables =
-        free.map(|(index, bounds)| bounds.free(start.get(*index).copied().unwrap_or_default()));
-    let variables = DVector::from_vec(variables.collect());
-    let simulations = std::cell::Cell::new(0);
-    let mut problem =
-        Problem { record, model, space, start, variables, weights: None, simulations };
-    let mut termination = Termination::NothingToFit;
-    let optimiser = LevenbergMarquardt::new().with_ftol(1e-10).with_xtol(1e-9).with_gtol(1e-12);
-    for _ in 0..ROUNDS {
-        if space.free.is_empty() {
-            break;
-        }
-        let (moved, report) = optimiser.with_patience(PATIENCE).minimize(problem);
-        problem = moved;
-        termination = Termination::of(&report.termination);
-        let weights = huber(&problem.residuals_at(&problem.variables));
-        if weights.is_none() {
-            break;
-        }
-        problem.weights = weights;
+    patience: usize,
+    /// How often weights are set anew; they hardly change after the second time.
+    rounds: usize,
+}
+
+impl Depth {
+    /// To see which of several starts leads down.
+    const ROUGH: Self = Self { relative_gain: 1e-3, patience: 6, rounds: 1 };
+
+    /// As far as the data reach: one standard error of a parameter changes the sum of
+    /// squares of `n` samples by its part `1/n`, a hundredth of one by `1e-4/n`.
+    fn whole(samples: usize) -> Self {
+        Self { relative_gain: 1e-4 / samples.max(1) as f64, patience: 40, rounds: 3 }
     }
-    let residuals = problem.residuals_at(&problem.variables);
-    let cost = huber_cost(&residuals);
-    let model = problem.model_at(&problem.variables);
-    Descent { model, cost, termination, simulations: problem.simulations.get() }
+}
+
+impl<'p, 'r> Search<'p, 'r> {
+    fn new(
+        record: &'p Record<'r>,
+        model: &'p JointModel,
+        space: &'p Space,
+        start: Vec<f64>,
+    ) -> Self {
+        let free = space.free.iter().zip(&space.bounds);
+        let variables =
+            free.map(|(index, bounds)| bounds.free(start.get(*index).copied().unwrap_or_default()));
+        let variables = DVector::from_vec(variables.collect());
+        let problem = Problem {
+            record,
+            model,
+            space,
+            start,
+            variables,
+            moves: false,
+            weights: None,
+            here: OnceCell::new(),
+            evaluations: Cell::new(0),
+        };
+        Self { problem, cost: f64::NAN, termination: Termination::NothingToFit }
+    }
+
+    /// The same further down.
+    fn descended(mut self, depth: Depth) -> Self {
+        let gain = depth.relative_gain;
+        let optimiser = LevenbergMarquardt::new().with_ftol(gain).with_xtol(1e-9).with_gtol(1e-12);
+        let rounds = if self.problem.variables.is_empty() { 0 } else { depth.rounds };
+        self.problem.moves = rounds > 0;
+        for _ in 0..rounds {
+            let (moved, report) = optimiser.with_patience(depth.patience).minimize(self.problem);
+            self.problem = moved;
+            self.termination = Termination::of(&report.termination);
+            if !self.problem.reweigh() {
+                break;
+            }
+        }
+        let residuals = self.problem.record.training(&self.problem.here().residuals);
+        self.cost = huber_cost(&residuals);
+        self
+    }
+
+    fn simulations(&self) -> usize {
+        self.problem.evaluations.get()
+    }
 }
 
 /// Residuals beyond this many robust standard deviations are weighted down; it keeps
 /// 95 % of the efficiency on normal noise (Huber 1964).
 const HUBER: f64 = 1.345;
 
-/// Square roots of the weights, or `None` where there is no outlier to speak of.
-fn huber(residuals: &DVector<f64>) -> Option<DVector<f64>> {
+/// The weights, or `None` where there is no outlier to speak of.
+fn huber(record: &Record<'_>, residuals: &[Vec<f64>]) -> Option<Weights> {
     /// In normal noise no sample of a long record lies so far out.
     const OUTLIER: f64 = 6.0;
-    let scale = robust_scale(residuals.as_slice());
+    let training = record.training(residuals);
+    let scale = robust_scale(training.as_slice());
     let is_outlier = |r: &f64| r.abs() > OUTLIER * scale;
-    if scale <= 0.0 || !residuals.iter().any(is_outlier) {
+    if scale <= 0.0 || !training.iter().any(is_outlier) {
         return None;
     }
-    Some(residuals.map(|r| (HUBER * scale / r.abs().max(HUBER * scale)).sqrt()))
+    let weight = |r: &f64| HUBER * scale / r.abs().max(HUBER * scale);
+    Some(residuals.iter().map(|residuals| residuals.iter().map(weight).collect()).collect())
 }
 
 /// The sum of squares, outliers counted by their distance only.
@@ -380,34 +472,45 @@ impl Termination {
     }
 }
 
-impl Descent {
-    fn into_fit(self, record: &Record<'_>, space: &Space) -> Fit {
-        let evaluation = record.evaluate(&self.model);
-        let values = plain(&self.model);
-        let covariance = Covariance::of(record, &self.model, &space.free, |index, value| {
-            space.bounds.get(index).map_or(1e-6, |bounds| bounds.step(value))
-        });
+impl Search<'_, '_> {
+    fn into_fit(self, simulations: usize) -> Fit {
+        let Problem { record, space, weights, .. } = &self.problem;
+        let model = self.problem.model_now();
+        let evaluation = self.problem.here();
+        let covariance = Covariance::of(
+            record,
+            &model,
+            (evaluation, weights.as_ref()),
+            (&space.free, &space.bounds),
+        );
         let parameter = |(index, (name, value)): (usize, (String, f64))| {
-            let Some(place) = space.free.iter().position(|free| *free == index) else {
-                return Parameter { name, value, std_error: None, status: Status::Fixed };
-            };
-            let at_bound = space.bounds.get(place).is_some_and(|bounds| bounds.is_at(value));
-            let std_error = covariance.std_error(place);
-            let status = match std_error {
-                None => Status::Undetermined,
-                Some(_) if at_bound => Status::AtBound,
-                Some(_) => Status::Fitted,
-            };
+            let place = space.free.iter().position(|free| *free == index);
+            let bounds = place.and_then(|place| space.bounds.get(place));
+            let std_error = place.and_then(|place| covariance.std_error(place));
+            let status = Status::of(value, std_error, bounds);
+            let std_error = std_error.filter(|_| status != Status::Undetermined);
             Parameter { name, value, std_error, status }
         };
-        let named = self.model.names().into_iter().zip(values).enumerate();
+        let named = model.names().into_iter().zip(plain(&model)).enumerate();
         Fit {
             parameters: named.map(parameter).collect(),
-            evaluation,
+            evaluation: evaluation.clone(),
             cost: self.cost,
-            model: self.model,
+            model,
             termination: self.termination,
-            simulations: self.simulations,
+            simulations,
+        }
+    }
+}
+
+impl Status {
+    fn of(value: f64, std_error: Option<f64>, bounds: Option<&Bounds>) -> Self {
+        match (bounds, std_error) {
+            (None, _) => Self::Fixed,
+            (Some(bounds), _) if bounds.is_at(value) => Self::AtBound,
+            (Some(_), None) => Self::Undetermined,
+            (Some(bounds), Some(error)) if bounds.is_lost_in(error) => Self::Undetermined,
+            (Some(_), Some(_)) => Self::Fitted,
         }
     }
 }

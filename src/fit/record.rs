@@ -1,5 +1,7 @@
 //! A joint's trials as a fit sees them: windows, restarts, residuals.
 
+use nalgebra::DVector;
+
 use crate::effect::RecordRange;
 use crate::experiment::{Joint, Trial};
 use crate::model::{Arrivals, JointModel, Restart, Simulated, Surroundings, arrivals, simulate};
@@ -83,7 +85,14 @@ pub struct Evaluation {
     /// Measured minus simulated, per trial and sample, output units. Each window is
     /// simulated from the output that makes its own error least.
     pub residuals: Vec<Vec<f64>>,
+    /// Per trial, the output at the start of each window.
+    starts: Vec<Vec<f64>>,
+    /// Per trial and sample, the slope of the output to it; `None` where it is 1.
+    slopes: Vec<Option<Vec<f64>>>,
 }
+
+/// A weight for each trial and sample.
+pub(super) type Weights = Vec<Vec<f64>>;
 
 impl<'a> Record<'a> {
     /// The trials of `joint`, cut by `split` and `horizon`.
@@ -147,19 +156,55 @@ impl<'a> Record<'a> {
         self.evaluate_weighted(model, None)
     }
 
-    /// The same with a weight for each trial and sample where outputs of windows are set.
+    /// The same with weights for the outputs at the start of windows.
     pub(super) fn evaluate_weighted(
         &self,
         model: &JointModel,
-        weights: Option<&[Vec<f64>]>,
+        weights: Option<&Weights>,
     ) -> Evaluation {
-        let trials = self.joint.trials.iter().enumerate();
-        let run = |(index, trial)| {
-            let weights = weights.and_then(|weights| weights.get(index)).map(Vec::as_slice);
-            Run::new(self, model, index, trial, weights).best()
+        let indices = 0..self.joint.trials.len();
+        let mut all = Evaluation {
+            simulated: Vec::new(),
+            residuals: Vec::new(),
+            starts: Vec::new(),
+            slopes: Vec::new(),
         };
-        let (simulated, residuals) = trials.map(run).unzip();
-        Evaluation { simulated, residuals }
+        for run in indices.filter_map(|index| Run::new(self, model, index, weights)) {
+            let (starts, slope) = run.best();
+            let (simulated, residuals) = run.from(&starts, slope.as_deref());
+            all.simulated.push(simulated);
+            all.residuals.push(residuals);
+            all.starts.push(starts);
+            all.slopes.push(slope);
+        }
+        all
+    }
+
+    /// Residuals of a model that is near to the one of `near`, whose starts are taken.
+    pub(super) fn residuals_near(
+        &self,
+        model: &JointModel,
+        weights: Option<&Weights>,
+        near: &Evaluation,
+    ) -> Vec<Vec<f64>> {
+        let known = near.starts.iter().zip(&near.slopes).enumerate();
+        let residuals = known.filter_map(|(index, (starts, slope))| {
+            let run = Run::new(self, model, index, weights)?;
+            Some(run.from(starts, slope.as_deref()).1)
+        });
+        residuals.collect()
+    }
+
+    /// Samples that are for training.
+    pub(super) fn training_samples(&self) -> usize {
+        self.part(Part::Training).map(|window| window.end - window.start).sum()
+    }
+
+    /// The values of the training windows, one behind the other.
+    pub(super) fn training(&self, values: &[Vec<f64>]) -> DVector<f64> {
+        let cut = |w: &Window| values.get(w.trial)?.get(w.start..w.end);
+        let values = self.part(Part::Training).filter_map(cut);
+        DVector::from_vec(values.flatten().copied().collect())
     }
 
     /// When each level of the input of a trial begins to act.
@@ -214,7 +259,7 @@ fn radians(unit: Option<&str>) -> f64 {
     }
 }
 
-/// The simulation of one trial, each window from the output that suits it best.
+/// The simulations of a model on one trial.
 struct Run<'a> {
     model: &'a JointModel,
     trial: &'a Trial,
@@ -229,9 +274,9 @@ impl<'a> Run<'a> {
         record: &'a Record<'_>,
         model: &'a JointModel,
         index: usize,
-        trial: &'a Trial,
-        weights: Option<&'a [f64]>,
-    ) -> Self {
+        weights: Option<&'a Weights>,
+    ) -> Option<Self> {
+        let trial = record.joint.trials.get(index)?;
         let surroundings = Surroundings {
             others: record.others.get(index).map_or(&[], Vec::as_slice),
             radians_per_output_unit: record.radians_per_output_unit,
@@ -239,30 +284,45 @@ impl<'a> Run<'a> {
         };
         let windows = record.windows.iter().filter(|window| window.trial == index).copied();
         let arrivals = record.arrivals(model, index);
-        Self { model, trial, arrivals, surroundings, windows: windows.collect(), weights }
+        let weights = weights.and_then(|weights| weights.get(index)).map(Vec::as_slice);
+        Some(Self { model, trial, arrivals, surroundings, windows: windows.collect(), weights })
     }
 
-    /// The simulation and its residuals, the output at the start of each window being the
-    /// one of least squares.
+    /// The outputs at the start of the windows that make their squared error least, and
+    /// the slope of the simulated output to them, where it is not 1.
     ///
-    /// Where nothing depends on the angle, a window's mean residual is what its start is
-    /// wrong by. Else the slope `g` of the simulated output to its start tells, and the
-    /// simulation is repeated from there; what is then left of it is linear.
-    fn best(&self) -> (Simulated, Vec<f64>) {
+    /// Without a slope the measured outputs will do: what they are wrong by is the same at
+    /// all samples of a window.
+    fn best(&self) -> (Vec<f64>, Option<Vec<f64>>) {
         let measured = self.trial.output();
         let start = |w: &Window| measured.get(w.start).copied().unwrap_or_default();
         let starts: Vec<f64> = self.windows.iter().map(start).collect();
-        let simulated = self.simulate(&starts);
         if !self.model.depends_on_angle() {
-            return self.shifted(simulated, None);
+            return (starts, None);
         }
+        let simulated = self.simulate(&starts).output;
         let ahead: Vec<f64> = starts.iter().map(|start| start + self.nudge()).collect();
         let ahead = self.simulate(&ahead).output;
-        let pairs = ahead.iter().zip(&simulated.output);
+        let pairs = ahead.iter().zip(&simulated);
         let slope: Vec<f64> = pairs.map(|(a, b)| (a - b) / self.nudge()).collect();
-        let wrong = self.shifts(&simulated.output, Some(&slope));
-        let starts: Vec<f64> = starts.iter().zip(wrong).map(|(start, by)| start + by).collect();
-        self.shifted(self.simulate(&starts), Some(&slope))
+        let wrong = self.shifts(&simulated, Some(&slope));
+        (starts.iter().zip(wrong).map(|(start, by)| start + by).collect(), Some(slope))
+    }
+
+    /// The simulation from `starts` and its residuals; what the starts are still wrong by
+    /// is taken off as far as it is linear.
+    fn from(&self, starts: &[f64], slope: Option<&[f64]>) -> (Simulated, Vec<f64>) {
+        let mut simulated = self.simulate(starts);
+        let shifts = self.shifts(&simulated.output, slope);
+        for (window, shift) in self.windows.iter().zip(shifts) {
+            let values = simulated.output.get_mut(window.start..window.end).unwrap_or_default();
+            for (index, value) in (window.start..).zip(values) {
+                *value += shift * slope.map_or(1.0, |g| g.get(index).copied().unwrap_or(1.0));
+            }
+        }
+        let pairs = self.trial.output().iter().zip(&simulated.output);
+        let residuals = pairs.map(|(y, s)| y - s).collect();
+        (simulated, residuals)
     }
 
     /// A small part of what the output spans.
@@ -299,20 +359,6 @@ impl<'a> Run<'a> {
             with / square
         };
         self.windows.iter().map(shift).collect()
-    }
-
-    /// Moves each window by what its start is wrong.
-    fn shifted(&self, mut simulated: Simulated, slope: Option<&[f64]>) -> (Simulated, Vec<f64>) {
-        let shifts = self.shifts(&simulated.output, slope);
-        for (window, shift) in self.windows.iter().zip(shifts) {
-            let values = simulated.output.get_mut(window.start..window.end).unwrap_or_default();
-            for (index, value) in (window.start..).zip(values) {
-                *value += shift * slope.map_or(1.0, |g| g.get(index).copied().unwrap_or(1.0));
-            }
-        }
-        let pairs = self.trial.output().iter().zip(&simulated.output);
-        let residuals = pairs.map(|(y, s)| y - s).collect();
-        (simulated, residuals)
     }
 }
 
