@@ -137,14 +137,18 @@ impl Tally {
         self.at_bound += usize::from(status == Status::AtBound);
         match std_error {
             Some(std_error) => self.scores.push(error / std_error),
-            None => self.undetermined += 1,
+            None => self.undetermined += usize::from(status != Status::Fixed),
         }
+    }
+
+    fn count(&self) -> usize {
+        self.scores.len() + self.undetermined
     }
 
     /// Share of the records within `limit` standard errors, in percent.
     fn within(&self, limit: f64) -> f64 {
         let count = self.scores.iter().filter(|score| score.abs() <= limit).count();
-        100.0 * count as f64 / (self.scores.len() + self.undetermined) as f64
+        100.0 * count as f64 / self.count() as f64
     }
 
     fn mean(&self) -> f64 {
@@ -230,7 +234,8 @@ fn cover(effect: &'static dyn Effect, records: u64) -> anyhow::Result<Coverage> 
 }
 
 fn print(coverage: &Coverage) {
-    for (name, tally) in coverage.names.iter().zip(&coverage.tallies) {
+    let tallies = coverage.names.iter().zip(&coverage.tallies);
+    for (name, tally) in tallies.filter(|(_, tally)| tally.count() > 0) {
         println!(
             "{name:30} {:7.1} {:7.1} {:8.2} {:6} {:6} {:8.1}",
             tally.within(3.0),

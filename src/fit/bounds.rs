@@ -41,6 +41,12 @@ impl Bounds {
         self.low + (self.high - self.low) * f64::midpoint(1.0, free.sin())
     }
 
+    /// Those of the sizes `values`, of either sign, that lie within.
+    pub(super) fn within(self, values: &[f64]) -> Vec<f64> {
+        let signed = values.iter().rev().map(|value| -value).chain(values.iter().copied());
+        signed.filter(|value| (self.low..=self.high).contains(value)).collect()
+    }
+
     /// Whether `value` lies on a bound.
     pub(super) fn is_at(self, value: f64) -> bool {
         let room = ON_BOUND * (self.high - self.low);

@@ -5,12 +5,12 @@ use std::fmt;
 
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
 use nalgebra::storage::Owned;
-use nalgebra::{DMatrix, DVector, Dyn};
+use nalgebra::{DMatrix, DVector, DVectorView, Dyn};
 
 use super::bounds::Bounds;
 use super::covariance::{Covariance, robust_scale};
 use super::record::{Evaluation, Part, Record, Weights};
-use crate::effect::RecordRange;
+use crate::effect::{Dimension, RecordRange};
 use crate::model::{Component, JointModel, Value};
 
 /// A fitted model, with how sure its parameters are and why the fit stopped.
@@ -103,7 +103,8 @@ pub enum FitError {
 /// of the model.
 ///
 /// Parameters of an effect that are neutral start from each of the effect's own starts. All
-/// are followed until it is seen where they lead, and the best two to the end.
+/// are followed until it is seen where they lead, in short windows, where an error does not
+/// add up and there are fewer valleys; the best two go on to the end.
 ///
 /// Standard errors allow for correlated residuals, see [`super::covariance`].
 ///
@@ -120,12 +121,14 @@ pub fn fit(
 ) -> Result<Fit, FitError> {
     let space = Space::of(model, range);
     check_size(record, &space)?;
-    let begin = |start| Search::new(record, model, &space, start).descended(Depth::ROUGH);
+    let short = record.shortened();
+    let begin = |start| Search::new(&short, model, &space, start).descended(Depth::ROUGH);
     let mut searches: Vec<_> = starts(model, range).into_iter().map(begin).collect();
     searches.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let given_up = searches.split_off(FINALISTS.min(searches.len()));
     let depth = Depth::whole(record.training_samples());
-    let mut finished: Vec<_> = searches.into_iter().map(|s| s.descended(depth)).collect();
+    let mut finished: Vec<_> =
+        searches.into_iter().map(|s| s.across_flats().onto(record).descended(depth)).collect();
     finished.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let simulations = finished.iter().chain(&given_up).map(Search::simulations).sum();
     let best = finished.into_iter().next();
@@ -213,6 +216,9 @@ struct Space {
     /// Index in [`JointModel::values`] of each free parameter.
     free: Vec<usize>,
     bounds: Vec<Bounds>,
+    /// For each of them the values, one for each gap between levels of the input, between
+    /// which an effect may do nothing but switch; none for what is not a level.
+    flats: Vec<Vec<f64>>,
 }
 
 impl Space {
@@ -230,14 +236,21 @@ impl Space {
         let values = model.values();
         let all = bounds.iter().zip(&values).enumerate();
         let free = all.filter(|(_, ((_, _, fitted), value))| *fitted && !value.fixed);
-        let (free, bounds) = free
+        let (free, bounds): (Vec<_>, Vec<_>) = free
             .map(|(index, ((low, high, _), value))| {
                 let low = value.min.map_or(*low, |min| min.max(*low));
                 let high = value.max.map_or(*high, |max| max.min(*high));
                 (index, Bounds { low, high })
             })
             .unzip();
-        Self { free, bounds }
+        let flats = free.iter().zip(&bounds).map(|(index, bounds)| {
+            if is_level(model, *index) {
+                bounds.within(&range.thresholds(usize::MAX))
+            } else {
+                Vec::new()
+            }
+        });
+        Self { flats: flats.collect(), free, bounds }
     }
 
     /// All values of the model, with the free ones where the optimiser's variables are.
@@ -251,6 +264,15 @@ impl Space {
         }
         values
     }
+}
+
+/// Whether a parameter of `model` is a level of the input.
+fn is_level(model: &JointModel, index: usize) -> bool {
+    let specs = model.components().iter().flat_map(|c| c.effect().spec().parameters);
+    let place = index.checked_sub(2);
+    place
+        .and_then(|place| specs.clone().nth(place))
+        .is_some_and(|p| p.dimension == Dimension::Input)
 }
 
 /// What the optimiser works on.
@@ -299,15 +321,61 @@ impl Problem<'_, '_> {
         residuals
     }
 
-    /// Sets weights anew from the residuals; whether there is any need to.
+    /// Sets weights anew from the residuals; whether there is anything to weigh.
     fn reweigh(&mut self) -> bool {
         let weights = huber(self.record, &self.here().residuals);
-        let any = weights.is_some();
+        let any = weights.is_some() || self.weights.is_some();
         if any {
             self.weights = weights;
             self.here.take();
         }
         any
+    }
+
+    /// The robust error of the training windows.
+    fn cost(&self) -> f64 {
+        huber_cost(&self.record.training(&self.here().residuals))
+    }
+
+    /// Moves a variable on whose small changes nothing depends to the best of the values
+    /// between which it matters; whether that is another one.
+    fn cross_flat(&mut self, place: usize) -> bool {
+        /// Values that are tried first; then those about the best of them.
+        const COARSE: usize = 24;
+        let values = self.space.flats.get(place).map_or(&[][..], Vec::as_slice);
+        let stride = values.len().div_ceil(COARSE).max(1);
+        let (cost, start) = (self.cost(), self.variables.clone());
+        let coarse: Vec<usize> = (0..values.len()).step_by(stride).collect();
+        let Some((_, about)) = self.best_of(place, values, coarse) else { return false };
+        let near = about.saturating_sub(stride)..(about + stride).min(values.len());
+        let best = self.best_of(place, values, near).filter(|(least, _)| *least < cost);
+        self.set_params(&start);
+        let Some(value) = best.and_then(|(_, index)| values.get(index)) else { return false };
+        self.set_value(place, *value);
+        true
+    }
+
+    /// The least error with one of `values` for a variable, and its index.
+    fn best_of(
+        &mut self,
+        place: usize,
+        values: &[f64],
+        indices: impl IntoIterator<Item = usize>,
+    ) -> Option<(f64, usize)> {
+        let costs = indices.into_iter().filter_map(|index| {
+            self.set_value(place, *values.get(index)?);
+            Some((self.cost(), index))
+        });
+        costs.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Sets one variable to that of `value`.
+    fn set_value(&mut self, place: usize, value: f64) {
+        let pair = self.variables.get_mut(place).zip(self.space.bounds.get(place));
+        if let Some((variable, bounds)) = pair {
+            *variable = bounds.free(value);
+        }
+        self.here.take();
     }
 }
 
@@ -366,9 +434,12 @@ struct Depth {
     relative_gain: f64,
     /// Evaluations per variable.
     patience: usize,
-    /// How often weights are set anew; they hardly change after the second time.
+    /// How often weights are set anew, at most.
     rounds: usize,
 }
+
+/// Weights are settled when they change the robust error by a smaller part than this.
+const SETTLED: f64 = 1e-6;
 
 impl Depth {
     /// To see which of several starts leads down.
@@ -377,7 +448,7 @@ impl Depth {
     /// As far as the data reach: one standard error of a parameter changes the sum of
     /// squares of `n` samples by its part `1/n`, a hundredth of one by `1e-4/n`.
     fn whole(samples: usize) -> Self {
-        Self { relative_gain: 1e-4 / samples.max(1) as f64, patience: 40, rounds: 3 }
+        Self { relative_gain: 1e-4 / samples.max(1) as f64, patience: 40, rounds: 20 }
     }
 }
 
@@ -406,22 +477,47 @@ impl<'p, 'r> Search<'p, 'r> {
         Self { problem, cost: f64::NAN, termination: Termination::NothingToFit }
     }
 
+    /// The same on another cut of the record.
+    fn onto(mut self, record: &'p Record<'r>) -> Self {
+        self.problem.record = record;
+        self.problem.weights = None;
+        self.problem.here.take();
+        self
+    }
+
     /// The same further down.
     fn descended(mut self, depth: Depth) -> Self {
         let gain = depth.relative_gain;
         let optimiser = LevenbergMarquardt::new().with_ftol(gain).with_xtol(1e-9).with_gtol(1e-12);
         let rounds = if self.problem.variables.is_empty() { 0 } else { depth.rounds };
         self.problem.moves = rounds > 0;
-        for _ in 0..rounds {
+        for round in 1..=rounds {
             let (moved, report) = optimiser.with_patience(depth.patience).minimize(self.problem);
             self.problem = moved;
             self.termination = Termination::of(&report.termination);
-            if !self.problem.reweigh() {
+            let before = std::mem::replace(&mut self.cost, self.problem.cost());
+            let settled = (before - self.cost).abs() <= SETTLED * self.cost;
+            if settled || round == rounds || !self.problem.reweigh() {
                 break;
             }
         }
-        let residuals = self.problem.record.training(&self.problem.here().residuals);
-        self.cost = huber_cost(&residuals);
+        self
+    }
+
+    /// The same with the parameters on which nothing depends but in jumps at their best.
+    fn across_flats(mut self) -> Self {
+        /// One may have to wait for another.
+        const PASSES: usize = 3;
+        for _ in 0..PASSES {
+            let Some(jacobian) = self.problem.jacobian() else { break };
+            let is_flat = |(_, column): &(usize, DVectorView<'_, f64>)| column.amax() <= 0.0;
+            let flat = jacobian.column_iter().enumerate().filter(is_flat);
+            let places: Vec<usize> = flat.map(|(place, _)| place).collect();
+            if places.into_iter().filter(|place| self.problem.cross_flat(*place)).count() == 0 {
+                break;
+            }
+            self = self.descended(Depth::ROUGH);
+        }
         self
     }
 

@@ -195,6 +195,16 @@ impl<'a> Record<'a> {
         residuals.collect()
     }
 
+    /// The same with training windows of no more than a few steps of the input.
+    pub(super) fn shortened(&self) -> Self {
+        let windows = self.part(Part::Training).flat_map(|window| {
+            let input = self.joint.trials.get(window.trial).map_or(&[][..], Trial::input);
+            let input = input.get(window.start..window.end).unwrap_or_default();
+            shorter(*window, changes(input).count())
+        });
+        Self { windows: windows.collect(), ..self.clone() }
+    }
+
     /// Samples that are for training.
     pub(super) fn training_samples(&self) -> usize {
         self.part(Part::Training).map(|window| window.end - window.start).sum()
@@ -393,6 +403,19 @@ fn cut(trial: &Trial, index: usize, split: Split, horizon: Horizon) -> Vec<Windo
         }
     }
     windows
+}
+
+/// `window` in parts, in each of which the input changes a few times.
+fn shorter(window: Window, changes: usize) -> Vec<Window> {
+    /// Changes in a part: some information on how they act together.
+    const CHANGES: usize = 5;
+    /// Fewest samples of a part.
+    const SHORTEST: usize = 100;
+    let samples = window.end - window.start;
+    let parts = (changes / CHANGES).min(samples / SHORTEST).max(1);
+    let border = |part: usize| window.start + samples * part / parts;
+    let part = |part| Window { start: border(part), end: border(part + 1), ..window };
+    (0..parts).map(part).collect()
 }
 
 /// Indices of samples whose input differs from the one before.
