@@ -9,6 +9,7 @@ mod bounds;
 mod covariance;
 mod least_squares;
 mod record;
+mod speed;
 
 pub use least_squares::{Fit, FitError, Parameter, Status, Termination, assess, fit};
 pub use record::{Evaluation, Horizon, Part, Record, Split, Window};

@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use super::speed;
 use crate::effect::RecordRange;
 use crate::experiment::{Joint, Trial};
 use crate::model::{Arrivals, JointModel, Restart, Simulated, Surroundings, arrivals, simulate};
@@ -75,6 +76,8 @@ pub struct Record<'a> {
     /// Delay of each change of the input in seconds, per trial, where it is known.
     delays: Option<Vec<Vec<Option<f64>>>>,
     radians_per_output_unit: f64,
+    /// Windows start at the measured speed.
+    speeds_measured: bool,
 }
 
 /// A model on a record: what it simulates, and what is left.
@@ -96,18 +99,25 @@ pub(super) type Weights = Vec<Vec<f64>>;
 
 impl<'a> Record<'a> {
     /// The trials of `joint`, cut by `split` and `horizon`.
+    ///
+    /// Each window starts from the output that makes its error least. Its speed is the
+    /// measured one where noise leaves it well known (to 1 % of the speeds in the record);
+    /// else the simulation goes on with its own, and is steady where a trial begins.
     pub fn new(joint: &'a Joint, split: Split, horizon: Horizon) -> Self {
         let windows = joint.trials.iter().enumerate();
         let windows = windows.flat_map(|(index, trial)| cut(trial, index, split, horizon));
+        let windows: Vec<_> = windows.collect();
+        let speeds_measured = speed::are_measured(&joint.trials, &windows);
         let others = vec![Vec::new(); joint.trials.len()];
         let radians_per_output_unit = radians(joint.output_unit.as_deref());
         Self {
             joint,
             split,
-            windows: windows.collect(),
+            windows,
             others,
             delays: None,
             radians_per_output_unit,
+            speeds_measured,
         }
     }
 
@@ -277,6 +287,7 @@ struct Run<'a> {
     surroundings: Surroundings<'a>,
     windows: Vec<Window>,
     weights: Option<&'a [f64]>,
+    speeds_measured: bool,
 }
 
 impl<'a> Run<'a> {
@@ -295,7 +306,15 @@ impl<'a> Run<'a> {
         let windows = record.windows.iter().filter(|window| window.trial == index).copied();
         let arrivals = record.arrivals(model, index);
         let weights = weights.and_then(|weights| weights.get(index)).map(Vec::as_slice);
-        Some(Self { model, trial, arrivals, surroundings, windows: windows.collect(), weights })
+        Some(Self {
+            model,
+            trial,
+            arrivals,
+            surroundings,
+            windows: windows.collect(),
+            weights,
+            speeds_measured: record.speeds_measured && model.has_dynamics(),
+        })
     }
 
     /// The outputs at the start of the windows that make their squared error least, and
@@ -348,7 +367,10 @@ impl<'a> Run<'a> {
         let restart = |(window, output): (&Window, &f64)| Restart {
             sample: window.start,
             output: *output,
-            speed: None,
+            speed: self
+                .speeds_measured
+                .then(|| speed::measured(self.trial, window.start))
+                .flatten(),
         };
         let restarts: Vec<_> = self.windows.iter().zip(starts).map(restart).collect();
         let (samples, period_s) = (self.trial.len(), self.trial.period().seconds());

@@ -110,6 +110,11 @@ impl JointModel {
         model
     }
 
+    /// Whether it takes time until the speed is what the input says.
+    pub(crate) fn has_dynamics(&self) -> bool {
+        self.stage(Stage::Dynamics).next().is_some()
+    }
+
     /// Whether any effect can make the speed depend on the angle.
     pub(crate) fn depends_on_angle(&self) -> bool {
         let on_angle = |component: &Component| {

@@ -228,33 +228,45 @@ impl<'a> Joint<'a> {
         self.angle = restart.output + play;
         self.measure(time_s, period_s);
         if let Some(speed) = restart.speed {
-            self.settle_at_speed(speed, period_s);
+            self.settle_at_speed(speed, time_s, period_s);
         }
     }
 
-    /// Finds the held input that makes the effective input `speed / gain`, by bisection.
+    /// Puts the drive into the state of a held input that makes `speed` here; the input is
+    /// found by bisection.
     ///
-    /// The effective input rises with the input, or the joint has no such input.
-    fn settle_at_speed(&mut self, speed: f64, period_s: f64) {
-        /// Halvings: from 1e12 to 1e-12 of a unit.
-        const HALVINGS: usize = 90;
-        let wanted = speed / self.gain;
-        let mut reach = wanted.abs().max(1e-3);
-        while self.settled_drive(reach.copysign(wanted), period_s).abs() < wanted.abs()
-            && reach < 1e12
-        {
+    /// The speed rises with the input, or falls if the gain is negative; where it can not be
+    /// reached the nearest one is taken.
+    fn settle_at_speed(&mut self, speed: f64, time_s: f64, period_s: f64) {
+        /// Doublings and halvings: from and to a part of 1e-15.
+        const HALVINGS: usize = 50;
+        let sign = self.gain.signum();
+        let mut is_below =
+            |input: f64| sign * self.steady_speed(input, time_s, period_s) < sign * speed;
+        let mut reach = 1.0;
+        for _ in 0..HALVINGS {
+            if !is_below(reach) && is_below(-reach) {
+                break;
+            }
             reach *= 2.0;
         }
         let (mut low, mut high) = (-reach, reach);
         for _ in 0..HALVINGS {
             let middle = f64::midpoint(low, high);
-            if self.settled_drive(middle, period_s) < wanted {
+            if is_below(middle) {
                 low = middle;
             } else {
                 high = middle;
             }
         }
         self.velocity = speed;
+    }
+
+    /// The speed after `input` has long been held; the memory of the drive is as after it.
+    fn steady_speed(&mut self, input: f64, time_s: f64, period_s: f64) -> f64 {
+        let mut at = self.moment(input, time_s, period_s);
+        at.signal = self.gain * self.settled_drive(input, period_s);
+        if self.load_remembers { at.signal } else { through(&mut self.load, at) }
     }
 
     fn moment(&self, signal: f64, time_s: f64, dt: f64) -> Moment {

@@ -1,0 +1,111 @@
+//! The speed of a joint where a simulation starts, from the measurement.
+
+use super::record::Window;
+use crate::experiment::Trial;
+
+/// Samples on either side from which a speed is taken.
+const SIDE: usize = 10;
+
+/// A speed and its standard error, output units per second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Speed {
+    value: f64,
+    std_error: f64,
+}
+
+/// Whether the speeds at the start of `windows` are better taken from the measurement than
+/// from a simulation.
+///
+/// A simulation carries its own errors on, and at the start of a trial knows nothing: its
+/// joint is steady there. A measured speed has the error of the noise. It is preferred
+/// where that is a hundredth of the speeds in the record, which a model of a real joint
+/// hardly reaches.
+pub(super) fn are_measured(trials: &[Trial], windows: &[Window]) -> bool {
+    /// Largest standard error of speeds, in parts of their root mean square.
+    const NOISE: f64 = 0.01;
+    let speeds = windows.iter().filter_map(|w| Speed::at(trials.get(w.trial)?, w.start));
+    let whole = trials.iter().flat_map(|trial| {
+        (SIDE..trial.len()).step_by(SIDE).filter_map(|sample| Speed::at(trial, sample))
+    });
+    let mean_square = |values: &mut dyn Iterator<Item = f64>| {
+        let (sum, count) =
+            values.fold((0.0, 0.0), |(sum, n), value| (sum + value * value, n + 1.0));
+        sum / f64::max(count, 1.0)
+    };
+    let noise = mean_square(&mut speeds.map(|speed| speed.std_error));
+    noise < NOISE * NOISE * mean_square(&mut whole.map(|speed| speed.value))
+}
+
+/// The measured speed at a sample; `None` in a trial that is too short.
+pub(super) fn measured(trial: &Trial, sample: usize) -> Option<f64> {
+    Speed::at(trial, sample).map(|speed| speed.value)
+}
+
+impl Speed {
+    /// From the best parabola about `sample`, or behind the start of the trial.
+    ///
+    /// With `x` from the middle, and polynomials that are orthogonal on the grid, it is
+    /// `a + b x + c (x² − mean x²)`, with the slope `b + 2 c x`.
+    fn at(trial: &Trial, sample: usize) -> Option<Self> {
+        let from = sample.saturating_sub(SIDE).min(trial.len().saturating_sub(2 * SIDE + 1));
+        let values = trial.output().get(from..=from + 2 * SIDE)?;
+        let (middle, place) = (values.get(SIDE)?, sample.checked_sub(from)?);
+        let place = (place <= 2 * SIDE).then_some(place as f64 - SIDE as f64)?;
+        let n = values.len() as f64;
+        let x = |k: usize| k as f64 - SIDE as f64;
+        let square = (n * n - 1.0) / 12.0;
+        let project = |shape: &dyn Fn(f64) -> f64| {
+            let (mut with, mut own) = (0.0, 0.0);
+            for (k, y) in values.iter().enumerate() {
+                with += shape(x(k)) * (y - middle);
+                own += shape(x(k)) * shape(x(k));
+            }
+            (with / own, own)
+        };
+        let (mean, _) = project(&|_| 1.0);
+        let (slope, linear) = project(&|x| x);
+        let (bend, quadratic) = project(&|x| x * x - square);
+        let rest = values.iter().enumerate().map(|(k, y)| {
+            let parabola = mean + slope * x(k) + bend * (x(k) * x(k) - square);
+            (y - middle - parabola).powi(2)
+        });
+        let variance = rest.sum::<f64>() / (n - 3.0);
+        let of_slope = variance * (1.0 / linear + 4.0 * place * place / quadratic);
+        let period = trial.period().seconds();
+        Some(Self {
+            value: (slope + 2.0 * bend * place) / period,
+            std_error: of_slope.sqrt() / period,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::SamplePeriod;
+
+    fn trial(output: impl Fn(f64) -> f64) -> Trial {
+        let period = SamplePeriod::from_seconds(0.1).unwrap();
+        let output = (0..50).map(|k| output(0.1 * f64::from(k))).collect();
+        Trial::new("a", 0.0, period, vec![0.0; 50], output).unwrap()
+    }
+
+    #[test]
+    fn of_a_parabola_it_is_exact_everywhere() {
+        let trial = trial(|t| 7.0 + 3.0 * t - 2.0 * t * t);
+        for sample in [0, 5, 10, 30, 49] {
+            let speed = Speed::at(&trial, sample).unwrap();
+            let expected = 3.0 - 4.0 * 0.1 * sample as f64;
+            assert!((speed.value - expected).abs() < 1e-9 && speed.std_error < 1e-9);
+        }
+        assert_eq!(measured(&trial, 50), None);
+    }
+
+    #[test]
+    fn noise_decides() {
+        let window = Window { trial: 0, start: 20, end: 50, part: super::super::Part::Training };
+        let noisy = |size: f64| trial(|t| 3.0 * t + size * (97.0 * t).sin());
+        assert!(are_measured(&[noisy(0.001)], &[window]));
+        assert!(!are_measured(&[noisy(0.3)], &[window]));
+    }
+}

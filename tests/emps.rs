@@ -1,0 +1,99 @@
+//! A measured servo drive, from its force to its position: published parameters are found
+//! again. The data are not part of this project: the folder that holds them is
+//! `TAUSCOPE_REAL_LOGS`, or `../shared/data`.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
+
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use tauscope::effect::find;
+use tauscope::experiment::{Joint, Trial};
+use tauscope::fit::{Fit, Horizon, Record, Split, fit};
+use tauscope::model::{Component, JointModel};
+use tauscope::units::SamplePeriod;
+
+/// The record, or `None` after saying that the test is skipped.
+fn joint(name: &str) -> Option<Joint> {
+    let folder = std::env::var_os("TAUSCOPE_REAL_LOGS");
+    let folder = folder.map_or_else(|| PathBuf::from("../shared/data"), PathBuf::from);
+    let path = folder.join(name);
+    if !path.exists() {
+        // Not `eprintln`, which the test runner keeps to itself.
+        let mut stderr = std::io::stderr();
+        writeln!(stderr, "skipped: {} is not here", path.display()).unwrap();
+        return None;
+    }
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let headers = reader.headers().unwrap().clone();
+    let place = |name: &str| headers.iter().position(|header| header == name).unwrap();
+    let (force, position) = (place("force_N"), place("q_m"));
+    let (mut input, mut output) = (Vec::new(), Vec::new());
+    for row in reader.records() {
+        let row = row.unwrap();
+        input.push(row[force].parse().unwrap());
+        output.push(row[position].parse().unwrap());
+    }
+    let period = SamplePeriod::from_seconds(0.001).unwrap();
+    Some(Joint {
+        name: "emps".to_owned(),
+        input_unit: Some("N".to_owned()),
+        output_unit: Some("m".to_owned()),
+        covariates: Vec::new(),
+        trials: vec![Trial::new("run", 0.0, period, input, output).unwrap()],
+    })
+}
+
+/// Gain, inertia and friction; the offset is the difference of the two friction levels,
+/// which an [input offset](tauscope::effect::InputOffset) could not be told from.
+fn start() -> JointModel {
+    let mut plain = JointModel::integrator(0.01, 0.0);
+    plain.delay.fixed = true;
+    plain.with(Component::neutral(find("coulomb_friction").unwrap()))
+}
+
+fn fitted(joint: &Joint, horizon: Horizon) -> Fit {
+    let record = Record::new(joint, Split::Time(1.0), horizon);
+    let levels = record.input_levels();
+    fit(&record, &start(), &record.range(&levels, 0.5)).unwrap()
+}
+
+/// Root mean square error over the whole record, metres.
+fn error_m(joint: &Joint, model: &JointModel, horizon: Horizon) -> f64 {
+    let record = Record::new(joint, Split::Time(1.0), horizon);
+    let residuals = record.evaluate(model).residuals.concat();
+    (residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len() as f64).sqrt()
+}
+
+/// `M a + Fv v + Fc sign(v) + OF = F`, divided by `Fv`, is the model: its levels are
+/// `Fc + OF` and `Fc − OF`.
+fn physical(fit: &Fit) -> [f64; 4] {
+    let value = |name: &str| fit.parameters.iter().find(|p| p.name == name).unwrap().value;
+    let viscous = 1.0 / value("gain");
+    let [up, down, constant] = ["positive", "negative", "time_constant"]
+        .map(|name| value(&format!("coulomb_friction.{name}")));
+    [viscous * constant, viscous, f64::midpoint(up, down), f64::midpoint(up, -down)]
+}
+
+/// Inertia in kg, viscous friction in N s/m, Coulomb friction and offset in N: Janot,
+/// Gautier and Brunot, 2019, Data Set and Reference Models of EMPS.
+const PUBLISHED: [f64; 4] = [95.1089, 203.5034, 20.3935, -3.1648];
+
+#[test]
+fn published_parameters_are_found_within_five_percent() {
+    let Some(joint) = joint("emps_train.csv") else { return };
+    // The friction of this drive differs by direction in a way that the model cannot have.
+    // The shorter the windows, the nearer is their error to one of the force, as published.
+    let fit = fitted(&joint, Horizon::Seconds(0.2));
+    let found = physical(&fit);
+    for (found, published) in found.iter().zip(PUBLISHED) {
+        assert!((found / published - 1.0).abs() < 0.05, "{found} is not {published}");
+    }
+    let Some(pulses) = self::joint("emps_test_pulses.csv") else { return };
+    // The published model errs 1.47 times as much there, in the force.
+    let error = |joint| error_m(joint, &fit.model, Horizon::Seconds(0.2));
+    let (own, other) = (error(&joint), error(&pulses));
+    assert!(own < 1e-4 && other < 1.5 * own, "{own} m, {other} m");
+    // 25 s without a restart, of a way of a quarter metre.
+    let free = error_m(&pulses, &fit.model, Horizon::FreeRun);
+    assert!(free < 0.01, "{free} m");
+}
