@@ -103,6 +103,9 @@ fn long_run(jacobian: &DMatrix<f64>, residuals: &DVector<f64>) -> DMatrix<f64> {
         column.component_mul_assign(residuals);
     }
     let lags = bandwidth(residuals.as_slice());
+    // Many lags are as well counted in blocks of samples.
+    let block = (lags / MOST_LAGS).max(1);
+    let (scores, lags) = (block_sums(&scores, block), lags / block);
     let mut sum = scores.tr_mul(&scores);
     for lag in 1..=lags {
         let rows = scores.nrows() - lag;
@@ -111,6 +114,20 @@ fn long_run(jacobian: &DMatrix<f64>, residuals: &DVector<f64>) -> DMatrix<f64> {
         sum += (&product + product.transpose()) * weight;
     }
     sum
+}
+
+/// Lags that are counted one by one; the weights change little from one to the next.
+const MOST_LAGS: usize = 40;
+
+/// Sums over `block` rows each.
+fn block_sums(rows: &DMatrix<f64>, block: usize) -> DMatrix<f64> {
+    if block == 1 {
+        return rows.clone();
+    }
+    DMatrix::from_fn(rows.nrows().div_ceil(block), rows.ncols(), |index, column| {
+        let from = index * block;
+        rows.column(column).rows(from, block.min(rows.nrows() - from)).sum()
+    })
 }
 
 /// Andrews' number of lags for Bartlett's weights: `1.1447 (α n)^(1/3)` with

@@ -1,0 +1,178 @@
+//! Fitted parameters: what is found, what is not, and what is said about it.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
+
+use tauscope::effect::find;
+use tauscope::experiment::{Joint, Trial};
+use tauscope::fit::{Fit, FitError, Horizon, Parameter, Record, Split, Status, fit};
+use tauscope::model::{Component, JointModel, Restart, Surroundings, Value, arrivals, simulate};
+use tauscope::units::SamplePeriod;
+
+const PERIOD_S: f64 = 0.02;
+
+/// Reproducible numbers from −1 to 1.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963);
+        (self.0 >> 40) as f64 / f64::from(1u32 << 23) - 1.0
+    }
+
+    /// Four levels of either sign, each held for half a second to two seconds.
+    fn input(&mut self, samples: usize) -> Vec<f64> {
+        let (mut level, mut until) = (0.0, 25.0);
+        let next = |sample| {
+            if f64::from(sample) >= until {
+                level = (2.0 * self.next()).round() + 0.5;
+                until += 62.0 + 37.0 * self.next();
+            }
+            level
+        };
+        (0..i32::try_from(samples).unwrap()).map(next).collect()
+    }
+}
+
+fn with(effects: &[(&str, &[f64])]) -> JointModel {
+    let component = |(id, values): &(&str, &[f64])| {
+        let values = values.iter().map(|value| (*value).into()).collect();
+        Component::new(find(id).unwrap(), values).unwrap()
+    };
+    let plain = JointModel::integrator(8.0, 0.15);
+    effects.iter().map(component).fold(plain, |model, component| model.with(component))
+}
+
+fn plus(model: &JointModel, id: &str) -> JointModel {
+    model.with(Component::neutral(find(id).unwrap()))
+}
+
+fn start() -> JointModel {
+    JointModel::integrator(7.0, 0.1)
+}
+
+/// Trials of `model` at the times `starts_s`, with noise of 0.05.
+fn joint(model: &JointModel, starts_s: &[f64], seed: u64) -> Joint {
+    let mut random = Random(seed);
+    let period = SamplePeriod::from_seconds(PERIOD_S).unwrap();
+    let trial = |start_s: &f64| {
+        let input = random.input(1500);
+        let blank = Trial::new("", *start_s, period, input.clone(), vec![0.0; 1500]).unwrap();
+        let since = start_s - starts_s[0];
+        let arrivals = arrivals(model, &blank, since, None);
+        let restarts = [Restart { sample: 0, output: 4.0, speed: None }];
+        let surroundings =
+            Surroundings { start_s: since, radians_per_output_unit: 0.02, ..<_>::default() };
+        let simulated = simulate(model, &arrivals, 1500, PERIOD_S, &restarts, &surroundings);
+        let output = simulated.output.iter().map(|y| y + 0.05 * 3f64.sqrt() * random.next());
+        Trial::new(format!("at {start_s}"), *start_s, period, input, output.collect()).unwrap()
+    };
+    Joint {
+        name: "joint".to_owned(),
+        input_unit: None,
+        output_unit: None,
+        covariates: Vec::new(),
+        trials: starts_s.iter().map(trial).collect(),
+    }
+}
+
+fn fitted(joint: &Joint, start: &JointModel, horizon: Horizon) -> Fit {
+    let record = Record::new(joint, Split::Time(1.0), horizon);
+    let levels = record.input_levels();
+    fit(&record, start, &record.range(&levels, 20.0)).unwrap()
+}
+
+fn parameter<'a>(fit: &'a Fit, name: &str) -> &'a Parameter {
+    fit.parameters.iter().find(|parameter| parameter.name == name).unwrap()
+}
+
+fn assert_found(fit: &Fit, name: &str, truth: f64) {
+    let found = parameter(fit, name);
+    let error = found.std_error.unwrap();
+    assert!((found.value - truth).abs() < 4.0 * error, "{name}: {found:?}, not {truth}");
+}
+
+#[test]
+fn outliers_hardly_move_what_is_found() {
+    let mut joint = joint(&with(&[("dead_band", &[-0.3, 0.3])]), &[0.0], 1);
+    let clean = fitted(&joint, &plus(&start(), "dead_band"), Horizon::FreeRun);
+    let trial = &joint.trials[0];
+    let wild = |(k, y): (usize, &f64)| if k % 50 == 7 { y + 30.0 } else { *y };
+    let output = trial.output().iter().enumerate().map(wild).collect();
+    let period = trial.period();
+    joint.trials[0] = Trial::new("", 0.0, period, trial.input().to_vec(), output).unwrap();
+    let dirty = fitted(&joint, &plus(&start(), "dead_band"), Horizon::FreeRun);
+    for (clean, dirty) in clean.parameters.iter().zip(&dirty.parameters) {
+        let error = clean.std_error.unwrap();
+        assert!((clean.value - dirty.value).abs() < 3.0 * error, "{clean:?} {dirty:?}");
+        // A fiftieth of the samples tell little, and the rest as much as before.
+        assert!(dirty.std_error.unwrap() < 2.0 * error, "{clean:?} {dirty:?}");
+    }
+}
+
+#[test]
+fn what_the_record_cannot_tell_is_said_to_be_undetermined() {
+    // No level lies above 2.5, so nothing is limited; two offsets are one.
+    let joint = joint(&with(&[]), &[0.0], 2);
+    let offsets = plus(&plus(&start(), "input_offset"), "input_offset");
+    let fit = fitted(&joint, &offsets, Horizon::FreeRun);
+    assert_eq!(parameter(&fit, "input_offset.offset").status, Status::Undetermined);
+    assert_eq!(parameter(&fit, "input_offset.offset").std_error, None);
+    assert_found(&fit, "gain", 8.0);
+}
+
+#[test]
+fn an_effect_that_is_not_there_stays_at_its_bound() {
+    let joint = joint(&with(&[]), &[0.0], 3);
+    let fit = fitted(&joint, &plus(&start(), "backlash"), Horizon::FreeRun);
+    let width = parameter(&fit, "backlash.width");
+    assert!(width.status == Status::AtBound || width.value < 0.1, "{width:?}");
+    assert_found(&fit, "delay", 0.15);
+}
+
+#[test]
+fn what_is_fixed_stays_and_what_has_limits_keeps_them() {
+    let joint = joint(&with(&[("actuator_lag", &[0.1])]), &[0.0], 4);
+    let mut model = plus(&start(), "actuator_lag");
+    model.gain = Value { fixed: true, ..8.0.into() };
+    model.delay.max = Some(0.12);
+    let fit = fitted(&joint, &model, Horizon::FreeRun);
+    assert_eq!(parameter(&fit, "gain").status, Status::Fixed);
+    assert_eq!(parameter(&fit, "gain").value.to_bits(), 8.0_f64.to_bits());
+    assert_eq!(parameter(&fit, "delay").status, Status::AtBound);
+    assert!(parameter(&fit, "delay").value <= 0.12);
+}
+
+#[test]
+fn time_goes_on_from_one_trial_to_the_next_whenever_the_log_begins() {
+    // Two hours into a clock's day, and half a minute between the trials.
+    for begin_s in [0.0, 7200.0] {
+        let truth = with(&[("thermal_drift", &[0.01, 30.0])]);
+        let joint = joint(&truth, &[begin_s, begin_s + 60.0], 5);
+        let fit = fitted(&joint, &plus(&start(), "thermal_drift"), Horizon::FreeRun);
+        assert_found(&fit, "gain", 8.0);
+        assert_found(&fit, "thermal_drift.rate", 0.01);
+        assert_found(&fit, "thermal_drift.time_constant", 30.0);
+    }
+}
+
+#[test]
+fn horizons_find_the_same() {
+    let truth = with(&[("actuator_lag", &[0.1]), ("leakage", &[0.1, 20.0]), ("backlash", &[1.0])]);
+    let joint = joint(&truth, &[0.0, 40.0], 6);
+    for horizon in [Horizon::FreeRun, Horizon::Steps, Horizon::Seconds(3.0)] {
+        let fit = fitted(&joint, &truth, horizon);
+        for (name, truth) in truth.names().iter().zip(truth.values()) {
+            assert_found(&fit, name, truth.value);
+        }
+    }
+}
+
+#[test]
+fn four_samples_are_too_few() {
+    let period = SamplePeriod::from_seconds(PERIOD_S).unwrap();
+    let mut joint = joint(&with(&[]), &[0.0], 7);
+    joint.trials[0] = Trial::new("", 0.0, period, vec![1.0; 3], vec![0.0; 3]).unwrap();
+    let record = Record::new(&joint, Split::Time(1.0), Horizon::FreeRun);
+    let levels = record.input_levels();
+    let error = fit(&record, &start(), &record.range(&levels, 20.0)).unwrap_err();
+    assert_eq!(error, FitError::TooFewSamples { samples: 3, parameters: 2 });
+}
