@@ -14,7 +14,7 @@ use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec};
 fn joint(samples: usize) -> Joint {
     let input = InputSpec::Levels { levels: vec![-1.0, -0.5, 0.2, 0.5, 1.0], hold_s: [1.0, 2.0] };
     let law = DelayLaw::Constant { seconds: 0.15 };
-    let spec = JointSpec { noise: 0.05, ..JointSpec::new("joint", input, law) };
+    let spec = JointSpec { noise: 0.05, lag_s: Some(0.1), ..JointSpec::new("joint", input, law) };
     let plant = PlantSpec { substeps: 1, ..PlantSpec::new(1, samples as f64 * 0.01, vec![spec]) };
     tauscope::synthetic::simulate(&plant).unwrap().joints.remove(0)
 }
@@ -72,7 +72,7 @@ fn simulation(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Gain, delay and a dead band, from neutral.
+/// Gain, delay and a lag, from neutral.
 fn growth(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("fit, growth");
     group.sample_size(10);

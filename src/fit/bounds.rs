@@ -12,10 +12,11 @@ const FAR: f64 = 1e9;
 
 /// How near to a bound, as a part of the range, a start may be: at the bound itself the
 /// change of variable has no slope.
-const MARGIN: f64 = 1e-3;
+const MARGIN: f64 = 1e-5;
 
-/// Part of the range by which a value may miss a bound and still be on it.
-const ON_BOUND: f64 = 1e-4;
+/// Standard errors by which a value may miss a bound and still be on it: less than anyone
+/// can tell.
+const ON_BOUND: f64 = 0.02;
 
 impl Bounds {
     fn is_bounded(self) -> bool {
@@ -47,10 +48,26 @@ impl Bounds {
         signed.filter(|value| (self.low..=self.high).contains(value)).collect()
     }
 
-    /// Whether `value` lies on a bound.
-    pub(super) fn is_at(self, value: f64) -> bool {
-        let room = ON_BOUND * (self.high - self.low);
-        self.is_bounded() && (value < self.low + room || value > self.high - room)
+    /// Whether `value` lies on a bound, as far as its standard error tells.
+    pub(super) fn is_at(self, value: f64, std_error: f64) -> bool {
+        let room = (ON_BOUND * std_error).max(f64::EPSILON * (self.high - self.low));
+        self.is_bounded() && self.distance(value) <= room
+    }
+
+    /// From `value` to the nearest bound.
+    fn distance(self, value: f64) -> f64 {
+        (value - self.low).min(self.high - value)
+    }
+
+    /// Whether a descent has ended at a bound: `free` is on it, and the error falls beyond.
+    ///
+    /// `error_slope` is the slope of half the squared error to `free`, `std_error` the
+    /// standard error of `free` by itself.
+    pub(super) fn stops(self, free: f64, error_slope: f64, std_error: f64) -> bool {
+        let (value, slope) = (self.value(free), 0.5 * (self.high - self.low) * free.cos());
+        let downhill = -error_slope * slope;
+        let outward = if value - self.low < self.high - value { -downhill } else { downhill };
+        outward > 0.0 && self.is_at(value, 0.5 * std_error * slope.abs())
     }
 
     /// Two values about `value` for a difference, within the bounds.
@@ -81,13 +98,22 @@ mod tests {
         for free in [-100.0, -1.0, 0.3, 9.0] {
             assert!((-2.0..=5.0).contains(&bounds.value(free)));
         }
-        assert!(bounds.is_at(5.0) && !bounds.is_at(4.9));
+        assert!(bounds.is_at(5.0, 0.0) && !bounds.is_at(4.9, 1.0) && bounds.is_at(4.9, 10.0));
+    }
+
+    #[test]
+    fn a_descent_stops_at_a_bound_beyond_which_the_error_falls() {
+        let bounds = Bounds { low: 0.0, high: 10.0 };
+        let near_low = bounds.free(0.0);
+        assert!(bounds.stops(near_low, 1.0, 10.0) && !bounds.stops(near_low, -1.0, 10.0));
+        assert!(!bounds.stops(near_low, 1.0, 1e-6) && !bounds.stops(0.0, 1.0, 1.0));
+        assert!(bounds.stops(bounds.free(10.0), -1.0, 10.0));
     }
 
     #[test]
     fn without_bounds_nothing_changes() {
         let bounds = Bounds { low: f64::MIN, high: f64::MAX };
         assert!((bounds.value(bounds.free(1e7)) - 1e7).abs() < 1e-300);
-        assert!(!bounds.is_at(f64::MAX));
+        assert!(!bounds.is_at(f64::MAX, 1.0));
     }
 }

@@ -22,6 +22,7 @@ use crate::model::JointModel;
 pub(super) struct Covariance {
     /// `None` for a parameter that the data do not determine.
     std_errors: Vec<Option<f64>>,
+    at_bound: Vec<bool>,
 }
 
 impl Covariance {
@@ -51,7 +52,19 @@ impl Covariance {
             (at(low) - at(high)) / (high - low)
         };
         let columns: Vec<DVector<f64>> = free.iter().zip(bounds).map(column).collect();
-        Self { std_errors: std_errors(&columns, &weighted(&here.residuals)) }
+        let residuals = weighted(&here.residuals);
+        let noise = residuals.norm() / (residuals.len() as f64).sqrt();
+        let at_bound = free.iter().zip(bounds).zip(&columns).map(|((index, bounds), column)| {
+            let value = values.get(*index).copied().unwrap_or_default();
+            bounds.is_at(value, noise / column.norm().max(f64::MIN_POSITIVE))
+        });
+        let at_bound: Vec<bool> = at_bound.collect();
+        Self { std_errors: with_bounds(&columns, &residuals, &at_bound), at_bound }
+    }
+
+    /// Whether a parameter has come to lie on a bound.
+    pub(super) fn is_at_bound(&self, place: usize) -> bool {
+        self.at_bound.get(place).copied().unwrap_or_default()
     }
 
     pub(super) fn std_error(&self, place: usize) -> Option<f64> {
@@ -59,9 +72,27 @@ impl Covariance {
     }
 }
 
+/// Standard errors; those of parameters inside their bounds are as if the others were known
+/// to lie where they do.
+fn with_bounds(
+    columns: &[DVector<f64>],
+    residuals: &DVector<f64>,
+    at_bound: &[bool],
+) -> Vec<Option<f64>> {
+    let all = std_errors(columns, residuals);
+    if !at_bound.contains(&true) {
+        return all;
+    }
+    let inside = columns.iter().zip(at_bound).filter(|(_, at_bound)| !**at_bound);
+    let inside: Vec<DVector<f64>> = inside.map(|(column, _)| column.clone()).collect();
+    let mut inside = std_errors(&inside, residuals).into_iter();
+    let pairs = all.into_iter().zip(at_bound);
+    pairs.map(|(all, at_bound)| if *at_bound { all } else { inside.next().flatten() }).collect()
+}
+
 /// Singular values below this part of the largest, columns being of length one, mean
 /// that a combination of parameters changes nothing.
-const RANK: f64 = 1e-6;
+const RANK: f64 = 1e-5;
 
 fn std_errors(columns: &[DVector<f64>], residuals: &DVector<f64>) -> Vec<Option<f64>> {
     let lengths: Vec<f64> = columns.iter().map(DVector::norm).collect();

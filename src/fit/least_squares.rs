@@ -106,7 +106,7 @@ pub enum FitError {
 /// are followed until it is seen where they lead, in short windows, where an error does not
 /// add up and there are fewer valleys; the best two go on to the end.
 ///
-/// Standard errors allow for correlated residuals, see [`super::covariance`].
+/// Standard errors allow for correlated residuals (Newey and West, 1987).
 ///
 /// # Errors
 /// [`FitError`] when there are too few samples.
@@ -321,6 +321,20 @@ impl Problem<'_, '_> {
         residuals
     }
 
+    /// The slope of the residuals, which are `here` now, to one variable.
+    fn slope(&self, place: usize, here: &DVector<f64>) -> DVector<f64> {
+        /// A step in an angle, or in parts of a value.
+        const STEP: f64 = 1e-6;
+        let mut variables = self.variables.clone();
+        let step = variables.get(place).map_or(STEP, |v| STEP * v.abs().max(0.1));
+        if let Some(variable) = variables.get_mut(place) {
+            *variable += step;
+        }
+        self.evaluations.set(self.evaluations.get() + 1);
+        let (model, weights) = (self.model_at(&variables), self.weights.as_ref());
+        (self.weighted(&self.record.residuals_near(&model, weights, self.here())) - here) / step
+    }
+
     /// Sets weights anew from the residuals; whether there is anything to weigh.
     fn reweigh(&mut self) -> bool {
         let weights = huber(self.record, &self.here().residuals);
@@ -398,23 +412,21 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, '_> {
         residuals.iter().all(|r| r.is_finite()).then_some(residuals)
     }
 
-    /// By differences in the optimiser's variables, windows starting where they do here.
+    /// By differences in the optimiser's variables, windows starting where they do here. A
+    /// variable that has come to its bound stays there.
     fn jacobian(&self) -> Option<DMatrix<f64>> {
-        /// A step in an angle, or in parts of a value.
-        const STEP: f64 = 1e-6;
         let here = self.weighted(&self.here().residuals);
-        let column = |index: usize| {
-            let mut variables = self.variables.clone();
-            let step = variables.get(index).map_or(STEP, |v| STEP * v.abs().max(0.1));
-            if let Some(variable) = variables.get_mut(index) {
-                *variable += step;
+        let noise = here.norm() / (here.len() as f64).sqrt();
+        let column = |(place, bounds): (usize, &Bounds)| {
+            let mut column = self.slope(place, &here);
+            let std_error = noise / column.norm();
+            let variable = self.variables.get(place).copied().unwrap_or_default();
+            if bounds.stops(variable, column.dot(&here), std_error) {
+                column.fill(0.0);
             }
-            self.evaluations.set(self.evaluations.get() + 1);
-            let (model, weights) = (self.model_at(&variables), self.weights.as_ref());
-            (self.weighted(&self.record.residuals_near(&model, weights, self.here())) - &here)
-                / step
+            column
         };
-        let columns: Vec<_> = (0..self.variables.len()).map(column).collect();
+        let columns: Vec<_> = self.space.bounds.iter().enumerate().map(column).collect();
         let finite = columns.iter().all(|column| column.iter().all(|value| value.is_finite()));
         finite.then(|| DMatrix::from_columns(&columns))
     }
@@ -583,7 +595,8 @@ impl Search<'_, '_> {
             let place = space.free.iter().position(|free| *free == index);
             let bounds = place.and_then(|place| space.bounds.get(place));
             let std_error = place.and_then(|place| covariance.std_error(place));
-            let status = Status::of(value, std_error, bounds);
+            let at_bound = place.is_some_and(|place| covariance.is_at_bound(place));
+            let status = Status::of(at_bound, std_error, bounds);
             let std_error = std_error.filter(|_| status != Status::Undetermined);
             Parameter { name, value, std_error, status }
         };
@@ -600,10 +613,10 @@ impl Search<'_, '_> {
 }
 
 impl Status {
-    fn of(value: f64, std_error: Option<f64>, bounds: Option<&Bounds>) -> Self {
+    fn of(at_bound: bool, std_error: Option<f64>, bounds: Option<&Bounds>) -> Self {
         match (bounds, std_error) {
             (None, _) => Self::Fixed,
-            (Some(bounds), _) if bounds.is_at(value) => Self::AtBound,
+            _ if at_bound => Self::AtBound,
             (Some(_), None) => Self::Undetermined,
             (Some(bounds), Some(error)) if bounds.is_lost_in(error) => Self::Undetermined,
             (Some(_), Some(_)) => Self::Fitted,
