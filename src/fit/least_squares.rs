@@ -253,6 +253,16 @@ impl Space {
         Self { flats: flats.collect(), free, bounds }
     }
 
+    /// What a fit could do with a free parameter.
+    fn status(&self, covariance: &Covariance, place: usize) -> Status {
+        let is_lost = |error| self.bounds.get(place).is_some_and(|bounds| bounds.is_lost_in(error));
+        match covariance.std_error(place) {
+            _ if covariance.is_at_bound(place) => Status::AtBound,
+            Some(error) if !is_lost(error) => Status::Fitted,
+            _ => Status::Undetermined,
+        }
+    }
+
     /// All values of the model, with the free ones where the optimiser's variables are.
     fn values(&self, start: &[f64], variables: &DVector<f64>) -> Vec<f64> {
         let mut values = start.to_vec();
@@ -593,10 +603,8 @@ impl Search<'_, '_> {
         );
         let parameter = |(index, (name, value)): (usize, (String, f64))| {
             let place = space.free.iter().position(|free| *free == index);
-            let bounds = place.and_then(|place| space.bounds.get(place));
+            let status = place.map_or(Status::Fixed, |place| space.status(&covariance, place));
             let std_error = place.and_then(|place| covariance.std_error(place));
-            let at_bound = place.is_some_and(|place| covariance.is_at_bound(place));
-            let status = Status::of(at_bound, std_error, bounds);
             let std_error = std_error.filter(|_| status != Status::Undetermined);
             Parameter { name, value, std_error, status }
         };
@@ -608,18 +616,6 @@ impl Search<'_, '_> {
             model,
             termination: self.termination,
             simulations,
-        }
-    }
-}
-
-impl Status {
-    fn of(at_bound: bool, std_error: Option<f64>, bounds: Option<&Bounds>) -> Self {
-        match (bounds, std_error) {
-            (None, _) => Self::Fixed,
-            _ if at_bound => Self::AtBound,
-            (Some(_), None) => Self::Undetermined,
-            (Some(bounds), Some(error)) if bounds.is_lost_in(error) => Self::Undetermined,
-            (Some(_), Some(_)) => Self::Fitted,
         }
     }
 }
