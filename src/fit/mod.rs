@@ -8,8 +8,13 @@
 mod bounds;
 mod covariance;
 mod least_squares;
+mod problem;
 mod record;
+mod run;
+mod search;
+mod space;
 mod speed;
+mod starts;
 
 pub use least_squares::{Fit, FitError, Parameter, Status, Termination, assess, fit};
 pub use record::{Evaluation, Horizon, Part, Record, Split, Window};

@@ -2,10 +2,11 @@
 
 use nalgebra::DVector;
 
+use super::run::Run;
 use super::speed;
 use crate::effect::RecordRange;
 use crate::experiment::{Joint, Trial};
-use crate::model::{Arrivals, JointModel, Restart, Simulated, Surroundings, arrivals, simulate};
+use crate::model::{Arrivals, JointModel, Simulated, Surroundings, arrivals};
 
 /// How long a simulation runs before its angle is set to the measured one again.
 ///
@@ -179,7 +180,7 @@ impl<'a> Record<'a> {
             starts: Vec::new(),
             slopes: Vec::new(),
         };
-        for run in indices.filter_map(|index| Run::new(self, model, index, weights)) {
+        for run in indices.filter_map(|index| self.run(model, index, weights)) {
             let (starts, slope) = run.best();
             let (simulated, residuals) = run.from(&starts, slope.as_deref());
             all.simulated.push(simulated);
@@ -199,7 +200,7 @@ impl<'a> Record<'a> {
     ) -> Vec<Vec<f64>> {
         let known = near.starts.iter().zip(&near.slopes).enumerate();
         let residuals = known.filter_map(|(index, (starts, slope))| {
-            let run = Run::new(self, model, index, weights)?;
+            let run = self.run(model, index, weights)?;
             Some(run.from(starts, slope.as_deref()).1)
         });
         residuals.collect()
@@ -225,6 +226,33 @@ impl<'a> Record<'a> {
         let cut = |w: &Window| values.get(w.trial)?.get(w.start..w.end);
         let values = self.part(Part::Training).filter_map(cut);
         DVector::from_vec(values.flatten().copied().collect())
+    }
+
+    /// The model on one trial.
+    fn run<'m>(
+        &'m self,
+        model: &'m JointModel,
+        index: usize,
+        weights: Option<&'m Weights>,
+    ) -> Option<Run<'m>> {
+        let trial = self.joint.trials.get(index)?;
+        let surroundings = Surroundings {
+            others: self.others.get(index).map_or(&[], Vec::as_slice),
+            radians_per_output_unit: self.radians_per_output_unit,
+            start_s: self.start_s(trial),
+        };
+        let windows = self.windows.iter().filter(|window| window.trial == index).copied();
+        let arrivals = self.arrivals(model, index);
+        let weights = weights.and_then(|weights| weights.get(index)).map(Vec::as_slice);
+        Some(Run {
+            model,
+            trial,
+            arrivals,
+            surroundings,
+            windows: windows.collect(),
+            weights,
+            speeds_measured: self.speeds_measured && model.has_dynamics(),
+        })
     }
 
     /// When each level of the input of a trial begins to act.
@@ -276,121 +304,6 @@ fn radians(unit: Option<&str>) -> f64 {
         Some("mrad") => 1e-3,
         Some("rev" | "turn") => std::f64::consts::TAU,
         _ => 1f64.to_radians(),
-    }
-}
-
-/// The simulations of a model on one trial.
-struct Run<'a> {
-    model: &'a JointModel,
-    trial: &'a Trial,
-    arrivals: Arrivals,
-    surroundings: Surroundings<'a>,
-    windows: Vec<Window>,
-    weights: Option<&'a [f64]>,
-    speeds_measured: bool,
-}
-
-impl<'a> Run<'a> {
-    fn new(
-        record: &'a Record<'_>,
-        model: &'a JointModel,
-        index: usize,
-        weights: Option<&'a Weights>,
-    ) -> Option<Self> {
-        let trial = record.joint.trials.get(index)?;
-        let surroundings = Surroundings {
-            others: record.others.get(index).map_or(&[], Vec::as_slice),
-            radians_per_output_unit: record.radians_per_output_unit,
-            start_s: record.start_s(trial),
-        };
-        let windows = record.windows.iter().filter(|window| window.trial == index).copied();
-        let arrivals = record.arrivals(model, index);
-        let weights = weights.and_then(|weights| weights.get(index)).map(Vec::as_slice);
-        Some(Self {
-            model,
-            trial,
-            arrivals,
-            surroundings,
-            windows: windows.collect(),
-            weights,
-            speeds_measured: record.speeds_measured && model.has_dynamics(),
-        })
-    }
-
-    /// The outputs at the start of the windows that make their squared error least, and
-    /// the slope of the simulated output to them, where it is not 1.
-    ///
-    /// Without a slope the measured outputs will do: what they are wrong by is the same at
-    /// all samples of a window.
-    fn best(&self) -> (Vec<f64>, Option<Vec<f64>>) {
-        let measured = self.trial.output();
-        let start = |w: &Window| measured.get(w.start).copied().unwrap_or_default();
-        let starts: Vec<f64> = self.windows.iter().map(start).collect();
-        if !self.model.depends_on_angle() {
-            return (starts, None);
-        }
-        let simulated = self.simulate(&starts).output;
-        let ahead: Vec<f64> = starts.iter().map(|start| start + self.nudge()).collect();
-        let ahead = self.simulate(&ahead).output;
-        let pairs = ahead.iter().zip(&simulated);
-        let slope: Vec<f64> = pairs.map(|(a, b)| (a - b) / self.nudge()).collect();
-        let wrong = self.shifts(&simulated, Some(&slope));
-        (starts.iter().zip(wrong).map(|(start, by)| start + by).collect(), Some(slope))
-    }
-
-    /// The simulation from `starts` and its residuals; what the starts are still wrong by
-    /// is taken off as far as it is linear.
-    fn from(&self, starts: &[f64], slope: Option<&[f64]>) -> (Simulated, Vec<f64>) {
-        let mut simulated = self.simulate(starts);
-        let shifts = self.shifts(&simulated.output, slope);
-        for (window, shift) in self.windows.iter().zip(shifts) {
-            let values = simulated.output.get_mut(window.start..window.end).unwrap_or_default();
-            for (index, value) in (window.start..).zip(values) {
-                *value += shift * slope.map_or(1.0, |g| g.get(index).copied().unwrap_or(1.0));
-            }
-        }
-        let pairs = self.trial.output().iter().zip(&simulated.output);
-        let residuals = pairs.map(|(y, s)| y - s).collect();
-        (simulated, residuals)
-    }
-
-    /// A small part of what the output spans.
-    fn nudge(&self) -> f64 {
-        /// Small against what changes an effect, large against rounding.
-        const PART: f64 = 1e-5;
-        let output = self.trial.output().iter().copied();
-        let (low, high) = output.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
-        PART * (high - low).max(f64::MIN_POSITIVE.sqrt())
-    }
-
-    fn simulate(&self, starts: &[f64]) -> Simulated {
-        let restart = |(window, output): (&Window, &f64)| Restart {
-            sample: window.start,
-            output: *output,
-            speed: self
-                .speeds_measured
-                .then(|| speed::measured(self.trial, window.start))
-                .flatten(),
-        };
-        let restarts: Vec<_> = self.windows.iter().zip(starts).map(restart).collect();
-        let (samples, period_s) = (self.trial.len(), self.trial.period().seconds());
-        simulate(self.model, &self.arrivals, samples, period_s, &restarts, &self.surroundings)
-    }
-
-    /// By how much the start of each window is wrong: `Σ w g r / Σ w g²`, with the slope
-    /// `g` of the output to it (1 where there is none).
-    fn shifts(&self, simulated: &[f64], slope: Option<&[f64]>) -> Vec<f64> {
-        let shift = |window: &Window| {
-            let (mut with, mut square) = (0.0, f64::MIN_POSITIVE);
-            for index in window.start..window.end {
-                let at = |values: &[f64]| values.get(index).copied().unwrap_or(1.0);
-                let (g, w) = (slope.map_or(1.0, at), self.weights.map_or(1.0, at));
-                with += w * g * (at(self.trial.output()) - at(simulated));
-                square += w * g * g;
-            }
-            with / square
-        };
-        self.windows.iter().map(shift).collect()
     }
 }
 

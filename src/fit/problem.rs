@@ -1,0 +1,196 @@
+//! A model on a record, as the optimiser sees it.
+
+use std::cell::{Cell, OnceCell};
+
+use levenberg_marquardt::LeastSquaresProblem;
+use nalgebra::storage::Owned;
+use nalgebra::{DMatrix, DVector, Dyn};
+
+use super::bounds::Bounds;
+use super::covariance::robust_scale;
+use super::record::{Evaluation, Record, Weights};
+use super::space::Space;
+use crate::model::JointModel;
+
+/// What the optimiser works on.
+pub(super) struct Problem<'p, 'r> {
+    pub(super) record: &'p Record<'r>,
+    pub(super) model: &'p JointModel,
+    pub(super) space: &'p Space,
+    pub(super) start: Vec<f64>,
+    pub(super) variables: DVector<f64>,
+    /// Whether the optimiser has it: before, the start holds, also where it is on a bound.
+    pub(super) moves: bool,
+    pub(super) weights: Option<Weights>,
+    /// The evaluation at `variables`, once it is asked for.
+    pub(super) here: OnceCell<Evaluation>,
+    pub(super) evaluations: Cell<usize>,
+}
+
+impl Problem<'_, '_> {
+    fn model_at(&self, variables: &DVector<f64>) -> JointModel {
+        self.model.with_values(&self.space.values(&self.start, variables))
+    }
+
+    pub(super) fn model_now(&self) -> JointModel {
+        if self.moves {
+            self.model_at(&self.variables)
+        } else {
+            self.model.with_values(&self.start)
+        }
+    }
+
+    pub(super) fn here(&self) -> &Evaluation {
+        self.here.get_or_init(|| {
+            self.evaluations.set(self.evaluations.get() + 1);
+            self.record.evaluate_weighted(&self.model_now(), self.weights.as_ref())
+        })
+    }
+
+    /// The residuals of the training windows, one behind the other, times the roots of
+    /// their weights.
+    fn weighted(&self, residuals: &[Vec<f64>]) -> DVector<f64> {
+        let mut residuals = self.record.training(residuals);
+        if let Some(weights) = &self.weights {
+            let weights = self.record.training(weights);
+            residuals.zip_apply(&weights, |residual, weight| *residual *= weight.sqrt());
+        }
+        residuals
+    }
+
+    /// The slope of the residuals, which are `here` now, to one variable.
+    fn slope(&self, place: usize, here: &DVector<f64>) -> DVector<f64> {
+        /// A step in an angle, or in parts of a value.
+        const STEP: f64 = 1e-6;
+        let mut variables = self.variables.clone();
+        let step = variables.get(place).map_or(STEP, |v| STEP * v.abs().max(0.1));
+        if let Some(variable) = variables.get_mut(place) {
+            *variable += step;
+        }
+        self.evaluations.set(self.evaluations.get() + 1);
+        let (model, weights) = (self.model_at(&variables), self.weights.as_ref());
+        (self.weighted(&self.record.residuals_near(&model, weights, self.here())) - here) / step
+    }
+
+    /// Sets weights anew from the residuals; whether there is anything to weigh.
+    pub(super) fn reweigh(&mut self) -> bool {
+        let weights = huber(self.record, &self.here().residuals);
+        let any = weights.is_some() || self.weights.is_some();
+        if any {
+            self.weights = weights;
+            self.here.take();
+        }
+        any
+    }
+
+    /// The robust error of the training windows.
+    pub(super) fn cost(&self) -> f64 {
+        huber_cost(&self.record.training(&self.here().residuals))
+    }
+
+    /// Moves a variable on whose small changes nothing depends to the best of the values
+    /// between which it matters; whether that is another one.
+    pub(super) fn cross_flat(&mut self, place: usize) -> bool {
+        /// Values that are tried first; then those about the best of them.
+        const COARSE: usize = 24;
+        let values = self.space.flats.get(place).map_or(&[][..], Vec::as_slice);
+        let stride = values.len().div_ceil(COARSE).max(1);
+        let (cost, start) = (self.cost(), self.variables.clone());
+        let coarse: Vec<usize> = (0..values.len()).step_by(stride).collect();
+        let Some((_, about)) = self.best_of(place, values, coarse) else { return false };
+        let near = about.saturating_sub(stride)..(about + stride).min(values.len());
+        let best = self.best_of(place, values, near).filter(|(least, _)| *least < cost);
+        self.set_params(&start);
+        let Some(value) = best.and_then(|(_, index)| values.get(index)) else { return false };
+        self.set_value(place, *value);
+        true
+    }
+
+    /// The least error with one of `values` for a variable, and its index.
+    fn best_of(
+        &mut self,
+        place: usize,
+        values: &[f64],
+        indices: impl IntoIterator<Item = usize>,
+    ) -> Option<(f64, usize)> {
+        let costs = indices.into_iter().filter_map(|index| {
+            self.set_value(place, *values.get(index)?);
+            Some((self.cost(), index))
+        });
+        costs.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Sets one variable to that of `value`.
+    fn set_value(&mut self, place: usize, value: f64) {
+        let pair = self.variables.get_mut(place).zip(self.space.bounds.get(place));
+        if let Some((variable, bounds)) = pair {
+            *variable = bounds.free(value);
+        }
+        self.here.take();
+    }
+}
+
+impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, '_> {
+    type ResidualStorage = Owned<f64, Dyn>;
+    type JacobianStorage = Owned<f64, Dyn, Dyn>;
+    type ParameterStorage = Owned<f64, Dyn>;
+
+    fn set_params(&mut self, variables: &DVector<f64>) {
+        self.variables.copy_from(variables);
+        self.here.take();
+    }
+
+    fn params(&self) -> DVector<f64> {
+        self.variables.clone()
+    }
+
+    fn residuals(&self) -> Option<DVector<f64>> {
+        let residuals = self.weighted(&self.here().residuals);
+        residuals.iter().all(|r| r.is_finite()).then_some(residuals)
+    }
+
+    /// By differences in the optimiser's variables, windows starting where they do here. A
+    /// variable that has come to its bound stays there.
+    fn jacobian(&self) -> Option<DMatrix<f64>> {
+        let here = self.weighted(&self.here().residuals);
+        let noise = here.norm() / (here.len() as f64).sqrt();
+        let column = |(place, bounds): (usize, &Bounds)| {
+            let mut column = self.slope(place, &here);
+            let std_error = noise / column.norm();
+            let variable = self.variables.get(place).copied().unwrap_or_default();
+            if bounds.stops(variable, column.dot(&here), std_error) {
+                column.fill(0.0);
+            }
+            column
+        };
+        let columns: Vec<_> = self.space.bounds.iter().enumerate().map(column).collect();
+        let finite = columns.iter().all(|column| column.iter().all(|value| value.is_finite()));
+        finite.then(|| DMatrix::from_columns(&columns))
+    }
+}
+
+/// Residuals beyond this many robust standard deviations are weighted down; it keeps
+/// 95 % of the efficiency on normal noise (Huber 1964).
+const HUBER: f64 = 1.345;
+
+/// The weights, or `None` where there is no outlier to speak of.
+fn huber(record: &Record<'_>, residuals: &[Vec<f64>]) -> Option<Weights> {
+    /// In normal noise no sample of a long record lies so far out.
+    const OUTLIER: f64 = 6.0;
+    let training = record.training(residuals);
+    let scale = robust_scale(training.as_slice());
+    let is_outlier = |r: &f64| r.abs() > OUTLIER * scale;
+    if scale <= 0.0 || !training.iter().any(is_outlier) {
+        return None;
+    }
+    let weight = |r: &f64| HUBER * scale / r.abs().max(HUBER * scale);
+    Some(residuals.iter().map(|residuals| residuals.iter().map(weight).collect()).collect())
+}
+
+/// The sum of squares, outliers counted by their distance only.
+fn huber_cost(residuals: &DVector<f64>) -> f64 {
+    let limit = HUBER * robust_scale(residuals.as_slice());
+    let cost = |r: f64| if r.abs() <= limit { r * r } else { limit * (2.0 * r.abs() - limit) };
+    let cost: f64 = residuals.iter().map(|r| cost(*r)).sum();
+    if cost.is_finite() { cost } else { f64::INFINITY }
+}

@@ -1,0 +1,95 @@
+//! The simulations of a model on one trial.
+
+use super::record::Window;
+use super::speed;
+use crate::experiment::Trial;
+use crate::model::{Arrivals, JointModel, Restart, Simulated, Surroundings, simulate};
+
+/// A model on one trial, and what the two need of the record.
+pub(super) struct Run<'a> {
+    pub(super) model: &'a JointModel,
+    pub(super) trial: &'a Trial,
+    pub(super) arrivals: Arrivals,
+    pub(super) surroundings: Surroundings<'a>,
+    pub(super) windows: Vec<Window>,
+    pub(super) weights: Option<&'a [f64]>,
+    pub(super) speeds_measured: bool,
+}
+
+impl Run<'_> {
+    /// The outputs at the start of the windows that make their squared error least, and
+    /// the slope of the simulated output to them, where it is not 1.
+    ///
+    /// Without a slope the measured outputs will do: what they are wrong by is the same at
+    /// all samples of a window.
+    pub(super) fn best(&self) -> (Vec<f64>, Option<Vec<f64>>) {
+        let measured = self.trial.output();
+        let start = |w: &Window| measured.get(w.start).copied().unwrap_or_default();
+        let starts: Vec<f64> = self.windows.iter().map(start).collect();
+        if !self.model.depends_on_angle() {
+            return (starts, None);
+        }
+        let simulated = self.simulate(&starts).output;
+        let ahead: Vec<f64> = starts.iter().map(|start| start + self.nudge()).collect();
+        let ahead = self.simulate(&ahead).output;
+        let pairs = ahead.iter().zip(&simulated);
+        let slope: Vec<f64> = pairs.map(|(a, b)| (a - b) / self.nudge()).collect();
+        let wrong = self.shifts(&simulated, Some(&slope));
+        (starts.iter().zip(wrong).map(|(start, by)| start + by).collect(), Some(slope))
+    }
+
+    /// The simulation from `starts` and its residuals; what the starts are still wrong by
+    /// is taken off as far as it is linear.
+    pub(super) fn from(&self, starts: &[f64], slope: Option<&[f64]>) -> (Simulated, Vec<f64>) {
+        let mut simulated = self.simulate(starts);
+        let shifts = self.shifts(&simulated.output, slope);
+        for (window, shift) in self.windows.iter().zip(shifts) {
+            let values = simulated.output.get_mut(window.start..window.end).unwrap_or_default();
+            for (index, value) in (window.start..).zip(values) {
+                *value += shift * slope.map_or(1.0, |g| g.get(index).copied().unwrap_or(1.0));
+            }
+        }
+        let pairs = self.trial.output().iter().zip(&simulated.output);
+        let residuals = pairs.map(|(y, s)| y - s).collect();
+        (simulated, residuals)
+    }
+
+    /// A small part of what the output spans.
+    fn nudge(&self) -> f64 {
+        /// Small against what changes an effect, large against rounding.
+        const PART: f64 = 1e-5;
+        let output = self.trial.output().iter().copied();
+        let (low, high) = output.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
+        PART * (high - low).max(f64::MIN_POSITIVE.sqrt())
+    }
+
+    fn simulate(&self, starts: &[f64]) -> Simulated {
+        let restart = |(window, output): (&Window, &f64)| Restart {
+            sample: window.start,
+            output: *output,
+            speed: self
+                .speeds_measured
+                .then(|| speed::measured(self.trial, window.start))
+                .flatten(),
+        };
+        let restarts: Vec<_> = self.windows.iter().zip(starts).map(restart).collect();
+        let (samples, period_s) = (self.trial.len(), self.trial.period().seconds());
+        simulate(self.model, &self.arrivals, samples, period_s, &restarts, &self.surroundings)
+    }
+
+    /// By how much the start of each window is wrong: `Σ w g r / Σ w g²`, with the slope
+    /// `g` of the output to it (1 where there is none).
+    fn shifts(&self, simulated: &[f64], slope: Option<&[f64]>) -> Vec<f64> {
+        let shift = |window: &Window| {
+            let (mut with, mut square) = (0.0, f64::MIN_POSITIVE);
+            for index in window.start..window.end {
+                let at = |values: &[f64]| values.get(index).copied().unwrap_or(1.0);
+                let (g, w) = (slope.map_or(1.0, at), self.weights.map_or(1.0, at));
+                with += w * g * (at(self.trial.output()) - at(simulated));
+                square += w * g * g;
+            }
+            with / square
+        };
+        self.windows.iter().map(shift).collect()
+    }
+}
