@@ -144,6 +144,7 @@ impl<'a> Record<'a> {
         let windows = self.joint.trials.iter().enumerate();
         let windows = windows.flat_map(|(index, trial)| cut(trial, index, self.split, horizon));
         record.windows = windows.collect();
+        record.speeds_measured = speed::are_measured(&self.joint.trials, &record.windows);
         record
     }
 
