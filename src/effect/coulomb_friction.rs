@@ -64,7 +64,7 @@ static SPEC: Spec = Spec {
             .between(0.0, UNLIMITED),
     ],
     memory: 1 + DECAY_MEMORY,
-    confused_with: &["dead_band", "stiction"],
+    confused_with: &["dead_band", "stiction", "input_offset"],
     absorbs: &["actuator_lag"],
     acts_on_state: false,
 };

@@ -27,7 +27,7 @@ static SPEC: Spec = Spec {
         Parameter::new("offset", "what is added to the input", Dimension::Input).typical(0.02)
     ],
     memory: 0,
-    confused_with: &["direction_gain", "leakage"],
+    confused_with: &["direction_gain", "leakage", "coulomb_friction"],
     absorbs: &[],
     acts_on_state: false,
 };
