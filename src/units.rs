@@ -32,6 +32,11 @@ impl fmt::Display for SamplePeriod {
     }
 }
 
+/// A number of samples, for differences that may be negative.
+pub(crate) fn signed(samples: usize) -> i64 {
+    i64::try_from(samples).unwrap_or(i64::MAX)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -11,6 +11,7 @@ use super::segment::Segment;
 use super::steps::{InputStep, input_steps};
 use crate::experiment::Trial;
 use crate::filter::{FilterError, LowPass};
+use crate::units::signed;
 
 /// Settings of Algorithm 1; the default is the paper's way.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -225,10 +226,6 @@ impl Decision {
         let accepted = self.verdict() == Verdict::Accepted;
         self.breakpoint().filter(|_| accepted).map(|best| best.delay as f64)
     }
-}
-
-fn signed(samples: usize) -> i64 {
-    i64::try_from(samples).unwrap_or(i64::MAX)
 }
 
 /// Estimates the delay of every input step of `trial`.

@@ -127,25 +127,20 @@ impl Candidates {
 
     /// The candidate at `index`, which is `f − 1`.
     pub fn get(&self, index: usize) -> Option<Candidate> {
-        Some(Candidate {
-            f: index + 1,
-            breakpoint: self.first_sample + (index + 1) * self.beta,
-            sse: *self.sse.get(index)?,
-            before: *self.before.get(index)?,
-            after: *self.after.get(index)?,
-        })
+        let (before, after) = (*self.before.get(index)?, *self.after.get(index)?);
+        Some(self.candidate(index, *self.sse.get(index)?, before, after))
+    }
+
+    fn candidate(&self, index: usize, sse: f64, before: Line, after: Line) -> Candidate {
+        let f = index + 1;
+        Candidate { f, breakpoint: self.first_sample + f * self.beta, sse, before, after }
     }
 
     /// All candidates, in the order of their breakpoints.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = Candidate> + '_ {
         let lines = self.before.iter().zip(&self.after);
-        self.sse.iter().zip(lines).enumerate().map(|(index, (&sse, (&before, &after)))| Candidate {
-            f: index + 1,
-            breakpoint: self.first_sample + (index + 1) * self.beta,
-            sse,
-            before,
-            after,
-        })
+        let all = self.sse.iter().zip(lines).enumerate();
+        all.map(|(index, (&sse, (&before, &after)))| self.candidate(index, sse, before, after))
     }
 
     /// The candidate with the lowest squared error, the first of those that tie.

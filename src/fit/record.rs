@@ -140,12 +140,8 @@ impl<'a> Record<'a> {
     /// The same trials and surroundings with another horizon.
     #[must_use]
     pub fn with_horizon(&self, horizon: Horizon) -> Self {
-        let mut record = self.clone();
-        let windows = self.joint.trials.iter().enumerate();
-        let windows = windows.flat_map(|(index, trial)| cut(trial, index, self.split, horizon));
-        record.windows = windows.collect();
-        record.speeds_measured = speed::are_measured(&self.joint.trials, &record.windows);
-        record
+        let (others, delays) = (self.others.clone(), self.delays.clone());
+        Self { others, delays, ..Self::new(self.joint, self.split, horizon) }
     }
 
     /// The joint.

@@ -11,7 +11,7 @@ use super::error::RecordError;
 use super::layout::{Detail, JointLayout};
 use crate::delay::Settings;
 use crate::experiment::ReadOptions;
-use crate::report::{DelayRange, JointSummary};
+use crate::report::{JointSummary, SUMMARY_HEADER, summary_cells};
 
 /// Adds the page at `/about`.
 pub(super) fn add(
@@ -27,21 +27,11 @@ pub(super) fn add(
 fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String, std::fmt::Error> {
     let mut page = String::new();
     writeln!(page, "# Delays of {} joints\n", recording.joints.len())?;
-    writeln!(page, "| joint | steps | accepted | rejected | delay min | median | max |")?;
+    writeln!(page, "| {} |", SUMMARY_HEADER.join(" | "))?;
     writeln!(page, "|---|---|---|---|---|---|---|")?;
     for joint in recording.joints {
-        let summary = JointSummary::of(*joint);
-        let why: Vec<_> = summary.rejected.iter().map(|(why, n)| format!("{why} {n}")).collect();
-        let seconds = |value: fn(&DelayRange) -> f64| {
-            summary
-                .delay_s
-                .as_ref()
-                .map_or("-".to_owned(), |range| format!("{:.3} s", value(range)))
-        };
-        let (min, median, max) = (seconds(|r| r.min), seconds(|r| r.median), seconds(|r| r.max));
-        let JointSummary { steps, accepted, .. } = summary;
-        let (name, why) = (plain(&joint.joint.name), why.join(", "));
-        writeln!(page, "| {name} | {steps} | {accepted} | {why} | {min} | {median} | {max} |")?;
+        let cells = summary_cells(&plain(&joint.joint.name), &JointSummary::of(*joint));
+        writeln!(page, "| {} |", cells.join(" | "))?;
     }
     writeln!(page, "\n## Settings\n\n| setting | value |\n|---|---|")?;
     for (name, value) in settings(recording.settings) {

@@ -5,9 +5,10 @@ use rerun::{EntityPath, Scalars, SeriesLines, SeriesPoints, components::MarkerSh
 use super::chunk::{Chunks, Index, integers, numbers, texts};
 use super::entity::below;
 use super::error::RecordError;
-use super::layout::{JointLayout, SegmentLayout, TrialLayout, signed};
+use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::palette::{self, color};
 use crate::delay::{Candidate, Verdict};
+use crate::units::signed;
 
 /// Adds `/decision/sse`, its logarithm for the plot, and `/decision/table`.
 pub(super) fn add(

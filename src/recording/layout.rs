@@ -17,6 +17,7 @@ use super::chunk::Moment;
 use crate::delay::{Decision, TrialEstimate, Verdict};
 use crate::experiment::Trial;
 use crate::report::EstimatedJoint;
+use crate::units::signed;
 
 /// How many candidates of each segment are recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -249,8 +250,4 @@ impl<'a> TrialLayout<'a> {
             Some((self.moment(segment, decision, candidate.breakpoint), candidate))
         })
     }
-}
-
-pub(super) fn signed(count: usize) -> i64 {
-    i64::try_from(count).unwrap_or(i64::MAX)
 }

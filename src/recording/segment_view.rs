@@ -13,11 +13,12 @@ use super::canvas::{Labels, Plot, Span, simplified, thinned};
 use super::chunk::{Chunks, Index};
 use super::entity::below;
 use super::error::RecordError;
-use super::layout::{JointLayout, SegmentLayout, TrialLayout, signed};
+use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::palette::{self, Rgb, color};
 use crate::delay::{Candidate, Line, Verdict};
 use crate::experiment::Joint;
 use crate::report::number;
+use crate::units::signed;
 
 /// Radius of a text's own point: too small to be seen.
 const HIDDEN: f32 = 0.01;

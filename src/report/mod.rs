@@ -17,6 +17,8 @@ pub use json::EstimateJson;
 pub use number::number;
 pub use summary::{DelayRange, JointSummary};
 pub use text::estimate_table;
+#[cfg(feature = "rrd")]
+pub(crate) use text::{SUMMARY_HEADER, summary_cells};
 
 use crate::batch::JointEstimate;
 use crate::experiment::Joint;

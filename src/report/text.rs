@@ -12,9 +12,9 @@ pub fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings) -> Str
     table
         .load_style(presets::UTF8_BORDERS_ONLY)
         .set_content_arrangement(ContentArrangement::Disabled)
-        .set_header(["joint", "steps", "accepted", "rejected", "delay min", "median", "max"]);
+        .set_header(SUMMARY_HEADER);
     for joint in joints {
-        table.add_row(row(&joint.joint.name, &JointSummary::of(*joint)));
+        table.add_row(summary_cells(&joint.joint.name, &JointSummary::of(*joint)));
     }
     for right in [1, 2, 4, 5, 6] {
         if let Some(column) = table.column_mut(right) {
@@ -24,7 +24,12 @@ pub fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings) -> Str
     format!("{table}\n{}\n", settings_line(settings))
 }
 
-fn row(name: &str, summary: &JointSummary) -> [String; 7] {
+/// What the cells of [`summary_cells`] are.
+pub(crate) const SUMMARY_HEADER: [&str; 7] =
+    ["joint", "steps", "accepted", "rejected", "delay min", "median", "max"];
+
+/// A joint in one row, for people.
+pub(crate) fn summary_cells(name: &str, summary: &JointSummary) -> [String; 7] {
     let JointSummary { steps, accepted, rejected, delay_s, .. } = summary;
     let percent = |share: f64| format!("{accepted} ({:.0} %)", 100.0 * share);
     let accepted = match steps {
