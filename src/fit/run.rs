@@ -30,10 +30,11 @@ impl Run<'_> {
             return (starts, None);
         }
         let simulated = self.simulate(&starts).output;
-        let ahead: Vec<f64> = starts.iter().map(|start| start + self.nudge()).collect();
+        let nudge = self.nudge();
+        let ahead: Vec<f64> = starts.iter().map(|start| start + nudge).collect();
         let ahead = self.simulate(&ahead).output;
         let pairs = ahead.iter().zip(&simulated);
-        let slope: Vec<f64> = pairs.map(|(a, b)| (a - b) / self.nudge()).collect();
+        let slope: Vec<f64> = pairs.map(|(a, b)| (a - b) / nudge).collect();
         let wrong = self.shifts(&simulated, Some(&slope));
         (starts.iter().zip(wrong).map(|(start, by)| start + by).collect(), Some(slope))
     }
