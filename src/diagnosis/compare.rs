@@ -2,9 +2,10 @@
 
 use std::ops::Range;
 
-use super::failure::{self, Diagnosis, Samples, diagnose};
+use super::failure::{self, Diagnosis, Region, Samples, diagnose, regions};
 use super::shapes::shapes;
-use super::{ErrorFigures, LackOfFit, TestColumns, lack_of_fit, noise_floor};
+use super::{ErrorFigures, InputCorrelation, LackOfFit, TestColumns, TrialSignals, Whiteness};
+use super::{input_correlation, lack_of_fit, noise_floor, whiteness};
 use crate::fit::{Evaluation, Fit, Horizon, Part, Record};
 use crate::model::JointModel;
 
@@ -22,9 +23,18 @@ pub struct Comparison {
     /// Whether the residual of the training part is more than noise; `None` where there
     /// are too few samples to tell.
     pub lack_of_fit: Option<LackOfFit>,
+    /// How the residual of the training part is correlated with itself; `None` where there
+    /// are too few samples, or trials are sampled at different rates.
+    pub whiteness: Option<Whiteness>,
+    /// How its changes are correlated with those of the input; `None` likewise, and where
+    /// the input never changes.
+    pub input_correlation: Option<InputCorrelation>,
     /// Where the error is, where a lack of fit is shown: of the model restarted at every
     /// step of the input, so that an error counts where it is made.
     pub failure: Option<Diagnosis>,
+    /// The error in each part of each feature, of the restarted model, whether or not a
+    /// lack of fit is shown.
+    pub regions: Vec<Region>,
 }
 
 /// Sets all figures of `fit` on `record` beside one another.
@@ -40,19 +50,48 @@ pub fn compare(record: &Record<'_>, fit: Fit) -> Comparison {
     };
     let lack_of_fit = lack_of_fit(&columns);
     let fails = lack_of_fit.is_some_and(|test| !test.adequate);
-    let failure = fails.then(|| failure_of(record, &fit.model)).flatten();
+    let restarted = restarted(record, &fit.model);
+    let failure = restarted.as_ref().filter(|_| fails).map(diagnose);
+    let signals = training_signals(record, &fit.evaluation);
+    let period_s = common_period_s(record);
     Comparison {
         training: error(Part::Training),
         validation: error(Part::Validation),
         noise_floor,
         lack_of_fit,
+        whiteness: period_s.and_then(|period_s| whiteness(&signals, period_s)),
+        input_correlation: period_s.and_then(|period_s| input_correlation(&signals, period_s)),
         failure,
+        regions: restarted.as_ref().map(regions).unwrap_or_default(),
         fit,
     }
 }
 
-/// Where `model` fails, restarted at every step of the input.
-fn failure_of(record: &Record<'_>, model: &JointModel) -> Option<Diagnosis> {
+/// The training part of each trial.
+fn training_signals<'a>(record: &Record<'a>, evaluation: &'a Evaluation) -> Vec<TrialSignals<'a>> {
+    let trials = record.joint().trials.iter().zip(&evaluation.simulated);
+    let residuals = evaluation.residuals.iter().enumerate();
+    let signals = trials.zip(residuals).map(|((trial, simulated), (index, residual))| {
+        let windows = record.part(Part::Training).filter(|window| window.trial == index);
+        TrialSignals {
+            residual,
+            windows: windows.map(|window| window.start..window.end).collect(),
+            acting: &simulated.acting,
+            raw: trial.input(),
+        }
+    });
+    signals.collect()
+}
+
+/// The sample period, where it is the same in all trials to one percent.
+fn common_period_s(record: &Record<'_>) -> Option<f64> {
+    let mut periods = record.joint().trials.iter().map(|trial| trial.period().seconds());
+    let first = periods.next()?;
+    periods.all(|period| (period / first - 1.0).abs() < 0.01).then_some(first)
+}
+
+/// The residual of `model` restarted at every step of the input, with what happened.
+fn restarted(record: &Record<'_>, model: &JointModel) -> Option<failure::Record> {
     let restarted = record.with_horizon(Horizon::Steps);
     let evaluation = restarted.evaluate(model);
     let trials = &record.joint().trials;
@@ -75,7 +114,7 @@ fn failure_of(record: &Record<'_>, model: &JointModel) -> Option<Diagnosis> {
         samples.trial.extend(std::iter::repeat_n(index, trial.len()));
     }
     let labels = trials.iter().map(|trial| trial.label().to_owned()).collect();
-    failure::Record::new(samples, labels, segments).ok().map(|record| diagnose(&record))
+    failure::Record::new(samples, labels, segments).ok()
 }
 
 /// Spans of samples with one level.

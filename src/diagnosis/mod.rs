@@ -3,9 +3,12 @@
 //! - [`compare`]: all figures of one model on one record
 //! - [`noise_floor`]: what the measurement itself cannot tell
 //! - [`lack_of_fit`]: whether the residual is more than noise
+//! - [`whiteness`], [`input_correlation`]: how the residual is correlated, with itself and
+//!   with the input
 //! - [`failure`]: where the error is
 
 mod compare;
+mod correlation;
 mod error;
 pub mod failure;
 mod lack_of_fit;
@@ -13,6 +16,10 @@ mod noise;
 mod shapes;
 
 pub use compare::{Comparison, compare};
+pub use correlation::{
+    CONFIDENCE, CrossCorrelation, InputCorrelation, TrialSignals, Whiteness, input_correlation,
+    whiteness,
+};
 pub use error::ErrorFigures;
 pub use lack_of_fit::{LackOfFit, SIGNIFICANCE, TestColumns, lack_of_fit};
 pub use noise::noise_floor;

@@ -27,25 +27,19 @@ pub use segments::{WorstSegment, worst_segments};
 
 use serde::Serialize;
 
-/// Where a model fails, in every form.
+/// Where a model fails: what is named of it. All parts are [`regions`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Diagnosis {
     /// The conditions that hold most of the squared error, the best first.
     pub fails_where: Vec<FailsWhere>,
     /// The segments with more than their share, the worst first.
     pub worst_segments: Vec<WorstSegment>,
-    /// Every part of every feature.
-    pub regions: Vec<Region>,
 }
 
 /// Segments that are named.
 const WORST: usize = 5;
 
-/// All of [`fails_where`], [`worst_segments`] (five of them) and [`regions`].
+/// Both [`fails_where`] and [`worst_segments`] (five of them).
 pub fn diagnose(record: &Record) -> Diagnosis {
-    Diagnosis {
-        fails_where: fails_where(record),
-        worst_segments: worst_segments(record, WORST),
-        regions: regions(record),
-    }
+    Diagnosis { fails_where: fails_where(record), worst_segments: worst_segments(record, WORST) }
 }
