@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::delay::{EstimateError, Settings, TrialEstimate, estimate};
 use crate::diagnosis::{Comparison, compare};
-use crate::experiment::{Joint, Trial};
+use crate::experiment::{Joint, Trial, activity};
 use crate::fit::{Fit, FitError, Horizon, Record, Split, assess, fit};
 use crate::model::{JointModel, integrators};
 
@@ -72,6 +72,7 @@ pub enum Mode {
 
 /// Compares each joint with its model: `None` where it has none.
 ///
+/// The other `joints` are the ones that share the supply with a joint: see [`activity`].
 /// `models` gives the model of a joint; it is not asked for plain integrators.
 pub fn compare_joints(
     joints: &[Joint],
@@ -81,10 +82,11 @@ pub fn compare_joints(
     split: Option<Split>,
     horizon: Horizon,
 ) -> Vec<Option<Result<Comparison, FitError>>> {
-    let one_joint = |(joint, estimate): (&Joint, &Result<JointEstimate, EstimateError>)| {
+    let one_joint = |(index, estimate): (usize, &Result<JointEstimate, EstimateError>)| {
+        let joint = joints.get(index)?;
         let estimated: Vec<_> = estimate.iter().flat_map(JointEstimate::estimated).collect();
         let split = split.unwrap_or_else(|| Split::of(joint));
-        let record = Record::new(joint, split, horizon);
+        let record = Record::new(joint, split, horizon).with_others(activity(joints, index));
         let levels = record.input_levels();
         let starts = match mode {
             Mode::Integrator => integrators(joint, &estimated),
@@ -102,7 +104,7 @@ pub fn compare_joints(
         let best = fits.min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
         Some(best.map(|fit| compare(&record, fit)))
     };
-    joints.par_iter().zip(estimates).map(one_joint).collect()
+    (0..joints.len()).into_par_iter().zip(estimates).map(one_joint).collect()
 }
 
 /// Runs `work` on `threads` threads; on as many as there are processors without a number.

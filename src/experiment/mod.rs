@@ -4,6 +4,7 @@
 //! per trial. Reading and repair of files live in the submodules; nothing here
 //! knows how a delay is estimated.
 
+mod activity;
 mod columns;
 mod error;
 mod layout;
@@ -15,6 +16,7 @@ use std::path::PathBuf;
 
 use crate::units::SamplePeriod;
 
+pub use activity::activity;
 pub use columns::{ColumnMap, ColumnMapError, JointColumns};
 pub use error::ReadError;
 pub use read::{Experiment, Failure, ReadOptions, expand_folders};
