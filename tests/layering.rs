@@ -80,6 +80,7 @@ fn each_library_is_named_in_its_own_place_only() {
         ("sci_rs", "src/filter.rs"),
         ("statrs", "src/statistics"),
         ("levenberg_marquardt", "src/fit"),
+        ("winnow", "src/effect/expression"),
     ] {
         for path in sources(Path::new("src")) {
             let text = fs::read_to_string(&path).unwrap();

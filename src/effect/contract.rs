@@ -3,7 +3,7 @@
 //! - its [`Spec`] is complete: names in snake case, a source, ranges that hold the
 //!   neutral value;
 //! - **at the neutral parameters the output is the input**, so that models with and
-//!   without it nest;
+//!   without it nest, unless it says that it does not [nest](Effect::nests);
 //! - what goes in finite comes out finite, over the whole range of the parameters;
 //! - the same input from fresh memory gives the same output;
 //! - a fit can start: bounds lie within the spec's, starts within the bounds.
@@ -156,7 +156,9 @@ pub fn check(effect: &dyn Effect) -> Result<(), Breach> {
 /// The first [`Breach`] that is found.
 pub fn check_run(effect: &dyn Effect, parts: &[f64], moments: &[Moment]) -> Result<(), Breach> {
     let breach = |fault| Breach { effect: effect.spec().id, fault };
-    check_neutral(effect, moments).map_err(breach)?;
+    if effect.nests() {
+        check_neutral(effect, moments).map_err(breach)?;
+    }
     let widest = effect.spec().parameters.iter().map(|each| (each.min, each.max)).collect();
     for bounds in [widest, effect.bounds(&RecordRange::default())] {
         let between = |((low, high), part): (&(f64, f64), &f64)| low * (1.0 - part) + high * part;
@@ -192,7 +194,7 @@ fn check_spec(spec: &Spec) -> Result<(), Fault> {
     Ok(())
 }
 
-fn is_snake_case(name: &str) -> bool {
+pub(super) fn is_snake_case(name: &str) -> bool {
     let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(allowed)
 }

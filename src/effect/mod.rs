@@ -23,6 +23,7 @@ pub mod dead_band;
 mod decay;
 pub mod direction_gain;
 pub mod end_stop;
+pub mod expression;
 pub mod flow_curve;
 pub mod gravity_load;
 pub mod input_offset;
@@ -113,6 +114,19 @@ pub trait Effect: Debug + Send + Sync {
     /// May be negative; the caller keeps the whole delay at zero or above.
     fn extra_delay_s(&self, _parameters: &[f64], _change: &InputChange) -> f64 {
         0.0
+    }
+
+    /// Whether it has neutral parameters, at which it changes nothing.
+    ///
+    /// If not, a model with it and the same without are not nested: one is not a special
+    /// case of the other.
+    fn nests(&self) -> bool {
+        true
+    }
+
+    /// How a model file defines it, where it is not an effect of the program.
+    fn definition(&self) -> Option<&expression::Definition> {
+        None
     }
 
     /// Lowest and highest value of each parameter that a fit to `record` should try.

@@ -1,6 +1,6 @@
 //! What an effect says about itself, as data.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::RecordRange;
 
@@ -45,7 +45,7 @@ impl Spec {
 }
 
 /// Where an effect acts, in the order the stages are computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stage {
     /// On the time at which a change of the input arrives.
@@ -75,10 +75,11 @@ impl Stage {
 }
 
 /// The unit of a parameter, in terms of the units of the log.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Dimension {
     /// A number without a unit.
+    #[default]
     One,
     /// Seconds.
     Seconds,
@@ -99,6 +100,21 @@ pub enum Dimension {
 }
 
 impl Dimension {
+    /// Its name in files.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::One => "one",
+            Self::Seconds => "seconds",
+            Self::PerSecond => "per_second",
+            Self::Input => "input",
+            Self::SecondsPerInput => "seconds_per_input",
+            Self::Output => "output",
+            Self::OutputPerSecond => "output_per_second",
+            Self::PerOutput => "per_output",
+            Self::PerOutputSquared => "per_output_squared",
+        }
+    }
+
     /// The unit in words, `input` and `output` being the units of the log: `s/V`.
     ///
     /// Empty for a number without a unit.
@@ -198,6 +214,13 @@ mod tests {
         assert_eq!(unit(Dimension::PerOutputSquared), "1/deg^2");
         assert_eq!(unit(Dimension::One), "");
         assert_eq!(Dimension::Input.unit(None, None), "input unit");
+    }
+
+    #[test]
+    fn names_are_those_of_the_data() {
+        for dimension in [Dimension::One, Dimension::SecondsPerInput, Dimension::PerOutputSquared] {
+            assert_eq!(serde_json::to_value(dimension).unwrap(), dimension.id());
+        }
     }
 
     #[test]
