@@ -5,7 +5,7 @@
 //! new one.
 //!
 //! - [`JointModel`]: structure, effects, parameters
-//! - [`ModelFile`]: models in TOML, as users write them
+//! - [`ModelFile`]: models in TOML, as users write them, and their revisions
 //! - [`simulate`]: what the model says the output is
 //! - [`Arrivals`]: when each level of the input begins to act
 
@@ -16,7 +16,7 @@ mod simulate;
 mod start;
 
 pub use arrivals::{Arrival, Arrivals, arrivals};
-pub use file::{ModelError, ModelFile};
+pub use file::{ModelError, ModelFile, Revision};
 pub use joint_model::{Component, JointModel, Value};
 pub use simulate::{Restart, Simulated, Surroundings, simulate};
 pub use start::integrators;

@@ -1,0 +1,254 @@
+//! From what stands in a file to models.
+
+use std::path::Path;
+
+use super::ModelError;
+use super::schema::{EffectToml, JointToml, Parameters, TableToml};
+use crate::effect::expression::{self, Definition, OwnParameter};
+use crate::effect::{self, Effect};
+use crate::model::{Component, JointModel, Value};
+
+/// The effects that a file offers, in its order.
+pub(super) fn candidates(
+    path: &Path,
+    given: Vec<EffectToml>,
+) -> Result<Vec<&'static dyn Effect>, ModelError> {
+    let mut candidates: Vec<&'static dyn Effect> = Vec::new();
+    for given in given {
+        let own = Own { path, place: "candidate".to_owned() };
+        let effect = own.define(&given, Start::Given)?;
+        own.check_unique(&candidates, effect.spec().id)?;
+        candidates.push(effect);
+    }
+    Ok(candidates)
+}
+
+/// Where the start values of a definition come from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Start {
+    /// From the values that stand in it: it is not part of a model yet.
+    Given,
+    /// From the model that it is a part of, whose values are not part of the definition:
+    /// it stays the same effect when they change.
+    InModel,
+}
+
+/// An effect of a file's own, for messages.
+struct Own<'a> {
+    path: &'a Path,
+    place: String,
+}
+
+impl Own<'_> {
+    fn error(&self, effect: &str, problem: &str) -> ModelError {
+        let (path, place) = (self.path.to_owned(), self.place.clone());
+        ModelError::Effect { path, place, effect: effect.to_owned(), problem: problem.to_owned() }
+    }
+
+    fn check_unique(&self, others: &[&'static dyn Effect], id: &str) -> Result<(), ModelError> {
+        if others.iter().any(|other| other.spec().id == id) {
+            return Err(self.error(id, "has an id that another one has; rename one of them"));
+        }
+        Ok(())
+    }
+
+    fn define(&self, given: &EffectToml, start: Start) -> Result<&'static dyn Effect, ModelError> {
+        if given.kind != expression::KIND {
+            let problem = "is not of this file: a candidate has kind = \"expression\"; those of \
+                           the catalogue are candidates anyway";
+            return Err(self.error(&given.kind, problem));
+        }
+        let id = given.id.clone().ok_or_else(|| {
+            self.error(&given.kind, "has no `id`: give it a name, as in id = \"knee\"")
+        })?;
+        let stage = given.stage.ok_or_else(|| {
+            let known = "has no `stage`: input, transport, dynamics, load or output";
+            self.error(&id, known)
+        })?;
+        let expression = given.expression.clone().ok_or_else(|| {
+            self.error(&id, "has no `expression`, as in expression = \"signal + 0.1\"")
+        })?;
+        let parameters = given.parameters.iter().map(|(name, parameter)| {
+            let given = parameter.table();
+            own_parameter(name, given, start)
+        });
+        let (summary, parameters) = (given.summary.clone(), parameters.collect());
+        let defined = expression::define(Definition {
+            id: id.clone(),
+            summary,
+            stage,
+            expression,
+            parameters,
+        });
+        defined.map_err(|source| {
+            let (path, place) = (self.path.to_owned(), self.place.clone());
+            ModelError::Definition { path, place, effect: id, source: Box::new(source) }
+        })
+    }
+}
+
+fn own_parameter(name: &str, given: TableToml, start: Start) -> OwnParameter {
+    let TableToml { value, fixed, min, max, neutral, dimension } = given;
+    let is_given = start == Start::Given;
+    OwnParameter {
+        name: name.to_owned(),
+        start: value.filter(|_| is_given),
+        min,
+        max,
+        neutral,
+        fixed: fixed && is_given,
+        dimension: dimension.unwrap_or_default(),
+    }
+}
+
+/// A joint of a file, for messages.
+pub(super) struct Place<'a> {
+    pub(super) path: &'a Path,
+    pub(super) joint: &'a str,
+    pub(super) candidates: &'a [&'static dyn Effect],
+}
+
+impl Place<'_> {
+    pub(super) fn joint(&self, joint: &JointToml) -> Result<JointModel, ModelError> {
+        if joint.structure != "integrator" {
+            let (path, name) = (self.path.to_owned(), self.joint.to_owned());
+            let found = joint.structure.clone();
+            return Err(ModelError::Structure { path, joint: name, found });
+        }
+        let own = [("gain", f64::MIN, f64::MAX), ("delay", 0.0, f64::MAX)];
+        let given = self.values("integrator", &own, &joint.parameters)?;
+        let needed = |index: usize, name| {
+            let (path, joint) = (self.path.to_owned(), self.joint.to_owned());
+            let value = given.get(index).copied().flatten();
+            value.ok_or(ModelError::MissingParameter { path, joint, name })
+        };
+        let mut model = JointModel::integrator(0.0, 0.0);
+        (model.gain, model.delay) = (needed(0, "gain")?, needed(1, "delay")?);
+        for given in &joint.effect {
+            let before: Vec<_> = model.components().iter().map(Component::effect).collect();
+            model = model.with(self.component(given, &before)?);
+        }
+        Ok(model)
+    }
+
+    fn own(&self) -> Own<'_> {
+        Own { path: self.path, place: format!("joint `{}`", self.joint) }
+    }
+
+    /// An effect of the joint, which has those `before` it.
+    fn component(
+        &self,
+        given: &EffectToml,
+        before: &[&'static dyn Effect],
+    ) -> Result<Component, ModelError> {
+        let effect = if given.kind == expression::KIND {
+            self.own_effect(given, before)?
+        } else {
+            self.known_effect(given)?
+        };
+        let parameters = effect.spec().parameters;
+        let bounds: Vec<_> = parameters.iter().map(|p| (p.name, p.min, p.max)).collect();
+        let mut values = self.values(effect.spec().id, &bounds, &given.parameters)?;
+        if given.kind == expression::KIND {
+            // Its limits are those of the effect itself.
+            for value in values.iter_mut().flatten() {
+                (value.min, value.max) = (None, None);
+            }
+        }
+        let or_neutral = values.iter().zip(parameters).map(|(v, p)| v.unwrap_or(p.neutral.into()));
+        Ok(Component::new(effect, or_neutral.collect()).unwrap_or(Component::neutral(effect)))
+    }
+
+    fn own_effect(
+        &self,
+        given: &EffectToml,
+        before: &[&'static dyn Effect],
+    ) -> Result<&'static dyn Effect, ModelError> {
+        let effect = self.own().define(given, Start::InModel)?;
+        let id = effect.spec().id;
+        if self.candidates.iter().any(|candidate| candidate.spec().id == id) {
+            let problem = format!("is a candidate; write kind = \"{id}\", or rename one of them");
+            return Err(self.own().error(id, &problem));
+        }
+        self.own().check_unique(before, id)?;
+        Ok(effect)
+    }
+
+    /// The effect of the catalogue, or the candidate, of this kind.
+    fn known_effect(&self, given: &EffectToml) -> Result<&'static dyn Effect, ModelError> {
+        let EffectToml { kind, id, summary, stage, expression, parameters } = given;
+        if id.is_some() || summary.is_some() || stage.is_some() || expression.is_some() {
+            let problem = "has a definition already: `id`, `summary`, `stage` and `expression` \
+                           belong to kind = \"expression\"";
+            return Err(self.own().error(kind, problem));
+        }
+        let is_own = |given: TableToml| given.neutral.is_some() || given.dimension.is_some();
+        for (name, parameter) in parameters {
+            let problem = if is_own(parameter.table()) {
+                "has a definition already: `neutral` and `dimension` belong to kind = \
+                 \"expression\""
+                    .to_owned()
+            } else if parameter.table().value.is_none() {
+                format!("has no `value` for its parameter `{name}`")
+            } else {
+                continue;
+            };
+            return Err(self.own().error(kind, &problem));
+        }
+        let candidate = self.candidates.iter().find(|candidate| candidate.spec().id == kind);
+        let unknown = |source| ModelError::UnknownEffect {
+            path: self.path.to_owned(),
+            joint: self.joint.to_owned(),
+            source,
+        };
+        candidate.copied().map_or_else(|| effect::find(kind).map_err(unknown), Ok)
+    }
+
+    /// The given values in the order of `known` (name, lowest, highest).
+    fn values(
+        &self,
+        owner: &str,
+        known: &[(&str, f64, f64)],
+        given: &Parameters,
+    ) -> Result<Vec<Option<Value>>, ModelError> {
+        let is_known = |name: &str| known.iter().any(|(known, _, _)| *known == name);
+        if let Some(name) = given.keys().find(|name| !is_known(name)) {
+            let names: Vec<_> = known.iter().map(|(name, _, _)| *name).collect();
+            return Err(ModelError::UnknownParameter {
+                path: self.path.to_owned(),
+                joint: self.joint.to_owned(),
+                owner: owner.to_owned(),
+                name: name.clone(),
+                known: names.join(", "),
+            });
+        }
+        let value = |(name, min, max): &(&str, f64, f64)| {
+            let value = given.get(*name).and_then(|parameter| parameter.table().given());
+            value.map(|value| self.inside(owner, name, (*min, *max), value)).transpose()
+        };
+        known.iter().map(value).collect()
+    }
+
+    fn inside(
+        &self,
+        owner: &str,
+        name: &str,
+        own: (f64, f64),
+        value: Value,
+    ) -> Result<Value, ModelError> {
+        let min = value.min.map_or(own.0, |min| min.max(own.0));
+        let max = value.max.map_or(own.1, |max| max.min(own.1));
+        if (min..=max).contains(&value.value) {
+            return Ok(value);
+        }
+        Err(ModelError::OutOfBounds {
+            path: self.path.to_owned(),
+            joint: self.joint.to_owned(),
+            owner: owner.to_owned(),
+            name: name.to_owned(),
+            value: value.value,
+            min,
+            max,
+        })
+    }
+}

@@ -1,0 +1,84 @@
+//! What stands in a model file, as TOML.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+use super::Revision;
+use crate::effect::{Dimension, Stage};
+use crate::model::Value;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileToml {
+    pub(super) schema: String,
+    #[serde(default)]
+    pub(super) candidate: Vec<EffectToml>,
+    #[serde(default)]
+    pub(super) joint: BTreeMap<String, JointToml>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct JointToml {
+    pub(super) structure: String,
+    pub(super) parameters: Parameters,
+    #[serde(default)]
+    pub(super) effect: Vec<EffectToml>,
+    #[serde(default)]
+    pub(super) history: Vec<Revision>,
+}
+
+pub(super) type Parameters = BTreeMap<String, ParameterToml>;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct EffectToml {
+    pub(super) kind: String,
+    /// This and the next three are for expressions only.
+    pub(super) id: Option<String>,
+    pub(super) summary: Option<String>,
+    pub(super) stage: Option<Stage>,
+    pub(super) expression: Option<String>,
+    #[serde(default)]
+    pub(super) parameters: Parameters,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(untagged, expecting = "expected a number, or a table like { value = 0.5, min = 0.0 }")]
+pub(super) enum ParameterToml {
+    Plain(f64),
+    Whole(i64),
+    Table(TableToml),
+}
+
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TableToml {
+    pub(super) value: Option<f64>,
+    #[serde(default)]
+    pub(super) fixed: bool,
+    pub(super) min: Option<f64>,
+    pub(super) max: Option<f64>,
+    /// This and the next are for expressions only.
+    pub(super) neutral: Option<f64>,
+    pub(super) dimension: Option<Dimension>,
+}
+
+impl ParameterToml {
+    pub(super) fn table(self) -> TableToml {
+        match self {
+            Self::Plain(value) => TableToml { value: Some(value), ..TableToml::default() },
+            Self::Whole(value) => TableToml { value: Some(value as f64), ..TableToml::default() },
+            Self::Table(table) => table,
+        }
+    }
+}
+
+impl TableToml {
+    /// The value in a model, where one is given.
+    pub(super) fn given(self) -> Option<Value> {
+        let Self { value, fixed, min, max, .. } = self;
+        value.map(|value| Value { value, fixed, min, max })
+    }
+}
