@@ -219,15 +219,23 @@ pub fn by_id(id: &str) -> Option<&'static dyn Effect> {
 /// # Ok::<(), tauscope::effect::UnknownEffect>(())
 /// ```
 pub fn find(id: &str) -> Result<&'static dyn Effect, UnknownEffect> {
-    let unknown = || UnknownEffect { id: id.to_owned(), nearest: nearest(id) };
-    by_id(id).ok_or_else(unknown)
+    find_among(id, &[])
 }
 
-/// The id of the catalogue that is most like `id`.
-fn nearest(id: &str) -> &'static str {
-    let likeness = |known: &&'static str| strsim::jaro_winkler(id, known);
-    let ids = REGISTRY.iter().map(|effect| effect.spec().id);
-    ids.max_by(|a, b| likeness(a).total_cmp(&likeness(b))).unwrap_or_default()
+/// The effect with this id, built in or one of `others`.
+///
+/// # Errors
+/// [`UnknownEffect`] when none has it.
+pub fn find_among(
+    id: &str,
+    others: &[&'static dyn Effect],
+) -> Result<&'static dyn Effect, UnknownEffect> {
+    let all = || REGISTRY.iter().chain(others).copied();
+    let likeness = |known: &str| strsim::jaro_winkler(id, known);
+    let ids = all().map(|effect| effect.spec().id);
+    let nearest = ids.max_by(|a, b| likeness(a).total_cmp(&likeness(b))).unwrap_or_default();
+    let unknown = || UnknownEffect { id: id.to_owned(), nearest };
+    all().find(|effect| effect.spec().id == id).ok_or_else(unknown)
 }
 
 #[cfg(test)]

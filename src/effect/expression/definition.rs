@@ -60,7 +60,7 @@ impl OwnParameter {
             min: min.min(neutral),
             max: max.max(neutral),
             fitted: !self.fixed,
-            ..Parameter::new(leaked(&self.name), "as the expression has it", self.dimension)
+            ..Parameter::new(leaked(&self.name), "a number in the expression", self.dimension)
         }
     }
 
@@ -124,6 +124,12 @@ pub enum DefinitionError {
     /// The expression cannot be computed.
     #[error("the expression cannot be computed")]
     Syntax(#[from] SyntaxError),
+    /// The expression does not depend on a parameter.
+    #[error("parameter `{parameter}` is not in the expression: use it, or take it out")]
+    Unused {
+        /// The parameter.
+        parameter: String,
+    },
     /// The neutral values that are given are not neutral.
     #[error(
         "at its neutral values the effect makes {found} of {signal}, and must leave it as it is; \

@@ -103,6 +103,9 @@ impl Expression {
         let parameters: Vec<_> = definition.parameters.iter().map(|p| p.name.as_str()).collect();
         let names = Names { signals, parameters: &parameters };
         let node = grammar::parse(&definition.expression, names)?;
+        if let Some((_, name)) = (0..).zip(&parameters).find(|(place, _)| !node.uses(*place)) {
+            return Err(DefinitionError::Unused { parameter: (*name).to_owned() });
+        }
         let spec = Box::leak(Box::new(specified(&definition)));
         let mut new = Self { definition, spec, node, nests: true };
         if let Some(fault) = new.neutral_fault() {
@@ -398,6 +401,13 @@ mod tests {
         ] {
             assert!(matches!(own(wrong), Err(DefinitionError::Range { .. })));
         }
+    }
+
+    #[test]
+    fn a_parameter_without_a_use_is_refused() {
+        let k = OwnParameter::new("k", 1.0);
+        let error = define(definition(Stage::Load, "if(signal > 0, signal, -signal)", &[k]));
+        assert!(matches!(error, Err(DefinitionError::Unused { parameter }) if parameter == "k"));
     }
 
     #[test]

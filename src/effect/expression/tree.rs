@@ -47,6 +47,18 @@ impl Node {
             }
         }
     }
+
+    /// Whether it depends on this parameter.
+    pub(super) fn uses(&self, parameter: usize) -> bool {
+        let uses = |node: &Self| node.uses(parameter);
+        match self {
+            Self::Number(_) | Self::Signal(_) => false,
+            Self::Parameter(place) => *place == parameter,
+            Self::Unary(_, argument) => uses(argument),
+            Self::Binary(_, arguments) => arguments.iter().any(uses),
+            Self::If(parts) => parts.iter().any(uses),
+        }
+    }
 }
 
 fn at(values: &[f64], place: usize) -> f64 {

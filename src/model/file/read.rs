@@ -195,13 +195,12 @@ impl Place<'_> {
             };
             return Err(self.own().error(kind, &problem));
         }
-        let candidate = self.candidates.iter().find(|candidate| candidate.spec().id == kind);
         let unknown = |source| ModelError::UnknownEffect {
             path: self.path.to_owned(),
             joint: self.joint.to_owned(),
             source,
         };
-        candidate.copied().map_or_else(|| effect::find(kind).map_err(unknown), Ok)
+        effect::find_among(kind, self.candidates).map_err(unknown)
     }
 
     /// The given values in the order of `known` (name, lowest, highest).

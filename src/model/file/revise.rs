@@ -138,7 +138,6 @@ impl Writer<'_> {
     /// What tells an effect of a joint from others.
     fn header(&self, effect: &'static dyn Effect) -> Table {
         let mut table = Table::new();
-        table.decor_mut().set_prefix("");
         let spec = effect.spec();
         let is_candidate = self.candidates.iter().any(|each| std::ptr::eq(each.spec(), spec));
         match effect.definition().filter(|_| !is_candidate) {
@@ -170,7 +169,6 @@ fn has_all_of(entry: &dyn TableLike, wanted: &Table) -> bool {
 fn entry_of(revision: &Revision) -> Table {
     let Revision { revision, added, removed, validation_rmse } = revision;
     let mut table = Table::new();
-    table.decor_mut().set_prefix("");
     table.insert("revision", toml_edit::value(i64::from(*revision)));
     for (key, id) in [("added", added), ("removed", removed)] {
         if let Some(id) = id {
@@ -224,13 +222,18 @@ fn is_empty(item: &Item) -> bool {
         || item.as_array().is_some_and(Array::is_empty)
 }
 
-/// Adds an entry in the form that the others have.
-fn push(table: &mut dyn TableLike, key: &str, entry: Table) -> Option<()> {
+/// Adds an entry in the form that the others have, behind an empty line if they are.
+fn push(table: &mut dyn TableLike, key: &str, mut entry: Table) -> Option<()> {
     if !table.contains_key(key) {
         table.insert(key, Item::ArrayOfTables(ArrayOfTables::new()));
     }
     match table.get_mut(key)? {
-        Item::ArrayOfTables(tables) => tables.push(entry),
+        Item::ArrayOfTables(tables) => {
+            let above = |table: &Table| table.decor().prefix()?.as_str().map(str::to_owned);
+            let last = tables.iter().last().and_then(above).unwrap_or_default();
+            entry.decor_mut().set_prefix(if last.starts_with('\n') { "\n" } else { "" });
+            tables.push(entry);
+        }
         Item::Value(toml_edit::Value::Array(array)) => array.push(entry.into_inline_table()),
         _ => return None,
     }
@@ -244,11 +247,11 @@ fn write_component(entry: &mut dyn TableLike, component: &Component) -> Option<(
     let own = effect.definition().filter(|_| is_defined_here).map(|own| own.parameters.as_slice());
     let own = own.unwrap_or_default().iter().map(Some).chain(std::iter::repeat(None));
     let all = effect.spec().parameters.iter().zip(component.parameters()).zip(own);
-    let written =
-        |((parameter, value), own): ((&'static Parameter, &Value), Option<&OwnParameter>)| {
-            let written = own.map_or_else(|| (*value).into(), |own| Written::defined(own, value));
-            (parameter.name, Some(parameter.neutral), written)
-        };
+    let written = |((parameter, value), own): ((&'static Parameter, &Value), Option<_>)| {
+        let written = own.map_or_else(|| (*value).into(), |own| Written::defined(own, value));
+        // A definition names all its parameters, a use of it those that are not neutral.
+        (parameter.name, own.is_none().then_some(parameter.neutral), written)
+    };
     write_parameters(entry, all.map(written))
 }
 
