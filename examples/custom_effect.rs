@@ -124,7 +124,7 @@ fn main() -> anyhow::Result<()> {
 fn finds_the_effect_and_leaves_the_noise() -> anyhow::Result<()> {
     main()?;
     let [before, after] = compared()?;
-    assert!(after.rmse < 0.06 && before.rmse > 10.0 * after.rmse);
+    assert!(after.rmse < 0.06 && before.rmse > 5.0 * after.rmse);
     let draw = after.fit.parameters.last().context("the effect has a parameter")?;
     let error = draw.std_error.context("the record determines it")?;
     assert!((draw.value - DRAW).abs() < 4.0 * error);
