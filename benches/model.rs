@@ -4,7 +4,8 @@
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use tauscope::effect::find;
+use tauscope::effect::expression::{Definition, OwnParameter, define};
+use tauscope::effect::{Stage, find};
 use tauscope::experiment::Joint;
 use tauscope::fit::{Horizon, Record, Split, fit};
 use tauscope::model::{Component, JointModel, Surroundings, arrivals, simulate};
@@ -28,9 +29,22 @@ fn model(effects: &[(&str, &[f64])]) -> JointModel {
     effects.iter().map(component).fold(plain, |model, component| model.with(component))
 }
 
+/// A knee in the flow, as a user would write it.
+fn knee() -> Component {
+    let own = define(Definition {
+        id: "knee".to_owned(),
+        summary: None,
+        stage: Stage::Input,
+        expression: "if(signal > start, start + slope * (signal - start), signal)".to_owned(),
+        parameters: vec![OwnParameter::new("start", 0.5), OwnParameter::new("slope", 0.8)],
+    });
+    Component::new(own.unwrap(), vec![0.5.into(), 0.8.into()]).unwrap()
+}
+
 /// From nothing to one effect of each kind.
-fn models() -> [(&'static str, JointModel); 4] {
+fn models() -> [(&'static str, JointModel); 5] {
     [
+        ("expression", JointModel::integrator(9.0, 0.123).with(knee())),
         ("plain", model(&[])),
         ("lag", model(&[("actuator_lag", &[0.1])])),
         ("valve and lag", model(&VALVE_AND_LAG)),
