@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use crate::delay::{EstimateError, Settings, TrialEstimate, estimate};
 use crate::diagnosis::{Comparison, compare};
 use crate::experiment::{Joint, Trial, activity};
+use crate::explain::{Explanation, Improvement, Options, Revision, Workers, explain, improve};
 use crate::fit::{Fit, FitError, Horizon, Record, Split, assess, fit};
 use crate::model::{JointModel, integrators};
 
@@ -70,6 +71,20 @@ pub enum Mode {
     AsItIs,
 }
 
+/// By what rules models are judged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Protocol {
+    /// What becomes of a model first.
+    pub mode: Mode,
+    /// How training and validation are told apart; as [`Split::of`] says without it.
+    pub split: Option<Split>,
+    /// How long a simulation runs before it is set right.
+    pub horizon: Horizon,
+}
+
+/// What came of each joint: `None` where it has no model.
+pub type OfJoints<T> = Vec<Option<Result<T, FitError>>>;
+
 /// Compares each joint with its model: `None` where it has none.
 ///
 /// The other `joints` are the ones that share the supply with a joint: see [`activity`].
@@ -78,33 +93,89 @@ pub fn compare_joints(
     joints: &[Joint],
     estimates: &[Result<JointEstimate, EstimateError>],
     models: impl Fn(&Joint) -> Option<JointModel> + Sync,
-    mode: Mode,
-    split: Option<Split>,
-    horizon: Horizon,
-) -> Vec<Option<Result<Comparison, FitError>>> {
+    protocol: Protocol,
+) -> OfJoints<Comparison> {
+    for_each_joint(joints, estimates, models, protocol, |_, record, fit| compare(record, fit))
+}
+
+/// Says what each joint's model lacks: see [`explain`].
+pub fn explain_joints(
+    joints: &[Joint],
+    estimates: &[Result<JointEstimate, EstimateError>],
+    models: impl Fn(&Joint) -> Option<JointModel> + Sync,
+    protocol: Protocol,
+    options: &Options,
+) -> OfJoints<Explanation> {
+    for_each_joint(joints, estimates, models, protocol, |_, record, fit| {
+        explain(record, fit, options, &Threads)
+    })
+}
+
+/// Adds to each joint's model what it lacks: see [`improve`]. `done` is called with the
+/// index of the joint and each revision; where it says no, the joint is left as it is.
+pub fn improve_joints(
+    joints: &[Joint],
+    estimates: &[Result<JointEstimate, EstimateError>],
+    models: impl Fn(&Joint) -> Option<JointModel> + Sync,
+    protocol: Protocol,
+    options: &Options,
+    done: impl Fn(usize, &Revision) -> bool + Sync,
+) -> OfJoints<Improvement> {
+    for_each_joint(joints, estimates, models, protocol, |index, record, fit| {
+        improve(record, fit, options, &Threads, |revision| done(index, revision))
+    })
+}
+
+/// Fits the model of each joint and does `work` with it.
+fn for_each_joint<T: Send>(
+    joints: &[Joint],
+    estimates: &[Result<JointEstimate, EstimateError>],
+    models: impl Fn(&Joint) -> Option<JointModel> + Sync,
+    protocol: Protocol,
+    work: impl Fn(usize, &Record<'_>, Fit) -> T + Sync,
+) -> OfJoints<T> {
+    let Protocol { mode, split, horizon } = protocol;
     let one_joint = |(index, estimate): (usize, &Result<JointEstimate, EstimateError>)| {
         let joint = joints.get(index)?;
         let estimated: Vec<_> = estimate.iter().flat_map(JointEstimate::estimated).collect();
         let split = split.unwrap_or_else(|| Split::of(joint));
         let record = Record::new(joint, split, horizon).with_others(activity(joints, index));
-        let levels = record.input_levels();
         let starts = match mode {
             Mode::Integrator => integrators(joint, &estimated),
             Mode::Fit | Mode::AsItIs => vec![models(joint)?],
         };
-        let top = levels.last().copied().unwrap_or(1.0);
-        let speed = starts.first().map_or(1.0, |model| model.gain.value.abs() * top);
-        let range = record.range(&levels, speed);
-        let fits = starts.iter().map(|start| match mode {
-            Mode::Integrator | Mode::Fit => fit(&record, start, &range),
-            Mode::AsItIs => assess(&record, start, &range),
-        });
-        let cost =
-            |result: &Result<Fit, FitError>| result.as_ref().map_or(f64::MAX, |fit| fit.cost);
-        let best = fits.min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
-        Some(best.map(|fit| compare(&record, fit)))
+        let fit = best_fit(&record, &starts, mode)?;
+        Some(fit.map(|fit| work(index, &record, fit)))
     };
     (0..joints.len()).into_par_iter().zip(estimates).map(one_joint).collect()
+}
+
+/// The best of the fits from several starts.
+fn best_fit(
+    record: &Record<'_>,
+    starts: &[JointModel],
+    mode: Mode,
+) -> Option<Result<Fit, FitError>> {
+    let levels = record.input_levels();
+    let top = levels.last().copied().unwrap_or(1.0);
+    let speed = starts.first().map_or(1.0, |model| model.gain.value.abs() * top);
+    let range = record.range(&levels, speed);
+    let fits = starts.iter().map(|start| match mode {
+        Mode::Integrator | Mode::Fit => fit(record, start, &range),
+        Mode::AsItIs => assess(record, start, &range),
+    });
+    let cost = |result: &Result<Fit, FitError>| result.as_ref().map_or(f64::MAX, |fit| fit.cost);
+    fits.min_by(|a, b| cost(a).total_cmp(&cost(b)))
+}
+
+/// The threads of the pool that the caller runs in.
+#[derive(Clone, Copy, Debug)]
+struct Threads;
+
+impl Workers for Threads {
+    fn map<T: Sync, R: Send>(&self, pieces: &[T], work: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
+        pieces.par_iter().map(work).collect()
+    }
 }
 
 /// Runs `work` on `threads` threads; on as many as there are processors without a number.

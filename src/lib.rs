@@ -14,6 +14,7 @@
 //! - [`synthetic`]: logs of joints with known delays
 //! - [`fit`]: models fitted to measurements
 //! - [`diagnosis`]: how good a model is, and where it fails
+//! - [`explain`]: which physical effect a model lacks
 //! - [`batch`]: all joints in parallel
 //! - [`report`]: results as text, CSV and JSON
 //! - `recording`: results as a Rerun recording (feature `rrd`)
@@ -23,6 +24,7 @@ pub mod delay;
 pub mod diagnosis;
 pub mod effect;
 pub mod experiment;
+pub mod explain;
 pub mod filter;
 pub mod fit;
 pub mod model;

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The library's modules; each may use those before it.
-const ORDER: [&str; 13] = [
+const ORDER: [&str; 14] = [
     "units",
     "statistics",
     "effect",
@@ -16,6 +16,7 @@ const ORDER: [&str; 13] = [
     "synthetic",
     "fit",
     "diagnosis",
+    "explain",
     "batch",
     "report",
     "recording",

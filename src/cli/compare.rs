@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context as _, anyhow};
 use clap::{Args as ClapArgs, ValueEnum};
-use tauscope::batch::{compare_joints, estimate_joints, with_threads};
+use tauscope::batch::{Mode, Protocol, compare_joints, estimate_joints, with_threads};
 use tauscope::delay::Settings;
 use tauscope::diagnosis::Comparison;
 use tauscope::experiment::Joint;
@@ -113,7 +113,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
         let estimates = estimate_joints(joints, &settings, || ());
         let one = |named: &Named| {
             let starts = |joint: &Joint| named.starts(joint);
-            compare_joints(joints, &estimates, starts, named.mode(args), args.split, args.horizon)
+            let (split, horizon) = (args.split, args.horizon);
+            let protocol = Protocol { mode: named.mode(args), split, horizon };
+            compare_joints(joints, &estimates, starts, protocol)
         };
         let results = models.iter().map(one).collect::<Vec<_>>();
         (estimates, results)
@@ -193,11 +195,11 @@ impl Named {
         Ok(ComparedJoint { joint, model: &self.name, revision, comparison })
     }
 
-    fn mode(&self, args: &Args) -> tauscope::batch::Mode {
+    fn mode(&self, args: &Args) -> Mode {
         match (&self.file, args.fit) {
-            (None, _) => tauscope::batch::Mode::Integrator,
-            (Some(_), true) => tauscope::batch::Mode::Fit,
-            (Some(_), false) => tauscope::batch::Mode::AsItIs,
+            (None, _) => Mode::Integrator,
+            (Some(_), true) => Mode::Fit,
+            (Some(_), false) => Mode::AsItIs,
         }
     }
 }

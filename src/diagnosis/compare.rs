@@ -39,16 +39,17 @@ pub struct Comparison {
 
 /// Sets all figures of `fit` on `record` beside one another.
 pub fn compare(record: &Record<'_>, fit: Fit) -> Comparison {
+    let lack_of_fit = lack_of(record, &fit);
+    compare_knowing(record, fit, lack_of_fit)
+}
+
+/// The same with the lack of fit that is known already.
+pub(crate) fn compare_knowing(
+    record: &Record<'_>,
+    fit: Fit,
+    lack_of_fit: Option<LackOfFit>,
+) -> Comparison {
     let error = |part| ErrorFigures::of(record, &fit.evaluation, part);
-    let arriving: Vec<_> =
-        (0..record.joint().trials.len()).map(|index| record.arrivals(&fit.model, index)).collect();
-    let noise_floor = noise_floor(record.joint().trials.iter().zip(&arriving));
-    let columns = TestColumns {
-        residuals: cut(record, &fit.evaluation),
-        own: sensitivities(record, &fit),
-        shapes: shapes(record, &fit.evaluation, Part::Training),
-    };
-    let lack_of_fit = lack_of_fit(&columns);
     let fails = lack_of_fit.is_some_and(|test| !test.adequate);
     let restarted = restarted(record, &fit.model);
     let failure = restarted.as_ref().filter(|_| fails).map(diagnose);
@@ -57,7 +58,7 @@ pub fn compare(record: &Record<'_>, fit: Fit) -> Comparison {
     Comparison {
         training: error(Part::Training),
         validation: error(Part::Validation),
-        noise_floor,
+        noise_floor: floor_of(record, &fit),
         lack_of_fit,
         whiteness: period_s.and_then(|period_s| whiteness(&signals, period_s)),
         input_correlation: period_s.and_then(|period_s| input_correlation(&signals, period_s)),
@@ -65,6 +66,23 @@ pub fn compare(record: &Record<'_>, fit: Fit) -> Comparison {
         regions: restarted.as_ref().map(regions).unwrap_or_default(),
         fit,
     }
+}
+
+/// The noise of the measurement, with the delay of `fit`.
+pub(crate) fn floor_of(record: &Record<'_>, fit: &Fit) -> Option<f64> {
+    let trials = &record.joint().trials;
+    let arriving = (0..trials.len()).map(|index| record.arrivals(&fit.model, index));
+    let arriving: Vec<_> = arriving.collect();
+    noise_floor(trials.iter().zip(&arriving))
+}
+
+/// Whether `fit` leaves more than noise on the training part of `record`.
+pub(crate) fn lack_of(record: &Record<'_>, fit: &Fit) -> Option<LackOfFit> {
+    lack_of_fit(&TestColumns {
+        residuals: cut(record, &fit.evaluation),
+        own: sensitivities(record, fit),
+        shapes: shapes(record, &fit.evaluation, Part::Training),
+    })
 }
 
 /// The training part of each trial.

@@ -20,9 +20,10 @@
 //! T. Bohlin, "Practical Grey-box Process Identification", 2006, chapter 2 (falsification
 //! by alternative models). G. Schwarz, "Estimating the dimension of a model", 1978.
 
-use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
+use super::regression::{Regression, residuals_of};
+use super::whitening::{autoregression, whitened};
 use crate::statistics::fisher_tail;
 
 /// Whether a model can be told from the truth.
@@ -32,15 +33,18 @@ pub struct LackOfFit {
     pub statistic: f64,
     /// The probability of so much or more when nothing is missing.
     pub p_value: f64,
-    /// No lack of fit is shown at [`SIGNIFICANCE`].
+    /// The part of the squared residual that the shapes explain, before whitening.
+    pub misfit_share: f64,
+    /// No lack of fit is shown at [`SIGNIFICANCE`], or one that is below [`NEGLIGIBLE`].
     pub adequate: bool,
 }
 
 /// Probability of calling a model bad that is not.
 pub const SIGNIFICANCE: f64 = 0.01;
 
-/// Longest memory of the noise, in samples, that is told from motion.
-const LONGEST_MEMORY: usize = 12;
+/// A misfit that explains a smaller part of the squared residual than this is of no
+/// consequence, however sure it is: without it the error would be 1 % less.
+pub const NEGLIGIBLE: f64 = 0.02;
 
 /// The columns of the test, one window below the other.
 #[derive(Clone, Debug, Default)]
@@ -59,16 +63,24 @@ pub struct TestColumns {
 pub fn lack_of_fit(columns: &TestColumns) -> Option<LackOfFit> {
     let own: Vec<&Vec<Vec<f64>>> = columns.own.iter().collect();
     let all: Vec<&Vec<Vec<f64>>> = own.iter().copied().chain(&columns.shapes).collect();
-    let noises = [&all, &own]
-        .map(|columns_| Some(autoregression(&residuals_of(&columns.residuals, columns_)?)));
-    let tests = noises.map(|noise| test(columns, &noise?));
-    let [after_shapes, before_shapes] = tests;
-    let (a, b) = (after_shapes?, before_shapes?);
-    Some(if a.p_value >= b.p_value { a } else { b })
+    let before_shapes = residuals_of(&columns.residuals, &own)?;
+    let after_shapes = residuals_of(&columns.residuals, &all)?;
+    let [whole, rest] = [&before_shapes, &after_shapes].map(|r| square(r));
+    let misfit_share = if whole > 0.0 { (1.0 - rest / whole).max(0.0) } else { 0.0 };
+    let tests = [after_shapes, before_shapes].map(|left| test(columns, &autoregression(&left)));
+    let [Some((f_after, p_after)), Some((f_before, p_before))] = tests else { return None };
+    let (statistic, p_value) =
+        if p_after >= p_before { (f_after, p_after) } else { (f_before, p_before) };
+    let adequate = p_value >= SIGNIFICANCE || misfit_share < NEGLIGIBLE;
+    Some(LackOfFit { statistic, p_value, misfit_share, adequate })
 }
 
-/// The test, with the noise given.
-fn test(columns: &TestColumns, noise: &[f64]) -> Option<LackOfFit> {
+fn square(windows: &[Vec<f64>]) -> f64 {
+    windows.iter().flatten().map(|value| value * value).sum()
+}
+
+/// Statistic and p-value, with the noise given.
+fn test(columns: &TestColumns, noise: &[f64]) -> Option<(f64, f64)> {
     let whiten = |column: &Vec<Vec<f64>>| whitened(column, noise);
     let residuals = whiten(&columns.residuals);
     let own: Vec<_> = columns.own.iter().map(whiten).collect();
@@ -83,138 +95,7 @@ fn test(columns: &TestColumns, noise: &[f64]) -> Option<LackOfFit> {
     let added = full.rank.checked_sub(restricted.rank).filter(|added| *added > 0)?;
     let explained = (restricted.error - full.error).max(0.0) / added as f64;
     let statistic = explained / (full.error / freedom as f64).max(f64::MIN_POSITIVE);
-    let p_value = fisher_tail(statistic, added, freedom)?;
-    Some(LackOfFit { statistic, p_value, adequate: p_value >= SIGNIFICANCE })
-}
-
-/// A least-squares regression of one column on others.
-struct Regression {
-    coefficients: DVector<f64>,
-    /// Sum of squared errors.
-    error: f64,
-    /// Columns that are not combinations of others.
-    rank: usize,
-}
-
-impl Regression {
-    /// By the normal equations of columns of length one; combinations are left out.
-    fn of(target: &[Vec<f64>], columns: &[&Vec<Vec<f64>>]) -> Self {
-        /// Eigenvalues below this part of the largest belong to combinations.
-        const RANK: f64 = 1e-9;
-        let product = |a: &[Vec<f64>], b: &[Vec<f64>]| -> f64 {
-            a.iter().zip(b).map(|(a, b)| dot(a, b)).sum()
-        };
-        // A column of zeros stays one.
-        let length = |c: &&Vec<Vec<f64>>| Some(product(c, c).sqrt()).filter(|n| *n > 0.0);
-        let lengths: Vec<f64> = columns.iter().map(|c| length(c).unwrap_or(1.0)).collect();
-        let count = columns.len();
-        let entry = |i: usize, j: usize| match (columns.get(i), columns.get(j)) {
-            (Some(a), Some(b)) if i <= j => {
-                product(a, b) / (lengths.get(i).unwrap_or(&1.0) * lengths.get(j).unwrap_or(&1.0))
-            }
-            _ => 0.0,
-        };
-        let upper = DMatrix::from_fn(count, count, entry);
-        let gram = &upper + upper.transpose() - DMatrix::from_diagonal(&upper.diagonal());
-        let with = columns.iter().zip(&lengths).map(|(c, n)| product(c, target) / n);
-        let with = DVector::from_vec(with.collect());
-        let total = product(target, target);
-        if count == 0 {
-            return Self { coefficients: with, error: total, rank: 0 };
-        }
-        let decomposed = gram.symmetric_eigen();
-        let limit = RANK * decomposed.eigenvalues.max();
-        let inverses = decomposed.eigenvalues.map(|v| if v > limit { 1.0 / v } else { 0.0 });
-        let rotated = decomposed.eigenvectors.tr_mul(&with);
-        let explained = rotated.component_mul(&rotated).dot(&inverses);
-        let scaled = &decomposed.eigenvectors * rotated.component_mul(&inverses);
-        let lengths = DVector::from_vec(lengths);
-        Self {
-            coefficients: scaled.component_div(&lengths),
-            error: (total - explained).max(0.0),
-            rank: inverses.iter().filter(|inverse| **inverse > 0.0).count(),
-        }
-    }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// What is left of `target` after its regression on `columns`.
-fn residuals_of(target: &[Vec<f64>], columns: &[&Vec<Vec<f64>>]) -> Option<Vec<Vec<f64>>> {
-    let regression = Regression::of(target, columns);
-    let mut left = target.to_vec();
-    for (column, coefficient) in columns.iter().zip(regression.coefficients.iter()) {
-        for (window, shape) in left.iter_mut().zip(column.iter()) {
-            for (value, shape) in window.iter_mut().zip(shape) {
-                *value -= coefficient * shape;
-            }
-        }
-    }
-    left.iter().flatten().all(|value| value.is_finite()).then_some(left)
-}
-
-/// Coefficients `a` of `e_k = Σ a_i e_(k−i) + white noise`, the order by Schwarz's
-/// criterion, by the recursion of Levinson and Durbin.
-fn autoregression(windows: &[Vec<f64>]) -> Vec<f64> {
-    let samples: usize = windows.iter().map(Vec::len).sum();
-    let covariance = |lag: usize| -> f64 {
-        windows.iter().map(|w| dot(w, w.get(lag..).unwrap_or_default())).sum::<f64>()
-            / samples.max(1) as f64
-    };
-    let most = LONGEST_MEMORY.min(samples / 10);
-    let covariances: Vec<f64> = (0..=most).map(covariance).collect();
-    let Some(&power) = covariances.first().filter(|power| **power > 0.0) else { return Vec::new() };
-    let (mut current, mut variance): (Vec<f64>, f64) = (Vec::new(), power);
-    let score = |variance: f64, order: usize| {
-        samples as f64 * variance.ln() + order as f64 * (samples as f64).ln()
-    };
-    let mut best = (score(power, 0), Vec::new());
-    for order in 1..=most {
-        let predicted: f64 = current
-            .iter()
-            .zip(covariances.iter().take(order).skip(1).rev())
-            .map(|(a, c)| a * c)
-            .sum();
-        let Some(reflection) = covariances.get(order).map(|c| (c - predicted) / variance) else {
-            break;
-        };
-        let turned: Vec<f64> = current.iter().rev().copied().collect();
-        for (a, b) in current.iter_mut().zip(turned) {
-            *a -= reflection * b;
-        }
-        current.push(reflection);
-        variance *= 1.0 - reflection * reflection;
-        if variance <= 0.0 {
-            break;
-        }
-        if score(variance, order) < best.0 {
-            best = (score(variance, order), current.clone());
-        }
-    }
-    best.1
-}
-
-/// `x_k − Σ a_i x_(k−i)`, and the mean of each window off; its first samples are lost.
-fn whitened(windows: &[Vec<f64>], noise: &[f64]) -> Vec<Vec<f64>> {
-    let order = noise.len();
-    let filter = |window: &Vec<f64>| {
-        let mut filtered: Vec<f64> = window
-            .windows(order + 1)
-            .map(|values| {
-                let past = values.iter().rev().skip(1);
-                let now = values.last().copied().unwrap_or_default();
-                now - noise.iter().zip(past).map(|(a, x)| a * x).sum::<f64>()
-            })
-            .collect();
-        let mean = filtered.iter().sum::<f64>() / filtered.len().max(1) as f64;
-        for value in &mut filtered {
-            *value -= mean;
-        }
-        filtered
-    };
-    windows.iter().map(filter).collect()
+    Some((statistic, fisher_tail(statistic, added, freedom)?))
 }
 
 #[cfg(test)]

@@ -13,13 +13,16 @@ mod error;
 pub mod failure;
 mod lack_of_fit;
 mod noise;
+pub(crate) mod regression;
 mod shapes;
+pub(crate) mod whitening;
 
 pub use compare::{Comparison, compare};
+pub(crate) use compare::{compare_knowing, floor_of, lack_of};
 pub use correlation::{
     CONFIDENCE, CrossCorrelation, InputCorrelation, TrialSignals, Whiteness, input_correlation,
     whiteness,
 };
 pub use error::ErrorFigures;
-pub use lack_of_fit::{LackOfFit, SIGNIFICANCE, TestColumns, lack_of_fit};
+pub use lack_of_fit::{LackOfFit, NEGLIGIBLE, SIGNIFICANCE, TestColumns, lack_of_fit};
 pub use noise::noise_floor;

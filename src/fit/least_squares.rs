@@ -119,21 +119,84 @@ pub fn fit(
     model: &JointModel,
     range: &RecordRange<'_>,
 ) -> Result<Fit, FitError> {
+    fit_to(record, model, range, Depth::whole(record.training_samples()))
+}
+
+/// The same, stopped when what is left to gain is too little to change a comparison of
+/// models. Standard errors are those of [`fit`].
+///
+/// # Errors
+/// As [`fit`].
+pub fn fit_to_compare(
+    record: &Record<'_>,
+    model: &JointModel,
+    range: &RecordRange<'_>,
+) -> Result<Fit, FitError> {
+    fit_to(record, model, range, Depth::comparing(record.training_samples()))
+}
+
+fn fit_to(
+    record: &Record<'_>,
+    model: &JointModel,
+    range: &RecordRange<'_>,
+    depth: Depth,
+) -> Result<Fit, FitError> {
     let space = Space::of(model, range);
     check_size(record, &space)?;
     let short = record.shortened();
-    let begin = |start| Search::new(&short, model, &space, start).descended(Depth::ROUGH);
-    let mut searches: Vec<_> = starts(model, range).into_iter().map(begin).collect();
-    searches.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    let given_up = searches.split_off(FINALISTS.min(searches.len()));
-    let depth = Depth::whole(record.training_samples());
+    let (searches, given_up) = rough(&short, model, &space, range);
     let mut finished: Vec<_> =
         searches.into_iter().map(|s| s.across_flats().onto(record).descended(depth)).collect();
     finished.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    let simulations = finished.iter().chain(&given_up).map(Search::simulations).sum();
+    let simulations: usize = finished.iter().map(Search::simulations).sum();
     let best = finished.into_iter().next();
     let best = best.unwrap_or_else(|| Search::new(record, model, &space, plain(model)));
-    Ok(best.into_fit(simulations))
+    Ok(best.into_fit(simulations + given_up))
+}
+
+/// A rough descent from each start: the best of them, and the simulations of the others.
+fn rough<'p, 'r>(
+    short: &'p Record<'r>,
+    model: &'p JointModel,
+    space: &'p Space,
+    range: &RecordRange<'_>,
+) -> (Vec<Search<'p, 'r>>, usize) {
+    let begin = |start| Search::new(short, model, space, start).descended(Depth::ROUGH);
+    let mut searches: Vec<_> = starts(model, range).into_iter().map(begin).collect();
+    searches.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let given_up = searches.split_off(FINALISTS.min(searches.len()));
+    (searches, given_up.iter().map(Search::simulations).sum())
+}
+
+/// A glance at a model: where a rough descent in short windows leads, and its robust sum of
+/// squared errors there.
+///
+/// Sums are comparable between models of the same record.
+#[derive(Clone, Debug)]
+pub struct Survey {
+    /// The model at the values that were found.
+    pub model: JointModel,
+    /// The sum in the short windows.
+    pub cost: f64,
+}
+
+/// Surveys the free parameters of `model`, from the same starts as [`fit`].
+///
+/// # Errors
+/// As [`fit`].
+pub fn survey(
+    record: &Record<'_>,
+    model: &JointModel,
+    range: &RecordRange<'_>,
+) -> Result<Survey, FitError> {
+    let space = Space::of(model, range);
+    check_size(record, &space)?;
+    let short = record.shortened();
+    let (searches, _) = rough(&short, model, &space, range);
+    let best = searches.into_iter().map(Search::across_flats);
+    let best = best.min_by(|a, b| a.cost.total_cmp(&b.cost));
+    let found = best.map(|search| Survey { model: search.problem.model_now(), cost: search.cost });
+    Ok(found.unwrap_or_else(|| Survey { model: model.clone(), cost: f64::MAX }))
 }
 
 /// The model as it is, with the standard errors its free parameters would have if they

@@ -16,5 +16,7 @@ mod space;
 mod speed;
 mod starts;
 
-pub use least_squares::{Fit, FitError, Parameter, Status, Termination, assess, fit};
+pub use least_squares::{
+    Fit, FitError, Parameter, Status, Survey, Termination, assess, fit, fit_to_compare, survey,
+};
 pub use record::{Evaluation, Horizon, Part, Record, Split, Window};

@@ -144,6 +144,11 @@ impl<'a> Record<'a> {
         Self { others, delays, ..Self::new(self.joint, self.split, horizon) }
     }
 
+    /// Whether it is known what other joints did.
+    pub fn has_others(&self) -> bool {
+        self.others.iter().flatten().any(|activity| *activity > 0.0)
+    }
+
     /// The joint.
     pub fn joint(&self) -> &'a Joint {
         self.joint

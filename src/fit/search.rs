@@ -36,6 +36,11 @@ impl Depth {
     /// To see which of several starts leads down.
     pub(super) const ROUGH: Self = Self { relative_gain: 1e-3, patience: 6, rounds: 1 };
 
+    /// To compare models: what is left to gain is far below the noise.
+    pub(super) fn comparing(samples: usize) -> Self {
+        Self { relative_gain: 1e-2 / samples.max(1) as f64, patience: 12, rounds: 4 }
+    }
+
     /// As far as the data reach: one standard error of a parameter changes the sum of
     /// squares of `n` samples by its part `1/n`, a hundredth of one by `1e-4/n`.
     pub(super) fn whole(samples: usize) -> Self {

@@ -110,6 +110,14 @@ impl JointModel {
         model
     }
 
+    /// This model without the effect `id`.
+    #[must_use]
+    pub fn without(&self, id: &str) -> Self {
+        let mut model = self.clone();
+        model.components.retain(|component| component.effect.spec().id != id);
+        model
+    }
+
     /// Whether it takes time until the speed is what the input says.
     pub(crate) fn has_dynamics(&self) -> bool {
         self.stage(Stage::Dynamics).next().is_some()

@@ -1,0 +1,51 @@
+//! A model with one effect more, fitted.
+
+use crate::diagnosis::ErrorFigures;
+use crate::fit::Fit;
+
+/// A model with one effect more, or two, beside the measurement.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    /// What was added: one id, or two where no single effect suffices.
+    pub effects: Vec<&'static str>,
+    /// The fitted model.
+    pub fit: Fit,
+    /// The error on the part it was fitted to.
+    pub training: Option<ErrorFigures>,
+    /// The error on the part it was not fitted to.
+    pub validation: Option<ErrorFigures>,
+    /// How much of the root mean square error it takes away, in percent: on the validation
+    /// part, or on the training part where there is no other.
+    pub error_reduction_percent: f64,
+    /// Probability of so much or more when the effect is not there, on the training part.
+    pub p_value: f64,
+    /// Share of the misfit that it takes away: of the mean square error beyond the noise
+    /// that the best candidate leaves.
+    pub share_of_misfit: f64,
+    /// Twice the difference in log-likelihood to the best candidate, both parts of the
+    /// record, with Schwarz's penalty: 0 for the best.
+    pub behind: f64,
+    /// Other candidates that this record cannot tell from this one.
+    pub indistinguishable_from: Vec<&'static str>,
+}
+
+impl Candidate {
+    /// What was added, in one word: `dead_band`, or `dead_band + actuator_lag`.
+    pub fn name(&self) -> String {
+        self.effects.join(" + ")
+    }
+
+    /// Whether it takes away so much of the error that it is worth a name.
+    pub(super) fn is_significant(&self) -> bool {
+        /// Probability for the best of a whole catalogue.
+        const SIGNIFICANCE: f64 = 1e-3;
+        /// Least reduction of the error on data that were not fitted, percent.
+        const WORTH_PERCENT: f64 = 1.0;
+        self.p_value < SIGNIFICANCE && self.error_reduction_percent > WORTH_PERCENT
+    }
+
+    /// The error by which it is judged: on the validation part where there is one.
+    pub fn rmse(&self) -> f64 {
+        self.validation.or(self.training).map_or(f64::NAN, |error| error.rmse)
+    }
+}

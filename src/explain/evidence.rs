@@ -1,0 +1,96 @@
+//! How likely a record is under each of several models.
+//!
+//! The noise of the measurement may have a memory. One autoregression is fitted to what the
+//! best model leaves; the residuals of all models are filtered by it, and what remains is
+//! held to be white. With sums of squares `R_t` of `n_t` samples that were fitted with `k`
+//! parameters, and `R_v` of `n_v` samples that were not, a model is judged by
+//!
+//! ```text
+//! n_t ln R_t + k ln n_t + n_v ln R_v
+//! ```
+//!
+//! which is twice its negative log-likelihood with Schwarz's penalty on the part that was
+//! fitted.
+
+use crate::diagnosis::whitening::{autoregression, whitened};
+use crate::fit::{Evaluation, Part, Record};
+use crate::statistics::fisher_tail;
+
+/// The noise of a record, as the best model leaves it.
+#[derive(Clone, Debug)]
+pub(super) struct Noise {
+    memory: Vec<f64>,
+}
+
+/// Whitened squares of one model's residuals.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Evidence {
+    training: Squares,
+    validation: Squares,
+    /// Parameters that were fitted.
+    parameters: usize,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Squares {
+    sum: f64,
+    samples: usize,
+}
+
+impl Noise {
+    /// The memory of `residuals`, both parts together.
+    pub(super) fn of(record: &Record<'_>, evaluation: &Evaluation) -> Self {
+        let mut windows = cut(record, evaluation, Part::Training);
+        windows.extend(cut(record, evaluation, Part::Validation));
+        Self { memory: autoregression(&windows) }
+    }
+
+    /// The evidence of a model with so many fitted parameters.
+    pub(super) fn evidence(
+        &self,
+        record: &Record<'_>,
+        evaluation: &Evaluation,
+        parameters: usize,
+    ) -> Evidence {
+        let squares = |part| {
+            let windows = whitened(&cut(record, evaluation, part), &self.memory);
+            let sum: f64 = windows.iter().flatten().map(|e| e * e).sum();
+            Squares { sum, samples: windows.iter().map(Vec::len).sum() }
+        };
+        let (training, validation) = (squares(Part::Training), squares(Part::Validation));
+        Evidence { training, validation, parameters }
+    }
+}
+
+impl Evidence {
+    /// The criterion: less is better.
+    pub(super) fn criterion(&self) -> f64 {
+        let penalty = self.parameters as f64 * (self.training.samples.max(2) as f64).ln();
+        self.training.deviance() + penalty + self.validation.deviance()
+    }
+
+    /// Fisher's test of this model against one with fewer parameters, on the training part.
+    pub(super) fn p_value_against(&self, simpler: &Self) -> f64 {
+        let added = self.parameters.saturating_sub(simpler.parameters).max(1);
+        let freedom = self.training.samples.saturating_sub(self.parameters).max(1);
+        let gained = (simpler.training.sum - self.training.sum).max(0.0) / added as f64;
+        let left = (self.training.sum / freedom as f64).max(f64::MIN_POSITIVE);
+        fisher_tail(gained / left, added, freedom).unwrap_or(1.0)
+    }
+}
+
+impl Squares {
+    fn deviance(self) -> f64 {
+        if self.samples == 0 {
+            return 0.0;
+        }
+        self.samples as f64 * (self.sum / self.samples as f64).max(f64::MIN_POSITIVE).ln()
+    }
+}
+
+/// Residuals of the windows of one part.
+fn cut(record: &Record<'_>, evaluation: &Evaluation, part: Part) -> Vec<Vec<f64>> {
+    let windows = record.part(part);
+    let values = windows.filter_map(|w| evaluation.residuals.get(w.trial)?.get(w.start..w.end));
+    values.map(<[f64]>::to_vec).collect()
+}

@@ -1,0 +1,36 @@
+//! Which physical effect is missing from a model.
+//!
+//! The model is fitted, and if its misfit is more than noise, every effect of the catalogue
+//! is added to it in turn and fitted with it. The race is judged on the whole record: what
+//! was fitted counts with a penalty for its parameters, what was not counts as it is.
+//!
+//! - [`explain`]: verdict and ranking for one model
+//! - [`improve`]: explain and add until nothing significant is left
+//! - [`Workers`]: who does the fits, one after the other or in parallel
+//!
+//! A closed world always blames somebody: the nearest effect lowers any error a little. So
+//! an effect is only named when the model with it, or with it and a few more, is adequate,
+//! or when it alone takes most of the misfit away; and when it does more than effects that
+//! mean nothing.
+//!
+//! # References
+//! T. Bohlin, "Practical Grey-box Process Identification", 2006. N. R. Kristensen,
+//! H. Madsen and S. B. Jørgensen, "A method for systematic improvement of stochastic
+//! grey-box models", Computers & Chemical Engineering 28 (2004). P. Bacher and H. Madsen,
+//! "Identifying suitable models for the heat dynamics of buildings", Energy and Buildings
+//! 43 (2011), 1511-1522.
+
+mod candidate;
+mod evidence;
+mod grow;
+mod improve;
+mod race;
+mod verdict;
+mod workers;
+
+pub use candidate::Candidate;
+pub use grow::Change;
+pub use improve::{Improvement, Revision, improve};
+pub use race::Options;
+pub use verdict::{Explanation, Verdict, explain};
+pub use workers::{Sequential, Workers};

@@ -1,0 +1,135 @@
+//! Every effect added to a model in turn, and fitted.
+
+use super::Workers;
+use super::candidate::Candidate;
+use super::evidence::Noise;
+use crate::diagnosis::ErrorFigures;
+use crate::effect::{Effect, REGISTRY, RecordRange};
+use crate::fit::{Fit, Part, Record, Status, Survey, fit, fit_to_compare, survey};
+use crate::model::{Component, JointModel};
+
+/// What a race is about.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The effects that take part.
+    pub effects: Vec<&'static dyn Effect>,
+    /// Effects that may be added one after the other.
+    pub max_effects: usize,
+}
+
+/// The whole catalogue, up to six effects.
+impl Default for Options {
+    fn default() -> Self {
+        Self { effects: REGISTRY.to_vec(), max_effects: 6 }
+    }
+}
+
+/// A model that took part.
+struct Entry {
+    effects: Vec<&'static str>,
+    fit: Fit,
+}
+
+/// Effects that are fitted to the end, of those that were surveyed.
+const FINALISTS: usize = 6;
+
+/// Surveys `base` with each effect of `options` that it has not, fits the best few to the
+/// end and ranks them, best first.
+pub(super) fn race(
+    record: &Record<'_>,
+    base: &Fit,
+    noise_floor: f64,
+    options: &Options,
+    workers: &impl Workers,
+) -> Vec<Candidate> {
+    let able = |effect: &&&'static dyn Effect| takes_part(record, &base.model, **effect);
+    let effects: Vec<&'static dyn Effect> = options.effects.iter().filter(able).copied().collect();
+    let levels = record.input_levels();
+    let range = range(record, &base.model, &levels);
+    let glance = |effect: &&'static dyn Effect| {
+        let model = base.model.with(Component::neutral(*effect));
+        Some((effect.spec().id, survey(record, &model, &range).ok()?))
+    };
+    let surveyed = workers.map(&effects, glance).into_iter().flatten();
+    let mut surveyed: Vec<(&'static str, Survey)> = surveyed.collect();
+    surveyed.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+    surveyed.truncate(FINALISTS);
+    let to_the_end = |(id, survey): &(&'static str, Survey)| {
+        let fit = fit_to_compare(record, &survey.model, &range).ok()?;
+        Some(Entry { effects: vec![*id], fit })
+    };
+    let entries: Vec<Entry> = workers.map(&surveyed, to_the_end).into_iter().flatten().collect();
+    ranked(record, base, noise_floor, entries)
+}
+
+/// `model` fitted; `None` where it cannot be.
+pub(super) fn fitted(record: &Record<'_>, model: &JointModel) -> Option<Fit> {
+    let levels = record.input_levels();
+    fit(record, model, &range(record, model, &levels)).ok()
+}
+
+/// How large the signals of `record` are, for a model with about the gain of `model`.
+fn range<'l>(record: &Record<'_>, model: &JointModel, levels: &'l [f64]) -> RecordRange<'l> {
+    record.range(levels, model.gain.value.abs() * levels.last().copied().unwrap_or(1.0))
+}
+
+/// Whether `effect` could be missing: it is not there already, nor contained in one that
+/// is, and the record could show it.
+fn takes_part(record: &Record<'_>, model: &JointModel, effect: &'static dyn Effect) -> bool {
+    let id = effect.spec().id;
+    let has = |component: &Component| {
+        let spec = component.effect().spec();
+        spec.id == id || spec.absorbs.contains(&id)
+    };
+    !model.components().iter().any(has) && (id != "supply_droop" || record.has_others())
+}
+
+fn ranked(
+    record: &Record<'_>,
+    base: &Fit,
+    noise_floor: f64,
+    entries: Vec<Entry>,
+) -> Vec<Candidate> {
+    let error = |fit: &Fit, part| ErrorFigures::of(record, &fit.evaluation, part);
+    let Some(best) = entries.iter().min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost)) else {
+        return Vec::new();
+    };
+    let noise = Noise::of(record, &best.fit.evaluation);
+    let evidence = |fit: &Fit| noise.evidence(record, &fit.evaluation, parameters(fit));
+    let of_base = evidence(base);
+    let (trained, validated) = (error(base, Part::Training), error(base, Part::Validation));
+    let square = |e: Option<ErrorFigures>| e.map_or(f64::NAN, |e| e.rmse * e.rmse);
+    let candidate = |entry: Entry| {
+        let evidence = evidence(&entry.fit);
+        let training = error(&entry.fit, Part::Training);
+        let validation = error(&entry.fit, Part::Validation);
+        let (before, after) = match (validated, validation) {
+            (Some(before), Some(after)) => (before.rmse, after.rmse),
+            _ => (square(trained).sqrt(), square(training).sqrt()),
+        };
+        let misfit = (square(trained) - noise_floor * noise_floor).max(f64::MIN_POSITIVE);
+        Candidate {
+            effects: entry.effects,
+            training,
+            validation,
+            error_reduction_percent: 100.0 * (1.0 - after / before),
+            p_value: evidence.p_value_against(&of_base),
+            share_of_misfit: (square(trained) - square(training)) / misfit,
+            behind: evidence.criterion(),
+            indistinguishable_from: Vec::new(),
+            fit: entry.fit,
+        }
+    };
+    let mut candidates: Vec<Candidate> = entries.into_iter().map(candidate).collect();
+    candidates.sort_by(|a, b| a.behind.total_cmp(&b.behind));
+    let least = candidates.first().map_or(0.0, |best| best.behind);
+    for candidate in &mut candidates {
+        candidate.behind -= least;
+    }
+    candidates
+}
+
+/// Parameters that were fitted.
+pub(super) fn parameters(fit: &Fit) -> usize {
+    fit.parameters.iter().filter(|parameter| parameter.status != Status::Fixed).count()
+}

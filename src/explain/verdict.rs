@@ -1,0 +1,96 @@
+//! What a race says of the model.
+
+use serde::Serialize;
+
+use super::Workers;
+use super::candidate::Candidate;
+use super::grow::{Change, Step, grow, ids};
+use super::race::{Options, race};
+use crate::diagnosis::{Comparison, compare};
+use crate::fit::{Fit, Record};
+
+/// What is to be said of a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// No lack of fit is shown: nothing to add.
+    Adequate,
+    /// The first of the ranking explains a significant part.
+    MissingEffect,
+    /// The model fails, and no effect accounts for it.
+    Unexplained,
+}
+
+impl Verdict {
+    /// The verdict on a model that fails, by whether an effect accounts for it.
+    pub(super) fn of(explained: bool) -> Self {
+        if explained { Self::MissingEffect } else { Self::Unexplained }
+    }
+}
+
+/// What is missing from a model.
+#[derive(Clone, Debug)]
+pub struct Explanation {
+    /// The model as it is, fitted.
+    pub base: Comparison,
+    /// What is to be said of it.
+    pub verdict: Verdict,
+    /// The candidates, best first; none where the model is adequate.
+    pub ranking: Vec<Candidate>,
+}
+
+/// The share of a misfit that an effect takes away alone which is named though the model
+/// with it still fails.
+const MOST_OF_IT: f64 = 0.8;
+
+/// Effects that may come behind the first before the model is adequate.
+const LOOK_AHEAD: usize = 3;
+
+/// Says what is missing from the model of `fit`.
+///
+/// The first of the ranking is named when the model with it is adequate, or would be with
+/// up to three more effects, or when it takes most of the misfit away.
+pub fn explain(
+    record: &Record<'_>,
+    fit: Fit,
+    options: &Options,
+    workers: &impl Workers,
+) -> Explanation {
+    let base = compare(record, fit);
+    if base.lack_of_fit.is_none_or(|test| test.adequate) {
+        return Explanation { base, verdict: Verdict::Adequate, ranking: Vec::new() };
+    }
+    let floor = base.noise_floor.unwrap_or(0.0);
+    let mut ranking = race(record, &base.fit, floor, options, workers);
+    let verdict = Verdict::of(accounts_for_it(record, &mut ranking, options, workers));
+    Explanation { base, verdict, ranking }
+}
+
+/// Whether the best candidate is to be named. An effect that further ones make useless
+/// gives way to the first that remains.
+fn accounts_for_it(
+    record: &Record<'_>,
+    ranking: &mut Vec<Candidate>,
+    options: &Options,
+    workers: &impl Workers,
+) -> bool {
+    let Some(best) = ranking.first().filter(|best| best.is_significant()) else { return false };
+    let id = best.effects.first().copied().unwrap_or_default();
+    let first = Step::new(record, Change::Added(id), best.fit.clone());
+    let given: Vec<_> = ids(&best.fit.model).into_iter().filter(|given| *given != id).collect();
+    let ahead = Options { max_effects: 1 + LOOK_AHEAD, ..options.clone() };
+    let mut last = Vec::new();
+    let verdict = grow(record, first, &given, &ahead, workers, |step| {
+        last = ids(&step.fit.model);
+        true
+    });
+    let named = best.share_of_misfit >= MOST_OF_IT || verdict == Verdict::Adequate;
+    if verdict == Verdict::Adequate {
+        let remains = |candidate: &Candidate| candidate.effects.iter().all(|id| last.contains(id));
+        if let Some(place) = ranking.iter().position(remains) {
+            let first = ranking.remove(place);
+            ranking.insert(0, first);
+        }
+    }
+    named
+}
