@@ -76,13 +76,25 @@ pub(crate) fn floor_of(record: &Record<'_>, fit: &Fit) -> Option<f64> {
     noise_floor(trials.iter().zip(&arriving))
 }
 
+/// A residual so many times the noise of the measurement is no noise, however well it
+/// would pass for one that changes slowly.
+const BEYOND_NOISE: f64 = 3.0;
+
 /// Whether `fit` leaves more than noise on the training part of `record`.
+///
+/// Beside the test, which holds all that changes slowly for noise, the residual is held
+/// against the noise about a smooth curve.
 pub(crate) fn lack_of(record: &Record<'_>, fit: &Fit) -> Option<LackOfFit> {
-    lack_of_fit(&TestColumns {
+    let test = lack_of_fit(&TestColumns {
         residuals: cut(record, &fit.evaluation),
         own: sensitivities(record, fit),
         shapes: shapes(record, &fit.evaluation, Part::Training),
-    })
+    })?;
+    let error = ErrorFigures::of(record, &fit.evaluation, Part::Training);
+    let beyond = error.zip(floor_of(record, fit)).is_some_and(|(error, floor)| {
+        error.rmse > BEYOND_NOISE * floor.max(f64::MIN_POSITIVE)
+    });
+    Some(LackOfFit { adequate: test.adequate && !beyond, ..test })
 }
 
 /// The training part of each trial.

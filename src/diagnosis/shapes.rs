@@ -9,6 +9,9 @@ const MOST_LEVELS: usize = 10;
 /// Parts of the record that get a shape of their own.
 const TIME_PARTS: usize = 8;
 
+/// Places on the angle's range at which a sensor's error gets a shape of its own.
+const ANGLE_KNOTS: usize = 24;
+
 /// Time constants of transients behind a step, in seconds.
 const TRANSIENTS_S: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
 
@@ -76,8 +79,10 @@ fn of_window(
     let period = trial.period().seconds();
     let cut = |values: &[f64]| values.get(window.start..window.end).unwrap_or_default().to_vec();
     let (acting, speed) = (cut(&simulated.acting), cut(&simulated.velocity));
-    let angle: Vec<f64> =
-        cut(trial.output()).iter().map(|y| (y - scales.middle) / scales.half_span).collect();
+    let places = |angles: &[f64]| -> Vec<f64> {
+        cut(angles).iter().map(|y| (y - scales.middle) / scales.half_span).collect()
+    };
+    let angle = places(trial.output());
     let first = trial.time_s(window.start + 1);
     let time: Vec<f64> =
         (0..acting.len()).map(|k| (first + k as f64 * period) / scales.duration_s).collect();
@@ -92,6 +97,8 @@ fn of_window(
     let mut shapes: Vec<Vec<f64>> =
         velocities.into_iter().map(|velocity| integrated(&velocity, period)).collect();
     shapes.extend(transients(&acting, period));
+    // Of the simulated angle: the measured one has the noise in it that is tested.
+    shapes.extend(tents(&places(&simulated.output)));
     shapes.push(speed);
     for shape in &mut shapes {
         centre(shape);
@@ -116,6 +123,17 @@ fn edges(speed: &[f64], angle: &[f64]) -> Vec<Vec<f64>> {
         pairs.map(|(v, y)| if is_there(*y) { *v } else { 0.0 }).collect::<Vec<f64>>()
     };
     vec![where_(|y| y > END), where_(|y| y < -END)]
+}
+
+/// What a sensor may add at each angle: a tent about each of some places, which overlap
+/// half, so that together they make any broken line.
+fn tents(angle: &[f64]) -> Vec<Vec<f64>> {
+    let last = (ANGLE_KNOTS - 1) as f64;
+    let tent = |knot: usize| {
+        let place = |y: &f64| f64::midpoint(1.0, *y) * last - knot as f64;
+        angle.iter().map(|y| (1.0 - place(y).abs()).max(0.0)).collect()
+    };
+    (0..ANGLE_KNOTS).map(tent).collect()
 }
 
 /// One in each part of the record.
@@ -175,6 +193,15 @@ mod tests {
     #[test]
     fn the_integral_starts_at_zero() {
         assert_eq!(integrated(&[2.0, 2.0, 0.0], 0.5), [0.0, 1.0, 2.0]);
+    }
+
+    #[test]
+    fn tents_add_up_to_one_within_the_range() {
+        let angle = [-1.0, -0.33, 0.0, 0.71, 1.0];
+        for k in 0..angle.len() {
+            let sum: f64 = tents(&angle).iter().map(|tent| tent[k]).sum();
+            assert!((sum - 1.0).abs() < 1e-12);
+        }
     }
 
     #[test]
