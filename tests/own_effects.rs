@@ -154,6 +154,30 @@ fn the_parameters_of_an_expression_are_fitted() {
 }
 
 #[test]
+fn an_effect_on_the_input_may_depend_on_the_angle() {
+    let bent = |k: &str| {
+        model(&own("bent", "input", "signal * (1 + k * position)", k)).with_values(&[8.0, 0.15])
+    };
+    let made = trial();
+    let truth = bent("k = 0.02");
+    let mut output = simulated(&truth);
+    output[0] += 0.5;
+    let trial = Trial::new("made", 0.0, made.period(), made.input().to_vec(), output).unwrap();
+    let joint = Joint {
+        name: "boom".to_owned(),
+        input_unit: None,
+        output_unit: Some("rad".to_owned()),
+        covariates: Vec::new(),
+        trials: vec![trial],
+    };
+    let record = Record::new(&joint, Split::Time(0.7), Horizon::FreeRun);
+    let residuals = record.evaluate(&truth).residuals;
+    let largest =
+        residuals[0].iter().skip(1).fold(0.0_f64, |largest, error| largest.max(error.abs()));
+    assert!(largest < 5e-3, "the angle at the start is found: {largest}");
+}
+
+#[test]
 fn candidates_are_offered_and_may_be_used_by_their_id() {
     let candidate = format!(
         "[[candidate]]\nkind = \"expression\"\nid = \"knee\"\nsummary = \"less above a level\"\n\

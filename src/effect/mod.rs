@@ -124,6 +124,13 @@ pub trait Effect: Debug + Send + Sync {
         true
     }
 
+    /// Whether a joint with it moves otherwise from another angle.
+    ///
+    /// A fit need not find the angle at which a record starts where nothing depends on it.
+    fn depends_on_angle(&self) -> bool {
+        matches!(self.spec().stage, Stage::Load | Stage::Output)
+    }
+
     /// How a model file defines it, where it is not an effect of the program.
     fn definition(&self) -> Option<&expression::Definition> {
         None

@@ -125,10 +125,7 @@ impl JointModel {
 
     /// Whether any effect can make the speed depend on the angle.
     pub(crate) fn depends_on_angle(&self) -> bool {
-        let on_angle = |component: &Component| {
-            matches!(component.effect.spec().stage, Stage::Load | Stage::Output)
-        };
-        self.components.iter().any(on_angle)
+        self.components.iter().any(|component| component.effect.depends_on_angle())
     }
 
     /// The effects, in the order they were added.

@@ -42,8 +42,11 @@ use super::{Effect, InputChange, Moment, Parameter, RecordRange, Spec, Stage, by
 /// The word for it in a model file.
 pub const KIND: &str = "expression";
 
+/// The angle of the joint.
+const POSITION: &str = "position";
+
 /// What an expression of any stage but the transport sees of a [`Moment`].
-const SIGNALS: [&str; 7] = ["signal", "position", "velocity", "time", "dt", "others", "radians"];
+const SIGNALS: [&str; 7] = ["signal", POSITION, "velocity", "time", "dt", "others", "radians"];
 
 /// What an expression of the transport stage sees of an [`InputChange`].
 const CHANGES: [&str; 4] = ["before", "after", "held", "time"];
@@ -103,7 +106,9 @@ impl Expression {
         let parameters: Vec<_> = definition.parameters.iter().map(|p| p.name.as_str()).collect();
         let names = Names { signals, parameters: &parameters };
         let node = grammar::parse(&definition.expression, names)?;
-        if let Some((_, name)) = (0..).zip(&parameters).find(|(place, _)| !node.uses(*place)) {
+        let is_unused =
+            |place: usize| !node.has(&|node| matches!(node, Node::Parameter(p) if *p == place));
+        if let Some((_, name)) = (0..).zip(&parameters).find(|(place, _)| is_unused(*place)) {
             return Err(DefinitionError::Unused { parameter: (*name).to_owned() });
         }
         let spec = Box::leak(Box::new(specified(&definition)));
@@ -164,6 +169,13 @@ impl Effect for Expression {
 
     fn nests(&self) -> bool {
         self.nests
+    }
+
+    fn depends_on_angle(&self) -> bool {
+        let names = signals(self.spec.stage);
+        let is_position = |place: usize| names.get(place) == Some(&POSITION);
+        let by_stage = matches!(self.spec.stage, Stage::Load | Stage::Output);
+        by_stage || self.node.has(&|node| matches!(node, Node::Signal(p) if is_position(*p)))
     }
 
     fn definition(&self) -> Option<&Definition> {
@@ -401,6 +413,15 @@ mod tests {
         ] {
             assert!(matches!(own(wrong), Err(DefinitionError::Range { .. })));
         }
+    }
+
+    #[test]
+    fn it_depends_on_the_angle_where_it_says_so() {
+        let on = |stage, text| define(definition(stage, text, &[])).unwrap().depends_on_angle();
+        assert!(on(Stage::Input, "if(signal > 0, signal, signal * abs(position))"));
+        assert!(!on(Stage::Dynamics, "signal * exp(-time)"));
+        assert!(on(Stage::Load, "2 * signal"));
+        assert!(!on(Stage::Transport, "0 * before"));
     }
 
     #[test]

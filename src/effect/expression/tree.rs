@@ -48,16 +48,16 @@ impl Node {
         }
     }
 
-    /// Whether it depends on this parameter.
-    pub(super) fn uses(&self, parameter: usize) -> bool {
-        let uses = |node: &Self| node.uses(parameter);
-        match self {
-            Self::Number(_) | Self::Signal(_) => false,
-            Self::Parameter(place) => *place == parameter,
-            Self::Unary(_, argument) => uses(argument),
-            Self::Binary(_, arguments) => arguments.iter().any(uses),
-            Self::If(parts) => parts.iter().any(uses),
-        }
+    /// Whether it, or a part of it, is such a node.
+    pub(super) fn has(&self, is_such: &impl Fn(&Self) -> bool) -> bool {
+        let has = |node: &Self| node.has(is_such);
+        let below = match self {
+            Self::Number(_) | Self::Signal(_) | Self::Parameter(_) => false,
+            Self::Unary(_, argument) => has(argument),
+            Self::Binary(_, arguments) => arguments.iter().any(has),
+            Self::If(parts) => parts.iter().any(has),
+        };
+        below || is_such(self)
     }
 }
 
