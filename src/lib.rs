@@ -5,7 +5,7 @@
 //! Each module uses only those above it.
 //!
 //! - [`units`]: scalars that are valid once they exist
-//! - [`statistics`]: rank tests and tails of distributions
+//! - [`statistics`]: quantiles, rank tests and tails of distributions
 //! - [`effect`]: the catalogue of physical effects
 //! - [`filter`]: the zero-phase low-pass
 //! - [`experiment`]: logs, joints, trials

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::estimate::{Breakpoint, Decision, TrialEstimate};
 use crate::experiment::{Joint, Trial};
-use crate::statistics::{RankTest, holm, mann_whitney, spearman};
+use crate::statistics::{RankTest, holm, mann_whitney, median, spearman};
 
 /// Samples before an input step over which a further signal is averaged.
 const COVARIATE_SAMPLES: usize = 5;
@@ -99,8 +99,9 @@ impl AgainstState {
         let estimated = trials.filter_map(|(trial, estimate)| Some((trial, estimate?)));
         let steps: Vec<_> =
             estimated.flat_map(|(trial, estimate)| states(trial, estimate)).collect();
+        let named = variables(joint).into_iter().enumerate();
         let mut correlations: Vec<_> =
-            variables(joint).into_iter().map(|variable| variable.correlate(&steps)).collect();
+            named.map(|(number, variable)| correlate(&steps, number, variable)).collect();
         let mut direction = Direction::of(&steps);
         correct(&mut correlations, &mut direction);
         Self { steps, correlations, direction }
@@ -156,53 +157,53 @@ fn mean_before(signal: &[f64], sample: usize) -> Option<f64> {
     (count > 0.0).then(|| sum / count)
 }
 
-/// Looks a variable up in a step.
-type Lookup = Box<dyn Fn(&StepState) -> Option<f64>>;
-
-/// Something the delay may depend on.
-struct Variable<'a> {
-    name: &'a str,
-    unit: Option<String>,
-    value: Lookup,
-}
-
-fn variables(joint: &Joint) -> Vec<Variable<'_>> {
+/// Name and unit of each variable, in the order of [`StepState::value`].
+fn variables(joint: &Joint) -> Vec<(&str, Option<String>)> {
     let seconds = || Some("s".to_owned());
     let speed = joint.output_unit.as_ref().map(|unit| format!("{unit}/s"));
-    let known = |name, unit, value: fn(&StepState) -> Option<f64>| Variable {
-        name,
-        unit,
-        value: Box::new(value),
-    };
     let own = [
-        known("average_speed", speed, |step| Some(step.average_speed)),
-        known("step_size", joint.input_unit.clone(), |step| Some(step.input_change.abs())),
-        known("dwell", seconds(), |step| step.dwell_s),
-        known("angle", joint.output_unit.clone(), |step| Some(step.angle)),
-        known("time", seconds(), |step| Some(step.time_s)),
+        ("average_speed", speed),
+        ("step_size", joint.input_unit.clone()),
+        ("dwell", seconds()),
+        ("angle", joint.output_unit.clone()),
+        ("time", seconds()),
     ];
-    let further = joint.covariates.iter().enumerate().map(|(index, signal)| Variable {
-        name: &signal.name,
-        unit: signal.unit.clone(),
-        value: Box::new(move |step| step.covariates.get(index).copied().flatten()),
-    });
+    let further = joint.covariates.iter().map(|signal| (signal.name.as_str(), signal.unit.clone()));
     own.into_iter().chain(further).collect()
 }
 
-impl Variable<'_> {
-    fn correlate(&self, steps: &[StepState]) -> Correlation {
-        let known = steps.iter().filter_map(|step| Some(((self.value)(step)?, step.delay_s)));
-        let (values, delays): (Vec<f64>, Vec<f64>) = known.unzip();
-        let test = spearman(&values, &delays);
-        Correlation {
-            variable: self.name.to_owned(),
-            unit: self.unit.clone(),
-            steps: values.len(),
-            rho: test.map(|test| test.statistic),
-            p_value: test.map(|test| test.p_value),
-            p_holm: None,
-            significant: false,
+impl StepState {
+    /// The value of a variable, numbered as in [`AgainstState::correlations`]; none where it
+    /// is not known.
+    pub fn value(&self, variable: usize) -> Option<f64> {
+        match variable {
+            0 => Some(self.average_speed),
+            1 => Some(self.input_change.abs()),
+            2 => self.dwell_s,
+            3 => Some(self.angle),
+            4 => Some(self.time_s),
+            further => self.covariates.get(further - 5).copied().flatten(),
         }
+    }
+}
+
+/// Correlates the delays with a variable, named and numbered.
+fn correlate(
+    steps: &[StepState],
+    variable: usize,
+    (name, unit): (&str, Option<String>),
+) -> Correlation {
+    let known = steps.iter().filter_map(|step| Some((step.value(variable)?, step.delay_s)));
+    let (values, delays): (Vec<f64>, Vec<f64>) = known.unzip();
+    let test = spearman(&values, &delays);
+    Correlation {
+        variable: name.to_owned(),
+        unit,
+        steps: values.len(),
+        rho: test.map(|test| test.statistic),
+        p_value: test.map(|test| test.p_value),
+        p_holm: None,
+        significant: false,
     }
 }
 
@@ -228,15 +229,6 @@ impl Direction {
             significant: false,
         }
     }
-}
-
-/// The middle value, or the mean of the two in the middle.
-fn median(values: &[f64]) -> Option<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let upper = *sorted.get(sorted.len() / 2)?;
-    let lower = *sorted.get(sorted.len().checked_sub(1)? / 2)?;
-    Some(f64::midpoint(lower, upper))
 }
 
 /// Holm's correction over all tests of the joint.
@@ -265,12 +257,5 @@ mod tests {
         assert!(mean_before(&signal, 2).is_some_and(|mean| (mean - 9.0).abs() < 1e-15));
         assert_eq!(mean_before(&signal, 1), None);
         assert_eq!(mean_before(&[f64::NAN; 9], 8), None);
-    }
-
-    #[test]
-    fn the_median_is_in_the_middle() {
-        assert_eq!(median(&[]), None);
-        assert!(median(&[3.0, 1.0, 2.0]).is_some_and(|median| (median - 2.0).abs() < 1e-15));
-        assert!(median(&[4.0, 1.0, 2.0, 9.0]).is_some_and(|median| (median - 3.0).abs() < 1e-15));
     }
 }

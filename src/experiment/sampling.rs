@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::statistics::median;
 use crate::units::SamplePeriod;
 
 /// What may be done to a log that is not uniform or not complete.
@@ -281,12 +282,6 @@ fn resampled_piece(
         }
     }
     Piece { start_s, signals: piece }
-}
-
-fn median(steps: &[f64]) -> Option<f64> {
-    let mut sorted = steps.to_vec();
-    let middle = sorted.len() / 2;
-    (!sorted.is_empty()).then(|| *sorted.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// `seconds` to nine significant digits: 0.01 s out of times that are binary sums.

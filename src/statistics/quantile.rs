@@ -1,0 +1,45 @@
+//! Quantiles of a sample.
+
+/// The value below which this part (0 to 1) of `values` lies, on a line between the two
+/// nearest; `None` when there are none. What is not a number must be left out by the caller.
+pub fn quantile(values: &[f64], part: f64) -> Option<f64> {
+    let mut values = values.to_vec();
+    let place = part.clamp(0.0, 1.0) * values.len().checked_sub(1)? as f64;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index")]
+    let index = place as usize;
+    let (_, lower, above) = values.select_nth_unstable_by(index, f64::total_cmp);
+    let lower = *lower;
+    let upper = above.iter().copied().min_by(f64::total_cmp).unwrap_or(lower);
+    Some(lower + place.fract() * (upper - lower))
+}
+
+/// The middle value, or the mean of the two in the middle.
+pub fn median(values: &[f64]) -> Option<f64> {
+    quantile(values, 0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is(found: Option<f64>, expected: f64) -> bool {
+        found.is_some_and(|found| (found - expected).abs() < 1e-15)
+    }
+
+    #[test]
+    fn the_median_is_in_the_middle() {
+        assert_eq!(median(&[]), None);
+        assert!(is(median(&[5.0]), 5.0));
+        assert!(is(median(&[3.0, 1.0, 2.0]), 2.0));
+        assert!(is(median(&[4.0, 1.0, 2.0, 9.0]), 3.0));
+    }
+
+    #[test]
+    fn quartiles_lie_between_their_neighbours() {
+        // As `numpy.quantile` has them.
+        let values = [7.0, 1.0, 3.0, 9.0, 4.0, 8.0];
+        assert!(is(quantile(&values, 0.25), 3.25));
+        assert!(is(quantile(&values, 0.75), 7.75));
+        assert!(is(quantile(&values, 0.0), 1.0) && is(quantile(&values, 1.0), 9.0));
+    }
+}
