@@ -30,8 +30,11 @@ pub(super) struct Span {
 
 impl Span {
     pub(super) fn new(low: f64, high: f64) -> Self {
-        let wide = high - low > 0.0;
-        let room = if wide { 0.0 } else { low.abs().max(1.0) * 1e-6 };
+        let room = match (high - low > 0.0, low.abs() > 0.0) {
+            (true, _) => 0.0,
+            (false, true) => 0.1 * low.abs(),
+            (false, false) => 1.0,
+        };
         Self { low: low - room, high: high + room }
     }
 
@@ -123,7 +126,7 @@ impl Plot {
         [Vec2D::new(self.left, self.y(y)), Vec2D::new(self.right, self.y(y))]
     }
 
-    fn frame(&self) -> Vec<Vec2D> {
+    pub(super) fn frame(&self) -> Vec<Vec2D> {
         let corner = |x, y| Vec2D::new(x, y);
         vec![
             corner(self.left, self.top),
@@ -145,7 +148,7 @@ impl Plot {
         strips.extend(x_ticks.iter().map(|x| self.vertical(*x).to_vec()));
         for (y, text) in y_ticks {
             strips.push(self.horizontal(*y).to_vec());
-            labels.put(Vec2D::new(self.left - 55.0, self.y(*y) - LABEL_DROP), text.clone());
+            labels.put(self.left_of(*y, 55.0), text.clone());
         }
         strips
     }
@@ -156,6 +159,16 @@ impl Plot {
 
     pub(super) fn above(&self, x: f64, distance: f32) -> Vec2D {
         Vec2D::new(self.x(x), self.top - distance)
+    }
+
+    /// Where a text is put to be beside `y`, left of the plot.
+    pub(super) fn left_of(&self, y: f64, distance: f32) -> Vec2D {
+        Vec2D::new(self.left - distance, self.y(y) - LABEL_DROP)
+    }
+
+    /// Where a text is put to be beside `y`, right of the plot.
+    pub(super) fn right_of(&self, y: f64, distance: f32) -> Vec2D {
+        Vec2D::new(self.right + distance, self.y(y) - LABEL_DROP)
     }
 }
 
@@ -236,7 +249,7 @@ mod tests {
     fn ticks_are_round_and_inside() {
         assert_eq!(Span::new(0.3, 4.2).ticks(5.0), [1.0, 2.0, 3.0, 4.0]);
         assert_eq!(Span::new(-3.0, 12.0).ticks(4.0), [0.0, 5.0, 10.0]);
-        assert!(Span::new(7.0, 7.0).ticks(4.0).len() < 10);
+        assert_eq!(Span::new(7.0, 7.0).ticks(3.0), [6.5, 7.0, 7.5]);
     }
 
     #[test]

@@ -6,14 +6,15 @@
 //!
 //! Inside, `layout` says where samples, trials and decisions lie on the timelines, `chunk`
 //! makes columns of rows with reproducible ids, `signals`, `decisions`, `verdict`,
-//! `segment_view`, `overview` and `about` are one part of the content each, `blueprint`
-//! says which view shows what, and `write` brings it into a file or a stream.
+//! `segment_view`, `overview`, `delay_state` and `about` are one part of the content each,
+//! `blueprint` says which view shows what, and `write` brings it into a file or a stream.
 
 mod about;
 mod blueprint;
 mod canvas;
 mod chunk;
 mod decisions;
+mod delay_state;
 mod entity;
 mod error;
 mod layout;

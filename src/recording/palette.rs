@@ -26,6 +26,12 @@ pub(super) const REJECTED: Rgb = rgb(235, 85, 60);
 pub(super) const ERROR: Rgb = rgb(204, 121, 167);
 /// Borders of a segment.
 pub(super) const BORDER: Rgb = rgb(225, 225, 225);
+/// A step of the input up.
+pub(super) const UP: Rgb = rgb(95, 160, 255);
+/// A step of the input down.
+pub(super) const DOWN: Rgb = rgb(240, 150, 195);
+/// Half of what was found lies there.
+pub(super) const BAND: Rgb = rgb(40, 50, 58);
 /// Grid lines.
 pub(super) const GRID: Rgb = rgb(60, 62, 66);
 

@@ -14,7 +14,8 @@ use super::error::RecordError;
 use super::layout::{JointLayout, TrialStarts};
 use super::message::{chunk_message, store_message};
 use super::{
-    Recording, about, blueprint, decisions, model, overview, segment_view, signals, verdict,
+    Recording, about, blueprint, decisions, delay_state, model, overview, segment_view, signals,
+    verdict,
 };
 use crate::report::EstimatedJoint;
 
@@ -111,16 +112,17 @@ fn for_each_chunk(
 fn add_joint(
     chunks: &mut Chunks,
     recording: &Recording<'_>,
-    joint: EstimatedJoint<'_>,
+    estimated: EstimatedJoint<'_>,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
-    let joint = joint.joint;
+    let joint = estimated.joint;
     let root = joint_root(&joint.name);
     signals::add(chunks, &root, joint, layout)?;
     decisions::add(chunks, &root, layout)?;
     verdict::add(chunks, &root, joint, layout, recording.settings)?;
     segment_view::add(chunks, &root, joint, layout)?;
     overview::add(chunks, &root, layout)?;
+    delay_state::add(chunks, &root, estimated, layout)?;
     let models = recording.models.iter().filter(|model| model.joint.name == joint.name);
     model::add(chunks, &root, layout, &models.collect::<Vec<_>>())
 }

@@ -36,18 +36,24 @@ pub fn against_table<'a>(joints: impl IntoIterator<Item = (&'a str, &'a AgainstS
 
 fn correlation_row(joint: &str, found: &Correlation) -> [String; 6] {
     let Correlation { variable, unit, steps, rho, p_value, significant, .. } = found;
-    let variable = variable.replace('_', " ");
-    let name =
-        unit.as_ref().map_or_else(|| variable.clone(), |unit| format!("{variable} [{unit}]"));
     let rho = rho.map_or_else(|| "-".to_owned(), |rho| format!("{rho:+.2}"));
     [
         joint.to_owned(),
-        name,
+        variable_text(variable, unit.as_deref()),
         steps.to_string(),
         rho,
         p_text(*p_value),
         answer(p_value.map(|_| *significant)),
     ]
+}
+
+/// A variable with its unit, where there is one.
+pub(crate) fn variable_text(variable: &str, unit: Option<&str>) -> String {
+    let variable = variable.replace('_', " ");
+    match unit {
+        Some(unit) => format!("{variable} [{unit}]"),
+        None => variable,
+    }
 }
 
 fn direction_row(joint: &str, found: &Direction) -> [String; 6] {
@@ -67,7 +73,7 @@ fn direction_row(joint: &str, found: &Direction) -> [String; 6] {
 }
 
 /// To the thousandth; a p-value is no better known.
-fn p_text(p_value: Option<f64>) -> String {
+pub(crate) fn p_text(p_value: Option<f64>) -> String {
     match p_value {
         None => "-".to_owned(),
         Some(p_value) if p_value < 0.001 => "< 0.001".to_owned(),

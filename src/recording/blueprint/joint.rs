@@ -18,7 +18,7 @@ use crate::recording::canvas::SHEET;
 use crate::recording::entity::{below, joint_root};
 use crate::recording::error::RecordError;
 use crate::recording::overview::{MAP_HEIGHT, MAP_WIDTH};
-use crate::recording::scatter;
+use crate::recording::{delay_state, scatter};
 
 /// The tab of `joint`: its decisions, its record, its table; and its models, which then
 /// come first, where there are any.
@@ -32,7 +32,9 @@ pub(super) fn tab(
     if !models.is_empty() {
         pages.push(views.models(models)?);
     }
-    pages.extend([views.decisions()?, views.record()?, views.table()?]);
+    let delay = views.delay_state();
+    let delay = views.view(delay)?;
+    pages.extend([views.decisions()?, views.record()?, delay, views.table()?]);
     views.builder.container(ContainerKind::Tabs, &joint.name, &pages, &[])
 }
 
@@ -212,6 +214,14 @@ impl Views<'_> {
         rows.push(self.view(self.lanes())?);
         shares.push(if self.joint.trials.len() > 1 { 2.2 } else { 1.6 });
         self.builder.container(ContainerKind::Vertical, "Record", &rows, &shares)
+    }
+
+    /// The delay against what it may depend on.
+    fn delay_state(&self) -> View<'static> {
+        let paths: Vec<_> =
+            delay_state::PARTS.iter().map(|name| self.path(&["against", name])).collect();
+        View::new("2D", "Delay", &paths)
+            .with("VisualBounds2D", bounds(SHEET.0, delay_state::HEIGHT))
     }
 
     /// Models beside the measurement, and what is left.
