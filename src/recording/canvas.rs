@@ -68,6 +68,9 @@ impl Span {
 /// How far below its point the middle of a text is drawn.
 const LABEL_DROP: f32 = 14.0;
 
+/// Half the width of a letter on the sheet, where it is shown at two thirds of its size.
+const HALF_LETTER: f32 = 5.0;
+
 /// Left and right end of all plots: room for labels on the left.
 const SIDES: (f32, f32) = (120.0, SHEET.0 - 15.0);
 
@@ -184,6 +187,13 @@ impl Labels {
         self.places.push(place);
         self.texts.push(text.into());
     }
+
+    /// Puts a text there, or as near as it can be without being cut at a side of the sheet.
+    pub(super) fn put_whole(&mut self, Vec2D([x, y]): Vec2D, text: impl Into<String>) {
+        let text = text.into();
+        let half = HALF_LETTER * (text.chars().count() + 2) as f32;
+        self.put(Vec2D::new(x.min(SHEET.0 - half).max(half), y), text);
+    }
 }
 
 /// At most this many points of one curve: a screen has no more columns.
@@ -250,6 +260,14 @@ mod tests {
         assert_eq!(Span::new(0.3, 4.2).ticks(5.0), [1.0, 2.0, 3.0, 4.0]);
         assert_eq!(Span::new(-3.0, 12.0).ticks(4.0), [0.0, 5.0, 10.0]);
         assert_eq!(Span::new(7.0, 7.0).ticks(3.0), [6.5, 7.0, 7.5]);
+    }
+
+    #[test]
+    fn a_text_at_the_edge_moves_inward() {
+        let mut labels = Labels::default();
+        labels.put_whole(Vec2D::new(SHEET.0 - 15.0, 4.0), "end = 12000");
+        labels.put_whole(Vec2D::new(800.0, 4.0), "end = 12000");
+        assert_eq!(labels.places, [Vec2D::new(SHEET.0 - 65.0, 4.0), Vec2D::new(800.0, 4.0)]);
     }
 
     #[test]

@@ -264,15 +264,15 @@ impl<'l, 'a> Drawing<'l, 'a> {
             let q = best.candidate.breakpoint as f64;
             let seconds = best.delay as f64 * self.trial.trial.period().seconds();
             let delay = format!("δ = {} samples = {} s", best.delay, number(seconds));
-            labels.put(self.output.above(f64::midpoint(p, q), 48.0), delay);
+            labels.put_whole(self.output.above(f64::midpoint(p, q), 48.0), delay);
             let text =
                 format!("q = {}, SSE = {}", best.candidate.breakpoint, number(best.candidate.sse));
-            labels.put(self.output.below(q, 2.0), text);
+            labels.put_whole(self.output.below(q, 2.0), text);
         }
-        labels.put(self.output.below(p, 24.0), format!("p = {}", decision.input_step.sample));
+        labels.put_whole(self.output.below(p, 24.0), format!("p = {}", decision.input_step.sample));
         let (first, last) = (decision.segment.first, decision.segment.last);
-        labels.put(self.output.below(first as f64, 2.0), format!("r = {first}"));
-        labels.put(self.output.below(last as f64, 2.0), format!("end = {last}"));
+        labels.put_whole(self.output.below(first as f64, 2.0), format!("r = {first}"));
+        labels.put_whole(self.output.below(last as f64, 2.0), format!("end = {last}"));
         let unit = joint.output_unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}]"));
         labels.put(Vec2D::new(62.0, 22.0), format!("output{unit}"));
         labels.put(Vec2D::new(62.0, 430.0), "SSE (log)".to_owned());
