@@ -2,8 +2,12 @@
 //! equation with the models.
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
+use std::fmt::Write as _;
 use std::process::{Command, Output};
 
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution as _, StandardNormal};
 use serde_json::Value;
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate, write_log};
 use tempfile::TempDir;
@@ -104,6 +108,127 @@ fn a_short_horizon_makes_the_error_of_an_integrator_smaller() {
     let desk = Desk::with(|joint| JointSpec { dead_band: Some([-0.3, 0.3]), ..joint });
     let rmse = |arguments: &str| desk.joint(arguments)["error"]["train"]["rmse"].as_f64().unwrap();
     assert!(rmse("--horizon steps") < rmse("--horizon free"));
+}
+
+/// A log of two joints on one pump: `boom` loses `droop` of its speed while `stick` is
+/// driven as hard as ever, integrated in small steps; `stick` has levels of its own.
+fn two_joints(droop: f64) -> String {
+    const SAMPLES: usize = 3000;
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    let levels = [-2.0, -1.0, 0.0, 1.0, 2.0];
+    let mut held = |shortest: usize| -> Vec<f64> {
+        let mut levels_held = Vec::new();
+        while levels_held.len() < SAMPLES {
+            let level = levels[random.random_range(0..levels.len())];
+            let samples = shortest + random.random_range(0..100);
+            levels_held.extend(std::iter::repeat_n(level, samples));
+        }
+        levels_held
+    };
+    let (boom, stick) = (held(60), held(90));
+    let mut log =
+        String::from("time_s,boom.input [V],boom.output [deg],stick.input,stick.output\n");
+    let (mut angles, mut noise) = ([0.0, 0.0], || -> f64 { StandardNormal.sample(&mut random) });
+    for k in 0..SAMPLES {
+        let measured = angles.map(|angle| angle + 0.05 * noise());
+        let (u, other) = (boom[k], stick[k]);
+        writeln!(log, "{},{u},{},{other},{}", k as f64 / 100.0, measured[0], measured[1]).unwrap();
+        for part in 0..10 {
+            // Twelve samples and a half late.
+            let late = (10 * k + part).checked_sub(125).map_or(0.0, |at| boom[at / 10]);
+            angles[0] += 8.0 * late * (1.0 - droop * other.abs() / 2.0) * 0.001;
+            angles[1] += 5.0 * other * 0.001;
+        }
+    }
+    log
+}
+
+#[test]
+fn a_joint_that_slows_down_while_another_moves_is_seen_to() {
+    let droop = "[[joint.boom.effect]]\nkind = \"supply_droop\"\n";
+    let desk = Desk::with(|joint| joint).model("droop.toml", droop);
+    std::fs::write(desk.folder.path().join("log.csv"), two_joints(0.3)).unwrap();
+    let output = desk.run("--model droop.toml --fit --format json");
+    // `stick` is not in the model file, which is said.
+    assert_eq!(output.status.code(), Some(1));
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let joint = &json["joints"][0];
+    let of = |name: &str| joint["parameters"][name].clone();
+    for (name, truth) in [("supply_droop.droop", 0.3), ("gain", 8.0), ("delay", 0.125)] {
+        let (value, error) = (of(name)["value"].as_f64(), of(name)["std_error"].as_f64());
+        let (value, error) = (value.unwrap(), error.unwrap());
+        assert!(
+            (value - truth).abs() < 4.0 * error && error < 0.02 * truth,
+            "{name}: {value} ± {error}"
+        );
+    }
+    assert_eq!(joint["lack_of_fit"]["adequate"], true);
+    // A joint that is not read cannot be seen to move.
+    let alone = desk.joint("--joint boom --model droop.toml --fit");
+    assert_eq!(alone["lack_of_fit"]["adequate"], false);
+}
+
+#[test]
+fn what_is_left_of_a_good_model_is_white_and_free_of_the_input() {
+    let desk = Desk::with(|joint| joint);
+    let joint = desk.joint("");
+    let (white, input) = (&joint["whiteness"], &joint["input_correlation"]);
+    assert!(white["p_value"].as_f64().unwrap() > 0.01);
+    let band = white["band"].as_f64().unwrap();
+    let outside = |correlations: &Value, band: f64| {
+        let all: Vec<f64> = serde_json::from_value(correlations.clone()).unwrap();
+        (all.iter().filter(|r| r.abs() > band).count(), all.len())
+    };
+    let (found, lags) = outside(&white["correlation"], band);
+    assert!(lags == 200 && found <= 8, "{found} of {lags}");
+    assert_eq!((&input["first_lag_s"], &input["lag_step_s"]), (&(-2.0).into(), &0.01.into()));
+    for side in ["acting", "raw"] {
+        assert!(input[side]["p_value"].as_f64().unwrap() > 0.01, "{side}");
+        let (found, lags) =
+            outside(&input[side]["correlation"], input[side]["band"].as_f64().unwrap());
+        let share = input[side]["share_outside"].as_f64().unwrap();
+        assert!(lags == 401 && (share - found as f64 / 401.0).abs() < 1e-12);
+    }
+    let text = String::from_utf8(desk.run("").stdout).unwrap();
+    assert!(text.contains("boom (integrator): white (p = "), "{text}");
+}
+
+#[test]
+fn a_delay_that_is_too_short_shows_right_after_the_steps_act() {
+    // The true delay is 0.12 s.
+    let late = "[joint.boom]\nstructure = \"integrator\"\n\
+                parameters = { gain = 10.0, delay = 0.06 }\n";
+    let desk = Desk::with(|joint| joint);
+    let text = format!("schema = \"tauscope/model/1\"\n{late}");
+    std::fs::write(desk.folder.path().join("late.toml"), text).unwrap();
+    let joint = desk.joint("--model late.toml");
+    let correlation = |side: &str| {
+        let of = &joint["input_correlation"][side];
+        let all: Vec<f64> = serde_json::from_value(of["correlation"].clone()).unwrap();
+        let (band, middle) = (of["band"].as_f64().unwrap(), all.len() / 2);
+        let far = all.iter().enumerate().filter(|(_, r)| r.abs() > 2.0 * band);
+        far.map(|(place, _)| place as f64 - middle as f64).collect::<Vec<_>>()
+    };
+    assert_eq!(correlation("acting"), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+    assert_eq!(correlation("raw"), [7.0, 8.0, 9.0, 10.0, 11.0, 12.0]);
+}
+
+#[test]
+fn parts_of_each_feature_share_time_and_error() {
+    for (joint, adequate) in [
+        (Desk::with(|joint| joint).joint(""), true),
+        (Desk::with(|joint| JointSpec { dead_band: Some([-0.3, 0.3]), ..joint }).joint(""), false),
+    ] {
+        assert_eq!(joint["lack_of_fit"]["adequate"], adequate);
+        let regions = joint["regions"].as_array().unwrap();
+        for feature in ["input", "direction", "output", "speed", "since_step", "hold", "time"] {
+            let of = regions.iter().filter(|region| region["feature"] == feature);
+            let share = |name: &str| of.clone().map(|r| r[name].as_f64().unwrap()).sum::<f64>();
+            for name in ["share_of_time", "share_of_squared_error"] {
+                assert!((share(name) - 1.0).abs() < 1e-9, "{feature}: {name}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -125,7 +125,8 @@ impl Plot {
         [Vec2D::new(self.x(x), self.top), Vec2D::new(self.x(x), self.bottom)]
     }
 
-    fn horizontal(&self, y: f64) -> [Vec2D; 2] {
+    /// A line from edge to edge at `y`.
+    pub(super) fn level(&self, y: f64) -> [Vec2D; 2] {
         [Vec2D::new(self.left, self.y(y)), Vec2D::new(self.right, self.y(y))]
     }
 
@@ -150,7 +151,7 @@ impl Plot {
         let mut strips = vec![self.frame()];
         strips.extend(x_ticks.iter().map(|x| self.vertical(*x).to_vec()));
         for (y, text) in y_ticks {
-            strips.push(self.horizontal(*y).to_vec());
+            strips.push(self.level(*y).to_vec());
             labels.put(self.left_of(*y, 55.0), text.clone());
         }
         strips

@@ -12,7 +12,10 @@ use rerun::external::arrow::buffer::{NullBuffer, OffsetBuffer, ScalarBuffer};
 use rerun::external::arrow::datatypes::Field;
 use rerun::external::re_log_types::external::re_tuid::Tuid;
 use rerun::log::{Chunk, ChunkId, RowId, TimeColumn};
-use rerun::{AsComponents, ComponentDescriptor, EntityPath, SerializedComponentColumn};
+use rerun::{
+    AsComponents, ComponentDescriptor, EntityPath, SerializedComponentBatch,
+    SerializedComponentColumn,
+};
 
 use super::error::RecordError;
 
@@ -160,6 +163,24 @@ pub(super) fn integers(name: &'static str, values: &[Option<i64>]) -> Serialized
 pub(super) fn texts(name: &'static str, values: &[Option<String>]) -> SerializedComponentColumn {
     let items: StringArray = values.iter().flatten().map(|text| Some(text.as_str())).collect();
     list_column(name, Arc::new(items), values.iter().map(Option::is_some))
+}
+
+/// Numbers named `name` for one row.
+pub(super) fn list(
+    name: &'static str,
+    values: impl Iterator<Item = f64>,
+) -> SerializedComponentBatch {
+    let values: Float64Array = values.collect::<Vec<_>>().into();
+    SerializedComponentBatch::new(Arc::new(values), ComponentDescriptor::partial(name))
+}
+
+/// Texts named `name` for one row.
+pub(super) fn words<'a>(
+    name: &'static str,
+    texts: impl Iterator<Item = &'a str>,
+) -> SerializedComponentBatch {
+    let texts: StringArray = texts.map(Some).collect();
+    SerializedComponentBatch::new(Arc::new(texts), ComponentDescriptor::partial(name))
 }
 
 fn list_column(

@@ -4,15 +4,16 @@ use std::fmt::Write as _;
 
 use rerun::{EntityPath, Scalars, SeriesLines, StateChange, TextDocument};
 
-use super::chunk::{Chunks, Index};
+use super::chunk::{Chunks, Index, list, words};
 use super::entity::{below, plain};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialLayout};
 use super::palette::{self, Rgb, color};
-use super::scatter;
+use super::{correlogram, error_share, scatter};
+use crate::diagnosis::failure::Region;
 use crate::diagnosis::{Comparison, ErrorFigures};
 use crate::fit::{Parameter, Status};
-use crate::report::{ComparedJoint, number, parameter_units, sentences};
+use crate::report::{ComparedJoint, correlation_sentences, number, parameter_units, sentences};
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
@@ -39,6 +40,7 @@ pub(super) fn add(
         let entity = below(root, &["model", name, "residual"]);
         line(chunks, &entity, &format!("{name}: measured − simulated"), rgb)?;
         signal(chunks, entity, layout, residual)?;
+        figures(chunks, &below(root, &["model", name]), compared.comparison)?;
     }
     if let Some(first) = models.first() {
         band(chunks, root, layout, first.comparison.noise_floor)?;
@@ -46,7 +48,52 @@ pub(super) fn add(
         let document = TextDocument::from_markdown(page);
         chunks.push_static(below(root, &["model_page"]), &document)?;
         scatter::add(chunks, &below(root, &["scatter"]), models)?;
+        error_share::add(chunks, &below(root, &["error_share"]), models)?;
+        correlogram::add(chunks, &below(root, &["correlation"]), models)?;
         worst(chunks, root, layout, first.comparison)?;
+    }
+    Ok(())
+}
+
+/// Regions and correlations as lists of numbers, for programs.
+fn figures(
+    chunks: &mut Chunks,
+    model: &EntityPath,
+    comparison: &Comparison,
+) -> Result<(), RecordError> {
+    let regions = &comparison.regions;
+    let column = |name, value: fn(&Region) -> f64| list(name, regions.iter().map(value));
+    let lists = vec![
+        words("feature", regions.iter().map(|region| region.feature.id())),
+        words("label", regions.iter().map(|region| region.label.as_str())),
+        column("from", |region| region.from),
+        column("to", |region| region.to),
+        column("share_of_time", |region| region.share_of_time),
+        column("share_of_squared_error", |region| region.share_of_squared_error),
+        column("rmse", |region| region.rmse),
+        column("mean_residual", |region| region.mean_residual),
+    ];
+    chunks.push_static(below(model, &["regions"]), &lists)?;
+    if let Some(found) = &comparison.whiteness {
+        let lags = (1..=found.correlation.len()).map(|k| k as f64 * found.lag_step_s);
+        let lists = vec![
+            list("lag_s", lags),
+            list("correlation", found.correlation.iter().copied()),
+            list("band", std::iter::once(found.band)),
+        ];
+        chunks.push_static(below(model, &["whiteness"]), &lists)?;
+    }
+    if let Some(found) = &comparison.input_correlation {
+        let lags = 0..found.acting.correlation.len();
+        let lags = lags.map(|k| found.first_lag_s + k as f64 * found.lag_step_s);
+        let lists = vec![
+            list("lag_s", lags),
+            list("acting", found.acting.correlation.iter().copied()),
+            list("acting_band", std::iter::once(found.acting.band)),
+            list("raw", found.raw.correlation.iter().copied()),
+            list("raw_band", std::iter::once(found.raw.band)),
+        ];
+        chunks.push_static(below(model, &["input_correlation"]), &lists)?;
     }
     Ok(())
 }
@@ -148,6 +195,12 @@ fn page(models: &[&ComparedJoint<'_>]) -> Result<String, std::fmt::Error> {
     for compared in models {
         for sentence in sentences(compared) {
             writeln!(page, "\n**Fails** ({}): {}", compared.model, plain(&sentence))?;
+        }
+    }
+    for compared in models {
+        let left = correlation_sentences(compared.comparison).join("; ");
+        if !left.is_empty() {
+            writeln!(page, "\n**What is left** ({}): {}", compared.model, plain(&left))?;
         }
     }
     if let Some(failure) = &first.comparison.failure {

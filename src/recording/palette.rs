@@ -40,6 +40,12 @@ pub(super) fn models() -> impl Iterator<Item = Rgb> {
     [rgb(230, 159, 0), rgb(0, 158, 115), rgb(204, 121, 167), rgb(213, 94, 0)].into_iter().cycle()
 }
 
+/// A darker shade of a colour.
+pub(super) fn dimmed((r, g, b): Rgb) -> Rgb {
+    let half = |part: u8| part / 2;
+    (half(r), half(g), half(b))
+}
+
 pub(super) fn color((r, g, b): Rgb) -> Color {
     Color::from_rgb(r, g, b)
 }

@@ -3,12 +3,13 @@
 use rerun::datatypes::Vec2D;
 use rerun::{EntityPath, LineStrips2D, Points2D};
 
-use super::canvas::{Labels, Plot, Span};
+use super::canvas::{Plot, Span};
 use super::chunk::Chunks;
 use super::entity::below;
 use super::error::RecordError;
 use super::palette::{self, color};
-use crate::report::{ComparedJoint, number};
+use super::sheet::Sheet;
+use crate::report::ComparedJoint;
 
 /// Height of the sheet: two plots below one another.
 pub(super) const HEIGHT: f32 = 480.0;
@@ -34,19 +35,12 @@ pub(super) fn add(
     models: &[&ComparedJoint<'_>],
 ) -> Result<(), RecordError> {
     let Some(first) = models.first() else { return Ok(()) };
-    let (mut grid, mut labels, mut points) = (Vec::new(), Labels::default(), Vec::new());
+    let (mut sheet, mut points) = (Sheet::default(), Vec::new());
     let mut curves: Vec<Vec<Vec<Vec2D>>> = vec![Vec::new(); models.len()];
     let others: Vec<Vec<Pairs>> = models.iter().map(|model| quantities(model)).collect();
     for (place, pairs) in quantities(first).iter().enumerate() {
         let plot = plot(place, pairs);
-        let ticks = |span: Span, count| span.ticks(count);
-        let named: Vec<_> = ticks(plot.y_span(), 3.0).into_iter().map(|y| (y, number(y))).collect();
-        let x_ticks = ticks(plot.x_span(), 6.0);
-        grid.extend(plot.grid(&x_ticks, &named, &mut labels));
-        for x in x_ticks {
-            labels.put(plot.below(x, 2.0), number(x));
-        }
-        labels.put(plot.above(middle(plot.x_span()), 26.0), pairs.name.clone());
+        sheet.draw(&plot, 6.0, &pairs.name);
         let every = pairs.x.len().div_ceil(POINTS).max(1);
         let places = pairs.x.iter().zip(&pairs.residual).step_by(every);
         points.extend(places.map(|(x, r)| plot.at(*x, *r)));
@@ -54,22 +48,14 @@ pub(super) fn add(
             curves.extend(all.get(place).map(|pairs| curve(&plot, pairs)));
         }
     }
-    let strips = LineStrips2D::new(grid).with_colors([color(palette::GRID)]).with_radii([0.7]);
-    chunks.push_static(below(root, &["grid"]), &strips)?;
+    sheet.push(chunks, root)?;
     let dots = Points2D::new(points).with_colors([color(palette::RAW)]).with_radii([1.2]);
     chunks.push_static(below(root, &["points"]), &dots)?;
-    let texts = Points2D::new(labels.places).with_labels(labels.texts).with_show_labels(true);
-    let texts = texts.with_radii([0.01]).with_colors([color(palette::BORDER)]);
-    chunks.push_static(below(root, &["texts"]), &texts)?;
     for ((curves, rgb), number) in curves.into_iter().zip(palette::models()).zip(0..) {
         let strips = LineStrips2D::new(curves).with_colors([color(rgb)]).with_radii([2.4]);
         chunks.push_static(below(root, &["curve", &format!("{number}")]), &strips)?;
     }
     Ok(())
-}
-
-fn middle(span: Span) -> f64 {
-    f64::midpoint(span.low, span.high)
 }
 
 /// One of four places on the sheet.

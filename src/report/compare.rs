@@ -5,8 +5,10 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::number;
-use crate::diagnosis::failure::{FailsWhere, Units, WorstSegment};
-use crate::diagnosis::{Comparison, ErrorFigures, LackOfFit};
+use crate::diagnosis::failure::{FailsWhere, Region, Units, WorstSegment};
+use crate::diagnosis::{
+    Comparison, ErrorFigures, InputCorrelation, LackOfFit, SIGNIFICANCE, Whiteness,
+};
 use crate::effect::Dimension;
 use crate::experiment::Joint;
 use crate::fit::{Parameter, Status};
@@ -43,8 +45,11 @@ struct JointJson<'a> {
     parameters: Map<String, Value>,
     error: ErrorJson,
     lack_of_fit: Option<LackOfFit>,
+    whiteness: Option<&'a Whiteness>,
+    input_correlation: Option<&'a InputCorrelation>,
     fails_where: &'a [FailsWhere],
     worst_segments: &'a [WorstSegment],
+    regions: &'a [Region],
     termination: String,
 }
 
@@ -88,8 +93,11 @@ impl<'a> JointJson<'a> {
                 noise_floor: comparison.noise_floor,
             },
             lack_of_fit: comparison.lack_of_fit,
+            whiteness: comparison.whiteness.as_ref(),
+            input_correlation: comparison.input_correlation.as_ref(),
             fails_where: comparison.failure.as_ref().map_or(&[], |f| &f.fails_where),
             worst_segments: comparison.failure.as_ref().map_or(&[], |f| &f.worst_segments),
+            regions: &comparison.regions,
             termination: comparison.fit.termination.to_string(),
         }
     }
@@ -145,7 +153,62 @@ pub fn compare_table(joints: &[ComparedJoint<'_>], horizon: &str) -> String {
     } else {
         format!("\nwhere it fails (restarted at every step):\n{}\n", failures.join("\n"))
     };
-    format!("{table}\nroot-mean-square errors, {horizon}\n\n{}\n{failures}", parameters.join("\n"))
+    let residuals: Vec<_> = joints.iter().filter_map(residual_line).collect();
+    let residuals = if residuals.is_empty() {
+        String::new()
+    } else {
+        format!("\nwhat is left of the training part:\n{}\n", residuals.join("\n"))
+    };
+    let parameters = parameters.join("\n");
+    format!("{table}\nroot-mean-square errors, {horizon}\n\n{parameters}\n{residuals}{failures}")
+}
+
+/// How the residual of a joint is correlated, in a line.
+fn residual_line(compared: &ComparedJoint<'_>) -> Option<String> {
+    let parts = correlation_sentences(compared.comparison);
+    (!parts.is_empty())
+        .then(|| format!("{} ({}): {}", compared.joint.name, compared.model, parts.join("; ")))
+}
+
+/// How the residual is correlated with itself and with the input, in a sentence each.
+pub fn correlation_sentences(comparison: &Comparison) -> Vec<String> {
+    let Comparison { whiteness, input_correlation, .. } = comparison;
+    let white = whiteness.as_ref().map(whiteness_sentence);
+    white.into_iter().chain(input_correlation.as_ref().map(input_sentence)).collect()
+}
+
+fn whiteness_sentence(whiteness: &Whiteness) -> String {
+    let p = probability(whiteness.p_value);
+    if whiteness.p_value >= SIGNIFICANCE {
+        return format!("white ({p})");
+    }
+    let last = whiteness.lag_step_s * whiteness.correlation.len() as f64;
+    let seconds = number(whiteness.correlated_s);
+    match whiteness.correlated_s {
+        correlated if correlated <= 0.0 => format!("not white ({p})"),
+        correlated if correlated >= last => format!("correlated over {seconds} s and more ({p})"),
+        _ => format!("correlated over {seconds} s ({p})"),
+    }
+}
+
+fn input_sentence(correlation: &InputCorrelation) -> String {
+    let acting = &correlation.acting;
+    let p = probability(acting.p_value);
+    if acting.p_value >= SIGNIFICANCE {
+        return format!("steps of the input do not show ({p})");
+    }
+    let lag = number(acting.peak_lag_s.abs());
+    let place = match acting.peak_lag_s {
+        lag_s if lag_s.abs() < correlation.lag_step_s / 2.0 => "as they act".to_owned(),
+        lag_s if lag_s > 0.0 => format!("{lag} s after they act"),
+        _ => format!("{lag} s before they act"),
+    };
+    let percent = number((1000.0 * acting.share_outside).round() / 10.0);
+    format!("steps of the input show, most {place} ({p}, {percent} % of lags)")
+}
+
+fn probability(p_value: f64) -> String {
+    if p_value < 1e-4 { "p < 0.0001".to_owned() } else { format!("p = {p_value:.4}") }
 }
 
 /// Where a model fails, in sentences that start with the joint.
@@ -174,10 +237,7 @@ fn row(compared: &ComparedJoint<'_>) -> [String; 7] {
     let percent = validation.map_or_else(dash, |error| format!("{:.1} %", error.fit_percent));
     let verdict = lack_of_fit.map_or_else(dash, |test| {
         let shown = if test.adequate { "not shown" } else { "shown" };
-        match test.p_value {
-            p if p < 1e-4 => format!("{shown} (p < 0.0001)"),
-            p => format!("{shown} (p = {p:.4})"),
-        }
+        format!("{shown} ({})", probability(test.p_value))
     });
     let effects = effects(&fit.model);
     let effects = if effects.is_empty() { "integrator".to_owned() } else { effects.join(" + ") };

@@ -12,7 +12,9 @@ mod text;
 pub use against::against_table;
 #[cfg(feature = "rrd")]
 pub(crate) use against::{p_text, variable_text};
-pub use compare::{CompareJson, ComparedJoint, compare_table, parameter_units, sentences};
+pub use compare::{
+    CompareJson, ComparedJoint, compare_table, correlation_sentences, parameter_units, sentences,
+};
 pub use decisions::{DecisionRow, decision_rows, write_decisions};
 pub use delays::write_delays;
 pub use json::EstimateJson;

@@ -2,13 +2,12 @@
 
 use std::fmt;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::record::{Samples, Units};
 
 /// Something that is known of every sample.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Feature {
     /// Sign of the input.
     Direction,
@@ -46,6 +45,22 @@ impl Feature {
         Self::Time,
         Self::Trial,
     ];
+
+    /// Its name in files.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Direction => "direction",
+            Self::Input => "input",
+            Self::AbsInput => "abs_input",
+            Self::Output => "output",
+            Self::AbsSpeed => "abs_speed",
+            Self::Speed => "speed",
+            Self::SinceStep => "since_step",
+            Self::Hold => "hold",
+            Self::Time => "time",
+            Self::Trial => "trial",
+        }
+    }
 
     /// Its name in a condition.
     pub fn name(self) -> &'static str {
@@ -99,6 +114,12 @@ impl Feature {
 /// -1, 0, 1, or NaN where the value is not known.
 fn sign(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value.signum() }
+}
+
+impl Serialize for Feature {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.id())
+    }
 }
 
 impl fmt::Display for Feature {

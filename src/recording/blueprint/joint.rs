@@ -18,7 +18,7 @@ use crate::recording::canvas::SHEET;
 use crate::recording::entity::{below, joint_root};
 use crate::recording::error::RecordError;
 use crate::recording::overview::{MAP_HEIGHT, MAP_WIDTH};
-use crate::recording::{delay_state, scatter};
+use crate::recording::{correlogram, delay_state, error_share, scatter};
 
 /// The tab of `joint`: its decisions, its record, its table; and its models, which then
 /// come first, where there are any.
@@ -237,7 +237,7 @@ impl Views<'_> {
             self.plot("Measured and simulated", &measured)?,
             self.plot("Residual: measured − simulated, and the band of the noise", &left)?,
             self.view(View::new("StateTimeline", "Worst segments", &[self.path(&["worst"])]))?,
-            self.view(self.scatter(models.len()))?,
+            self.residuals(models.len())?,
         ];
         let builder = &mut *self.builder;
         let plots =
@@ -248,13 +248,39 @@ impl Views<'_> {
         self.builder.container(ContainerKind::Horizontal, "Models", &columns, &[7.2, 2.8])
     }
 
-    fn scatter(&self, models: usize) -> View<'static> {
-        let mut paths: Vec<_> =
-            ["grid", "points", "texts"].iter().map(|name| self.path(&["scatter", name])).collect();
-        let curve = |number| self.path(&["scatter", "curve", &format!("{number}")]);
-        paths.extend((0..models).map(curve));
-        View::new("2D", "What the residual depends on: points, and their mean", &paths)
-            .with("VisualBounds2D", bounds(SHEET.0, scatter::HEIGHT))
+    /// What the residual depends on, in three drawings.
+    fn residuals(&mut self, models: usize) -> Result<Node, RecordError> {
+        let scatter = self.sheet(
+            ("What the residual depends on: points, and their mean", scatter::HEIGHT),
+            ("scatter", &["grid", "points", "texts"]),
+            (&["curve"], models),
+        );
+        let shares = self.sheet(
+            ("Share of the error: bars; of the time: white", error_share::HEIGHT),
+            ("error_share", &["grid", "time", "texts"]),
+            (&["bars"], models),
+        );
+        let correlation = self.sheet(
+            ("Correlation, and the band of chance", correlogram::HEIGHT),
+            ("correlation", &["grid", "axes", "texts"]),
+            (&["band", "curve"], models),
+        );
+        let tabs = [self.view(scatter)?, self.view(shares)?, self.view(correlation)?];
+        self.builder.container(ContainerKind::Tabs, "Residual", &tabs, &[])
+    }
+
+    /// A drawing of `parts`, and of `of_models` for each model.
+    fn sheet(
+        &self,
+        (name, height): (&'static str, f32),
+        (root, parts): (&str, &[&str]),
+        (of_models, models): (&[&str], usize),
+    ) -> View<'static> {
+        let mut paths: Vec<_> = parts.iter().map(|part| self.path(&[root, part])).collect();
+        for part in of_models {
+            paths.extend((0..models).map(|number| self.path(&[root, part, &format!("{number}")])));
+        }
+        View::new("2D", name, &paths).with("VisualBounds2D", bounds(SHEET.0, height))
     }
 
     /// A plot whose time axis moves with those of the other plots.

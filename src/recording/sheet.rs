@@ -1,0 +1,75 @@
+//! Grid, ticks and words of a drawing that has several plots.
+
+use rerun::datatypes::Vec2D;
+use rerun::{EntityPath, LineStrips2D, Points2D};
+
+use super::canvas::{Labels, Plot, Span};
+use super::chunk::Chunks;
+use super::entity::below;
+use super::error::RecordError;
+use super::palette::{self, Rgb, color};
+use crate::report::number;
+
+/// What all plots of a drawing have behind and around their data.
+#[derive(Debug, Default)]
+pub(super) struct Sheet {
+    grid: Vec<Vec<Vec2D>>,
+    labels: Labels,
+}
+
+impl Sheet {
+    /// Frame, grid and ticks of `plot`, with about `x_ticks` of them below, and its title.
+    pub(super) fn draw(&mut self, plot: &Plot, x_ticks: f64, title: &str) {
+        let x_ticks = plot.x_span().ticks(x_ticks);
+        self.frame(plot, &x_ticks, &numbered(plot.y_span().ticks(3.0)), title);
+        for x in x_ticks {
+            self.put(plot.below(x, 2.0), number(x));
+        }
+    }
+
+    /// Frame and grid of `plot`, with the ticks that are given, and its title.
+    pub(super) fn frame(
+        &mut self,
+        plot: &Plot,
+        x_ticks: &[f64],
+        y_ticks: &[(f64, String)],
+        title: &str,
+    ) {
+        self.grid.extend(plot.grid(x_ticks, y_ticks, &mut self.labels));
+        self.put(plot.above(middle(plot.x_span()), 26.0), title);
+    }
+
+    /// A text at a place.
+    pub(super) fn put(&mut self, place: Vec2D, text: impl Into<String>) {
+        self.labels.put(place, text);
+    }
+
+    /// Adds `grid` and `texts` below `root`.
+    pub(super) fn push(self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+        strips(chunks, below(root, &["grid"]), palette::GRID, 0.7, self.grid)?;
+        let Labels { places, texts } = self.labels;
+        let texts = Points2D::new(places).with_labels(texts).with_show_labels(true);
+        let texts = texts.with_radii([0.01]).with_colors([color(palette::BORDER)]);
+        chunks.push_static(below(root, &["texts"]), &texts)
+    }
+}
+
+fn middle(span: Span) -> f64 {
+    f64::midpoint(span.low, span.high)
+}
+
+fn numbered(ticks: Vec<f64>) -> Vec<(f64, String)> {
+    ticks.into_iter().map(|tick| (tick, number(tick))).collect()
+}
+
+/// Lines of one colour and width.
+pub(super) fn strips(
+    chunks: &mut Chunks,
+    entity: EntityPath,
+    rgb: Rgb,
+    radius: f32,
+    strips: Vec<Vec<Vec2D>>,
+) -> Result<(), RecordError> {
+    let strips = LineStrips2D::new(strips).with_colors([color(rgb)]).with_radii([radius]);
+    chunks.push_static(entity, &strips)
+}
