@@ -12,11 +12,14 @@ use rerun::external::arrow::array::{
 };
 use rerun::external::re_log_encoding::DecoderApp;
 use rerun::log::{Chunk, LogMsg};
-use tauscope::batch::{JointEstimate, estimate_joints};
+use tauscope::batch::{JointEstimate, Mode, compare_joints, estimate_joints};
 use tauscope::delay::Settings;
-use tauscope::experiment::{Experiment, ReadOptions};
+use tauscope::diagnosis::Comparison;
+use tauscope::experiment::{Experiment, Joint, ReadOptions};
+use tauscope::fit::Horizon;
+use tauscope::model::integrators;
 use tauscope::recording::{Detail, RecordError, Recording, write_recording};
-use tauscope::report::{DecisionRow, EstimatedJoint, decision_rows};
+use tauscope::report::{ComparedJoint, DecisionRow, EstimatedJoint, decision_rows};
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate, write_log};
 
 /// Two joints, half a minute, with the estimate of their delays.
@@ -56,13 +59,36 @@ impl Recorded {
     }
 
     fn write(&self, detail: Detail, out: impl Write) -> Result<(), RecordError> {
+        self.write_with(&[], detail, out)
+    }
+
+    fn write_with(
+        &self,
+        models: &[ComparedJoint<'_>],
+        detail: Detail,
+        out: impl Write,
+    ) -> Result<(), RecordError> {
         let joints = self.joints();
         let (settings, sources) = (&self.settings, self.experiment.sources.as_slice());
         let reading = &self.experiment.options;
         write_recording(
-            &Recording { joints: &joints, settings, sources, reading, detail, models: &[] },
+            &Recording { joints: &joints, settings, sources, reading, detail, models },
             out,
         )
+    }
+
+    /// Each joint beside the integrator that its delays suggest.
+    fn compared(&self) -> Vec<Comparison> {
+        let joints = &self.experiment.joints;
+        let estimates: Vec<_> = self.estimates.iter().cloned().map(Ok).collect();
+        let model = |joint: &Joint| {
+            let place = joints.iter().position(|known| known.name == joint.name).unwrap();
+            let estimated: Vec<_> = self.estimates[place].estimated().collect();
+            integrators(joint, &estimated).into_iter().next()
+        };
+        let horizon = Horizon::FreeRun;
+        let compared = compare_joints(joints, &estimates, model, Mode::AsItIs, None, horizon);
+        compared.into_iter().map(|result| result.unwrap().unwrap()).collect()
     }
 
     fn read_back(&self, detail: Detail) -> ReadBack {
@@ -152,6 +178,19 @@ impl ReadBack {
     fn labels(&self, entity: &str) -> Vec<String> {
         let labels = self.fixed(entity, "Points2D:labels");
         labels.as_string::<i32>().iter().map(|label| label.unwrap().to_owned()).collect()
+    }
+
+    /// The one static cell of a component, which must be there.
+    fn cell(&self, entity: &str, component: &'static str) -> ArrayRef {
+        let chunks = self.chunks.get(entity).unwrap_or_else(|| panic!("no {entity}"));
+        let cells = chunks.iter().filter(|chunk| chunk.is_static());
+        let mut cells = cells.filter_map(|c| c.components().get_array(component.into()));
+        cells.next().unwrap_or_else(|| panic!("no {component} of {entity}")).value(0)
+    }
+
+    fn list(&self, entity: &str, component: &'static str) -> Vec<f64> {
+        let cell = self.cell(entity, component);
+        cell.as_any().downcast_ref::<Float64Array>().unwrap().values().to_vec()
     }
 
     fn texts(&self, entity: &str, component: &'static str) -> Vec<(BTreeMap<String, i64>, String)> {
@@ -367,6 +406,45 @@ fn two_runs_give_the_same_chunks_in_the_same_order() {
         messages.filter_map(batch).collect::<Vec<_>>()
     };
     assert!(batches() == batches());
+}
+
+#[test]
+fn figures_of_a_model_are_those_of_its_comparison() {
+    let recorded = Recorded::with(Settings::default());
+    let comparisons = recorded.compared();
+    let named =
+        |(joint, comparison)| ComparedJoint { joint, model: "plain", revision: 0, comparison };
+    let models: Vec<_> = recorded.experiment.joints.iter().zip(&comparisons).map(named).collect();
+    let mut bytes = Vec::new();
+    recorded.write_with(&models, Detail::Full, &mut bytes).unwrap();
+    let back = ReadBack::of(&bytes);
+    for ComparedJoint { joint, comparison, .. } in models {
+        let of = |part: &str| format!("/{}/model/plain/{part}", joint.name);
+        let (regions, count) = (of("regions"), comparison.regions.len());
+        let share = comparison.regions.iter().map(|region| region.share_of_squared_error);
+        assert!(back.list(&regions, "share_of_squared_error").into_iter().eq(share));
+        let upper = comparison.regions.iter().map(|region| region.to);
+        assert!(back.list(&regions, "to").into_iter().eq(upper));
+        let features = back.cell(&regions, "feature");
+        let features: Vec<_> = features.as_string::<i32>().iter().map(Option::unwrap).collect();
+        assert!(features.iter().copied().eq(comparison.regions.iter().map(|r| r.feature.id())));
+        let white = comparison.whiteness.as_ref().unwrap();
+        assert_eq!(back.list(&of("whiteness"), "correlation"), white.correlation);
+        assert_eq!(back.list(&of("whiteness"), "band"), [white.band]);
+        let input = comparison.input_correlation.as_ref().unwrap();
+        assert_eq!(back.list(&of("input_correlation"), "acting"), input.acting.correlation);
+        assert_eq!(back.list(&of("input_correlation"), "raw"), input.raw.correlation);
+        let lags = back.list(&of("input_correlation"), "lag_s");
+        assert!(
+            lags.len() == 401 && (lags[0] + 2.0).abs() < 1e-9 && (lags[400] - 2.0).abs() < 1e-9
+        );
+        // What is drawn: a mark per part, and a curve in each of three plots.
+        let drawn =
+            |part: &str| back.cell(&format!("/{}/{part}", joint.name), "LineStrips2D:strips").len();
+        assert_eq!(drawn("error_share/time"), count);
+        assert!(drawn("error_share/bars/0") > count);
+        assert_eq!((drawn("correlation/curve/0"), drawn("correlation/band/0")), (3, 6));
+    }
 }
 
 #[test]

@@ -1,25 +1,25 @@
 //! How the residual is correlated with itself and with the input, lag by lag.
 
-use rerun::EntityPath;
 use rerun::datatypes::Vec2D;
+use rerun::{EntityPath, LineStrips2D};
 
 use super::canvas::{Plot, Span};
 use super::chunk::Chunks;
 use super::entity::below;
 use super::error::RecordError;
-use super::palette;
+use super::palette::{self, color};
 use super::sheet::{Sheet, strips};
 use crate::diagnosis::Comparison;
 use crate::report::ComparedJoint;
 
-/// Height of the sheet.
-pub(super) const HEIGHT: f32 = 480.0;
+/// Width and height of the sheet.
+pub(super) const SIZE: (f32, f32) = (1900.0, 480.0);
 
 /// Titles of the plots.
 const TITLES: [&str; 3] = [
-    "residual with itself, against the lag [s]",
-    "its changes with those of the acting input, lag [s]",
-    "its changes with those of the measured input, lag [s]",
+    "residual with itself: lag [s]",
+    "changes with the acting input's: lag [s]",
+    "changes with the measured input's: lag [s]",
 ];
 
 /// Correlations at equal steps of the lag.
@@ -75,23 +75,25 @@ pub(super) fn add(
     }
     sheet.push(chunks, root)?;
     strips(chunks, below(root, &["axes"]), palette::RAW, 0.8, axes)?;
-    let models = curves.into_iter().zip(bands).zip(palette::models()).zip(0..);
+    let models = curves.into_iter().zip(bands).zip(palette::models()).zip(0_u8..);
     for (((curves, bands), rgb), number) in models {
-        let number = format!("{number}");
+        let (order, number) = (100.0 + f32::from(number), format!("{number}"));
         strips(chunks, below(root, &["band", &number]), palette::dimmed(rgb), 1.6, bands)?;
-        strips(chunks, below(root, &["curve", &number]), rgb, 1.8, curves)?;
+        // The later a model, the smaller its correlations should be.
+        let curves = LineStrips2D::new(curves).with_colors([color(rgb)]).with_radii([1.3]);
+        chunks.push_static(below(root, &["curve", &number]), &curves.with_draw_order(order))?;
     }
     Ok(())
 }
 
 /// One of three places on the sheet, with room for all of `correlograms`.
 fn plot<'a>(place: usize, correlograms: impl Iterator<Item = &'a Correlogram<'a>> + Clone) -> Plot {
-    let left = 95.0 + 535.0 * place as f32;
+    let left = 110.0 + 635.0 * place as f32;
     let lags = correlograms.clone().flat_map(|c| [0.0, c.first_lag_s, c.last_lag_s()]);
     let values = correlograms
         .flat_map(|c| c.correlation.iter().copied().chain([0.0, 2.0 * c.band, -2.0 * c.band]));
-    let (x, y) = (Span::around(lags, 0.0), Span::around(values, 0.04));
-    Plot::within((left, left + 425.0), 36.0..=430.0, x, y)
+    let (x, y) = (Span::around(lags, 0.0), Span::around(values, 0.1));
+    Plot::within((left, left + 510.0), 36.0..=430.0, x, y)
 }
 
 /// In the order of [`TITLES`].

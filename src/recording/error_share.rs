@@ -3,18 +3,18 @@
 use rerun::datatypes::Vec2D;
 use rerun::{EntityPath, LineStrips2D};
 
-use super::canvas::{Plot, SHEET, Span};
+use super::canvas::{Plot, Span};
 use super::chunk::Chunks;
 use super::entity::below;
 use super::error::RecordError;
 use super::palette::{self, color};
-use super::sheet::{Sheet, strips};
+use super::sheet::Sheet;
 use crate::diagnosis::failure::{Feature, Region, Units};
 use crate::experiment::Joint;
 use crate::report::{ComparedJoint, number};
 
-/// Height of the sheet: two rows of plots.
-pub(super) const HEIGHT: f32 = 480.0;
+/// Width and height of the sheet: two rows of plots.
+pub(super) const SIZE: (f32, f32) = (1900.0, 480.0);
 
 /// Plots in a row.
 const COLUMNS: usize = 4;
@@ -22,11 +22,15 @@ const COLUMNS: usize = 4;
 /// Part of a slot that its bars fill.
 const FILLED: f64 = 0.7;
 
-/// Room that one character of a label takes at the usual size of the view.
-const CHARACTER: f64 = 11.0;
+/// Room that a label takes at the usual size of the view: its margins, and a character.
+const LABEL: (f64, f64) = (24.0, 12.0);
+
+/// Half the width of the lines that fill a bar: their ends are round.
+const HATCH: f32 = 1.5;
 
 /// Draws the regions of `models` below `root`: a plot per feature, a slot per part, a bar
-/// per model. What the parts are is told of the first model.
+/// per model. What the parts are is told of the first model; a model that has another
+/// number of them, as its speeds may, has no bars there.
 pub(super) fn add(
     chunks: &mut Chunks,
     root: &EntityPath,
@@ -38,7 +42,8 @@ pub(super) fn add(
     let mut marks = Vec::new();
     for (place, of_first) in by_feature(first).into_iter().enumerate() {
         let Some(feature) = of_first.first().map(|region| region.feature) else { continue };
-        let of_each: Vec<Vec<&Region>> = models.iter().map(|m| of_feature(m, feature)).collect();
+        let alike = models.iter().map(|model| alike(model, feature, of_first.len()));
+        let of_each: Vec<Vec<&Region>> = alike.collect();
         let plot = plot(place, &of_each);
         draw_frame(&mut sheet, &plot, &title(feature, first.joint), &of_first);
         for ((bars, regions), number) in bars.iter_mut().zip(&of_each).zip(0..) {
@@ -48,15 +53,13 @@ pub(super) fn add(
     }
     sheet.push(chunks, root)?;
     for ((bars, rgb), number) in bars.into_iter().zip(palette::models()).zip(0..) {
-        let strips = LineStrips2D::new(bars.strips).with_radii(bars.radii);
-        let strips = strips.with_colors(
-            bars.too_much
-                .into_iter()
-                .map(|too_much| color(if too_much { rgb } else { palette::dimmed(rgb) })),
-        );
+        let shade = |too_much| color(if too_much { rgb } else { palette::dimmed(rgb) });
+        let strips = LineStrips2D::new(bars.strips).with_radii([HATCH]);
+        let strips = strips.with_colors(bars.too_much.into_iter().map(shade));
         chunks.push_static(below(root, &["bars", &format!("{number}")]), &strips)?;
     }
-    strips(chunks, below(root, &["time"]), palette::BORDER, 1.6, marks)
+    let marks = LineStrips2D::new(marks).with_colors([color(palette::BORDER)]).with_radii([1.6]);
+    chunks.push_static(below(root, &["time"]), &marks.with_draw_order(100.0))
 }
 
 /// The regions of a model, feature by feature.
@@ -65,32 +68,37 @@ fn by_feature<'a>(model: &ComparedJoint<'a>) -> Vec<Vec<&'a Region>> {
     regions.chunk_by(|a, b| a.feature == b.feature).map(<[&Region]>::to_vec).collect()
 }
 
-fn of_feature<'a>(model: &ComparedJoint<'a>, feature: Feature) -> Vec<&'a Region> {
-    model.comparison.regions.iter().filter(|region| region.feature == feature).collect()
+/// The regions of one feature, where there are `parts` of them.
+fn alike<'a>(model: &ComparedJoint<'a>, feature: Feature, parts: usize) -> Vec<&'a Region> {
+    let regions = model.comparison.regions.iter().filter(|region| region.feature == feature);
+    let regions: Vec<_> = regions.collect();
+    if regions.len() == parts { regions } else { Vec::new() }
 }
 
 /// One of eight places on the sheet, with a slot for each part.
 fn plot(place: usize, of_each: &[Vec<&Region>]) -> Plot {
     let rows = if place < COLUMNS { 36.0..=190.0 } else { 282.0..=436.0 };
-    let width = SHEET.0 / COLUMNS as f32;
+    let width = SIZE.0 / COLUMNS as f32;
     let left = (place % COLUMNS) as f32 * width;
     let slots = of_each.iter().map(Vec::len).max().unwrap_or(1);
     let shares = of_each.iter().flatten();
     let most = shares.flat_map(|r| [r.share_of_squared_error, r.share_of_time]).fold(0.0, f64::max);
-    let y = Span::new(0.0, 108.0 * most);
-    Plot::within((left + 80.0, left + width - 12.0), rows, Span::new(0.0, slots as f64), y)
+    // Room for the title above the highest bar.
+    let y = Span::new(0.0, 125.0 * most);
+    Plot::within((left + 95.0, left + width - 20.0), rows, Span::new(0.0, slots as f64), y)
 }
 
 /// Frame, percentages, and what the parts are.
 fn draw_frame(sheet: &mut Sheet, plot: &Plot, title: &str, regions: &[&Region]) {
-    let ticks = plot.y_span().ticks(3.0).into_iter();
+    // Zero would stand where the names of the parts begin.
+    let ticks = plot.y_span().ticks(3.0).into_iter().filter(|share| *share > 0.0);
     let ticks: Vec<_> = ticks.map(|share| (share, format!("{} %", number(share)))).collect();
     sheet.frame(plot, &[], &ticks, title);
     let names = names(regions);
     let longest = names.iter().map(|(_, name)| name.chars().count()).max().unwrap_or(0);
     let slot = f64::from(plot.x(1.0) - plot.x(0.0));
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small")]
-    let every = ((longest + 1) as f64 * CHARACTER / slot).ceil().max(1.0) as usize;
+    let every = ((LABEL.0 + LABEL.1 * longest as f64) / slot).ceil().max(1.0) as usize;
     for (x, name) in names.into_iter().step_by(every) {
         sheet.put(plot.below(x, 2.0), name);
     }
@@ -141,11 +149,10 @@ fn title(feature: Feature, joint: &Joint) -> String {
     format!("{name}{unit}")
 }
 
-/// The bars of one model.
+/// The lines that fill the bars of one model.
 #[derive(Clone, Debug, Default)]
 struct Bars {
     strips: Vec<[Vec2D; 2]>,
-    radii: Vec<f32>,
     /// A larger share of the error than of the time.
     too_much: Vec<bool>,
 }
@@ -154,15 +161,27 @@ impl Bars {
     /// A bar for each of `regions`, of the model `number` among so many.
     fn add(&mut self, plot: &Plot, regions: &[&Region], (number, models): (u32, usize)) {
         let width = FILLED / models as f64;
-        let radius = (plot.x(width) - plot.x(0.0)) / 2.0;
         for (region, slot) in regions.iter().zip(0_u32..) {
-            let x = f64::from(slot) + (1.0 - FILLED) / 2.0 + width * (f64::from(number) + 0.5);
-            let share = 100.0 * region.share_of_squared_error;
-            self.strips.push([plot.at(x, 0.0), plot.at(x, share)]);
-            self.radii.push(radius);
-            self.too_much.push(region.share_of_squared_error > region.share_of_time);
+            let left = f64::from(slot) + (1.0 - FILLED) / 2.0 + width * f64::from(number);
+            let [low, high] = [0.0, 100.0 * region.share_of_squared_error].map(|y| plot.y(y));
+            let high = (high + HATCH).min(low - HATCH);
+            let places = hatched(plot.x(left), plot.x(left + width));
+            let lines = places.map(|x| [Vec2D::new(x, low - HATCH), Vec2D::new(x, high)]);
+            let before = self.strips.len();
+            self.strips.extend(lines);
+            let too_much = region.share_of_squared_error > region.share_of_time;
+            let added = self.strips.len() - before;
+            self.too_much.extend(std::iter::repeat_n(too_much, added));
         }
     }
+}
+
+/// Places between two others that lines of radius [`HATCH`] cover without a gap.
+fn hatched(left: f32, right: f32) -> impl Iterator<Item = f32> {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small")]
+    let count = ((right - left) / (1.2 * HATCH)).ceil().max(1.0) as usize;
+    let step = (right - left - 2.0 * HATCH).max(0.0) / count as f32;
+    (0..=count).map(move |k| left + HATCH + step * k as f32)
 }
 
 /// A line across a slot at its share of the time.
@@ -200,6 +219,13 @@ mod tests {
         let named = names(&ranges.iter().collect::<Vec<_>>());
         let expected = [(0.0, "0"), (1.0, "0.123"), (2.0, "7")];
         assert_eq!(named, expected.map(|(x, name)| (x, name.to_owned())));
+    }
+
+    #[test]
+    fn a_bar_is_filled_and_no_wider_than_its_place() {
+        let places: Vec<_> = hatched(10.0, 40.0).collect();
+        assert!((places[0] - 11.5).abs() < 1e-4 && (places[places.len() - 1] - 38.5).abs() < 1e-4);
+        assert!(places.windows(2).all(|pair| pair[1] - pair[0] < 2.0 * HATCH));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use rerun::datatypes::Vec2D;
 use rerun::{EntityPath, LineStrips2D, Points2D};
 
-use super::canvas::{Plot, Span};
+use super::canvas::{Plot, SHEET, Span};
 use super::chunk::Chunks;
 use super::entity::below;
 use super::error::RecordError;
@@ -11,8 +11,8 @@ use super::palette::{self, color};
 use super::sheet::Sheet;
 use crate::report::ComparedJoint;
 
-/// Height of the sheet: two plots below one another.
-pub(super) const HEIGHT: f32 = 480.0;
+/// Width and height of the sheet: two plots below one another.
+pub(super) const SIZE: (f32, f32) = (SHEET.0, 480.0);
 
 /// Points that are drawn of each plot; more hide one another.
 const POINTS: usize = 3000;

@@ -251,17 +251,17 @@ impl Views<'_> {
     /// What the residual depends on, in three drawings.
     fn residuals(&mut self, models: usize) -> Result<Node, RecordError> {
         let scatter = self.sheet(
-            ("What the residual depends on: points, and their mean", scatter::HEIGHT),
+            ("What the residual depends on: points, and their mean", scatter::SIZE),
             ("scatter", &["grid", "points", "texts"]),
             (&["curve"], models),
         );
         let shares = self.sheet(
-            ("Share of the error: bars; of the time: white", error_share::HEIGHT),
+            ("Share of the error: bars; of the time: white", error_share::SIZE),
             ("error_share", &["grid", "time", "texts"]),
             (&["bars"], models),
         );
         let correlation = self.sheet(
-            ("Correlation, and the band of chance", correlogram::HEIGHT),
+            ("Correlation: chance stays between the lines (99 %)", correlogram::SIZE),
             ("correlation", &["grid", "axes", "texts"]),
             (&["band", "curve"], models),
         );
@@ -272,7 +272,7 @@ impl Views<'_> {
     /// A drawing of `parts`, and of `of_models` for each model.
     fn sheet(
         &self,
-        (name, height): (&'static str, f32),
+        (name, (width, height)): (&'static str, (f32, f32)),
         (root, parts): (&str, &[&str]),
         (of_models, models): (&[&str], usize),
     ) -> View<'static> {
@@ -280,7 +280,7 @@ impl Views<'_> {
         for part in of_models {
             paths.extend((0..models).map(|number| self.path(&[root, part, &format!("{number}")])));
         }
-        View::new("2D", name, &paths).with("VisualBounds2D", bounds(SHEET.0, height))
+        View::new("2D", name, &paths).with("VisualBounds2D", bounds(width, height))
     }
 
     /// A plot whose time axis moves with those of the other plots.
