@@ -15,7 +15,7 @@ use super::statics::StaticChain;
 
 /// Draws of level and hold before a range is given up. With one draw in a hundred
 /// acceptable, a thousand fail once in 20 000 steps.
-const MAX_DRAWS: usize = 1000;
+pub(super) const MAX_DRAWS: usize = 1000;
 
 /// One step of the input.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,21 +77,26 @@ impl Drive {
 
     /// The input at each of `samples` samples, in input units.
     pub(super) fn input(&self, samples: usize) -> Vec<f64> {
-        let mut steps = self.steps.iter().peekable();
-        let mut level = self.initial;
-        let levels = (1..=samples).map(|sample| {
-            if let Some(step) = steps.next_if(|step| step.sample == sample) {
-                level = step.after;
-            }
-            level
-        });
-        levels.collect()
+        held(&self.steps, self.initial, samples)
     }
 
     /// The level after the last step so far.
     fn level(&self) -> f64 {
         self.steps.last().map_or(self.initial, |step| step.after)
     }
+}
+
+/// The level at each of `samples` samples: `initial`, then what `steps` set.
+pub(super) fn held(steps: &[Step], initial: f64, samples: usize) -> Vec<f64> {
+    let mut steps = steps.iter().peekable();
+    let mut level = initial;
+    let levels = (1..=samples).map(|sample| {
+        if let Some(step) = steps.next_if(|step| step.sample == sample) {
+            level = step.after;
+        }
+        level
+    });
+    levels.collect()
 }
 
 /// Makes a [`Drive`], step by step.

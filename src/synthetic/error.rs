@@ -64,6 +64,17 @@ pub enum PlantError {
         /// 1-based number of the sample of the step.
         sample: usize,
     },
+    /// The equations of a cylinder ran away.
+    #[error(
+        "{place}: its pressures or its angle grow beyond all measure at {time_s} s; make \
+         `cylinder.time_step_s` smaller, or the load in keeping with the cylinder"
+    )]
+    Runaway {
+        /// The joint.
+        place: Place,
+        /// When it was found, in seconds.
+        time_s: f64,
+    },
     /// The simulated samples do not make a trial: the angle grew without bound.
     #[error("{place}: the simulated samples do not make a trial")]
     Trial {

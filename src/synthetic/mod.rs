@@ -19,6 +19,9 @@
 //! `t_i + τ_i`. Nothing here is used by a model that is fitted, and nothing here
 //! knows how a delay is estimated.
 //!
+//! A joint with a [`CylinderSpec`] moves by the physics of valve, oil and linkage instead:
+//! see `docs/cylinder.md`.
+//!
 //! The random numbers of a joint come from the seed and its place in the file, apart
 //! for input, delays and noise: other noise leaves the input as it was.
 //!
@@ -36,6 +39,7 @@
 
 mod arrivals;
 mod clock;
+mod cylinder;
 mod delay_law;
 mod drive;
 mod dynamics;
@@ -54,6 +58,7 @@ use clock::Clock;
 use drive::Drive;
 use random::{Purpose, stream};
 
+pub use cylinder::{CylinderSpec, Part};
 pub use delay_law::DelayLaw;
 pub use error::{Place, PlantError};
 pub use input::InputSpec;
@@ -81,20 +86,45 @@ pub struct Synthetic {
 /// # Errors
 /// Those of [`PlantSpec::check`]; [`PlantError::Range`] when no level keeps a joint in
 /// its range; [`PlantError::ListedDelays`] when a drawn input has more steps than
-/// delays are listed; [`PlantError::Trial`] when an angle grows beyond all numbers.
+/// delays are listed; [`PlantError::Runaway`] when the equations of a cylinder do not
+/// hold together; [`PlantError::Trial`] when an angle grows beyond all numbers.
 pub fn simulate(spec: &PlantSpec) -> Result<Synthetic, PlantError> {
     spec.check()?;
     let clock = spec.clock()?;
     let (mut joints, mut truth) = (Vec::new(), Vec::new());
     for (index, joint) in spec.joints.iter().enumerate() {
-        let drive = Drive::of(joint, index, spec.seed, clock)?;
-        truth.extend(truth::truth_of(&joint.name, TRIAL, &drive, &clock));
+        let moved = moved(joint, index, spec.seed, clock)?;
+        truth.extend(moved.truth);
         let mut noise = stream(spec.seed, index, Purpose::Noise);
-        let angles = dynamics::angles(joint, drive.arrivals(), &clock);
-        let output = sensor::measure(joint, angles, &mut noise);
-        joints.push(recorded(joint, &clock, drive.input(clock.samples()), output)?);
+        let output = sensor::measure(joint, moved.angles, &mut noise);
+        joints.push(recorded(joint, &clock, moved.input, output)?);
     }
     Ok(Synthetic { joints, truth })
+}
+
+/// What a joint was told and did, before any sensor.
+struct Moved {
+    input: Vec<f64>,
+    angles: Vec<f64>,
+    truth: Vec<StepTruth>,
+}
+
+/// Moves `joint`, which has the number `index`.
+fn moved(joint: &JointSpec, index: usize, seed: u64, clock: Clock) -> Result<Moved, PlantError> {
+    let Some(spec) = &joint.cylinder else {
+        let drive = Drive::of(joint, index, seed, clock)?;
+        return Ok(Moved {
+            input: drive.input(clock.samples()),
+            angles: dynamics::angles(joint, drive.arrivals(), &clock),
+            truth: truth::truth_of(&joint.name, TRIAL, &drive, &clock),
+        });
+    };
+    let ride = cylinder::ride(joint, spec, index, seed, clock)?;
+    Ok(Moved {
+        input: drive::held(&ride.steps, joint.input.initial(), clock.samples()),
+        truth: truth::told(&joint.name, TRIAL, &ride.steps, ride.speed_changes, &clock),
+        angles: ride.angles,
+    })
 }
 
 /// The log of one joint.

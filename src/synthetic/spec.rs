@@ -1,10 +1,12 @@
 //! The plant file: which joints, how they move, what drives them.
 
 use std::collections::HashSet;
+use std::fmt::Debug;
 
 use serde::{Deserialize, Serialize};
 
 use super::clock::{Clock, whole};
+use super::cylinder::CylinderSpec;
 use super::delay_law::DelayLaw;
 use super::error::{Place, PlantError, above_zero};
 use super::input::InputSpec;
@@ -91,6 +93,9 @@ pub struct JointSpec {
     pub lag_s: Option<f64>,
     /// Ringing of the speed.
     pub ringing: Option<Ringing>,
+    /// The cylinder that moves it, instead of gain, dead band, saturation, lag and
+    /// ringing.
+    pub cylinder: Option<CylinderSpec>,
     /// Standard deviation of the measurement noise, in output units.
     #[serde(default)]
     pub noise: f64,
@@ -243,6 +248,7 @@ impl JointSpec {
             saturation: None,
             lag_s: None,
             ringing: None,
+            cylinder: None,
             noise: 0.0,
             noise_correlation: 0.0,
             resolution: None,
@@ -257,6 +263,7 @@ impl JointSpec {
         self.check_range(place)?;
         self.check_statics(place)?;
         self.check_dynamics(clock, place)?;
+        self.check_cylinder(clock, place)?;
         self.check_sensor(place)
     }
 
@@ -332,6 +339,36 @@ impl JointSpec {
         place.require("ringing.damping", damping, "0 or more, below 1", |damping| {
             (0.0..1.0).contains(damping)
         })
+    }
+
+    fn check_cylinder(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
+        let Some(cylinder) = &self.cylinder else { return Ok(()) };
+        let allowed = "none, as `cylinder` moves the joint: remove one of the two";
+        let gain = ((self.gain - default::gain()).abs() > 0.0).then_some(self.gain);
+        let replaced: [(_, Option<&dyn Debug>); 5] = [
+            ("gain", gain.as_ref().map(|gain| gain as _)),
+            ("dead_band", self.dead_band.as_ref().map(|band| band as _)),
+            ("saturation", self.saturation.as_ref().map(|limit| limit as _)),
+            ("lag_s", self.lag_s.as_ref().map(|lag_s| lag_s as _)),
+            ("ringing", self.ringing.as_ref().map(|ringing| ringing as _)),
+        ];
+        for (key, given) in replaced {
+            if let Some(value) = given {
+                return Err(place.refuse(key, value, allowed));
+            }
+        }
+        let unit = self.output_unit.as_str();
+        let allowed = "`deg` or `rad`, as `cylinder` moves the joint";
+        place.require("output_unit", unit, allowed, |unit| matches!(*unit, "deg" | "rad"))?;
+        cylinder.check(clock, place)?;
+        let turn = if unit == "rad" { 1.0_f64.to_degrees() } else { 1.0 };
+        let [lowest, highest] = cylinder.angle_limits_deg;
+        let reached = |angle: f64| (lowest..=highest).contains(&(angle * turn));
+        let allowed = "an angle within `cylinder.angle_limits_deg`";
+        place.require("start", self.start, allowed, |start| reached(*start))?;
+        let Some(range) = self.range else { return Ok(()) };
+        let allowed = "angles within `cylinder.angle_limits_deg`";
+        place.require("range", range, allowed, |range| range.iter().all(|angle| reached(*angle)))
     }
 
     fn check_sensor(&self, place: &Place) -> Result<(), PlantError> {

@@ -1,7 +1,7 @@
 //! What is known about each step because it was made.
 
 use super::clock::Clock;
-use super::drive::Drive;
+use super::drive::{Drive, Step};
 
 /// The truth about one step of one joint's input.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +27,8 @@ pub struct StepTruth {
     /// Change of the steady slope of the output that this step causes, in output
     /// units per sample, from the level that acted before it: 0 inside a dead band
     /// and for a step that was overtaken. Also told for a step whose delay reaches
-    /// beyond the end of the record.
+    /// beyond the end of the record. Of a cylinder, the change that came about until
+    /// the next step began to act.
     pub slope_change: f64,
     /// Whether a later step acted first, so that this one never did.
     pub overtaken: bool,
@@ -41,10 +42,22 @@ pub(super) fn truth_of(joint: &str, trial: &str, drive: &Drive, clock: &Clock) -
             *slot = Some(change);
         }
     }
-    let ends = drive.steps().iter().skip(1).map(|next| next.sample);
+    told(joint, trial, drive.steps(), changes, clock)
+}
+
+/// The truth about each of `steps`, in their order, with the change of slope per second
+/// that each caused; none for one that was overtaken.
+pub(super) fn told(
+    joint: &str,
+    trial: &str,
+    steps: &[Step],
+    changes: Vec<Option<f64>>,
+    clock: &Clock,
+) -> Vec<StepTruth> {
+    let ends = steps.iter().skip(1).map(|next| next.sample);
     let ends = ends.chain([clock.samples() + 1]);
     let period_s = clock.period().seconds();
-    let steps = drive.steps().iter().zip(changes).zip(ends).enumerate();
+    let steps = steps.iter().zip(changes).zip(ends).enumerate();
     let truth = steps.map(|(index, ((step, change), end))| StepTruth {
         joint: joint.to_owned(),
         trial: trial.to_owned(),

@@ -1,0 +1,258 @@
+//! Logs of a joint that a hydraulic cylinder moves.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
+
+use tauscope::synthetic::{
+    CylinderSpec, DelayLaw, InputSpec, JointSpec, Part, PlantError, PlantSpec, Synthetic, simulate,
+};
+
+/// Levels at which a boom is driven, in volts.
+const LEVELS: [f64; 11] = [-6.0, -4.5, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.5, 6.0];
+
+fn boom(cylinder: CylinderSpec) -> JointSpec {
+    let input = InputSpec::Levels { levels: LEVELS.to_vec(), hold_s: [0.5, 1.5] };
+    let delay = DelayLaw::Constant { seconds: 0.08 };
+    let (start, range, cylinder) = (20.0, Some([-10.0, 50.0]), Some(cylinder));
+    JointSpec { start, range, cylinder, ..JointSpec::new("boom", input, delay) }
+}
+
+/// A boom that is given `steps`, whose delays are only those of `law`.
+fn stepped(steps: &[(usize, f64)], law: DelayLaw) -> JointSpec {
+    let input = InputSpec::Steps { steps: steps.to_vec(), initial: 0.0 };
+    let cylinder = CylinderSpec { pilot_small_s: 0.0, ..CylinderSpec::default() };
+    let cylinder = Some(CylinderSpec { pilot_falling_s: 0.0, ..cylinder });
+    JointSpec { start: 20.0, cylinder, ..JointSpec::new("boom", input, law) }
+}
+
+fn record(seed: u64, seconds: f64, joint: JointSpec) -> Result<Synthetic, PlantError> {
+    simulate(&PlantSpec::new(seed, seconds, vec![joint]))
+}
+
+fn output(made: &Synthetic) -> &[f64] {
+    made.joints[0].trials[0].output()
+}
+
+fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).fold(0.0, |most, (a, b)| most.max((a - b).abs()))
+}
+
+#[test]
+fn half_the_time_step_changes_the_angle_by_less_than_a_ten_thousandth_of_a_degree() {
+    let steps = [(20, 6.0), (100, -6.0), (220, 1.0), (280, 0.0), (340, -2.0)];
+    let run = |time_step_s: f64| {
+        let joint = stepped(&steps, DelayLaw::Constant { seconds: 0.083 });
+        let cylinder = joint.cylinder.clone().map(|spec| CylinderSpec { time_step_s, ..spec });
+        record(1, 4.0, JointSpec { cylinder, ..joint }).unwrap()
+    };
+    let difference = largest_difference(output(&run(5e-5)), output(&run(2.5e-5)));
+    assert!(difference < 1e-4, "{difference} degrees");
+}
+
+#[test]
+fn the_range_is_kept_and_used() {
+    for seed in 0..2 {
+        let made = record(seed, 15.0, boom(CylinderSpec::default())).unwrap();
+        let lowest = output(&made).iter().copied().fold(f64::INFINITY, f64::min);
+        let highest = output(&made).iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        assert!(lowest > -10.5 && highest < 50.5, "seed {seed}: {lowest} to {highest}");
+        assert!(highest - lowest > 20.0, "seed {seed}: {lowest} to {highest}");
+        let holds = made.truth.windows(2).map(|pair| pair[0].hold_samples);
+        assert!({ holds }.all(|hold| (50..=150).contains(&hold)));
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_log_and_another_one_does_not() {
+    let noisy = |seed| {
+        let joint = JointSpec { noise: 0.05, ..boom(CylinderSpec::default()) };
+        record(seed, 2.5, joint).unwrap()
+    };
+    assert_eq!(noisy(1), noisy(1));
+    assert_ne!(noisy(1), noisy(2));
+}
+
+#[test]
+fn a_longer_delay_only_moves_the_record() {
+    let steps = [(50, 5.0), (150, -3.0), (250, 0.0)];
+    let run = |seconds| {
+        let joint = stepped(&steps, DelayLaw::Constant { seconds });
+        // Leakage would let it sink a little longer before the first step acts.
+        let tight = |spec| CylinderSpec { leakage_l_min: 0.0, ..spec };
+        let cylinder = joint.cylinder.clone().map(tight);
+        record(1, 4.0, JointSpec { cylinder, ..joint }).unwrap()
+    };
+    let (early, late) = (run(0.05), run(0.15));
+    let moved = largest_difference(&output(&early)[..390], &output(&late)[10..]);
+    // Time steps begin elsewhere.
+    assert!(moved < 1e-5, "{moved} degrees");
+    assert!(late.truth.iter().all(|step| (step.delay_s - 0.15).abs() < 1e-15));
+}
+
+#[test]
+fn the_truth_tells_delay_and_change_of_speed() {
+    let made =
+        record(1, 4.0, stepped(&[(50, 4.0), (200, -4.0)], DelayLaw::Constant { seconds: 0.08 }));
+    let made = made.unwrap();
+    let slope = |k: usize| (output(&made)[k] - output(&made)[k - 20]) / 20.0;
+    let [first, second] = [made.truth[0].slope_change, made.truth[1].slope_change];
+    assert!((first - slope(200)).abs() < 0.02 * first, "{first}, measured {}", slope(200));
+    assert!((second - slope(398) + slope(200)).abs() < 0.02 * second.abs());
+}
+
+#[test]
+fn the_pilot_stage_takes_longer_for_a_small_step_and_downward() {
+    let joint = JointSpec { range: None, ..boom(CylinderSpec::default()) };
+    let made = record(1, 10.0, joint).unwrap();
+    for step in &made.truth {
+        let size = (step.input_after - step.input_before).abs();
+        let falling = if step.input_after < step.input_before { 0.005 } else { 0.0 };
+        let expected = 0.08 + 0.02 * (-size / 2.0).exp() + falling;
+        assert!((step.delay_s - expected).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn an_overtaken_step_leaves_no_trace() {
+    let law = DelayLaw::Listed { seconds: vec![0.1, 0.8, 0.1] };
+    let with = record(1, 2.0, stepped(&[(11, 3.0), (51, 5.0), (101, -3.0)], law)).unwrap();
+    let law = DelayLaw::Constant { seconds: 0.1 };
+    let without = record(1, 2.0, stepped(&[(11, 3.0), (101, -3.0)], law)).unwrap();
+    assert_eq!(output(&with), output(&without));
+    let overtaken: Vec<bool> = with.truth.iter().map(|step| step.overtaken).collect();
+    assert_eq!(overtaken, [false, true, false]);
+}
+
+#[test]
+fn radians_and_degrees_are_the_same_motion() {
+    let steps = [(20, 5.0), (100, -5.0)];
+    let law = || DelayLaw::Constant { seconds: 0.05 };
+    let degrees = record(1, 2.0, stepped(&steps, law())).unwrap();
+    let start = 20_f64.to_radians();
+    let joint = JointSpec { start, output_unit: "rad".to_owned(), ..stepped(&steps, law()) };
+    let radians = record(1, 2.0, joint).unwrap();
+    let turned: Vec<f64> = output(&radians).iter().map(|angle| angle.to_degrees()).collect();
+    assert!(largest_difference(output(&degrees), &turned) < 1e-9);
+}
+
+#[test]
+fn each_part_matters() {
+    let run = |only: Option<Vec<Part>>| {
+        let spec = CylinderSpec { only, ..CylinderSpec::default() };
+        let steps = [(20, 8.0), (80, -8.0), (140, 1.0), (180, -1.5)];
+        let input = InputSpec::Steps { steps: steps.to_vec(), initial: 0.0 };
+        let law = DelayLaw::Constant { seconds: 0.05 };
+        let cylinder = Some(spec);
+        let joint = JointSpec { start: 20.0, cylinder, ..JointSpec::new("boom", input, law) };
+        record(1, 2.4, joint).unwrap()
+    };
+    let parts = [
+        Part::Pilot,
+        Part::Overlap,
+        Part::SpoolLag,
+        Part::SupplyDroop,
+        Part::Asymmetry,
+        Part::Leakage,
+        Part::Friction,
+        Part::Gravity,
+        Part::Linkage,
+    ];
+    let all = run(None);
+    assert_eq!(all, run(Some(parts.to_vec())));
+    for part in parts {
+        let others = parts.iter().copied().filter(|other| *other != part).collect();
+        let difference = largest_difference(output(&all), output(&run(Some(others))));
+        assert!(difference > 0.002, "{part:?}: {difference} degrees");
+    }
+}
+
+#[test]
+fn a_load_beyond_the_cylinder_is_an_error_and_no_log() {
+    let heavy = CylinderSpec { mass_kg: 1e8, inertia_kg_m2: 1e9, ..CylinderSpec::default() };
+    let found = record(1, 1.0, boom(heavy));
+    let text = found.unwrap_err().to_string();
+    assert!(text.starts_with("joint `boom`: its pressures or its angle grow"), "{text}");
+}
+
+#[test]
+fn odd_numbers_give_data_or_an_error_but_no_panic() {
+    const ODD: [f64; 7] = [0.0, -1.0, 1e300, 5e-324, 1e-3, f64::NAN, f64::INFINITY];
+    let changes: [fn(&mut CylinderSpec, f64); 16] = [
+        |spec, odd| spec.time_step_s = odd,
+        |spec, odd| spec.full_input = odd,
+        |spec, odd| spec.overlap = odd,
+        |spec, odd| spec.spool_hz = odd,
+        |spec, odd| spec.full_stroke_s = odd,
+        |spec, odd| spec.rated_flow_l_min = odd,
+        |spec, odd| spec.supply_bar = odd,
+        |spec, odd| spec.pump_flow_l_min = odd,
+        |spec, odd| spec.bore_mm = odd,
+        |spec, odd| spec.bulk_modulus_mpa = odd,
+        |spec, odd| spec.coulomb_n = odd,
+        |spec, odd| spec.viscous_n_s_m = odd,
+        |spec, odd| (spec.mass_kg, spec.inertia_kg_m2) = (odd, 10.0 * odd),
+        |spec, odd| spec.eye_m = odd,
+        |spec, odd| spec.angle_limits_deg = [-odd, odd],
+        |spec, odd| spec.pilot_small_s = odd,
+    ];
+    for (change, odd) in changes.iter().flat_map(|change| ODD.map(|odd| (change, odd))) {
+        let mut spec = CylinderSpec::default();
+        change(&mut spec, odd);
+        let finite = |made: Synthetic| output(&made).iter().all(|y| y.is_finite());
+        let joint = stepped(&[(2, 5.0)], DelayLaw::Constant { seconds: 0.01 });
+        let joint = JointSpec { cylinder: Some(spec), ..joint };
+        assert!(record(1, 0.1, joint).map_or(true, finite));
+    }
+}
+
+#[test]
+fn each_bad_number_is_told_with_its_key_and_what_is_allowed() {
+    let cases = [
+        ("bore_mm = 0", "`cylinder.bore_mm` is 0.0; allowed: finite, above zero"),
+        ("rod_mm = 100", "`cylinder.rod_mm` is 100.0; allowed: thinner than the bore"),
+        ("overlap = 0.95", "`cylinder.overlap` is 0.95; allowed: 0 or more, below 0.9"),
+        ("null_offset = 0.6", "`cylinder.null_offset` is 0.6; allowed: between -0.5 and 0.5"),
+        ("leakage_l_min = -1", "`cylinder.leakage_l_min` is -1.0; allowed: finite, not negative"),
+        ("supply_bar = 300", "`cylinder.supply_bar` is 300.0; allowed: a pressure between"),
+        ("static_n = 100", "`cylinder.static_n` is 100.0; allowed: the Coulomb friction or more"),
+        ("inertia_kg_m2 = 100", "`cylinder.inertia_kg_m2` is 100.0; allowed: mass_kg × centre_m²"),
+        ("angle_limits_deg = [-60, 70]", "`cylinder.angle_limits_deg` is [-60.0, 70.0]; allowed: "),
+        ("time_step_s = 0.001", "`cylinder.time_step_s` is 0.001; allowed: shorter, "),
+        ("hose_volume_l = 0.001", "`cylinder.time_step_s` is 5e-5; allowed: shorter, "),
+        ("time_step_s = 1e-9", "`cylinder.time_step_s` is 1e-9; allowed: longer: "),
+        ("boer_mm = 100", "not a plant file"),
+        ("only = ['gravitation']", "not a plant file"),
+    ];
+    for (line, expected) in cases {
+        let text = refusal(&format!("cylinder = {{ {line} }}"));
+        assert!(text.contains(expected), "{line}: {text}");
+    }
+}
+
+#[test]
+fn what_the_cylinder_replaces_is_refused_beside_it() {
+    for (line, value) in [("gain = 5", "5.0"), ("lag_s = 0.1", "0.1"), ("saturation = 2", "2.0")] {
+        let text = refusal(&format!("{line}\ncylinder = {{}}"));
+        let key = line.split(' ').next().unwrap();
+        let expected = format!(
+            "joint `boom`: `{key}` is {value}; allowed: none, as `cylinder` moves the joint: \
+             remove one of the two"
+        );
+        assert_eq!(text, expected);
+    }
+    let text = refusal("output_unit = 'mm'\ncylinder = {}");
+    assert!(text.contains("allowed: `deg` or `rad`"), "{text}");
+    let text = refusal("start = 80\ncylinder = {}");
+    assert!(text.contains("`start` is 80.0; allowed: an angle within"), "{text}");
+    let text = refusal("range = [-30, 50]\nstart = 0\ncylinder = {}");
+    assert!(text.contains("`range` is [-30.0, 50.0]; allowed: angles within"), "{text}");
+}
+
+/// Why a boom with `lines` is refused.
+fn refusal(lines: &str) -> String {
+    let text = format!(
+        "schema = 'tauscope/plant/1'\nseed = 1\nduration_s = 10\n[[joint]]\nname = 'boom'\n\
+         input = {{ levels = [-3, 3], hold_s = [1, 2] }}\n\
+         delay = {{ law = 'constant', seconds = 0.1 }}\n{lines}\n"
+    );
+    PlantSpec::from_toml(&text).unwrap_err().to_string()
+}
