@@ -43,7 +43,7 @@ impl<'a> Operator<'a> {
         let machine = Machine::of(cylinder);
         let level = joint.input.initial();
         let rest = machine.rest(joint.start * radians, level);
-        let rig = Rig::new(machine, cylinder.time_step_s, rest, level);
+        let rig = Rig::new(&machine, cylinder.time_step_s, rest, level);
         let delays = stream(seed, index, Purpose::Delay);
         Self {
             joint,

@@ -36,9 +36,9 @@ pub(super) struct Rig {
 
 impl Rig {
     /// `machine` at time 0 in `state`, at `level`.
-    pub(super) fn new(machine: Machine, longest_step_s: f64, state: State, level: f64) -> Self {
+    pub(super) fn new(machine: &Machine, longest_step_s: f64, state: State, level: f64) -> Self {
         let (coming, arrived) = (Vec::new(), Vec::new());
-        Self { machine, longest_step_s, now_s: 0.0, state, level, coming, arrived }
+        Self { machine: *machine, longest_step_s, now_s: 0.0, state, level, coming, arrived }
     }
 
     /// Lets step `index` to `level` act from `time_s` on; it must be the latest step.

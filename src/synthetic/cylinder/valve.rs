@@ -98,7 +98,7 @@ impl Valve {
 /// sign(Δp) √|Δp|   for |Δp| far above the laminar drop δ;    Δp / √δ   far below
 /// ```
 pub(super) fn root(drop: f64) -> f64 {
-    drop / (drop * drop + LAMINAR_DROP * LAMINAR_DROP).sqrt().sqrt()
+    drop / drop.hypot(LAMINAR_DROP).sqrt()
 }
 
 #[cfg(test)]
