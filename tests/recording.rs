@@ -12,7 +12,7 @@ use rerun::external::arrow::array::{
 };
 use rerun::external::re_log_encoding::DecoderApp;
 use rerun::log::{Chunk, LogMsg};
-use tauscope::batch::{JointEstimate, Mode, compare_joints, estimate_joints};
+use tauscope::batch::{JointEstimate, Mode, Protocol, compare_joints, estimate_joints};
 use tauscope::delay::Settings;
 use tauscope::diagnosis::Comparison;
 use tauscope::experiment::{Experiment, Joint, ReadOptions};
@@ -87,7 +87,8 @@ impl Recorded {
             integrators(joint, &estimated).into_iter().next()
         };
         let horizon = Horizon::FreeRun;
-        let compared = compare_joints(joints, &estimates, model, Mode::AsItIs, None, horizon);
+        let protocol = Protocol { mode: Mode::AsItIs, split: None, horizon };
+        let compared = compare_joints(joints, &estimates, model, protocol);
         compared.into_iter().map(|result| result.unwrap().unwrap()).collect()
     }
 
