@@ -183,10 +183,9 @@ impl ReadBack {
 
     /// The one static cell of a component, which must be there.
     fn cell(&self, entity: &str, component: &'static str) -> ArrayRef {
-        let chunks = self.chunks.get(entity).unwrap_or_else(|| panic!("no {entity}"));
-        let cells = chunks.iter().filter(|chunk| chunk.is_static());
+        let cells = self.chunks[entity].iter().filter(|chunk| chunk.is_static());
         let mut cells = cells.filter_map(|c| c.components().get_array(component.into()));
-        cells.next().unwrap_or_else(|| panic!("no {component} of {entity}")).value(0)
+        cells.next().unwrap().value(0)
     }
 
     fn list(&self, entity: &str, component: &'static str) -> Vec<f64> {

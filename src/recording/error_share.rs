@@ -122,11 +122,10 @@ fn name(region: &Region) -> String {
     /// Characters of a trial's label that have room.
     const LONGEST: usize = 10;
     match region.feature {
-        Feature::Direction => region.label.clone(),
         Feature::Trial if region.label.chars().count() > LONGEST => {
             region.label.chars().take(LONGEST - 1).chain(['…']).collect()
         }
-        Feature::Trial => region.label.clone(),
+        Feature::Direction | Feature::Trial => region.label.clone(),
         _ => short(region.from),
     }
 }
