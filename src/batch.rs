@@ -5,12 +5,13 @@
 
 use rayon::prelude::*;
 
-use crate::delay::{EstimateError, Settings, TrialEstimate, estimate};
+use crate::delay::{Decision, EstimateError, Settings, TrialEstimate, estimate};
 use crate::diagnosis::{Comparison, compare};
 use crate::experiment::{Joint, Trial, activity};
 use crate::explain::{Explanation, Improvement, Options, Revision, Workers, explain, improve};
 use crate::fit::{Fit, FitError, Horizon, Record, Split, assess, fit};
 use crate::model::{JointModel, integrators};
+use crate::statistics::median;
 
 /// The delays of one joint in all its trials.
 #[derive(Clone, Debug, PartialEq)]
@@ -135,11 +136,13 @@ fn for_each_joint<T: Send>(
     work: impl Fn(usize, &Record<'_>, Fit) -> T + Sync,
 ) -> OfJoints<T> {
     let Protocol { mode, split, horizon } = protocol;
+    let delays_s: Vec<f64> = joints.iter().zip(estimates).map(typical_delay_s).collect();
     let one_joint = |(index, estimate): (usize, &Result<JointEstimate, EstimateError>)| {
         let joint = joints.get(index)?;
         let estimated: Vec<_> = estimate.iter().flat_map(JointEstimate::estimated).collect();
         let split = split.unwrap_or_else(|| Split::of(joint));
-        let record = Record::new(joint, split, horizon).with_others(activity(joints, index));
+        let others = activity(joints, index, &delays_s);
+        let record = Record::new(joint, split, horizon).with_others(others);
         let starts = match mode {
             Mode::Integrator => integrators(joint, &estimated),
             Mode::Fit | Mode::AsItIs => vec![models(joint)?],
@@ -148,6 +151,19 @@ fn for_each_joint<T: Send>(
         Some(fit.map(|fit| work(index, &record, fit)))
     };
     (0..joints.len()).into_par_iter().zip(estimates).map(one_joint).collect()
+}
+
+/// The median of the accepted delays of a joint in seconds; 0 without any.
+fn typical_delay_s((joint, estimate): (&Joint, &Result<JointEstimate, EstimateError>)) -> f64 {
+    let estimated = estimate.iter().flat_map(JointEstimate::estimated);
+    let delays = estimated.flat_map(|trial| {
+        let known = joint.trials.iter().find(|known| known.label() == trial.label);
+        let period_s = known.map_or(0.0, |known| known.period().seconds());
+        let accepted = trial.decisions.iter().filter_map(Decision::accepted_delay);
+        accepted.map(move |samples| samples * period_s)
+    });
+    let delays: Vec<f64> = delays.collect();
+    median(&delays).unwrap_or(0.0)
 }
 
 /// The best of the fits from several starts.

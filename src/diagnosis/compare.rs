@@ -80,10 +80,14 @@ pub(crate) fn floor_of(record: &Record<'_>, fit: &Fit) -> Option<f64> {
 /// would pass for one that changes slowly.
 const BEYOND_NOISE: f64 = 3.0;
 
+/// A residual no more than so many times the noise leaves nothing that is worth an effect,
+/// however sure it is that something is left.
+const NEAR_NOISE: f64 = 1.15;
+
 /// Whether `fit` leaves more than noise on the training part of `record`.
 ///
-/// Beside the test, which holds all that changes slowly for noise, the residual is held
-/// against the noise about a smooth curve.
+/// Beside the test, which holds all that changes slowly for noise and finds every trace in a
+/// long record, the residual is held against the noise about a smooth curve.
 pub(crate) fn lack_of(record: &Record<'_>, fit: &Fit) -> Option<LackOfFit> {
     let test = lack_of_fit(&TestColumns {
         residuals: cut(record, &fit.evaluation),
@@ -91,10 +95,13 @@ pub(crate) fn lack_of(record: &Record<'_>, fit: &Fit) -> Option<LackOfFit> {
         shapes: shapes(record, &fit.evaluation, Part::Training),
     })?;
     let error = ErrorFigures::of(record, &fit.evaluation, Part::Training);
-    let beyond = error.zip(floor_of(record, fit)).is_some_and(|(error, floor)| {
-        error.rmse > BEYOND_NOISE * floor.max(f64::MIN_POSITIVE)
-    });
-    Some(LackOfFit { adequate: test.adequate && !beyond, ..test })
+    let times = error.zip(floor_of(record, fit)).map(|(error, floor)| error.rmse / floor);
+    let adequate = match times {
+        Some(times) if times <= NEAR_NOISE => true,
+        Some(times) if times > BEYOND_NOISE => false,
+        _ => test.adequate,
+    };
+    Some(LackOfFit { adequate, ..test })
 }
 
 /// The training part of each trial.

@@ -1,16 +1,19 @@
 //! A delay that depends on the step of the input and on what came before it.
 //!
 //! ```text
-//! extra = size · |after − before| + falling · [after < before] + dwell · held + drift · t
+//! extra = size · f(|after − before|, size_scale) + falling · [after < before]
+//!         + dwell · f(held, dwell_scale) + drift · t
+//! f(x, s) = s · (1 − exp(−x / s)): x where s is much larger, s where it is much smaller
 //! ```
 //!
 //! with `held` the seconds the level before was held, and `t` the time of the step in
 //! the record. It is added to the joint's delay; the whole is kept at zero or above.
 //!
-//! Each term is the first order of a longer story. A small step opens the valve less, so
-//! that pressure builds up later (`size` below 0). The two directions have other loads
-//! and volumes. Static friction rises with the time at rest. Oil thins as it warms.
-//! `dwell` is linear: for holds much longer than those it was fitted to it overstates.
+//! A small step opens the valve less, so that pressure builds up later (`size` below 0);
+//! beyond `size_scale` a larger step gains nothing. The two directions have other loads
+//! and volumes. Static friction rises with the time at rest, and is at its height after
+//! some `dwell_scale`. Oil thins as it warms: this one is the first order of a longer story.
+//! Both scales are neutral at 1e12, where `f` is a straight line.
 //!
 //! # References
 //! Armstrong-Hélouvry, B., Dupont, P., and Canudas de Wit, C., 1994, A survey of models,
@@ -18,7 +21,9 @@
 //! Automatica 30 (rising static friction); Merritt, H. E., 1967, Hydraulic Control
 //! Systems (compressed volumes, viscosity).
 
-use super::{Dimension, Effect, InputChange, Moment, Parameter, Spec, Stage, UNLIMITED};
+use super::{
+    Dimension, Effect, InputChange, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED,
+};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +32,8 @@ pub struct VariableDelay;
 static SPEC: Spec = Spec {
     id: "variable_delay",
     summary: "the delay depends on step size, direction, dwell and time",
-    equation: "extra = size abs(after - before) + falling [after < before] + dwell held + drift t",
+    equation: "extra = size f(abs(after - before), size_scale) + falling [after < before] + \
+               dwell f(held, dwell_scale) + drift t; f(x, s) = s (1 - exp(-x / s))",
     source: "Armstrong-Hélouvry, Dupont and Canudas de Wit, 1994, A survey of models, analysis \
              tools and compensation methods for the control of machines with friction, \
              Automatica 30; Merritt, 1967, Hydraulic Control Systems",
@@ -46,6 +52,16 @@ static SPEC: Spec = Spec {
         Parameter::new("drift", "extra delay per second of the record", Dimension::One)
             .between(-0.1, 0.1)
             .typical(0.0),
+        Parameter::new(
+            "size_scale",
+            "size of a step beyond which it gains little",
+            Dimension::Input,
+        )
+        .between(0.0, UNLIMITED)
+        .neutral(UNLIMITED),
+        Parameter::new("dwell_scale", "hold beyond which it gains little", Dimension::Seconds)
+            .between(0.0, UNLIMITED)
+            .neutral(UNLIMITED),
     ],
     memory: 0,
     confused_with: &["actuator_lag", "rate_limit"],
@@ -64,11 +80,46 @@ impl Effect for VariableDelay {
     }
 
     fn extra_delay_s(&self, parameters: &[f64], change: &InputChange) -> f64 {
-        let &[size, falling, dwell, drift] = parameters else { return 0.0 };
+        let &[size, falling, dwell, drift, size_scale, dwell_scale] = parameters else {
+            return 0.0;
+        };
         let InputChange { before, after, held_s, time_s } = *change;
         let direction = if after < before { falling } else { 0.0 };
-        size * (after - before).abs() + direction + dwell * held_s + drift * time_s
+        let grown = size * saturated((after - before).abs(), size_scale);
+        grown + direction + dwell * saturated(held_s, dwell_scale) + drift * time_s
     }
+
+    fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
+        let mut bounds: Vec<_> = SPEC.parameters.iter().map(|each| each.bounds(record)).collect();
+        let (low, high) = FITTED_SCALES;
+        if let [.., of_size, of_dwell] = bounds.as_mut_slice() {
+            let size = record.size(Dimension::Input);
+            *of_size = (low * size, high * size);
+            *of_dwell = (low * LONG_HOLD_S, high * LONG_HOLD_S);
+        }
+        bounds
+    }
+
+    fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
+        let mut start: Vec<_> = SPEC.parameters.iter().map(|each| each.start(record)).collect();
+        if let [.., of_size, of_dwell] = start.as_mut_slice() {
+            (*of_size, *of_dwell) = (2.0 * record.size(Dimension::Input), 2.0 * LONG_HOLD_S);
+        }
+        vec![start]
+    }
+}
+
+/// Range of the scales in a fit, in parts of the largest input and of a long hold: from a
+/// switch to what is straight to some percent.
+const FITTED_SCALES: (f64, f64) = (0.05, 20.0);
+
+/// A hold that is long, in seconds.
+const LONG_HOLD_S: f64 = 5.0;
+
+/// `scale · (1 − exp(−x / scale))`.
+fn saturated(x: f64, scale: f64) -> f64 {
+    let scale = scale.max(f64::MIN_POSITIVE);
+    -scale * (-x / scale).exp_m1()
 }
 
 #[cfg(test)]
@@ -77,11 +128,19 @@ mod tests {
 
     #[test]
     fn size_direction_dwell_and_time_each_add_their_part() {
-        let parameters = [-0.01, 0.02, 0.005, 0.001];
+        let parameters = [-0.01, 0.02, 0.005, 0.001, UNLIMITED, UNLIMITED];
         let extra = |change| VariableDelay.extra_delay_s(&parameters, &change);
         let rising = InputChange { before: -1.0, after: 2.0, held_s: 4.0, time_s: 50.0 };
-        assert!((extra(rising) - (-0.03 + 0.02 + 0.05)).abs() < 1e-15);
+        assert!((extra(rising) - (-0.03 + 0.02 + 0.05)).abs() < 1e-12);
         let falling = InputChange { before: 2.0, after: -1.0, held_s: 0.0, time_s: 0.0 };
         assert!((extra(falling) - (-0.03 + 0.02)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn size_and_dwell_gain_little_beyond_their_scales() {
+        let parameters = [-0.01, 0.0, 0.02, 0.0, 1.5, 2.0];
+        let change = InputChange { before: 0.0, after: 3.0, held_s: 6.0, time_s: 0.0 };
+        let expected = -0.01 * 1.5 * (1.0 - (-2_f64).exp()) + 0.02 * 2.0 * (1.0 - (-3_f64).exp());
+        assert!((VariableDelay.extra_delay_s(&parameters, &change) - expected).abs() < 1e-15);
     }
 }

@@ -6,26 +6,30 @@ use super::{Joint, Trial};
 /// sample, from 0 (all at rest) to 1 (all driven as hard as ever in the log).
 ///
 /// It is the mean of `|u| / max|u|` over the other joints, where `u` is the input of a joint
-/// at that time, held between its samples and not delayed, and the maximum is over all its
-/// trials. Trials belong together by their labels, samples by their times. Where a joint
-/// was not logged it counts as at rest. Without other joints the lists are empty.
-pub fn activity(joints: &[Joint], index: usize) -> Vec<Vec<f64>> {
+/// at that time, held between its samples and late by the joint's delay in `delays_s` (not
+/// delayed where there is none), and the maximum is over all its trials. Trials belong
+/// together by their labels, samples by their times. Where a joint was not logged it counts
+/// as at rest. Without other joints the lists are empty.
+pub fn activity(joints: &[Joint], index: usize, delays_s: &[f64]) -> Vec<Vec<f64>> {
     let Some(own) = joints.get(index) else { return Vec::new() };
     let others = joints.iter().enumerate().filter(|(other, _)| *other != index);
-    let others: Vec<Other<'_>> = others.map(|(_, joint)| Other::new(joint)).collect();
+    let delay_s = |other: usize| delays_s.get(other).copied().unwrap_or_default();
+    let others = others.map(|(other, joint)| Other::new(joint, delay_s(other)));
+    let others: Vec<Other<'_>> = others.collect();
     own.trials.iter().map(|trial| of_trial(trial, &others)).collect()
 }
 
-/// A joint with the largest magnitude of its input.
+/// A joint with the largest magnitude of its input, and its delay.
 struct Other<'a> {
     joint: &'a Joint,
     most: f64,
+    delay_s: f64,
 }
 
 impl<'a> Other<'a> {
-    fn new(joint: &'a Joint) -> Self {
+    fn new(joint: &'a Joint, delay_s: f64) -> Self {
         let inputs = joint.trials.iter().flat_map(Trial::input);
-        Self { joint, most: inputs.fold(0.0, |most, input| most.max(input.abs())) }
+        Self { joint, most: inputs.fold(0.0, |most, input| most.max(input.abs())), delay_s }
     }
 
     /// Its trials that may run at the same time as one labelled `label`: the one with this
@@ -55,7 +59,7 @@ fn of_trial(trial: &Trial, others: &[Other<'_>]) -> Vec<f64> {
     for (other, share) in moving.map(|other| (other, 1.0 / (other.most * others.len() as f64))) {
         for part in other.at_the_time_of(trial.label()) {
             for (value, sample) in activity.iter_mut().zip(1..) {
-                *value += share * held(part, trial.time_s(sample)).abs();
+                *value += share * held(part, trial.time_s(sample) - other.delay_s).abs();
             }
         }
     }
@@ -90,8 +94,8 @@ mod tests {
     #[test]
     fn a_joint_alone_has_no_others() {
         let alone = [joint("a", vec![trial("1", 0.0, 0.1, &[1.0, 2.0])])];
-        assert_eq!(activity(&alone, 0), [Vec::<f64>::new()]);
-        assert_eq!(activity(&alone, 1), Vec::<Vec<f64>>::new());
+        assert_eq!(activity(&alone, 0, &[]), [Vec::<f64>::new()]);
+        assert_eq!(activity(&alone, 1, &[]), Vec::<Vec<f64>>::new());
     }
 
     #[test]
@@ -103,8 +107,17 @@ mod tests {
             joint("never moves", vec![trial("1", 0.0, 0.1, &[0.0; 3])]),
         ];
         let expected = [1.0 / 3.0, 0.5, 0.5 / 3.0];
-        let found = &activity(&joints, 0)[0];
+        let found = &activity(&joints, 0, &[])[0];
         assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
+    }
+
+    #[test]
+    fn each_joint_is_late_by_its_own_delay() {
+        let joints = [
+            joint("a", vec![trial("1", 0.0, 0.1, &[0.0; 4])]),
+            joint("b", vec![trial("1", 0.0, 0.1, &[2.0, -2.0, 0.0, 0.0])]),
+        ];
+        assert_eq!(activity(&joints, 0, &[9.0, 0.2])[0], [0.0, 0.0, 1.0, 1.0]);
     }
 
     #[test]
@@ -113,7 +126,7 @@ mod tests {
             joint("a", vec![trial("1", 10.0, 0.1, &[0.0; 7]), trial("2", 0.0, 0.1, &[0.0; 2])]),
             joint("b", vec![trial("1", 10.1, 0.2, &[1.0, 2.0])]),
         ];
-        let found = activity(&joints, 0);
+        let found = activity(&joints, 0, &[]);
         assert_eq!(found[0], [0.0, 0.5, 0.5, 1.0, 1.0, 0.0, 0.0]);
         assert_eq!(found[1], [0.0, 0.0]);
     }
@@ -122,8 +135,8 @@ mod tests {
     fn parts_of_a_split_trial_are_found_by_their_times() {
         let parts = vec![trial("1#1", 0.0, 0.1, &[1.0; 2]), trial("1#2", 0.4, 0.1, &[1.0; 2])];
         let joints = [joint("a", vec![trial("1", 0.0, 0.1, &[0.0; 6])]), joint("b", parts.clone())];
-        assert_eq!(activity(&joints, 0)[0], [1.0, 1.0, 0.0, 0.0, 1.0, 1.0]);
+        assert_eq!(activity(&joints, 0, &[])[0], [1.0, 1.0, 0.0, 0.0, 1.0, 1.0]);
         let joints = [joint("a", parts), joint("b", vec![trial("1", 0.0, 0.1, &[1.0; 6])])];
-        assert_eq!(activity(&joints, 0), [[1.0; 2], [1.0; 2]]);
+        assert_eq!(activity(&joints, 0, &[]), [[1.0; 2], [1.0; 2]]);
     }
 }

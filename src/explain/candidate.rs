@@ -40,7 +40,7 @@ impl Candidate {
         /// Probability for the best of a whole catalogue.
         const SIGNIFICANCE: f64 = 1e-3;
         /// Least reduction of the error on data that were not fitted, percent.
-        const WORTH_PERCENT: f64 = 1.0;
+        const WORTH_PERCENT: f64 = 2.0;
         self.p_value < SIGNIFICANCE && self.error_reduction_percent > WORTH_PERCENT
     }
 

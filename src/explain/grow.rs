@@ -3,11 +3,12 @@
 use super::Workers;
 use super::candidate::Candidate;
 use super::evidence::Noise;
-use super::race::{Options, fitted, parameters, race};
+use super::race::{Options, parameters, race, range};
 use super::verdict::Verdict;
 use crate::diagnosis::{LackOfFit, floor_of, lack_of};
-use crate::fit::{Fit, Record};
-use crate::model::JointModel;
+use crate::effect::{Effect, REGISTRY, by_id};
+use crate::fit::{Fit, Record, fit_to_compare, survey};
+use crate::model::{Component, JointModel};
 
 /// What a revision changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +19,13 @@ pub enum Change {
     Added(&'static str),
     /// An effect that others made useless was removed.
     Removed(&'static str),
+    /// An effect gave way to one that does the same better, now that others are there.
+    Replaced {
+        /// What was removed.
+        old: &'static str,
+        /// What was added.
+        new: &'static str,
+    },
 }
 
 /// A model on the way.
@@ -63,19 +71,94 @@ pub(super) fn grow(
             let floor = floor_of(record, &step.fit).unwrap_or(0.0);
             step.ranking = race(record, &step.fit, floor, options, workers);
         }
-        let found = step.ranking.first().filter(|best| best.is_significant()).cloned();
+        let found = step.ranking.iter().find(|best| best.is_significant()).cloned();
         let added = ids(&step.fit.model).len().saturating_sub(given.len());
         let goes_on = visit(&step) && added < options.max_effects;
         let Some(found) = found.filter(|_| goes_on) else {
-            return Verdict::of(step.ranking.first().is_some_and(Candidate::is_significant));
+            return Verdict::of(step.ranking.iter().any(Candidate::is_significant));
         };
         let newest = found.effects.first().copied().unwrap_or_default();
         step = Step::new(record, Change::Added(newest), found.fit);
-        while let Some((id, fit)) = useless(record, &step.fit, given, newest, workers) {
+        let mut fixed = vec![newest];
+        while let Some((change, fit)) = tidied(record, &step.fit, given, &mut fixed, workers) {
             if !visit(&step) {
                 return Verdict::of(!step.is_adequate());
             }
-            step = Step::new(record, Change::Removed(id), fit);
+            step = Step::new(record, change, fit);
+        }
+    }
+}
+
+/// A simpler or better model with the effects of `whole`, where there is one: without one
+/// of them, or with another in the place of one.
+fn tidied(
+    record: &Record<'_>,
+    whole: &Fit,
+    given: &[&'static str],
+    settled: &mut Vec<&'static str>,
+    workers: &impl Workers,
+) -> Option<(Change, Fit)> {
+    let own = ids(&whole.model).into_iter().filter(|id| !given.contains(id));
+    let own: Vec<&'static str> = own.collect();
+    let removals = own.iter().filter(|id| !settled.contains(id)).map(|id| Change::Removed(id));
+    let mut changes: Vec<Change> = removals.collect();
+    if own.len() > 1 {
+        let alike = |old: &&'static str| alternatives(old, &own);
+        let open = own.iter().filter(|id| !settled.contains(id));
+        changes.extend(open.flat_map(alike));
+    }
+    let tried = promising(record, whole, &changes, workers);
+    let noise = Noise::of(record, &whole.evaluation);
+    let criterion =
+        |fit: &Fit| noise.evidence(record, &fit.evaluation, parameters(fit)).criterion();
+    let best = tried.into_iter().min_by(|a, b| criterion(&a.1).total_cmp(&criterion(&b.1)))?;
+    let better = (criterion(&best.1) < criterion(whole)).then_some(best)?;
+    if let Change::Replaced { new, .. } = better.0 {
+        settled.push(new);
+    }
+    Some(better)
+}
+
+/// The models after those of `changes` that a glance does not rule out, fitted.
+fn promising(
+    record: &Record<'_>,
+    whole: &Fit,
+    changes: &[Change],
+    workers: &impl Workers,
+) -> Vec<(Change, Fit)> {
+    /// What the error may be after a glance, in parts of that of the whole model.
+    const MOST: f64 = 1.3;
+    let levels = record.input_levels();
+    let range = range(record, &whole.model, &levels);
+    let Ok(of_whole) = survey(record, &whole.model, &range) else { return Vec::new() };
+    let apply = |change: &Change| {
+        let glance = survey(record, &changed(&whole.model, *change)?, &range).ok()?;
+        let fit = || fit_to_compare(record, &glance.model, &range).ok();
+        (glance.cost < MOST * of_whole.cost).then(fit).flatten().map(|fit| (*change, fit))
+    };
+    workers.map(changes, apply).into_iter().flatten().collect()
+}
+
+/// What may stand in the place of `old`: the effects that look like it, or are contained in
+/// it, and are not there.
+fn alternatives(old: &'static str, own: &[&'static str]) -> Vec<Change> {
+    let near = |a: &str, b: &str| {
+        let spec = by_id(a).map(Effect::spec);
+        spec.is_some_and(|spec| spec.confused_with.contains(&b) || spec.absorbs.contains(&b))
+    };
+    let looks_like = |id: &&'static str| !own.contains(id) && (near(old, id) || near(id, old));
+    let known = REGISTRY.iter().map(|effect| effect.spec().id).filter(looks_like);
+    known.map(|new| Change::Replaced { old, new }).collect()
+}
+
+/// `model` after a change.
+fn changed(model: &JointModel, change: Change) -> Option<JointModel> {
+    match change {
+        Change::Start => Some(model.clone()),
+        Change::Added(id) => Some(model.with(Component::neutral(by_id(id)?))),
+        Change::Removed(id) => Some(model.without(id)),
+        Change::Replaced { old, new } => {
+            Some(model.without(old).with(Component::neutral(by_id(new)?)))
         }
     }
 }
@@ -83,24 +166,4 @@ pub(super) fn grow(
 /// Ids of the effects of `model`.
 pub(super) fn ids(model: &JointModel) -> Vec<&'static str> {
     model.components().iter().map(|component| component.effect().spec().id).collect()
-}
-
-/// An effect without which the model is as good, and the model without it: none that was
-/// given, nor the newest.
-fn useless(
-    record: &Record<'_>,
-    whole: &Fit,
-    given: &[&'static str],
-    newest: &str,
-    workers: &impl Workers,
-) -> Option<(&'static str, Fit)> {
-    let own = ids(&whole.model).into_iter();
-    let may_go: Vec<&'static str> = own.filter(|id| *id != newest && !given.contains(id)).collect();
-    let without = |id: &&'static str| Some((*id, fitted(record, &whole.model.without(id))?));
-    let smaller = workers.map(&may_go, without).into_iter().flatten();
-    let noise = Noise::of(record, &whole.evaluation);
-    let criterion =
-        |fit: &Fit| noise.evidence(record, &fit.evaluation, parameters(fit)).criterion();
-    let best = smaller.min_by(|a, b| criterion(&a.1).total_cmp(&criterion(&b.1)))?;
-    (criterion(&best.1) <= criterion(whole)).then_some(best)
 }

@@ -5,7 +5,7 @@ use super::candidate::Candidate;
 use super::evidence::Noise;
 use crate::diagnosis::ErrorFigures;
 use crate::effect::{Effect, REGISTRY, RecordRange};
-use crate::fit::{Fit, Part, Record, Status, Survey, fit, fit_to_compare, survey};
+use crate::fit::{Fit, Part, Record, Status, Survey, fit_to_compare, survey};
 use crate::model::{Component, JointModel};
 
 /// What a race is about.
@@ -30,8 +30,11 @@ struct Entry {
     fit: Fit,
 }
 
-/// Effects that are fitted to the end, of those that were surveyed.
-const FINALISTS: usize = 6;
+/// Effects that are fitted to the end, of those that were surveyed: at most, and at least.
+const FINALISTS: (usize, usize) = (6, 3);
+
+/// What the error of a finalist may be after the survey, in parts of the least.
+const HOPELESS: f64 = 3.0;
 
 /// Surveys `base` with each effect of `options` that it has not, fits the best few to the
 /// end and ranks them, best first.
@@ -53,7 +56,10 @@ pub(super) fn race(
     let surveyed = workers.map(&effects, glance).into_iter().flatten();
     let mut surveyed: Vec<(&'static str, Survey)> = surveyed.collect();
     surveyed.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
-    surveyed.truncate(FINALISTS);
+    let (most, least) = FINALISTS;
+    let limit = surveyed.first().map_or(0.0, |best| HOPELESS * best.1.cost);
+    let hopeful = surveyed.iter().filter(|entry| entry.1.cost <= limit).count();
+    surveyed.truncate(hopeful.clamp(least, most));
     let to_the_end = |(id, survey): &(&'static str, Survey)| {
         let fit = fit_to_compare(record, &survey.model, &range).ok()?;
         Some(Entry { effects: vec![*id], fit })
@@ -62,14 +68,12 @@ pub(super) fn race(
     ranked(record, base, noise_floor, entries)
 }
 
-/// `model` fitted; `None` where it cannot be.
-pub(super) fn fitted(record: &Record<'_>, model: &JointModel) -> Option<Fit> {
-    let levels = record.input_levels();
-    fit(record, model, &range(record, model, &levels)).ok()
-}
-
 /// How large the signals of `record` are, for a model with about the gain of `model`.
-fn range<'l>(record: &Record<'_>, model: &JointModel, levels: &'l [f64]) -> RecordRange<'l> {
+pub(super) fn range<'l>(
+    record: &Record<'_>,
+    model: &JointModel,
+    levels: &'l [f64],
+) -> RecordRange<'l> {
     record.range(levels, model.gain.value.abs() * levels.last().copied().unwrap_or(1.0))
 }
 

@@ -39,9 +39,9 @@ pub struct Explanation {
     pub ranking: Vec<Candidate>,
 }
 
-/// The share of a misfit that an effect takes away alone which is named though the model
-/// with it still fails.
-const MOST_OF_IT: f64 = 0.8;
+/// Percent of the error that an effect must take away to be named though the model with it
+/// still fails.
+const MOST_OF_IT: f64 = 80.0;
 
 /// Effects that may come behind the first before the model is adequate.
 const LOOK_AHEAD: usize = 3;
@@ -84,7 +84,7 @@ fn accounts_for_it(
         last = ids(&step.fit.model);
         true
     });
-    let named = best.share_of_misfit >= MOST_OF_IT || verdict == Verdict::Adequate;
+    let named = best.error_reduction_percent >= MOST_OF_IT || verdict == Verdict::Adequate;
     if verdict == Verdict::Adequate {
         let remains = |candidate: &Candidate| candidate.effects.iter().all(|id| last.contains(id));
         if let Some(place) = ranking.iter().position(remains) {

@@ -154,18 +154,27 @@ fn fit_to(
     Ok(best.into_fit(simulations + given_up))
 }
 
-/// A rough descent from each start: the best of them, and the simulations of the others.
+/// A glance at each start and a rough descent from the best few: the best of these, and the
+/// simulations of the others.
 fn rough<'p, 'r>(
     short: &'p Record<'r>,
     model: &'p JointModel,
     space: &'p Space,
     range: &RecordRange<'_>,
 ) -> (Vec<Search<'p, 'r>>, usize) {
-    let begin = |start| Search::new(short, model, space, start).descended(Depth::ROUGH);
-    let mut searches: Vec<_> = starts(model, range).into_iter().map(begin).collect();
+    let starts = starts(model, range);
+    let depth = if starts.len() > FOLLOWED { Depth::GLANCE } else { Depth::ROUGH };
+    let begin = |start| Search::new(short, model, space, start).descended(depth);
+    let mut searches: Vec<_> = starts.into_iter().map(begin).collect();
     searches.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    let given_up = searches.split_off(FINALISTS.min(searches.len()));
-    (searches, given_up.iter().map(Search::simulations).sum())
+    let mut given_up = 0;
+    if searches.len() > FOLLOWED {
+        given_up += searches.split_off(FOLLOWED).iter().map(Search::simulations).sum::<usize>();
+        searches = searches.into_iter().map(|s| s.descended(Depth::ROUGH)).collect();
+        searches.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    }
+    let others = searches.split_off(FINALISTS.min(searches.len()));
+    (searches, given_up + others.iter().map(Search::simulations).sum::<usize>())
 }
 
 /// A glance at a model: where a rough descent in short windows leads, and its robust sum of
@@ -193,8 +202,7 @@ pub fn survey(
     check_size(record, &space)?;
     let short = record.shortened();
     let (searches, _) = rough(&short, model, &space, range);
-    let best = searches.into_iter().map(Search::across_flats);
-    let best = best.min_by(|a, b| a.cost.total_cmp(&b.cost));
+    let best = searches.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost));
     let found = best.map(|search| Survey { model: search.problem.model_now(), cost: search.cost });
     Ok(found.unwrap_or_else(|| Survey { model: model.clone(), cost: f64::MAX }))
 }
@@ -226,6 +234,9 @@ fn check_size(record: &Record<'_>, space: &Space) -> Result<(), FitError> {
 fn plain(model: &JointModel) -> Vec<f64> {
     model.values().iter().map(|value| value.value).collect()
 }
+
+/// Starts that are followed beyond a glance.
+const FOLLOWED: usize = 3;
 
 /// Searches that are brought to their end; the others are given up when it is seen where
 /// they lead.

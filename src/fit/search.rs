@@ -33,8 +33,11 @@ pub(super) struct Depth {
 const SETTLED: f64 = 1e-6;
 
 impl Depth {
+    /// To see which of many starts to follow.
+    pub(super) const GLANCE: Self = Self { relative_gain: 3e-2, patience: 1, rounds: 1 };
+
     /// To see which of several starts leads down.
-    pub(super) const ROUGH: Self = Self { relative_gain: 1e-3, patience: 6, rounds: 1 };
+    pub(super) const ROUGH: Self = Self { relative_gain: 3e-3, patience: 4, rounds: 1 };
 
     /// To compare models: what is left to gain is far below the noise.
     pub(super) fn comparing(samples: usize) -> Self {
