@@ -7,7 +7,9 @@ use rayon::prelude::*;
 
 use crate::delay::{Decision, EstimateError, Settings, TrialEstimate, estimate};
 use crate::diagnosis::{Comparison, compare};
+use crate::effect::Effect;
 use crate::experiment::{Joint, Trial, activity};
+use crate::explain::{AddError, Addition, add};
 use crate::explain::{Explanation, Improvement, Options, Revision, Workers, explain, improve};
 use crate::fit::{Fit, FitError, Horizon, Record, Split, assess, fit};
 use crate::model::{JointModel, integrators};
@@ -68,6 +70,8 @@ pub enum Mode {
     Integrator,
     /// The given model, fitted from its values.
     Fit,
+    /// The same; a plain integrator where none is given.
+    FitOrIntegrator,
     /// The given model as it is.
     AsItIs,
 }
@@ -112,6 +116,19 @@ pub fn explain_joints(
     })
 }
 
+/// Adds `effect` to each joint's model: see [`add`].
+pub fn add_to_joints(
+    joints: &[Joint],
+    estimates: &[Result<JointEstimate, EstimateError>],
+    models: impl Fn(&Joint) -> Option<JointModel> + Sync,
+    protocol: Protocol,
+    effect: &'static dyn Effect,
+) -> Vec<Option<Result<Addition, AddError>>> {
+    let work = |_: usize, record: &Record<'_>, fit: Fit| add(record, fit, effect);
+    let added = for_each_joint(joints, estimates, models, protocol, work);
+    added.into_iter().map(|result| Some(result?.map_err(AddError::from).flatten())).collect()
+}
+
 /// Adds to each joint's model what it lacks: see [`improve`]. `done` is called with the
 /// index of the joint and each revision; where it says no, the joint is left as it is.
 pub fn improve_joints(
@@ -146,6 +163,10 @@ fn for_each_joint<T: Send>(
         let starts = match mode {
             Mode::Integrator => integrators(joint, &estimated),
             Mode::Fit | Mode::AsItIs => vec![models(joint)?],
+            Mode::FitOrIntegrator => {
+                let given = models(joint).map(|model| vec![model]);
+                given.unwrap_or_else(|| integrators(joint, &estimated))
+            }
         };
         let fit = best_fit(&record, &starts, mode)?;
         Some(fit.map(|fit| work(index, &record, fit)))
@@ -177,7 +198,7 @@ fn best_fit(
     let speed = starts.first().map_or(1.0, |model| model.gain.value.abs() * top);
     let range = record.range(&levels, speed);
     let fits = starts.iter().map(|start| match mode {
-        Mode::Integrator | Mode::Fit => fit(record, start, &range),
+        Mode::Integrator | Mode::Fit | Mode::FitOrIntegrator => fit(record, start, &range),
         Mode::AsItIs => assess(record, start, &range),
     });
     let cost = |result: &Result<Fit, FitError>| result.as_ref().map_or(f64::MAX, |fit| fit.cost);

@@ -5,6 +5,7 @@
 //! was fitted counts with a penalty for its parameters, what was not counts as it is.
 //!
 //! - [`explain`]: verdict and ranking for one model
+//! - [`add()`]: an effect that the user chose
 //! - [`improve`]: explain and add until nothing significant is left
 //! - [`Workers`]: who does the fits, one after the other or in parallel
 //!
@@ -20,6 +21,7 @@
 //! "Identifying suitable models for the heat dynamics of buildings", Energy and Buildings
 //! 43 (2011), 1511-1522.
 
+mod add;
 mod candidate;
 mod evidence;
 mod grow;
@@ -28,6 +30,7 @@ mod race;
 mod verdict;
 mod workers;
 
+pub use add::{AddError, Addition, add};
 pub use candidate::Candidate;
 pub use grow::Change;
 pub use improve::{Improvement, Revision, improve};

@@ -57,6 +57,24 @@ impl ModelFile {
         model: &JointModel,
         revision: &Revision,
     ) -> Result<Self, ModelError> {
+        self.rewritten(joint, model, Some(revision))
+    }
+
+    /// This file with `model` for `joint`, whose history stays as it is: see
+    /// [`revised`](Self::revised).
+    ///
+    /// # Errors
+    /// As [`revised`](Self::revised).
+    pub fn refitted(&self, joint: &str, model: &JointModel) -> Result<Self, ModelError> {
+        self.rewritten(joint, model, None)
+    }
+
+    fn rewritten(
+        &self,
+        joint: &str,
+        model: &JointModel,
+        revision: Option<&Revision>,
+    ) -> Result<Self, ModelError> {
         let mut document: DocumentMut = self.text.parse().map_err(|error| ModelError::Edit {
             path: self.path.clone(),
             source: Box::new(error),
@@ -83,7 +101,7 @@ impl Writer<'_> {
         document: &mut dyn TableLike,
         name: &str,
         model: &JointModel,
-        revision: &Revision,
+        revision: Option<&Revision>,
     ) -> Option<()> {
         let mut joints = Table::new();
         joints.set_implicit(true);
@@ -94,7 +112,10 @@ impl Writer<'_> {
         let own = [("gain", model.gain), ("delay", model.delay)];
         write_parameters(joint, own.map(|(name, value)| (name, None, value.into())))?;
         self.effects(joint, model.components())?;
-        push(joint, "history", entry_of(revision))
+        match revision {
+            Some(revision) => push(joint, "history", entry_of(revision)),
+            None => Some(()),
+        }
     }
 
     fn effects(&self, joint: &mut dyn TableLike, components: &[Component]) -> Option<()> {
