@@ -1,17 +1,19 @@
 //! `compare` as text and JSON.
 
+use std::ops::Range;
+
 use comfy_table::{CellAlignment, Table, presets};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use super::number;
+use super::number::{number, probability, with_unit};
 use crate::diagnosis::failure::{FailsWhere, Region, Units, WorstSegment};
 use crate::diagnosis::{
     Comparison, ErrorFigures, InputCorrelation, LackOfFit, SIGNIFICANCE, Whiteness,
 };
 use crate::effect::Dimension;
 use crate::experiment::Joint;
-use crate::fit::{Parameter, Status};
+use crate::fit::{Fit, Parameter, Status};
 use crate::model::JointModel;
 
 /// A joint, its model, and how the two compare.
@@ -36,8 +38,9 @@ pub struct CompareJson<'a> {
     failures: &'a [String],
 }
 
+/// A joint and its model, as every command that fits models shows them.
 #[derive(Debug, Serialize)]
-struct JointJson<'a> {
+pub(super) struct JointJson<'a> {
     joint: &'a str,
     model: &'a str,
     revision: u32,
@@ -54,7 +57,7 @@ struct JointJson<'a> {
 }
 
 #[derive(Debug, Serialize)]
-struct ErrorJson {
+pub(super) struct ErrorJson {
     train: Option<ErrorFigures>,
     validation: Option<ErrorFigures>,
     noise_floor: Option<f64>,
@@ -70,28 +73,15 @@ impl<'a> CompareJson<'a> {
 }
 
 impl<'a> JointJson<'a> {
-    fn new(compared: &ComparedJoint<'a>) -> Self {
+    pub(super) fn new(compared: &ComparedJoint<'a>) -> Self {
         let comparison = compared.comparison;
-        let units = parameter_units(compared.joint, &comparison.fit.model);
-        let parameter = |(parameter, unit): (&Parameter, String)| {
-            let Parameter { name, value, std_error, status } = parameter;
-            let status = status_id(*status);
-            let value = json!({
-                "value": value, "std_error": std_error, "unit": unit, "status": status,
-            });
-            (name.clone(), value)
-        };
         Self {
             joint: &compared.joint.name,
             model: compared.model,
             revision: compared.revision,
             effects: effects(&comparison.fit.model),
-            parameters: comparison.fit.parameters.iter().zip(units).map(parameter).collect(),
-            error: ErrorJson {
-                train: comparison.training,
-                validation: comparison.validation,
-                noise_floor: comparison.noise_floor,
-            },
+            parameters: parameters_json(compared.joint, &comparison.fit),
+            error: ErrorJson::new(comparison),
             lack_of_fit: comparison.lack_of_fit,
             whiteness: comparison.whiteness.as_ref(),
             input_correlation: comparison.input_correlation.as_ref(),
@@ -103,7 +93,28 @@ impl<'a> JointJson<'a> {
     }
 }
 
-fn effects(model: &JointModel) -> Vec<&'static str> {
+impl ErrorJson {
+    pub(super) fn new(comparison: &Comparison) -> Self {
+        let Comparison { training, validation, noise_floor, .. } = comparison;
+        Self { train: *training, validation: *validation, noise_floor: *noise_floor }
+    }
+}
+
+/// Parameters by name, with their standard errors and units.
+pub(super) fn parameters_json(joint: &Joint, fit: &Fit) -> Map<String, Value> {
+    let parameter = |(parameter, unit): (&Parameter, String)| {
+        let Parameter { name, value, std_error, status } = parameter;
+        let status = status_id(*status);
+        let value = json!({
+            "value": value, "std_error": std_error, "unit": unit, "status": status,
+        });
+        (name.clone(), value)
+    };
+    fit.parameters.iter().zip(parameter_units(joint, &fit.model)).map(parameter).collect()
+}
+
+/// Ids of the effects of a model.
+pub(super) fn effects(model: &JointModel) -> Vec<&'static str> {
     model.components().iter().map(|component| component.effect().spec().id).collect()
 }
 
@@ -141,11 +152,7 @@ pub fn compare_table(joints: &[ComparedJoint<'_>], horizon: &str) -> String {
     for compared in joints {
         table.add_row(row(compared));
     }
-    for right in 2..6 {
-        if let Some(column) = table.column_mut(right) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
+    align_right(&mut table, 2..6);
     let parameters: Vec<_> = joints.iter().map(parameters).collect();
     let failures: Vec<_> = joints.iter().flat_map(failure_sentences).collect();
     let failures = if failures.is_empty() {
@@ -207,8 +214,13 @@ fn input_sentence(correlation: &InputCorrelation) -> String {
     format!("steps of the input show, most {place} ({p}, {percent} % of lags)")
 }
 
-fn probability(p_value: f64) -> String {
-    if p_value < 1e-4 { "p < 0.0001".to_owned() } else { format!("p = {p_value:.4}") }
+/// Numbers stand right.
+pub(super) fn align_right(table: &mut Table, columns: Range<usize>) {
+    for right in columns {
+        if let Some(column) = table.column_mut(right) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
 }
 
 /// Where a model fails, in sentences that start with the joint.
@@ -227,33 +239,29 @@ pub fn sentences(compared: &ComparedJoint<'_>) -> Vec<String> {
 }
 
 fn row(compared: &ComparedJoint<'_>) -> [String; 7] {
-    let Comparison { training, validation, noise_floor, lack_of_fit, fit, .. } =
-        compared.comparison;
-    let unit = compared.joint.output_unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
+    let effects = effects(&compared.comparison.fit.model);
+    let effects = if effects.is_empty() { "integrator".to_owned() } else { effects.join(" + ") };
+    let [training, validation, fit, noise, lack] = figures(compared.joint, compared.comparison);
+    [compared.joint.name.clone(), effects, training, validation, fit, noise, lack]
+}
+
+/// Error on both parts, fit in percent, noise and lack of fit, for a table.
+pub(super) fn figures(joint: &Joint, comparison: &Comparison) -> [String; 5] {
+    let Comparison { training, validation, noise_floor, lack_of_fit, .. } = comparison;
     let dash = || "-".to_owned();
-    let rmse = |error: &Option<ErrorFigures>| {
-        error.map_or_else(dash, |error| format!("{}{unit}", number(error.rmse)))
-    };
+    let output = |value: f64| with_unit(value, joint.output_unit.as_deref());
+    let rmse = |error: &Option<ErrorFigures>| error.map_or_else(dash, |error| output(error.rmse));
     let percent = validation.map_or_else(dash, |error| format!("{:.1} %", error.fit_percent));
     let verdict = lack_of_fit.map_or_else(dash, |test| {
         let shown = if test.adequate { "not shown" } else { "shown" };
         format!("{shown} ({})", probability(test.p_value))
     });
-    let effects = effects(&fit.model);
-    let effects = if effects.is_empty() { "integrator".to_owned() } else { effects.join(" + ") };
-    [
-        compared.joint.name.clone(),
-        effects,
-        rmse(training),
-        rmse(validation),
-        percent,
-        noise_floor.map_or_else(dash, |noise| format!("{}{unit}", number(noise))),
-        verdict,
-    ]
+    let noise = noise_floor.map_or_else(dash, output);
+    [rmse(training), rmse(validation), percent, noise, verdict]
 }
 
 /// The parameters of a model in one line.
-fn parameters(compared: &ComparedJoint<'_>) -> String {
+pub(super) fn parameters(compared: &ComparedJoint<'_>) -> String {
     let fit = &compared.comparison.fit;
     let units = parameter_units(compared.joint, &fit.model);
     let parameter = |(parameter, unit): (&Parameter, String)| {

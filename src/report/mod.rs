@@ -1,14 +1,21 @@
 //! Results as text, CSV and JSON: pure functions to bytes.
 
+mod add;
 mod against;
 mod compare;
 mod decisions;
 mod delays;
+mod equation;
+mod explain;
+mod finding;
+mod improve;
 mod json;
 mod number;
 mod summary;
 mod text;
+mod words;
 
+pub use add::{AddJson, AddedJoint, add_text, gone};
 pub use against::against_table;
 #[cfg(feature = "rrd")]
 pub(crate) use against::{p_text, variable_text};
@@ -17,12 +24,16 @@ pub use compare::{
 };
 pub use decisions::{DecisionRow, decision_rows, write_decisions};
 pub use delays::write_delays;
+pub use explain::{ExplainJson, explain_text};
+pub use finding::Finding;
+pub use improve::{ImproveJson, ImprovedJoint, improve_text, revision_line};
 pub use json::EstimateJson;
 pub use number::number;
 pub use summary::{DelayRange, JointSummary};
 pub use text::estimate_table;
 #[cfg(feature = "rrd")]
 pub(crate) use text::{SUMMARY_HEADER, summary_cells};
+pub use words::Words;
 
 use crate::batch::JointEstimate;
 use crate::experiment::Joint;

@@ -4,15 +4,25 @@
 pub fn number(value: f64) -> String {
     /// Digits that are shown; files hold all of them.
     const SIGNIFICANT: i32 = 5;
+    to_digits(value, SIGNIFICANT)
+}
+
+/// `value` as it is said in a sentence: to three significant digits.
+pub(super) fn rounded(value: f64) -> String {
+    to_digits(value, 3)
+}
+
+fn to_digits(value: f64, significant: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }
     #[expect(clippy::cast_possible_truncation, reason = "an exponent is small")]
     let exponent = value.abs().log10().floor() as i32;
     if !(-4..9).contains(&exponent) {
-        return tidy(&format!("{value:.4e}"));
+        let decimals = usize::try_from(significant - 1).unwrap_or(0);
+        return tidy(&format!("{value:.decimals$e}"));
     }
-    let decimals = usize::try_from(SIGNIFICANT - 1 - exponent).unwrap_or(0);
+    let decimals = usize::try_from(significant - 1 - exponent).unwrap_or(0);
     tidy(&format!("{value:.decimals$}"))
 }
 
@@ -26,6 +36,41 @@ fn tidy(text: &str) -> String {
     format!("{mantissa}{exponent}")
 }
 
+/// The same with a unit behind it, where there is one.
+pub(super) fn with_unit(value: f64, unit: Option<&str>) -> String {
+    let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+    format!("{}{unit}", number(value))
+}
+
+/// The same to three digits.
+pub(super) fn measure(value: f64, unit: Option<&str>) -> String {
+    let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+    format!("{}{unit}", rounded(value))
+}
+
+/// A value to the digits that its standard error leaves: `0.612 ± 0.021`.
+pub(super) fn with_error(value: f64, std_error: f64) -> String {
+    let known = std_error.is_finite() && std_error > 0.0;
+    #[expect(clippy::cast_possible_truncation, reason = "an exponent is small")]
+    let decimals = if known { 1 - std_error.log10().floor() as i32 } else { 0 };
+    match usize::try_from(decimals) {
+        Ok(decimals) if known && decimals < 9 => {
+            format!("{value:.decimals$} ± {std_error:.decimals$}")
+        }
+        _ => format!("{} ± {}", number(value), number(std_error)),
+    }
+}
+
+/// A probability as a test gives it: `p = 0.0312`.
+pub(super) fn probability(p_value: f64) -> String {
+    if p_value < 1e-4 { "p < 0.0001".to_owned() } else { format!("p = {p_value:.4}") }
+}
+
+/// Parts of a hundred: `31 %`.
+pub(super) fn percent(share: f64) -> String {
+    format!("{:.0} %", 100.0 * share)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -35,5 +80,13 @@ mod tests {
         let shown = [0.0, 104.0, 0.150_000_000_1, -0.012_345_67, 123_456.78, 1.23e-9, 5e12];
         let expected = ["0", "104", "0.15", "-0.012346", "123457", "1.23e-9", "5e12"];
         assert_eq!(shown.map(number), expected);
+        assert_eq!([0.050_622, 1.8021, 1234.0].map(rounded), ["0.0506", "1.8", "1234"]);
+    }
+
+    #[test]
+    fn a_value_has_the_digits_that_its_error_leaves() {
+        let shown = [(0.612_34, 0.0213), (11.9, 1.5e-4), (1234.5, 37.0), (2.0, 0.0), (0.3, 1e-12)];
+        let expected = ["0.612 ± 0.021", "11.90000 ± 0.00015", "1234 ± 37", "2 ± 0", "0.3 ± 1e-12"];
+        assert_eq!(shown.map(|(value, error)| with_error(value, error)), expected);
     }
 }

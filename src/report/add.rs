@@ -1,0 +1,122 @@
+//! `add` as text and JSON: the error before and after.
+
+use serde::Serialize;
+
+use super::compare::{ComparedJoint, ErrorJson, JointJson, compare_table, effects};
+use super::number::{number, probability, with_unit};
+use crate::diagnosis::Comparison;
+use crate::experiment::Joint;
+use crate::explain::Addition;
+use crate::model::JointModel;
+
+/// A joint whose model got another effect.
+#[derive(Clone, Copy, Debug)]
+pub struct AddedJoint<'a> {
+    /// What was measured.
+    pub joint: &'a Joint,
+    /// Name of the model: that of its file.
+    pub model: &'a str,
+    /// Id of the effect.
+    pub effect: &'static str,
+    /// Number of the revision that has it.
+    pub revision: u32,
+    /// The model before and after.
+    pub addition: &'a Addition,
+}
+
+/// The document of `add --format json`, schema `tauscope/add/1`.
+#[derive(Debug, Serialize)]
+pub struct AddJson<'a> {
+    schema: &'static str,
+    version: &'static str,
+    model_file: String,
+    joints: Vec<AddedJson<'a>>,
+    failures: &'a [String],
+}
+
+#[derive(Debug, Serialize)]
+struct AddedJson<'a> {
+    #[serde(flatten)]
+    joint: JointJson<'a>,
+    added: &'static str,
+    removed: Vec<&'static str>,
+    p_value: Option<f64>,
+    before: BeforeJson,
+}
+
+#[derive(Debug, Serialize)]
+struct BeforeJson {
+    revision: u32,
+    effects: Vec<&'static str>,
+    error: ErrorJson,
+}
+
+impl<'a> AddJson<'a> {
+    /// Collects the results; `failures` are messages on joints and files that failed.
+    pub fn new(model_file: String, joints: &[AddedJoint<'a>], failures: &'a [String]) -> Self {
+        let joint = |added: &AddedJoint<'a>| {
+            let [before, after] = added.compared();
+            let model = &before.comparison.fit.model;
+            AddedJson {
+                joint: JointJson::new(&after),
+                added: added.effect,
+                removed: gone(model, &after.comparison.fit.model),
+                p_value: added.addition.p_value,
+                before: BeforeJson {
+                    revision: before.revision,
+                    effects: effects(model),
+                    error: ErrorJson::new(before.comparison),
+                },
+            }
+        };
+        let joints = joints.iter().map(joint).collect();
+        let version = env!("CARGO_PKG_VERSION");
+        Self { schema: "tauscope/add/1", version, model_file, joints, failures }
+    }
+}
+
+/// Ids of the effects that `after` has no more.
+pub fn gone(before: &JointModel, after: &JointModel) -> Vec<&'static str> {
+    let left = effects(after);
+    effects(before).into_iter().filter(|id| !left.contains(id)).collect()
+}
+
+impl<'a> AddedJoint<'a> {
+    /// The model before and after, as revisions.
+    pub fn compared(&self) -> [ComparedJoint<'a>; 2] {
+        let Self { joint, model, revision, addition, .. } = *self;
+        let compared = |revision, comparison| ComparedJoint { joint, model, revision, comparison };
+        let before = compared(revision.saturating_sub(1), &addition.before);
+        [before, compared(revision, &addition.after)]
+    }
+
+    /// `boom: dead_band takes 87 % of the error away, …`.
+    fn sentence(&self) -> String {
+        let error = |comparison: &Comparison| {
+            let of_part = comparison.validation.or(comparison.training);
+            of_part.map_or(f64::NAN, |error| error.rmse)
+        };
+        let (before, after) = (error(&self.addition.before), error(&self.addition.after));
+        let taken = 100.0 * (1.0 - after / before);
+        let unit = self.joint.output_unit.as_deref();
+        let falls = if taken >= 0.0 { "falls" } else { "rises" };
+        let (from, to) = (number(before), with_unit(after, unit));
+        let chance = self.addition.p_value.map_or_else(String::new, |p| {
+            let by_chance = if p < 0.01 { "" } else { ": no more than chance gives" };
+            format!(" ({}{by_chance})", probability(p))
+        });
+        let share = (10.0 * taken.abs()).round() / 10.0;
+        let Self { joint, effect, .. } = self;
+        format!(
+            "{}: with {effect} the error {falls} from {from} to {to}, by {share} %{chance}",
+            joint.name
+        )
+    }
+}
+
+/// Each joint's model before and after, and what it means.
+pub fn add_text(joints: &[AddedJoint<'_>], horizon: &str) -> String {
+    let compared: Vec<_> = joints.iter().flat_map(AddedJoint::compared).collect();
+    let sentences: Vec<_> = joints.iter().map(AddedJoint::sentence).collect();
+    format!("{}\n{}\n", compare_table(&compared, horizon), sentences.join("\n"))
+}

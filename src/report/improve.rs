@@ -1,0 +1,158 @@
+//! `improve` as text and JSON: the ladder of errors.
+
+use comfy_table::{Table, presets};
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use super::compare::{
+    ErrorJson, JointJson, align_right, effects, figures, parameters, parameters_json,
+};
+use super::explain::FindingJson;
+use super::finding::Finding;
+use super::words::printed;
+use crate::diagnosis::LackOfFit;
+use crate::experiment::Joint;
+use crate::explain::{Change, Revision};
+
+/// A joint whose model was improved.
+#[derive(Clone, Copy, Debug)]
+pub struct ImprovedJoint<'a> {
+    /// What is to be said of the last revision.
+    pub finding: Finding<'a>,
+    /// The model as it was given, and after each change.
+    pub revisions: &'a [Revision],
+    /// Number of the first of them.
+    pub first_revision: u32,
+    /// Whether it was stopped before it came to an end.
+    pub interrupted: bool,
+}
+
+/// The document of `improve --format json`, schema `tauscope/improve/1`.
+#[derive(Debug, Serialize)]
+pub struct ImproveJson<'a> {
+    schema: &'static str,
+    version: &'static str,
+    joints: Vec<ImprovedJson<'a>>,
+    failures: &'a [String],
+}
+
+#[derive(Debug, Serialize)]
+struct ImprovedJson<'a> {
+    #[serde(flatten)]
+    joint: JointJson<'a>,
+    revisions: Vec<RevisionJson>,
+    interrupted: bool,
+    #[serde(flatten)]
+    finding: FindingJson<'a>,
+}
+
+#[derive(Debug, Serialize)]
+struct RevisionJson {
+    revision: u32,
+    added: Option<&'static str>,
+    removed: Option<&'static str>,
+    effects: Vec<&'static str>,
+    parameters: Map<String, Value>,
+    error: ErrorJson,
+    lack_of_fit: Option<LackOfFit>,
+}
+
+impl<'a> ImproveJson<'a> {
+    /// Collects the results; `failures` are messages on joints and files that failed.
+    pub fn new(joints: &[ImprovedJoint<'a>], failures: &'a [String]) -> Self {
+        let joint = |improved: &ImprovedJoint<'a>| ImprovedJson {
+            joint: JointJson::new(&improved.finding.compared),
+            revisions: improved.numbered().map(|(n, r)| improved.revision_json(n, r)).collect(),
+            interrupted: improved.interrupted,
+            finding: FindingJson::new(&improved.finding),
+        };
+        let joints = joints.iter().map(joint).collect();
+        let version = env!("CARGO_PKG_VERSION");
+        Self { schema: "tauscope/improve/1", version, joints, failures }
+    }
+}
+
+impl<'a> ImprovedJoint<'a> {
+    fn numbered(&self) -> impl Iterator<Item = (u32, &'a Revision)> {
+        (self.first_revision..).zip(self.revisions)
+    }
+
+    fn revision_json(&self, number: u32, revision: &Revision) -> RevisionJson {
+        let (added, removed) = match revision.change {
+            Change::Start => (None, None),
+            Change::Added(id) => (Some(id), None),
+            Change::Removed(id) => (None, Some(id)),
+        };
+        let fit = &revision.comparison.fit;
+        RevisionJson {
+            revision: number,
+            added,
+            removed,
+            effects: effects(&fit.model),
+            parameters: parameters_json(self.finding.compared.joint, fit),
+            error: ErrorJson::new(&revision.comparison),
+            lack_of_fit: revision.comparison.lack_of_fit,
+        }
+    }
+
+    fn text(&self) -> String {
+        let words = self.finding.words();
+        let stopped = if self.interrupted { " (stopped before the end)" } else { "" };
+        let ladder = self.ladder();
+        let model = parameters(&self.finding.compared);
+        let headline = &words.headline;
+        format!("{headline}{stopped}\n{ladder}\n\n{}\nmodel of {model}\n", printed(&words))
+    }
+
+    /// A row per revision.
+    fn ladder(&self) -> Table {
+        let mut table = Table::new();
+        table.load_style(presets::UTF8_BORDERS_ONLY).set_header([
+            "revision",
+            "change",
+            "training",
+            "validation",
+            "fit",
+            "noise",
+            "lack of fit",
+        ]);
+        for (number, revision) in self.numbered() {
+            let [training, validation, fit, noise, lack] =
+                figures(self.finding.compared.joint, &revision.comparison);
+            let change = change_in_words(revision);
+            table.add_row([number.to_string(), change, training, validation, fit, noise, lack]);
+        }
+        align_right(&mut table, 2..6);
+        table
+    }
+}
+
+/// `+ dead_band`; the first revision by what it has.
+fn change_in_words(revision: &Revision) -> String {
+    match revision.change {
+        Change::Start => {
+            let effects = effects(&revision.comparison.fit.model);
+            if effects.is_empty() { "integrator".to_owned() } else { effects.join(" + ") }
+        }
+        Change::Added(id) => format!("+ {id}"),
+        Change::Removed(id) => format!("− {id}"),
+    }
+}
+
+/// One line on a revision, for somebody who waits: `boom: revision 1, + dead_band:
+/// validation error 0.06 deg`.
+pub fn revision_line(joint: &Joint, number: u32, revision: &Revision) -> String {
+    let [training, validation, ..] = figures(joint, &revision.comparison);
+    let change = change_in_words(revision);
+    let error = match revision.comparison.validation {
+        Some(_) => format!("validation error {validation}"),
+        None => format!("training error {training}"),
+    };
+    format!("{}: revision {number}, {change}: {error}", joint.name)
+}
+
+/// For each joint the ladder of errors and what is to be said of the last revision.
+pub fn improve_text(joints: &[ImprovedJoint<'_>], horizon: &str) -> String {
+    let joints: Vec<String> = joints.iter().map(ImprovedJoint::text).collect();
+    format!("{}\nroot-mean-square errors, {horizon}\n", joints.join("\n\n"))
+}

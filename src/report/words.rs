@@ -1,0 +1,364 @@
+//! A verdict in words that an engineer can act on.
+
+use super::compare::sentences;
+use super::equation::filled_in;
+use super::finding::{Finding, added, specs};
+use super::number::{measure, number, percent, probability, rounded, with_error};
+use super::parameter_units;
+use crate::diagnosis::Comparison;
+use crate::diagnosis::failure::{Feature, Region, Units, WorstSegment};
+use crate::experiment::{Joint, Trial};
+use crate::explain::{Candidate, Verdict};
+use crate::fit::{Fit, Parameter, Status};
+
+/// What is to be said of a joint.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Words {
+    /// The verdict in one sentence.
+    pub headline: String,
+    /// What is behind it.
+    pub paragraph: String,
+    /// Commands that do what it proposes.
+    pub commands: Vec<String>,
+}
+
+/// Columns of a line.
+const WIDTH: usize = 92;
+
+/// Times the noise above which an error is said to be more than noise.
+const ABOVE_NOISE: f64 = 1.15;
+
+impl Finding<'_> {
+    /// The verdict in words.
+    pub fn words(&self) -> Words {
+        let best = self.ranking.first().filter(|_| self.verdict == Verdict::MissingEffect);
+        let (headline, sentences) = match (self.verdict, best) {
+            (_, Some(best)) => (self.missing_headline(best), self.missing(best)),
+            (Verdict::Adequate, None) => (self.adequate_headline(), self.adequate()),
+            (Verdict::MissingEffect, None) => (self.open_headline(), self.fails()),
+            (_, None) => (self.unexplained_headline(), self.unexplained()),
+        };
+        let command = |id: &&'static str| format!("tauscope add {id} {}", self.add_arguments);
+        let commands = best.iter().flat_map(|best| &best.effects).map(command).collect();
+        Words { headline, paragraph: sentences.join(" "), commands }
+    }
+
+    fn joint(&self) -> &Joint {
+        self.compared.joint
+    }
+
+    fn comparison(&self) -> &Comparison {
+        self.compared.comparison
+    }
+
+    /// A number in output units.
+    fn output(&self, value: f64) -> String {
+        measure(value, self.joint().output_unit.as_deref())
+    }
+
+    fn error(&self) -> f64 {
+        rmse(self.comparison())
+    }
+
+    fn noise(&self) -> Option<f64> {
+        self.comparison().noise_floor.filter(|noise| *noise > 0.0)
+    }
+
+    fn missing_headline(&self, best: &Candidate) -> String {
+        let falls = format!("{} to {}", self.output(self.error()), self.output(best.rmse()));
+        let name = best.name();
+        format!("{}: {name} is missing; with it the error falls from {falls}", self.joint().name)
+    }
+
+    fn missing(&self, best: &Candidate) -> Vec<String> {
+        let mut said: Vec<String> = added(best)
+            .map(|component| {
+                let spec = component.effect().spec();
+                let parameters = self.parameters(&best.fit, &format!("{}.", spec.id));
+                let law = filled_in(component);
+                format!("{} is {}: {law}, with {parameters}.", spec.id, spec.summary)
+            })
+            .collect();
+        said.push(self.improvement(best));
+        said.extend(self.where_it_fails());
+        said.push(self.alternatives(best));
+        said.extend(self.look_alikes(best));
+        said
+    }
+
+    /// What the error becomes.
+    fn improvement(&self, best: &Candidate) -> String {
+        let part = if best.validation.is_some() { "not fitted" } else { "fitted" };
+        let (before, after) = (self.output(self.error()), self.output(best.rmse()));
+        let taken = rounded(best.error_reduction_percent);
+        let chance = probability(best.p_value);
+        let falls = format!(
+            "With it the error on data that were {part} falls from {before} to {after}, by \
+             {taken} % ({chance})"
+        );
+        let Some(noise) = self.noise() else { return format!("{falls}.") };
+        let times = best.rmse() / noise;
+        if times > ABOVE_NOISE {
+            let times = rounded(times);
+            let rest = "more is missing behind it, which shows when it is in";
+            return format!("{falls}; that is still {times} times the noise, so {rest}.");
+        }
+        format!("{falls}, down to the noise.")
+    }
+
+    /// What in the record shows it, with times to look at.
+    fn where_it_fails(&self) -> Option<String> {
+        let conditions = sentences(&self.compared);
+        let worst = self.comparison().failure.iter().flat_map(|failure| &failure.worst_segments);
+        let several = self.joint().trials.len() > 1;
+        let time = |worst: &WorstSegment| {
+            let trial = if several { format!("trial {}, ", worst.trial) } else { String::new() };
+            trial + &time_of(worst)
+        };
+        let times: Vec<String> = worst.take(3).map(time).collect();
+        let look = format!("look at {}", times.join(", "));
+        match (conditions.first(), times.is_empty()) {
+            (Some(condition), false) => Some(format!("In the record: {condition}; {look}.")),
+            (Some(condition), true) => Some(format!("In the record: {condition}.")),
+            (None, false) => Some(format!("In the record, {look}.")),
+            (None, true) => None,
+        }
+    }
+
+    /// What it cannot be told from; the next of the race where there is no such effect.
+    fn alternatives(&self, best: &Candidate) -> String {
+        let same = &best.indistinguishable_from;
+        if !same.is_empty() {
+            let same = same.join(", ");
+            return format!(
+                "This record cannot tell it from {same}: only one of them need be there."
+            );
+        }
+        match self.ranking.get(1) {
+            Some(next) => {
+                format!(
+                    "Next in the race is {}: it leaves {}.",
+                    next.name(),
+                    self.output(next.rmse())
+                )
+            }
+            None => "No other effect was in the race.".to_owned(),
+        }
+    }
+
+    /// What the catalogue confuses with it, and how that did.
+    fn look_alikes(&self, best: &Candidate) -> Option<String> {
+        let named =
+            |id: &&str| !best.effects.contains(id) && !best.indistinguishable_from.contains(id);
+        let confused = specs(best).flat_map(|spec| spec.confused_with).copied().filter(named);
+        let how = |id: &str| {
+            let other = self.ranking.iter().find(|other| other.effects == [id]);
+            other.map_or_else(
+                || format!("{id} (not among the best here)"),
+                |other| format!("{id} (leaves {} here)", self.output(other.rmse())),
+            )
+        };
+        let confused: Vec<String> = confused.map(how).collect();
+        (!confused.is_empty()).then(|| format!("Often taken for it: {}.", confused.join(", ")))
+    }
+
+    fn adequate_headline(&self) -> String {
+        format!("{}: nothing to add", self.joint().name)
+    }
+
+    fn adequate(&self) -> Vec<String> {
+        let error = self.output(self.error());
+        let error = match self.noise() {
+            Some(noise) => {
+                let times = rounded(self.error() / noise);
+                format!("The error is {error}, {times} times the noise.")
+            }
+            None => format!("The error is {error}."),
+        };
+        let mut said = vec![self.test(), error, self.limits()];
+        said.extend(self.undetermined());
+        said
+    }
+
+    /// What the test of the lack of fit says of an adequate model.
+    fn test(&self) -> String {
+        match self.comparison().lack_of_fit {
+            Some(test) if test.p_value >= crate::diagnosis::SIGNIFICANCE => {
+                format!("No lack of fit is shown ({}).", probability(test.p_value))
+            }
+            Some(test) => {
+                let share = rounded(100.0 * test.misfit_share);
+                format!("What it lacks is {share} % of the squared error: of no consequence.")
+            }
+            None => "There are too few samples to test it.".to_owned(),
+        }
+    }
+
+    /// What the record covers: beyond it nothing was shown.
+    fn limits(&self) -> String {
+        let input = self.joint().trials.iter().flat_map(Trial::input);
+        let output = self.joint().trials.iter().flat_map(Trial::output);
+        let input = span(input.copied(), self.joint().input_unit.as_deref());
+        let output = span(output.copied(), self.joint().output_unit.as_deref());
+        format!("This holds where the record has been: input {input}, output {output}.")
+    }
+
+    fn undetermined(&self) -> Option<String> {
+        let all = self.comparison().fit.parameters.iter();
+        let open = all.filter(|parameter| parameter.status == Status::Undetermined);
+        let names: Vec<&str> = open.map(|parameter| parameter.name.as_str()).collect();
+        (!names.is_empty()).then(|| format!("It does not determine {}.", names.join(", ")))
+    }
+
+    fn unexplained_headline(&self) -> String {
+        let fails = "the model fails, and no effect accounts for it";
+        format!("{}: {fails}", self.joint().name)
+    }
+
+    fn unexplained(&self) -> Vec<String> {
+        let mut said = self.fails();
+        said.extend(self.shape());
+        said.extend(self.nearest());
+        said
+    }
+
+    fn open_headline(&self) -> String {
+        format!("{}: the model fails; what it lacks was not looked for", self.joint().name)
+    }
+
+    /// How large the error is, and where.
+    fn fails(&self) -> Vec<String> {
+        let error = self.output(self.error());
+        let mut said = vec![match self.noise() {
+            Some(noise) => {
+                let times = rounded(self.error() / noise);
+                format!("The error is {error}, {times} times the noise.")
+            }
+            None => format!("The error is {error}."),
+        }];
+        said.extend(self.where_it_fails());
+        said
+    }
+
+    /// How the residual runs with what it follows most.
+    fn shape(&self) -> Option<String> {
+        let all = &self.comparison().regions;
+        let (parts, share) = most_followed(all)?;
+        let by_mean = |a: &&Region, b: &&Region| a.mean_residual.total_cmp(&b.mean_residual);
+        let (low, high) = (parts.iter().min_by(by_mean)?, parts.iter().max_by(by_mean)?);
+        let joint = self.joint();
+        let units = Units { input: joint.input_unit.clone(), output: joint.output_unit.clone() };
+        let place = |region: &Region| {
+            let unit = region.feature.unit(&units);
+            let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+            format!("{} where it is {}{unit}", self.output(region.mean_residual), place_of(region))
+        };
+        Some(format!(
+            "Restarted at every step, measured − simulated follows `{}` most: on average {}, {} \
+             ({} of its square).",
+            low.feature,
+            place(low),
+            place(high),
+            percent(share)
+        ))
+    }
+
+    /// The effect that comes nearest, and that it is not to be trusted.
+    fn nearest(&self) -> Option<String> {
+        let nearest = self.ranking.first()?;
+        let (name, share) = (nearest.name(), percent(nearest.share_of_misfit.clamp(0.0, 1.0)));
+        Some(format!(
+            "The nearest effect, {name}, would take {share} of the misfit away and is not to be \
+             trusted."
+        ))
+    }
+
+    /// `upper = 0.612 ± 0.021 V` for each of the parameters that start with `prefix`.
+    fn parameters(&self, fit: &Fit, prefix: &str) -> String {
+        let units = parameter_units(self.joint(), &fit.model);
+        let own = fit.parameters.iter().zip(units);
+        let own = own.filter_map(|(parameter, unit)| {
+            let name = parameter.name.strip_prefix(prefix)?;
+            Some(measured(name, parameter, &unit))
+        });
+        own.collect::<Vec<_>>().join(", ")
+    }
+}
+
+fn measured(name: &str, parameter: &Parameter, unit: &str) -> String {
+    let Parameter { value, std_error, status, .. } = parameter;
+    let plain = number(*value);
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    match (status, std_error) {
+        (Status::Fitted, Some(error)) => format!("{name} = {}{unit}", with_error(*value, *error)),
+        (Status::Fixed, _) => format!("{name} = {plain}{unit} (fixed)"),
+        (Status::AtBound, _) => format!("{name} = {plain}{unit} (at its bound)"),
+        (Status::Undetermined, _) | (Status::Fitted, None) => {
+            format!("{name} = {plain}{unit} (not determined)")
+        }
+    }
+}
+
+/// The error by which a model is judged.
+fn rmse(comparison: &Comparison) -> f64 {
+    comparison.validation.or(comparison.training).map_or(f64::NAN, |error| error.rmse)
+}
+
+/// `12.4 s to 13.1 s (9 %)`.
+fn time_of(worst: &WorstSegment) -> String {
+    let (from, to) = (number(worst.start_s), number(worst.end_s));
+    format!("{from} s to {to} s ({})", percent(worst.share_of_squared_error))
+}
+
+/// The parts of the feature whose means hold most of the squared residual, and their share.
+fn most_followed(regions: &[Region]) -> Option<(&[Region], f64)> {
+    let square = |part: &Region, value: f64| part.share_of_time * value * value;
+    let share = |parts: &[Region]| {
+        let of_means: f64 = parts.iter().map(|part| square(part, part.mean_residual)).sum();
+        let all: f64 = parts.iter().map(|part| square(part, part.rmse)).sum();
+        if all > 0.0 { of_means / all } else { 0.0 }
+    };
+    let by_feature = regions.chunk_by(|a, b| a.feature == b.feature);
+    let shares = by_feature.map(|parts| (parts, share(parts)));
+    shares.max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// `2 to 3`; a level, a sign, or a trial as it is.
+fn place_of(region: &Region) -> String {
+    #[expect(clippy::float_cmp, reason = "a level has one value")]
+    let is_level = region.from == region.to;
+    if is_level || matches!(region.feature, Feature::Direction | Feature::Trial) {
+        return region.label.clone();
+    }
+    format!("{} to {}", rounded(region.from), rounded(region.to))
+}
+
+/// `-2 to 2 V`.
+fn span(values: impl Iterator<Item = f64>, unit: Option<&str>) -> String {
+    let ends = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), ends);
+    format!("{} to {}", rounded(low), measure(high, unit))
+}
+
+/// The words as they are printed.
+pub(super) fn printed(words: &Words) -> String {
+    let commands = words.commands.iter().map(|command| format!("    {command}"));
+    let blocks = std::iter::once(filled(&words.paragraph)).chain(commands);
+    blocks.collect::<Vec<_>>().join("\n\n") + "\n"
+}
+
+/// `text` in lines of at most [`WIDTH`] columns where words allow.
+fn filled(text: &str) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        let length = |line: &str| line.chars().count();
+        match lines.last_mut() {
+            Some(line) if length(line) + 1 + length(word) <= WIDTH => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines.join("\n")
+}
