@@ -1,23 +1,20 @@
 //! `tauscope compare`: a model beside the measurement.
 
-use std::io::{self, Write as _};
 use std::path::PathBuf;
 
-use anyhow::{Context as _, anyhow};
-use clap::{Args as ClapArgs, ValueEnum};
-use tauscope::batch::{Mode, Protocol, compare_joints, estimate_joints, with_threads};
-use tauscope::delay::Settings;
+use anyhow::anyhow;
+use clap::Args as ClapArgs;
+use tauscope::batch::{Mode, compare_joints};
 use tauscope::diagnosis::Comparison;
 use tauscope::experiment::Joint;
-use tauscope::fit::{FitError, Horizon, Split};
+use tauscope::fit::FitError;
 use tauscope::model::{JointModel, ModelFile};
-use tauscope::report::{CompareJson, ComparedJoint, EstimatedJoint, compare_table};
+use tauscope::report::{CompareJson, ComparedJoint, compare_table};
 
+use super::Completion;
 use super::data::DataArgs;
+use super::fitting::{ProtocolArgs, ResultArgs, print, study};
 use super::output::check_outputs;
-use super::progress::Verbosity;
-use super::record::{Contents, Detail};
-use super::{Completion, message};
 
 /// Compare a model with the measurement
 ///
@@ -36,62 +33,11 @@ pub(super) struct Args {
     #[arg(long, help_heading = "Model")]
     fit: bool,
 
-    /// How long a simulation runs before its angle is set to the measured one: `free`
-    /// (never), `steps` (at every step of the input), or seconds
-    #[arg(long, value_name = "free|steps|SECONDS", default_value = "free", value_parser = horizon, help_heading = "Model")]
-    horizon: Horizon,
+    #[command(flatten)]
+    protocol: ProtocolArgs,
 
-    /// Share of each trial's time that is for training, or `trials`: every third trial is
-    /// for validation [default: trials from six on, else 0.7]
-    #[arg(long, value_name = "SHARE|trials", value_parser = split, help_heading = "Model")]
-    split: Option<Split>,
-
-    /// Record models and decisions for the Rerun viewer
-    #[arg(short = 'o', long = "output", value_name = "FILE.rrd", help_heading = "Output")]
-    recording: Option<PathBuf>,
-
-    /// How results are printed
-    #[arg(long, value_enum, default_value_t = Format::Text, help_heading = "Output")]
-    format: Format,
-
-    /// Threads to use [default: all processors]
-    #[arg(long, value_name = "N", value_parser = super::data::threads, help_heading = "Output")]
-    threads: Option<usize>,
-
-    /// No notices
-    #[arg(short, long, help_heading = "Output")]
-    quiet: bool,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Format {
-    /// A table
-    Text,
-    /// JSON, schema `tauscope/compare/1`
-    Json,
-}
-
-fn horizon(text: &str) -> Result<Horizon, String> {
-    match text {
-        "free" => Ok(Horizon::FreeRun),
-        "steps" => Ok(Horizon::Steps),
-        _ => {
-            let seconds = text.parse().ok().filter(|s: &f64| s.is_finite() && *s > 0.0);
-            seconds
-                .map(Horizon::Seconds)
-                .ok_or_else(|| "expected free, steps, or seconds".to_owned())
-        }
-    }
-}
-
-fn split(text: &str) -> Result<Split, String> {
-    if text == "trials" {
-        return Ok(Split::Trials);
-    }
-    let share = text.parse().ok().filter(|share: &f64| *share > 0.0 && *share <= 1.0);
-    share
-        .map(Split::Time)
-        .ok_or_else(|| "expected a share above 0 and up to 1, or trials".to_owned())
+    #[command(flatten)]
+    output: ResultArgs,
 }
 
 /// A model by the name it has in the output.
@@ -103,29 +49,20 @@ struct Named {
 
 pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let models = models(&args.model)?;
-    if let Some(path) = &args.recording {
+    if let Some(path) = &args.output.recording {
         check_outputs(&[path.as_path()], &args.data.files())?;
     }
-    let experiment = args.data.read()?;
-    let joints = &experiment.joints;
-    let settings = Settings::default();
-    let work = || {
-        let estimates = estimate_joints(joints, &settings, || ());
+    let study = study(&args.data, &args.output, |joints, estimates| {
         let one = |named: &Named| {
             let starts = |joint: &Joint| named.starts(joint);
-            let (split, horizon) = (args.split, args.horizon);
-            let protocol = Protocol { mode: named.mode(args), split, horizon };
-            compare_joints(joints, &estimates, starts, protocol)
+            compare_joints(joints, estimates, starts, args.protocol.with(named.mode(args)))
         };
-        let results = models.iter().map(one).collect::<Vec<_>>();
-        (estimates, results)
-    };
-    let (estimates, results) = with_threads(args.threads, work)
-        .map_err(|error| anyhow!("threads cannot be started: {error}"))?;
-    let mut failures = super::read_failures(&experiment);
+        models.iter().map(one).collect::<Vec<_>>()
+    })?;
+    let mut failures = super::read_failures(&study.experiment);
     let mut compared = Vec::new();
-    for (named, results) in models.iter().zip(&results) {
-        for (joint, result) in joints.iter().zip(results) {
+    for (named, results) in models.iter().zip(&study.result) {
+        for (joint, result) in study.experiment.joints.iter().zip(results) {
             match named.compared(joint, result.as_ref()) {
                 Ok(joint) => compared.push(joint),
                 Err(failure) => failures.push(failure),
@@ -135,31 +72,13 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     if let Some(first) = failures.first().filter(|_| compared.is_empty()) {
         return Err(anyhow!(first.clone()));
     }
-    if let Some(path) = &args.recording {
-        let pairs = joints.iter().zip(&estimates);
-        let pairs = pairs.filter_map(|(joint, estimate)| Some((joint, estimate.as_ref().ok()?)));
-        let joints: Vec<_> =
-            pairs.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect();
-        let (settings, sources) = (&settings, &experiment.sources);
-        let detail = Detail::Full;
-        let (joints, models) = (joints.as_slice(), compared.as_slice());
-        let reading = &experiment.options;
-        let contents = Contents { joints, settings, sources, reading, models, detail };
-        contents.record(path, if args.quiet { Verbosity::Quiet } else { Verbosity::Normal })?;
+    if let Some(path) = &args.output.recording {
+        study.record(path, &compared, args.output.verbosity())?;
     }
-    finish(args, &compared, &failures)
-}
-
-fn finish(
-    args: &Args,
-    compared: &[ComparedJoint<'_>],
-    failures: &[String],
-) -> anyhow::Result<Completion> {
-    for failure in failures {
-        message("warning", failure);
-    }
-    print(args, compared, failures).context("standard output cannot be written")?;
-    Ok(if failures.is_empty() { Completion::Whole } else { Completion::Partial })
+    let text = || compare_table(&compared, &args.protocol.horizon());
+    print(args.output.format, &failures, text, |out| {
+        serde_json::to_writer(out, &CompareJson::new(&compared, &failures))
+    })
 }
 
 fn models(paths: &[PathBuf]) -> anyhow::Result<Vec<Named>> {
@@ -202,23 +121,4 @@ impl Named {
             (Some(_), false) => Mode::AsItIs,
         }
     }
-}
-
-fn print(args: &Args, compared: &[ComparedJoint<'_>], failures: &[String]) -> io::Result<()> {
-    let mut out = io::stdout().lock();
-    match args.format {
-        Format::Text => {
-            let horizon = match args.horizon {
-                Horizon::FreeRun => "free run".to_owned(),
-                Horizon::Steps => "restarted at every step of the input".to_owned(),
-                Horizon::Seconds(seconds) => format!("restarted every {seconds} s"),
-            };
-            out.write_all(compare_table(compared, &horizon).as_bytes())?;
-        }
-        Format::Json => {
-            serde_json::to_writer(&mut out, &CompareJson::new(compared, failures))?;
-            out.write_all(b"\n")?;
-        }
-    }
-    out.flush()
 }

@@ -103,6 +103,31 @@ impl DataArgs {
         files.filter_map(|file| file.canonicalize().ok()).collect()
     }
 
+    /// These options as they are typed, for one joint of several where it is named.
+    pub(super) fn typed(&self, joint: Option<&str>) -> Vec<String> {
+        let is_mapped = |given: &&String| {
+            joint.is_none_or(|name| given.split_once('=').is_some_and(|(own, _)| own == name))
+        };
+        let mut joints: Vec<String> = self.joint.iter().filter(is_mapped).cloned().collect();
+        if joints.is_empty() {
+            joints.extend(joint.map(str::to_owned));
+        }
+        let path = |path: &PathBuf| path.display().to_string();
+        let seconds = |period: SamplePeriod| period.seconds().to_string();
+        let options = [
+            ("--time", self.time.clone()),
+            ("--trial", self.trial.clone()),
+            ("--sample-period", self.sample_period.map(seconds)),
+            ("--columns", self.columns.as_ref().map(path)),
+            ("--resample", self.resample.map(seconds)),
+            ("--fill", self.fill.map(|fill| fill.to_string())),
+        ];
+        let joints = joints.into_iter().map(|joint| ("--joint", Some(joint)));
+        let given = joints.chain(options).filter_map(|(name, value)| Some((name, value?)));
+        let options = given.flat_map(|(name, value)| [name.to_owned(), value]);
+        self.data.iter().map(path).chain(options).collect()
+    }
+
     fn options(&self) -> anyhow::Result<ReadOptions> {
         let mut columns = match &self.columns {
             Some(path) => ColumnMap::read(path)?,

@@ -1,9 +1,15 @@
 //! Arguments, printing and exit status; no mathematics.
 
+mod add;
 mod compare;
 mod data;
 mod effects;
 mod estimate;
+mod explain;
+mod fitting;
+mod improve;
+mod interrupt;
+mod model_file;
 mod output;
 mod progress;
 mod record;
@@ -27,6 +33,9 @@ struct Cli {
 enum Command {
     Estimate(Box<estimate::Args>),
     Compare(Box<compare::Args>),
+    Explain(Box<explain::Args>),
+    Add(Box<add::Args>),
+    Improve(Box<improve::Args>),
     Effects(effects::Args),
     Simulate(simulate::Args),
 }
@@ -47,6 +56,9 @@ pub(crate) fn run() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Estimate(args) => estimate::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Explain(args) => explain::run(&args),
+        Command::Add(args) => add::run(&args),
+        Command::Improve(args) => improve::run(&args),
         Command::Effects(args) => effects::run(&args),
         Command::Simulate(args) => simulate::run(&args),
     };

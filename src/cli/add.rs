@@ -1,0 +1,95 @@
+//! `tauscope add`: one effect more in a model.
+
+use clap::Args as ClapArgs;
+use tauscope::batch::{Mode, add_to_joints};
+use tauscope::experiment::Joint;
+use tauscope::explain::Addition;
+use tauscope::model::{ModelFile, Revision};
+use tauscope::report::{AddJson, AddedJoint, add_text, gone};
+
+use super::Completion;
+use super::data::DataArgs;
+use super::fitting::{ProtocolArgs, ResultArgs, find, outcomes, print, study};
+use super::model_file::{ModelFileArgs, name_of, note_missing};
+use super::output::check_outputs;
+use super::progress;
+
+/// Add an effect to a model, and write its next revision
+///
+/// The model is fitted without the effect and with it, and the errors are printed. The
+/// model file gets the fitted values, the effect, and an entry in its history.
+#[derive(ClapArgs, Debug)]
+pub(super) struct Args {
+    /// The effect, one of the catalogue or of the candidates of the model file
+    #[arg(value_name = "EFFECT")]
+    effect: String,
+
+    #[command(flatten)]
+    data: DataArgs,
+
+    #[command(flatten)]
+    model: ModelFileArgs,
+
+    #[command(flatten)]
+    protocol: ProtocolArgs,
+
+    #[command(flatten)]
+    output: ResultArgs,
+}
+
+pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
+    let file = args.model.read()?;
+    let effect = find(&args.effect, file.candidates())?;
+    let target = args.model.target();
+    let outputs: Vec<_> = std::iter::once(target).chain(args.output.recording.as_deref()).collect();
+    check_outputs(&outputs, &args.data.files())?;
+    let verbosity = args.output.verbosity();
+    let bar = progress::bar(verbosity, "fitting", 0);
+    let starts = |joint: &Joint| file.joint(&joint.name).cloned();
+    let protocol = args.protocol.with(Mode::FitOrIntegrator);
+    let study = study(&args.data, &args.output, |joints, estimates| {
+        add_to_joints(joints, estimates, starts, protocol, effect)
+    })?;
+    drop(bar);
+    note_missing(&file, &study.experiment.joints, verbosity);
+    let name = name_of(Some(target));
+    let added = |_, joint, addition| added(&file, &name, effect.spec().id, joint, addition);
+    let (joints, failures) = outcomes(&study.experiment, &study.result, added)?;
+    let mut revised = file.clone();
+    for joint in &joints {
+        revised = with_revision(&revised, joint)?;
+    }
+    if let Some(path) = &args.output.recording {
+        let models: Vec<_> = joints.iter().flat_map(AddedJoint::compared).collect();
+        study.record(path, &models, verbosity)?;
+    }
+    args.model.write(&file, &revised, verbosity)?;
+    let text = || add_text(&joints, &args.protocol.horizon());
+    print(args.output.format, &failures, text, |out| {
+        let written = target.display().to_string();
+        serde_json::to_writer(out, &AddJson::new(written, &joints, &failures))
+    })
+}
+
+fn added<'a>(
+    file: &ModelFile,
+    model: &'a str,
+    effect: &'static str,
+    joint: &'a Joint,
+    addition: &'a Addition,
+) -> AddedJoint<'a> {
+    let revision = file.revision(&joint.name).unwrap_or(0) + 1;
+    AddedJoint { joint, model, effect, revision, addition }
+}
+
+fn with_revision(file: &ModelFile, added: &AddedJoint<'_>) -> anyhow::Result<ModelFile> {
+    let Addition { before, after, .. } = added.addition;
+    let model = &after.fit.model;
+    let revision = Revision {
+        revision: added.revision,
+        added: Some(added.effect.to_owned()),
+        removed: gone(&before.fit.model, model).first().map(|id| (*id).to_owned()),
+        validation_rmse: after.validation.map(|error| error.rmse),
+    };
+    Ok(file.revised(&added.joint.name, model, &revision)?)
+}

@@ -1,0 +1,131 @@
+//! `tauscope explain`: what a model lacks.
+
+use std::path::PathBuf;
+
+use clap::Args as ClapArgs;
+use tauscope::batch::{Mode, OfJoints, compare_joints, explain_joints};
+use tauscope::diagnosis::Comparison;
+use tauscope::experiment::Joint;
+use tauscope::explain::{Candidate, Explanation, Options};
+use tauscope::model::ModelFile;
+use tauscope::report::{ComparedJoint, ExplainJson, Finding, explain_text};
+
+use super::Completion;
+use super::data::DataArgs;
+use super::fitting::{EffectArgs, ProtocolArgs, ResultArgs, Study, outcomes, print, quoted, study};
+use super::model_file::{fresh_name, name_of, note_missing};
+use super::output::check_outputs;
+use super::progress;
+
+/// Say which physical effect a model lacks
+///
+/// The model is fitted. If its misfit is more than noise, every effect of the catalogue is
+/// added to it in turn and fitted, and they are ranked by the error on data that were not
+/// fitted. Without a model file each joint starts as a plain integrator.
+#[derive(ClapArgs, Debug)]
+pub(super) struct Args {
+    #[command(flatten)]
+    data: DataArgs,
+
+    /// The model file (TOML, schema `tauscope/model/1`). Joints that it has not start as
+    /// plain integrators; its own effects and candidates are tried, too
+    #[arg(short, long, value_name = "MODEL.toml", help_heading = "Model")]
+    model: Option<PathBuf>,
+
+    #[command(flatten)]
+    effects: EffectArgs,
+
+    #[command(flatten)]
+    protocol: ProtocolArgs,
+
+    #[command(flatten)]
+    output: ResultArgs,
+}
+
+pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
+    let file = args.model.as_deref().map(ModelFile::read).transpose()?.unwrap_or_default();
+    let effects = args.effects.effects(file.candidates())?;
+    let options = Options { effects, ..Options::default() };
+    if let Some(path) = &args.output.recording {
+        check_outputs(&[path.as_path()], &args.data.files())?;
+    }
+    let verbosity = args.output.verbosity();
+    let bar = progress::bar(verbosity, "explaining", 0);
+    let starts = |joint: &Joint| file.joint(&joint.name).cloned();
+    let protocol = args.protocol.with(Mode::FitOrIntegrator);
+    let study = study(&args.data, &args.output, |joints, estimates| {
+        explain_joints(joints, estimates, starts, protocol, &options)
+    })?;
+    drop(bar);
+    note_missing(&file, &study.experiment.joints, verbosity);
+    let joints = &study.experiment.joints;
+    let arguments: Vec<String> = joints.iter().map(|j| args.add_arguments(joints, j)).collect();
+    let name = name_of(args.model.as_deref());
+    let finding = |index: usize, joint, explanation| {
+        finding(&file, &name, joint, explanation, arguments.get(index).map_or("", String::as_str))
+    };
+    let (findings, failures) = outcomes(&study.experiment, &study.result, finding)?;
+    if let Some(path) = &args.output.recording {
+        let bests = args.bests(&study);
+        let names = names(&study);
+        let bests = joints.iter().zip(&bests).zip(&names).filter_map(|((joint, best), model)| {
+            let comparison = best.as_ref()?.as_ref().ok()?;
+            Some(ComparedJoint { joint, model, revision: 0, comparison })
+        });
+        let models: Vec<_> = findings.iter().map(|f| f.compared).chain(bests).collect();
+        study.record(path, &models, verbosity)?;
+    }
+    let text = || explain_text(&findings, &args.protocol.horizon());
+    print(args.output.format, &failures, text, |out| {
+        serde_json::to_writer(out, &ExplainJson::new(&findings, &failures))
+    })
+}
+
+fn finding<'a>(
+    file: &ModelFile,
+    model: &'a str,
+    joint: &'a Joint,
+    explanation: &'a Explanation,
+    add_arguments: &'a str,
+) -> Finding<'a> {
+    let revision = file.revision(&joint.name).unwrap_or(0);
+    let Explanation { base, verdict, ranking } = explanation;
+    let compared = ComparedJoint { joint, model, revision, comparison: base };
+    Finding { compared, verdict: *verdict, ranking, add_arguments }
+}
+
+impl Args {
+    /// What stands behind the effect in the command that adds it to `joint`.
+    fn add_arguments(&self, joints: &[Joint], joint: &Joint) -> String {
+        let one_of_several = (joints.len() > 1).then_some(joint.name.as_str());
+        let mut words = self.data.typed(one_of_several);
+        let given = self.model.as_ref().map(|model| model.display().to_string());
+        let model = given.unwrap_or_else(fresh_name);
+        words.extend(["--model".to_owned(), model]);
+        words.extend(self.protocol.typed());
+        quoted(&words)
+    }
+
+    /// The best candidate of each joint beside the measurement.
+    fn bests(&self, study: &Study<OfJoints<Explanation>>) -> OfJoints<Comparison> {
+        let joints = &study.experiment.joints;
+        let model = |joint: &Joint| {
+            let index = joints.iter().position(|other| other.name == joint.name)?;
+            Some(best(study.result.get(index)?.as_ref()?.as_ref().ok()?)?.fit.model.clone())
+        };
+        compare_joints(joints, &study.estimates, model, self.protocol.with(Mode::AsItIs))
+    }
+}
+
+fn best(explanation: &Explanation) -> Option<&Candidate> {
+    explanation.ranking.first()
+}
+
+/// The name of each joint's best candidate.
+fn names(study: &Study<OfJoints<Explanation>>) -> Vec<String> {
+    let name = |result: &Option<Result<Explanation, _>>| {
+        let best = result.as_ref().and_then(|result| best(result.as_ref().ok()?));
+        best.map(Candidate::name).unwrap_or_default()
+    };
+    study.result.iter().map(name).collect()
+}

@@ -1,0 +1,275 @@
+//! The options and the way of every command that fits models.
+
+use std::io::{self, StdoutLock, Write as _};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, anyhow};
+use clap::{Args, ValueEnum};
+use tauscope::batch::{JointEstimate, Mode, Protocol, estimate_joints, with_threads};
+use tauscope::delay::{EstimateError, Settings};
+use tauscope::effect::{Effect, REGISTRY, find_among};
+use tauscope::experiment::{Experiment, Joint};
+use tauscope::fit::{Horizon, Split};
+use tauscope::report::{ComparedJoint, EstimatedJoint};
+
+use super::data::DataArgs;
+use super::progress::{self, Verbosity};
+use super::record::{Contents, Detail};
+use super::{Completion, message, read_failures};
+
+/// By what rules models are judged.
+#[derive(Args, Debug)]
+pub(super) struct ProtocolArgs {
+    /// How long a simulation runs before its angle is set to the measured one: `free`
+    /// (never), `steps` (at every step of the input), or seconds
+    #[arg(long, value_name = "free|steps|SECONDS", default_value = "free", value_parser = horizon, help_heading = "Model")]
+    horizon: Horizon,
+
+    /// Share of each trial's time that is for training, or `trials`: every third trial is
+    /// for validation [default: trials from six on, else 0.7]
+    #[arg(long, value_name = "SHARE|trials", value_parser = split, help_heading = "Model")]
+    split: Option<Split>,
+}
+
+/// Where results go.
+#[derive(Args, Debug)]
+pub(super) struct ResultArgs {
+    /// Record models and decisions for the Rerun viewer
+    #[arg(short = 'o', long = "output", value_name = "FILE.rrd", help_heading = "Output")]
+    pub(super) recording: Option<PathBuf>,
+
+    /// How results are printed
+    #[arg(long, value_enum, default_value_t = Format::Text, help_heading = "Output")]
+    pub(super) format: Format,
+
+    /// Threads to use [default: all processors]
+    #[arg(long, value_name = "N", value_parser = super::data::threads, help_heading = "Output")]
+    threads: Option<usize>,
+
+    /// No notices
+    #[arg(short, long, help_heading = "Output")]
+    quiet: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum Format {
+    /// For people
+    Text,
+    /// JSON, schema `tauscope/<command>/1`
+    Json,
+}
+
+/// Which effects are tried.
+#[derive(Args, Debug)]
+pub(super) struct EffectArgs {
+    /// Effects that are tried, separated by commas [default: the catalogue and the
+    /// candidates of the model file]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', help_heading = "Model")]
+    effects: Vec<String>,
+}
+
+fn horizon(text: &str) -> Result<Horizon, String> {
+    match text {
+        "free" => Ok(Horizon::FreeRun),
+        "steps" => Ok(Horizon::Steps),
+        _ => {
+            let seconds = text.parse().ok().filter(|s: &f64| s.is_finite() && *s > 0.0);
+            seconds
+                .map(Horizon::Seconds)
+                .ok_or_else(|| "expected free, steps, or seconds".to_owned())
+        }
+    }
+}
+
+fn split(text: &str) -> Result<Split, String> {
+    if text == "trials" {
+        return Ok(Split::Trials);
+    }
+    let share = text.parse().ok().filter(|share: &f64| *share > 0.0 && *share <= 1.0);
+    share
+        .map(Split::Time)
+        .ok_or_else(|| "expected a share above 0 and up to 1, or trials".to_owned())
+}
+
+impl ProtocolArgs {
+    pub(super) fn with(&self, mode: Mode) -> Protocol {
+        Protocol { mode, split: self.split, horizon: self.horizon }
+    }
+
+    /// The horizon in words.
+    pub(super) fn horizon(&self) -> String {
+        match self.horizon {
+            Horizon::FreeRun => "free run".to_owned(),
+            Horizon::Steps => "restarted at every step of the input".to_owned(),
+            Horizon::Seconds(seconds) => format!("restarted every {seconds} s"),
+        }
+    }
+
+    /// These options as they are typed.
+    pub(super) fn typed(&self) -> Vec<String> {
+        let horizon = match self.horizon {
+            Horizon::FreeRun => None,
+            Horizon::Steps => Some("steps".to_owned()),
+            Horizon::Seconds(seconds) => Some(seconds.to_string()),
+        };
+        let split = self.split.map(|split| match split {
+            Split::Time(share) => share.to_string(),
+            Split::Trials => "trials".to_owned(),
+        });
+        let options = [("--horizon", horizon), ("--split", split)].into_iter();
+        let given = options.filter_map(|(name, value)| Some([name.to_owned(), value?]));
+        given.flatten().collect()
+    }
+}
+
+impl ResultArgs {
+    pub(super) fn verbosity(&self) -> Verbosity {
+        if self.quiet { Verbosity::Quiet } else { Verbosity::Normal }
+    }
+}
+
+impl EffectArgs {
+    /// The effects of the list; all of the catalogue and of `own` without one.
+    pub(super) fn effects(
+        &self,
+        own: &[&'static dyn Effect],
+    ) -> anyhow::Result<Vec<&'static dyn Effect>> {
+        if self.effects.is_empty() {
+            return Ok(REGISTRY.iter().chain(own).copied().collect());
+        }
+        let mut effects: Vec<&'static dyn Effect> = Vec::new();
+        for id in &self.effects {
+            let effect = find(id.trim(), own).context("--effects")?;
+            if effects.iter().all(|other| other.spec().id != effect.spec().id) {
+                effects.push(effect);
+            }
+        }
+        Ok(effects)
+    }
+}
+
+/// The effect `id`, of the catalogue or of `own`.
+pub(super) fn find(id: &str, own: &[&'static dyn Effect]) -> anyhow::Result<&'static dyn Effect> {
+    let lists = || anyhow!("`tauscope effects` lists the catalogue");
+    find_among(id, own).map_err(|unknown| lists().context(unknown))
+}
+
+/// Words of a command line, each so that a shell takes it for one.
+pub(super) fn quoted(words: &[String]) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "_-./:=,+%@".contains(c);
+    let quote = |word: &String| {
+        if !word.is_empty() && word.chars().all(is_plain) {
+            return word.clone();
+        }
+        format!("'{}'", word.replace('\'', r"'\''"))
+    };
+    words.iter().map(quote).collect::<Vec<_>>().join(" ")
+}
+
+type Estimates = Vec<Result<JointEstimate, EstimateError>>;
+
+/// Logs, the delays in them, and what came of the joints.
+pub(super) struct Study<T> {
+    pub(super) experiment: Experiment,
+    pub(super) estimates: Estimates,
+    settings: Settings,
+    pub(super) result: T,
+}
+
+/// Reads `data`, estimates the delays and does `work` with both.
+pub(super) fn study<T: Send>(
+    data: &DataArgs,
+    output: &ResultArgs,
+    work: impl FnOnce(&[Joint], &Estimates) -> T + Send,
+) -> anyhow::Result<Study<T>> {
+    let experiment = {
+        let _bar = progress::bar(output.verbosity(), "reading", 0);
+        data.read()?
+    };
+    let settings = Settings::default();
+    let all = || {
+        let estimates = estimate_joints(&experiment.joints, &settings, || ());
+        let result = work(&experiment.joints, &estimates);
+        (estimates, result)
+    };
+    let (estimates, result) = with_threads(output.threads, all)
+        .map_err(|error| anyhow!("threads cannot be started: {error}"))?;
+    Ok(Study { experiment, estimates, settings, result })
+}
+
+impl<T> Study<T> {
+    /// Records `models` beside the decisions.
+    pub(super) fn record(
+        &self,
+        path: &Path,
+        models: &[ComparedJoint<'_>],
+        verbosity: Verbosity,
+    ) -> anyhow::Result<()> {
+        let Self { experiment, estimates, settings, .. } = self;
+        let pairs = experiment.joints.iter().zip(estimates);
+        let pairs = pairs.filter_map(|(joint, estimate)| Some((joint, estimate.as_ref().ok()?)));
+        let joints: Vec<_> =
+            pairs.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect();
+        let (sources, reading) = (&experiment.sources, &experiment.options);
+        let detail = Detail::Full;
+        let contents = Contents { joints: &joints, settings, sources, reading, models, detail };
+        contents.record(path, verbosity)
+    }
+}
+
+/// What came of each joint, and messages on what failed.
+///
+/// # Errors
+/// The first message when there is nothing else.
+pub(super) fn outcomes<'a, T, U, E: std::error::Error + 'static>(
+    experiment: &'a Experiment,
+    results: &'a [Option<Result<T, E>>],
+    outcome: impl Fn(usize, &'a Joint, &'a T) -> U,
+) -> anyhow::Result<(Vec<U>, Vec<String>)> {
+    let mut failures = read_failures(experiment);
+    let mut done = Vec::new();
+    for (index, (joint, result)) in experiment.joints.iter().zip(results).enumerate() {
+        match result {
+            Some(Ok(result)) => done.push(outcome(index, joint, result)),
+            Some(Err(error)) => {
+                let why = super::with_causes(error);
+                failures.push(format!("joint `{}` is left out: {why}", joint.name));
+            }
+            None => failures.push(format!("joint `{}` has no model", joint.name)),
+        }
+    }
+    match failures.first() {
+        Some(first) if done.is_empty() => Err(anyhow!(first.clone())),
+        _ => Ok((done, failures)),
+    }
+}
+
+/// Prints `text`, or JSON, and says what failed.
+pub(super) fn print(
+    format: Format,
+    failures: &[String],
+    text: impl FnOnce() -> String,
+    json: impl FnOnce(&mut StdoutLock<'_>) -> serde_json::Result<()>,
+) -> anyhow::Result<Completion> {
+    for failure in failures {
+        message("warning", failure);
+    }
+    let mut out = io::stdout().lock();
+    let written = match format {
+        Format::Text => out.write_all(text().as_bytes()),
+        Format::Json => json(&mut out).map_err(io::Error::from).and_then(|()| out.write_all(b"\n")),
+    };
+    written.and_then(|()| out.flush()).context("standard output cannot be written")?;
+    Ok(if failures.is_empty() { Completion::Whole } else { Completion::Partial })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shell_takes_each_word_for_one() {
+        let words = ["log.csv", "--joint", "my boom", "it's", ""].map(str::to_owned);
+        assert_eq!(quoted(&words), r"log.csv --joint 'my boom' 'it'\''s' ''");
+    }
+}

@@ -1,0 +1,215 @@
+//! `tauscope improve`: explain and add until nothing significant is left.
+
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+
+use clap::Args as ClapArgs;
+use tauscope::batch::{Mode, improve_joints};
+use tauscope::experiment::Joint;
+use tauscope::explain::{Change, Improvement, Options, Revision as Step, Verdict};
+use tauscope::model::{ModelFile, Revision};
+use tauscope::report::{
+    ComparedJoint, Finding, ImproveJson, ImprovedJoint, gone, improve_text, revision_line,
+};
+
+use super::data::DataArgs;
+use super::fitting::{EffectArgs, ProtocolArgs, ResultArgs, outcomes, print, quoted, study};
+use super::interrupt::Interrupt;
+use super::model_file::{ModelFileArgs, name_of, note_missing};
+use super::output::check_outputs;
+use super::progress::Verbosity;
+use super::{Completion, message};
+
+/// Add to a model what it lacks, effect by effect
+///
+/// After each effect, those that were added before and have become useless are removed
+/// again; effects that the model file had stay. It ends when no lack of fit is shown, or
+/// when no effect accounts for it. Ctrl-C ends it after the revision at hand.
+#[derive(ClapArgs, Debug)]
+pub(super) struct Args {
+    #[command(flatten)]
+    data: DataArgs,
+
+    #[command(flatten)]
+    model: ModelFileArgs,
+
+    #[command(flatten)]
+    effects: EffectArgs,
+
+    /// Effects that may be added
+    #[arg(long, value_name = "N", default_value_t = 6, help_heading = "Model")]
+    max_effects: usize,
+
+    #[command(flatten)]
+    protocol: ProtocolArgs,
+
+    #[command(flatten)]
+    output: ResultArgs,
+}
+
+pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
+    let file = args.model.read()?;
+    let effects = args.effects.effects(file.candidates())?;
+    let options = Options { effects, max_effects: args.max_effects };
+    let target = args.model.target();
+    let recording = args.output.recording.as_deref();
+    let outputs: Vec<_> = std::iter::once(target).chain(recording).collect();
+    check_outputs(&outputs, &args.data.files())?;
+    let verbosity = args.output.verbosity();
+    let interrupt = Interrupt::watch();
+    let protocol = args.protocol.with(Mode::FitOrIntegrator);
+    let study = study(&args.data, &args.output, |joints, estimates| {
+        let progress = Progress::new(&file, joints, verbosity, &interrupt);
+        let starts = |joint: &Joint| file.joint(&joint.name).cloned();
+        let done = |index, revision: &Step| progress.done(index, revision);
+        let improved = improve_joints(joints, estimates, starts, protocol, &options, done);
+        (improved, progress.stopped())
+    })?;
+    let joints = &study.experiment.joints;
+    note_missing(&file, joints, verbosity);
+    let (results, stopped) = &study.result;
+    let arguments: Vec<String> = joints.iter().map(|j| args.add_arguments(joints, j)).collect();
+    let name = name_of(Some(target));
+    let improved = |index: usize, joint, improvement| {
+        let stopped = stopped.get(index).copied().unwrap_or(false);
+        let add_arguments = arguments.get(index).map_or("", String::as_str);
+        improved(&file, &name, joint, improvement, stopped, add_arguments)
+    };
+    let (improved, failures) = outcomes(&study.experiment, results, improved)?;
+    let improved: Vec<_> = improved.into_iter().flatten().collect();
+    if let Some(path) = recording {
+        let names = revision_names(&improved);
+        let models: Vec<_> = improved.iter().flat_map(|joint| models(joint, &names)).collect();
+        study.record(path, &models, verbosity)?;
+    }
+    args.model.write(&file, &revised(&file, &improved)?, verbosity)?;
+    let text = || improve_text(&improved, &args.protocol.horizon());
+    let completion = print(args.output.format, &failures, text, |out| {
+        serde_json::to_writer(out, &ImproveJson::new(&improved, &failures))
+    })?;
+    let is_cut_short = improved.iter().any(|joint| joint.interrupted);
+    Ok(if is_cut_short { Completion::Partial } else { completion })
+}
+
+impl Args {
+    /// What stands behind the effect in the command that adds one more to `joint`.
+    fn add_arguments(&self, joints: &[Joint], joint: &Joint) -> String {
+        let one_of_several = (joints.len() > 1).then_some(joint.name.as_str());
+        let mut words = self.data.typed(one_of_several);
+        words.extend(["--model".to_owned(), self.model.target().display().to_string()]);
+        words.extend(self.protocol.typed());
+        quoted(&words)
+    }
+}
+
+/// Which revisions there are so far, told as they come.
+struct Progress<'a> {
+    joints: &'a [Joint],
+    /// Per joint, the number of its next revision, and whether it was stopped.
+    next: Vec<(AtomicU32, AtomicBool)>,
+    verbosity: Verbosity,
+    interrupt: &'a Interrupt,
+}
+
+impl<'a> Progress<'a> {
+    fn new(
+        file: &ModelFile,
+        joints: &'a [Joint],
+        verbosity: Verbosity,
+        interrupt: &'a Interrupt,
+    ) -> Self {
+        let first = |joint: &Joint| file.revision(&joint.name).unwrap_or(0);
+        let next = joints.iter().map(|joint| (first(joint).into(), false.into())).collect();
+        Self { joints, next, verbosity, interrupt }
+    }
+
+    /// Tells of a revision; whether to go on.
+    fn done(&self, index: usize, revision: &Step) -> bool {
+        let Some((joint, (next, stopped))) = self.joints.get(index).zip(self.next.get(index))
+        else {
+            return true;
+        };
+        let number = next.fetch_add(1, Ordering::Relaxed);
+        if self.verbosity == Verbosity::Normal {
+            message("improving", &revision_line(joint, number, revision));
+        }
+        let stops = self.interrupt.was_pressed();
+        stopped.store(stops, Ordering::Relaxed);
+        !stops
+    }
+
+    /// Which joints were stopped.
+    fn stopped(&self) -> Vec<bool> {
+        self.next.iter().map(|(_, stopped)| stopped.load(Ordering::Relaxed)).collect()
+    }
+}
+
+fn improved<'a>(
+    file: &ModelFile,
+    model: &'a str,
+    joint: &'a Joint,
+    improvement: &'a Improvement,
+    stopped: bool,
+    add_arguments: &'a str,
+) -> Option<ImprovedJoint<'a>> {
+    let Improvement { revisions, verdict } = improvement;
+    let last = revisions.last()?;
+    let first_revision = file.revision(&joint.name).unwrap_or(0);
+    let revision = (first_revision..).zip(revisions).last()?.0;
+    let compared = ComparedJoint { joint, model, revision, comparison: &last.comparison };
+    let finding = Finding { compared, verdict: *verdict, ranking: &last.ranking, add_arguments };
+    let interrupted = stopped && *verdict != Verdict::Adequate;
+    Some(ImprovedJoint { finding, revisions, first_revision, interrupted })
+}
+
+/// `file` with all revisions of all joints. A joint that has no new one stays as it is.
+fn revised(file: &ModelFile, improved: &[ImprovedJoint<'_>]) -> anyhow::Result<ModelFile> {
+    let mut file = file.clone();
+    for joint in improved {
+        let name = &joint.finding.compared.joint.name;
+        let pairs = (joint.first_revision + 1..).zip(joint.revisions.windows(2));
+        for (number, pair) in pairs {
+            let [before, after] = pair else { continue };
+            let model = &after.comparison.fit.model;
+            file = file.revised(name, model, &entry(number, before, after))?;
+        }
+        if file.joint(name).is_none() {
+            file = file.refitted(name, &joint.finding.compared.comparison.fit.model)?;
+        }
+    }
+    Ok(file)
+}
+
+/// What the history says of `after`.
+fn entry(revision: u32, before: &Step, after: &Step) -> Revision {
+    let model = &after.comparison.fit.model;
+    let removed = gone(&before.comparison.fit.model, model);
+    let added = match after.change {
+        Change::Added(id) => Some(id.to_owned()),
+        Change::Start | Change::Removed(_) => None,
+    };
+    Revision {
+        revision,
+        added,
+        removed: removed.first().map(|id| (*id).to_owned()),
+        validation_rmse: after.comparison.validation.map(|error| error.rmse),
+    }
+}
+
+/// `revision 0` and so on, to the last number there is.
+fn revision_names(improved: &[ImprovedJoint<'_>]) -> Vec<String> {
+    let last = improved.iter().map(|joint| joint.finding.compared.revision).max().unwrap_or(0);
+    (0..=last).map(|number| format!("revision {number}")).collect()
+}
+
+/// The revisions of a joint, each as a model.
+fn models<'a>(improved: &ImprovedJoint<'a>, names: &'a [String]) -> Vec<ComparedJoint<'a>> {
+    let joint = improved.finding.compared.joint;
+    let numbered = (improved.first_revision..).zip(improved.revisions);
+    let named = (0..).zip(names).map(|(number, name)| (number, name.as_str()));
+    let compared = |(number, revision): (u32, &'a Step)| {
+        let model = named.clone().find(|(own, _)| *own == number)?.1;
+        let comparison = &revision.comparison;
+        Some(ComparedJoint { joint, model, revision: number, comparison })
+    };
+    numbered.filter_map(compared).collect()
+}

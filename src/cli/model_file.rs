@@ -1,0 +1,112 @@
+//! The model file that `explain`, `add` and `improve` start from, and where it goes.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use tauscope::model::ModelFile;
+
+use super::message;
+use super::output::{target_of, write_file};
+use super::progress::Verbosity;
+use tauscope::experiment::Joint;
+
+/// The name of a model file where none is given.
+const DEFAULT: &str = "model.toml";
+
+/// Where a model comes from and where its next revision goes.
+#[derive(Args, Debug)]
+pub(super) struct ModelFileArgs {
+    /// The model file (TOML, schema `tauscope/model/1`). It is revised in place: values
+    /// change, comments and whatever else was written by hand stay. Where it is not there
+    /// yet, it is made; joints that it has not start as plain integrators
+    #[arg(short, long, value_name = "MODEL.toml", help_heading = "Model")]
+    model: Option<PathBuf>,
+
+    /// Where the revised file goes instead [default: the model file, or a new model.toml]
+    #[arg(short, long, value_name = "FILE.toml", help_heading = "Model")]
+    write: Option<PathBuf>,
+}
+
+impl ModelFileArgs {
+    /// The model file as it is; an empty one where there is none.
+    pub(super) fn read(&self) -> anyhow::Result<ModelFile> {
+        match &self.model {
+            Some(path) if path.exists() || self.write.is_some() => Ok(ModelFile::read(path)?),
+            Some(path) => Ok(ModelFile::new(path)),
+            None if self.write.is_none() && Path::new(DEFAULT).exists() => bail!(
+                "{DEFAULT} is there already: `--model {DEFAULT}` goes on with it, `--write FILE` \
+                 starts another"
+            ),
+            None => Ok(ModelFile::new(self.target())),
+        }
+    }
+
+    /// Where the revised file goes.
+    pub(super) fn target(&self) -> &Path {
+        self.write.as_ref().or(self.model.as_ref()).map_or(Path::new(DEFAULT), PathBuf::as_path)
+    }
+
+    /// Writes `revised` unless it is what was `read`.
+    pub(super) fn write(
+        &self,
+        read: &ModelFile,
+        revised: &ModelFile,
+        verbosity: Verbosity,
+    ) -> anyhow::Result<()> {
+        let target = self.target();
+        let is_in_place =
+            self.model.as_ref().is_some_and(|model| target_of(model) == target_of(target));
+        if is_in_place {
+            check_unchanged(target, read.text())?;
+        }
+        if is_in_place && read.text() == revised.text() {
+            return Ok(());
+        }
+        write_file(target, |file| {
+            use std::io::Write as _;
+            Ok(file.write_all(revised.text().as_bytes())?)
+        })?;
+        if verbosity == Verbosity::Normal {
+            message("model", &target.display().to_string());
+        }
+        Ok(())
+    }
+}
+
+/// Refuses to replace a file that somebody has edited since it was read.
+fn check_unchanged(path: &Path, read: &str) -> anyhow::Result<()> {
+    let name = path.display();
+    let now = match std::fs::read_to_string(path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
+        now => now.with_context(|| format!("{name}: cannot be read"))?,
+    };
+    if now != read {
+        bail!("{name}: it was changed meanwhile and is left as it is; run the command again");
+    }
+    Ok(())
+}
+
+/// The name of a model in the output: that of its file.
+pub(super) fn name_of(path: Option<&Path>) -> String {
+    let stem = path.and_then(Path::file_stem);
+    stem.map_or_else(|| "integrator".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// The name of a model file that is not there yet.
+pub(super) fn fresh_name() -> String {
+    let numbered = (2..).map(|number| format!("model-{number}.toml"));
+    let mut names = std::iter::once(DEFAULT.to_owned()).chain(numbered);
+    names.find(|name| !Path::new(name).exists()).unwrap_or_else(|| DEFAULT.to_owned())
+}
+
+/// Says which joints a file that has some does not have.
+pub(super) fn note_missing(file: &ModelFile, joints: &[Joint], verbosity: Verbosity) {
+    if verbosity == Verbosity::Quiet || file.names().next().is_none() {
+        return;
+    }
+    for joint in joints.iter().filter(|joint| file.joint(&joint.name).is_none()) {
+        let name = &joint.name;
+        message("note", &format!("joint `{name}`: not in the model file; a plain integrator"));
+    }
+}
