@@ -110,3 +110,21 @@ pub(super) fn note_missing(file: &ModelFile, joints: &[Joint], verbosity: Verbos
         message("note", &format!("joint `{name}`: not in the model file; a plain integrator"));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_was_edited_meanwhile_is_not_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("boom.toml");
+        assert!(check_unchanged(&path, "").is_ok(), "there is none yet");
+        std::fs::write(&path, "one").unwrap();
+        assert!(check_unchanged(&path, "one").is_ok());
+        for read in ["", "another"] {
+            let refused = check_unchanged(&path, read).unwrap_err().to_string();
+            assert!(refused.contains("boom.toml") && refused.contains("changed"), "{refused}");
+        }
+    }
+}

@@ -211,7 +211,7 @@ impl Finding<'_> {
     }
 
     fn unexplained_headline(&self) -> String {
-        let fails = "the model fails, and no effect accounts for it";
+        let fails = "the model fails, and no effect that was tried accounts for it";
         format!("{}: {fails}", self.joint().name)
     }
 
@@ -242,25 +242,32 @@ impl Finding<'_> {
 
     /// How the residual runs with what it follows most.
     fn shape(&self) -> Option<String> {
-        let all = &self.comparison().regions;
-        let (parts, share) = most_followed(all)?;
+        /// Share of the squared residual from which it is worth a look.
+        const WORTH: f64 = 0.1;
+        let (parts, share) = most_followed(&self.comparison().regions)?;
         let by_mean = |a: &&Region, b: &&Region| a.mean_residual.total_cmp(&b.mean_residual);
         let (low, high) = (parts.iter().min_by(by_mean)?, parts.iter().max_by(by_mean)?);
+        let (feature, share_said) = (low.feature, percent(share));
+        let head = "Restarted at every step, measured − simulated follows";
+        if share < WORTH {
+            return Some(format!(
+                "{head} none of its features much; `{feature}` most, with {share_said} of its \
+                 square."
+            ));
+        }
+        let (low, high) = (self.mean_at(low), self.mean_at(high));
+        Some(format!(
+            "{head} `{feature}` most, with {share_said} of its square: on average {low}, {high}."
+        ))
+    }
+
+    /// `0.2 deg where it is 20 to 30 deg`.
+    fn mean_at(&self, region: &Region) -> String {
         let joint = self.joint();
         let units = Units { input: joint.input_unit.clone(), output: joint.output_unit.clone() };
-        let place = |region: &Region| {
-            let unit = region.feature.unit(&units);
-            let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
-            format!("{} where it is {}{unit}", self.output(region.mean_residual), place_of(region))
-        };
-        Some(format!(
-            "Restarted at every step, measured − simulated follows `{}` most: on average {}, {} \
-             ({} of its square).",
-            low.feature,
-            place(low),
-            place(high),
-            percent(share)
-        ))
+        let unit = region.feature.unit(&units);
+        let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+        format!("{} where it is {}{unit}", self.output(region.mean_residual), place_of(region))
     }
 
     /// The effect that comes nearest, and that it is not to be trusted.

@@ -1,0 +1,155 @@
+//! `tauscope improve` as a user sees it: the ladder of errors, and the model file.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
+
+mod desk;
+
+use desk::{Desk, assert_fields, banded, fields, joint, number};
+use serde_json::{Value, json};
+use tauscope::model::ModelFile;
+use tauscope::synthetic::JointSpec;
+
+/// No flow between −0.3 V and 0.3 V, and a slow spool.
+fn slow(name: &str) -> JointSpec {
+    JointSpec { lag_s: Some(0.1), ..banded(name) }
+}
+
+const FEW: &str = "--effects dead_band,actuator_lag,thermal_drift";
+
+/// The history of `boom` as the file has it, beside that of the JSON.
+fn assert_history_is_that_of(desk: &Desk, file: &str, revisions: &[Value]) {
+    let file = ModelFile::read(&desk.folder.path().join(file)).unwrap();
+    let history = file.history("boom");
+    assert_eq!(history.len() + 1, revisions.len());
+    for (entry, revision) in history.iter().zip(&revisions[1..]) {
+        assert_eq!(entry.revision, number(&revision["revision"]) as u32);
+        assert_eq!(entry.added.as_deref(), revision["added"].as_str());
+        assert_eq!(entry.validation_rmse, revision["error"]["validation"]["rmse"].as_f64());
+    }
+    let last = file.joint("boom").unwrap();
+    let effects: Vec<_> = last.components().iter().map(|c| c.effect().spec().id).collect();
+    assert_eq!(json!(effects), revisions.last().unwrap()["effects"]);
+}
+
+#[test]
+fn the_error_falls_effect_by_effect_down_to_the_noise() {
+    let desk = Desk::with(vec![slow("boom")]);
+    desk.write(
+        "boom.toml",
+        "# mine\nschema = \"tauscope/model/1\"\n[joint.boom]\nstructure = \"integrator\" # ok\n\
+         parameters = { gain = 9.0, delay = 0.1 }\n",
+    );
+    let json = desk.json(&format!("improve log.csv --model boom.toml {FEW}"), 0);
+    assert_eq!(json["schema"], "tauscope/improve/1");
+    let boom = &json["joints"][0];
+    assert_fields(boom, "joint revision effects parameters error lack_of_fit revisions verdict");
+    assert_eq!((&boom["verdict"], &boom["interrupted"]), (&json!("adequate"), &json!(false)));
+    let revisions = boom["revisions"].as_array().unwrap();
+    assert_eq!(fields(&revisions[0])[..3], ["revision", "added", "removed"]);
+    assert_eq!((&revisions[0]["revision"], &revisions[0]["added"]), (&json!(0), &Value::Null));
+    assert_fields(&revisions[0]["error"], "train validation noise_floor");
+    let mut added: Vec<_> = revisions.iter().filter_map(|r| r["added"].as_str()).collect();
+    added.sort_unstable();
+    assert_eq!(added, ["actuator_lag", "dead_band"]);
+    let error = |revision: &Value| number(&revision["error"]["validation"]["rmse"]);
+    assert!(revisions.windows(2).all(|pair| error(&pair[1]) < error(&pair[0])));
+    let last = revisions.last().unwrap();
+    assert!(error(last) < 1.15 * number(&last["error"]["noise_floor"]), "{last}");
+    assert_history_is_that_of(&desk, "boom.toml", revisions);
+    let text = desk.read("boom.toml");
+    assert!(text.starts_with("# mine\n") && text.contains("structure = \"integrator\" # ok\n"));
+
+    let again = desk.json(&format!("improve log.csv --model boom.toml {FEW}"), 0);
+    assert_eq!(again["joints"][0]["revisions"].as_array().unwrap().len(), 1);
+    assert_eq!(again["joints"][0]["revisions"][0]["revision"], 2);
+    assert_eq!(desk.read("boom.toml"), text, "nothing is missing, so nothing changes");
+}
+
+#[test]
+fn each_step_is_told_and_the_ladder_is_printed() {
+    let desk = Desk::with(vec![banded("boom"), joint("arm")]).with_broken_joint();
+    let output = desk.run(&format!("improve log.csv {FEW}"));
+    assert_eq!(output.status.code(), Some(1));
+    let told = String::from_utf8(output.stderr).unwrap();
+    for part in [
+        "improving: boom: revision 0, integrator: validation error ",
+        "improving: boom: revision 1, + dead_band: validation error ",
+        "improving: arm: revision 0, integrator: ",
+        "broken",
+        "model: model.toml",
+    ] {
+        assert!(told.contains(part), "no `{part}` in {told}");
+    }
+    let printed = String::from_utf8(output.stdout).unwrap();
+    for part in
+        ["boom: nothing to add", "│ 0          integrator", "│ 1          + dead_band", "arm: "]
+    {
+        assert!(printed.contains(part), "no `{part}` in {printed}");
+    }
+    let file = ModelFile::read(&desk.folder.path().join("model.toml")).unwrap();
+    assert_eq!(file.names().collect::<Vec<_>>(), ["arm", "boom"]);
+    assert_eq!((file.revision("arm"), file.revision("boom")), (Some(0), Some(1)));
+}
+
+#[test]
+fn no_more_effects_are_added_than_allowed() {
+    let desk = Desk::with(vec![slow("boom")]);
+    let json = desk.json(&format!("improve log.csv --max-effects 1 --write one.toml {FEW}"), 0);
+    let boom = &json["joints"][0];
+    assert_eq!(boom["revisions"].as_array().unwrap().len(), 2);
+    assert_eq!(boom["verdict"], "missing_effect");
+    let command = boom["commands"][0].as_str().unwrap();
+    assert!(command.ends_with(" log.csv --model one.toml"), "{command}");
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bytes() {
+    let desk = Desk::with(vec![banded("boom"), slow("arm")]);
+    let run = |threads: &str| {
+        let file = format!("{threads}.toml");
+        let effects = "--effects dead_band,actuator_lag";
+        let arguments =
+            format!("improve log.csv --quiet --threads {threads} --write {file} {effects}");
+        (desk.run(&arguments).stdout, desk.read(&file))
+    };
+    assert_eq!(run("1"), run("3"));
+}
+
+#[test]
+fn what_cannot_be_used_is_refused() {
+    let desk = Desk::with(vec![joint("boom")]);
+    let refused = desk.refusal("improve log.csv --effects dead_band,stictoin");
+    assert!(refused.contains("nearest is `stiction`"), "{refused}");
+    assert!(desk.refusal("improve log.csv --max-effects few").contains("--max-effects"));
+    assert!(!desk.has("model.toml"));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_keeps_the_revisions_so_far() {
+    use std::io::{BufRead as _, BufReader, Read as _};
+    use std::process::{Command, Stdio};
+
+    let saturated = JointSpec { saturation: Some(0.9), ..slow("boom") };
+    let desk = Desk::with(vec![saturated]);
+    let mut command = desk.command("improve log.csv --format json");
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut told = BufReader::new(child.stderr.take().unwrap());
+    let mut line = String::new();
+    while !line.contains("revision 0") {
+        line.clear();
+        assert_ne!(told.read_line(&mut line).unwrap(), 0, "it ended before revision 0");
+    }
+    let pid = child.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
+    let mut rest = String::new();
+    told.read_to_string(&mut rest).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{rest}");
+    assert!(rest.contains("stopping: after this revision"), "{rest}");
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let boom = &json["joints"][0];
+    assert_eq!(boom["interrupted"], true);
+    let revisions = boom["revisions"].as_array().unwrap();
+    assert_eq!(revisions.len(), 2, "the one at hand is brought to its end");
+    assert_history_is_that_of(&desk, "model.toml", revisions);
+}
