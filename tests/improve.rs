@@ -129,9 +129,10 @@ fn an_interrupt_keeps_the_revisions_so_far() {
     use std::io::{BufRead as _, BufReader, Read as _};
     use std::process::{Command, Stdio};
 
-    let saturated = JointSpec { saturation: Some(0.9), ..slow("boom") };
-    let desk = Desk::with(vec![saturated]);
-    let mut command = desk.command("improve log.csv --format json");
+    let desk = Desk::with(vec![slow("boom")]);
+    // Enough to try that the interrupt comes before the first is found.
+    let more = "position_gain,leakage,gravity_load,flow_curve,direction_gain,input_offset";
+    let mut command = desk.command(&format!("improve log.csv --format json {FEW},{more}"));
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut told = BufReader::new(child.stderr.take().unwrap());
     let mut line = String::new();

@@ -148,8 +148,9 @@ impl Finding<'_> {
 
     /// What the catalogue confuses with it, and how that did.
     fn look_alikes(&self, best: &Candidate) -> Option<String> {
-        let named =
-            |id: &&str| !best.effects.contains(id) && !best.indistinguishable_from.contains(id);
+        let next = self.ranking.get(1).map(|next| next.effects.as_slice()).unwrap_or_default();
+        let said = [&best.effects, &best.indistinguishable_from, next];
+        let named = |id: &&str| !said.iter().any(|ids| ids.contains(id));
         let confused = specs(best).flat_map(|spec| spec.confused_with).copied().filter(named);
         let how = |id: &str| {
             let other = self.ranking.iter().find(|other| other.effects == [id]);
@@ -175,7 +176,9 @@ impl Finding<'_> {
             }
             None => format!("The error is {error}."),
         };
-        let mut said = vec![self.test(), error, self.limits()];
+        let mut said = vec![self.test(), error];
+        said.extend(self.misses_validation());
+        said.push(self.limits());
         said.extend(self.undetermined());
         said
     }
@@ -192,6 +195,14 @@ impl Finding<'_> {
             }
             None => "There are too few samples to test it.".to_owned(),
         }
+    }
+
+    /// A warning where the part that was not fitted is worse than noise.
+    fn misses_validation(&self) -> Option<String> {
+        let times = self.comparison().validation?.rmse / self.noise()?;
+        let warning = "The test is about the part that was fitted; on the other part more than \
+                       noise is left, so the model does not carry over yet.";
+        (times > ABOVE_NOISE).then(|| warning.to_owned())
     }
 
     /// What the record covers: beyond it nothing was shown.
