@@ -21,7 +21,7 @@ fn assert_history_is_that_of(desk: &Desk, file: &str, revisions: &[Value]) {
     let history = file.history("boom");
     assert_eq!(history.len() + 1, revisions.len());
     for (entry, revision) in history.iter().zip(&revisions[1..]) {
-        assert_eq!(entry.revision, number(&revision["revision"]) as u32);
+        assert_eq!(json!(entry.revision), revision["revision"]);
         assert_eq!(entry.added.as_deref(), revision["added"].as_str());
         assert_eq!(entry.validation_rmse, revision["error"]["validation"]["rmse"].as_f64());
     }
@@ -153,4 +153,14 @@ fn an_interrupt_keeps_the_revisions_so_far() {
     let revisions = boom["revisions"].as_array().unwrap();
     assert_eq!(revisions.len(), 2, "the one at hand is brought to its end");
     assert_history_is_that_of(&desk, "model.toml", revisions);
+}
+
+#[cfg(feature = "rrd")]
+#[test]
+fn every_revision_is_recorded_as_a_model() {
+    let desk = Desk::with(vec![banded("boom")]);
+    let output = desk.run(&format!("improve log.csv {FEW} -o steps.rrd"));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let recording = std::fs::read(desk.folder.path().join("steps.rrd")).unwrap();
+    assert!(recording.starts_with(b"RRF2"));
 }

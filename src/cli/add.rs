@@ -12,7 +12,6 @@ use super::data::DataArgs;
 use super::fitting::{ProtocolArgs, ResultArgs, find, outcomes, print, study};
 use super::model_file::{ModelFileArgs, name_of, note_missing};
 use super::output::check_outputs;
-use super::progress;
 
 /// Add an effect to a model, and write its next revision
 ///
@@ -44,13 +43,11 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let outputs: Vec<_> = std::iter::once(target).chain(args.output.recording.as_deref()).collect();
     check_outputs(&outputs, &args.data.files())?;
     let verbosity = args.output.verbosity();
-    let bar = progress::bar(verbosity, "fitting", 0);
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
     let protocol = args.protocol.with(Mode::FitOrIntegrator);
-    let study = study(&args.data, &args.output, |joints, estimates| {
+    let study = study(&args.data, &args.output, Some("fitting"), |joints, estimates| {
         add_to_joints(joints, estimates, starts, protocol, effect)
     })?;
-    drop(bar);
     note_missing(&file, &study.experiment.joints, verbosity);
     let name = name_of(Some(target));
     let added = |_, joint, addition| added(&file, &name, effect.spec().id, joint, addition);

@@ -52,7 +52,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     if let Some(path) = &args.output.recording {
         check_outputs(&[path.as_path()], &args.data.files())?;
     }
-    let study = study(&args.data, &args.output, |joints, estimates| {
+    let study = study(&args.data, &args.output, Some("comparing"), |joints, estimates| {
         let one = |named: &Named| {
             let starts = |joint: &Joint| named.starts(joint);
             compare_joints(joints, estimates, starts, args.protocol.with(named.mode(args)))

@@ -6,16 +6,16 @@ use clap::Args as ClapArgs;
 use tauscope::batch::{Mode, OfJoints, compare_joints, explain_joints};
 use tauscope::diagnosis::Comparison;
 use tauscope::experiment::Joint;
-use tauscope::explain::{Candidate, Explanation, Options};
+use tauscope::explain::{Explanation, Options};
 use tauscope::model::ModelFile;
 use tauscope::report::{ComparedJoint, ExplainJson, Finding, explain_text};
 
 use super::Completion;
 use super::data::DataArgs;
-use super::fitting::{EffectArgs, ProtocolArgs, ResultArgs, Study, outcomes, print, quoted, study};
+use super::fitting::{EffectArgs, Estimates, ProtocolArgs, ResultArgs};
+use super::fitting::{outcomes, print, quoted, study};
 use super::model_file::{fresh_name, name_of, note_missing};
 use super::output::check_outputs;
-use super::progress;
 
 /// Say which physical effect a model lacks
 ///
@@ -50,13 +50,14 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
         check_outputs(&[path.as_path()], &args.data.files())?;
     }
     let verbosity = args.output.verbosity();
-    let bar = progress::bar(verbosity, "explaining", 0);
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
     let protocol = args.protocol.with(Mode::FitOrIntegrator);
-    let study = study(&args.data, &args.output, |joints, estimates| {
-        explain_joints(joints, estimates, starts, protocol, &options)
+    let study = study(&args.data, &args.output, Some("explaining"), |joints, estimates| {
+        let explained = explain_joints(joints, estimates, starts, protocol, &options);
+        let is_recorded = args.output.recording.is_some();
+        let bests = is_recorded.then(|| args.bests(joints, estimates, &explained));
+        (explained, bests.unwrap_or_default())
     })?;
-    drop(bar);
     note_missing(&file, &study.experiment.joints, verbosity);
     let joints = &study.experiment.joints;
     let arguments: Vec<String> = joints.iter().map(|j| args.add_arguments(joints, j)).collect();
@@ -64,12 +65,11 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let finding = |index: usize, joint, explanation| {
         finding(&file, &name, joint, explanation, arguments.get(index).map_or("", String::as_str))
     };
-    let (findings, failures) = outcomes(&study.experiment, &study.result, finding)?;
+    let (explained, bests) = &study.result;
+    let (findings, failures) = outcomes(&study.experiment, explained, finding)?;
     if let Some(path) = &args.output.recording {
-        let bests = args.bests(&study);
-        let names = names(&study);
-        let bests = joints.iter().zip(&bests).zip(&names).filter_map(|((joint, best), model)| {
-            let comparison = best.as_ref()?.as_ref().ok()?;
+        let bests = joints.iter().zip(bests).filter_map(|(joint, best)| {
+            let (model, comparison) = best.as_ref()?;
             Some(ComparedJoint { joint, model, revision: 0, comparison })
         });
         let models: Vec<_> = findings.iter().map(|f| f.compared).chain(bests).collect();
@@ -106,26 +106,22 @@ impl Args {
         quoted(&words)
     }
 
-    /// The best candidate of each joint beside the measurement.
-    fn bests(&self, study: &Study<OfJoints<Explanation>>) -> OfJoints<Comparison> {
-        let joints = &study.experiment.joints;
-        let model = |joint: &Joint| {
+    /// The best candidate of each joint beside the measurement, and its name.
+    fn bests(
+        &self,
+        joints: &[Joint],
+        estimates: &Estimates,
+        explained: &OfJoints<Explanation>,
+    ) -> Vec<Option<(String, Comparison)>> {
+        let best = |joint: &Joint| {
             let index = joints.iter().position(|other| other.name == joint.name)?;
-            Some(best(study.result.get(index)?.as_ref()?.as_ref().ok()?)?.fit.model.clone())
+            explained.get(index)?.as_ref()?.as_ref().ok()?.ranking.first()
         };
-        compare_joints(joints, &study.estimates, model, self.protocol.with(Mode::AsItIs))
+        let model = |joint: &Joint| Some(best(joint)?.fit.model.clone());
+        let compared = compare_joints(joints, estimates, model, self.protocol.with(Mode::AsItIs));
+        let named = |(joint, compared): (&Joint, Option<Result<Comparison, _>>)| {
+            Some((format!("with {}", best(joint)?.name()), compared?.ok()?))
+        };
+        joints.iter().zip(compared).map(named).collect()
     }
-}
-
-fn best(explanation: &Explanation) -> Option<&Candidate> {
-    explanation.ranking.first()
-}
-
-/// The name of each joint's best candidate.
-fn names(study: &Study<OfJoints<Explanation>>) -> Vec<String> {
-    let name = |result: &Option<Result<Explanation, _>>| {
-        let best = result.as_ref().and_then(|result| best(result.as_ref().ok()?));
-        best.map(Candidate::name).unwrap_or_default()
-    };
-    study.result.iter().map(name).collect()
 }

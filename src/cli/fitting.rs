@@ -166,26 +166,30 @@ pub(super) fn quoted(words: &[String]) -> String {
     words.iter().map(quote).collect::<Vec<_>>().join(" ")
 }
 
-type Estimates = Vec<Result<JointEstimate, EstimateError>>;
+/// The delays of each joint.
+pub(super) type Estimates = Vec<Result<JointEstimate, EstimateError>>;
 
 /// Logs, the delays in them, and what came of the joints.
 pub(super) struct Study<T> {
     pub(super) experiment: Experiment,
-    pub(super) estimates: Estimates,
+    estimates: Estimates,
     settings: Settings,
     pub(super) result: T,
 }
 
-/// Reads `data`, estimates the delays and does `work` with both.
+/// Reads `data`, estimates the delays and does `work` with both; `what` that is, is shown
+/// meanwhile.
 pub(super) fn study<T: Send>(
     data: &DataArgs,
     output: &ResultArgs,
+    what: Option<&'static str>,
     work: impl FnOnce(&[Joint], &Estimates) -> T + Send,
 ) -> anyhow::Result<Study<T>> {
     let experiment = {
         let _bar = progress::bar(output.verbosity(), "reading", 0);
         data.read()?
     };
+    let _bar = what.map(|what| progress::bar(output.verbosity(), what, 0));
     let settings = Settings::default();
     let all = || {
         let estimates = estimate_joints(&experiment.joints, &settings, || ());

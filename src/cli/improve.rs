@@ -57,7 +57,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let verbosity = args.output.verbosity();
     let interrupt = Interrupt::watch();
     let protocol = args.protocol.with(Mode::FitOrIntegrator);
-    let study = study(&args.data, &args.output, |joints, estimates| {
+    let study = study(&args.data, &args.output, None, |joints, estimates| {
         let progress = Progress::new(&file, joints, verbosity, &interrupt);
         let starts = |joint: &Joint| file.joint(&joint.name).cloned();
         let done = |index, revision: &Step| progress.done(index, revision);

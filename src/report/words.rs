@@ -10,6 +10,7 @@ use crate::diagnosis::failure::{Feature, Region, Units, WorstSegment};
 use crate::experiment::{Joint, Trial};
 use crate::explain::{Candidate, Verdict};
 use crate::fit::{Fit, Parameter, Status};
+use crate::model::Component;
 
 /// What is to be said of a joint.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -76,7 +77,7 @@ impl Finding<'_> {
                 let spec = component.effect().spec();
                 let parameters = self.parameters(&best.fit, &format!("{}.", spec.id));
                 let law = filled_in(component);
-                format!("{} is {}: {law}, with {parameters}.", spec.id, spec.summary)
+                format!("{} ({}): here {law}, with {parameters}.", spec.id, spec.summary)
             })
             .collect();
         said.push(self.improvement(best));
@@ -155,8 +156,8 @@ impl Finding<'_> {
         let how = |id: &str| {
             let other = self.ranking.iter().find(|other| other.effects == [id]);
             other.map_or_else(
-                || format!("{id} (not among the best here)"),
-                |other| format!("{id} (leaves {} here)", self.output(other.rmse())),
+                || format!("{id} (not in the ranking)"),
+                |other| format!("{id} (leaves {})", self.output(other.rmse())),
             )
         };
         let confused: Vec<String> = confused.map(how).collect();
@@ -178,6 +179,7 @@ impl Finding<'_> {
         };
         let mut said = vec![self.test(), error];
         said.extend(self.misses_validation());
+        said.extend(self.laws());
         said.push(self.limits());
         said.extend(self.undetermined());
         said
@@ -195,6 +197,16 @@ impl Finding<'_> {
             }
             None => "There are too few samples to test it.".to_owned(),
         }
+    }
+
+    /// The laws of the effects that the model has.
+    fn laws(&self) -> Option<String> {
+        let components = self.comparison().fit.model.components().iter();
+        let law = |component: &Component| {
+            format!("{}: {}", component.effect().spec().id, filled_in(component))
+        };
+        let laws: Vec<String> = components.map(law).collect();
+        (!laws.is_empty()).then(|| format!("The model has {}.", laws.join("; ")))
     }
 
     /// A warning where the part that was not fitted is worse than noise.
