@@ -133,3 +133,10 @@ fn what_cannot_be_added_leaves_no_file() {
     assert!(!desk.has("boom.toml") && !desk.has("model.toml"));
     assert!(desk.read("log.csv").contains("boom.input"));
 }
+
+#[cfg(feature = "rrd")]
+#[test]
+fn both_models_are_recorded() {
+    let desk = Desk::with(vec![banded("boom")]);
+    assert_eq!(desk.recorded_models("add dead_band log.csv"), ["after", "before"]);
+}

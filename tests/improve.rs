@@ -124,43 +124,80 @@ fn what_cannot_be_used_is_refused() {
 }
 
 #[cfg(unix)]
-#[test]
-fn an_interrupt_keeps_the_revisions_so_far() {
+mod interrupted {
     use std::io::{BufRead as _, BufReader, Read as _};
-    use std::process::{Command, Stdio};
+    use std::process::{Child, ChildStderr, Command, Stdio};
 
-    let desk = Desk::with(vec![slow("boom")]);
-    // Enough to try that the interrupt comes before the first is found.
-    let more = "position_gain,leakage,gravity_load,flow_curve,direction_gain,input_offset";
-    let mut command = desk.command(&format!("improve log.csv --format json {FEW},{more}"));
-    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let mut told = BufReader::new(child.stderr.take().unwrap());
-    let mut line = String::new();
-    while !line.contains("revision 0") {
-        line.clear();
-        assert_ne!(told.read_line(&mut line).unwrap(), 0, "it ended before revision 0");
+    use super::*;
+
+    /// A program that is at work on the first effect, and what it tells.
+    struct AtWork {
+        child: Child,
+        told: BufReader<ChildStderr>,
     }
-    let pid = child.id().to_string();
-    assert!(Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
-    let mut rest = String::new();
-    told.read_to_string(&mut rest).unwrap();
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(1), "{rest}");
-    assert!(rest.contains("stopping: after this revision"), "{rest}");
-    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let boom = &json["joints"][0];
-    assert_eq!(boom["interrupted"], true);
-    let revisions = boom["revisions"].as_array().unwrap();
-    assert_eq!(revisions.len(), 2, "the one at hand is brought to its end");
-    assert_history_is_that_of(&desk, "model.toml", revisions);
+
+    impl AtWork {
+        fn at(desk: &Desk) -> Self {
+            // Enough to try that the interrupt comes before the first is found.
+            let more = "position_gain,leakage,gravity_load,flow_curve,direction_gain,input_offset";
+            let mut command = desk.command(&format!("improve log.csv --format json {FEW},{more}"));
+            let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+            let told = BufReader::new(child.stderr.take().unwrap());
+            let mut program = Self { child, told };
+            program.wait_for("revision 0");
+            program
+        }
+
+        /// Reads what it tells up to a line with `part`.
+        fn wait_for(&mut self, part: &str) {
+            let mut line = String::new();
+            while !line.contains(part) {
+                line.clear();
+                assert_ne!(self.told.read_line(&mut line).unwrap(), 0, "it ended before {part}");
+            }
+        }
+
+        fn interrupt(&self) {
+            let pid = self.child.id().to_string();
+            assert!(Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
+        }
+    }
+
+    #[test]
+    fn once_it_keeps_the_revisions_so_far() {
+        let desk = Desk::with(vec![slow("boom")]);
+        let mut program = AtWork::at(&desk);
+        program.interrupt();
+        program.wait_for("stopping: after this revision");
+        let mut rest = String::new();
+        program.told.read_to_string(&mut rest).unwrap();
+        let output = program.child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{rest}");
+        let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let boom = &json["joints"][0];
+        assert_eq!(boom["interrupted"], true);
+        let revisions = boom["revisions"].as_array().unwrap();
+        assert_eq!(revisions.len(), 2, "the one at hand is brought to its end");
+        assert_history_is_that_of(&desk, "model.toml", revisions);
+    }
+
+    #[test]
+    fn twice_it_ends_at_once() {
+        let desk = Desk::with(vec![slow("boom")]);
+        let mut program = AtWork::at(&desk);
+        program.interrupt();
+        program.wait_for("stopping: ");
+        program.interrupt();
+        let output = program.child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130));
+        assert!(output.stdout.is_empty() && !desk.has("model.toml"));
+    }
 }
 
 #[cfg(feature = "rrd")]
 #[test]
 fn every_revision_is_recorded_as_a_model() {
     let desk = Desk::with(vec![banded("boom")]);
-    let output = desk.run(&format!("improve log.csv {FEW} -o steps.rrd"));
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let recording = std::fs::read(desk.folder.path().join("steps.rrd")).unwrap();
-    assert!(recording.starts_with(b"RRF2"));
+    let models = desk.recorded_models(&format!("improve log.csv {FEW}"));
+    assert_eq!(models, ["revision 0", "revision 1"]);
 }

@@ -83,6 +83,7 @@ fn each_library_is_named_in_its_own_place_only() {
         ("levenberg_marquardt", "src/fit"),
         ("winnow", "src/effect/expression"),
         ("toml_edit", "src/model/file"),
+        ("ctrlc", "src/cli/interrupt.rs"),
     ] {
         for path in sources(Path::new("src")) {
             let text = fs::read_to_string(&path).unwrap();

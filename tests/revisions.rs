@@ -69,6 +69,19 @@ note = "kept by hand"
 "#;
 
 #[test]
+fn a_model_without_a_revision_leaves_the_history_alone() {
+    let file = parse(HAND_WRITTEN);
+    let refitted = file.refitted("arm", &JointModel::integrator(3.5, 0.2)).unwrap();
+    let changed = changes(HAND_WRITTEN, refitted.text());
+    let (new, old) =
+        ("parameters = { gain = 3.5, delay = 0.2 }", "parameters = { gain = 3, delay = 0.2 }");
+    assert_eq!(changed, (vec![new], vec![old]));
+    let plain = JointModel::integrator(2.0, 0.1);
+    let fresh = ModelFile::new(Path::new("new.toml")).refitted("jaw", &plain).unwrap();
+    assert_eq!((fresh.revision("jaw"), fresh.history("jaw")), (Some(0), &[][..]));
+}
+
+#[test]
 fn values_are_replaced_in_place_and_all_else_stays() {
     let file = parse(HAND_WRITTEN);
     let model = file.joint("boom 2.left").unwrap();

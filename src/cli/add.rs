@@ -5,7 +5,7 @@ use tauscope::batch::{Mode, add_to_joints};
 use tauscope::experiment::Joint;
 use tauscope::explain::Addition;
 use tauscope::model::{ModelFile, Revision};
-use tauscope::report::{AddJson, AddedJoint, add_text, gone};
+use tauscope::report::{AddJson, AddedJoint, ComparedJoint, add_text, gone};
 
 use super::Completion;
 use super::data::DataArgs;
@@ -57,7 +57,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
         revised = with_revision(&revised, joint)?;
     }
     if let Some(path) = &args.output.recording {
-        let models: Vec<_> = joints.iter().flat_map(AddedJoint::compared).collect();
+        let models: Vec<_> = joints.iter().flat_map(before_and_after).collect();
         study.record(path, &models, verbosity)?;
     }
     args.model.write(&file, &revised, verbosity)?;
@@ -77,6 +77,12 @@ fn added<'a>(
 ) -> AddedJoint<'a> {
     let revision = file.revision(&joint.name).unwrap_or(0) + 1;
     AddedJoint { joint, model, effect, revision, addition }
+}
+
+/// Both models under names of their own.
+fn before_and_after<'a>(added: &AddedJoint<'a>) -> [ComparedJoint<'a>; 2] {
+    let [before, after] = added.compared();
+    [ComparedJoint { model: "before", ..before }, ComparedJoint { model: "after", ..after }]
 }
 
 fn with_revision(file: &ModelFile, added: &AddedJoint<'_>) -> anyhow::Result<ModelFile> {

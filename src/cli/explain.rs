@@ -28,7 +28,7 @@ pub(super) struct Args {
     data: DataArgs,
 
     /// The model file (TOML, schema `tauscope/model/1`). Joints that it has not start as
-    /// plain integrators; its own effects and candidates are tried, too
+    /// plain integrators; its candidates are tried, too
     #[arg(short, long, value_name = "MODEL.toml", help_heading = "Model")]
     model: Option<PathBuf>,
 

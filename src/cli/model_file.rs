@@ -55,8 +55,9 @@ impl ModelFileArgs {
         verbosity: Verbosity,
     ) -> anyhow::Result<()> {
         let target = self.target();
-        let is_in_place =
-            self.model.as_ref().is_some_and(|model| target_of(model) == target_of(target));
+        let is_model =
+            |path: &PathBuf| self.model.as_ref().is_some_and(|m| target_of(m) == target_of(path));
+        let is_in_place = self.write.as_ref().is_none_or(is_model);
         if is_in_place {
             check_unchanged(target, read.text())?;
         }

@@ -54,7 +54,7 @@ fn in_place(value: f64, before: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::{Effect, REGISTRY, find};
+    use crate::effect::{REGISTRY, find};
 
     fn filled(id: &str, values: &[f64]) -> String {
         let values = values.iter().map(|value| (*value).into()).collect();

@@ -83,6 +83,26 @@ impl Desk {
         serde_json::from_slice(&output.stdout).unwrap()
     }
 
+    /// The models of `boom` in the recording of a run that went well.
+    #[cfg(feature = "rrd")]
+    pub(crate) fn recorded_models(&self, arguments: &str) -> Vec<String> {
+        use rerun::external::re_log_encoding::DecoderApp;
+        use rerun::log::{Chunk, LogMsg};
+
+        let output = self.run(&format!("{arguments} -o models.rrd"));
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let file = std::fs::File::open(self.folder.path().join("models.rrd")).unwrap();
+        let mut models = std::collections::BTreeSet::new();
+        for message in DecoderApp::decode_lazy(std::io::BufReader::new(file)) {
+            let LogMsg::ArrowMsg(_, chunk) = message.unwrap() else { continue };
+            let entity = Chunk::from_arrow_msg(&chunk).unwrap().entity_path().to_string();
+            let model =
+                entity.strip_prefix("/boom/model/").and_then(|m| m.strip_suffix("/residual"));
+            models.extend(model.map(|model| model.replace('\\', "")));
+        }
+        models.into_iter().collect()
+    }
+
     /// The message of a run that ends with status 2, without a result.
     pub(crate) fn refusal(&self, arguments: &str) -> String {
         let output = self.run(arguments);
