@@ -4,6 +4,7 @@ use clap::Args as ClapArgs;
 use tauscope::batch::{Mode, add_to_joints};
 use tauscope::experiment::Joint;
 use tauscope::explain::Addition;
+use tauscope::fit::Horizon;
 use tauscope::model::{ModelFile, Revision};
 use tauscope::report::{AddJson, AddedJoint, ComparedJoint, add_text, gone};
 
@@ -44,7 +45,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     check_outputs(&outputs, &args.data.files())?;
     let verbosity = args.output.verbosity();
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
-    let protocol = args.protocol.with(Mode::FitOrIntegrator);
+    let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
     let study = study(&args.data, &args.output, Some("fitting"), |joints, estimates| {
         add_to_joints(joints, estimates, starts, protocol, effect)
     })?;
@@ -61,7 +62,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
         study.record(path, &models, verbosity)?;
     }
     args.model.write(&file, &revised, verbosity)?;
-    let text = || add_text(&joints, &args.protocol.horizon());
+    let text = || add_text(&joints, &args.protocol.horizon(Horizon::Steps));
     print(args.output.format, &failures, text, |out| {
         let written = target.display().to_string();
         serde_json::to_writer(out, &AddJson::new(written, &joints, &failures))

@@ -7,7 +7,7 @@ use clap::Args as ClapArgs;
 use tauscope::batch::{Mode, compare_joints};
 use tauscope::diagnosis::Comparison;
 use tauscope::experiment::Joint;
-use tauscope::fit::FitError;
+use tauscope::fit::{FitError, Horizon};
 use tauscope::model::{JointModel, ModelFile};
 use tauscope::report::{CompareJson, ComparedJoint, compare_table};
 
@@ -55,7 +55,12 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let study = study(&args.data, &args.output, Some("comparing"), |joints, estimates| {
         let one = |named: &Named| {
             let starts = |joint: &Joint| named.starts(joint);
-            compare_joints(joints, estimates, starts, args.protocol.with(named.mode(args)))
+            compare_joints(
+                joints,
+                estimates,
+                starts,
+                args.protocol.with(named.mode(args), Horizon::FreeRun),
+            )
         };
         models.iter().map(one).collect::<Vec<_>>()
     })?;
@@ -75,7 +80,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     if let Some(path) = &args.output.recording {
         study.record(path, &compared, args.output.verbosity())?;
     }
-    let text = || compare_table(&compared, &args.protocol.horizon());
+    let text = || compare_table(&compared, &args.protocol.horizon(Horizon::FreeRun));
     print(args.output.format, &failures, text, |out| {
         serde_json::to_writer(out, &CompareJson::new(&compared, &failures))
     })

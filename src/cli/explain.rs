@@ -7,6 +7,7 @@ use tauscope::batch::{Mode, OfJoints, compare_joints, explain_joints};
 use tauscope::diagnosis::Comparison;
 use tauscope::experiment::Joint;
 use tauscope::explain::{Explanation, Options};
+use tauscope::fit::Horizon;
 use tauscope::model::ModelFile;
 use tauscope::report::{ComparedJoint, ExplainJson, Finding, explain_text};
 
@@ -51,7 +52,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     }
     let verbosity = args.output.verbosity();
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
-    let protocol = args.protocol.with(Mode::FitOrIntegrator);
+    let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
     let study = study(&args.data, &args.output, Some("explaining"), |joints, estimates| {
         let explained = explain_joints(joints, estimates, starts, protocol, &options);
         let is_recorded = args.output.recording.is_some();
@@ -75,7 +76,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
         let models: Vec<_> = findings.iter().map(|f| f.compared).chain(bests).collect();
         study.record(path, &models, verbosity)?;
     }
-    let text = || explain_text(&findings, &args.protocol.horizon());
+    let text = || explain_text(&findings, &args.protocol.horizon(Horizon::Steps));
     print(args.output.format, &failures, text, |out| {
         serde_json::to_writer(out, &ExplainJson::new(&findings, &failures))
     })
@@ -118,7 +119,12 @@ impl Args {
             explained.get(index)?.as_ref()?.as_ref().ok()?.ranking.first()
         };
         let model = |joint: &Joint| Some(best(joint)?.fit.model.clone());
-        let compared = compare_joints(joints, estimates, model, self.protocol.with(Mode::AsItIs));
+        let compared = compare_joints(
+            joints,
+            estimates,
+            model,
+            self.protocol.with(Mode::AsItIs, Horizon::Steps),
+        );
         let named = |(joint, compared): (&Joint, Option<Result<Comparison, _>>)| {
             Some((format!("with {}", best(joint)?.name()), compared?.ok()?))
         };

@@ -21,9 +21,10 @@ use super::{Completion, message, read_failures};
 #[derive(Args, Debug)]
 pub(super) struct ProtocolArgs {
     /// How long a simulation runs before its angle is set to the measured one: `free`
-    /// (never), `steps` (at every step of the input), or seconds
-    #[arg(long, value_name = "free|steps|SECONDS", default_value = "free", value_parser = horizon, help_heading = "Model")]
-    horizon: Horizon,
+    /// (never), `steps` (at every step of the input), or seconds [default: free to compare,
+    /// else steps, where an error counts where it is made]
+    #[arg(long, value_name = "free|steps|SECONDS", value_parser = horizon, help_heading = "Model")]
+    horizon: Option<Horizon>,
 
     /// Share of each trial's time that is for training, or `trials`: every third trial is
     /// for validation [default: trials from six on, else 0.7]
@@ -92,13 +93,14 @@ fn split(text: &str) -> Result<Split, String> {
 }
 
 impl ProtocolArgs {
-    pub(super) fn with(&self, mode: Mode) -> Protocol {
-        Protocol { mode, split: self.split, horizon: self.horizon }
+    /// The rules, `default` being the horizon where none is asked for.
+    pub(super) fn with(&self, mode: Mode, default: Horizon) -> Protocol {
+        Protocol { mode, split: self.split, horizon: self.horizon.unwrap_or(default) }
     }
 
     /// The horizon in words.
-    pub(super) fn horizon(&self) -> String {
-        match self.horizon {
+    pub(super) fn horizon(&self, default: Horizon) -> String {
+        match self.horizon.unwrap_or(default) {
             Horizon::FreeRun => "free run".to_owned(),
             Horizon::Steps => "restarted at every step of the input".to_owned(),
             Horizon::Seconds(seconds) => format!("restarted every {seconds} s"),
@@ -107,11 +109,11 @@ impl ProtocolArgs {
 
     /// These options as they are typed.
     pub(super) fn typed(&self) -> Vec<String> {
-        let horizon = match self.horizon {
-            Horizon::FreeRun => None,
-            Horizon::Steps => Some("steps".to_owned()),
-            Horizon::Seconds(seconds) => Some(seconds.to_string()),
-        };
+        let horizon = self.horizon.map(|horizon| match horizon {
+            Horizon::FreeRun => "free".to_owned(),
+            Horizon::Steps => "steps".to_owned(),
+            Horizon::Seconds(seconds) => seconds.to_string(),
+        });
         let split = self.split.map(|split| match split {
             Split::Time(share) => share.to_string(),
             Split::Trials => "trials".to_owned(),

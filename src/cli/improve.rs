@@ -6,6 +6,7 @@ use clap::Args as ClapArgs;
 use tauscope::batch::{Mode, improve_joints};
 use tauscope::experiment::Joint;
 use tauscope::explain::{Change, Improvement, Options, Revision as Step, Verdict};
+use tauscope::fit::Horizon;
 use tauscope::model::{ModelFile, Revision};
 use tauscope::report::{
     ComparedJoint, Finding, ImproveJson, ImprovedJoint, gone, improve_text, revision_line,
@@ -56,7 +57,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     check_outputs(&outputs, &args.data.files())?;
     let verbosity = args.output.verbosity();
     let interrupt = Interrupt::watch();
-    let protocol = args.protocol.with(Mode::FitOrIntegrator);
+    let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
     let study = study(&args.data, &args.output, None, |joints, estimates| {
         let progress = Progress::new(&file, joints, verbosity, &interrupt);
         let starts = |joint: &Joint| file.joint(&joint.name).cloned();
@@ -82,7 +83,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
         study.record(path, &models, verbosity)?;
     }
     args.model.write(&file, &revised(&file, &improved)?, verbosity)?;
-    let text = || improve_text(&improved, &args.protocol.horizon());
+    let text = || improve_text(&improved, &args.protocol.horizon(Horizon::Steps));
     let completion = print(args.output.format, &failures, text, |out| {
         serde_json::to_writer(out, &ImproveJson::new(&improved, &failures))
     })?;
@@ -184,7 +185,7 @@ fn entry(revision: u32, before: &Step, after: &Step) -> Revision {
     let model = &after.comparison.fit.model;
     let removed = gone(&before.comparison.fit.model, model);
     let added = match after.change {
-        Change::Added(id) => Some(id.to_owned()),
+        Change::Added(id) | Change::Replaced { new: id, .. } => Some(id.to_owned()),
         Change::Start | Change::Removed(_) => None,
     };
     Revision {

@@ -5,7 +5,7 @@ use super::candidate::Candidate;
 use super::evidence::Noise;
 use crate::diagnosis::ErrorFigures;
 use crate::effect::{Effect, REGISTRY, RecordRange};
-use crate::fit::{Fit, Part, Record, Status, Survey, fit_to_compare, survey};
+use crate::fit::{Fit, Part, Record, Status, Survey, fit, fit_to_compare, survey};
 use crate::model::{Component, JointModel};
 
 /// What a race is about.
@@ -66,6 +66,12 @@ pub(super) fn race(
     };
     let entries: Vec<Entry> = workers.map(&surveyed, to_the_end).into_iter().flatten().collect();
     ranked(record, base, noise_floor, entries)
+}
+
+/// `model` fitted; `None` where it cannot be.
+pub(super) fn fitted(record: &Record<'_>, model: &JointModel) -> Option<Fit> {
+    let levels = record.input_levels();
+    fit(record, model, &range(record, model, &levels)).ok()
 }
 
 /// How large the signals of `record` are, for a model with about the gain of `model`.

@@ -17,7 +17,7 @@ pub enum Horizon {
     /// Never: each part of a trial is one run.
     #[default]
     FreeRun,
-    /// At every step of the input.
+    /// At every step of the input; every 200 samples where it is not held between steps.
     Steps,
     /// Every so many seconds.
     Seconds(f64),
@@ -321,7 +321,8 @@ fn cut(trial: &Trial, index: usize, split: Split, horizon: Horizon) -> Vec<Windo
     let mut borders = vec![0, border, samples];
     match horizon {
         Horizon::FreeRun => {}
-        Horizon::Steps => borders.extend(changes(trial.input())),
+        Horizon::Steps if is_held(trial.input()) => borders.extend(changes(trial.input())),
+        Horizon::Steps => borders.extend((0..samples).step_by(UNHELD_WINDOW)),
         Horizon::Seconds(seconds) => {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 1")]
             let every = (seconds / trial.period().seconds()).round().max(1.0) as usize;
@@ -340,6 +341,16 @@ fn cut(trial: &Trial, index: usize, split: Split, horizon: Horizon) -> Vec<Windo
         }
     }
     windows
+}
+
+/// Samples of a window where the input is not held.
+const UNHELD_WINDOW: usize = 200;
+
+/// Whether the input is held for some samples between its steps.
+fn is_held(input: &[f64]) -> bool {
+    /// Samples between steps, on average.
+    const HELD: usize = 20;
+    changes(input).count() * HELD < input.len()
 }
 
 /// `window` in parts, in each of which the input changes a few times.

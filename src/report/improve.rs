@@ -82,6 +82,7 @@ impl<'a> ImprovedJoint<'a> {
             Change::Start => (None, None),
             Change::Added(id) => (Some(id), None),
             Change::Removed(id) => (None, Some(id)),
+            Change::Replaced { old, new } => (Some(new), Some(old)),
         };
         let fit = &revision.comparison.fit;
         RevisionJson {
@@ -136,6 +137,7 @@ fn change_in_words(revision: &Revision) -> String {
         }
         Change::Added(id) => format!("+ {id}"),
         Change::Removed(id) => format!("− {id}"),
+        Change::Replaced { old, new } => format!("+ {new}, − {old}"),
     }
 }
 
