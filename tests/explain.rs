@@ -34,7 +34,7 @@ fn a_missing_dead_band_is_named_with_its_numbers_and_its_command_works() {
     assert!(number(&first["error_reduction_percent"]) > 90.0);
     assert!(number(&first["p_value"]) < 1e-6);
     let ranked = boom["ranking"].as_array().unwrap();
-    assert!(ranked.len() > 3, "{ranked:?}");
+    assert!(ranked.len() > 1, "{ranked:?}");
 
     let words = boom["in_words"].as_str().unwrap();
     for part in ["out = max(in - 0.", "lower = -0.", " ± ", " V", "look at ", "stiction"] {

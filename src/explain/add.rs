@@ -1,10 +1,10 @@
 //! One effect more in a model, because a user says so.
 
 use super::evidence::Noise;
-use super::race::{fitted, parameters};
+use super::race::{parameters, range};
 use crate::diagnosis::{Comparison, compare};
 use crate::effect::Effect;
-use crate::fit::{Fit, FitError, Record};
+use crate::fit::{Fit, FitError, Record, fit};
 use crate::model::{Component, JointModel};
 
 /// A model before and after an effect was added.
@@ -37,35 +37,29 @@ pub enum AddError {
         /// The id of the other.
         whole: &'static str,
     },
-    /// The model with it cannot be fitted.
-    #[error("with `{effect}` it cannot be fitted: too few samples for its parameters")]
-    Unfittable {
-        /// Its id.
-        effect: &'static str,
-    },
-    /// The model without it cannot be fitted.
+    /// The model cannot be fitted.
     #[error(transparent)]
     Fit(#[from] FitError),
 }
 
-/// Fits the model of `fit` with `effect`, which starts where it changes nothing.
+/// Fits the model of `base` with `effect`, which starts where it changes nothing.
 ///
 /// # Errors
 /// [`AddError`] when the model has the effect, or cannot be fitted with it.
 pub fn add(
     record: &Record<'_>,
-    fit: Fit,
+    base: Fit,
     effect: &'static dyn Effect,
 ) -> Result<Addition, AddError> {
-    check(&fit.model, effect)?;
-    let id = effect.spec().id;
-    let model = fit.model.with(Component::neutral(effect));
-    let with = fitted(record, &model).ok_or(AddError::Unfittable { effect: id })?;
+    check(&base.model, effect)?;
+    let model = base.model.with(Component::neutral(effect));
+    let levels = record.input_levels();
+    let with = fit(record, &model, &range(record, &model, &levels))?;
     let noise = Noise::of(record, &with.evaluation);
     let evidence = |fit: &Fit| noise.evidence(record, &fit.evaluation, parameters(fit));
-    let p_value = evidence(&with).p_value_against(&evidence(&fit));
+    let p_value = evidence(&with).p_value_against(&evidence(&base));
     Ok(Addition {
-        before: compare(record, fit),
+        before: compare(record, base),
         after: compare(record, with),
         p_value: effect.nests().then_some(p_value),
     })
