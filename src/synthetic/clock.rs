@@ -42,6 +42,11 @@ impl Clock {
         (1..=parts).map(move |j| (start + f64::from(j) / f64::from(parts)) * period.seconds())
     }
 
+    /// 1-based number of the sample nearest to `time_s`.
+    pub(super) fn sample_at(&self, time_s: f64) -> usize {
+        self.samples_in(time_s) + 1
+    }
+
     /// Time of the sample `sample` as a fraction of the record's length.
     pub(super) fn progress(&self, sample: usize) -> f64 {
         (sample as f64 - 1.0) / (self.samples as f64 - 1.0).max(1.0)

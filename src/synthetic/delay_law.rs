@@ -75,6 +75,10 @@ pub(super) struct Occasion {
     pub(super) progress: f64,
     /// A number drawn for it, uniform in [0, 1).
     pub(super) chance: f64,
+    /// Seconds that the level before was held.
+    pub(super) held_s: f64,
+    /// Seconds since the first sample.
+    pub(super) time_s: f64,
 }
 
 impl DelayLaw {
@@ -140,7 +144,15 @@ mod tests {
 
     /// Step 2 of a record, from 1 to `after`, a quarter through, with chance 0.5.
     fn delay_s(law: &str, after: f64) -> Option<f64> {
-        let at = Occasion { index: 1, before: 1.0, after, progress: 0.25, chance: 0.5 };
+        let at = Occasion {
+            index: 1,
+            before: 1.0,
+            after,
+            progress: 0.25,
+            chance: 0.5,
+            held_s: 1.0,
+            time_s: 2.0,
+        };
         toml::from_str::<DelayLaw>(law).unwrap().delay_s(&at)
     }
 

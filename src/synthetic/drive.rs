@@ -15,7 +15,7 @@ use super::statics::StaticChain;
 
 /// Draws of level and hold before a range is given up. With one draw in a hundred
 /// acceptable, a thousand fail once in 20 000 steps.
-pub(super) const MAX_DRAWS: usize = 1000;
+const MAX_DRAWS: usize = 1000;
 
 /// One step of the input.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,18 +49,9 @@ impl Drive {
         seed: u64,
         clock: Clock,
     ) -> Result<Self, PlantError> {
-        let mut driver = Driver::new(joint, clock, stream(seed, index, Purpose::Delay));
-        match &joint.input {
-            InputSpec::Steps { steps, .. } => {
-                for &(sample, level) in steps {
-                    let chance = driver.delays.random();
-                    driver.set(sample, level, chance)?;
-                }
-            }
-            InputSpec::Levels { levels, hold_s } => {
-                let mut input = stream(seed, index, Purpose::Input);
-                driver.wander(levels, *hold_s, &mut input)?;
-            }
+        let mut driver = Driver::new(joint, index, seed, clock);
+        while let Some(sample) = driver.due() {
+            driver.act(sample, &Unhindered)?;
         }
         Ok(driver.drive)
     }
@@ -77,133 +68,256 @@ impl Drive {
 
     /// The input at each of `samples` samples, in input units.
     pub(super) fn input(&self, samples: usize) -> Vec<f64> {
-        held(&self.steps, self.initial, samples)
+        let mut steps = self.steps.iter().peekable();
+        let mut level = self.initial;
+        let levels = (1..=samples).map(|sample| {
+            if let Some(step) = steps.next_if(|step| step.sample == sample) {
+                level = step.after;
+            }
+            level
+        });
+        levels.collect()
+    }
+
+    /// The level that acts once step `index` does; that before the first for none.
+    pub(super) fn level_of(&self, index: usize) -> f64 {
+        self.steps.get(index).map_or(self.initial, |step| step.after)
+    }
+
+    /// Change of the steady speed that each step causes, in output units per second; none
+    /// for one that was overtaken.
+    pub(super) fn speed_changes(&self) -> Vec<Option<f64>> {
+        self.by_step(self.arrivals.speed_changes())
+    }
+
+    /// `changes`, each with the number of its step, in the order of the steps; none for the
+    /// others.
+    pub(super) fn by_step(&self, changes: impl Iterator<Item = (usize, f64)>) -> Vec<Option<f64>> {
+        let mut told = vec![None; self.steps.len()];
+        for (index, change) in changes {
+            if let Some(slot) = told.get_mut(index) {
+                *slot = Some(change);
+            }
+        }
+        told
     }
 
     /// The level after the last step so far.
     fn level(&self) -> f64 {
         self.steps.last().map_or(self.initial, |step| step.after)
     }
+
+    /// Adds a step.
+    pub(super) fn push(&mut self, intent: Intent) {
+        self.arrivals.push(self.steps.len(), intent.acts_s, intent.speed);
+        self.steps.push(intent.step);
+    }
 }
 
-/// The level at each of `samples` samples: `initial`, then what `steps` set.
-pub(super) fn held(steps: &[Step], initial: f64, samples: usize) -> Vec<f64> {
-    let mut steps = steps.iter().peekable();
-    let mut level = initial;
-    let levels = (1..=samples).map(|sample| {
-        if let Some(step) = steps.next_if(|step| step.sample == sample) {
-            level = step.after;
-        }
-        level
-    });
-    levels.collect()
+/// A step that is to be made.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Intent {
+    step: Step,
+    /// When it acts, in seconds.
+    pub(super) acts_s: f64,
+    /// Speed that it commands.
+    speed: f64,
+}
+
+/// How an experimenter knows where a joint will be.
+pub(super) trait Foresight {
+    /// How far the joint, driven by `drive`, goes beyond `range` from when `intent` acts
+    /// until `end_s`, in output units.
+    ///
+    /// # Errors
+    /// [`PlantError::Runaway`].
+    fn excess(
+        &self,
+        drive: &Drive,
+        intent: Intent,
+        range: [f64; 2],
+        end_s: f64,
+    ) -> Result<f64, PlantError>;
+
+    /// Draws after which the level with the least excess is taken, if there is one.
+    fn patience(&self) -> Option<usize>;
+}
+
+/// Of a joint without inertia and load.
+pub(super) struct Unhindered;
+
+impl Foresight for Unhindered {
+    fn excess(
+        &self,
+        drive: &Drive,
+        intent: Intent,
+        range: [f64; 2],
+        end_s: f64,
+    ) -> Result<f64, PlantError> {
+        let from = drive.arrivals.angle_at(intent.acts_s);
+        let to = from + intent.speed * (end_s - intent.acts_s).max(0.0);
+        Ok(beyond(from, range).max(beyond(to, range)))
+    }
+
+    /// Never: a range that cannot be kept is an error.
+    fn patience(&self) -> Option<usize> {
+        None
+    }
+}
+
+/// How far `angle` is outside `range`.
+pub(super) fn beyond(angle: f64, [lowest, highest]: [f64; 2]) -> f64 {
+    (lowest - angle).max(angle - highest).max(0.0)
 }
 
 /// Makes a [`Drive`], step by step.
-struct Driver<'a> {
+#[derive(Debug)]
+pub(super) struct Driver<'a> {
     joint: &'a JointSpec,
     clock: Clock,
-    chain: StaticChain,
+    chain: StaticChain<'a>,
     delays: ChaCha8Rng,
+    input: ChaCha8Rng,
+    /// Sample of the next step, where it is drawn.
+    next: usize,
     drive: Drive,
 }
 
 impl<'a> Driver<'a> {
-    fn new(joint: &'a JointSpec, clock: Clock, delays: ChaCha8Rng) -> Self {
+    /// The driver of `joint`, which has the number `index`, from 0.
+    pub(super) fn new(joint: &'a JointSpec, index: usize, seed: u64, clock: Clock) -> Self {
         let chain = StaticChain::of(joint);
         let initial = joint.input.initial();
         let arrivals = Arrivals::new(joint.start, chain.speed(initial));
         let drive = Drive { steps: Vec::new(), arrivals, initial };
-        Self { joint, clock, chain, delays, drive }
+        let delays = stream(seed, index, Purpose::Delay);
+        let input = stream(seed, index, Purpose::Input);
+        let mut driver = Self { joint, clock, chain, delays, input, next: 0, drive };
+        if let InputSpec::Levels { hold_s, .. } = &joint.input {
+            driver.next = driver.draw_hold(*hold_s).saturating_add(1);
+        }
+        driver
     }
 
-    /// Draws steps until the record ends.
-    fn wander(
-        &mut self,
-        levels: &[f64],
-        hold_s: [f64; 2],
-        rng: &mut ChaCha8Rng,
-    ) -> Result<(), PlantError> {
-        let mut sample = self.draw_hold(hold_s, rng).saturating_add(1);
-        while sample <= self.clock.samples() {
-            // Drawn before the level, so that draws refused cost no chance.
-            let chance = self.delays.random();
-            let (level, hold) = self.draw(sample, levels, hold_s, chance, rng)?;
-            self.set(sample, level, chance)?;
-            sample = sample.saturating_add(hold);
+    /// Sample of the next step, if there is one in the record.
+    pub(super) fn due(&self) -> Option<usize> {
+        match &self.joint.input {
+            InputSpec::Steps { steps, .. } => {
+                steps.get(self.drive.steps.len()).map(|(sample, _)| *sample)
+            }
+            InputSpec::Levels { .. } => Some(self.next).filter(|at| *at <= self.clock.samples()),
         }
+    }
+
+    /// Sets the step that is due at `sample`.
+    ///
+    /// # Errors
+    /// [`PlantError::Range`], [`PlantError::ListedDelays`] and [`PlantError::Runaway`].
+    pub(super) fn act(
+        &mut self,
+        sample: usize,
+        foresight: &impl Foresight,
+    ) -> Result<(), PlantError> {
+        // Drawn before the level, so that draws refused cost no chance.
+        let chance = self.delays.random();
+        let joint = self.joint;
+        let level = match &joint.input {
+            InputSpec::Steps { steps, .. } => {
+                steps.get(self.drive.steps.len()).map_or(0.0, |(_, level)| *level)
+            }
+            InputSpec::Levels { levels, hold_s } => {
+                let (level, hold) = self.draw(sample, levels, *hold_s, chance, foresight)?;
+                self.next = sample.saturating_add(hold);
+                level
+            }
+        };
+        let intent = self.intent(sample, level, chance)?;
+        self.drive.push(intent);
         Ok(())
+    }
+
+    /// What it has made so far.
+    pub(super) fn drive(&self) -> &Drive {
+        &self.drive
+    }
+
+    /// All that it has made.
+    pub(super) fn into_drive(self) -> Drive {
+        self.drive
     }
 
     /// A level for `sample` and its hold in samples, that keep the range.
     fn draw(
-        &self,
+        &mut self,
         sample: usize,
         levels: &[f64],
         hold_s: [f64; 2],
         chance: f64,
-        rng: &mut ChaCha8Rng,
+        foresight: &impl Foresight,
     ) -> Result<(f64, usize), PlantError> {
         let now = self.drive.level();
         let others: Vec<f64> = levels.iter().copied().filter(|level| differ(*level, now)).collect();
-        for _ in 0..MAX_DRAWS {
-            let hold = self.draw_hold(hold_s, rng);
-            let drawn = others.choose(rng).copied();
+        let mut best = None;
+        for _ in 0..foresight.patience().unwrap_or(MAX_DRAWS) {
+            let hold = self.draw_hold(hold_s);
+            let drawn = others.choose(&mut self.input).copied();
             for level in drawn.into_iter().flat_map(|level| [level, -level]) {
-                if differ(level, now) && self.stays(sample, level, hold, chance)? {
+                if !differ(level, now) {
+                    continue;
+                }
+                let excess = self.excess(sample, level, hold, chance, foresight)?;
+                if excess <= 0.0 {
                     return Ok((level, hold));
+                }
+                if best.is_none_or(|(least, _)| excess < least) {
+                    best = Some((excess, (level, hold)));
                 }
             }
         }
-        Err(PlantError::Range { place: Place::joint(&self.joint.name), sample })
+        let least = best.filter(|_| foresight.patience().is_some()).map(|(_, drawn)| drawn);
+        least.ok_or_else(|| PlantError::Range { place: Place::joint(&self.joint.name), sample })
     }
 
     /// A hold in samples, at least one.
-    fn draw_hold(&self, [shortest, longest]: [f64; 2], rng: &mut ChaCha8Rng) -> usize {
-        let seconds = shortest + (longest - shortest) * rng.random::<f64>();
+    fn draw_hold(&mut self, [shortest, longest]: [f64; 2]) -> usize {
+        let seconds = shortest + (longest - shortest) * self.input.random::<f64>();
         self.clock.samples_in(seconds).max(1)
     }
 
-    /// Whether the joint stays in its range at `level` until the next step acts, even
-    /// if that one takes as long as any can.
-    fn stays(
+    /// How far the joint leaves its range at `level` until the next step acts, even if
+    /// that one takes as long as any can.
+    fn excess(
         &self,
         sample: usize,
         level: f64,
         hold: usize,
         chance: f64,
-    ) -> Result<bool, PlantError> {
-        let Some([lowest, highest]) = self.joint.range else {
-            return Ok(true);
+        foresight: &impl Foresight,
+    ) -> Result<f64, PlantError> {
+        let Some(range) = self.joint.range else {
+            return Ok(0.0);
         };
-        let begin = self.clock.time_s(sample) + self.delay_s(sample, level, chance)?;
-        let next = self.clock.time_s(sample.saturating_add(hold)) + self.joint.delay.longest_s();
-        let moving_s = (next.min(self.clock.time_s(self.clock.samples())) - begin).max(0.0);
-        let from = self.drive.arrivals.angle_at(begin);
-        let to = from + self.chain.speed(level) * moving_s;
-        Ok([from, to].iter().all(|angle| (lowest..=highest).contains(angle)))
+        let intent = self.intent(sample, level, chance)?;
+        let next = self.clock.time_s(sample.saturating_add(hold)) + self.joint.longest_delay_s();
+        let end_s = next.min(self.clock.time_s(self.clock.samples()));
+        foresight.excess(&self.drive, intent, range, end_s)
     }
 
-    /// Sets `level` at `sample`.
-    fn set(&mut self, sample: usize, level: f64, chance: f64) -> Result<(), PlantError> {
-        let delay_s = self.delay_s(sample, level, chance)?;
-        let step = Step { sample, before: self.drive.level(), after: level, delay_s };
-        let acts_s = self.clock.time_s(sample) + delay_s;
-        self.drive.arrivals.push(self.drive.steps.len(), acts_s, self.chain.speed(level));
-        self.drive.steps.push(step);
-        Ok(())
-    }
-
-    /// Delay of a step to `level` at `sample`, in seconds.
-    fn delay_s(&self, sample: usize, level: f64, chance: f64) -> Result<f64, PlantError> {
+    /// The step to `level` at `sample`.
+    fn intent(&self, sample: usize, level: f64, chance: f64) -> Result<Intent, PlantError> {
         let (index, before) = (self.drive.steps.len(), self.drive.level());
         let progress = self.clock.progress(sample);
-        let at = Occasion { index, before, after: level, progress, chance };
-        self.joint.delay.delay_s(&at).ok_or_else(|| PlantError::ListedDelays {
+        let time_s = self.clock.time_s(sample);
+        let held = sample - self.drive.steps.last().map_or(1, |step| step.sample);
+        let held_s = held as f64 * self.clock.period().seconds();
+        let at = Occasion { index, before, after: level, progress, chance, held_s, time_s };
+        let delay_s = self.joint.delay_s(&at).ok_or_else(|| PlantError::ListedDelays {
             place: Place::joint(&self.joint.name),
             given: index,
             needed: index + 1,
-        })
+        })?;
+        let step = Step { sample, before, after: level, delay_s };
+        Ok(Intent { step, acts_s: time_s + delay_s, speed: self.chain.speed(level) })
     }
 }
 

@@ -85,6 +85,47 @@ pub enum PlantError {
     },
 }
 
+/// What a number may be.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Allowed {
+    /// Any finite number.
+    Finite,
+    /// Finite, above zero.
+    Positive,
+    /// Finite, zero or above.
+    NotNegative,
+    /// Finite, zero or below.
+    NotPositive,
+    /// From 0 to 1.
+    Share,
+    /// From 0, below 1.
+    BelowOne,
+}
+
+impl Allowed {
+    fn words(self) -> &'static str {
+        match self {
+            Self::Finite => "finite",
+            Self::Positive => "finite, above zero",
+            Self::NotNegative => "finite, not negative",
+            Self::NotPositive => "finite, zero or below",
+            Self::Share => "0 to 1",
+            Self::BelowOne => "0 or more, below 1",
+        }
+    }
+
+    fn fits(self, value: f64) -> bool {
+        match self {
+            Self::Finite => value.is_finite(),
+            Self::Positive => value.is_finite() && value > 0.0,
+            Self::NotNegative => value.is_finite() && value >= 0.0,
+            Self::NotPositive => value.is_finite() && value <= 0.0,
+            Self::Share => (0.0..=1.0).contains(&value),
+            Self::BelowOne => (0.0..1.0).contains(&value),
+        }
+    }
+}
+
 impl Place {
     /// The joint `name`.
     pub(super) fn joint(name: &str) -> Self {
@@ -100,6 +141,27 @@ impl Place {
         fits: impl FnOnce(&T) -> bool,
     ) -> Result<(), PlantError> {
         if fits(&value) { Ok(()) } else { Err(self.refuse(key, value, allowed)) }
+    }
+
+    /// An error about the number `key` unless its `value` is allowed.
+    pub(super) fn number(
+        &self,
+        key: &'static str,
+        value: f64,
+        allowed: Allowed,
+    ) -> Result<(), PlantError> {
+        self.require(key, value, allowed.words(), |value| allowed.fits(*value))
+    }
+
+    /// An error unless `range` is finite and in order.
+    pub(super) fn range(
+        &self,
+        [from, to]: [&'static str; 2],
+        range: [f64; 2],
+    ) -> Result<(), PlantError> {
+        self.number(from, range[0], Allowed::Finite)?;
+        let allowed = "finite, above the lower end";
+        self.require(to, range[1], allowed, |to| to.is_finite() && *to > range[0])
     }
 
     /// The error that `key` has a value other than `allowed`.

@@ -79,6 +79,17 @@ impl InputSpec {
         }
     }
 
+    /// The largest magnitude of a level, in input units.
+    pub(super) fn largest(&self) -> f64 {
+        let larger = |largest: f64, level: f64| largest.max(level.abs());
+        match self {
+            Self::Levels { levels, .. } => levels.iter().copied().fold(0.0, larger),
+            Self::Steps { steps, initial } => {
+                steps.iter().map(|(_, level)| *level).fold(initial.abs(), larger)
+            }
+        }
+    }
+
     /// Refuses what cannot be drawn or does not fit the record.
     pub(super) fn check(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
         match self {

@@ -43,26 +43,30 @@ mod cylinder;
 mod delay_law;
 mod drive;
 mod dynamics;
+pub mod effects;
 mod error;
 mod input;
+mod motion;
 mod random;
+pub mod scenario;
 mod sensor;
 mod spec;
 mod statics;
+mod together;
 mod truth;
 mod write;
 
 use crate::experiment::{Joint, Trial};
 
 use clock::Clock;
-use drive::Drive;
 use random::{Purpose, stream};
+use together::Driven;
 
 pub use cylinder::{CylinderSpec, Part};
 pub use delay_law::DelayLaw;
 pub use error::{Place, PlantError};
 pub use input::InputSpec;
-pub use spec::{JointSpec, PlantSpec, Ringing, SCHEMA};
+pub use spec::{JointSpec, PlantSpec, Ringing, SCHEMA, Spikes};
 pub use truth::StepTruth;
 pub use write::{write_log, write_truth};
 
@@ -92,39 +96,17 @@ pub fn simulate(spec: &PlantSpec) -> Result<Synthetic, PlantError> {
     spec.check()?;
     let clock = spec.clock()?;
     let (mut joints, mut truth) = (Vec::new(), Vec::new());
-    for (index, joint) in spec.joints.iter().enumerate() {
-        let moved = moved(joint, index, spec.seed, clock)?;
-        truth.extend(moved.truth);
+    let driven = together::drive(spec, clock)?;
+    for (index, (joint, Driven { drive, speed_changes, angles })) in
+        spec.joints.iter().zip(driven).enumerate()
+    {
+        truth.extend(truth::truth_of(&joint.name, TRIAL, drive.steps(), speed_changes, &clock));
         let mut noise = stream(spec.seed, index, Purpose::Noise);
-        let output = sensor::measure(joint, moved.angles, &mut noise);
-        joints.push(recorded(joint, &clock, moved.input, output)?);
+        let mut output = sensor::measure(joint, angles, &mut noise);
+        sensor::spike(joint, &mut output, &mut stream(spec.seed, index, Purpose::Spikes));
+        joints.push(recorded(joint, &clock, drive.input(clock.samples()), output)?);
     }
     Ok(Synthetic { joints, truth })
-}
-
-/// What a joint was told and did, before any sensor.
-struct Moved {
-    input: Vec<f64>,
-    angles: Vec<f64>,
-    truth: Vec<StepTruth>,
-}
-
-/// Moves `joint`, which has the number `index`.
-fn moved(joint: &JointSpec, index: usize, seed: u64, clock: Clock) -> Result<Moved, PlantError> {
-    let Some(spec) = &joint.cylinder else {
-        let drive = Drive::of(joint, index, seed, clock)?;
-        return Ok(Moved {
-            input: drive.input(clock.samples()),
-            angles: dynamics::angles(joint, drive.arrivals(), &clock),
-            truth: truth::truth_of(&joint.name, TRIAL, &drive, &clock),
-        });
-    };
-    let ride = cylinder::ride(joint, spec, index, seed, clock)?;
-    Ok(Moved {
-        input: drive::held(&ride.steps, joint.input.initial(), clock.samples()),
-        truth: truth::told(&joint.name, TRIAL, &ride.steps, ride.speed_changes, &clock),
-        angles: ride.angles,
-    })
 }
 
 /// The log of one joint.

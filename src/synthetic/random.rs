@@ -12,6 +12,10 @@ pub(super) enum Purpose {
     Delay,
     /// Noise of the sensor.
     Noise,
+    /// Spikes of the sensor.
+    Spikes,
+    /// What a scenario hides.
+    Scenario,
 }
 
 /// The random numbers of joint number `joint`, from 0, for one purpose.
@@ -28,6 +32,8 @@ pub(super) fn stream(seed: u64, joint: usize, purpose: Purpose) -> ChaCha8Rng {
         Purpose::Input => 0,
         Purpose::Delay => 1,
         Purpose::Noise => 2,
+        Purpose::Spikes => 3,
+        Purpose::Scenario => 4,
     });
     rng
 }

@@ -1,9 +1,9 @@
 //! What the log shows of the angle: noise, then the steps of an encoder.
 
-use rand::Rng;
+use rand::{Rng, RngExt as _};
 use rand_distr::{Distribution as _, StandardNormal};
 
-use super::spec::JointSpec;
+use super::spec::{JointSpec, Spikes};
 
 /// The measured output of `joint` for each of its `angles`.
 ///
@@ -25,6 +25,17 @@ pub(super) fn measure(joint: &JointSpec, angles: Vec<f64>, rng: &mut impl Rng) -
         quantised(angle + noise, joint.resolution)
     });
     noisy.collect()
+}
+
+/// Puts the spikes of `joint` on its measured `output`.
+pub(super) fn spike(joint: &JointSpec, output: &mut [f64], rng: &mut impl Rng) {
+    let Some(Spikes { share, size }) = joint.spikes else { return };
+    for value in output {
+        let [chance, side]: [f64; 2] = rng.random();
+        if chance < share {
+            *value += if side < 0.5 { size } else { -size };
+        }
+    }
 }
 
 fn quantised(value: f64, resolution: Option<f64>) -> f64 {

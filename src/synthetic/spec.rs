@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::clock::{Clock, whole};
 use super::cylinder::CylinderSpec;
-use super::delay_law::DelayLaw;
-use super::error::{Place, PlantError, above_zero};
+use super::delay_law::{DelayLaw, Occasion};
+use super::effects::{Change, Effects, Outside};
+use super::error::{Allowed, Place, PlantError, above_zero};
 use super::input::InputSpec;
 use crate::units::SamplePeriod;
 
@@ -30,10 +31,10 @@ const DEFAULT_SUBSTEPS: u32 = 20;
 const MAX_SUBSTEPS: u32 = 1000;
 
 /// Fewest time steps in a lag: the error of one step is then below 1e-5.
-const MIN_STEPS_PER_LAG: f64 = 4.0;
+pub(super) const MIN_STEPS_PER_LAG: f64 = 4.0;
 
 /// Fewest time steps in a period of ringing: the error of one step is below 1e-6.
-const MIN_STEPS_PER_PERIOD: f64 = 40.0;
+pub(super) const MIN_STEPS_PER_PERIOD: f64 = 40.0;
 
 /// Joints to simulate, as a plant file holds them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -71,8 +72,8 @@ pub struct JointSpec {
     pub start: f64,
     /// Lowest and highest angle that the experimenter allows, in output units. Only
     /// for an input that is drawn: a level whose hold could leave the range has its
-    /// sign flipped, and where that does not help another one is drawn. Noise and
-    /// the overshoot of ringing may still exceed it a little.
+    /// sign flipped, and where that does not help another one is drawn. Noise, the
+    /// overshoot of ringing and effects that no level can stop may still exceed it.
     pub range: Option<[f64; 2]>,
     /// Unit of the input.
     #[serde(default = "default::input_unit")]
@@ -104,6 +105,24 @@ pub struct JointSpec {
     pub noise_correlation: f64,
     /// Step of the encoder, in output units.
     pub resolution: Option<f64>,
+    /// Samples that are far off.
+    pub spikes: Option<Spikes>,
+    /// Effects that the catalogue of models has.
+    #[serde(default, skip_serializing_if = "Effects::is_empty")]
+    pub effect: Effects,
+    /// Effects that it does not have.
+    #[serde(default, skip_serializing_if = "Outside::is_empty")]
+    pub outside: Outside,
+}
+
+/// Single samples that are far off, as of a loose contact.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Spikes {
+    /// Part of the samples.
+    pub share: f64,
+    /// How far off, to either side, in output units.
+    pub size: f64,
 }
 
 /// A second-order response of the speed.
@@ -252,7 +271,33 @@ impl JointSpec {
             noise: 0.0,
             noise_correlation: 0.0,
             resolution: None,
+            spikes: None,
+            effect: Effects::default(),
+            outside: Outside::default(),
         }
+    }
+
+    /// Whether its motion is that of valve, lag and ringing alone.
+    pub(super) fn is_plain(&self) -> bool {
+        self.effect.only_delay() && self.outside.is_empty()
+    }
+
+    /// Delay of one step in seconds; `None` where the list of delays is too short.
+    pub(super) fn delay_s(&self, at: &Occasion) -> Option<f64> {
+        let law_s = self.delay.delay_s(at)?;
+        let variable_s = self.effect.variable_delay.map_or(0.0, |variable| {
+            let (rise, held_s, time_s) = (at.after - at.before, at.held_s, at.time_s);
+            variable.extra_s(&Change { rise, held_s, time_s })
+        });
+        let pilot_s = self.cylinder.as_ref().map_or(0.0, |spec| spec.pilot_s(at.before, at.after));
+        Some(law_s + variable_s + pilot_s)
+    }
+
+    /// A delay in seconds that no step exceeds.
+    pub(super) fn longest_delay_s(&self) -> f64 {
+        let variable_s = self.effect.variable_delay.map_or(0.0, |variable| variable.longest_s());
+        let pilot_s = self.cylinder.as_ref().map_or(0.0, CylinderSpec::longest_pilot_s);
+        self.delay.longest_s() + variable_s + pilot_s
     }
 
     fn check(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
@@ -264,7 +309,9 @@ impl JointSpec {
         self.check_statics(place)?;
         self.check_dynamics(clock, place)?;
         self.check_cylinder(clock, place)?;
-        self.check_sensor(place)
+        self.check_sensor(place)?;
+        self.effect.check(place, clock)?;
+        self.outside.check(place, clock)
     }
 
     fn check_words(&self, place: &Place) -> Result<(), PlantError> {
@@ -377,7 +424,12 @@ impl JointSpec {
         })?;
         let (key, allowed) = ("noise_correlation", "above -1, below 1");
         place.require(key, self.noise_correlation, allowed, |phi| phi.abs() < 1.0)?;
-        above_zero(place, "resolution", self.resolution)
+        above_zero(place, "resolution", self.resolution)?;
+        let Some(Spikes { share, size }) = self.spikes else {
+            return Ok(());
+        };
+        place.number("spikes.share", share, Allowed::Share)?;
+        place.number("spikes.size", size, Allowed::NotNegative)
     }
 }
 

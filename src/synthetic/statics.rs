@@ -1,8 +1,9 @@
 //! From a held input level to a steady speed.
 
+use super::effects::Valve;
 use super::spec::JointSpec;
 
-/// Dead band, saturation and gain, in this order.
+/// Effects of the valve, then dead band, saturation and gain, in this order.
 ///
 /// ```text
 ///   speed            ________  gain × limit
@@ -12,29 +13,38 @@ use super::spec::JointSpec;
 ///        lower | upper
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub(super) struct StaticChain {
+pub(super) struct StaticChain<'a> {
+    valve: Option<Valve<'a>>,
     dead_band: [f64; 2],
     limit: f64,
     gain: f64,
 }
 
-impl StaticChain {
+impl<'a> StaticChain<'a> {
     /// The chain of one joint. What it does not have has no effect.
-    pub(super) fn of(joint: &JointSpec) -> Self {
+    pub(super) fn of(joint: &'a JointSpec) -> Self {
+        let valve = (!joint.is_plain()).then(|| Valve::of(joint));
         let dead_band = joint.dead_band.unwrap_or([0.0; 2]);
         let limit = joint.saturation.unwrap_or(f64::INFINITY);
-        Self { dead_band, limit, gain: joint.gain }
+        Self { valve, dead_band, limit, gain: joint.gain }
     }
 
-    /// Steady speed at a held `level`, in output units per second.
+    /// Steady speed at a held `level`, in output units per second, of a valve that does
+    /// not stick and a joint without load.
+    pub(super) fn speed(&self, level: f64) -> f64 {
+        self.gain * self.opening(level)
+    }
+
+    /// Opening of the valve at a held `level`, in input units.
     ///
     /// ```text
-    /// v = gain × clamp(dead_band(level), -limit, limit)
+    /// clamp(dead_band(valve(level)), -limit, limit)
     /// ```
-    pub(super) fn speed(&self, level: f64) -> f64 {
+    pub(super) fn opening(&self, level: f64) -> f64 {
+        let level = self.valve.map_or(level, |valve| valve.opening(level));
         let [lower, upper] = self.dead_band;
         let shifted = (level - upper).max(0.0) + (level - lower).min(0.0);
-        self.gain * shifted.clamp(-self.limit, self.limit)
+        shifted.clamp(-self.limit, self.limit)
     }
 }
 
@@ -44,7 +54,7 @@ mod tests {
 
     #[test]
     fn is_zero_inside_the_band_shifted_outside_and_flat_beyond_the_limit() {
-        let chain = StaticChain { dead_band: [-0.2, 0.3], limit: 1.0, gain: 10.0 };
+        let chain = StaticChain { valve: None, dead_band: [-0.2, 0.3], limit: 1.0, gain: 10.0 };
         let cases = [(-0.1, 0.0), (0.3, 0.0), (0.5, 2.0), (-0.7, -5.0), (2.0, 10.0), (-2.0, -10.0)];
         for (level, speed) in cases {
             assert!((chain.speed(level) - speed).abs() < 1e-12, "at {level}");

@@ -1,7 +1,7 @@
 //! What is known about each step because it was made.
 
 use super::clock::Clock;
-use super::drive::{Drive, Step};
+use super::drive::Step;
 
 /// The truth about one step of one joint's input.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,30 +34,19 @@ pub struct StepTruth {
     pub overtaken: bool,
 }
 
-/// The truth about each step of `drive`, in their order.
-pub(super) fn truth_of(joint: &str, trial: &str, drive: &Drive, clock: &Clock) -> Vec<StepTruth> {
-    let mut changes: Vec<Option<f64>> = vec![None; drive.steps().len()];
-    for (index, change) in drive.arrivals().speed_changes() {
-        if let Some(slot) = changes.get_mut(index) {
-            *slot = Some(change);
-        }
-    }
-    told(joint, trial, drive.steps(), changes, clock)
-}
-
-/// The truth about each of `steps`, in their order, with the change of slope per second
-/// that each caused; none for one that was overtaken.
-pub(super) fn told(
+/// The truth about each of `steps`, in their order, with the change of speed that each
+/// caused; none for one that was overtaken.
+pub(super) fn truth_of(
     joint: &str,
     trial: &str,
     steps: &[Step],
-    changes: Vec<Option<f64>>,
+    speed_changes: Vec<Option<f64>>,
     clock: &Clock,
 ) -> Vec<StepTruth> {
     let ends = steps.iter().skip(1).map(|next| next.sample);
     let ends = ends.chain([clock.samples() + 1]);
     let period_s = clock.period().seconds();
-    let steps = steps.iter().zip(changes).zip(ends).enumerate();
+    let steps = steps.iter().zip(speed_changes).zip(ends).enumerate();
     let truth = steps.map(|(index, ((step, change), end))| StepTruth {
         joint: joint.to_owned(),
         trial: trial.to_owned(),

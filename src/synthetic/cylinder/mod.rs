@@ -13,7 +13,6 @@ mod linkage;
 mod load;
 mod machine;
 mod oil;
-mod operator;
 mod rig;
 mod spec;
 mod valve;
@@ -22,13 +21,13 @@ mod valve;
 mod physics;
 
 use super::clock::Clock;
-use super::drive::Step;
+use super::drive::Driver;
 use super::error::PlantError;
-use super::random::{Purpose, stream};
 use super::spec::JointSpec;
+use super::together::Driven;
 
 use machine::Machine;
-use operator::Operator;
+use rig::Rig;
 
 pub use spec::{CylinderSpec, Part};
 
@@ -41,17 +40,6 @@ const LITRE: f64 = 1e-3;
 /// Cubic metres per second in a litre per minute.
 const LITRE_PER_MINUTE: f64 = LITRE / 60.0;
 
-/// What a cylinder was told, and what it did.
-#[derive(Debug)]
-pub(super) struct Ride {
-    /// The steps of the input.
-    pub(super) steps: Vec<Step>,
-    /// Angle at each sample, in output units.
-    pub(super) angles: Vec<f64>,
-    /// Change of speed that each step caused, in output units per second; none for one that was overtaken.
-    pub(super) speed_changes: Vec<Option<f64>>,
-}
-
 /// Drives `joint`, which has the number `index`, by its `cylinder`.
 ///
 /// # Errors
@@ -62,7 +50,17 @@ pub(super) fn ride(
     index: usize,
     seed: u64,
     clock: Clock,
-) -> Result<Ride, PlantError> {
-    let mut input = stream(seed, index, Purpose::Input);
-    Operator::new(joint, cylinder, index, seed, clock).ride(&mut input)
+) -> Result<Driven, PlantError> {
+    let mut driver = Driver::new(joint, index, seed, clock);
+    let mut rig = Rig::new(joint, cylinder, clock);
+    let mut angles = Vec::new();
+    for sample in 1..=clock.samples() {
+        rig.run(clock.time_s(sample), driver.drive())?;
+        angles.push(rig.angle());
+        if driver.due() == Some(sample) {
+            driver.act(sample, &rig)?;
+        }
+    }
+    let speed_changes = rig.speed_changes(driver.drive());
+    Ok(Driven { drive: driver.into_drive(), speed_changes, angles })
 }

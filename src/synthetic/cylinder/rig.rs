@@ -1,83 +1,87 @@
-//! A machine that runs: its time, its state, and the levels on their way to it.
+//! A machine on its way through a record: its time, its state, the level that acts.
 
+use super::super::clock::Clock;
+use super::super::drive::{Drive, Foresight, Intent, beyond};
+use super::super::error::{Place, PlantError};
+use super::super::spec::JointSpec;
+use super::CylinderSpec;
 use super::machine::{Machine, State};
 
 /// Sound of an integration that is still well: no pressure beyond this, in pascal.
 const ABSURD_PRESSURE: f64 = 1e10;
 
-/// A level on its way to the spool.
-#[derive(Clone, Copy, Debug)]
-struct Coming {
-    index: usize,
-    time_s: f64,
-    level: f64,
-}
-
-/// Speed of the joint when the level of a step began to act.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Arrived {
-    /// Number of the step, from 0.
-    pub(super) index: usize,
-    /// Radians per second.
-    pub(super) speed: f64,
-}
+/// Time in which a cylinder has settled after a level began to act, in seconds: spool,
+/// then a swing of the oil.
+const SETTLING_S: f64 = 0.3;
 
 /// A running machine.
 #[derive(Clone, Debug)]
-pub(super) struct Rig {
+pub(super) struct Rig<'a> {
+    joint: &'a JointSpec,
+    clock: Clock,
     machine: Machine,
     longest_step_s: f64,
+    /// Radians in the unit of the output.
+    radians: f64,
     now_s: f64,
     state: State,
     level: f64,
-    coming: Vec<Coming>,
-    arrived: Vec<Arrived>,
+    /// Speed of the joint when each level that acted so far began to, in radians per second.
+    speeds: Vec<f64>,
 }
 
-impl Rig {
-    /// `machine` at time 0 in `state`, at `level`.
-    pub(super) fn new(machine: &Machine, longest_step_s: f64, state: State, level: f64) -> Self {
-        let (coming, arrived) = (Vec::new(), Vec::new());
-        Self { machine: *machine, longest_step_s, now_s: 0.0, state, level, coming, arrived }
+impl<'a> Rig<'a> {
+    /// The cylinder of `joint` at the first sample, at rest.
+    pub(super) fn new(joint: &'a JointSpec, cylinder: &CylinderSpec, clock: Clock) -> Self {
+        let machine = Machine::of(cylinder);
+        let radians = radians_per_output_unit(joint);
+        let level = joint.input.initial();
+        Self {
+            joint,
+            clock,
+            machine,
+            longest_step_s: cylinder.time_step_s,
+            radians,
+            now_s: 0.0,
+            state: machine.rest(joint.start * radians, level),
+            level,
+            speeds: Vec::new(),
+        }
     }
 
-    /// Lets step `index` to `level` act from `time_s` on; it must be the latest step.
+    /// Angle in output units.
+    pub(super) fn angle(&self) -> f64 {
+        self.state.angle / self.radians
+    }
+
+    /// Runs until `until_s`, told by `drive` what acts.
     ///
-    /// A later step that acts before an earlier one wins: the earlier level never comes
-    /// back.
-    pub(super) fn send(&mut self, index: usize, time_s: f64, level: f64) {
-        while self.coming.pop_if(|earlier| earlier.time_s >= time_s).is_some() {}
-        self.coming.push(Coming { index, time_s, level });
-    }
-
-    /// Runs until `until_s`; gives that time back, or the one at which the numbers ran away.
-    pub(super) fn run(&mut self, until_s: f64) -> Result<(), f64> {
-        while let Some(next) = self.coming.first().copied().filter(|next| next.time_s < until_s) {
-            self.integrate(next.time_s)?;
-            self.coming.remove(0);
-            self.level = next.level;
-            self.arrived.push(Arrived { index: next.index, speed: self.state.speed });
+    /// # Errors
+    /// [`PlantError::Runaway`].
+    pub(super) fn run(&mut self, until_s: f64, drive: &Drive) -> Result<(), PlantError> {
+        while let Some((index, arrival)) = drive.arrivals().later().get(self.speeds.len()) {
+            if arrival.time_s >= until_s {
+                break;
+            }
+            self.integrate(arrival.time_s)?;
+            self.level = drive.level_of(*index);
+            self.speeds.push(self.state.speed);
         }
         self.integrate(until_s)
     }
 
-    /// What the machine is like now.
-    pub(super) fn state(&self) -> &State {
-        &self.state
-    }
-
-    /// The steps that acted so far.
-    pub(super) fn arrived(&self) -> &[Arrived] {
-        &self.arrived
-    }
-
-    /// The steps that are still on their way.
-    pub(super) fn on_their_way(&self) -> impl Iterator<Item = usize> {
-        self.coming.iter().map(|coming| coming.index)
+    /// Change of speed from the moment each step of `drive` acts to the one the next does,
+    /// in output units per second; zero for a step on its way, none for one that was
+    /// overtaken.
+    pub(super) fn speed_changes(&self, drive: &Drive) -> Vec<Option<f64>> {
+        let ends = self.speeds.iter().skip(1).chain([&self.state.speed]);
+        let moved = self.speeds.iter().zip(ends).map(|(from, to)| (to - from) / self.radians);
+        let indices = drive.arrivals().later().iter().map(|(index, _)| *index);
+        drive.by_step(indices.zip(moved.chain(std::iter::repeat(0.0))))
     }
 
     /// Time steps of equal length until `until_s`, with the level held.
-    fn integrate(&mut self, until_s: f64) -> Result<(), f64> {
+    fn integrate(&mut self, until_s: f64) -> Result<(), PlantError> {
         let left_s = until_s - self.now_s;
         // A hair less, so that rounding does not add a step.
         let steps = (left_s / self.longest_step_s - 1e-6).ceil().max(1.0);
@@ -90,6 +94,51 @@ impl Rig {
         self.now_s = until_s;
         let pressures = self.state.pressures;
         let largest = pressures.piston.abs().max(pressures.rod.abs()).max(pressures.supply.abs());
-        if self.state.is_finite() && largest < ABSURD_PRESSURE { Ok(()) } else { Err(until_s) }
+        if self.state.is_finite() && largest < ABSURD_PRESSURE {
+            return Ok(());
+        }
+        Err(PlantError::Runaway { place: Place::joint(&self.joint.name), time_s: until_s })
     }
+}
+
+/// The experimenter tries each level out on a copy of the cylinder, until the next step
+/// acts and has settled.
+///
+/// Where the level before leads out of the range, this one must not lead further.
+impl Foresight for Rig<'_> {
+    /// That of the first sample outside, which is enough as there is no patience.
+    fn excess(
+        &self,
+        drive: &Drive,
+        intent: Intent,
+        range: [f64; 2],
+        end_s: f64,
+    ) -> Result<f64, PlantError> {
+        let mut drive = drive.clone();
+        drive.push(intent);
+        let mut ahead = self.clone();
+        let mut now_s = intent.acts_s + SETTLING_S;
+        ahead.run(now_s, &drive)?;
+        let range = [range[0].min(ahead.angle()), range[1].max(ahead.angle())];
+        let end_s = end_s + SETTLING_S;
+        while now_s < end_s {
+            now_s = (now_s + self.clock.period().seconds()).min(end_s);
+            ahead.run(now_s, &drive)?;
+            let excess = beyond(ahead.angle(), range);
+            if excess > 0.0 {
+                return Ok(excess);
+            }
+        }
+        Ok(0.0)
+    }
+
+    /// Never: a range that cannot be kept is an error.
+    fn patience(&self) -> Option<usize> {
+        None
+    }
+}
+
+/// Radians in the output's unit, which is `deg` or `rad`.
+fn radians_per_output_unit(joint: &JointSpec) -> f64 {
+    if joint.output_unit == "rad" { 1.0 } else { 1.0_f64.to_radians() }
 }

@@ -186,7 +186,7 @@ impl CylinderSpec {
     /// ```text
     /// pilot_small_s × exp(-|after - before| / pilot_small_input), and pilot_falling_s
     /// ```
-    pub(super) fn pilot_s(&self, before: f64, after: f64) -> f64 {
+    pub(in super::super) fn pilot_s(&self, before: f64, after: f64) -> f64 {
         if !self.has(Part::Pilot) {
             return 0.0;
         }
@@ -196,7 +196,7 @@ impl CylinderSpec {
     }
 
     /// Seconds that it adds at most.
-    pub(super) fn longest_pilot_s(&self) -> f64 {
+    pub(in super::super) fn longest_pilot_s(&self) -> f64 {
         if self.has(Part::Pilot) { self.pilot_small_s + self.pilot_falling_s } else { 0.0 }
     }
 

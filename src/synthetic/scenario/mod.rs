@@ -1,0 +1,441 @@
+//! Joints with something to find: effects hidden at a strength that is known in advance.
+//!
+//! A joint of random gain, delay and levels is driven for two minutes by random steps, a
+//! second one beside it. The effects are scaled until the nearest integrator with a delay
+//! is wrong by a multiple of the noise. That takes no model of the effects: whatever
+//! explains them later is judged by other formulas.
+
+mod integrator;
+mod recipe;
+
+use rand::RngExt as _;
+use rand_chacha::ChaCha8Rng;
+
+use super::delay_law::DelayLaw;
+use super::error::PlantError;
+use super::input::InputSpec;
+use super::random::{Purpose, stream};
+use super::spec::{JointSpec, PlantSpec};
+use super::{Synthetic, simulate};
+
+use recipe::{CATALOGUE, Chances, Hide, LARGEST_LEVEL, OUTSIDE};
+
+/// Length of a record in seconds.
+const DURATION_S: f64 = 120.0;
+
+/// Time steps in a sample of 10 ms: a millisecond each.
+const SUBSTEPS: u32 = 10;
+
+/// Angles within which the experimenter keeps the joint, in degrees.
+const RANGE: [f64; 2] = [-52.0, 52.0];
+
+/// Shortest and longest hold of a level in seconds.
+const HOLD_S: [f64; 2] = [0.5, 3.0];
+
+/// Levels of each sign.
+const LEVELS: usize = 5;
+
+/// How clearly an effect shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Strength {
+    /// The nearest integrator is wrong by about 3 times the noise, and 1.5 to 5 times.
+    Weak,
+    /// The nearest integrator is wrong by about 12 times the noise, and 8 times or more.
+    Clear,
+}
+
+/// The noise of a record.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// Standard deviation, in output units.
+    pub deviation: f64,
+    /// Correlation of neighbouring samples; 0 is white.
+    pub correlation: f64,
+}
+
+/// Why there is no such scenario.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ScenarioError {
+    /// No effect has this name.
+    #[error("no effect `{name}`; there are {known}")]
+    Unknown {
+        /// The name.
+        name: String,
+        /// All names.
+        known: String,
+    },
+    /// An effect is named twice.
+    #[error("the effect `{name}` is named twice")]
+    Twice {
+        /// Its name.
+        name: &'static str,
+    },
+    /// No plausible size of the effect makes the error that is wanted.
+    #[error(
+        "`{name}` makes an error of {found:.2} times the noise where {wanted} is wanted; choose \
+         another seed or another noise"
+    )]
+    OutOfReach {
+        /// The effect.
+        name: &'static str,
+        /// The nearest error, in deviations of the noise.
+        found: f64,
+        /// The error that is wanted, in the same.
+        wanted: f64,
+    },
+    /// The plant cannot be simulated.
+    #[error("the plant cannot be simulated")]
+    Plant {
+        /// Why.
+        #[from]
+        source: PlantError,
+    },
+}
+
+/// A plant, and what is hidden in its first joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// The plant: [`simulate`] makes its log, and its numbers are the truth. The second
+    /// joint hides nothing.
+    pub plant: PlantSpec,
+    /// Names of what the first joint hides.
+    pub hidden: Vec<&'static str>,
+    /// Root mean square of the angle less that of the nearest integrator, which starts
+    /// anew at each step of the input, in deviations of the noise.
+    pub error_over_noise: f64,
+}
+
+/// Names of the effects of the catalogue that can be hidden.
+pub fn catalogue() -> impl Iterator<Item = &'static str> {
+    CATALOGUE.iter().map(|(name, _)| *name)
+}
+
+/// Names of the effects outside the catalogue that can be hidden.
+pub fn outside() -> impl Iterator<Item = &'static str> {
+    OUTSIDE.iter().map(|(name, _)| *name)
+}
+
+/// Effects of the catalogue that leave different traces; one of each is drawn.
+const FAMILIES: [&[&str]; 5] = [
+    &["dead_band", "stiction", "input_saturation", "flow_curve", "coulomb_friction"],
+    &["input_offset", "direction_gain", "leakage", "gravity_load", "position_gain"],
+    &["rate_limit", "variable_delay", "actuator_lag", "resonance"],
+    &["thermal_drift", "supply_droop"],
+    &["end_stop", "backlash"],
+];
+
+/// `count` effects of the catalogue, drawn by `seed`, no two of which look alike; at most
+/// five.
+pub fn draw(count: usize, seed: u64) -> Vec<&'static str> {
+    let mut random = stream(seed, CATALOGUE.len() + OUTSIDE.len(), Purpose::Scenario);
+    let mut families = FAMILIES.to_vec();
+    let mut drawn = Vec::new();
+    while drawn.len() < count && !families.is_empty() {
+        let family = families.swap_remove(random.random_range(0..families.len()));
+        drawn.extend(family.get(random.random_range(0..family.len())));
+    }
+    drawn
+}
+
+impl Strength {
+    /// Error of the nearest integrator that is aimed at, in deviations of the noise.
+    fn wanted(self) -> f64 {
+        match self {
+            Self::Weak => 3.0,
+            Self::Clear => 12.0,
+        }
+    }
+
+    /// Whether an error is what the strength means.
+    fn holds(self, error: f64) -> bool {
+        match self {
+            Self::Weak => (1.5..=5.0).contains(&error),
+            Self::Clear => error >= 8.0,
+        }
+    }
+}
+
+impl Noise {
+    /// White noise.
+    pub fn white(deviation: f64) -> Self {
+        Self { deviation, correlation: 0.0 }
+    }
+
+    /// Noise of which neighbouring samples correlate.
+    pub fn correlated(deviation: f64, correlation: f64) -> Self {
+        Self { deviation, correlation }
+    }
+}
+
+/// An effect that is hidden, and how much of it.
+#[derive(Clone, Copy, Debug)]
+struct Secret {
+    name: &'static str,
+    hide: Hide,
+    chances: Chances,
+    amount: f64,
+}
+
+impl Secret {
+    /// The effect `name`, its particulars drawn by `seed`.
+    fn new(name: &str, seed: u64) -> Result<Self, ScenarioError> {
+        let mut all = CATALOGUE.iter().chain(&OUTSIDE).enumerate();
+        let found = all.find(|(_, (known, _))| *known == name);
+        let Some((index, (name, hide))) = found else {
+            let known: Vec<&str> = catalogue().chain(outside()).collect();
+            return Err(ScenarioError::Unknown { name: name.to_owned(), known: known.join(", ") });
+        };
+        let chances = Chances(stream(seed, index, Purpose::Scenario).random());
+        Ok(Self { name, hide: *hide, chances, amount: FIRST_AMOUNT })
+    }
+
+    fn put_on(&self, joint: &mut JointSpec) {
+        (self.hide)(joint, self.amount, self.chances);
+    }
+}
+
+/// Amount of an effect before it is known what it does.
+const FIRST_AMOUNT: f64 = 0.1;
+
+/// Least amount that is tried.
+const LEAST_AMOUNT: f64 = 1e-4;
+
+/// Ratio of two amounts below which nothing between is tried: an effect that only depends
+/// on which level is beyond a threshold jumps.
+const DISTINCT: f64 = 1.02;
+
+/// Counts more than any distance: an error that is not what the strength means.
+const MISSED: f64 = 100.0;
+
+/// Amounts of one effect that are tried on one input.
+const TRIES: usize = 14;
+
+/// Distance of the error from what is wanted at which no further amount is tried, as a
+/// natural logarithm.
+const NEAR: f64 = 0.1;
+
+/// Inputs that are tried until amount and input fit together.
+const ROUNDS: usize = 8;
+
+impl Scenario {
+    /// A joint that hides the effects of the given names, each at `strength`; no name, no
+    /// effect. The same arguments give the same scenario.
+    ///
+    /// # Errors
+    /// [`ScenarioError`]: for a name that is unknown or there twice, or where an effect
+    /// cannot be that strong.
+    ///
+    /// # Examples
+    /// ```
+    /// use tauscope::synthetic::scenario::{Noise, Scenario, Strength};
+    /// use tauscope::synthetic::simulate;
+    ///
+    /// let hidden = Scenario::new(&["dead_band"], Strength::Clear, Noise::white(0.05), 1)?;
+    /// assert!(hidden.plant.joints[0].effect.dead_band.is_some());
+    /// assert!(hidden.error_over_noise > 8.0);
+    /// let log = simulate(&hidden.plant)?;
+    /// assert_eq!(log.joints[0].trials[0].len(), 12_000);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn new(
+        hidden: &[&str],
+        strength: Strength,
+        noise: Noise,
+        seed: u64,
+    ) -> Result<Self, ScenarioError> {
+        let secrets = hidden.iter().map(|name| Secret::new(name, seed));
+        let mut secrets = secrets.collect::<Result<Vec<_>, _>>()?;
+        for (index, secret) in secrets.iter().enumerate() {
+            if secrets.iter().skip(index + 1).any(|other| other.name == secret.name) {
+                return Err(ScenarioError::Twice { name: secret.name });
+            }
+        }
+        let bare = bare(seed);
+        let mut given = None;
+        for secret in &mut secrets {
+            given = Some(settle(secret, &bare, strength, noise.deviation)?);
+        }
+        let given = match given {
+            Some(given) if secrets.len() == 1 => given,
+            _ => with_input_for(&bare, &secrets)?,
+        };
+        let silent = with(&given, &secrets);
+        let error_over_noise = error(&simulate(&silent)?) / noise.deviation;
+        let hidden = secrets.iter().map(|secret| secret.name).collect();
+        Ok(Self { plant: noisy(silent, noise), hidden, error_over_noise })
+    }
+}
+
+/// A joint that hides nothing, and another one beside it, without noise.
+fn bare(seed: u64) -> PlantSpec {
+    let mut random = stream(seed, CATALOGUE.len() + OUTSIDE.len() + 1, Purpose::Scenario);
+    let joints = ["joint", "other"].map(|name| {
+        let input = InputSpec::Levels { levels: levels(&mut random), hold_s: HOLD_S };
+        let delay = DelayLaw::Constant { seconds: random.random_range(0.05..0.3) };
+        let gain = random.random_range(6.0..12.0);
+        JointSpec { gain, range: Some(RANGE), ..JointSpec::new(name, input, delay) }
+    });
+    PlantSpec { substeps: SUBSTEPS, ..PlantSpec::new(seed, DURATION_S, joints.to_vec()) }
+}
+
+/// Zero and some levels of both signs, of which the smallest are small.
+fn levels(random: &mut ChaCha8Rng) -> Vec<f64> {
+    let step = LARGEST_LEVEL / LEVELS as f64;
+    let mut levels = vec![0.0];
+    for sign in [1.0, -1.0] {
+        for k in 0..LEVELS {
+            let part = if k == 0 { (0.2, 0.5) } else { (0.2, 1.0) };
+            let level = step * (k as f64 + random.random_range(part.0..part.1));
+            levels.push(sign * (100.0 * level).round() / 100.0);
+        }
+    }
+    levels
+}
+
+/// `ideal` with `secrets` in its first joint.
+fn with(ideal: &PlantSpec, secrets: &[Secret]) -> PlantSpec {
+    let mut plant = ideal.clone();
+    if let Some(joint) = plant.joints.first_mut() {
+        for secret in secrets {
+            secret.put_on(joint);
+        }
+    }
+    plant
+}
+
+/// `bare` with given steps, such that the joint with `secrets` keeps its range.
+fn with_input_for(bare: &PlantSpec, secrets: &[Secret]) -> Result<PlantSpec, PlantError> {
+    let made = simulate(&with(bare, secrets))?;
+    let mut given = bare.clone();
+    for joint in &mut given.joints {
+        let steps = made.truth.iter().filter(|step| step.joint == joint.name);
+        let steps = steps.map(|step| (step.p, step.input_after)).collect();
+        (joint.input, joint.range) = (InputSpec::Steps { steps, initial: 0.0 }, None);
+    }
+    Ok(given)
+}
+
+/// Finds the amount of `secret` that makes the error which `strength` means; the plant
+/// with the input that goes with it.
+///
+/// The amount sets the input that keeps the range, and the input the amount: in turns.
+fn settle(
+    secret: &mut Secret,
+    bare: &PlantSpec,
+    strength: Strength,
+    deviation: f64,
+) -> Result<PlantSpec, ScenarioError> {
+    let mut found = 0.0;
+    let mut ideal = with_input_for(bare, &[*secret])?;
+    for _ in 0..ROUNDS {
+        secret.amount = calibrated(*secret, &ideal, strength, deviation)?;
+        ideal = with_input_for(bare, &[*secret])?;
+        found = error(&simulate(&with(&ideal, &[*secret]))?) / deviation;
+        if strength.holds(found) {
+            return Ok(ideal);
+        }
+    }
+    Err(ScenarioError::OutOfReach { name: secret.name, found, wanted: strength.wanted() })
+}
+
+/// The amount of `secret` whose error on one input is nearest to what is wanted.
+///
+/// The error grows with the amount, about in proportion: the next amount follows from the
+/// last one, and where that leaves what is known the middle is taken.
+fn calibrated(
+    mut secret: Secret,
+    ideal: &PlantSpec,
+    strength: Strength,
+    deviation: f64,
+) -> Result<f64, PlantError> {
+    let (mut too_little, mut too_much) = (LEAST_AMOUNT, 1.0);
+    let (mut best, mut nearest) = (secret.amount, f64::INFINITY);
+    for _ in 0..TRIES {
+        let found = error(&simulate(&with(ideal, &[secret]))?) / deviation;
+        let ratio = found / strength.wanted();
+        let missed = if strength.holds(found) { 0.0 } else { MISSED };
+        let distance = ratio.ln().abs() + missed;
+        if distance < nearest {
+            (best, nearest) = (secret.amount, distance);
+        }
+        if distance < NEAR {
+            break;
+        }
+        let side = if ratio < 1.0 { &mut too_little } else { &mut too_much };
+        *side = secret.amount;
+        let next = secret.amount / ratio;
+        let inside = next > too_little && next < too_much;
+        secret.amount = if inside { next } else { (too_little * too_much).sqrt() };
+        if too_much / too_little < DISTINCT {
+            break;
+        }
+    }
+    Ok(best)
+}
+
+/// Error of the nearest integrator, in output units.
+fn error(made: &Synthetic) -> f64 {
+    let trial = made.joints.first().and_then(|joint| joint.trials.first());
+    trial.map_or(0.0, integrator::error)
+}
+
+fn noisy(mut plant: PlantSpec, noise: Noise) -> PlantSpec {
+    for joint in &mut plant.joints {
+        (joint.noise, joint.noise_correlation) = (noise.deviation, noise.correlation);
+    }
+    plant
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scenario(hidden: &[&str], strength: Strength, seed: u64) -> Scenario {
+        Scenario::new(hidden, strength, Noise::white(0.05), seed).unwrap()
+    }
+
+    #[test]
+    fn a_weak_effect_is_weak_and_a_clear_one_clear() {
+        for (strength, allowed) in [(Strength::Weak, 1.5..=5.0), (Strength::Clear, 8.0..=50.0)] {
+            let found = scenario(&["direction_gain"], strength, 4);
+            assert!(allowed.contains(&found.error_over_noise), "{}", found.error_over_noise);
+        }
+    }
+
+    #[test]
+    fn where_nothing_is_hidden_the_nearest_integrator_is_right() {
+        let nothing = scenario(&[], Strength::Clear, 1);
+        assert!(nothing.error_over_noise < 0.01, "{}", nothing.error_over_noise);
+        assert!(nothing.plant.joints[0].is_plain());
+    }
+
+    #[test]
+    fn the_same_arguments_give_the_same_plant() {
+        let again = || scenario(&["variable_delay"], Strength::Weak, 7);
+        assert_eq!(again(), again());
+        assert_ne!(again().plant, scenario(&["variable_delay"], Strength::Weak, 8).plant);
+    }
+
+    #[test]
+    fn what_is_drawn_together_comes_from_different_families() {
+        for seed in 0..50 {
+            let drawn = draw(3, seed);
+            let family = |name| FAMILIES.iter().position(|family| family.contains(name));
+            let mut families: Vec<_> = drawn.iter().map(family).collect();
+            families.sort_unstable();
+            families.dedup();
+            assert_eq!(families.len(), 3, "{drawn:?}");
+        }
+        let all: Vec<&str> = FAMILIES.concat();
+        assert!(catalogue().all(|name| all.contains(&name)) && all.len() == CATALOGUE.len());
+    }
+
+    #[test]
+    fn an_unknown_name_and_a_name_twice_are_refused() {
+        let new = |names: &[&str]| Scenario::new(names, Strength::Weak, Noise::white(0.05), 1);
+        assert!(matches!(new(&["magic"]), Err(ScenarioError::Unknown { .. })));
+        let twice = new(&["leakage", "leakage"]);
+        assert!(matches!(twice, Err(ScenarioError::Twice { name: "leakage" })));
+    }
+}

@@ -1,0 +1,124 @@
+//! All joints of a plant side by side: they share a pump, and see one another's demand, but for
+//! cylinders, each of which has a pump of its own.
+
+use super::clock::Clock;
+use super::cylinder;
+use super::drive::{Drive, Driver};
+use super::dynamics;
+use super::error::PlantError;
+use super::motion::{Motion, demands};
+use super::spec::{JointSpec, PlantSpec};
+
+/// What became of one joint.
+#[derive(Clone, Debug)]
+pub(super) struct Driven {
+    pub(super) drive: Drive,
+    /// Change of speed that each step caused, in output units per second; none for one
+    /// that was overtaken.
+    pub(super) speed_changes: Vec<Option<f64>>,
+    /// What an ideal sensor shows at each sample.
+    pub(super) angles: Vec<f64>,
+}
+
+impl Driven {
+    /// A joint that each step gives another steady speed.
+    fn steadily(drive: Drive, angles: Vec<f64>) -> Self {
+        Self { speed_changes: drive.speed_changes(), drive, angles }
+    }
+}
+
+/// Drives all joints of `spec`, in their order.
+///
+/// # Errors
+/// [`PlantError::Range`], [`PlantError::ListedDelays`] and [`PlantError::Runaway`].
+pub(super) fn drive(spec: &PlantSpec, clock: Clock) -> Result<Vec<Driven>, PlantError> {
+    let mut actors = Vec::new();
+    for (index, joint) in spec.joints.iter().enumerate() {
+        actors.push(Actor::new(joint, index, spec.seed, clock)?);
+    }
+    let sharing = spec.joints.iter().filter(|joint| joint.cylinder.is_none()).count();
+    let mut demands = vec![0.0; actors.len()];
+    for sample in 1..=clock.samples() {
+        for (actor, demand) in actors.iter_mut().zip(&mut demands) {
+            *demand = actor.act(sample)?;
+        }
+        let sum: f64 = demands.iter().sum();
+        let others = (sharing as f64 - 1.0).max(1.0);
+        for (actor, demand) in actors.iter_mut().zip(&demands) {
+            actor.pass(sample, (sum - demand) / others);
+        }
+    }
+    Ok(actors.into_iter().map(Actor::driven).collect())
+}
+
+/// A joint of a plant.
+enum Actor<'a> {
+    /// It depends on no other one, so that it has run already.
+    Plain { driven: Driven, demands: Vec<f64> },
+    /// It has a pump of its own, so that it has run already.
+    Cylinder(Driven),
+    /// It runs with the others.
+    Hindered(Box<Hindered<'a>>),
+}
+
+/// A joint with effects.
+struct Hindered<'a> {
+    driver: Driver<'a>,
+    motion: Motion<'a>,
+    angles: Vec<f64>,
+}
+
+impl<'a> Actor<'a> {
+    fn new(
+        joint: &'a JointSpec,
+        index: usize,
+        seed: u64,
+        clock: Clock,
+    ) -> Result<Self, PlantError> {
+        if let Some(cylinder) = &joint.cylinder {
+            return Ok(Self::Cylinder(cylinder::ride(joint, cylinder, index, seed, clock)?));
+        }
+        if joint.is_plain() {
+            let drive = Drive::of(joint, index, seed, clock)?;
+            let demands = demands(joint, &drive, &clock);
+            let angles = dynamics::angles(joint, drive.arrivals(), &clock);
+            return Ok(Self::Plain { driven: Driven::steadily(drive, angles), demands });
+        }
+        let driver = Driver::new(joint, index, seed, clock);
+        let motion = Motion::new(joint, clock);
+        Ok(Self::Hindered(Box::new(Hindered { driver, motion, angles: Vec::new() })))
+    }
+
+    /// Sets the step that is due at `sample`; its demand for oil there.
+    fn act(&mut self, sample: usize) -> Result<f64, PlantError> {
+        match self {
+            Self::Cylinder(_) => Ok(0.0),
+            Self::Plain { demands, .. } => Ok(demands.get(sample - 1).copied().unwrap_or(0.0)),
+            Self::Hindered(hindered) => {
+                let Hindered { driver, motion, .. } = hindered.as_mut();
+                if driver.due() == Some(sample) {
+                    driver.act(sample, motion)?;
+                }
+                Ok(motion.demand())
+            }
+        }
+    }
+
+    /// Lets the time from `sample` to the next pass.
+    fn pass(&mut self, sample: usize, others: f64) {
+        if let Self::Hindered(hindered) = self {
+            let Hindered { driver, motion, angles } = hindered.as_mut();
+            angles.push(motion.shown());
+            motion.pass(sample, driver.drive(), others);
+        }
+    }
+
+    fn driven(self) -> Driven {
+        match self {
+            Self::Plain { driven, .. } | Self::Cylinder(driven) => driven,
+            Self::Hindered(hindered) => {
+                Driven::steadily(hindered.driver.into_drive(), hindered.angles)
+            }
+        }
+    }
+}
