@@ -37,7 +37,7 @@ enum Command {
     Add(Box<add::Args>),
     Improve(Box<improve::Args>),
     Effects(effects::Args),
-    Simulate(simulate::Args),
+    Simulate(Box<simulate::Args>),
 }
 
 /// What became of a command that ran to its end.

@@ -24,6 +24,12 @@ pub enum PlantError {
         /// Line, column and cause.
         source: Box<toml::de::Error>,
     },
+    /// A number, such as a very large seed, has no place in TOML.
+    #[error("the plant cannot be written")]
+    Write {
+        /// Which, and why.
+        source: Box<toml::ser::Error>,
+    },
     /// The file follows another schema.
     #[error("the schema is `{found}`, not `{expected}`", expected = super::SCHEMA)]
     Schema {
@@ -41,6 +47,30 @@ pub enum PlantError {
         value: String,
         /// What it may be.
         allowed: &'static str,
+    },
+    /// No effect has this name.
+    #[error("no effect `{name}`{}; known: {known}", nearest.map_or(String::new(), |near| format!(", did you mean `{near}`")))]
+    Unknown {
+        /// The name.
+        name: String,
+        /// The name that is most like it.
+        nearest: Option<&'static str>,
+        /// All names.
+        known: String,
+    },
+    /// An effect is there twice.
+    #[error("the effect `{name}` is named twice")]
+    Twice {
+        /// Its name.
+        name: &'static str,
+    },
+    /// The numbers given for an effect are not those it has.
+    #[error("effect `{name}`: {}", cause.message())]
+    Numbers {
+        /// The effect.
+        name: &'static str,
+        /// Which number is missing or too much.
+        cause: Box<toml::de::Error>,
     },
     /// The law `listed` has too few delays for an input that is drawn, or another
     /// number than the steps that are given.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::clock::{Clock, whole};
 use super::cylinder::CylinderSpec;
 use super::delay_law::{DelayLaw, Occasion};
-use super::effects::{Change, Effects, Outside};
+use super::effects::{self, Change, Effects, Outside};
 use super::error::{Allowed, Place, PlantError, above_zero};
 use super::input::InputSpec;
 use crate::units::SamplePeriod;
@@ -205,6 +205,14 @@ impl PlantSpec {
         Ok(spec)
     }
 
+    /// The text of a plant file, which gives the same log.
+    ///
+    /// # Errors
+    /// [`PlantError::Write`] for what TOML cannot hold.
+    pub fn to_toml(&self) -> Result<String, PlantError> {
+        toml::to_string(self).map_err(|source| PlantError::Write { source: Box::new(source) })
+    }
+
     /// Refuses a plant that cannot be simulated.
     ///
     /// # Errors
@@ -275,6 +283,30 @@ impl JointSpec {
             effect: Effects::default(),
             outside: Outside::default(),
         }
+    }
+
+    /// Hides the effect `name`, of the catalogue or outside it, with these numbers: the
+    /// keys of its table in a plant file. An effect of that name that is there goes.
+    ///
+    /// # Errors
+    /// [`PlantError::Unknown`] and [`PlantError::Numbers`].
+    ///
+    /// # Examples
+    /// ```
+    /// # use tauscope::synthetic::scenario::ideal;
+    /// let mut plant = ideal(1);
+    /// plant.joints[0].hide("backlash", &[("width".to_owned(), 1.5)])?;
+    /// assert!(plant.joints[0].effect.backlash.is_some());
+    /// # Ok::<(), tauscope::synthetic::PlantError>(())
+    /// ```
+    pub fn hide(&mut self, name: &str, numbers: &[(String, f64)]) -> Result<(), PlantError> {
+        let name = effects::name(name)?;
+        if effects::CATALOGUE.contains(&name) {
+            self.effect = effects::with_part(&self.effect, name, numbers)?;
+        } else {
+            self.outside = effects::with_part(&self.outside, name, numbers)?;
+        }
+        Ok(())
     }
 
     /// Whether its motion is that of valve, lag and ringing alone.

@@ -10,6 +10,7 @@ mod play;
 mod timing;
 mod valve;
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::clock::Clock;
@@ -88,6 +89,65 @@ pub struct Outside {
     pub disturbance: Option<Disturbance>,
     /// The sensor of the angle runs out of true.
     pub sensor_nonlinearity: Option<SensorNonlinearity>,
+}
+
+/// Names of the effects of the catalogue.
+pub const CATALOGUE: [&str; 18] = [
+    "input_offset",
+    "dead_band",
+    "stiction",
+    "input_saturation",
+    "flow_curve",
+    "direction_gain",
+    "rate_limit",
+    "variable_delay",
+    "actuator_lag",
+    "resonance",
+    "coulomb_friction",
+    "gravity_load",
+    "position_gain",
+    "thermal_drift",
+    "supply_droop",
+    "leakage",
+    "end_stop",
+    "backlash",
+];
+
+/// Names of the effects outside it.
+pub const OUTSIDE: [&str; 5] =
+    ["input_notch", "creep_memory", "sticky_spot", "disturbance", "sensor_nonlinearity"];
+
+/// The name of the effect that `text` names.
+///
+/// # Errors
+/// [`PlantError::Unknown`].
+pub fn name(text: &str) -> Result<&'static str, PlantError> {
+    let known = || CATALOGUE.into_iter().chain(OUTSIDE);
+    known().find(|name| *name == text).ok_or_else(|| {
+        let likeness = |name: &&str| strsim::jaro_winkler(name, text);
+        let nearest = known().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+        PlantError::Unknown {
+            name: text.to_owned(),
+            nearest: nearest.filter(|name| likeness(name) > ALIKE),
+            known: known().collect::<Vec<_>>().join(", "),
+        }
+    })
+}
+
+/// Likeness, from 0 to 1, above which a name is proposed.
+const ALIKE: f64 = 0.8;
+
+/// `group` with the effect `name` of these numbers in the place of what it had.
+pub(super) fn with_part<T: Serialize + DeserializeOwned>(
+    group: &T,
+    name: &'static str,
+    numbers: &[(String, f64)],
+) -> Result<T, PlantError> {
+    let mut table = toml::Table::try_from(group).unwrap_or_default();
+    let part = numbers.iter().map(|(key, number)| (key.clone(), (*number).into()));
+    table.insert(name.to_owned(), toml::Value::Table(part.collect()));
+    let group = table.try_into();
+    group.map_err(|cause| PlantError::Numbers { name, cause: Box::new(cause) })
 }
 
 /// An effect whose numbers can be checked.

@@ -12,13 +12,14 @@ use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 
 use super::delay_law::DelayLaw;
+use super::effects::{self, CATALOGUE, OUTSIDE};
 use super::error::PlantError;
 use super::input::InputSpec;
 use super::random::{Purpose, stream};
 use super::spec::{JointSpec, PlantSpec};
 use super::{Synthetic, simulate};
 
-use recipe::{CATALOGUE, Chances, Hide, LARGEST_LEVEL, OUTSIDE};
+use recipe::{Chances, LARGEST_LEVEL};
 
 /// Length of a record in seconds.
 const DURATION_S: f64 = 120.0;
@@ -28,6 +29,9 @@ const SUBSTEPS: u32 = 10;
 
 /// Angles within which the experimenter keeps the joint, in degrees.
 const RANGE: [f64; 2] = [-52.0, 52.0];
+
+/// Angle that is not exceeded either way where an effect is sized, in degrees.
+const FARTHEST: f64 = 60.0;
 
 /// Shortest and longest hold of a level in seconds.
 const HOLD_S: [f64; 2] = [0.5, 3.0];
@@ -57,20 +61,6 @@ pub struct Noise {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ScenarioError {
-    /// No effect has this name.
-    #[error("no effect `{name}`; there are {known}")]
-    Unknown {
-        /// The name.
-        name: String,
-        /// All names.
-        known: String,
-    },
-    /// An effect is named twice.
-    #[error("the effect `{name}` is named twice")]
-    Twice {
-        /// Its name.
-        name: &'static str,
-    },
     /// No plausible size of the effect makes the error that is wanted.
     #[error(
         "`{name}` makes an error of {found:.2} times the noise where {wanted} is wanted; choose \
@@ -84,8 +74,8 @@ pub enum ScenarioError {
         /// The error that is wanted, in the same.
         wanted: f64,
     },
-    /// The plant cannot be simulated.
-    #[error("the plant cannot be simulated")]
+    /// An effect is unknown or there twice, or the plant cannot be simulated.
+    #[error(transparent)]
     Plant {
         /// Why.
         #[from]
@@ -104,16 +94,6 @@ pub struct Scenario {
     /// Root mean square of the angle less that of the nearest integrator, which starts
     /// anew at each step of the input, in deviations of the noise.
     pub error_over_noise: f64,
-}
-
-/// Names of the effects of the catalogue that can be hidden.
-pub fn catalogue() -> impl Iterator<Item = &'static str> {
-    CATALOGUE.iter().map(|(name, _)| *name)
-}
-
-/// Names of the effects outside the catalogue that can be hidden.
-pub fn outside() -> impl Iterator<Item = &'static str> {
-    OUTSIDE.iter().map(|(name, _)| *name)
 }
 
 /// Effects of the catalogue that leave different traces; one of each is drawn.
@@ -172,26 +152,21 @@ impl Noise {
 #[derive(Clone, Copy, Debug)]
 struct Secret {
     name: &'static str,
-    hide: Hide,
     chances: Chances,
     amount: f64,
 }
 
 impl Secret {
     /// The effect `name`, its particulars drawn by `seed`.
-    fn new(name: &str, seed: u64) -> Result<Self, ScenarioError> {
-        let mut all = CATALOGUE.iter().chain(&OUTSIDE).enumerate();
-        let found = all.find(|(_, (known, _))| *known == name);
-        let Some((index, (name, hide))) = found else {
-            let known: Vec<&str> = catalogue().chain(outside()).collect();
-            return Err(ScenarioError::Unknown { name: name.to_owned(), known: known.join(", ") });
-        };
-        let chances = Chances(stream(seed, index, Purpose::Scenario).random());
-        Ok(Self { name, hide: *hide, chances, amount: FIRST_AMOUNT })
+    fn new(name: &str, seed: u64) -> Result<Self, PlantError> {
+        let name = effects::name(name)?;
+        let index = CATALOGUE.iter().chain(&OUTSIDE).position(|known| *known == name);
+        let chances = stream(seed, index.unwrap_or_default(), Purpose::Scenario).random();
+        Ok(Self { name, chances: Chances(chances), amount: FIRST_AMOUNT })
     }
 
     fn put_on(&self, joint: &mut JointSpec) {
-        (self.hide)(joint, self.amount, self.chances);
+        recipe::hide(self.name, joint, self.amount, self.chances);
     }
 }
 
@@ -248,10 +223,10 @@ impl Scenario {
         let mut secrets = secrets.collect::<Result<Vec<_>, _>>()?;
         for (index, secret) in secrets.iter().enumerate() {
             if secrets.iter().skip(index + 1).any(|other| other.name == secret.name) {
-                return Err(ScenarioError::Twice { name: secret.name });
+                return Err(PlantError::Twice { name: secret.name }.into());
             }
         }
-        let bare = bare(seed);
+        let bare = ideal(seed);
         let mut given = None;
         for secret in &mut secrets {
             given = Some(settle(secret, &bare, strength, noise.deviation)?);
@@ -267,8 +242,9 @@ impl Scenario {
     }
 }
 
-/// A joint that hides nothing, and another one beside it, without noise.
-fn bare(seed: u64) -> PlantSpec {
+/// A joint that hides nothing, and another one beside it, without noise: gains, delays and
+/// levels are drawn by `seed`.
+pub fn ideal(seed: u64) -> PlantSpec {
     let mut random = stream(seed, CATALOGUE.len() + OUTSIDE.len() + 1, Purpose::Scenario);
     let joints = ["joint", "other"].map(|name| {
         let input = InputSpec::Levels { levels: levels(&mut random), hold_s: HOLD_S };
@@ -319,7 +295,8 @@ fn with_input_for(bare: &PlantSpec, secrets: &[Secret]) -> Result<PlantSpec, Pla
 /// Finds the amount of `secret` that makes the error which `strength` means; the plant
 /// with the input that goes with it.
 ///
-/// The amount sets the input that keeps the range, and the input the amount: in turns.
+/// An input that was drawn for another amount may lead the joint too far: then one is drawn
+/// for this amount, and the amount found for that input.
 fn settle(
     secret: &mut Secret,
     bare: &PlantSpec,
@@ -327,13 +304,13 @@ fn settle(
     deviation: f64,
 ) -> Result<PlantSpec, ScenarioError> {
     let mut found = 0.0;
-    let mut ideal = with_input_for(bare, &[*secret])?;
     for _ in 0..ROUNDS {
-        secret.amount = calibrated(*secret, &ideal, strength, deviation)?;
-        ideal = with_input_for(bare, &[*secret])?;
-        found = error(&simulate(&with(&ideal, &[*secret]))?) / deviation;
-        if strength.holds(found) {
-            return Ok(ideal);
+        let given = with_input_for(bare, &[*secret])?;
+        secret.amount = calibrated(*secret, &given, strength, deviation)?;
+        let made = simulate(&with(&given, &[*secret]))?;
+        found = error(&made) / deviation;
+        if strength.holds(found) && reach(&made) <= FARTHEST {
+            return Ok(given);
         }
     }
     Err(ScenarioError::OutOfReach { name: secret.name, found, wanted: strength.wanted() })
@@ -378,6 +355,13 @@ fn calibrated(
 fn error(made: &Synthetic) -> f64 {
     let trial = made.joints.first().and_then(|joint| joint.trials.first());
     trial.map_or(0.0, integrator::error)
+}
+
+/// The farthest that the first joint comes from angle 0, in output units.
+fn reach(made: &Synthetic) -> f64 {
+    let trial = made.joints.first().and_then(|joint| joint.trials.first());
+    let output = trial.map_or(&[][..], |trial| trial.output());
+    output.iter().fold(0.0, |farthest, angle| angle.abs().max(farthest))
 }
 
 fn noisy(mut plant: PlantSpec, noise: Noise) -> PlantSpec {
@@ -428,14 +412,19 @@ mod tests {
             assert_eq!(families.len(), 3, "{drawn:?}");
         }
         let all: Vec<&str> = FAMILIES.concat();
-        assert!(catalogue().all(|name| all.contains(&name)) && all.len() == CATALOGUE.len());
+        assert!(CATALOGUE.iter().all(|name| all.contains(name)) && all.len() == CATALOGUE.len());
     }
 
     #[test]
     fn an_unknown_name_and_a_name_twice_are_refused() {
         let new = |names: &[&str]| Scenario::new(names, Strength::Weak, Noise::white(0.05), 1);
-        assert!(matches!(new(&["magic"]), Err(ScenarioError::Unknown { .. })));
-        let twice = new(&["leakage", "leakage"]);
-        assert!(matches!(twice, Err(ScenarioError::Twice { name: "leakage" })));
+        let source = |found| match found {
+            Err(ScenarioError::Plant { source }) => source,
+            other => panic!("{other:?}"),
+        };
+        let unknown = source(new(&["dead_bandd"]));
+        assert!(matches!(unknown, PlantError::Unknown { nearest: Some("dead_band"), .. }));
+        let twice = source(new(&["leakage", "leakage"]));
+        assert!(matches!(twice, PlantError::Twice { name: "leakage" }));
     }
 }

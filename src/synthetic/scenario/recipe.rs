@@ -24,39 +24,35 @@ impl Chances {
     }
 }
 
-/// Puts one effect on a joint; `strength` is from 0 to 1.
-pub(super) type Hide = fn(joint: &mut JointSpec, strength: f64, chances: Chances);
-
-/// The effects of the catalogue, by name.
-pub(super) const CATALOGUE: [(&str, Hide); 18] = [
-    ("input_offset", input_offset),
-    ("dead_band", dead_band),
-    ("stiction", stiction),
-    ("input_saturation", input_saturation),
-    ("flow_curve", flow_curve),
-    ("direction_gain", direction_gain),
-    ("rate_limit", rate_limit),
-    ("variable_delay", variable_delay),
-    ("actuator_lag", actuator_lag),
-    ("resonance", resonance),
-    ("coulomb_friction", coulomb_friction),
-    ("gravity_load", gravity_load),
-    ("position_gain", position_gain),
-    ("thermal_drift", thermal_drift),
-    ("supply_droop", supply_droop),
-    ("leakage", leakage),
-    ("end_stop", end_stop),
-    ("backlash", backlash),
-];
-
-/// The effects outside the catalogue, by name.
-pub(super) const OUTSIDE: [(&str, Hide); 5] = [
-    ("input_notch", input_notch),
-    ("creep_memory", creep_memory),
-    ("sticky_spot", sticky_spot),
-    ("disturbance", disturbance),
-    ("sensor_nonlinearity", sensor_nonlinearity),
-];
+/// Puts the effect `name` on a joint; `strength` is from 0 to 1.
+pub(super) fn hide(name: &str, joint: &mut JointSpec, strength: f64, chances: Chances) {
+    match name {
+        "input_offset" => input_offset(joint, strength, chances),
+        "dead_band" => dead_band(joint, strength, chances),
+        "stiction" => stiction(joint, strength, chances),
+        "input_saturation" => input_saturation(joint, strength, chances),
+        "flow_curve" => flow_curve(joint, strength, chances),
+        "direction_gain" => direction_gain(joint, strength, chances),
+        "rate_limit" => rate_limit(joint, strength, chances),
+        "variable_delay" => variable_delay(joint, strength, chances),
+        "actuator_lag" => actuator_lag(joint, strength, chances),
+        "resonance" => resonance(joint, strength, chances),
+        "coulomb_friction" => coulomb_friction(joint, strength, chances),
+        "gravity_load" => gravity_load(joint, strength, chances),
+        "position_gain" => position_gain(joint, strength, chances),
+        "thermal_drift" => thermal_drift(joint, strength, chances),
+        "supply_droop" => supply_droop(joint, strength, chances),
+        "leakage" => leakage(joint, strength, chances),
+        "end_stop" => end_stop(joint, strength, chances),
+        "backlash" => backlash(joint, strength, chances),
+        "input_notch" => input_notch(joint, strength, chances),
+        "creep_memory" => creep_memory(joint, strength, chances),
+        "sticky_spot" => sticky_spot(joint, strength, chances),
+        "disturbance" => disturbance(joint, strength, chances),
+        "sensor_nonlinearity" => sensor_nonlinearity(joint, strength, chances),
+        _ => {}
+    }
+}
 
 /// Largest level that a recipe is made for, in input units.
 pub(super) const LARGEST_LEVEL: f64 = 2.5;
