@@ -11,7 +11,7 @@
 //! - [`experiment`]: logs, joints, trials
 //! - [`delay`]: the delay of every step of one joint
 //! - [`model`]: the grey-box model of a joint, and its simulation
-//! - [`synthetic`]: logs of joints with known delays
+//! - [`synthetic`]: logs of joints with known delays and effects
 //! - [`fit`]: models fitted to measurements
 //! - [`diagnosis`]: how good a model is, and where it fails
 //! - [`explain`]: which physical effect a model lacks

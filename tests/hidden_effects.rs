@@ -6,6 +6,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use tauscope::effect::REGISTRY;
+use tauscope::synthetic::effects::{CATALOGUE, OUTSIDE};
 use tauscope::synthetic::{
     DelayLaw, InputSpec, JointSpec, PlantError, PlantSpec, Spikes, Synthetic, simulate,
 };
@@ -294,37 +296,39 @@ fn spikes_are_as_many_and_as_large_as_wanted_and_leave_the_noise_alone() {
     assert!(hit.iter().any(|off| **off > 0.0) && hit.iter().any(|off| **off < 0.0));
 }
 
+/// Each effect at its neutral numbers, and how far it may lead: what takes time takes four
+/// time steps at least, 2 ms at up to 20 deg/s.
+const NEUTRAL: [(&str, f64); 23] = [
+    ("input_offset:offset=0", 1e-9),
+    ("dead_band:lower=0,upper=0", 1e-9),
+    ("stiction:start=0,stop=0", 0.1),
+    ("flow_curve:exponent=1", 1e-9),
+    ("direction_gain:negative_factor=1", 1e-9),
+    ("input_saturation:limit=1e9", 1e-9),
+    ("variable_delay:small_s=0", 1e-9),
+    ("rate_limit:seconds_per_input=1e-9", 0.1),
+    ("actuator_lag:time_constant=0.002", 0.1),
+    ("resonance:period=0.02,damping=0.9", 0.2),
+    ("coulomb_friction:positive=0,negative=0,time_constant=0.002", 0.1),
+    ("position_gain:ratio=0.3,mount=60,leverage=0,reference=0", 1e-9),
+    ("thermal_drift:change=0,time_constant=10", 1e-9),
+    ("supply_droop:droop=0", 1e-9),
+    ("gravity_load:kappa=0", 1e-9),
+    ("leakage:rate=0", 1e-9),
+    ("end_stop:high=1e9", 1e-9),
+    ("backlash:width=0", 0.02),
+    ("input_notch:from=1,to=2,share=1", 1e-9),
+    ("creep_memory:share=0", 1e-9),
+    ("sticky_spot:from=0,to=5,share=1", 1e-9),
+    ("disturbance:from_s=1,to_s=2,speed=0", 1e-9),
+    ("sensor_nonlinearity:amplitude=0,period=30", 1e-9),
+];
+
 #[test]
 fn an_effect_at_its_neutral_numbers_changes_nothing() {
     let steps = [(101, 1.5), (201, -0.7), (301, 0.0), (401, -2.0), (501, 0.3)];
     let plain = output(hiding("", &steps), 6.0);
-    // What takes time takes four time steps at least: 2 ms at up to 20 deg/s.
-    let cases = [
-        ("input_offset:offset=0", 1e-9),
-        ("dead_band:lower=0,upper=0", 1e-9),
-        ("stiction:start=0,stop=0", 0.1),
-        ("flow_curve:exponent=1", 1e-9),
-        ("direction_gain:negative_factor=1", 1e-9),
-        ("input_saturation:limit=1e9", 1e-9),
-        ("variable_delay:small_s=0", 1e-9),
-        ("rate_limit:seconds_per_input=1e-9", 0.1),
-        ("actuator_lag:time_constant=0.002", 0.1),
-        ("resonance:period=0.02,damping=0.9", 0.2),
-        ("coulomb_friction:positive=0,negative=0,time_constant=0.002", 0.1),
-        ("position_gain:ratio=0.3,mount=60,leverage=0,reference=0", 1e-9),
-        ("thermal_drift:change=0,time_constant=10", 1e-9),
-        ("supply_droop:droop=0", 1e-9),
-        ("gravity_load:kappa=0", 1e-9),
-        ("leakage:rate=0", 1e-9),
-        ("end_stop:high=1e9", 1e-9),
-        ("backlash:width=0", 0.02),
-        ("input_notch:from=1,to=2,share=1", 1e-9),
-        ("creep_memory:share=0", 1e-9),
-        ("sticky_spot:from=0,to=5,share=1", 1e-9),
-        ("disturbance:from_s=1,to_s=2,speed=0", 1e-9),
-        ("sensor_nonlinearity:amplitude=0,period=30", 1e-9),
-    ];
-    for (text, tolerance) in cases {
+    for (text, tolerance) in NEUTRAL {
         let output = output(hiding(text, &steps), 6.0);
         let far = output.iter().zip(&plain).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(far <= tolerance, "{text}: {far:.2e}");
@@ -413,6 +417,29 @@ fn numbers_that_mean_nothing_are_refused_by_name() {
 }
 
 #[test]
+fn odd_numbers_give_data_or_an_error_but_no_panic() {
+    const ODD: [f64; 8] = [0.0, -1.0, 1e300, -1e300, 5e-324, 1e-9, f64::NAN, f64::INFINITY];
+    for (text, _) in NEUTRAL {
+        let (name, numbers) = text.split_once(':').unwrap();
+        let keys: Vec<_> =
+            numbers.split(',').map(|number| number.split_once('=').unwrap()).collect();
+        for (odd, changed) in ODD.iter().flat_map(|odd| keys.iter().map(move |key| (odd, key.0))) {
+            let value = |key: &str, number: &str| {
+                if key == changed { *odd } else { number.parse().unwrap() }
+            };
+            let numbers: Vec<_> =
+                keys.iter().map(|(key, number)| ((*key).to_owned(), value(key, number))).collect();
+            let mut joint = hiding("", &[(51, 1.5), (101, -0.7)]);
+            joint.hide(name, &numbers).unwrap();
+            let made = simulate(&PlantSpec::new(1, 1.5, vec![joint]));
+            let finite =
+                |made: Synthetic| made.joints[0].trials[0].output().iter().all(|y| y.is_finite());
+            assert!(made.map_or(true, finite), "{name}: {changed} = {odd}");
+        }
+    }
+}
+
+#[test]
 fn a_key_that_an_effect_does_not_have_is_refused() {
     let mut joint = hiding("", &[(101, 1.0)]);
     for key in ["lowr", "lower"] {
@@ -432,4 +459,48 @@ fn a_plant_with_effects_is_read_as_it_was_written() {
         .unwrap();
     let plant = PlantSpec::new(1, 6.0, vec![joint]);
     assert_eq!(PlantSpec::from_toml(&plant.to_toml().unwrap()).unwrap(), plant);
+}
+
+#[test]
+fn the_names_are_those_of_the_catalogue_and_all_are_documented() {
+    let sorted = |names: &mut dyn Iterator<Item = &'static str>| {
+        let mut names: Vec<_> = names.collect();
+        names.sort_unstable();
+        names
+    };
+    let fitted = sorted(&mut REGISTRY.iter().map(|effect| effect.spec().id));
+    assert_eq!(sorted(&mut CATALOGUE.into_iter()), fitted);
+    assert!(OUTSIDE.iter().all(|name| !fitted.contains(name)));
+    let text = std::fs::read_to_string("docs/simulating.md").unwrap();
+    let names = NEUTRAL.map(|(text, _)| text.split_once(':').unwrap());
+    assert_eq!(names.len(), CATALOGUE.len() + OUTSIDE.len());
+    for (name, numbers) in names {
+        let row = text.lines().find(|line| line.starts_with(&format!("| `{name}` |"))).unwrap();
+        for number in numbers.split(',') {
+            let key = number.split('=').next().unwrap();
+            assert!(row.contains(&format!("`{key}`")), "{name}: {key}");
+        }
+    }
+}
+
+#[test]
+fn no_file_of_the_plant_uses_the_effects_or_models_that_are_fitted() {
+    fn check(folder: &std::path::Path) -> usize {
+        let mut files = 0;
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                files += check(&path);
+            } else {
+                let text = std::fs::read_to_string(&path).unwrap();
+                for module in ["effect::", "model::", "fit::", "diagnosis::"] {
+                    let named = text.contains(&format!("crate::{module}"));
+                    assert!(!named, "{} uses {module}", path.display());
+                }
+                files += 1;
+            }
+        }
+        files
+    }
+    assert!(check(std::path::Path::new("src/synthetic")) > 15);
 }

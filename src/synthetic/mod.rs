@@ -2,12 +2,17 @@
 //!
 //! A [`PlantSpec`], usually a TOML file, tells the joints and what drives them;
 //! [`simulate`] makes their logs and tells the delay of each step; [`write_log`] and
-//! [`write_truth`] make files of both. Per joint,
+//! [`write_truth`] make files of both. A [`scenario`] is a plant with something to find.
+//! Per joint,
 //!
 //! ```text
 //! input → delay → dead band → saturation → gain → lag → ringing → ∫ → angle
 //!                                                     angle + noise → encoder → output
 //! ```
+//!
+//! Where a joint hides [`effects`], those of the valve come before the dead band, those of
+//! the dynamics before the gain, those of the load before the integral, and stops, play
+//! and sensor after it; the joint is then one system of differential equations.
 //!
 //! The level of step `i` acts from `t_i + τ_i` on, `t_i` being the time of the sample
 //! that first shows it and `τ_i` its delay; sample `k` is at `(k - 1) sample_period_s`.
