@@ -149,11 +149,13 @@ impl Noise {
 }
 
 /// An effect that is hidden, and how much of it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Secret {
     name: &'static str,
     chances: Chances,
     amount: f64,
+    /// Where the next chances come from.
+    random: ChaCha8Rng,
 }
 
 impl Secret {
@@ -161,8 +163,8 @@ impl Secret {
     fn new(name: &str, seed: u64) -> Result<Self, PlantError> {
         let name = effects::name(name)?;
         let index = CATALOGUE.iter().chain(&OUTSIDE).position(|known| *known == name);
-        let chances = stream(seed, index.unwrap_or_default(), Purpose::Scenario).random();
-        Ok(Self { name, chances: Chances(chances), amount: FIRST_AMOUNT })
+        let mut random = stream(seed, index.unwrap_or_default(), Purpose::Scenario);
+        Ok(Self { name, chances: Chances(random.random()), amount: FIRST_AMOUNT, random })
     }
 
     fn put_on(&self, joint: &mut JointSpec) {
@@ -191,7 +193,10 @@ const TRIES: usize = 14;
 const NEAR: f64 = 0.1;
 
 /// Inputs that are tried until amount and input fit together.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 9;
+
+/// Inputs that are tried with the same particulars of an effect.
+const ROUNDS_EACH: usize = 3;
 
 impl Scenario {
     /// A joint that hides the effects of the given names, each at `strength`; no name, no
@@ -227,18 +232,16 @@ impl Scenario {
             }
         }
         let bare = ideal(seed);
-        let mut given = None;
+        let mut alone = None;
         for secret in &mut secrets {
-            given = Some(settle(secret, &bare, strength, noise.deviation)?);
+            alone = Some(settle(secret, &bare, strength, noise.deviation)?);
         }
-        let given = match given {
-            Some(given) if secrets.len() == 1 => given,
-            _ => with_input_for(&bare, &secrets)?,
+        let (given, error_over_noise) = match alone {
+            Some(alone) if secrets.len() == 1 => alone,
+            _ => together(&bare, &secrets, noise.deviation)?,
         };
-        let silent = with(&given, &secrets);
-        let error_over_noise = error(&simulate(&silent)?) / noise.deviation;
         let hidden = secrets.iter().map(|secret| secret.name).collect();
-        Ok(Self { plant: noisy(silent, noise), hidden, error_over_noise })
+        Ok(Self { plant: noisy(with(&given, &secrets), noise), hidden, error_over_noise })
     }
 }
 
@@ -261,7 +264,8 @@ fn levels(random: &mut ChaCha8Rng) -> Vec<f64> {
     let mut levels = vec![0.0];
     for sign in [1.0, -1.0] {
         for k in 0..LEVELS {
-            let part = if k == 0 { (0.2, 0.5) } else { (0.2, 1.0) };
+            // What sticks at the smallest only must be a weak effect.
+            let part = if k == 0 { (0.16, 0.24) } else { (0.2, 1.0) };
             let level = step * (k as f64 + random.random_range(part.0..part.1));
             levels.push(sign * (100.0 * level).round() / 100.0);
         }
@@ -292,28 +296,53 @@ fn with_input_for(bare: &PlantSpec, secrets: &[Secret]) -> Result<PlantSpec, Pla
     Ok(given)
 }
 
+/// `bare` with an input for all of `secrets`, and the error in deviations of the noise.
+fn together(
+    bare: &PlantSpec,
+    secrets: &[Secret],
+    deviation: f64,
+) -> Result<(PlantSpec, f64), PlantError> {
+    let given = with_input_for(bare, secrets)?;
+    let found = error(&simulate(&with(&given, secrets))?) / deviation;
+    Ok((given, found))
+}
+
 /// Finds the amount of `secret` that makes the error which `strength` means; the plant
-/// with the input that goes with it.
+/// with the input that goes with it, and the error in deviations of the noise.
 ///
 /// An input that was drawn for another amount may lead the joint too far: then one is drawn
-/// for this amount, and the amount found for that input.
+/// for this amount, and the amount found for that input. Where that does not help, the
+/// effect gets other particulars.
 fn settle(
     secret: &mut Secret,
     bare: &PlantSpec,
     strength: Strength,
     deviation: f64,
-) -> Result<PlantSpec, ScenarioError> {
-    let mut found = 0.0;
-    for _ in 0..ROUNDS {
-        let given = with_input_for(bare, &[*secret])?;
-        secret.amount = calibrated(*secret, &given, strength, deviation)?;
-        let made = simulate(&with(&given, &[*secret]))?;
-        found = error(&made) / deviation;
-        if strength.holds(found) && reach(&made) <= FARTHEST {
-            return Ok(given);
+) -> Result<(PlantSpec, f64), ScenarioError> {
+    let mut nearest = 0.0;
+    for round in 1..=ROUNDS {
+        let given = with_input_for(bare, std::slice::from_ref(secret))?;
+        let sized = calibrated(secret.clone(), &given, strength, deviation)?;
+        (secret.amount, nearest) = (sized.amount, sized.error);
+        if strength.holds(sized.error) && sized.reach <= FARTHEST {
+            return Ok((given, sized.error));
+        }
+        if round % ROUNDS_EACH == 0 {
+            secret.chances = Chances(secret.random.random());
         }
     }
-    Err(ScenarioError::OutOfReach { name: secret.name, found, wanted: strength.wanted() })
+    let (name, wanted) = (secret.name, strength.wanted());
+    Err(ScenarioError::OutOfReach { name, found: nearest, wanted })
+}
+
+/// An amount of an effect, and what it does.
+#[derive(Clone, Copy, Debug)]
+struct Size {
+    amount: f64,
+    /// In deviations of the noise.
+    error: f64,
+    /// Farthest angle, in output units.
+    reach: f64,
 }
 
 /// The amount of `secret` whose error on one input is nearest to what is wanted.
@@ -325,28 +354,28 @@ fn calibrated(
     ideal: &PlantSpec,
     strength: Strength,
     deviation: f64,
-) -> Result<f64, PlantError> {
+) -> Result<Size, PlantError> {
     let (mut too_little, mut too_much) = (LEAST_AMOUNT, 1.0);
-    let (mut best, mut nearest) = (secret.amount, f64::INFINITY);
+    let mut best = Size { amount: secret.amount, error: 0.0, reach: 0.0 };
+    let mut nearest = f64::INFINITY;
     for _ in 0..TRIES {
-        let found = error(&simulate(&with(ideal, &[secret]))?) / deviation;
+        let made = simulate(&with(ideal, std::slice::from_ref(&secret)))?;
+        let found = error(&made) / deviation;
         let ratio = found / strength.wanted();
         let missed = if strength.holds(found) { 0.0 } else { MISSED };
         let distance = ratio.ln().abs() + missed;
         if distance < nearest {
-            (best, nearest) = (secret.amount, distance);
-        }
-        if distance < NEAR {
-            break;
+            nearest = distance;
+            best = Size { amount: secret.amount, error: found, reach: reach(&made) };
         }
         let side = if ratio < 1.0 { &mut too_little } else { &mut too_much };
         *side = secret.amount;
+        if distance < NEAR || too_much / too_little < DISTINCT {
+            break;
+        }
         let next = secret.amount / ratio;
         let inside = next > too_little && next < too_much;
         secret.amount = if inside { next } else { (too_little * too_much).sqrt() };
-        if too_much / too_little < DISTINCT {
-            break;
-        }
     }
     Ok(best)
 }
