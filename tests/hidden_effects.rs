@@ -487,6 +487,19 @@ fn the_names_are_those_of_the_catalogue_and_all_are_documented() {
 }
 
 #[test]
+fn the_plant_file_of_the_documents_makes_a_log() {
+    let text = std::fs::read_to_string("docs/simulating.md").unwrap();
+    let (_, after) = text.split_once("```toml\n").unwrap();
+    let plant = PlantSpec::from_toml(after.split("```").next().unwrap()).unwrap();
+    assert_eq!(simulate(&plant).unwrap().joints[0].trials[0].len(), 12_000);
+    let wrong = plant.to_toml().unwrap().replace("lower = -0.3", "lowr = -0.3");
+    let refused = PlantSpec::from_toml(&wrong).unwrap_err();
+    let PlantError::Parse { source } = &refused else { panic!("{refused:?}") };
+    let text = source.to_string();
+    assert!(text.contains("lowr") && text.contains("expected `lower` or `upper`"), "{text}");
+}
+
+#[test]
 fn no_file_of_the_plant_uses_the_effects_or_models_that_are_fitted() {
     fn check(folder: &std::path::Path) -> usize {
         let mut files = 0;

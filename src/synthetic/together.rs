@@ -6,7 +6,7 @@ use super::cylinder;
 use super::drive::{Drive, Driver};
 use super::dynamics;
 use super::error::PlantError;
-use super::motion::{Motion, demands};
+use super::motion::{self, Motion};
 use super::spec::{JointSpec, PlantSpec};
 
 /// What became of one joint.
@@ -37,6 +37,11 @@ pub(super) fn drive(spec: &PlantSpec, clock: Clock) -> Result<Vec<Driven>, Plant
         actors.push(Actor::new(joint, index, spec.seed, clock)?);
     }
     let sharing = spec.joints.iter().filter(|joint| joint.cylinder.is_none()).count();
+    if spec.joints.iter().any(|joint| joint.effect.supply_droop.is_some()) {
+        for (actor, joint) in actors.iter_mut().zip(&spec.joints) {
+            actor.tell_demands(joint, &clock);
+        }
+    }
     let mut demands = vec![0.0; actors.len()];
     for sample in 1..=clock.samples() {
         for (actor, demand) in actors.iter_mut().zip(&mut demands) {
@@ -53,7 +58,8 @@ pub(super) fn drive(spec: &PlantSpec, clock: Clock) -> Result<Vec<Driven>, Plant
 
 /// A joint of a plant.
 enum Actor<'a> {
-    /// It depends on no other one, so that it has run already.
+    /// It depends on no other one, so that it has run already; its demands are there
+    /// where the pump is shared.
     Plain { driven: Driven, demands: Vec<f64> },
     /// It has a pump of its own, so that it has run already.
     Cylinder(Driven),
@@ -80,13 +86,20 @@ impl<'a> Actor<'a> {
         }
         if joint.is_plain() {
             let drive = Drive::of(joint, index, seed, clock)?;
-            let demands = demands(joint, &drive, &clock);
             let angles = dynamics::angles(joint, drive.arrivals(), &clock);
-            return Ok(Self::Plain { driven: Driven::steadily(drive, angles), demands });
+            let driven = Driven::steadily(drive, angles);
+            return Ok(Self::Plain { driven, demands: Vec::new() });
         }
         let driver = Driver::new(joint, index, seed, clock);
         let motion = Motion::new(joint, clock);
         Ok(Self::Hindered(Box::new(Hindered { driver, motion, angles: Vec::new() })))
+    }
+
+    /// Keeps the demands of a joint that has run already, which only a shared pump needs.
+    fn tell_demands(&mut self, joint: &JointSpec, clock: &Clock) {
+        if let Self::Plain { driven, demands } = self {
+            *demands = motion::demands(joint, &driven.drive, clock);
+        }
     }
 
     /// Sets the step that is due at `sample`; its demand for oil there.
