@@ -2,7 +2,8 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use tauscope::synthetic::{
-    CylinderSpec, DelayLaw, InputSpec, JointSpec, Part, PlantError, PlantSpec, Synthetic, simulate,
+    CylinderSpec, DelayLaw, InputSpec, JointSpec, Part, PlantError, PlantSpec, Spikes, Synthetic,
+    simulate,
 };
 
 /// Levels at which a boom is driven, in volts.
@@ -239,12 +240,61 @@ fn what_the_cylinder_replaces_is_refused_beside_it() {
         );
         assert_eq!(text, expected);
     }
+    let hidden = "effect.leakage.rate = 0.1\neffect.dead_band = { lower = -1, upper = 1 }";
+    let text = refusal(&format!("{hidden}\ncylinder = {{}}"));
+    assert!(text.contains("`effect` is [\"dead_band\", \"leakage\"]; allowed: none"), "{text}");
+    let text = refusal("outside.sticky_spot = { from = 1, to = 2, share = 0.5 }\ncylinder = {}");
+    assert!(text.contains("`outside` is [\"sticky_spot\"]; allowed: none"), "{text}");
     let text = refusal("output_unit = 'mm'\ncylinder = {}");
     assert!(text.contains("allowed: `deg` or `rad`"), "{text}");
     let text = refusal("start = 80\ncylinder = {}");
     assert!(text.contains("`start` is 80.0; allowed: an angle within"), "{text}");
     let text = refusal("range = [-30, 50]\nstart = 0\ncylinder = {}");
     assert!(text.contains("`range` is [-30.0, 50.0]; allowed: angles within"), "{text}");
+}
+
+#[test]
+fn what_the_sensor_does_is_in_the_log_and_not_in_the_motion() {
+    let joint = || boom(CylinderSpec::default());
+    let true_one = record(1, 3.0, joint()).unwrap();
+    let mut bent = joint();
+    let key = |key: &str, number| (key.to_owned(), number);
+    bent.hide("sensor_nonlinearity", &[key("amplitude", 2.0), key("period", 30.0)]).unwrap();
+    let shown = |angle: &f64| angle + 2.0 * (std::f64::consts::TAU * angle / 30.0).sin();
+    let expected: Vec<f64> = output(&true_one).iter().map(shown).collect();
+    let made = record(1, 3.0, bent).unwrap();
+    assert!(largest_difference(output(&made), &expected) < 1e-12);
+    assert_eq!(made.truth, true_one.truth);
+    let spiky = JointSpec { spikes: Some(Spikes { share: 0.05, size: 5.0 }), ..joint() };
+    let off = output(&record(1, 3.0, spiky).unwrap()).to_vec();
+    let off = off.iter().zip(output(&true_one)).filter(|(a, b)| (*a - *b).abs() > 4.9).count();
+    assert!((5..30).contains(&off), "{off} spikes");
+}
+
+#[test]
+fn a_cylinder_has_a_pump_of_its_own() {
+    let swing = || {
+        let input = InputSpec::Steps { steps: vec![(101, 1.0)], initial: 0.0 };
+        JointSpec::new("swing", input, DelayLaw::Constant { seconds: 0.1 })
+    };
+    let mut drooping = JointSpec { name: "bucket".to_owned(), ..swing() };
+    drooping.hide("supply_droop", &[("droop".to_owned(), 0.4)]).unwrap();
+    let moving = stepped(&[(20, 6.0)], DelayLaw::Constant { seconds: 0.05 });
+    let alone = record(1, 3.0, moving.clone()).unwrap();
+    let made = simulate(&PlantSpec::new(1, 3.0, vec![moving, drooping.clone(), swing()])).unwrap();
+    assert_eq!(made.joints[0], alone.joints[0]);
+    let without = simulate(&PlantSpec::new(1, 3.0, vec![drooping, swing()])).unwrap();
+    assert_eq!(made.joints[1], without.joints[0]);
+    let output = made.joints[1].trials[0].output();
+    // 10 deg/s at 1 V, of which the only other joint on its pump takes 40 %.
+    assert!(((output[280] - output[180]) - 6.0).abs() < 1e-3);
+}
+
+#[test]
+fn a_plant_with_a_cylinder_is_read_as_it_was_written() {
+    let cylinder = CylinderSpec { only: Some(vec![Part::Gravity]), ..CylinderSpec::default() };
+    let spec = PlantSpec::new(1, 3.0, vec![boom(cylinder)]);
+    assert_eq!(PlantSpec::from_toml(&spec.to_toml().unwrap()).unwrap(), spec);
 }
 
 /// Why a boom with `lines` is refused.

@@ -100,7 +100,7 @@ impl<'a> Motion<'a> {
     /// Angle as it would be measured without noise.
     pub(super) fn shown(&self) -> f64 {
         let behind = self.joint.effect.backlash.map_or(self.state[ANGLE], |_| self.state[MEASURED]);
-        self.joint.outside.sensor_nonlinearity.map_or(behind, |sensor| sensor.shown(behind))
+        self.joint.outside.shown(behind)
     }
 
     /// How far the valve is open, as a part of what the largest level opens it.

@@ -94,8 +94,8 @@ pub struct JointSpec {
     pub lag_s: Option<f64>,
     /// Ringing of the speed.
     pub ringing: Option<Ringing>,
-    /// The cylinder that moves it, instead of gain, dead band, saturation, lag and
-    /// ringing.
+    /// The cylinder that moves it, instead of gain, dead band, saturation, lag, ringing and
+    /// effects but those of the sensor.
     pub cylinder: Option<CylinderSpec>,
     /// Standard deviation of the measurement noise, in output units.
     #[serde(default)]
@@ -422,20 +422,7 @@ impl JointSpec {
 
     fn check_cylinder(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
         let Some(cylinder) = &self.cylinder else { return Ok(()) };
-        let allowed = "none, as `cylinder` moves the joint: remove one of the two";
-        let gain = ((self.gain - default::gain()).abs() > 0.0).then_some(self.gain);
-        let replaced: [(_, Option<&dyn Debug>); 5] = [
-            ("gain", gain.as_ref().map(|gain| gain as _)),
-            ("dead_band", self.dead_band.as_ref().map(|band| band as _)),
-            ("saturation", self.saturation.as_ref().map(|limit| limit as _)),
-            ("lag_s", self.lag_s.as_ref().map(|lag_s| lag_s as _)),
-            ("ringing", self.ringing.as_ref().map(|ringing| ringing as _)),
-        ];
-        for (key, given) in replaced {
-            if let Some(value) = given {
-                return Err(place.refuse(key, value, allowed));
-            }
-        }
+        self.check_replaced(place)?;
         let unit = self.output_unit.as_str();
         let allowed = "`deg` or `rad`, as `cylinder` moves the joint";
         place.require("output_unit", unit, allowed, |unit| matches!(*unit, "deg" | "rad"))?;
@@ -448,6 +435,29 @@ impl JointSpec {
         let Some(range) = self.range else { return Ok(()) };
         let allowed = "angles within `cylinder.angle_limits_deg`";
         place.require("range", range, allowed, |range| range.iter().all(|angle| reached(*angle)))
+    }
+
+    /// Refuses what does not act beside a cylinder.
+    fn check_replaced(&self, place: &Place) -> Result<(), PlantError> {
+        let allowed = "none, as `cylinder` moves the joint: remove one of the two";
+        let gain = ((self.gain - default::gain()).abs() > 0.0).then_some(self.gain);
+        let named = |names: Vec<&'static str>| (!names.is_empty()).then_some(names);
+        let (effect, outside) = (named(self.effect.names()), named(self.outside.hindering()));
+        let replaced: [(_, Option<&dyn Debug>); 7] = [
+            ("gain", gain.as_ref().map(|gain| gain as _)),
+            ("dead_band", self.dead_band.as_ref().map(|band| band as _)),
+            ("saturation", self.saturation.as_ref().map(|limit| limit as _)),
+            ("lag_s", self.lag_s.as_ref().map(|lag_s| lag_s as _)),
+            ("ringing", self.ringing.as_ref().map(|ringing| ringing as _)),
+            ("effect", effect.as_ref().map(|names| names as _)),
+            ("outside", outside.as_ref().map(|names| names as _)),
+        ];
+        for (key, given) in replaced {
+            if let Some(value) = given {
+                return Err(place.refuse(key, value, allowed));
+            }
+        }
+        Ok(())
     }
 
     fn check_sensor(&self, place: &Place) -> Result<(), PlantError> {

@@ -56,7 +56,7 @@ pub(super) fn ride(
     let mut angles = Vec::new();
     for sample in 1..=clock.samples() {
         rig.run(clock.time_s(sample), driver.drive())?;
-        angles.push(rig.angle());
+        angles.push(joint.outside.shown(rig.angle()));
         if driver.due() == Some(sample) {
             driver.act(sample, &rig)?;
         }

@@ -150,6 +150,12 @@ pub(super) fn with_part<T: Serialize + DeserializeOwned>(
     group.map_err(|cause| PlantError::Numbers { name, cause: Box::new(cause) })
 }
 
+/// Which of `known` are in `group`.
+fn names_in(group: &impl Serialize, known: &[&'static str]) -> Vec<&'static str> {
+    let table = toml::Table::try_from(group).unwrap_or_default();
+    known.iter().copied().filter(|name| table.contains_key(*name)).collect()
+}
+
 /// An effect whose numbers can be checked.
 trait Part {
     /// Refuses numbers that mean nothing.
@@ -164,6 +170,11 @@ impl Effects {
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
+    }
+
+    /// Names of those that are there.
+    pub fn names(&self) -> Vec<&'static str> {
+        names_in(self, &CATALOGUE)
     }
 
     /// Whether there is none but on the delay.
@@ -202,6 +213,21 @@ impl Outside {
         *self == Self::default()
     }
 
+    /// Names of those that are there.
+    pub fn names(&self) -> Vec<&'static str> {
+        names_in(self, &OUTSIDE)
+    }
+
+    /// The same without that of the sensor, which does not change the motion.
+    pub(super) fn hindering(&self) -> Vec<&'static str> {
+        Self { sensor_nonlinearity: None, ..*self }.names()
+    }
+
+    /// What the sensor shows of `angle`.
+    pub(super) fn shown(&self, angle: f64) -> f64 {
+        self.sensor_nonlinearity.map_or(angle, |sensor| sensor.shown(angle))
+    }
+
     pub(super) fn check(&self, place: &Place, clock: &Clock) -> Result<(), PlantError> {
         let parts = [
             part(self.input_notch.as_ref()),
@@ -232,6 +258,18 @@ fn window(x: f64, from: f64, to: f64, width: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_hidden_is_told_by_name() {
+        let both: Outside = toml::from_str(
+            "disturbance = { from_s = 1, to_s = 2, speed = 3 }\n\
+             sensor_nonlinearity = { amplitude = 2, period = 30 }",
+        )
+        .unwrap();
+        assert_eq!(both.names(), ["disturbance", "sensor_nonlinearity"]);
+        assert_eq!(both.hindering(), ["disturbance"]);
+        assert!(Outside::default().names().is_empty() && Effects::default().names().is_empty());
+    }
 
     #[test]
     fn rounded_shapes_are_sharp_ten_widths_away() {

@@ -67,7 +67,7 @@ impl Backlash {
 }
 
 impl SensorNonlinearity {
-    pub(in super::super) fn shown(&self, angle: f64) -> f64 {
+    pub(super) fn shown(&self, angle: f64) -> f64 {
         angle + self.amplitude * (TAU * (angle - self.zero) / self.period).sin()
     }
 }
