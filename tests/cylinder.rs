@@ -50,6 +50,22 @@ fn half_the_time_step_changes_the_angle_by_less_than_a_ten_thousandth_of_a_degre
 }
 
 #[test]
+fn half_the_time_step_keeps_random_steps_within_a_thousandth_of_a_degree() {
+    let drawn = record(4, 12.0, boom(CylinderSpec::default())).unwrap();
+    let steps: Vec<_> = drawn.truth.iter().map(|step| (step.p, step.input_after)).collect();
+    let run = |time_step_s: f64| {
+        let seconds = drawn.truth.iter().map(|step| step.delay_s).collect();
+        let joint = stepped(&steps, DelayLaw::Listed { seconds });
+        let cylinder = joint.cylinder.clone().map(|spec| CylinderSpec { time_step_s, ..spec });
+        record(4, 12.0, JointSpec { cylinder, ..joint }).unwrap()
+    };
+    let usual = run(5e-5);
+    assert!(largest_difference(output(&usual), output(&drawn)) < 1e-12);
+    let difference = largest_difference(output(&usual), output(&run(2.5e-5)));
+    assert!(difference < 1e-3, "{difference} degrees");
+}
+
+#[test]
 fn the_range_is_kept_and_used() {
     for seed in 0..2 {
         let made = record(seed, 15.0, boom(CylinderSpec::default())).unwrap();
@@ -295,6 +311,33 @@ fn a_plant_with_a_cylinder_is_read_as_it_was_written() {
     let cylinder = CylinderSpec { only: Some(vec![Part::Gravity]), ..CylinderSpec::default() };
     let spec = PlantSpec::new(1, 3.0, vec![boom(cylinder)]);
     assert_eq!(PlantSpec::from_toml(&spec.to_toml().unwrap()).unwrap(), spec);
+}
+
+/// Numbers in a cell of a table, without their units.
+fn numbers(cell: &str) -> Vec<f64> {
+    let plain = cell.replace('−', "-").replace(['°', ','], " ");
+    plain.split_whitespace().filter_map(|word| word.parse().ok()).collect()
+}
+
+#[test]
+fn the_documents_name_every_key_with_its_default() {
+    let default = toml::Table::try_from(CylinderSpec::default()).unwrap();
+    let number = |value: &toml::Value| match value {
+        toml::Value::Array(both) => both.iter().filter_map(toml::Value::as_float).collect(),
+        one => vec![one.as_float().unwrap()],
+    };
+    let text = std::fs::read_to_string("docs/cylinder.md").unwrap();
+    let mut documented = 0;
+    for row in text.lines().filter(|line| line.starts_with("| `")) {
+        let cells: Vec<&str> = row.split('|').collect();
+        let keys: Vec<&str> = cells[1].split('`').skip(1).step_by(2).collect();
+        let defaults: Vec<f64> =
+            keys.iter().filter_map(|key| default.get(*key)).flat_map(number).collect();
+        assert_eq!(numbers(cells[2]), defaults, "{row}");
+        documented += keys.len();
+    }
+    // Without `only`, that has no default.
+    assert_eq!(documented, default.len() + 1);
 }
 
 /// Why a boom with `lines` is refused.

@@ -53,7 +53,8 @@ pub struct CylinderSpec {
     pub spool_damping: f64,
     /// Shortest time from the middle to the full stroke.
     pub full_stroke_s: f64,
-    /// Flow through one fully open port at a drop of 5 bar.
+    /// Flow at a drop of 5 bar through a port that is open by one stroke; the full stroke
+    /// opens it by one less the overlap.
     pub rated_flow_l_min: f64,
 
     /// Pressure that the pump keeps while nothing flows.

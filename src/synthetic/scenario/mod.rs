@@ -199,8 +199,8 @@ const ROUNDS: usize = 9;
 const ROUNDS_EACH: usize = 3;
 
 impl Scenario {
-    /// A joint that hides the effects of the given names, each at `strength`; no name, no
-    /// effect. The same arguments give the same scenario.
+    /// A joint that hides the effects of the given names, of [`CATALOGUE`] or [`OUTSIDE`],
+    /// each at `strength`; no name, no effect. The same arguments give the same scenario.
     ///
     /// # Errors
     /// [`ScenarioError`]: for a name that is unknown or there twice, or where an effect
