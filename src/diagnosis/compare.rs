@@ -76,32 +76,16 @@ pub(crate) fn floor_of(record: &Record<'_>, fit: &Fit) -> Option<f64> {
     noise_floor(trials.iter().zip(&arriving))
 }
 
-/// A residual so many times the noise of the measurement is no noise, however well it
-/// would pass for one that changes slowly.
-const BEYOND_NOISE: f64 = 3.0;
-
-/// A residual no more than so many times the noise leaves nothing that is worth an effect,
-/// however sure it is that something is left.
-const NEAR_NOISE: f64 = 1.15;
-
 /// Whether `fit` leaves more than noise on the training part of `record`.
-///
-/// Beside the test, which holds all that changes slowly for noise and finds every trace in a
-/// long record, the residual is held against the noise about a smooth curve.
 pub(crate) fn lack_of(record: &Record<'_>, fit: &Fit) -> Option<LackOfFit> {
-    let test = lack_of_fit(&TestColumns {
+    let error = ErrorFigures::of(record, &fit.evaluation, Part::Training);
+    let times_noise = error.zip(floor_of(record, fit)).map(|(error, floor)| error.rmse / floor);
+    lack_of_fit(&TestColumns {
         residuals: cut(record, &fit.evaluation),
         own: sensitivities(record, fit),
         shapes: shapes(record, &fit.evaluation, Part::Training),
-    })?;
-    let error = ErrorFigures::of(record, &fit.evaluation, Part::Training);
-    let times = error.zip(floor_of(record, fit)).map(|(error, floor)| error.rmse / floor);
-    let adequate = match times {
-        Some(times) if times <= NEAR_NOISE => true,
-        Some(times) if times > BEYOND_NOISE => false,
-        _ => test.adequate,
-    };
-    Some(LackOfFit { adequate, ..test })
+        times_noise: times_noise.filter(|times| times.is_finite()),
+    })
 }
 
 /// The training part of each trial.

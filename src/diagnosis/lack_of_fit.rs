@@ -14,7 +14,11 @@
 //! 3. Test: residual, shapes and the sensitivities of the model's own parameters are
 //!    filtered by that autoregression. The shapes together explain `F = ((R₀ − R₁)/q) /
 //!    (R₁/(n − k))` of the rest, which is Fisher's with `q` and `n − k` degrees of freedom
-//!    when nothing is missing. Of the two noises, the one that makes less of it counts.
+//!    when nothing is missing. Of the two noises, the one that makes less of it counts; only
+//!    the first where the residual is too large for noise.
+//! 4. Size: the test holds all that changes slowly for noise, and finds every trace in a long
+//!    record. Up to 1.15 times the noise of the measurement nothing is left that is worth an
+//!    effect; beyond three times it is no noise.
 //!
 //! # References
 //! T. Bohlin, "Practical Grey-box Process Identification", 2006, chapter 2 (falsification
@@ -35,16 +39,26 @@ pub struct LackOfFit {
     pub p_value: f64,
     /// The part of the squared residual that the shapes explain, before whitening.
     pub misfit_share: f64,
+    /// The root mean square residual over the noise of the measurement, where it is known.
+    pub times_noise: Option<f64>,
     /// No lack of fit is shown at [`SIGNIFICANCE`], or one that is below [`NEGLIGIBLE`].
     pub adequate: bool,
 }
 
 /// Probability of calling a model bad that is not.
-pub const SIGNIFICANCE: f64 = 0.01;
+pub const SIGNIFICANCE: f64 = 0.001;
 
 /// A misfit that explains a smaller part of the squared residual than this is of no
 /// consequence, however sure it is: without it the error would be 1 % less.
 pub const NEGLIGIBLE: f64 = 0.02;
+
+/// A residual so many times the noise of the measurement is no noise, however well it
+/// would pass for one that changes slowly.
+const BEYOND_NOISE: f64 = 3.0;
+
+/// A residual no more than so many times the noise leaves nothing that is worth an effect,
+/// however sure it is that something is left.
+const NEAR_NOISE: f64 = 1.15;
 
 /// The columns of the test, one window below the other.
 #[derive(Clone, Debug, Default)]
@@ -55,6 +69,8 @@ pub struct TestColumns {
     pub own: Vec<Vec<Vec<f64>>>,
     /// What a missing effect could add: column, window, sample.
     pub shapes: Vec<Vec<Vec<f64>>>,
+    /// The root mean square residual over the noise of the measurement, where it is known.
+    pub times_noise: Option<f64>,
 }
 
 /// Tests whether `columns.shapes` explain more of the residual than noise would.
@@ -67,12 +83,34 @@ pub fn lack_of_fit(columns: &TestColumns) -> Option<LackOfFit> {
     let after_shapes = residuals_of(&columns.residuals, &all)?;
     let [whole, rest] = [&before_shapes, &after_shapes].map(|r| square(r));
     let misfit_share = if whole > 0.0 { (1.0 - rest / whole).max(0.0) } else { 0.0 };
-    let tests = [after_shapes, before_shapes].map(|left| test(columns, &autoregression(&left)));
-    let [Some((f_after, p_after)), Some((f_before, p_before))] = tests else { return None };
-    let (statistic, p_value) =
-        if p_after >= p_before { (f_after, p_after) } else { (f_before, p_before) };
+    let mut judged = vec![test(columns, &autoregression(&after_shapes))?];
+    if columns.times_noise.is_none_or(|times| times <= BEYOND_NOISE) {
+        judged.push(test(columns, &autoregression(&before_shapes))?);
+    }
+    let (statistic, p_value) = judged.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let adequate = p_value >= SIGNIFICANCE || misfit_share < NEGLIGIBLE;
-    Some(LackOfFit { statistic, p_value, misfit_share, adequate })
+    let found = LackOfFit { statistic, p_value, misfit_share, times_noise: None, adequate };
+    Some(found.with_size(columns.times_noise))
+}
+
+impl LackOfFit {
+    /// Judged by the size of the residual too, which is so many times the noise.
+    ///
+    /// The test holds all that changes slowly for noise, and finds every trace in a long
+    /// record; the size knows better at both ends.
+    fn with_size(self, times_noise: Option<f64>) -> Self {
+        let adequate = match times_noise {
+            Some(times) if times <= NEAR_NOISE => true,
+            Some(times) if times > BEYOND_NOISE => false,
+            _ => self.adequate,
+        };
+        Self { times_noise, adequate, ..self }
+    }
+
+    /// Whether the residual is hardly more than the noise.
+    pub fn is_near_noise(&self) -> bool {
+        self.times_noise.is_some_and(|times| times <= NEAR_NOISE)
+    }
 }
 
 fn square(windows: &[Vec<f64>]) -> f64 {
@@ -130,7 +168,7 @@ mod tests {
 
     fn p_value(residuals: Vec<f64>) -> f64 {
         let shapes = shapes(residuals.len());
-        lack_of_fit(&TestColumns { residuals: vec![residuals], own: Vec::new(), shapes })
+        lack_of_fit(&TestColumns { residuals: vec![residuals], shapes, ..TestColumns::default() })
             .unwrap()
             .p_value
     }

@@ -7,14 +7,93 @@ const LONGEST_MEMORY: usize = 12;
 
 /// Coefficients `a` of `e_k = Σ a_i e_(k−i) + white noise`, the order by Schwarz's
 /// criterion, by the recursion of Levinson and Durbin.
+///
+/// The mean of each window is taken for zero, and was taken off: what that took from the
+/// covariances, the variance of the mean of a window, is put back. It follows from the
+/// noise itself, so that both are found by turns.
 pub(crate) fn autoregression(windows: &[Vec<f64>]) -> Vec<f64> {
+    /// Turns; each leaves a small part of what was wrong before.
+    const TURNS: usize = 6;
+    let sampled = covariances(windows);
+    let samples: usize = windows.iter().map(Vec::len).sum();
+    let mut noise = levinson(&sampled, samples);
+    for _ in 0..TURNS {
+        if noise.is_empty() {
+            break;
+        }
+        let lost = mean_variance(windows, &noise, sampled.first().copied().unwrap_or_default());
+        let whole: Vec<f64> = sampled.iter().map(|covariance| covariance + lost).collect();
+        noise = levinson(&whole, samples);
+    }
+    noise
+}
+
+/// Mean products of values so many samples apart, from 0 on.
+fn covariances(windows: &[Vec<f64>]) -> Vec<f64> {
     let samples: usize = windows.iter().map(Vec::len).sum();
     let covariance = |lag: usize| -> f64 {
-        windows.iter().map(|w| dot(w, w.get(lag..).unwrap_or_default())).sum::<f64>()
-            / samples.max(1) as f64
+        let products = windows.iter().map(|w| dot(w, w.get(lag..).unwrap_or_default()));
+        let pairs: usize = windows.iter().map(|w| w.len().saturating_sub(lag)).sum();
+        products.sum::<f64>() / pairs.max(1) as f64
     };
-    let most = LONGEST_MEMORY.min(samples / 10);
-    let covariances: Vec<f64> = (0..=most).map(covariance).collect();
+    (0..=LONGEST_MEMORY.min(samples / 10)).map(covariance).collect()
+}
+
+/// The variance of the mean of a window, averaged over the samples in them, for noise with
+/// the memory `noise` whose variance was sampled as `power` after the means were taken off.
+///
+/// `var(mean of L) = (c₀ + 2 Σ (1 − h/L) c_h) / L`; with the correlations `r_h = c_h / c₀`
+/// this is `c₀ m`, and the sampled power is `c₀ (1 − m)`.
+fn mean_variance(windows: &[Vec<f64>], noise: &[f64], power: f64) -> f64 {
+    /// Largest part of the variance that means are taken to hold: more is no noise.
+    const MOST: f64 = 0.5;
+    let longest = windows.iter().map(Vec::len).max().unwrap_or(0);
+    let correlations = correlations(noise, longest);
+    // Running sums over the lags, so that each length costs nothing more.
+    let (mut plain, mut weighted) = (vec![0.0], vec![0.0]);
+    let (mut sum, mut lagged) = (0.0, 0.0);
+    for (lag, correlation) in correlations.iter().enumerate().skip(1) {
+        sum += correlation;
+        lagged += lag as f64 * correlation;
+        plain.push(sum);
+        weighted.push(lagged);
+    }
+    let part = |length: usize| {
+        let last = length.saturating_sub(1).min(plain.len() - 1);
+        let at = |sums: &[f64]| sums.get(last).copied().unwrap_or_default();
+        (1.0 + 2.0 * (at(&plain) - at(&weighted) / length as f64)) / length as f64
+    };
+    let samples: usize = windows.iter().map(Vec::len).sum();
+    let filled = windows.iter().map(Vec::len).filter(|length| *length > 0);
+    let share = filled.map(|length| length as f64 * part(length)).sum::<f64>();
+    let share = (share / samples.max(1) as f64).clamp(0.0, MOST);
+    power * share / (1.0 - share)
+}
+
+/// Correlations of noise with the memory `noise` at lags from 0 to below `count`, as far as
+/// they matter.
+fn correlations(noise: &[f64], count: usize) -> Vec<f64> {
+    // Impulse response, whose products with itself are the covariances.
+    /// Below this part of its first value the response is over.
+    const OVER: f64 = 1e-4;
+    /// Longest response.
+    const LONGEST: usize = 2000;
+    let mut response: Vec<f64> = vec![1.0];
+    let mut small = 0;
+    while response.len() < LONGEST && small <= noise.len() {
+        let past = response.iter().rev();
+        let next: f64 = noise.iter().zip(past).map(|(a, x)| a * x).sum();
+        small = if next.abs() < OVER { small + 1 } else { 0 };
+        response.push(next);
+    }
+    let power = dot(&response, &response);
+    let correlation = |lag: usize| dot(&response, response.get(lag..).unwrap_or_default()) / power;
+    (0..count.min(response.len())).map(correlation).collect()
+}
+
+/// The memory that has these covariances, of Schwarz's order for so many samples.
+fn levinson(covariances: &[f64], samples: usize) -> Vec<f64> {
+    let most = covariances.len().saturating_sub(1);
     let Some(&power) = covariances.first().filter(|power| **power > 0.0) else { return Vec::new() };
     let (mut current, mut variance): (Vec<f64>, f64) = (Vec::new(), power);
     let score = |variance: f64, order: usize| {

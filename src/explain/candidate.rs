@@ -17,6 +17,8 @@ pub struct Candidate {
     /// How much of the root mean square error it takes away, in percent: on the validation
     /// part, or on the training part where there is no other.
     pub error_reduction_percent: f64,
+    /// The same on the training part.
+    pub training_reduction_percent: f64,
     /// Probability of so much or more when the effect is not there, on the training part.
     pub p_value: f64,
     /// Share of the misfit that it takes away: of the mean square error beyond the noise
@@ -25,6 +27,8 @@ pub struct Candidate {
     /// Twice the difference in log-likelihood to the best candidate, both parts of the
     /// record, with Schwarz's penalty: 0 for the best.
     pub behind: f64,
+    /// Twice the negative log-likelihood, without a penalty.
+    pub(super) deviance: f64,
     /// Other candidates that this record cannot tell from this one.
     pub indistinguishable_from: Vec<&'static str>,
 }
@@ -39,9 +43,24 @@ impl Candidate {
     pub(super) fn is_significant(&self) -> bool {
         /// Probability for the best of a whole catalogue.
         const SIGNIFICANCE: f64 = 1e-3;
-        /// Least reduction of the error on data that were not fitted, percent.
-        const WORTH_PERCENT: f64 = 2.0;
-        self.p_value < SIGNIFICANCE && self.error_reduction_percent > WORTH_PERCENT
+        self.p_value < SIGNIFICANCE && self.takes_away(2.0)
+    }
+
+    /// Whether it is needed even where the model passes for adequate.
+    pub(super) fn is_beyond_doubt(&self) -> bool {
+        /// Probability that no memory of the noise accounts for.
+        const SIGNIFICANCE: f64 = 1e-6;
+        self.p_value < SIGNIFICANCE && self.takes_away(5.0)
+    }
+
+    /// Whether it takes `percent` off the error: on data that were not fitted, or, where it
+    /// does not show there, on those that were.
+    fn takes_away(&self, percent: f64) -> bool {
+        /// An effect that does not act on the validation part changes its error so little.
+        const NOTHING_PERCENT: f64 = 1.0;
+        self.error_reduction_percent > percent
+            || self.error_reduction_percent > -NOTHING_PERCENT
+                && self.training_reduction_percent > percent
     }
 
     /// The error by which it is judged: on the validation part where there is one.

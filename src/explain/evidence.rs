@@ -66,7 +66,12 @@ impl Evidence {
     /// The criterion: less is better.
     pub(super) fn criterion(&self) -> f64 {
         let penalty = self.parameters as f64 * (self.training.samples.max(2) as f64).ln();
-        self.training.deviance() + penalty + self.validation.deviance()
+        self.deviance() + penalty
+    }
+
+    /// The criterion without its penalty: twice the negative log-likelihood.
+    pub(super) fn deviance(&self) -> f64 {
+        self.training.deviance() + self.validation.deviance()
     }
 
     /// Fisher's test of this model against one with fewer parameters, on the training part.

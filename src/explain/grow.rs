@@ -47,6 +47,34 @@ impl Step {
     pub(super) fn is_adequate(&self) -> bool {
         self.lack_of_fit.is_none_or(|test| test.adequate)
     }
+
+    /// Whether there is nothing to look for: the residual is hardly more than the noise.
+    fn is_at_the_end(&self) -> bool {
+        self.lack_of_fit.is_none_or(|test| test.adequate && test.is_near_noise())
+    }
+
+    /// Looks for what is missing, where that is not done. A model whose lack of fit the test
+    /// does not show is adequate still when an effect shows it beyond doubt: the test knows
+    /// shapes, the effects know physics.
+    pub(super) fn look(
+        &mut self,
+        record: &Record<'_>,
+        options: &Options,
+        workers: &impl Workers,
+    ) -> bool {
+        if self.is_at_the_end() {
+            return false;
+        }
+        if self.ranking.is_empty() {
+            let floor = floor_of(record, &self.fit).unwrap_or(0.0);
+            self.ranking = race(record, &self.fit, floor, options, workers);
+        }
+        let lacks = !self.is_adequate() || self.ranking.iter().any(Candidate::is_beyond_doubt);
+        if !lacks {
+            self.ranking.clear();
+        }
+        lacks
+    }
 }
 
 /// Adds to `first` what it lacks, one effect after the other, and removes what has become
@@ -63,30 +91,31 @@ pub(super) fn grow(
 ) -> Verdict {
     let mut step = first;
     loop {
-        if step.is_adequate() {
+        if !step.look(record, options, workers) {
             visit(&step);
             return Verdict::Adequate;
-        }
-        if step.ranking.is_empty() {
-            let floor = floor_of(record, &step.fit).unwrap_or(0.0);
-            step.ranking = race(record, &step.fit, floor, options, workers);
         }
         let found = step.ranking.iter().find(|best| best.is_significant()).cloned();
         let added = ids(&step.fit.model).len().saturating_sub(given.len());
         let goes_on = visit(&step) && added < options.max_effects;
         let Some(found) = found.filter(|_| goes_on) else {
-            return Verdict::of(step.ranking.iter().any(Candidate::is_significant));
+            return of_failing(step.ranking.iter().any(Candidate::is_significant));
         };
         let newest = found.effects.first().copied().unwrap_or_default();
         step = Step::new(record, Change::Added(newest), found.fit);
         let mut fixed = vec![newest];
         while let Some((change, fit)) = tidied(record, &step.fit, given, &mut fixed, workers) {
             if !visit(&step) {
-                return Verdict::of(!step.is_adequate());
+                return if step.is_adequate() { Verdict::Adequate } else { Verdict::MissingEffect };
             }
             step = Step::new(record, change, fit);
         }
     }
+}
+
+/// The verdict on a model that fails, by whether an effect accounts for some of it.
+fn of_failing(is_explained: bool) -> Verdict {
+    if is_explained { Verdict::MissingEffect } else { Verdict::Unexplained }
 }
 
 /// A simpler or better model with the effects of `whole`, where there is one: without one

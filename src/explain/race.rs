@@ -5,7 +5,7 @@ use super::candidate::Candidate;
 use super::evidence::Noise;
 use crate::diagnosis::ErrorFigures;
 use crate::effect::{Effect, REGISTRY, RecordRange};
-use crate::fit::{Fit, Part, Record, Status, Survey, fit, fit_to_compare, survey};
+use crate::fit::{Fit, Part, Record, Status, Survey, fit_to_compare, survey};
 use crate::model::{Component, JointModel};
 
 /// What a race is about.
@@ -68,12 +68,6 @@ pub(super) fn race(
     ranked(record, base, noise_floor, entries)
 }
 
-/// `model` fitted; `None` where it cannot be.
-pub(super) fn fitted(record: &Record<'_>, model: &JointModel) -> Option<Fit> {
-    let levels = record.input_levels();
-    fit(record, model, &range(record, model, &levels)).ok()
-}
-
 /// How large the signals of `record` are, for a model with about the gain of `model`.
 pub(super) fn range<'l>(
     record: &Record<'_>,
@@ -123,9 +117,11 @@ fn ranked(
             training,
             validation,
             error_reduction_percent: 100.0 * (1.0 - after / before),
+            training_reduction_percent: 100.0 * (1.0 - (square(training) / square(trained)).sqrt()),
             p_value: evidence.p_value_against(&of_base),
             share_of_misfit: (square(trained) - square(training)) / misfit,
             behind: evidence.criterion(),
+            deviance: evidence.deviance(),
             indistinguishable_from: Vec::new(),
             fit: entry.fit,
         }
@@ -133,10 +129,25 @@ fn ranked(
     let mut candidates: Vec<Candidate> = entries.into_iter().map(candidate).collect();
     candidates.sort_by(|a, b| a.behind.total_cmp(&b.behind));
     let least = candidates.first().map_or(0.0, |best| best.behind);
-    for candidate in &mut candidates {
+    let alike = alike(&candidates);
+    for (candidate, alike) in candidates.iter_mut().zip(alike) {
         candidate.behind -= least;
+        candidate.indistinguishable_from = alike;
     }
     candidates
+}
+
+/// For each candidate the others under which the record is as likely, but for what noise
+/// does.
+fn alike(candidates: &[Candidate]) -> Vec<Vec<&'static str>> {
+    /// Twice the difference in log-likelihood: a likelihood of one in 150.
+    const ALIKE: f64 = 10.0;
+    let of = |one: &Candidate| {
+        let others = candidates.iter().filter(|other| other.effects != one.effects);
+        let others = others.filter(|other| (other.deviance - one.deviance).abs() < ALIKE);
+        others.flat_map(|other| other.effects.iter().copied()).collect()
+    };
+    candidates.iter().map(of).collect()
 }
 
 /// Parameters that were fitted.

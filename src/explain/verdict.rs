@@ -5,8 +5,8 @@ use serde::Serialize;
 use super::Workers;
 use super::candidate::Candidate;
 use super::grow::{Change, Step, grow, ids};
-use super::race::{Options, race};
-use crate::diagnosis::{Comparison, compare};
+use super::race::Options;
+use crate::diagnosis::{Comparison, compare_knowing};
 use crate::fit::{Fit, Record};
 
 /// What is to be said of a model.
@@ -21,13 +21,6 @@ pub enum Verdict {
     Unexplained,
 }
 
-impl Verdict {
-    /// The verdict on a model that fails, by whether an effect accounts for it.
-    pub(super) fn of(explained: bool) -> Self {
-        if explained { Self::MissingEffect } else { Self::Unexplained }
-    }
-}
-
 /// What is missing from a model.
 #[derive(Clone, Debug)]
 pub struct Explanation {
@@ -39,9 +32,9 @@ pub struct Explanation {
     pub ranking: Vec<Candidate>,
 }
 
-/// Percent of the error that an effect must take away to be named though the model with it
+/// The share of a misfit that an effect must take away to be named though the model with it
 /// still fails.
-const MOST_OF_IT: f64 = 80.0;
+const MOST_OF_IT: f64 = 0.9;
 
 /// Effects that may come behind the first before the model is adequate.
 const LOOK_AHEAD: usize = 3;
@@ -56,13 +49,15 @@ pub fn explain(
     options: &Options,
     workers: &impl Workers,
 ) -> Explanation {
-    let base = compare(record, fit);
-    if base.lack_of_fit.is_none_or(|test| test.adequate) {
-        return Explanation { base, verdict: Verdict::Adequate, ranking: Vec::new() };
+    let mut step = Step::new(record, Change::Start, fit);
+    let lacks = step.look(record, options, workers);
+    let Step { fit, lack_of_fit, mut ranking, .. } = step;
+    let base = compare_knowing(record, fit, lack_of_fit);
+    if !lacks {
+        return Explanation { base, verdict: Verdict::Adequate, ranking };
     }
-    let floor = base.noise_floor.unwrap_or(0.0);
-    let mut ranking = race(record, &base.fit, floor, options, workers);
-    let verdict = Verdict::of(accounts_for_it(record, &mut ranking, options, workers));
+    let named = accounts_for_it(record, &mut ranking, options, workers);
+    let verdict = if named { Verdict::MissingEffect } else { Verdict::Unexplained };
     Explanation { base, verdict, ranking }
 }
 
@@ -74,7 +69,9 @@ fn accounts_for_it(
     options: &Options,
     workers: &impl Workers,
 ) -> bool {
-    let Some(best) = ranking.first().filter(|best| best.is_significant()) else { return false };
+    let Some(place) = ranking.iter().position(Candidate::is_significant) else { return false };
+    let best = ranking.remove(place);
+    ranking.insert(0, best.clone());
     let id = best.effects.first().copied().unwrap_or_default();
     let first = Step::new(record, Change::Added(id), best.fit.clone());
     let given: Vec<_> = ids(&best.fit.model).into_iter().filter(|given| *given != id).collect();
@@ -84,7 +81,7 @@ fn accounts_for_it(
         last = ids(&step.fit.model);
         true
     });
-    let named = best.error_reduction_percent >= MOST_OF_IT || verdict == Verdict::Adequate;
+    let named = best.share_of_misfit >= MOST_OF_IT || verdict == Verdict::Adequate;
     if verdict == Verdict::Adequate {
         let remains = |candidate: &Candidate| candidate.effects.iter().all(|id| last.contains(id));
         if let Some(place) = ranking.iter().position(remains) {

@@ -203,6 +203,7 @@ pub fn survey(
     let short = record.shortened();
     let (searches, _) = rough(&short, model, &space, range);
     let best = searches.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost));
+    let best = best.map(Search::across_flats);
     let found = best.map(|search| Survey { model: search.problem.model_now(), cost: search.cost });
     Ok(found.unwrap_or_else(|| Survey { model: model.clone(), cost: f64::MAX }))
 }

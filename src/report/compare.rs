@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 use super::number::{number, probability, with_unit};
 use crate::diagnosis::failure::{FailsWhere, Region, Units, WorstSegment};
 use crate::diagnosis::{
-    Comparison, ErrorFigures, InputCorrelation, LackOfFit, SIGNIFICANCE, Whiteness,
+    CONFIDENCE, Comparison, ErrorFigures, InputCorrelation, LackOfFit, Whiteness,
 };
 use crate::effect::Dimension;
 use crate::experiment::Joint;
@@ -186,7 +186,7 @@ pub fn correlation_sentences(comparison: &Comparison) -> Vec<String> {
 
 fn whiteness_sentence(whiteness: &Whiteness) -> String {
     let p = probability(whiteness.p_value);
-    if whiteness.p_value >= SIGNIFICANCE {
+    if whiteness.p_value >= 1.0 - CONFIDENCE {
         return format!("white ({p})");
     }
     let last = whiteness.lag_step_s * whiteness.correlation.len() as f64;
@@ -201,7 +201,7 @@ fn whiteness_sentence(whiteness: &Whiteness) -> String {
 fn input_sentence(correlation: &InputCorrelation) -> String {
     let acting = &correlation.acting;
     let p = probability(acting.p_value);
-    if acting.p_value >= SIGNIFICANCE {
+    if acting.p_value >= 1.0 - CONFIDENCE {
         return format!("steps of the input do not show ({p})");
     }
     let lag = number(acting.peak_lag_s.abs());
