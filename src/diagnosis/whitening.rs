@@ -145,3 +145,54 @@ pub(crate) fn whitened(windows: &[Vec<f64>], noise: &[f64]) -> Vec<Vec<f64>> {
     };
     windows.iter().map(filter).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng as _;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution as _, StandardNormal};
+
+    use super::*;
+
+    /// Noise of first order in windows, each without its mean.
+    fn windows(rho: f64, length: usize, count: usize) -> Vec<Vec<f64>> {
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let mut value = 0.0;
+        let mut next = || {
+            let e: f64 = StandardNormal.sample(&mut random);
+            value = rho * value + (1.0 - rho * rho).sqrt() * e;
+            value
+        };
+        let window = |_| {
+            let values: Vec<f64> = (0..length).map(|_| next()).collect();
+            let mean = values.iter().sum::<f64>() / length as f64;
+            values.iter().map(|value| value - mean).collect()
+        };
+        (0..count).map(window).collect()
+    }
+
+    #[test]
+    fn the_means_of_short_windows_do_not_shorten_the_memory() {
+        for (rho, length) in [(0.0, 100), (0.8, 100), (0.95, 150)] {
+            let noise = autoregression(&windows(rho, length, 400));
+            let first = noise.first().copied().unwrap_or_default();
+            assert!((first - rho).abs() < 0.01, "{rho}: {noise:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_whitened_has_no_memory_left() {
+        let noisy = windows(0.9, 500, 40);
+        let white = whitened(&noisy, &autoregression(&noisy));
+        let covariances = covariances(&white);
+        assert!((covariances[1] / covariances[0]).abs() < 0.02, "{covariances:?}");
+    }
+
+    #[test]
+    fn correlations_of_first_order_are_powers() {
+        for (lag, found) in correlations(&[0.9], 50).into_iter().enumerate() {
+            let expected = 0.9_f64.powi(i32::try_from(lag).unwrap());
+            assert!((found - expected).abs() < 1e-3);
+        }
+    }
+}

@@ -99,3 +99,36 @@ fn cut(record: &Record<'_>, evaluation: &Evaluation, part: Part) -> Vec<Vec<f64>
     let values = windows.filter_map(|w| evaluation.residuals.get(w.trial)?.get(w.start..w.end));
     values.map(<[f64]>::to_vec).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn evidence(sum: f64, parameters: usize) -> Evidence {
+        let training = Squares { sum, samples: 1000 };
+        Evidence { training, validation: Squares { sum: 400.0, samples: 400 }, parameters }
+    }
+
+    #[test]
+    fn a_parameter_must_earn_its_penalty() {
+        let plain = evidence(1000.0, 2);
+        // One parameter gains about 1 of 1000 by chance, and must gain ln 1000 = 6.9.
+        assert!(evidence(999.0, 3).criterion() > plain.criterion());
+        assert!(evidence(990.0, 3).criterion() < plain.criterion());
+    }
+
+    #[test]
+    fn fisher_judges_what_a_parameter_gains() {
+        let plain = evidence(1000.0, 2);
+        // F(1, 997) of 2.7 is exceeded with probability 0.10, of 10 with 0.0016.
+        let by = |gain: f64| evidence(1000.0 - gain, 3).p_value_against(&plain);
+        assert!((by(2.7) - 0.1).abs() < 0.01 && (by(10.0) - 0.0015).abs() < 0.0003);
+    }
+
+    #[test]
+    fn without_a_validation_part_only_training_counts() {
+        let none = Squares { sum: 0.0, samples: 0 };
+        let evidence = Evidence { validation: none, ..evidence(500.0, 0) };
+        assert!((evidence.criterion() - 1000.0 * 0.5_f64.ln()).abs() < 1e-9);
+    }
+}

@@ -99,7 +99,8 @@ pub(super) fn grow(
         let added = ids(&step.fit.model).len().saturating_sub(given.len());
         let goes_on = visit(&step) && added < options.max_effects;
         let Some(found) = found.filter(|_| goes_on) else {
-            return of_failing(step.ranking.iter().any(Candidate::is_significant));
+            let explained = step.ranking.iter().any(Candidate::is_significant);
+            return if explained { Verdict::MissingEffect } else { Verdict::Unexplained };
         };
         let newest = found.effects.first().copied().unwrap_or_default();
         step = Step::new(record, Change::Added(newest), found.fit);
@@ -111,11 +112,6 @@ pub(super) fn grow(
             step = Step::new(record, change, fit);
         }
     }
-}
-
-/// The verdict on a model that fails, by whether an effect accounts for some of it.
-fn of_failing(is_explained: bool) -> Verdict {
-    if is_explained { Verdict::MissingEffect } else { Verdict::Unexplained }
 }
 
 /// A simpler or better model with the effects of `whole`, where there is one: without one
