@@ -54,7 +54,7 @@ pub const NEGLIGIBLE: f64 = 0.02;
 
 /// A residual so many times the noise of the measurement is no noise, however well it
 /// would pass for one that changes slowly.
-const BEYOND_NOISE: f64 = 3.0;
+pub(crate) const BEYOND_NOISE: f64 = 3.0;
 
 /// A residual no more than so many times the noise leaves nothing that is worth an effect,
 /// however sure it is that something is left.

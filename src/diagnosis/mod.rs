@@ -24,5 +24,6 @@ pub use correlation::{
     whiteness,
 };
 pub use error::ErrorFigures;
+pub(crate) use lack_of_fit::BEYOND_NOISE;
 pub use lack_of_fit::{LackOfFit, NEGLIGIBLE, SIGNIFICANCE, TestColumns, lack_of_fit};
 pub use noise::noise_floor;

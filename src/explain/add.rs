@@ -55,7 +55,7 @@ pub fn add(
     let model = base.model.with(Component::neutral(effect));
     let levels = record.input_levels();
     let with = fit(record, &model, &range(record, &model, &levels))?;
-    let noise = Noise::of(record, &with.evaluation);
+    let noise = Noise::of(record, &with);
     let evidence = |fit: &Fit| noise.evidence(record, &fit.evaluation, parameters(fit));
     let p_value = evidence(&with).p_value_against(&evidence(&base));
     Ok(Addition {

@@ -13,7 +13,8 @@
 //! fitted.
 
 use crate::diagnosis::whitening::{autoregression, whitened};
-use crate::fit::{Evaluation, Part, Record};
+use crate::diagnosis::{BEYOND_NOISE, ErrorFigures, floor_of};
+use crate::fit::{Evaluation, Fit, Part, Record};
 use crate::statistics::fisher_tail;
 
 /// The noise of a record, as the best model leaves it.
@@ -38,11 +39,18 @@ struct Squares {
 }
 
 impl Noise {
-    /// The memory of `residuals`, both parts together.
-    pub(super) fn of(record: &Record<'_>, evaluation: &Evaluation) -> Self {
-        let mut windows = cut(record, evaluation, Part::Training);
-        windows.extend(cut(record, evaluation, Part::Validation));
-        Self { memory: autoregression(&windows) }
+    /// The memory of what `fit` leaves, both parts together.
+    ///
+    /// What is far more than the noise of the measurement is a misfit, whose memory is no
+    /// noise's: models are then compared as if noise had none.
+    pub(super) fn of(record: &Record<'_>, fit: &Fit) -> Self {
+        let mut windows = cut(record, &fit.evaluation, Part::Training);
+        windows.extend(cut(record, &fit.evaluation, Part::Validation));
+        let error = ErrorFigures::of(record, &fit.evaluation, Part::Training);
+        let is_misfit = error
+            .zip(floor_of(record, fit))
+            .is_some_and(|(error, floor)| error.rmse > BEYOND_NOISE * floor);
+        Self { memory: if is_misfit { Vec::new() } else { autoregression(&windows) } }
     }
 
     /// The evidence of a model with so many fitted parameters.

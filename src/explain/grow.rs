@@ -133,7 +133,7 @@ fn tidied(
         changes.extend(open.flat_map(alike));
     }
     let tried = promising(record, whole, &changes, workers);
-    let noise = Noise::of(record, &whole.evaluation);
+    let noise = Noise::of(record, whole);
     let criterion =
         |fit: &Fit| noise.evidence(record, &fit.evaluation, parameters(fit)).criterion();
     let best = tried.into_iter().min_by(|a, b| criterion(&a.1).total_cmp(&criterion(&b.1)))?;

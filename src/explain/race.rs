@@ -98,7 +98,7 @@ fn ranked(
     let Some(best) = entries.iter().min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost)) else {
         return Vec::new();
     };
-    let noise = Noise::of(record, &best.fit.evaluation);
+    let noise = Noise::of(record, &best.fit);
     let evidence = |fit: &Fit| noise.evidence(record, &fit.evaluation, parameters(fit));
     let of_base = evidence(base);
     let (trained, validated) = (error(base, Part::Training), error(base, Part::Validation));

@@ -79,6 +79,8 @@ pub struct Record<'a> {
     radians_per_output_unit: f64,
     /// Windows start at the measured speed.
     speeds_measured: bool,
+    /// Seconds from the start of the record to that of each trial.
+    starts_s: Vec<f64>,
 }
 
 /// A model on a record: what it simulates, and what is left.
@@ -119,6 +121,7 @@ impl<'a> Record<'a> {
             delays: None,
             radians_per_output_unit,
             speeds_measured,
+            starts_s: starts_s(&joint.trials),
         }
     }
 
@@ -241,7 +244,7 @@ impl<'a> Record<'a> {
         let surroundings = Surroundings {
             others: self.others.get(index).map_or(&[], Vec::as_slice),
             radians_per_output_unit: self.radians_per_output_unit,
-            start_s: self.start_s(trial),
+            start_s: self.start_s(index),
         };
         let windows = self.windows.iter().filter(|window| window.trial == index).copied();
         let arrivals = self.arrivals(model, index);
@@ -261,21 +264,19 @@ impl<'a> Record<'a> {
     pub fn arrivals(&self, model: &JointModel, trial: usize) -> Arrivals {
         let Some(measured) = self.joint.trials.get(trial) else { return Arrivals::default() };
         let delays = self.delays.as_ref().and_then(|delays| delays.get(trial));
-        arrivals(model, measured, self.start_s(measured), delays.map(Vec::as_slice))
+        arrivals(model, measured, self.start_s(trial), delays.map(Vec::as_slice))
     }
 
-    /// Seconds from the start of the record to that of a trial.
-    fn start_s(&self, trial: &Trial) -> f64 {
-        let starts = self.joint.trials.iter().map(|trial| trial.time_s(1));
-        trial.time_s(1) - starts.fold(f64::INFINITY, f64::min)
+    fn start_s(&self, trial: usize) -> f64 {
+        self.starts_s.get(trial).copied().unwrap_or_default()
     }
 
     /// How large the signals are; `levels` are the input's magnitudes, see
     /// [`input_levels`](Self::input_levels).
     pub fn range<'l>(&self, levels: &'l [f64], speed_abs_max: f64) -> RecordRange<'l> {
         let outputs = || self.joint.trials.iter().flat_map(|trial| trial.output().iter().copied());
-        let ends = self.joint.trials.iter();
-        let ends = ends.map(|t| self.start_s(t) + t.len() as f64 * t.period().seconds());
+        let ends = self.joint.trials.iter().zip(&self.starts_s);
+        let ends = ends.map(|(trial, start_s)| start_s + length_s(trial));
         let periods = self.joint.trials.iter().map(|trial| trial.period().seconds());
         RecordRange {
             input_abs_max: levels.last().copied().unwrap_or(1.0),
@@ -297,6 +298,34 @@ impl<'a> Record<'a> {
         levels.dedup();
         levels
     }
+}
+
+/// Seconds from the start of the record to that of each of `trials`.
+///
+/// Where their times overlap, as when each counts from zero, they are taken to have followed
+/// one another without a pause: what warms in one trial is warm in the next.
+fn starts_s(trials: &[Trial]) -> Vec<f64> {
+    let times = || trials.iter().map(|trial| trial.time_s(1));
+    let ends = trials.iter().map(|trial| trial.time_s(1) + length_s(trial));
+    // Times are rounded: an end may seem to lie a little behind the next start.
+    let follow = ends
+        .zip(trials.iter().skip(1))
+        .all(|(end, next)| next.time_s(1) > end - 0.5 * next.period().seconds());
+    if follow {
+        let first = times().fold(f64::INFINITY, f64::min);
+        return times().map(|time| time - first).collect();
+    }
+    let mut sum = 0.0;
+    let before = |trial: &Trial| {
+        let before = sum;
+        sum += length_s(trial);
+        before
+    };
+    trials.iter().map(before).collect()
+}
+
+fn length_s(trial: &Trial) -> f64 {
+    trial.len() as f64 * trial.period().seconds()
 }
 
 /// Radians in one unit of the output; degrees unless the log says otherwise.
@@ -372,4 +401,31 @@ fn changes(input: &[f64]) -> impl Iterator<Item = usize> {
     let changed = |pair: &[f64]| matches!(pair, [a, b] if a != b);
     let pairs = input.windows(2).zip(1..);
     pairs.filter(move |(pair, _)| changed(pair)).map(|(_, index)| index)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::SamplePeriod;
+
+    fn trial(start_s: f64, samples: usize) -> Trial {
+        let period = SamplePeriod::from_seconds(0.5).unwrap();
+        Trial::new("a", start_s, period, vec![0.0; samples], vec![0.0; samples]).unwrap()
+    }
+
+    #[test]
+    fn trials_that_each_count_from_zero_follow_one_another() {
+        assert_eq!(starts_s(&[trial(7.0, 4), trial(20.0, 4)]), [0.0, 13.0]);
+        assert_eq!(starts_s(&[trial(0.0, 4), trial(0.0, 6), trial(0.0, 2)]), [0.0, 2.0, 5.0]);
+    }
+
+    #[test]
+    fn steps_of_an_input_that_is_never_held_are_no_windows() {
+        let input: Vec<f64> = (0..1000).map(f64::from).collect();
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let trial = Trial::new("a", 0.0, period, input, vec![0.0; 1000]).unwrap();
+        let windows = cut(&trial, 0, Split::Time(0.5), Horizon::Steps);
+        let borders: Vec<_> = windows.iter().map(|window| window.start).collect();
+        assert_eq!(borders, [0, 200, 400, 500, 600, 800]);
+    }
 }
