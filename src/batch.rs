@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use crate::delay::{Decision, EstimateError, Settings, TrialEstimate, estimate};
+use crate::delay::{Decision, EstimateError, Settings, Shared, TrialEstimate};
 use crate::diagnosis::{Comparison, compare};
 use crate::effect::Effect;
 use crate::experiment::{Joint, Trial, activity};
@@ -44,16 +44,17 @@ pub fn estimate_joints(
     done: impl Fn() + Sync,
 ) -> Vec<Result<JointEstimate, EstimateError>> {
     let one_joint = |joint: &Joint| {
-        let one_trial = |trial| {
-            let estimate = estimate(trial, settings);
-            done();
-            estimate
-        };
         let needed = settings.beta.saturating_mul(2);
         let longest = joint.trials.iter().map(Trial::len).max();
         if let Some(samples) = longest.filter(|samples| *samples < needed) {
             return Err(EstimateError::TooFewSamples { samples, needed });
         }
+        let shared = Shared::of(&joint.trials, settings)?;
+        let one_trial = |trial| {
+            let estimate = shared.estimate(trial, settings);
+            done();
+            estimate
+        };
         let trials: Vec<_> = joint.trials.par_iter().map(one_trial).collect();
         match trials.first() {
             Some(Err(first)) if trials.iter().all(Result::is_err) => Err(first.clone()),

@@ -10,6 +10,9 @@ use serde::Serialize;
 pub struct SamplePeriod(f64);
 
 impl SamplePeriod {
+    /// One second.
+    pub const ONE_SECOND: Self = Self(1.0);
+
     /// The period of `seconds`, or `None` unless it is finite and positive.
     pub fn from_seconds(seconds: f64) -> Option<Self> {
         (seconds.is_finite() && seconds > 0.0).then_some(Self(seconds))

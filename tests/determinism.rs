@@ -134,6 +134,21 @@ fn any_number_of_threads_gives_the_same_bytes() {
 }
 
 #[test]
+fn delays_behind_a_shared_lag_are_the_same_on_any_number_of_threads() {
+    let log = [Log::of_seed(8)];
+    let on = |threads: &str| {
+        let methods = ["--method", "lag-aware", "--method", "hinge"];
+        let joints = ["--joint", "boom", "--joint", "grip"];
+        let options = [methods.as_slice(), &joints, &JSON, &["--threads", threads]];
+        Results::of(&log, &options.concat())
+    };
+    let one = on("1");
+    assert_eq!(one.status, Some(0), "{}", one.stderr);
+    assert!(one.decisions.contains(",lag-aware,") && one.decisions.contains(",hinge,"));
+    assert_eq!(on("3"), one);
+}
+
+#[test]
 fn another_run_gives_the_same_bytes() {
     let run = || Results::of(&[Log::of_seed(4)], &JSON);
     assert_eq!(run(), run());

@@ -208,6 +208,12 @@ fn whole(number: usize) -> i64 {
     i64::try_from(number).unwrap()
 }
 
+/// Samples of the paper's method, which are whole.
+#[expect(clippy::cast_possible_truncation, reason = "they are whole")]
+fn samples(number: f64) -> i64 {
+    number as i64
+}
+
 #[test]
 fn signals_are_those_of_the_log_sample_by_sample() {
     let recorded = Recorded::with(Settings::default());
@@ -256,8 +262,8 @@ fn the_table_holds_every_decision_and_every_candidate() {
             ("r", rows.iter().map(|row| whole(row.r)).collect()),
             ("end", rows.iter().map(|row| whole(row.end)).collect()),
             ("f", rows.iter().filter_map(|row| row.f_opt).map(whole).collect()),
-            ("q", rows.iter().filter_map(|row| row.q).map(whole).collect()),
-            ("delta", rows.iter().filter_map(|row| row.delta).collect()),
+            ("q", rows.iter().filter_map(|row| row.q).map(samples).collect()),
+            ("delta", rows.iter().filter_map(|row| row.delta).map(samples).collect()),
         ] {
             assert_eq!(of_verdicts(back.integers(&entity, name)), expected, "{name}");
         }
@@ -509,7 +515,8 @@ fn the_state_at_each_accepted_step_is_that_of_the_report() {
         assert!(column("time_s").eq(steps.iter().map(|step| step.time_s)));
         let rows = decision_rows(joint).map(|(_, row)| row);
         let accepted = rows.filter(|row| row.verdict == "accepted");
-        let expected = accepted.map(|row| (whole(row.i), whole(row.p), row.delta.unwrap()));
+        let expected =
+            accepted.map(|row| (whole(row.i), whole(row.p), samples(row.delta.unwrap())));
         let deltas = back.integers(&entity, "delta").into_iter();
         let deltas = deltas.map(|(times, delta)| (times["segment"], times["sample"], delta));
         assert!(deltas.eq(expected));

@@ -136,7 +136,7 @@ fn state(
     Some(StepState {
         trial: trial.label().to_owned(),
         number: decision.number,
-        delay_s: best.delay as f64 * period_s,
+        delay_s: decision.delay()? * period_s,
         average_speed: best.candidate.after.slope.abs() / period_s,
         input_change: step.after - step.before,
         dwell_s: dwell.map(|samples| samples as f64 * period_s),

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::estimate::Settings;
+use super::estimate::{FineDelay, Settings};
 use super::search::Candidate;
 
 /// What a decision may fail, in the paper's order.
@@ -25,11 +25,13 @@ pub enum Condition {
     Sse,
     /// There are fewer than two rows of β samples, so no candidate.
     TooShort,
+    /// The slope changes no more than noise makes it.
+    NothingHappened,
 }
 
 impl Condition {
     /// All conditions, in the order they are reported.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::FirstOrLast,
         Self::OutputLimit,
         Self::BeforeInput,
@@ -37,6 +39,7 @@ impl Condition {
         Self::ShortHold,
         Self::Sse,
         Self::TooShort,
+        Self::NothingHappened,
     ];
 
     /// Its name in files and tables.
@@ -49,6 +52,7 @@ impl Condition {
             Self::ShortHold => "short_hold",
             Self::Sse => "sse",
             Self::TooShort => "too_short",
+            Self::NothingHappened => "nothing_happened",
         }
     }
 
@@ -62,6 +66,7 @@ impl Condition {
             Self::ShortHold => "input held too short",
             Self::Sse => "lines fit too badly",
             Self::TooShort => "segment too short for two lines",
+            Self::NothingHappened => "no reaction beyond the noise",
         }
     }
 }
@@ -109,6 +114,8 @@ pub(super) struct Facts<'a> {
     /// Whole rows of β samples in the segment.
     pub(super) rows: usize,
     pub(super) best: Option<Candidate>,
+    /// The delay between samples, where the method tells it.
+    pub(super) fine: Option<FineDelay>,
 }
 
 impl Facts<'_> {
@@ -122,6 +129,7 @@ impl Facts<'_> {
             self.short_hold(settings),
             self.sse(settings),
             self.too_short(),
+            check(Condition::NothingHappened, None, None, Outcome::NotChecked),
         ]
     }
 
@@ -149,7 +157,9 @@ impl Facts<'_> {
 
     fn before_input(&self) -> Check {
         let limit = self.input_sample as f64;
-        let value = self.best.map(|best| best.breakpoint as f64);
+        let coarse = self.best.map(|best| best.breakpoint as f64);
+        // An interval counts as before the input when all of it is.
+        let value = self.fine.map_or(coarse, |fine| Some(limit + fine.high));
         let outcome = value.map_or(Outcome::NotChecked, |q| Outcome::from(q >= limit));
         check(Condition::BeforeInput, value, Some(limit), outcome)
     }
@@ -184,6 +194,14 @@ impl Facts<'_> {
 
 fn check(condition: Condition, value: Option<f64>, limit: Option<f64>, outcome: Outcome) -> Check {
     Check { condition, value, limit, outcome }
+}
+
+/// (7) The change of slope against noise; the value is the chance that noise alone looks
+/// as much like a reaction, none where there are too few samples to tell.
+pub(super) fn nothing_happened(p_value: Option<f64>, confidence: f64) -> Check {
+    let limit = 1.0 - confidence;
+    let outcome = Outcome::from(p_value.is_some_and(|p_value| p_value <= limit));
+    check(Condition::NothingHappened, p_value, Some(limit), outcome)
 }
 
 impl From<bool> for Outcome {

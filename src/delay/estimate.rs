@@ -1,21 +1,25 @@
-//! Algorithm 1: step by step, since each segment hangs on the verdict before it.
+//! The delays of a trial: settings, decisions, and what becomes of a step.
 
 use std::fmt;
 
 use serde::Serialize;
 
-use super::condition::{Check, Condition, Facts, Outcome};
+use super::condition::{Check, Condition, Outcome};
+use super::method::{self, Method};
 use super::profile::{DelayProfile, Interpolation};
+use super::response::Lag;
 use super::search::{Candidate, Candidates};
 use super::segment::Segment;
 use super::steps::{InputStep, input_steps};
 use crate::experiment::Trial;
 use crate::filter::{FilterError, LowPass};
-use crate::units::signed;
+use crate::units::{SamplePeriod, signed};
 
-/// Settings of Algorithm 1; the default is the paper's way.
+/// Settings of a method; the default is the paper's way.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Settings {
+    /// How a delay is found.
+    pub method: Method,
     /// α: samples that a segment reaches beyond its input steps.
     pub alpha: usize,
     /// β: samples per row of Φ, so the distance between two candidates.
@@ -41,11 +45,34 @@ pub struct Settings {
     pub min_step: f64,
     /// How `τ_k` goes on between two steps.
     pub interpolation: Interpolation,
+    /// Reject a step as `nothing_happened` unless its change of slope is this unlikely to
+    /// be noise: 0.99 takes noise for a reaction in one step of a hundred. None accepts it
+    /// untested, as the paper does.
+    pub confidence: Option<f64>,
+    /// How often an interval of a delay is to hold the true one.
+    pub interval: f64,
+}
+
+/// How sure a reaction must be where nothing else is asked for.
+const CONFIDENCE: f64 = 0.99;
+
+impl Settings {
+    /// The settings that suit `method`. All but the paper's look at the output as it was
+    /// measured, since smoothing takes from noise what intervals are made of.
+    pub fn of(method: Method) -> Self {
+        match method {
+            Method::TwoLine => Self::default(),
+            Method::Hinge | Method::LagAware => {
+                Self { method, low_pass: None, confidence: Some(CONFIDENCE), ..Self::default() }
+            }
+        }
+    }
 }
 
 impl Default for Settings {
     fn default() -> Self {
         Self {
+            method: Method::TwoLine,
             alpha: 10,
             beta: 5,
             low_pass: Some(LowPass { cutoff_hz: 5.0, order: 4 }),
@@ -57,6 +84,8 @@ impl Default for Settings {
             keep_first_last: false,
             min_step: 0.0,
             interpolation: Interpolation::Hold,
+            confidence: None,
+            interval: 0.95,
         }
     }
 }
@@ -78,6 +107,14 @@ pub enum SettingsError {
         low: f64,
         /// The second limit.
         high: f64,
+    },
+    /// A probability is not one.
+    #[error("{name} is {value}, but must be between 0 and 1, as in 0.99")]
+    Probability {
+        /// The setting's name.
+        name: &'static str,
+        /// What was given.
+        value: f64,
     },
     /// A threshold is negative or not a number.
     #[error("{name} is {value}, but must be a number from 0 up")]
@@ -104,6 +141,13 @@ impl Settings {
             && (low >= high || low.is_nan() || high.is_nan())
         {
             return Err(SettingsError::LimitsSwapped { low, high });
+        }
+        let probabilities =
+            [("confidence", self.confidence.unwrap_or(0.5)), ("interval", self.interval)];
+        for (name, value) in probabilities {
+            if !(value > 0.0 && value < 1.0) {
+                return Err(SettingsError::Probability { name, value });
+            }
         }
         let thresholds = [
             ("min-slope-change", self.min_slope_change),
@@ -151,6 +195,21 @@ pub struct TrialEstimate {
     pub decisions: Vec<Decision>,
     /// The delay of every sample.
     pub profile: DelayProfile,
+    /// How the joint follows after its dead time, where the method looks for it.
+    pub lag: Option<Lag>,
+}
+
+/// A delay finer than a sample, and how well it is known; all in samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FineDelay {
+    /// The most likely delay.
+    pub delay: f64,
+    /// Lower end of its interval.
+    pub low: f64,
+    /// Upper end of its interval.
+    pub high: f64,
+    /// How often such an interval holds the true delay.
+    pub confidence: f64,
 }
 
 /// The decision on one input step, with the evidence for it.
@@ -168,6 +227,8 @@ pub struct Decision {
     pub candidates: Candidates,
     /// Every condition, in the order of [`Condition::ALL`].
     pub checks: Vec<Check>,
+    /// The delay between samples, where the method tells it.
+    pub fine: Option<FineDelay>,
 }
 
 /// The best breakpoint of a segment, accepted or not.
@@ -224,76 +285,97 @@ impl Decision {
     /// The delay in samples, if it was accepted.
     pub fn accepted_delay(&self) -> Option<f64> {
         let accepted = self.verdict() == Verdict::Accepted;
-        self.breakpoint().filter(|_| accepted).map(|best| best.delay as f64)
+        self.delay().filter(|_| accepted)
+    }
+
+    /// The delay in samples, accepted or not, as finely as the method tells it.
+    pub fn delay(&self) -> Option<f64> {
+        let fine = self.fine.map(|fine| fine.delay);
+        fine.or_else(|| self.breakpoint().map(|best| best.delay as f64))
     }
 }
 
-/// Estimates the delay of every input step of `trial`.
+/// Estimates the delay of every input step of `trial` by the method of `settings`.
 ///
-/// For step `i` at sample `p_i` the segment runs from `r_i` to `p_(i+1) + α`, with
-/// `r_i = q_(i−1)` if step `i−1` was accepted and `p_i − α` otherwise. The pair of lines
-/// with the least squared error breaks at `q_i`; the delay is `δ_i = q_i − p_i`.
+/// What the trials of a joint share is taken from this one alone; see
+/// [`estimate_joint`] for several.
 ///
 /// # Errors
 /// [`EstimateError`] when the settings make no sense or the filter does not fit this
 /// trial. An input without a step is no error: there are no decisions then; nor is a
 /// trial too short for two lines, whose decisions say so.
-///
-/// # References
-/// Albrecht and Taylor, Algorithm 1 (time-varying delays of hydraulic manipulators).
 pub fn estimate(trial: &Trial, settings: &Settings) -> Result<TrialEstimate, EstimateError> {
-    settings.check()?;
-    let samples = trial.len();
-    let smooth = |filter: LowPass| filter.smooth(trial.output(), trial.period());
-    let smoothed = settings.low_pass.map(smooth).transpose()?;
-    let output = smoothed.as_deref().unwrap_or(trial.output());
-    let steps = input_steps(trial.input(), settings.min_step);
-    let mut decisions: Vec<Decision> = Vec::with_capacity(steps.len());
-    for index in 0..steps.len() {
-        let decision = decide(&steps, index, output, decisions.last(), settings);
-        decisions.extend(decision);
-    }
-    let profile = DelayProfile::of(&decisions, samples, settings.interpolation);
-    Ok(TrialEstimate { label: trial.label().to_owned(), smoothed, decisions, profile })
+    let shared = Shared::of(std::slice::from_ref(trial), settings)?;
+    shared.estimate(trial, settings)
 }
 
-/// The decision on step `index`, after the one `before` it.
-fn decide(
-    steps: &[InputStep],
-    index: usize,
-    output: &[f64],
-    before: Option<&Decision>,
+/// Estimates all trials of a joint, which share what its lag looks like.
+pub fn estimate_joint(
+    trials: &[Trial],
     settings: &Settings,
-) -> Option<Decision> {
-    let input_step = *steps.get(index)?;
-    let samples = output.len();
-    let p = input_step.sample;
-    // Behind the last step the trial's end stands in for the next one.
-    let next = steps.get(index + 1).map_or(samples + 1, |next| next.sample);
-    let accepted = before.filter(|before| before.verdict() == Verdict::Accepted);
-    let previous = accepted.and_then(Decision::breakpoint);
-    let before_step = p.saturating_sub(settings.alpha);
-    let breakpoint = previous.map(|best| best.candidate.breakpoint);
-    let latest = settings.max_delay.map_or(usize::MAX, |delay| p.saturating_add(delay));
-    let first = match (breakpoint, settings.max_delay) {
-        (None, _) => before_step,
-        (Some(breakpoint), None) => breakpoint,
-        // What came long before the step is none of its business.
-        (Some(breakpoint), Some(_)) => breakpoint.max(before_step),
-    };
-    let last = next.min(latest).saturating_add(settings.alpha);
-    let segment = Segment::clipped(first, last, samples);
-    let values = output.get(segment.indices()).unwrap_or_default();
-    let candidates = Candidates::search_until(values, segment.first, settings.beta, latest);
-    let facts = Facts {
-        step: index + 1,
-        steps: steps.len(),
-        input_sample: p,
-        hold: next - p,
-        output: values,
-        rows: values.len() / settings.beta,
-        best: candidates.best(),
-    };
-    let checks = facts.check(settings);
-    Some(Decision { number: index + 1, input_step, hold: next - p, segment, candidates, checks })
+) -> Vec<Result<TrialEstimate, EstimateError>> {
+    match Shared::of(trials, settings) {
+        Ok(shared) => trials.iter().map(|trial| shared.estimate(trial, settings)).collect(),
+        Err(error) => trials.iter().map(|_| Err(error.clone())).collect(),
+    }
+}
+
+/// What all trials of a joint have in common.
+#[derive(Clone, Debug)]
+pub struct Shared {
+    lag: Option<Lag>,
+}
+
+impl Shared {
+    /// Looks at all trials of a joint.
+    ///
+    /// # Errors
+    /// [`EstimateError::Settings`] when the settings make no sense.
+    pub fn of(trials: &[Trial], settings: &Settings) -> Result<Self, EstimateError> {
+        settings.check()?;
+        let prepared: Vec<_> = if settings.method.shares_a_lag() {
+            trials.iter().filter_map(|trial| Prepared::of(trial, settings).ok()).collect()
+        } else {
+            Vec::new()
+        };
+        Ok(Self { lag: method::lag_of(&prepared, settings) })
+    }
+
+    /// Estimates one trial of the joint.
+    ///
+    /// # Errors
+    /// [`EstimateError::Filter`] when the filter does not fit this trial.
+    pub fn estimate(
+        &self,
+        trial: &Trial,
+        settings: &Settings,
+    ) -> Result<TrialEstimate, EstimateError> {
+        let prepared = Prepared::of(trial, settings)?;
+        let decisions = method::decide_all(&prepared, self.lag.as_ref(), settings);
+        let profile = DelayProfile::of(&decisions, trial.len(), settings.interpolation);
+        let (lag, smoothed) = (self.lag.clone(), prepared.smoothed);
+        Ok(TrialEstimate { label: trial.label().to_owned(), smoothed, decisions, profile, lag })
+    }
+}
+
+/// A trial as a method sees it.
+pub(super) struct Prepared<'a> {
+    pub(super) raw: &'a [f64],
+    smoothed: Option<Vec<f64>>,
+    pub(super) period: SamplePeriod,
+    pub(super) steps: Vec<InputStep>,
+}
+
+impl<'a> Prepared<'a> {
+    fn of(trial: &'a Trial, settings: &Settings) -> Result<Self, FilterError> {
+        let smooth = |filter: LowPass| filter.smooth(trial.output(), trial.period());
+        let smoothed = settings.low_pass.map(smooth).transpose()?;
+        let steps = input_steps(trial.input(), settings.min_step);
+        Ok(Self { raw: trial.output(), smoothed, period: trial.period(), steps })
+    }
+
+    /// What the method is to look at.
+    pub(super) fn output(&self) -> &[f64] {
+        self.smoothed.as_deref().unwrap_or(self.raw)
+    }
 }

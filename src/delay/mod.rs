@@ -3,33 +3,59 @@
 //! Algorithm 1 of Albrecht and Taylor: around each input step the output is cut into a
 //! segment, every pair of regression lines through it is a candidate, the pair with the
 //! least squared error wins, and six conditions decide whether its breakpoint counts.
+//! Two more [methods](Method) find it between samples and tell how well it is known.
 //!
 //! - [`steps`](InputStep): where the input changes
 //! - [`Segment`]: which samples belong to a step
 //! - [`Candidates`]: every pair of lines, with its squared error
 //! - [`Check`]: the conditions, with the numbers compared
 //! - [`estimate`]: all of it, in the order of the steps
+//! - [`FineDelay`]: a delay between samples, with its interval
+//! - [`Lag`]: what all steps of a joint follow their dead times with
+//! - [`Remedy`], [`RunnerUp`]: how near a verdict was
+//! - [`step_delays`]: the delays alone, by the best method
 //! - [`DelayProfile`]: the delay of every sample
 //! - [`AgainstState`]: what the delay may depend on
 //!
 //! Sample numbers are the paper's: counted from 1 within the trial.
 
 mod against;
+mod autoregression;
+mod broken_line;
+mod chain;
 mod condition;
 mod estimate;
+mod hinge;
+mod lag_aware;
+mod lag_search;
 mod line;
+mod margin;
+mod method;
+mod noise;
+mod normal_equations;
 mod profile;
+mod reaction;
+mod response;
 mod search;
 mod segment;
+mod step_delay;
 mod steps;
+mod stretch;
+mod two_line;
 
 pub use against::{AgainstState, Correlation, Direction, StepState};
+pub use broken_line::{BrokenLine, broken_line};
 pub use condition::{Check, Condition, Outcome};
 pub use estimate::{
-    Breakpoint, Decision, EstimateError, Settings, SettingsError, TrialEstimate, Verdict, estimate,
+    Breakpoint, Decision, EstimateError, FineDelay, Settings, SettingsError, Shared, TrialEstimate,
+    Verdict, estimate, estimate_joint,
 };
 pub use line::Line;
+pub use margin::{Remedy, RunnerUp};
+pub use method::Method;
 pub use profile::{DelayProfile, Interpolation};
+pub use response::{Lag, LagPart};
 pub use search::{Candidate, Candidates};
 pub use segment::Segment;
+pub use step_delay::{StepDelay, step_delays};
 pub use steps::{InputStep, input_steps};

@@ -74,6 +74,19 @@ impl Candidates {
         found
     }
 
+    /// Pairs of lines that were fitted elsewhere, a breakpoint at every sample behind
+    /// `first_sample`; the one at `best` was chosen.
+    pub(super) fn fitted(
+        first_sample: usize,
+        sse: Vec<f64>,
+        lines: (Vec<Line>, Vec<Line>),
+        best: usize,
+    ) -> Self {
+        let (before, after) = lines;
+        let best = (best < sse.len()).then_some(best);
+        Self { first_sample, beta: 1, sse, before, after, best }
+    }
+
     /// Fits the lines before each breakpoint, from the front.
     fn fit_before(&mut self, values: &[f64], scale: Scale) {
         let count = values.len() / self.beta - 1;

@@ -272,6 +272,10 @@ impl Facts<'_, '_> {
                 format!("{} rows of β = {}", value.unwrap_or_default(), self.settings.beta),
                 format!("≥ {not_set} rows"),
             ),
+            Condition::NothingHappened => {
+                let chance = value.map_or_else(missing, |chance| format!("chance {chance}"));
+                (chance, format!("≤ {not_set}"))
+            }
         }
     }
 }

@@ -2,10 +2,10 @@
 
 use std::io::Write;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::EstimatedJoint;
-use crate::delay::{Condition, Decision};
+use crate::delay::{Check, Condition, Decision, Method, Settings};
 use crate::experiment::Trial;
 
 /// One row of `--decisions`; sample numbers count from 1 within the trial.
@@ -27,10 +27,12 @@ pub struct DecisionRow<'a> {
     pub candidates: usize,
     /// `f`: the best candidate.
     pub f_opt: Option<usize>,
-    /// `q`: its breakpoint.
-    pub q: Option<usize>,
+    /// `q`: its breakpoint; between samples where the method tells it.
+    #[serde(serialize_with = "samples")]
+    pub q: Option<f64>,
     /// `δ = q − p` in samples.
-    pub delta: Option<i64>,
+    #[serde(serialize_with = "samples")]
+    pub delta: Option<f64>,
     /// `δ` in seconds.
     pub delta_s: Option<f64>,
     /// Squared error of both lines, output units squared.
@@ -49,11 +51,49 @@ pub struct DecisionRow<'a> {
     pub failed: String,
 }
 
+/// What more is told of a decision: the columns behind those of [`DecisionRow`] where a
+/// method other than the paper's was run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DecisionDetail {
+    /// The method's name.
+    pub method: &'static str,
+    /// Lower end of the delay's interval, samples.
+    pub delta_low: Option<f64>,
+    /// Upper end of it.
+    pub delta_high: Option<f64>,
+    /// The chance that noise alone looks as much like a reaction, where that was asked.
+    pub p_value: Option<f64>,
+    /// The second-best breakpoint.
+    pub runner_up_q: Option<usize>,
+    /// By how much its squared error is larger, as a part of the best one's.
+    pub runner_up_margin: Option<f64>,
+    /// What would have accepted the step, all else being as it was; separated by `; `.
+    pub accepted_with: String,
+}
+
+impl DecisionDetail {
+    fn new(decision: &Decision, settings: &Settings, output: &[f64]) -> Self {
+        let second = decision.runner_up();
+        let remedies = decision.remedies(settings, output);
+        let remedies: Vec<_> = remedies.iter().map(ToString::to_string).collect();
+        let tested = |check: &&Check| check.condition == Condition::NothingHappened;
+        Self {
+            method: settings.method.id(),
+            delta_low: decision.fine.map(|fine| fine.low),
+            delta_high: decision.fine.map(|fine| fine.high),
+            p_value: decision.checks.iter().find(tested).and_then(|check| check.value),
+            runner_up_q: second.map(|second| second.breakpoint),
+            runner_up_margin: second.map(|second| second.margin).filter(|m| m.is_finite()),
+            accepted_with: remedies.join("; "),
+        }
+    }
+}
+
 impl<'a> DecisionRow<'a> {
     fn new(joint: &'a str, trial: &'a Trial, decision: &Decision) -> Self {
         let best = decision.breakpoint();
         let candidate = best.map(|best| best.candidate);
-        let delta = best.map(|best| best.delay);
+        let delta = decision.delay();
         let failed: Vec<_> = decision.failed().map(Condition::id).collect();
         Self {
             joint,
@@ -64,9 +104,9 @@ impl<'a> DecisionRow<'a> {
             end: decision.segment.last,
             candidates: decision.candidates.len(),
             f_opt: candidate.map(|candidate| candidate.f),
-            q: candidate.map(|candidate| candidate.breakpoint),
+            q: delta.map(|delta| decision.input_step.sample as f64 + delta),
             delta,
-            delta_s: delta.map(|delta| tidy_seconds(delta as f64 * trial.period().seconds())),
+            delta_s: delta.map(|delta| tidy_seconds(delta * trial.period().seconds())),
             sse: candidate.map(|candidate| candidate.sse),
             slope_before: candidate.map(|candidate| candidate.before.slope),
             intercept_before: candidate.map(|candidate| candidate.before.intercept),
@@ -75,6 +115,20 @@ impl<'a> DecisionRow<'a> {
             verdict: decision.verdict().to_string(),
             failed: failed.join(" "),
         }
+    }
+}
+
+/// Whole numbers without a point.
+#[expect(clippy::ref_option, reason = "serde gives it so")]
+fn samples<S: Serializer>(value: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    /// Below it every whole number is one.
+    const EXACT: f64 = 9_007_199_254_740_992.0;
+    #[expect(clippy::cast_possible_truncation, reason = "it is whole and below 2^53")]
+    match value {
+        Some(value) if value.fract() == 0.0 && value.abs() < EXACT => {
+            serializer.serialize_some(&(*value as i64))
+        }
+        value => value.serialize(serializer),
     }
 }
 
@@ -96,20 +150,58 @@ pub fn decision_rows(
     })
 }
 
-/// Writes the decisions of all joints as CSV.
+/// The rows of one joint with all that is told of them.
+pub(super) fn detailed_rows<'a>(
+    joint: EstimatedJoint<'a>,
+    settings: &'a Settings,
+) -> impl Iterator<Item = (DecisionRow<'a>, DecisionDetail)> + 'a {
+    let trials = joint.joint.trials.iter().zip(&joint.estimate.trials);
+    let estimated = trials.filter_map(|(trial, result)| Some((trial, result.as_ref().ok()?)));
+    estimated.flat_map(move |(trial, estimate)| {
+        let output = estimate.smoothed.as_deref().unwrap_or(trial.output());
+        let row = move |decision| {
+            let row = DecisionRow::new(&joint.joint.name, trial, decision);
+            (row, DecisionDetail::new(decision, settings, output))
+        };
+        estimate.decisions.iter().map(row)
+    })
+}
+
+/// Writes the decisions of all joints as CSV, those of one run of settings below those of
+/// another. With a method other than the paper's there are columns for what it tells.
 ///
 /// # Errors
 /// When `out` cannot be written.
-pub fn write_decisions(joints: &[EstimatedJoint<'_>], out: impl Write) -> csv::Result<()> {
+pub fn write_decisions(
+    runs: &[(&Settings, &[EstimatedJoint<'_>])],
+    out: impl Write,
+) -> csv::Result<()> {
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(out);
-    writer.write_record(COLUMNS)?;
-    for joint in joints {
-        for (_, row) in decision_rows(*joint) {
-            writer.serialize(row)?;
+    let paper = runs.iter().all(|(settings, _)| settings.method == Method::TwoLine);
+    let more: &[&str] = if paper { &[] } else { &DETAILS };
+    writer.write_record(COLUMNS.iter().chain(more))?;
+    for (settings, joints) in runs {
+        for (row, detail) in joints.iter().flat_map(|joint| detailed_rows(*joint, settings)) {
+            if paper {
+                writer.serialize(row)?;
+            } else {
+                writer.serialize((row, detail))?;
+            }
         }
     }
     Ok(writer.flush()?)
 }
+
+/// The header of the further columns.
+const DETAILS: [&str; 7] = [
+    "method",
+    "delta_low",
+    "delta_high",
+    "p_value",
+    "runner_up_q",
+    "runner_up_margin",
+    "accepted_with",
+];
 
 /// The header stands even when there is no row.
 const COLUMNS: [&str; 18] = [

@@ -2,8 +2,9 @@
 
 use serde::Serialize;
 
-use super::{DecisionRow, DelayRange, EstimatedJoint, JointSummary, decision_rows};
-use crate::delay::{AgainstState, Condition, Settings};
+use super::decisions::detailed_rows;
+use super::{DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary};
+use crate::delay::{AgainstState, Condition, Lag, LagPart, Settings};
 use crate::experiment::{Experiment, ReadOptions, Source};
 
 /// The document of `estimate --format json`, schema `tauscope/estimate/1`.
@@ -15,8 +16,35 @@ pub struct EstimateJson<'a> {
     reading: &'a ReadOptions,
     settings: &'a Settings,
     joints: Vec<JointJson<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    also: Vec<RunJson<'a>>,
     notes: &'a [String],
     failures: &'a [String],
+}
+
+/// The same joints by another method.
+#[derive(Debug, Serialize)]
+struct RunJson<'a> {
+    settings: &'a Settings,
+    joints: Vec<JointJson<'a>>,
+}
+
+/// The lag that a method found, in seconds.
+#[derive(Debug, Serialize)]
+struct LagJson {
+    mean_s: LagPart,
+    time_constant_s: Option<LagPart>,
+    period_s: Option<LagPart>,
+    damping: Option<LagPart>,
+}
+
+/// A row with all that is told of it.
+#[derive(Debug, Serialize)]
+struct DecisionJson<'a> {
+    #[serde(flatten)]
+    row: DecisionRow<'a>,
+    #[serde(flatten)]
+    detail: DecisionDetail,
 }
 
 #[derive(Debug, Serialize)]
@@ -36,38 +64,49 @@ struct JointJson<'a> {
     rejected: serde_json::Map<String, serde_json::Value>,
     delay_samples: Option<DelayRange>,
     delay_s: Option<DelayRange>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lag: Option<LagJson>,
     against_state: AgainstState,
-    decisions: Vec<DecisionRow<'a>>,
+    decisions: Vec<DecisionJson<'a>>,
 }
 
 impl<'a> EstimateJson<'a> {
-    /// Collects the results; `failures` are messages on joints and files that failed.
+    /// Collects the results of one or several runs, the first of which is the answer;
+    /// `failures` are messages on joints and files that failed.
     pub fn new(
         experiment: &'a Experiment,
-        settings: &'a Settings,
-        joints: &[EstimatedJoint<'a>],
+        runs: &[(&'a Settings, &'a [EstimatedJoint<'a>])],
         failures: &'a [String],
-    ) -> Self {
+    ) -> Option<Self> {
+        let joints = |settings: &'a Settings, joints: &[EstimatedJoint<'a>]| {
+            joints.iter().map(|joint| JointJson::new(*joint, settings)).collect()
+        };
+        let (&(settings, first), others) = runs.split_first()?;
+        let run = |run: &(&'a Settings, &'a [EstimatedJoint<'a>])| RunJson {
+            settings: run.0,
+            joints: joints(run.0, run.1),
+        };
         let source = |source: &'a Source| SourceJson {
             path: source.path.display().to_string(),
             sha256: &source.sha256,
             bytes: source.bytes,
         };
-        Self {
+        Some(Self {
             schema: "tauscope/estimate/1",
             version: env!("CARGO_PKG_VERSION"),
             sources: experiment.sources.iter().map(source).collect(),
             reading: &experiment.options,
             settings,
-            joints: joints.iter().copied().map(JointJson::new).collect(),
+            joints: joints(settings, first),
+            also: others.iter().map(run).collect(),
             notes: &experiment.notes,
             failures,
-        }
+        })
     }
 }
 
 impl<'a> JointJson<'a> {
-    fn new(joint: EstimatedJoint<'a>) -> Self {
+    fn new(joint: EstimatedJoint<'a>, settings: &'a Settings) -> Self {
         let JointSummary { steps, accepted, rejected, delay_samples, delay_s } =
             JointSummary::of(joint);
         let count = |(condition, count): (Condition, usize)| (condition.to_string(), count.into());
@@ -80,8 +119,22 @@ impl<'a> JointJson<'a> {
             rejected: rejected.into_iter().map(count).collect(),
             delay_samples,
             delay_s,
+            lag: joint.lag().map(LagJson::new),
             against_state: joint.against_state(),
-            decisions: decision_rows(joint).map(|(_, row)| row).collect(),
+            decisions: detailed_rows(joint, settings)
+                .map(|(row, detail)| DecisionJson { row, detail })
+                .collect(),
+        }
+    }
+}
+
+impl LagJson {
+    fn new(lag: &Lag) -> Self {
+        Self {
+            mean_s: lag.mean_s(),
+            time_constant_s: lag.time_constant_s(),
+            period_s: lag.period_s(),
+            damping: lag.damping(),
         }
     }
 }

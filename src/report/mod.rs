@@ -11,6 +11,7 @@ mod finding;
 mod improve;
 mod json;
 mod number;
+mod steps;
 mod summary;
 mod text;
 mod words;
@@ -22,13 +23,14 @@ pub(crate) use against::{p_text, variable_text};
 pub use compare::{
     CompareJson, ComparedJoint, compare_table, correlation_sentences, parameter_units, sentences,
 };
-pub use decisions::{DecisionRow, decision_rows, write_decisions};
+pub use decisions::{DecisionDetail, DecisionRow, decision_rows, write_decisions};
 pub use delays::write_delays;
 pub use explain::{ExplainJson, explain_text};
 pub use finding::Finding;
 pub use improve::{ImproveJson, ImprovedJoint, improve_text, revision_line};
 pub use json::EstimateJson;
 pub use number::number;
+pub use steps::steps_table;
 pub use summary::{DelayRange, JointSummary};
 pub use text::estimate_table;
 #[cfg(feature = "rrd")]
@@ -36,6 +38,7 @@ pub(crate) use text::{SUMMARY_HEADER, summary_cells};
 pub use words::Words;
 
 use crate::batch::JointEstimate;
+use crate::delay::Lag;
 use crate::experiment::Joint;
 
 /// A joint as it was measured, and its delays.
@@ -45,4 +48,11 @@ pub struct EstimatedJoint<'a> {
     pub joint: &'a Joint,
     /// What was estimated from it.
     pub estimate: &'a JointEstimate,
+}
+
+impl EstimatedJoint<'_> {
+    /// The lag that its trials share, where the method looks for one.
+    pub fn lag(&self) -> Option<&Lag> {
+        self.estimate.estimated().find_map(|trial| trial.lag.as_ref())
+    }
 }

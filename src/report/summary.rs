@@ -47,7 +47,7 @@ impl JointSummary {
     pub fn of(joint: EstimatedJoint<'_>) -> Self {
         let rows: Vec<_> = decision_rows(joint).map(|(_, row)| row).collect();
         let accepted: Vec<_> = rows.iter().filter(|row| row.verdict == "accepted").collect();
-        let samples = accepted.iter().filter_map(|row| row.delta).map(|delta| delta as f64);
+        let samples = accepted.iter().filter_map(|row| row.delta);
         let seconds = accepted.iter().filter_map(|row| row.delta_s);
         let count = |condition: Condition| {
             let verdict = condition.id();

@@ -3,7 +3,7 @@
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
 use super::{DelayRange, EstimatedJoint, JointSummary};
-use crate::delay::{Condition, Interpolation, Settings};
+use crate::delay::{Condition, Interpolation, LagPart, Method, Settings};
 use crate::filter::LowPass;
 
 /// The table of `estimate`: a row per joint, and the settings below it.
@@ -21,7 +21,26 @@ pub fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings) -> Str
             column.set_cell_alignment(CellAlignment::Right);
         }
     }
-    format!("{table}\n{}\n", settings_line(settings))
+    let lags: String = joints.iter().filter_map(lag_line).collect();
+    format!("{table}\n{lags}{}\n", settings_line(settings))
+}
+
+/// The lag of a joint in words, where one was looked for.
+fn lag_line(joint: &EstimatedJoint<'_>) -> Option<String> {
+    let lag = joint.lag()?;
+    let known = |part: LagPart| format!("{:.4} ± {:.4}", part.value, 1.96 * part.std_error);
+    let parts = [
+        lag.time_constant_s().map(|part| format!("time constant {} s", known(part))),
+        lag.period_s().map(|part| format!("period {} s", known(part))),
+        lag.damping().map(|part| format!("damping {}", known(part))),
+    ];
+    let parts: Vec<_> = parts.into_iter().flatten().collect();
+    let name = &joint.joint.name;
+    if parts.is_empty() {
+        return Some(format!("{name}: no lag behind the dead time\n"));
+    }
+    let mean = known(lag.mean_s());
+    Some(format!("{name}: a lag of {mean} s behind the dead time ({})\n", parts.join(", ")))
 }
 
 /// What the cells of [`summary_cells`] are.
@@ -59,8 +78,14 @@ fn settings_line(settings: &Settings) -> String {
         || "no low-pass".to_owned(),
         |LowPass { cutoff_hz, order }| format!("zero-phase low-pass {cutoff_hz} Hz, order {order}"),
     );
-    let mut parts =
-        vec![format!("α = {}, β = {} samples", settings.alpha, settings.beta), low_pass];
+    let grid = match settings.method {
+        Method::TwoLine => format!("α = {}, β = {} samples", settings.alpha, settings.beta),
+        Method::Hinge | Method::LagAware => format!("{} % intervals", 100.0 * settings.interval),
+    };
+    let mut parts = vec![grid, low_pass];
+    if let Some(confidence) = settings.confidence {
+        parts.push(format!("reactions at {} %", 100.0 * confidence));
+    }
     if let Some((low, high)) = settings.output_limits {
         parts.push(format!("output between {low} and {high}"));
     }
@@ -85,5 +110,5 @@ fn settings_line(settings: &Settings) -> String {
     if settings.keep_first_last {
         parts.push("first and last step kept".to_owned());
     }
-    format!("two-line regression: {}", parts.join("; "))
+    format!("{}: {}", settings.method.meaning(), parts.join("; "))
 }

@@ -4,8 +4,10 @@ mod chi_square;
 mod fisher;
 mod quantile;
 mod rank;
+mod student;
 
 pub use chi_square::chi_square_tail;
 pub use fisher::fisher_tail;
 pub use quantile::{median, quantile};
 pub use rank::{RankTest, holm, mann_whitney, ranks, spearman};
+pub use student::student_quantile;

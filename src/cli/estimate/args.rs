@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, ValueEnum};
-use tauscope::delay::{Interpolation, Settings};
+use tauscope::delay::{self, Interpolation, Settings};
 use tauscope::filter::LowPass;
 
 use crate::cli::data::{DataArgs, threads};
@@ -28,9 +28,19 @@ pub(crate) struct Args {
 #[derive(ClapArgs, Debug)]
 #[command(next_help_heading = "Algorithm")]
 pub(super) struct AlgorithmArgs {
-    /// How a breakpoint is found
-    #[arg(long, value_enum, default_value_t = Method::TwoLine)]
-    method: Method,
+    /// How a breakpoint is found. May be repeated: the first one is the answer, the others
+    /// are told beside it
+    #[arg(long, value_enum, default_values_t = [Method::TwoLine])]
+    method: Vec<Method>,
+
+    /// Reject a step as `nothing_happened` unless its change of slope is this unlikely to
+    /// be noise, or `none` [default: 0.99; `none` for two-line]
+    #[arg(long, value_name = "X|none", value_parser = confidence, allow_negative_numbers = true)]
+    confidence: Option<Confidence>,
+
+    /// How often the interval of a delay is to hold the true one
+    #[arg(long, value_name = "X", default_value_t = 0.95, value_parser = probability, allow_negative_numbers = true)]
+    interval: f64,
 
     /// Samples that a segment reaches beyond its input steps
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = at_least_one, allow_negative_numbers = true)]
@@ -40,9 +50,10 @@ pub(super) struct AlgorithmArgs {
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = at_least_one, allow_negative_numbers = true)]
     beta: usize,
 
-    /// Zero-phase low-pass on the output: its cutoff, or `none`
-    #[arg(long, value_name = "HZ|none", default_value = "5", value_parser = passband, allow_negative_numbers = true)]
-    passband: Passband,
+    /// Zero-phase low-pass on the output: its cutoff, or `none` [default: 5 for two-line,
+    /// else none]
+    #[arg(long, value_name = "HZ|none", value_parser = passband, allow_negative_numbers = true)]
+    passband: Option<Passband>,
 
     /// Order of the low-pass
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = at_least_one, allow_negative_numbers = true)]
@@ -103,6 +114,10 @@ pub(super) struct OutputArgs {
     #[arg(long, value_name = "FILE.csv")]
     pub(super) delays: Option<PathBuf>,
 
+    /// Show every step: its delay with the interval, and how near the verdict was
+    #[arg(long)]
+    pub(super) steps: bool,
+
     /// Show what the delays depend on: speed, step size, direction, dwell, angle, time and
     /// further signals
     #[arg(long)]
@@ -125,6 +140,26 @@ pub(super) struct OutputArgs {
 enum Method {
     /// Two regression lines (Albrecht and Taylor)
     TwoLine,
+    /// A continuous broken line, with intervals
+    Hinge,
+    /// A broken line behind a lag: dead time apart from lag, with intervals
+    LagAware,
+}
+
+impl From<Method> for delay::Method {
+    fn from(method: Method) -> Self {
+        match method {
+            Method::TwoLine => Self::TwoLine,
+            Method::Hinge => Self::Hinge,
+            Method::LagAware => Self::LagAware,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Confidence {
+    Of(f64),
+    None,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -167,6 +202,19 @@ fn passband(text: &str) -> Result<Passband, String> {
     hz.map(Passband::Hz).ok_or_else(|| "expected a frequency in Hz, or `none`".to_owned())
 }
 
+fn probability(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|x: &f64| *x > 0.0 && *x < 1.0);
+    number.ok_or_else(|| "expected a number between 0 and 1, as in 0.99".to_owned())
+}
+
+fn confidence(text: &str) -> Result<Confidence, String> {
+    if text == "none" {
+        return Ok(Confidence::None);
+    }
+    let found = probability(text).map(Confidence::Of);
+    found.map_err(|expected| format!("{expected}, or `none`"))
+}
+
 fn limits(text: &str) -> Result<(f64, f64), String> {
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| !x.is_nan());
     let pair = text.split_once(',').and_then(|(low, high)| Some((number(low)?, number(high)?)));
@@ -178,11 +226,29 @@ fn limits(text: &str) -> Result<(f64, f64), String> {
 }
 
 impl AlgorithmArgs {
-    pub(super) fn settings(&self) -> Settings {
-        let Method::TwoLine = self.method;
+    /// The settings of each method that was asked for, each once.
+    pub(super) fn runs(&self) -> Vec<Settings> {
+        let mut runs: Vec<Settings> = Vec::new();
+        for method in self.method.iter().copied().map(delay::Method::from) {
+            if runs.iter().all(|run| run.method != method) {
+                runs.push(self.settings(method));
+            }
+        }
+        runs
+    }
+
+    fn settings(&self, method: delay::Method) -> Settings {
+        let usual = Settings::of(method);
+        let order = self.filter_order;
         let low_pass = match self.passband {
-            Passband::Hz(cutoff_hz) => Some(LowPass { cutoff_hz, order: self.filter_order }),
-            Passband::None => None,
+            Some(Passband::Hz(cutoff_hz)) => Some(LowPass { cutoff_hz, order }),
+            Some(Passband::None) => None,
+            None => usual.low_pass.map(|usual| LowPass { order, ..usual }),
+        };
+        let confidence = match self.confidence {
+            Some(Confidence::Of(confidence)) => Some(confidence),
+            Some(Confidence::None) => None,
+            None => usual.confidence,
         };
         Settings {
             alpha: self.alpha,
@@ -195,6 +261,9 @@ impl AlgorithmArgs {
             max_sse: self.max_sse,
             keep_first_last: self.keep_first_last,
             min_step: self.min_step,
+            method,
+            confidence,
+            interval: self.interval,
             interpolation: match self.interpolate {
                 Between::Hold => Interpolation::Hold,
                 Between::Linear => Interpolation::Linear,

@@ -26,7 +26,7 @@ impl<'a> Files<'a> {
     /// Writes each file whole and gives it its name.
     pub(super) fn write(&self, result: &Estimated<'_>, verbosity: Verbosity) -> anyhow::Result<()> {
         if let Some(path) = &self.args.decisions {
-            write_file(path, |file| Ok(write_decisions(result.joints, file)?))?;
+            write_file(path, |file| Ok(write_decisions(result.runs, file)?))?;
         }
         if let Some(path) = &self.args.delays {
             write_file(path, |file| Ok(write_delays(result.joints, file)?))?;

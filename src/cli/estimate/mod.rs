@@ -9,7 +9,9 @@ use anyhow::{Context as _, anyhow};
 use tauscope::batch::{JointEstimate, estimate_joints, with_threads};
 use tauscope::delay::{Condition, EstimateError, Settings};
 use tauscope::experiment::Experiment;
-use tauscope::report::{EstimateJson, EstimatedJoint, JointSummary, against_table, estimate_table};
+use tauscope::report::{
+    EstimateJson, EstimatedJoint, JointSummary, against_table, estimate_table, steps_table,
+};
 
 use super::progress::{self, Verbosity};
 use super::{Completion, message, read_failures};
@@ -21,44 +23,58 @@ type JointResult = Result<JointEstimate, EstimateError>;
 
 pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let verbosity = args.output.verbosity();
-    let settings = args.algorithm.settings();
+    let settings = args.algorithm.runs();
     let files = Files::check(&args.output, &args.data.files())?;
     let experiment = {
         let _bar = progress::bar(verbosity, "reading", 0);
         args.data.read()?
     };
-    let trials = experiment.joints.iter().map(|joint| joint.trials.len() as u64).sum();
-    let bar = progress::bar(verbosity, "estimating", trials);
-    let work = || estimate_joints(&experiment.joints, &settings, || bar.inc(1));
+    let trials: u64 = experiment.joints.iter().map(|joint| joint.trials.len() as u64).sum();
+    let bar = progress::bar(verbosity, "estimating", trials * settings.len() as u64);
+    let one = |settings| estimate_joints(&experiment.joints, settings, || bar.inc(1));
+    let work = || settings.iter().map(one).collect::<Vec<Vec<JointResult>>>();
     let results = with_threads(args.output.threads, work)
         .map_err(|error| anyhow!("threads cannot be started: {error}"))?;
     drop(bar);
-    let failures = failures(&experiment, &results);
-    let estimated = estimated(&experiment, &results);
-    if estimated.is_empty() {
+    let first = results.first().map(Vec::as_slice).unwrap_or_default();
+    let failures = failures(&experiment, first);
+    let joints: Vec<_> = results.iter().map(|results| estimated(&experiment, results)).collect();
+    let runs: Vec<Run<'_>> = settings
+        .iter()
+        .zip(&joints)
+        .map(|(settings, joints)| (settings, joints.as_slice()))
+        .collect();
+    let Some((answer, first_joints)) = runs.first().filter(|(_, joints)| !joints.is_empty()) else {
         let first = failures.into_iter().next_back();
         return Err(anyhow!(first.unwrap_or_else(|| "no joint in the logs".to_owned())));
-    }
+    };
     for failure in &failures {
         message("warning", failure);
     }
     if verbosity == Verbosity::Normal {
-        for note in experiment.notes.iter().chain(&notes(&estimated)) {
+        for note in experiment.notes.iter().chain(&notes(first_joints)) {
             message("note", note);
         }
     }
-    let result = Estimated { experiment: &experiment, joints: &estimated, settings: &settings };
+    let result =
+        Estimated { experiment: &experiment, joints: first_joints, settings: answer, runs: &runs };
     files.write(&result, verbosity)?;
     print(&args.output, &result, &failures).context("standard output cannot be written")?;
     Ok(if failures.is_empty() { Completion::Whole } else { Completion::Partial })
 }
 
+/// The joints that have an estimate with some settings.
+type Run<'a> = (&'a Settings, &'a [EstimatedJoint<'a>]);
+
 /// What was read and what came out.
 #[derive(Clone, Copy)]
 struct Estimated<'a> {
     experiment: &'a Experiment,
+    /// The answer: what came out by the first method.
     joints: &'a [EstimatedJoint<'a>],
     settings: &'a Settings,
+    /// What came out by each method.
+    runs: &'a [Run<'a>],
 }
 
 /// The joints that have an estimate, in the order of the log.
@@ -122,8 +138,12 @@ fn print(
     let mut out = io::stdout().lock();
     match args.format {
         args::Format::Text => {
-            let table = estimate_table(result.joints, result.settings);
-            out.write_all(table.as_bytes())?;
+            for (settings, joints) in result.runs {
+                out.write_all(estimate_table(joints, settings).as_bytes())?;
+                if args.steps {
+                    out.write_all(steps_table(joints, settings).as_bytes())?;
+                }
+            }
             if args.against_state {
                 let found =
                     result.joints.iter().map(|j| (j.joint.name.as_str(), j.against_state()));
@@ -134,8 +154,7 @@ fn print(
             }
         }
         args::Format::Json => {
-            let Estimated { experiment, joints, settings } = *result;
-            let json = EstimateJson::new(experiment, settings, joints, failures);
+            let json = EstimateJson::new(result.experiment, result.runs, failures);
             serde_json::to_writer(&mut out, &json).map_err(io::Error::from)?;
             out.write_all(b"\n")?;
         }

@@ -1,0 +1,101 @@
+//! Noise that remembers itself, as the residuals of many short fits show it.
+
+/// An autoregression: what of a signal its own past explains.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Autoregression {
+    /// `a_1, a_2, …`; empty for white noise.
+    pub(super) coefficients: Vec<f64>,
+    /// The part of the variance that they explain, 0 to 1.
+    pub(super) explained: f64,
+}
+
+/// The sum of products, in lanes that a processor adds at the same time.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let length = a.len().min(b.len());
+    let (a, b) = (a.get(..length).unwrap_or_default(), b.get(..length).unwrap_or_default());
+    let mut sums = [0.0; LANES];
+    let (heads_a, heads_b) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+    let rest: f64 = heads_a.remainder().iter().zip(heads_b.remainder()).map(|(a, b)| a * b).sum();
+    for (a, b) in heads_a.zip(heads_b) {
+        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
+            *sum += a * b;
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}
+
+/// Mean products of the values in `windows` with those 0, 1, … `longest` samples before.
+pub(super) fn autocovariances(windows: &[Vec<f64>], longest: usize) -> Vec<f64> {
+    let samples: usize = windows.iter().map(Vec::len).sum();
+    let covariance = |lag: usize| -> f64 {
+        windows.iter().map(|w| dot(w, w.get(lag..).unwrap_or_default())).sum::<f64>()
+            / samples.max(1) as f64
+    };
+    (0..=longest).map(covariance).collect()
+}
+
+impl Autoregression {
+    /// Coefficients `a` of `e_k = Σ a_i e_(k−i) + white noise` with these autocovariances,
+    /// estimated from so many samples: the order by Schwarz's criterion, by the recursion
+    /// of Levinson and Durbin.
+    pub(super) fn of(covariances: &[f64], samples: usize) -> Self {
+        let Some(&power) = covariances.first().filter(|power| **power > 0.0) else {
+            return Self::default();
+        };
+        let (mut current, mut variance): (Vec<f64>, f64) = (Vec::new(), power);
+        let score = |variance: f64, order: usize| {
+            samples as f64 * variance.ln() + order as f64 * (samples as f64).ln()
+        };
+        let mut best = (score(power, 0), Self::default());
+        for order in 1..covariances.len() {
+            let known = covariances.iter().take(order).skip(1).rev();
+            let predicted: f64 = current.iter().zip(known).map(|(a, c)| a * c).sum();
+            let Some(reflection) = covariances.get(order).map(|c| (c - predicted) / variance)
+            else {
+                break;
+            };
+            let turned: Vec<f64> = current.iter().rev().copied().collect();
+            for (a, b) in current.iter_mut().zip(turned) {
+                *a -= reflection * b;
+            }
+            current.push(reflection);
+            variance *= 1.0 - reflection * reflection;
+            if variance <= 0.0 {
+                break;
+            }
+            if score(variance, order) < best.0 {
+                let (coefficients, explained) = (current.clone(), 1.0 - variance / power);
+                best = (score(variance, order), Self { coefficients, explained });
+            }
+        }
+        best.1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_memory_of_a_signal_is_found() {
+        // A linear congruence stands in for noise.
+        let mut state = 1_u32;
+        let mut white = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state) / f64::from(u32::MAX) - 0.5
+        };
+        let mut value = 0.0;
+        let signal: Vec<f64> = (0..20_000)
+            .map(|_| {
+                value = 0.7 * value + white();
+                value
+            })
+            .collect();
+        let found = Autoregression::of(&autocovariances(&[signal], 8), 20_000);
+        assert!((found.coefficients[0] - 0.7).abs() < 0.02, "{found:?}");
+        assert!((found.explained - 0.49).abs() < 0.02, "{found:?}");
+        let silent = autocovariances(&[vec![0.0; 50]], 5);
+        assert_eq!(Autoregression::of(&silent, 50), Autoregression::default());
+    }
+}

@@ -1,0 +1,354 @@
+//! Dead time apart from lag: the broken line behind a lag that all steps share.
+//!
+//! The lag comes from the whole joint ([`Joint`]); then each step's dead time is found
+//! between its neighbours, together with them where holds are short, and with what earlier
+//! steps left as part of the fit. A joint without a lag is left to the broken line.
+
+use std::ops::Range;
+
+use super::broken_line;
+use super::chain::{Chain, ceil};
+use super::estimate::{Decision, FineDelay, Prepared, Settings};
+use super::hinge::{self, Place};
+use super::lag_search::Joint;
+use super::line::Line;
+use super::noise::Noise;
+use super::response::{Lag, Response, Shape};
+use super::search::Candidates;
+use super::steps::InputStep;
+use super::stretch::{Linearised, Stretch};
+use crate::statistics::student_quantile;
+use crate::units::SamplePeriod;
+
+/// Reactions in a stretch that helps to find the lag.
+const TOGETHER: usize = 4;
+
+/// Samples that are enough to tell what kind of lag it is, and to know it well.
+const ENOUGH: [usize; 2] = [6_000, 20_000];
+
+/// Times that reactions are searched where holds are short.
+const PASSES: usize = 3;
+
+/// A reaction that noise makes so often does not bound its neighbours.
+const DOUBTFUL: f64 = 0.01;
+
+/// The same where holds are short: a small one that is there spoils its neighbours more
+/// than one that is not.
+const DOUBTFUL_IF_SHORT: f64 = 0.3;
+
+/// The lag that the trials of a joint share.
+pub(super) fn lag_of(trials: &[Prepared<'_>], settings: &Settings) -> Lag {
+    let Some(period) = trials.first().map(|trial| trial.period) else { return Lag::none() };
+    let alike: Vec<_> = trials.iter().filter(|trial| trial.period == period).collect();
+    let chains: Vec<_> = alike
+        .iter()
+        .map(|trial| (trial.output(), rough(trial.output(), &trial.steps, settings)))
+        .collect();
+    let all = chains.iter().flat_map(|(output, chain)| stretches(output, chain, Places::Rough));
+    let all: Vec<_> = all.collect();
+    let clear = chains.iter().all(|(_, chain)| chain.in_time());
+    let enough = if clear { ENOUGH[0] } else { ENOUGH[1] };
+    let mut found = Joint::new(some(all.clone(), enough)).best();
+    if found.shape.order() == 0 && found.is_faint() {
+        found = Joint::new(some(all, ENOUGH[1])).best();
+    }
+    if found.shape.order() == 0 {
+        return Lag::new(period, found.shape, found.covariance());
+    }
+    // With the dead times known better, stretches reach as far as they may.
+    let known: Vec<_> = chains
+        .into_iter()
+        .map(|(output, chain)| {
+            Reactions::of(output, chain, found.shape, found.noise.clone()).settled(1)
+        })
+        .collect();
+    let all = known.iter().flat_map(|trial| stretches(trial.output, &trial.chain, Places::Known));
+    let again = Joint::new(some(all.collect(), ENOUGH[1])).under(found.shape, found.noise.clone());
+    let settled = if again.stretches.is_empty() { found } else { again.settled_again() };
+    Lag::new(period, settled.shape, settled.covariance())
+}
+
+/// Where broken lines put the reactions. What they leave of a lag is no noise, so its
+/// memory is not asked for.
+fn rough(output: &[f64], steps: &[InputStep], settings: &Settings) -> Chain {
+    let (mut chain, _) = hinge::located(output, steps, settings, 1);
+    chain.links.iter_mut().for_each(|link| link.counts = true);
+    chain
+}
+
+/// How well the places of a chain are known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Places {
+    /// From broken lines: late by the lag, and not judged.
+    Rough,
+    Known,
+}
+
+/// Stretches of a few reactions each, with the places of the chain.
+fn stretches<'a>(output: &'a [f64], chain: &Chain, places: Places) -> Vec<Stretch<'a>> {
+    /// Samples that a reaction needs before the next one may be.
+    const ROOM: f64 = 10.0;
+    let rough = places == Places::Rough;
+    let counting: Vec<_> = chain.links.iter().filter(|link| rough || link.counts).collect();
+    let groups = counting.chunks(TOGETHER).enumerate();
+    let stretch = |(index, group): (usize, &[&super::chain::Link])| {
+        let before = (index * TOGETHER).checked_sub(1).and_then(|i| counting.get(i));
+        let start = before.map_or(0, |before| ceil(before.place));
+        let next = counting.get((index + 1) * TOGETHER);
+        let last = group.last()?.place;
+        let end = match next {
+            None => output.len(),
+            // Nothing reacts to an input that has not changed yet.
+            Some(next) if rough && next.origin as f64 > last + ROOM => next.origin,
+            Some(next) => ceil(next.place),
+        };
+        let values = output.get(start..end)?;
+        let places = group.iter().map(|link| link.place - start as f64).collect();
+        (values.len() > 8 * group.len()).then_some(Stretch { values, places })
+    };
+    groups.filter_map(stretch).collect()
+}
+
+/// Enough of the stretches, from all over the record.
+fn some(stretches: Vec<Stretch<'_>>, enough: usize) -> Vec<Stretch<'_>> {
+    let samples: usize = stretches.iter().map(|stretch| stretch.values.len()).sum();
+    let every = samples.div_ceil(enough).max(1);
+    stretches.into_iter().step_by(every).collect()
+}
+
+/// The decisions on all steps of a trial with this lag.
+pub(super) fn decide_all(
+    output: &[f64],
+    steps: &[InputStep],
+    lag: &Lag,
+    period: SamplePeriod,
+    settings: &Settings,
+) -> Vec<Decision> {
+    let shape = lag.shape_at(period);
+    let chain = rough(output, steps, settings);
+    let trial = Reactions::of(output, chain, shape, Noise::white()).settled(2);
+    let decide = |(index, step): (usize, &InputStep)| {
+        let place = Place { steps, index, step: *step, output, settings };
+        trial.decision(&place, lag)
+    };
+    steps.iter().enumerate().map(decide).collect()
+}
+
+/// The reactions of a trial behind a known lag.
+struct Reactions<'a> {
+    output: &'a [f64],
+    chain: Chain,
+    shape: Shape,
+    response: Response,
+    noise: Noise,
+}
+
+/// A reaction between its neighbours.
+struct Found<'a> {
+    /// The samples it was fitted to.
+    range: Range<usize>,
+    stretch: Stretch<'a>,
+    fit: Linearised,
+}
+
+impl<'a> Reactions<'a> {
+    /// The reactions behind this lag, from where broken lines put them.
+    fn of(output: &'a [f64], mut chain: Chain, shape: Shape, noise: Noise) -> Self {
+        let response = Response::of(&shape);
+        for link in &mut chain.links {
+            link.place = (link.place - response.mean).max(link.earliest as f64);
+        }
+        Self { output, chain, shape, response, noise }
+    }
+
+    /// The same after all reactions were searched between neighbours of the time before,
+    /// `times` or, where holds are short, some more.
+    fn settled(mut self, times: usize) -> Self {
+        let passes = if self.chain.in_time() { times } else { PASSES };
+        for _ in 0..passes {
+            let left = self.settle();
+            self.noise = left;
+        }
+        self
+    }
+
+    /// Searches all reactions; tells the noise about them.
+    fn settle(&mut self) -> Noise {
+        let doubtful = if self.chain.in_time() { DOUBTFUL } else { DOUBTFUL_IF_SHORT };
+        let (mut residuals, mut parameters) = (Vec::new(), 0);
+        for index in 0..self.chain.links.len() {
+            let Some(found) = self.find(index) else { continue };
+            residuals.push(found.stretch.residuals(&self.shape, &found.fit.parts));
+            parameters = parameters.max(found.fit.parameters());
+            let p_value = self.chance(index, &found);
+            if let Some(link) = self.chain.links.get_mut(index) {
+                link.place = found.place();
+                link.counts = p_value <= doubtful;
+            }
+        }
+        Noise::of(&residuals, parameters)
+    }
+
+    /// The reaction of step `index`, with its neighbours where they are near.
+    fn find(&self, index: usize) -> Option<Found<'a>> {
+        /// Samples behind a transient that a line needs.
+        const LINE: f64 = 20.0;
+        let link = self.chain.links.get(index)?;
+        let room = self.response.settling() + LINE;
+        let near = |other: &usize| {
+            let other = self.chain.links.get(*other);
+            other.is_some_and(|other| (other.place - link.place).abs() < room)
+        };
+        let before = self.chain.before(index).filter(near);
+        let after = self.chain.after(index).filter(near);
+        let first = before.unwrap_or(index);
+        let last = after.unwrap_or(index);
+        let range = self.chain.window(first).start..self.chain.window(last).end;
+        let values = self.output.get(range.clone())?;
+        let members: Vec<usize> = before.into_iter().chain(after).chain([index]).collect();
+        let of = |member: &usize| self.chain.links.get(*member);
+        let places = members.iter().filter_map(of).map(|link| link.place - range.start as f64);
+        let places: Vec<f64> = places.collect();
+        let limits = members.iter().map(|member| self.limits(*member, &range));
+        let limits: Vec<_> = limits.collect();
+        if values.len() < 2 * (self.response.modes() + 2 * places.len()) + broken_line::FEWEST {
+            return None;
+        }
+        let mut stretch = Stretch { values, places };
+        let mut fit = stretch.settle(&self.shape, &self.noise, &limits);
+        if members.len() > 1 || Self::is_vague(&fit, values.len()) {
+            self.look_around(&mut stretch, &mut fit, &limits);
+        }
+        Some(Found { range, stretch, fit })
+    }
+
+    /// Where a reaction may be, as indices of a window.
+    fn limits(&self, index: usize, range: &Range<usize>) -> (f64, f64) {
+        let Some(link) = self.chain.links.get(index) else { return (0.0, 0.0) };
+        let place = |at: Option<usize>| Some(self.chain.links.get(at?)?.place + 1.0);
+        let start = range.start as f64;
+        let low = place(self.chain.before(index)).unwrap_or(0.0).max(link.earliest as f64);
+        let high = place(self.chain.after(index)).unwrap_or(f64::INFINITY) - 2.0;
+        let high = high.min(link.last_place() as f64).min(range.end as f64 - 2.0);
+        (low - start, (high - start).max(low - start))
+    }
+
+    /// Whether the place is so badly known that another one may be better.
+    fn is_vague(fit: &Linearised, samples: usize) -> bool {
+        let variance = fit.sse / samples as f64 * fit.place_variance();
+        variance.is_nan() || variance > 0.25
+    }
+
+    /// Tries the reaction all over its limits, and settles where it is best.
+    fn look_around(&self, stretch: &mut Stretch<'a>, fit: &mut Linearised, limits: &[(f64, f64)]) {
+        const TRIED: u32 = 12;
+        let Some(&(low, high)) = limits.last() else { return };
+        let tried =
+            (0..TRIED).map(|n| low + (high - low) * (f64::from(n) + 0.5) / f64::from(TRIED));
+        let at = |place: f64| {
+            let mut there = stretch.clone();
+            if let Some(last) = there.places.last_mut() {
+                *last = place;
+            }
+            let sse = there.at(&self.shape, &self.noise).sse;
+            (sse, there)
+        };
+        let best = tried.map(at).min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, mut there)) = best else { return };
+        let found = there.settle(&self.shape, &self.noise, limits);
+        if found.sse < fit.sse {
+            (*stretch, *fit) = (there, found);
+        }
+    }
+
+    /// The chance that noise alone looks as much like this reaction.
+    fn chance(&self, index: usize, found: &Found<'_>) -> f64 {
+        let ends = self.limits(index, &found.range);
+        let others = found.fit.parameters() - 2;
+        let rows = found.range.len().saturating_sub(self.noise.order()) as f64;
+        let (dimensions, samples) = (rows - others as f64, found.range.len() as f64);
+        broken_line::chance(found.fit.share, dimensions, samples, ends)
+    }
+
+    fn decision(&self, place: &Place<'_>, lag: &Lag) -> Decision {
+        let found = self.find(place.index);
+        let range = self.chain.window(place.index);
+        let Some(found) = found else {
+            return place.decision(range, Candidates::default(), None, None);
+        };
+        let p_value = self.chance(place.index, &found);
+        let origin = place.step.sample as f64 - 1.0;
+        let fine = self.fine(&found, origin, lag, place.settings.interval);
+        let candidates = self.candidates(&found);
+        place.decision(range, candidates, Some(fine), Some(p_value))
+    }
+
+    /// The dead time and its interval, in which the uncertainty of the lag has its part.
+    fn fine(&self, found: &Found<'_>, origin: f64, lag: &Lag, confidence: f64) -> FineDelay {
+        let with_shape = found.stretch.with_shape(&self.shape, &self.noise, &found.fit.parts);
+        let rows = found.range.len() - self.noise.order();
+        let freedom = (rows as f64 - found.fit.parameters() as f64).max(1.0);
+        let noise = found.fit.sse / freedom;
+        let t = student_quantile(f64::midpoint(1.0, confidence), freedom);
+        let own = t * (noise * found.fit.place_variance()).sqrt();
+        let shared = t * lag.variance_along(&with_shape.place_slopes()).sqrt();
+        let side = |sign: f64| {
+            let reach = found.reach(sign * own, noise * t * t, &self.shape, &self.noise);
+            sign * reach.hypot(shared)
+        };
+        let delay = found.place() - origin;
+        let clear = own < 1e6;
+        let (low, high) = if clear { (side(-1.0), side(1.0)) } else { (-own, own) };
+        FineDelay::from_zero(delay, delay + low, delay + high, confidence)
+    }
+
+    /// The reaction where it was found, and a sample to each side.
+    fn candidates(&self, found: &Found<'_>) -> Candidates {
+        let there = |by: f64| {
+            let mut there = found.stretch.clone();
+            there.places.iter_mut().rev().take(1).for_each(|place| *place += by);
+            let fit = there.at(&self.shape, &self.noise);
+            (fit.sse, self.lines(&there, &fit, found.range.start))
+        };
+        let best = (found.fit.sse, self.lines(&found.stretch, &found.fit, found.range.start));
+        let all = [there(-1.0), best, there(1.0)];
+        let (sse, lines): (Vec<f64>, Vec<(Line, Line)>) = all.into_iter().unzip();
+        Candidates::fitted(ceil(found.place()).saturating_sub(1), sse, lines.into_iter().unzip(), 1)
+    }
+
+    /// The lines that the output approaches before and after, over sample numbers.
+    fn lines(&self, stretch: &Stretch<'_>, fit: &Linearised, start: usize) -> (Line, Line) {
+        let [value, slope, ..] = *fit.parts.as_slice() else {
+            return (Line::default(), Line::default());
+        };
+        let first = start as f64 + 1.0;
+        let place = stretch.places.last().copied().unwrap_or_default();
+        let offset = stretch.values.first().copied().unwrap_or_default();
+        let before = Line { slope, intercept: value + offset - slope * first };
+        let change = fit.change();
+        let at = first + place + self.response.mean;
+        (before, Line { slope: slope + change, intercept: before.intercept - change * at })
+    }
+}
+
+impl Found<'_> {
+    /// Index in the trial.
+    fn place(&self) -> f64 {
+        self.range.start as f64 + self.stretch.places.last().copied().unwrap_or_default()
+    }
+
+    /// How far the place may move, about as far as `guess`, until the squared error has
+    /// grown by `growth`.
+    fn reach(&self, guess: f64, growth: f64, shape: &Shape, noise: &Noise) -> f64 {
+        /// Half-widths in samples below which the error is a parabola.
+        const PARABOLIC: f64 = 0.3;
+        if guess.abs() < PARABOLIC || self.stretch.places.len() > 1 {
+            return guess.abs();
+        }
+        let mut there = self.stretch.clone();
+        there.places.iter_mut().for_each(|place| *place += guess);
+        let grown = there.at(shape, noise).sse - self.fit.sse;
+        let ratio = (growth / grown.max(f64::MIN_POSITIVE)).sqrt();
+        guess.abs() * ratio.clamp(0.5, 3.0)
+    }
+}

@@ -1,0 +1,218 @@
+//! How near a verdict was: what would have accepted a step, and what came second.
+
+use std::fmt;
+
+use super::condition::{Check, Condition, Outcome};
+use super::estimate::{Decision, Settings};
+use super::method::Method;
+
+/// The smallest change of the settings with which one condition would have been met, all
+/// else being as it was.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Remedy {
+    /// An option of `tauscope estimate`, with its value.
+    Option(String),
+    /// No setting does it.
+    None(Condition),
+}
+
+impl fmt::Display for Remedy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Option(option) => f.write_str(option),
+            Self::None(condition) => write!(f, "no setting: {}", condition.meaning()),
+        }
+    }
+}
+
+/// The second-best breakpoint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RunnerUp {
+    /// First sample behind it.
+    pub breakpoint: usize,
+    /// Its squared error, output units squared.
+    pub sse: f64,
+    /// By how much its squared error is larger than that of the best, as a part of it;
+    /// infinite when the best one has none.
+    pub margin: f64,
+}
+
+impl Decision {
+    /// What would have accepted this step: one remedy for each condition that failed, none
+    /// for an accepted step. `output` is what the method looked at.
+    pub fn remedies(&self, settings: &Settings, output: &[f64]) -> Vec<Remedy> {
+        let failed = self.checks.iter().filter(|check| check.outcome == Outcome::Failed);
+        failed.map(|check| self.remedy(check, settings, output)).collect()
+    }
+
+    fn remedy(&self, check: &Check, settings: &Settings, output: &[f64]) -> Remedy {
+        let value = check.value.unwrap_or(f64::NAN);
+        let option = match check.condition {
+            Condition::FirstOrLast => Some("--keep-first-last".to_owned()),
+            Condition::OutputLimit => self.wider_limits(settings, output),
+            Condition::BeforeInput => None,
+            Condition::SlopeChange => Some(format!("--min-slope-change {}", at_most(value))),
+            Condition::ShortHold => Some(format!("--min-delay {}", self.hold)),
+            Condition::Sse => Some(format!("--max-sse {}", above(value))),
+            Condition::TooShort => {
+                let beta = self.segment.len() / 2;
+                let helps = settings.method == Method::TwoLine && beta > 0;
+                helps.then(|| format!("--beta {beta}"))
+            }
+            Condition::NothingHappened => check.value.map(|p_value| {
+                let confidence = at_most(1.0 - p_value);
+                let some = confidence > 0.0;
+                if some { format!("--confidence {confidence}") } else { "--confidence none".into() }
+            }),
+        };
+        option.map_or(Remedy::None(check.condition), Remedy::Option)
+    }
+
+    fn wider_limits(&self, settings: &Settings, output: &[f64]) -> Option<String> {
+        let (low, high) = settings.output_limits?;
+        let values = output.get(self.segment.indices())?;
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let low = if least > low { low } else { -above(-least) };
+        let high = if most < high { high } else { above(most) };
+        Some(format!("--output-limits {low},{high}"))
+    }
+
+    /// The best breakpoint in another valley of the squared error; where there is only one
+    /// valley, the better neighbour of the best.
+    pub fn runner_up(&self) -> Option<RunnerUp> {
+        let best = self.candidates.best()?;
+        let sse = self.candidates.sse();
+        let chosen = best.f.checked_sub(1)?;
+        let at = |index: usize| sse.get(index).copied().unwrap_or(f64::INFINITY);
+        let is_valley = |index: &usize| {
+            let before = index.checked_sub(1).map_or(f64::INFINITY, at);
+            *index != chosen && at(*index) < before && at(*index) <= at(index + 1)
+        };
+        let least = |a: &usize, b: &usize| at(*a).total_cmp(&at(*b));
+        let apart = |index: &usize| index.abs_diff(chosen) > 1;
+        let valley = (0..sse.len()).filter(apart).filter(is_valley).min_by(least);
+        let neighbours = chosen.checked_sub(1).into_iter().chain([chosen + 1]);
+        let neighbour = neighbours.filter(|index| *index < sse.len()).min_by(least);
+        let second = self.candidates.get(valley.or(neighbour)?)?;
+        let margin = if best.sse > 0.0 { second.sse / best.sse - 1.0 } else { f64::INFINITY };
+        Some(RunnerUp { breakpoint: second.breakpoint, sse: second.sse, margin })
+    }
+}
+
+/// A number of six digits that is `value` or just below.
+fn at_most(value: f64) -> f64 {
+    let rounded = scaled(value, f64::floor);
+    if rounded <= value { rounded } else { value }
+}
+
+/// A number of six digits just above `value`.
+fn above(value: f64) -> f64 {
+    let rounded = scaled(value, |digits| digits.floor() + 1.0);
+    if rounded > value { rounded } else { value.next_up() }
+}
+
+/// Rounds the sixth digit of `value`.
+fn scaled(value: f64, round: impl Fn(f64) -> f64) -> f64 {
+    const DIGITS: f64 = 5.0;
+    if value == 0.0 || !value.is_finite() {
+        return value;
+    }
+    let unit = 10_f64.powf(DIGITS - value.abs().log10().floor());
+    round(value * unit) / unit
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delay::{Verdict, estimate};
+    use crate::experiment::Trial;
+    use crate::units::SamplePeriod;
+
+    /// Two steps, 12 samples late, with a ripple as noise; the second is small.
+    fn trial() -> Trial {
+        let input = |k: i32| if k < 100 { 0.0 } else { 1.0 + 0.1 * f64::from(k / 200) };
+        let turn = |k: i32| 0.2 * f64::from((k - 112).max(0)) + 0.02 * f64::from((k - 212).max(0));
+        let ripple = |k: i32| 0.05 * f64::from((k * 7919) % 101 - 50) / 50.0;
+        let input = (0..300).map(input).collect();
+        let output = (0..300).map(|k| turn(k) + ripple(k)).collect();
+        Trial::new("1", 0.0, SamplePeriod::from_seconds(0.01).unwrap(), input, output).unwrap()
+    }
+
+    type Changed = fn(&mut Settings, f64);
+
+    #[test]
+    fn what_would_have_accepted_a_step_does() {
+        let trial = trial();
+        let kept = Settings { keep_first_last: true, low_pass: None, ..Settings::default() };
+        let value = |remedy: &Remedy, option: &str| -> f64 {
+            remedy.to_string().strip_prefix(option).unwrap().trim().parse().unwrap()
+        };
+        let cases: [(Settings, &str, Changed); 3] = [
+            (
+                Settings { min_slope_change: 0.5, ..kept.clone() },
+                "--min-slope-change",
+                |settings, value| settings.min_slope_change = value,
+            ),
+            (Settings { max_sse: Some(1e-6), ..kept.clone() }, "--max-sse", |settings, value| {
+                settings.max_sse = Some(value);
+            }),
+            (Settings { min_delay: 150, ..kept.clone() }, "--min-delay", |settings, value| {
+                settings.min_delay = super::super::broken_line::floor(value);
+            }),
+        ];
+        for (settings, option, change) in cases {
+            let found = estimate(&trial, &settings).unwrap();
+            let first = &found.decisions[0];
+            let remedies = first.remedies(&settings, trial.output());
+            assert_eq!(remedies.len(), 1, "{remedies:?}");
+            let mut changed = settings.clone();
+            change(&mut changed, value(&remedies[0], option));
+            let again = estimate(&trial, &changed).unwrap();
+            assert_eq!(again.decisions[0].verdict(), Verdict::Accepted, "{option}");
+            let mut less = settings.clone();
+            change(
+                &mut less,
+                value(&remedies[0], option) * if option == "--max-sse" { 0.999 } else { 1.02 },
+            );
+            let still = estimate(&trial, &less).unwrap();
+            assert_ne!(still.decisions[0].verdict(), Verdict::Accepted, "{option}");
+        }
+    }
+
+    #[test]
+    fn wider_limits_hold_the_whole_segment() {
+        let trial = trial();
+        let mut settings =
+            Settings { keep_first_last: true, low_pass: None, ..Settings::default() };
+        settings.output_limits = Some((-0.01, 3.0));
+        let found = estimate(&trial, &settings).unwrap();
+        let remedies = found.decisions[0].remedies(&settings, trial.output());
+        let text = remedies[0].to_string();
+        let (low, high) = text.strip_prefix("--output-limits ").unwrap().split_once(',').unwrap();
+        settings.output_limits = Some((low.parse().unwrap(), high.parse().unwrap()));
+        let again = estimate(&trial, &settings).unwrap();
+        assert_eq!(again.decisions[0].verdict(), Verdict::Accepted);
+    }
+
+    #[test]
+    fn the_second_best_is_in_another_valley() {
+        let found =
+            estimate(&trial(), &Settings { low_pass: None, ..Settings::default() }).unwrap();
+        let decision = &found.decisions[0];
+        let best = decision.breakpoint().unwrap().candidate;
+        let second = decision.runner_up().unwrap();
+        assert_ne!(second.breakpoint, best.breakpoint);
+        assert!(second.margin > 0.0);
+        assert!((second.sse / best.sse - 1.0 - second.margin).abs() < 1e-12);
+    }
+
+    #[test]
+    fn rounding_is_on_the_safe_side() {
+        for value in [0.012_345_678_9, 123_456_789.0, 1e-300, 3.0, -0.4] {
+            assert!(at_most(value) <= value && above(value) > value, "{value}");
+            assert!((at_most(value) - value).abs() <= 1e-5 * value.abs());
+            assert!((above(value) - value).abs() <= 1e-4 * value.abs());
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! The noise of the output, and what takes its memory away.
+
+use super::autoregression::{Autoregression, autocovariances};
+
+/// Longest memory of the noise that is looked for, samples.
+const LONGEST_MEMORY: usize = 8;
+
+/// Largest sum of the coefficients: noise that wanders is no noise about a line.
+const LARGEST_SUM: f64 = 0.98;
+
+/// Correlation of neighbours below which noise counts as white.
+const LEAST: f64 = 0.08;
+
+/// Noise as an autoregression, `e_k = Σ a_i e_(k−i) + w_k` with white `w`.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Noise {
+    coefficients: Vec<f64>,
+    /// `1 − Σ a_i`: what whitening makes of 1.
+    pub(super) level: f64,
+    /// `Σ i·a_i`: whitening makes `level·k + shift` of `k`.
+    pub(super) shift: f64,
+}
+
+impl Noise {
+    pub(super) fn white() -> Self {
+        Self::new(Vec::new())
+    }
+
+    fn new(mut coefficients: Vec<f64>) -> Self {
+        let sum: f64 = coefficients.iter().sum();
+        if sum > LARGEST_SUM {
+            for a in &mut coefficients {
+                *a *= LARGEST_SUM / sum;
+            }
+        }
+        let level = 1.0 - coefficients.iter().sum::<f64>();
+        let shift = coefficients.iter().zip(1..).map(|(a, i)| f64::from(i) * a).sum();
+        Self { coefficients, level, shift }
+    }
+
+    /// The noise that the residuals of many fits with so many `parameters` each show.
+    ///
+    /// Each parameter takes the power of slow noise from the residuals, `S/n` from every
+    /// autocovariance, with `S` their sum over all lags and `n` the length of a fit; it is
+    /// put back. Little memory is taken for none.
+    pub(super) fn of(residuals: &[Vec<f64>], parameters: usize) -> Self {
+        /// Times that `S` is estimated from what it corrects.
+        const ROUNDS: usize = 3;
+        let residuals = usual(residuals);
+        let samples: usize = residuals.iter().map(Vec::len).sum();
+        let length = samples as f64 / residuals.len().max(1) as f64;
+        let measured = autocovariances(&residuals, LONGEST_MEMORY.min(samples / 10));
+        let mut found = Autoregression::default();
+        for _ in 0..ROUNDS {
+            let noise = Self::new(found.coefficients.clone());
+            let power = measured.first().copied().unwrap_or(0.0) * (1.0 - found.explained);
+            let taken = parameters as f64 / length.max(1.0) * power / noise.level.powi(2);
+            let whole: Vec<f64> = measured.iter().map(|value| value + taken).collect();
+            found = Autoregression::of(&whole, samples);
+        }
+        if found.explained > LEAST * LEAST { Self::new(found.coefficients) } else { Self::white() }
+    }
+
+    /// Samples that it remembers.
+    pub(super) fn order(&self) -> usize {
+        self.coefficients.len()
+    }
+
+    /// What whitening makes, `d = 1 … order` samples behind the break, of a level and of a
+    /// ramp that begin there: `(w_d, h_d)`.
+    pub(super) fn onset(&self) -> Vec<(f64, f64)> {
+        let (mut level, mut shift) = (1.0, 0.0);
+        let mut onset = Vec::with_capacity(self.order());
+        for (a, d) in self.coefficients.iter().zip(1..) {
+            let d = f64::from(d);
+            onset.push((level, d * level + shift));
+            level -= a;
+            shift += d * a;
+        }
+        onset
+    }
+
+    /// Takes the memory out of `values` in place; the first ones become 0.
+    pub(super) fn whiten(&self, values: &mut [f64]) {
+        let order = self.order();
+        if order == 0 {
+            return;
+        }
+        for k in (order..values.len()).rev() {
+            let (past, now) = values.split_at_mut(k);
+            let recent = past.iter().rev();
+            let expected: f64 = self.coefficients.iter().zip(recent).map(|(a, y)| a * y).sum();
+            if let Some(now) = now.first_mut() {
+                *now -= expected;
+            }
+        }
+        values.iter_mut().take(order).for_each(|value| *value = 0.0);
+    }
+}
+
+/// The residuals without those that are far larger than most: what is left there is no
+/// noise.
+fn usual(residuals: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    /// Times the median of the mean squares.
+    const STRANGE: f64 = 2.5;
+    let level = |values: &Vec<f64>| {
+        values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64
+    };
+    let mut levels: Vec<f64> = residuals.iter().map(level).collect();
+    levels.sort_by(f64::total_cmp);
+    let most = levels.get(levels.len() / 2).map_or(0.0, |median| STRANGE * median);
+    residuals.iter().filter(|values| level(values) <= most).cloned().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whitening_makes_of_a_line_and_of_an_onset_what_is_promised() {
+        let noise = Noise::new(vec![0.5, -0.2]);
+        let mut line: Vec<f64> = (0..9).map(f64::from).collect();
+        noise.whiten(&mut line);
+        assert!((line[8] - (noise.level * 8.0 + noise.shift)).abs() < 1e-12);
+        let mut ramp: Vec<f64> = (0..9).map(|k| f64::from((k - 4).max(0))).collect();
+        noise.whiten(&mut ramp);
+        for (d, (_, h)) in noise.onset().into_iter().enumerate() {
+            assert!((ramp[5 + d] - h).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn little_memory_is_none() {
+        let mut state = 3_u32;
+        let white = |_| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / f64::from(1_u32 << 24) - 0.5
+        };
+        let signal: Vec<f64> = (0..400).map(white).collect();
+        assert_eq!(Noise::of(&[signal], 2).order(), 0);
+    }
+}

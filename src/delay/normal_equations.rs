@@ -1,0 +1,131 @@
+//! Small least squares by normal equations, solved column by column.
+
+use super::autoregression::dot;
+
+/// Pivots below this part of a column's own square belong to columns that the ones before
+/// them already make up.
+const DEPENDENT: f64 = 1e-11;
+
+/// The products of all columns with each other, the last of them the target; eliminated
+/// from the front as far as is asked for.
+#[derive(Clone, Debug, Default)]
+pub(super) struct NormalEquations {
+    size: usize,
+    /// Rows of the upper triangle, in a square.
+    products: Vec<f64>,
+    squares: Vec<f64>,
+}
+
+impl NormalEquations {
+    /// Of `columns` of `length` samples each, one behind the other.
+    pub(super) fn of(columns: &[f64], length: usize) -> Self {
+        let size = columns.len() / length.max(1);
+        let mut products = vec![0.0; size * size];
+        for (i, a) in columns.chunks_exact(length.max(1)).enumerate() {
+            for (j, b) in columns.chunks_exact(length.max(1)).enumerate().skip(i) {
+                if let Some(slot) = products.get_mut(i * size + j) {
+                    *slot = dot(a, b);
+                }
+            }
+        }
+        let squares = (0..size).map(|i| products.get(i * size + i).copied().unwrap_or(0.0));
+        let squares = squares.collect();
+        Self { size, products, squares }
+    }
+
+    /// The same with the columns in another `order`, before any is eliminated.
+    pub(super) fn reordered(&self, order: &[usize]) -> Self {
+        let product = |i: &usize, j: &usize| self.at(*i.min(j), *i.max(j));
+        let rows = order.iter().map(|i| order.iter().map(|j| product(i, j)).collect::<Vec<_>>());
+        let squares = order.iter().map(|i| product(i, i)).collect();
+        Self { size: order.len(), products: rows.flatten().collect(), squares }
+    }
+
+    /// Number of columns, the target among them.
+    pub(super) fn size(&self) -> usize {
+        self.size
+    }
+
+    /// What is left at a row and a column of the upper triangle.
+    pub(super) fn at(&self, row: usize, column: usize) -> f64 {
+        self.products.get(row * self.size + column).copied().unwrap_or(0.0)
+    }
+
+    /// The squared error of the target after the columns eliminated so far.
+    pub(super) fn error(&self) -> f64 {
+        let last = self.size.saturating_sub(1);
+        self.at(last, last).max(0.0)
+    }
+
+    /// Whether a column is no combination of those before it.
+    pub(super) fn stands_alone(&self, column: usize) -> bool {
+        let square = self.squares.get(column).copied().unwrap_or(0.0);
+        self.at(column, column) > DEPENDENT * square && square > 0.0
+    }
+
+    /// Takes what `column` explains off all behind it.
+    pub(super) fn eliminate(&mut self, column: usize) {
+        if !self.stands_alone(column) {
+            return;
+        }
+        let pivot = self.at(column, column);
+        let size = self.size;
+        let split = ((column + 1) * size).min(self.products.len());
+        let (done, behind) = self.products.split_at_mut(split);
+        let row = done.get(column * size..).unwrap_or_default();
+        for (offset, target) in behind.chunks_exact_mut(size).enumerate() {
+            let r = column + 1 + offset;
+            let factor = row.get(r).copied().unwrap_or(0.0) / pivot;
+            let parts = row.iter().zip(target).skip(r);
+            parts.for_each(|(value, slot)| *slot -= factor * value);
+        }
+    }
+
+    /// Coefficients of the first `count` columns, all of which are eliminated, given those
+    /// of the columns behind them.
+    pub(super) fn coefficients(&self, count: usize, behind: &[(usize, f64)]) -> Vec<f64> {
+        let target = self.size.saturating_sub(1);
+        let mut found = vec![0.0; count];
+        for row in (0..count).rev() {
+            if !self.stands_alone(row) {
+                continue;
+            }
+            let later = found.iter().enumerate().skip(row + 1);
+            let known: f64 = later.map(|(column, value)| self.at(row, column) * value).sum();
+            let given: f64 =
+                behind.iter().map(|(column, value)| self.at(row, *column) * value).sum();
+            let value = (self.at(row, target) - known - given) / self.at(row, row);
+            if let Some(slot) = found.get_mut(row) {
+                *slot = value;
+            }
+        }
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_regression_by_hand() {
+        // y = 1 + 2 x on x = 0, 1, 2 with an error of (1, −2, 1), which neither explains.
+        let columns = [1.0, 1.0, 1.0, 0.0, 1.0, 2.0, 2.0, 1.0, 6.0];
+        let mut equations = NormalEquations::of(&columns, 3);
+        equations.eliminate(0);
+        equations.eliminate(1);
+        assert!((equations.error() - 6.0).abs() < 1e-12);
+        let found = equations.coefficients(2, &[]);
+        assert!((found[0] - 1.0).abs() < 1e-12 && (found[1] - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_column_that_others_make_up_is_left_out() {
+        let columns = [1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 1.0, 2.0, 3.0];
+        let mut equations = NormalEquations::of(&columns, 3);
+        equations.eliminate(0);
+        assert!(!equations.stands_alone(1));
+        equations.eliminate(1);
+        assert!((equations.error() - 2.0).abs() < 1e-12);
+    }
+}

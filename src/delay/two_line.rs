@@ -1,0 +1,77 @@
+//! Algorithm 1: step by step, since each segment hangs on the verdict before it.
+//!
+//! For step `i` at sample `p_i` the segment runs from `r_i` to `p_(i+1) + α`, with
+//! `r_i = q_(i−1)` if step `i−1` was accepted and `p_i − α` otherwise. The pair of lines
+//! with the least squared error breaks at `q_i`; the delay is `δ_i = q_i − p_i`.
+//!
+//! # References
+//! Albrecht and Taylor, Algorithm 1 (time-varying delays of hydraulic manipulators).
+
+use super::condition::Facts;
+use super::estimate::{Decision, Settings, Verdict};
+use super::reaction;
+use super::search::Candidates;
+use super::segment::Segment;
+use super::steps::InputStep;
+
+/// The decisions on all `steps`; `output` is what the lines are fitted to, `raw` what was
+/// measured.
+pub(super) fn decide_all(
+    output: &[f64],
+    raw: &[f64],
+    steps: &[InputStep],
+    settings: &Settings,
+) -> Vec<Decision> {
+    let mut decisions: Vec<Decision> = Vec::with_capacity(steps.len());
+    for index in 0..steps.len() {
+        let decision = decide(steps, index, output, decisions.last(), settings);
+        decisions.extend(decision);
+    }
+    if let Some(confidence) = settings.confidence {
+        reaction::judge(&mut decisions, raw, confidence);
+    }
+    decisions
+}
+
+/// The decision on step `index`, after the one `before` it.
+fn decide(
+    steps: &[InputStep],
+    index: usize,
+    output: &[f64],
+    before: Option<&Decision>,
+    settings: &Settings,
+) -> Option<Decision> {
+    let input_step = *steps.get(index)?;
+    let samples = output.len();
+    let p = input_step.sample;
+    // Behind the last step the trial's end stands in for the next one.
+    let next = steps.get(index + 1).map_or(samples + 1, |next| next.sample);
+    let accepted = before.filter(|before| before.verdict() == Verdict::Accepted);
+    let previous = accepted.and_then(Decision::breakpoint);
+    let before_step = p.saturating_sub(settings.alpha);
+    let breakpoint = previous.map(|best| best.candidate.breakpoint);
+    let latest = settings.max_delay.map_or(usize::MAX, |delay| p.saturating_add(delay));
+    let first = match (breakpoint, settings.max_delay) {
+        (None, _) => before_step,
+        (Some(breakpoint), None) => breakpoint,
+        // What came long before the step is none of its business.
+        (Some(breakpoint), Some(_)) => breakpoint.max(before_step),
+    };
+    let last = next.min(latest).saturating_add(settings.alpha);
+    let segment = Segment::clipped(first, last, samples);
+    let values = output.get(segment.indices()).unwrap_or_default();
+    let candidates = Candidates::search_until(values, segment.first, settings.beta, latest);
+    let facts = Facts {
+        step: index + 1,
+        steps: steps.len(),
+        input_sample: p,
+        hold: next - p,
+        output: values,
+        rows: values.len() / settings.beta,
+        best: candidates.best(),
+        fine: None,
+    };
+    let checks = facts.check(settings);
+    let (number, hold) = (index + 1, next - p);
+    Some(Decision { number, input_step, hold, segment, candidates, checks, fine: None })
+}

@@ -1,0 +1,234 @@
+//! Delays between samples with their intervals: the broken line, and the lag behind it.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use tauscope::delay::{
+    Condition, Method, Settings, TrialEstimate, Verdict, estimate, estimate_joint, step_delays,
+};
+use tauscope::fit::{Horizon, Record, Split};
+use tauscope::synthetic::{
+    DelayLaw, InputSpec, JointSpec, PlantSpec, Ringing, Synthetic, simulate, write_log,
+};
+
+/// A joint with delays of 5 to 40 samples and noise of 0.05 degrees, for 60 s at 100 Hz.
+fn joint() -> JointSpec {
+    let levels = (-4..=4).map(|half| 0.5 * f64::from(half)).collect();
+    let input = InputSpec::Levels { levels, hold_s: [0.9, 2.0] };
+    let delay = DelayLaw::Uniform { min: 0.05, max: 0.4 };
+    JointSpec { noise: 0.05, ..JointSpec::new("arm", input, delay) }
+}
+
+fn made(joint: JointSpec) -> Synthetic {
+    lasting(60.0, joint)
+}
+
+fn lasting(seconds: f64, joint: JointSpec) -> Synthetic {
+    simulate(&PlantSpec::new(5, seconds, vec![joint])).unwrap()
+}
+
+fn found(made: &Synthetic, method: Method) -> TrialEstimate {
+    estimate(&made.joints[0].trials[0], &Settings::of(method)).unwrap()
+}
+
+/// Mean error and share of intervals that hold the truth, over the accepted steps.
+fn errors(made: &Synthetic, found: &TrialEstimate) -> (f64, f64) {
+    let pairs = made.truth.iter().zip(&found.decisions);
+    let accepted: Vec<_> = pairs
+        .filter_map(|(truth, decision)| {
+            let delay = decision.accepted_delay()?;
+            let fine = decision.fine?;
+            let holds = (fine.low..=fine.high).contains(&truth.delay_samples);
+            Some(((delay - truth.delay_samples).abs(), f64::from(u8::from(holds))))
+        })
+        .collect();
+    assert!(2 * accepted.len() > made.truth.len(), "{} accepted", accepted.len());
+    let mean = |sum: f64| sum / accepted.len() as f64;
+    (mean(accepted.iter().map(|(e, _)| e).sum()), mean(accepted.iter().map(|(_, h)| h).sum()))
+}
+
+#[test]
+fn a_broken_line_finds_the_delay_between_samples() {
+    let made = made(joint());
+    let (error, covered) = errors(&made, &found(&made, Method::Hinge));
+    assert!(error < 0.13, "{error}");
+    // 95 % of some forty.
+    assert!(covered > 0.85, "{covered}");
+}
+
+#[test]
+fn dead_time_is_told_from_a_lag_and_from_ringing() {
+    let lag = JointSpec { lag_s: Some(0.06), ..joint() };
+    let ringing = Ringing { period_s: 0.4, damping: 0.25 };
+    for spec in [lag, JointSpec { ringing: Some(ringing), ..joint() }] {
+        let (lag_s, made) = (spec.lag_s, made(spec));
+        let (booked, _) = errors(&made, &found(&made, Method::Hinge));
+        assert!(booked > 3.0, "the broken line books the lag as delay: {booked}");
+        let estimate = found(&made, Method::LagAware);
+        let (error, covered) = errors(&made, &estimate);
+        assert!(error < 0.2, "{error}");
+        assert!(covered > 0.85, "{covered}");
+        let lag = estimate.lag.unwrap();
+        let (part, truth) = match lag_s {
+            Some(truth) => (lag.time_constant_s(), truth),
+            None => (lag.period_s(), 0.4),
+        };
+        let part = part.unwrap();
+        assert!((part.value - truth).abs() < 4.0 * part.std_error, "{part:?}");
+        assert!(part.std_error < 0.05 * truth, "{part:?}");
+    }
+}
+
+#[test]
+fn without_a_lag_there_is_none_to_report() {
+    let made = made(joint());
+    let estimate = found(&made, Method::LagAware);
+    assert_eq!(estimate.lag.as_ref().unwrap().order(), 0);
+    assert_eq!(estimate.decisions, found(&made, Method::Hinge).decisions);
+}
+
+#[test]
+fn nothing_happens_in_a_dead_band() {
+    let input =
+        InputSpec::Levels { levels: vec![-1.0, -0.4, -0.2, 0.2, 0.4, 1.0], hold_s: [0.9, 2.0] };
+    let made = made(JointSpec { input, dead_band: Some([-0.5, 0.5]), gain: 20.0, ..joint() });
+    let still: Vec<usize> =
+        made.truth.iter().filter(|s| s.slope_change == 0.0).map(|s| s.i).collect();
+    assert!(still.len() > 10);
+    for method in Method::ALL {
+        let settings = Settings { confidence: Some(0.99), ..Settings::of(method) };
+        let found = estimate(&made.joints[0].trials[0], &settings).unwrap();
+        let accepted = |i: &&usize| found.decisions[**i - 1].verdict() == Verdict::Accepted;
+        assert!(still.iter().filter(accepted).count() <= 1, "{method}");
+        let moved = made.truth.iter().filter(|s| s.slope_change != 0.0);
+        let missed = moved.filter(|s| {
+            found.decisions[s.i - 1].failed().any(|failed| failed == Condition::NothingHappened)
+        });
+        assert!(missed.count() <= 1, "{method}");
+    }
+}
+
+#[test]
+fn the_papers_method_tests_nothing_by_itself() {
+    let made = made(joint());
+    let found = found(&made, Method::TwoLine);
+    let checks = found.decisions.iter().flat_map(|decision| &decision.checks);
+    let mut tests = checks.filter(|check| check.condition == Condition::NothingHappened);
+    assert!(tests.all(|check| check.value.is_none() && check.limit.is_none()));
+}
+
+#[test]
+fn trials_share_their_lag() {
+    let one = lasting(20.0, JointSpec { lag_s: Some(0.06), ..joint() }).joints[0].trials[0].clone();
+    let trials = [one.clone(), one];
+    let settings = Settings::of(Method::LagAware);
+    let found: Vec<_> =
+        estimate_joint(&trials, &settings).into_iter().map(Result::unwrap).collect();
+    assert_eq!(found[0].lag, found[1].lag);
+}
+
+#[test]
+fn delays_go_into_a_fit() {
+    let made = lasting(20.0, JointSpec { lag_s: Some(0.06), ..joint() });
+    let joint = &made.joints[0];
+    let delays = step_delays(&joint.trials).unwrap();
+    assert_eq!(delays[0].len(), made.truth.len());
+    let seconds = |one: &Option<tauscope::delay::StepDelay>| one.map(|one| one.delay_s);
+    let delays = delays.iter().map(|trial| trial.iter().map(seconds).collect()).collect();
+    let record = Record::new(joint, Split::Time(1.0), Horizon::Steps).with_delays(delays);
+    let model = tauscope::model::JointModel::integrator(10.0, 0.2);
+    let arrivals = record.arrivals(&model, 0);
+    let truth = &made.truth[3];
+    let expected = (truth.p as f64 - 1.0) * 0.01 + truth.delay_s;
+    let nearest = arrivals.changes.iter().map(|change| (change.time_s - expected).abs());
+    assert!(nearest.fold(f64::INFINITY, f64::min) < 0.01);
+}
+
+#[test]
+fn odd_outputs_are_estimated_or_refused_but_nothing_panics() {
+    let period = tauscope::units::SamplePeriod::from_seconds(0.01).unwrap();
+    let input = |k: i32| f64::from(k / 7 % 3);
+    let outputs: [fn(i32) -> f64; 6] = [
+        |_| 0.0,
+        f64::from,
+        |k| f64::from(k % 2),
+        |k| if k == 30 { 1e300 } else { 0.0 },
+        |k| 1e-300 * f64::from(k * k),
+        |k| 1e9 + f64::from(k % 5),
+    ];
+    for (output, length) in outputs.iter().flat_map(|o| [2, 9, 15, 40, 200].map(|n| (o, n))) {
+        let trial = tauscope::experiment::Trial::new(
+            "1",
+            0.0,
+            period,
+            (0..length).map(input).collect(),
+            (0..length).map(*output).collect(),
+        )
+        .unwrap();
+        for method in Method::ALL {
+            let found = estimate(&trial, &Settings::of(method)).unwrap();
+            assert_eq!(found.decisions.len(), usize::try_from((length - 1) / 7).unwrap());
+        }
+    }
+}
+
+/// `tauscope estimate` in a folder with the log of a lagged joint.
+fn run(folder: &Path, arguments: &str) -> Output {
+    let log = std::fs::File::create(folder.join("log.csv")).unwrap();
+    write_log(&made(JointSpec { lag_s: Some(0.06), ..joint() }), log).unwrap();
+    let program = Command::new(env!("CARGO_BIN_EXE_tauscope"))
+        .current_dir(folder)
+        .args(["estimate", "log.csv"])
+        .args(arguments.split_whitespace())
+        .output()
+        .unwrap();
+    assert!(program.status.success(), "{}", String::from_utf8_lossy(&program.stderr));
+    program
+}
+
+#[test]
+fn two_methods_stand_side_by_side() {
+    let folder = tempfile::tempdir().unwrap();
+    let output =
+        run(folder.path(), "--method lag-aware --method two-line --format json --decisions d.csv");
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["settings"]["method"], "lag-aware");
+    assert_eq!(json["also"][0]["settings"]["method"], "two-line");
+    let lag = &json["joints"][0]["lag"]["time_constant_s"];
+    assert!((lag["value"].as_f64().unwrap() - 0.06).abs() < 0.01, "{lag}");
+    let (first, second) =
+        (&json["joints"][0]["decisions"], &json["also"][0]["joints"][0]["decisions"]);
+    assert!(first[1]["delta_low"].as_f64() < first[1]["delta"].as_f64());
+    assert!(first[1]["delta"].as_f64() < second[1]["delta"].as_f64());
+    assert_eq!(first[0]["accepted_with"], "--keep-first-last");
+    let table = std::fs::read_to_string(folder.path().join("d.csv")).unwrap();
+    let header = table.lines().next().unwrap();
+    assert!(header.ends_with(
+        "failed,method,delta_low,delta_high,p_value,runner_up_q,runner_up_margin,accepted_with"
+    ));
+    assert_eq!(table.lines().count() - 1, 2 * first.as_array().unwrap().len());
+}
+
+#[test]
+fn the_papers_table_of_decisions_stays_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), "--decisions d.csv");
+    let table = std::fs::read_to_string(folder.path().join("d.csv")).unwrap();
+    assert_eq!(
+        table.lines().next().unwrap(),
+        "joint,trial,i,p,r,end,candidates,f_opt,q,delta,delta_s,sse,slope_before,\
+         intercept_before,slope_after,intercept_after,verdict,failed"
+    );
+}
+
+#[test]
+fn every_step_says_how_near_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run(folder.path(), "--method hinge --steps --min-slope-change 0.2");
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("--keep-first-last"), "{text}");
+    assert!(text.contains("--min-slope-change 0.1"), "{text}");
+    assert!(text.contains("% above at q = "), "{text}");
+    assert!(text.contains("broken line: 95 % intervals"), "{text}");
+}
