@@ -1,0 +1,305 @@
+//! How well each method finds known delays, beside what no method can do better.
+//!
+//! Seeded joints that only integrate, lag, ring, are noisy or are held for a short time are
+//! simulated; every step is estimated by every method. The last column is the error at the
+//! bound of Cramér and Rao, for all parameters of the record together.
+//! Usage: `delay_methods [RECORDS [PLANT...]]`
+#![expect(clippy::print_stdout, reason = "an example prints")]
+
+use std::f64::consts::{FRAC_2_PI, TAU};
+use std::time::{Duration, Instant};
+
+use anyhow::Context as _;
+use nalgebra::DMatrix;
+use tauscope::delay::{Method, Settings, TrialEstimate, estimate};
+use tauscope::experiment::Trial;
+use tauscope::synthetic::{
+    DelayLaw, InputSpec, JointSpec, PlantSpec, Ringing, StepTruth, Synthetic, simulate,
+};
+
+/// Records per plant where no number is given.
+const RECORDS: u64 = 20;
+/// Records of a plant for which the bound is computed.
+const BOUNDS: u64 = 1;
+const PERIOD_S: f64 = 0.01;
+const DURATION_S: f64 = 120.0;
+/// Standard deviation of the noise, output units.
+const NOISE: f64 = 0.05;
+const LAG_S: f64 = 0.06;
+const RINGING: Ringing = Ringing { period_s: 0.4, damping: 0.25 };
+
+/// The plants by name.
+fn plants() -> Vec<(&'static str, JointSpec)> {
+    let levels = (-4..=4).map(|half| 0.5 * f64::from(half)).collect::<Vec<_>>();
+    let input = |hold_s| InputSpec::Levels { levels: levels.clone(), hold_s };
+    let delay = |max| DelayLaw::Uniform { min: 0.05, max };
+    let ideal =
+        JointSpec { noise: NOISE, ..JointSpec::new("ideal", input([0.9, 2.0]), delay(0.4)) };
+    let lag_s = Some(LAG_S);
+    let ringing = Some(RINGING);
+    let short = JointSpec { input: input([0.2, 0.5]), delay: delay(0.3), ..ideal.clone() };
+    let small = vec![-1.0, -0.4, -0.2, 0.2, 0.4, 1.0];
+    let dead = InputSpec::Levels { levels: small, hold_s: [0.9, 2.0] };
+    let dead = JointSpec { input: dead, dead_band: Some([-0.5, 0.5]), gain: 20.0, ..ideal.clone() };
+    vec![
+        ("ideal", ideal.clone()),
+        ("lag of 6", JointSpec { lag_s, ..ideal.clone() }),
+        ("ringing", JointSpec { ringing, ..ideal.clone() }),
+        ("lag and ringing", JointSpec { lag_s, ringing, ..ideal.clone() }),
+        ("noise x 16", JointSpec { noise: 16.0 * NOISE, ..ideal.clone() }),
+        ("noise x 16, lag", JointSpec { noise: 16.0 * NOISE, lag_s, ..ideal.clone() }),
+        ("coloured noise", JointSpec { noise_correlation: 0.8, ..ideal.clone() }),
+        ("short holds", short.clone()),
+        ("short holds, lag", JointSpec { lag_s, ..short.clone() }),
+        ("short holds, ringing", JointSpec { ringing, ..short }),
+        ("dead band", dead.clone()),
+        ("dead band, lag", JointSpec { lag_s, ..dead }),
+    ]
+}
+
+fn settings(method: Method) -> Settings {
+    let settings = Settings { keep_first_last: true, ..Settings::of(method) };
+    match method {
+        Method::TwoLine => Settings { beta: 2, ..settings },
+        Method::Hinge | Method::LagAware => settings,
+    }
+}
+
+/// What became of the steps of a plant under one method.
+#[derive(Debug, Default)]
+struct Tally {
+    errors: Vec<f64>,
+    covered: usize,
+    intervals: usize,
+    steps: usize,
+    still: usize,
+    still_accepted: usize,
+    time: Duration,
+    samples: usize,
+}
+
+impl Tally {
+    fn add(&mut self, truth: &[StepTruth], found: &TrialEstimate) {
+        for (truth, decision) in truth.iter().zip(&found.decisions) {
+            let accepted = decision.accepted_delay();
+            if truth.slope_change.abs() < 1e-9 {
+                self.still += 1;
+                self.still_accepted += usize::from(accepted.is_some());
+                continue;
+            }
+            self.steps += 1;
+            let Some(delay) = accepted else { continue };
+            self.errors.push(delay - truth.delay_samples);
+            if let Some(fine) = decision.fine {
+                self.intervals += 1;
+                self.covered += usize::from((fine.low..=fine.high).contains(&truth.delay_samples));
+            }
+        }
+    }
+
+    fn mean_error(&self) -> f64 {
+        self.errors.iter().map(|error| error.abs()).sum::<f64>() / self.errors.len() as f64
+    }
+
+    fn bias(&self) -> f64 {
+        self.errors.iter().sum::<f64>() / self.errors.len() as f64
+    }
+
+    fn coverage(&self) -> f64 {
+        100.0 * self.covered as f64 / self.intervals as f64
+    }
+}
+
+/// Steps that have a neighbour on each side and whose reaction is in the record.
+fn inner<'a>(made: &'a Synthetic, trial: &Trial) -> &'a [StepTruth] {
+    let last = made.truth.len().saturating_sub(1);
+    let end = made
+        .truth
+        .iter()
+        .position(|step| step.p as f64 + step.delay_samples + 10.0 > trial.len() as f64);
+    made.truth.get(..end.unwrap_or(last).min(last)).unwrap_or_default()
+}
+
+/// A response that starts `t` samples before, integrated; the equations are solved here
+/// again, so that the bound does not hang on the estimator.
+fn response(lag: Option<f64>, ringing: Option<(f64, f64)>, t: f64) -> f64 {
+    if t <= 0.0 {
+        return 0.0;
+    }
+    let ring = |t: f64, (omega, zeta): (f64, f64)| {
+        let damped = omega * (1.0 - zeta * zeta).sqrt();
+        let (sine, cosine) = (damped * t).sin_cos();
+        let decay = (-zeta * omega * t).exp();
+        let part = (2.0 * zeta * zeta - 1.0) / damped;
+        t - 2.0 * zeta / omega + decay * (2.0 * zeta / omega * cosine + part * sine)
+    };
+    match (lag, ringing) {
+        (None, None) => t,
+        (Some(lag), None) => t - lag * (1.0 - (-t / lag).exp()),
+        (None, Some(ringing)) => ring(t, ringing),
+        // The lag of what rings, by Simpson's rule over its impulse response.
+        (Some(lag), Some(ringing)) => {
+            let parts = 200;
+            let width = t / f64::from(parts);
+            let value = |i: i32| {
+                let s = f64::from(i) * width;
+                (-s / lag).exp() / lag * ring(t - s, ringing)
+            };
+            let weight = |i: i32| match i {
+                0 => 1.0,
+                i if i == parts => 1.0,
+                i if i % 2 == 1 => 4.0,
+                _ => 2.0,
+            };
+            (0..=parts).map(|i| weight(i) * value(i)).sum::<f64>() * width / 3.0
+        }
+    }
+}
+
+/// The mean error at the bound of Cramér and Rao over the steps that are judged.
+fn bound(spec: &JointSpec, made: &Synthetic, trial: &Trial) -> Option<f64> {
+    let moving: Vec<_> = made.truth.iter().filter(|s| s.slope_change.abs() > 1e-9).collect();
+    let lag = spec.lag_s.map(|lag| lag / PERIOD_S);
+    let ringing = spec.ringing.map(|r| (TAU * PERIOD_S / r.period_s, r.damping));
+    let arrival = |step: &StepTruth| step.p as f64 - 1.0 + step.delay_samples;
+    let of = |step: &StepTruth, lag, ringing| {
+        let place = arrival(step);
+        (0..trial.len()).map(move |k| response(lag, ringing, k as f64 - place))
+    };
+    let nudge = 1e-4;
+    let mut columns: Vec<Vec<f64>> = vec![vec![1.0; trial.len()]];
+    columns.push((0..trial.len()).map(|k| k as f64 / trial.len() as f64).collect());
+    for step in &moving {
+        columns.push(of(step, lag, ringing).map(|g| g / trial.len() as f64).collect());
+    }
+    let shapes = [
+        lag.map(|lag| (Some(lag * (1.0 + nudge)), ringing)),
+        ringing.map(|(omega, zeta)| (lag, Some((omega * (1.0 + nudge), zeta)))),
+        ringing.map(|(omega, zeta)| (lag, Some((omega, zeta * (1.0 + nudge))))),
+    ];
+    for (lag_2, ringing_2) in shapes.into_iter().flatten() {
+        let mut column = vec![0.0; trial.len()];
+        for step in &moving {
+            let pairs = of(step, lag_2, ringing_2).zip(of(step, lag, ringing));
+            let slots = column.iter_mut().zip(pairs);
+            slots.for_each(|(slot, (b, a))| *slot += step.slope_change * (b - a) / nudge);
+        }
+        columns.push(column);
+    }
+    let first = columns.len();
+    for step in &moving {
+        let place = arrival(step);
+        let at = |k: usize, by: f64| response(lag, ringing, k as f64 - place - by);
+        let slope = |k| step.slope_change * (at(k, nudge) - at(k, -nudge)) / (2.0 * nudge);
+        columns.push((0..trial.len()).map(slope).collect());
+    }
+    let phi = spec.noise_correlation;
+    let whitened: Vec<Vec<f64>> = columns
+        .iter()
+        .map(|c| c.windows(2).map(|w| (w[1] - phi * w[0]) / (1.0 - phi * phi).sqrt()).collect())
+        .collect();
+    let count = whitened.len();
+    let product = |i: usize, j: usize| -> f64 {
+        whitened[i].iter().zip(&whitened[j]).map(|(a, b)| a * b).sum()
+    };
+    let mut information = DMatrix::zeros(count, count);
+    for i in 0..count {
+        for j in i..count {
+            information[(i, j)] = product(i, j);
+            information[(j, i)] = information[(i, j)];
+        }
+    }
+    let scale: Vec<f64> = (0..count).map(|i| information[(i, i)].sqrt()).collect();
+    let scaled = DMatrix::from_fn(count, count, |i, j| information[(i, j)] / (scale[i] * scale[j]));
+    let inverse = (scaled + DMatrix::identity(count, count) * 1e-12).cholesky()?.inverse();
+    let judged = inner(made, trial);
+    let deviations = moving.iter().enumerate().filter(|(_, step)| judged.contains(step));
+    let deviations: Vec<f64> = deviations
+        .map(|(i, _)| spec.noise * inverse[(first + i, first + i)].sqrt() / scale[first + i])
+        .collect();
+    Some(FRAC_2_PI.sqrt() * deviations.iter().sum::<f64>() / deviations.len() as f64)
+}
+
+fn made(spec: &JointSpec, seed: u64) -> anyhow::Result<Synthetic> {
+    let spec = PlantSpec {
+        sample_period_s: PERIOD_S,
+        ..PlantSpec::new(seed, DURATION_S, vec![spec.clone()])
+    };
+    Ok(simulate(&spec)?)
+}
+
+/// Every method on `records` records of a plant, and the mean bound of the first ones.
+fn measure(spec: &JointSpec, records: u64) -> anyhow::Result<(Vec<Tally>, Option<f64>)> {
+    let mut tallies: Vec<Tally> = Method::ALL.iter().map(|_| Tally::default()).collect();
+    let mut bounds = Vec::new();
+    for seed in 0..records {
+        let made = made(spec, 1000 + seed)?;
+        let joint = made.joints.first().context("a plant has a joint")?;
+        let trial = joint.trials.first().context("a joint has a trial")?;
+        for (method, tally) in Method::ALL.into_iter().zip(&mut tallies) {
+            let begun = Instant::now();
+            let found = estimate(trial, &settings(method))?;
+            tally.time += begun.elapsed();
+            tally.samples += trial.len();
+            tally.add(inner(&made, trial), &found);
+        }
+        if seed < BOUNDS {
+            bounds.extend(bound(spec, &made, trial));
+        }
+    }
+    let mean = bounds.iter().sum::<f64>() / bounds.len() as f64;
+    Ok((tallies, (!bounds.is_empty()).then_some(mean)))
+}
+
+fn print(name: &str, tallies: &[Tally], bound: Option<f64>) {
+    for (method, tally) in Method::ALL.into_iter().zip(tallies) {
+        let dash = |text: String, known: bool| if known { text } else { "-".to_owned() };
+        println!(
+            "{name:21}{:10}{:6}{:8.1}{:9.3}{:+8.3}{:>8}{:>8}{:>8}{:8.1}",
+            method.id(),
+            tally.steps,
+            100.0 * tally.errors.len() as f64 / tally.steps as f64,
+            tally.mean_error(),
+            tally.bias(),
+            dash(format!("{:.1}", tally.coverage()), tally.intervals > 0),
+            dash(
+                format!("{:.2}", 100.0 * tally.still_accepted as f64 / tally.still as f64),
+                tally.still > 0
+            ),
+            bound.map_or_else(|| "-".to_owned(), |bound| format!("{bound:.3}")),
+            tally.samples as f64 * 1e-6 / tally.time.as_secs_f64(),
+        );
+    }
+}
+
+fn main() -> anyhow::Result<()> {
+    let mut arguments = std::env::args().skip(1);
+    let records = arguments.next().map_or(Ok(RECORDS), |records| records.parse())?;
+    let chosen: Vec<String> = arguments.collect();
+    println!(
+        "{records} records each; errors in samples, shares in percent, speed in million samples/s"
+    );
+    println!(
+        "plant                method    steps accepted  error    bias covered   false   bound   speed"
+    );
+    for (name, spec) in plants() {
+        if chosen.is_empty() || chosen.iter().any(|chosen| chosen == name) {
+            let (tallies, bound) = measure(&spec, records)?;
+            print(name, &tallies, bound);
+        }
+    }
+    Ok(())
+}
+
+/// One record: dead time is told from lag.
+#[test]
+fn the_lag_is_not_booked_as_delay() -> anyhow::Result<()> {
+    let all = plants();
+    for name in ["ideal", "lag of 6"] {
+        let (_, spec) = all.iter().find(|(plant, _)| *plant == name).context("it is one")?;
+        let (tallies, _) = measure(spec, 1)?;
+        let error = tallies.last().context("a tally for each method")?.mean_error();
+        assert!(error < 0.15, "{name}: {error}");
+    }
+    Ok(())
+}
