@@ -13,13 +13,13 @@ use rerun::external::arrow::array::{
 use rerun::external::re_log_encoding::DecoderApp;
 use rerun::log::{Chunk, LogMsg};
 use tauscope::batch::{JointEstimate, Mode, Protocol, compare_joints, estimate_joints};
-use tauscope::delay::Settings;
+use tauscope::delay::{Decision, FineDelay, Method, Settings};
 use tauscope::diagnosis::Comparison;
 use tauscope::experiment::{Experiment, Joint, ReadOptions};
 use tauscope::fit::Horizon;
 use tauscope::model::integrators;
 use tauscope::recording::{Detail, RecordError, Recording, write_recording};
-use tauscope::report::{ComparedJoint, DecisionRow, EstimatedJoint, decision_rows};
+use tauscope::report::{ComparedJoint, DecisionRow, EstimatedJoint, decision_rows, number};
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate, write_log};
 
 /// Two joints, half a minute, with the estimate of their delays.
@@ -279,6 +279,49 @@ fn the_table_holds_every_decision_and_every_candidate() {
         let candidates: usize = rows.iter().map(|row| row.candidates).sum();
         assert_eq!(back.integers(&entity, "j").len(), candidates);
     }
+}
+
+#[test]
+fn a_delay_between_samples_is_recorded_as_finely_as_it_was_found() {
+    for method in [Method::Hinge, Method::LagAware] {
+        let recorded = Recorded::with(Settings::of(method));
+        let back = recorded.read_back(Detail::Full);
+        for joint in recorded.joints() {
+            let (name, period_s) = (&joint.joint.name, joint.joint.trials[0].period().seconds());
+            let decisions = || joint.estimate.estimated().flat_map(|trial| &trial.decisions);
+            let accepted: Vec<f64> = decisions().filter_map(Decision::accepted_delay).collect();
+            assert!(accepted.iter().any(|delay| delay.fract() != 0.0), "between samples");
+            let values = |rows: Vec<(BTreeMap<String, i64>, f64)>| -> Vec<f64> {
+                rows.into_iter().map(|(_, value)| value).collect()
+            };
+            let column = |entity: &str, column| values(back.numbers(entity, column));
+            let fine = |part: fn(FineDelay) -> f64| -> Vec<f64> {
+                decisions().filter_map(|decision| decision.fine).map(part).collect()
+            };
+            let table = format!("/{name}/decision/table");
+            assert_eq!(column(&table, "fine_delta"), fine(|fine| fine.delay));
+            assert_eq!(column(&table, "delta_low"), fine(|fine| fine.low));
+            assert_eq!(column(&table, "delta_high"), fine(|fine| fine.high));
+            let state = format!("/{name}/delay/state");
+            assert_eq!(column(&state, "fine_delta"), accepted);
+            let seconds: Vec<f64> = accepted.iter().map(|delay| delay * period_s).collect();
+            assert_eq!(column(&state, "delay_s"), seconds);
+            assert_eq!(values(back.scalars(&format!("/{name}/delay/accepted"))), accepted);
+            let bars = format!("/{name}/drawing/interval");
+            let bars = back.rows(&bars, "LineStrips2D:strips", |_| ());
+            assert_eq!(bars.len(), fine(|fine| fine.delay).len());
+            let texts = back.texts(&format!("/{name}/verdict"), "TextDocument:text");
+            for (decision, (_, text)) in decisions().zip(texts) {
+                let shown = decision.fine.map(|fine| number(fine.low)).unwrap_or_default();
+                assert!(text.contains(&format!("| 95 % interval of δ | {shown} … ")), "{text}");
+                let lag = text.contains("| lag behind the dead time | none |");
+                assert_eq!(lag, method == Method::LagAware, "{text}");
+            }
+        }
+    }
+    let paper = Recorded::with(Settings::default()).read_back(Detail::Full);
+    assert!(paper.numbers("/boom/decision/table", "fine_delta").is_empty());
+    assert!(!paper.chunks.contains_key("/boom/drawing/interval"));
 }
 
 #[test]

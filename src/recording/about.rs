@@ -9,9 +9,9 @@ use super::chunk::Chunks;
 use super::entity::plain;
 use super::error::RecordError;
 use super::layout::{Detail, JointLayout};
-use crate::delay::Settings;
+use crate::delay::{Method, Settings};
 use crate::experiment::ReadOptions;
-use crate::report::{JointSummary, SUMMARY_HEADER, summary_cells};
+use crate::report::{JointSummary, SUMMARY_HEADER, number, summary_cells};
 
 /// Adds the page at `/about`.
 pub(super) fn add(
@@ -103,8 +103,10 @@ fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
     );
     let limits = settings.output_limits;
     let not_set = || "not set".to_owned();
+    let not_tested = || "not tested".to_owned();
+    let percent = |part: f64| format!("{} %", number(100.0 * part));
     vec![
-        ("method", "two-line regression (Albrecht and Taylor, Algorithm 1)".to_owned()),
+        ("method", method(settings.method).to_owned()),
         ("α", format!("{} samples", settings.alpha)),
         ("β", format!("{} samples", settings.beta)),
         ("low-pass", low_pass),
@@ -119,7 +121,16 @@ fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
         ),
         ("smallest input step", settings.min_step.to_string()),
         ("τ between steps", format!("{:?}", settings.interpolation).to_lowercase()),
+        ("confidence of a reaction", settings.confidence.map_or_else(not_tested, percent)),
+        ("interval of a delay", percent(settings.interval)),
     ]
+}
+
+fn method(method: Method) -> &'static str {
+    match method {
+        Method::TwoLine => "two-line regression (Albrecht and Taylor, Algorithm 1)",
+        Method::Hinge | Method::LagAware => method.meaning(),
+    }
 }
 
 /// How many candidates of how many are in the recording.

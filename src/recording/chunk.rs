@@ -18,6 +18,7 @@ use rerun::{
 };
 
 use super::error::RecordError;
+use crate::delay::FineDelay;
 
 /// Where rows lie on the timelines; one value per row and timeline.
 #[derive(Clone, Debug, Default)]
@@ -151,6 +152,21 @@ impl Chunks {
 pub(super) fn numbers(name: &'static str, values: &[Option<f64>]) -> SerializedComponentColumn {
     let items: Float64Array = values.iter().flatten().copied().collect::<Vec<_>>().into();
     list_column(name, Arc::new(items), values.iter().map(Option::is_some))
+}
+
+/// Names of the columns of [`fine_columns`].
+pub(super) const FINE: [&str; 3] = ["fine_delta", "delta_low", "delta_high"];
+
+/// Delays between samples with their intervals; no columns where there is none.
+pub(super) fn fine_columns(delays: &[Option<FineDelay>]) -> Vec<SerializedComponentColumn> {
+    if delays.iter().all(Option::is_none) {
+        return Vec::new();
+    }
+    let parts: [fn(FineDelay) -> f64; 3] = [|fine| fine.delay, |fine| fine.low, |fine| fine.high];
+    let column = |(name, part): (&'static str, fn(FineDelay) -> f64)| {
+        numbers(name, &delays.iter().map(|fine| fine.map(part)).collect::<Vec<_>>())
+    };
+    FINE.into_iter().zip(parts).map(column).collect()
 }
 
 /// A column of whole numbers named `name`; `None` is null.

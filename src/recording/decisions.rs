@@ -2,12 +2,12 @@
 
 use rerun::{EntityPath, Scalars, SeriesLines, SeriesPoints, components::MarkerShape};
 
-use super::chunk::{Chunks, Index, integers, numbers, texts};
+use super::chunk::{Chunks, Index, fine_columns, integers, numbers, texts};
 use super::entity::below;
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::palette::{self, color};
-use crate::delay::{Candidate, Verdict};
+use crate::delay::{Candidate, FineDelay, Verdict};
 use crate::units::signed;
 
 /// Adds `/decision/sse`, its logarithm for the plot, and `/decision/table`.
@@ -101,6 +101,7 @@ struct Table {
     whole: [Vec<Option<i64>>; 8],
     real: [Vec<Option<f64>>; 3],
     accepted: Vec<Option<i64>>,
+    fine: Vec<Option<FineDelay>>,
     /// Trial and verdict.
     words: [Vec<Option<String>>; 2],
 }
@@ -139,6 +140,7 @@ impl Table {
         self.real.iter_mut().zip(real).for_each(|(column, value)| column.push(value));
         let accepted = i64::from(decision.verdict() == Verdict::Accepted);
         self.accepted.push(j.is_none().then_some(accepted));
+        self.fine.push(decision.fine.filter(|_| j.is_none()));
         let [trials, verdicts] = &mut self.words;
         trials.push(j.is_none().then(|| trial.trial.label().to_owned()));
         verdicts.push(j.is_none().then(|| decision.verdict().to_string()));
@@ -155,7 +157,7 @@ impl Table {
 }
 
 /// A row per candidate, and one per verdict: without `j`, but with `accepted` (1 or 0),
-/// `trial` and `verdict`.
+/// `trial` and `verdict`, and the delay between samples where there is one.
 fn add_table(
     chunks: &mut Chunks,
     root: &EntityPath,
@@ -170,6 +172,7 @@ fn add_table(
     let [trials, verdicts] = &table.words;
     let words = [texts("trial", trials), texts("verdict", verdicts)];
     let accepted = [integers("accepted", &table.accepted)];
-    let columns: Vec<_> = whole.chain(real).chain(accepted).chain(words).collect();
+    let fine = fine_columns(&table.fine);
+    let columns: Vec<_> = whole.chain(real).chain(accepted).chain(words).chain(fine).collect();
     chunks.push(below(root, &["decision", "table"]), table.index, columns)
 }

@@ -112,6 +112,15 @@ impl SegmentLayout<'_> {
         self.opening + signed(self.kept.len()) + 1
     }
 
+    /// Where the delay ends: a sample, or a place between two where it is known so finely.
+    pub(super) fn place(&self) -> Option<String> {
+        let p = self.decision.input_step.sample;
+        match (self.decision.fine, self.decision.candidates.best()) {
+            (Some(fine), Some(_)) => Some(format!("{:.2}", p as f64 + fine.delay)),
+            (_, best) => best.map(|best| best.breakpoint.to_string()),
+        }
+    }
+
     /// The tick that belongs to a sample of the trial: those between this step and the
     /// next are spread evenly over the ticks.
     fn tick_at(&self, sample: usize) -> i64 {
@@ -143,6 +152,11 @@ impl<'a> JointLayout<'a> {
             trials.push(TrialLayout { index, trial, estimate, segments, start, idle });
         }
         Self { trials }
+    }
+
+    /// Whether some delay is known between samples.
+    pub(super) fn is_fine(&self) -> bool {
+        self.segments().any(|(_, segment)| segment.decision.fine.is_some())
     }
 
     /// All segments, with the trial they lie in.

@@ -33,8 +33,8 @@ pub(super) fn add(
         style.add(chunks, below(root, &["breakpoint", name]), layout, verdict, breakpoint)?;
         let delay = |s: &SegmentLayout<'_>| {
             // A breakpoint before its step would stretch the plot for no delay at all.
-            let best = s.decision.breakpoint().filter(|best| best.delay >= 0)?;
-            Some((s.decision.input_step.sample, best.delay as f64))
+            let delay = s.decision.delay().filter(|delay| *delay >= 0.0)?;
+            Some((s.decision.input_step.sample, delay))
         };
         style.add(chunks, below(root, &["delay", name]), layout, verdict, delay)?;
     }

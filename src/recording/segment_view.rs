@@ -46,6 +46,9 @@ pub(super) fn add(
     sheet.strips("accepted", palette::ACCEPTED, 2.4, rows().map(|d| d.chosen(Chosen::Accepted)))?;
     sheet.strips("rejected", palette::REJECTED, 2.4, rows().map(|d| d.chosen(Chosen::Rejected)))?;
     sheet.texts("names", palette::BORDER, rows().map(|d| d.names(joint)))?;
+    if layout.is_fine() {
+        sheet.strips("interval", palette::BORDER, 1.6, rows().map(Drawing::interval))?;
+    }
     add_candidates(chunks, &root, &drawings)
 }
 
@@ -223,10 +226,9 @@ impl<'l, 'a> Drawing<'l, 'a> {
         self.error.at(candidate.breakpoint as f64, log)
     }
 
-    /// Both lines of a candidate, and a line down through its breakpoint.
-    fn pair(&self, candidate: &Candidate) -> [Vec<Vec2D>; PAIR_STRIPS] {
+    /// Both lines of a candidate, and a line down through its breakpoint `q`.
+    fn pair(&self, candidate: &Candidate, q: f64) -> [Vec<Vec2D>; PAIR_STRIPS] {
         let segment = self.segment.decision.segment;
-        let q = candidate.breakpoint as f64;
         let at = |line: &Line, k: f64| self.output.at(k, line.at(k));
         let first = segment.first as f64;
         let before = vec![at(&candidate.before, first), at(&candidate.before, q)];
@@ -236,15 +238,27 @@ impl<'l, 'a> Drawing<'l, 'a> {
 
     /// The chosen pair, a mark on the error curve, and the delay as a distance.
     fn best(&self) -> Vec<Vec<Vec2D>> {
-        let Some(best) = self.segment.decision.candidates.best() else {
+        let decision = self.segment.decision;
+        let Some((best, delay)) = decision.candidates.best().zip(decision.delay()) else {
             return Vec::new();
         };
-        let mut strips = self.pair(&best).to_vec();
+        let p = decision.input_step.sample as f64;
+        let mut strips = self.pair(&best, p + delay).to_vec();
         strips.push(diamond(self.error_at(&best), 6.0));
-        let p = self.segment.decision.input_step.sample as f64;
-        let [from, to] = [p, best.breakpoint as f64].map(|k| self.output.above(k, 8.0));
+        let [from, to] = [p, p + delay].map(|k| self.output.above(k, 8.0));
         strips.push(vec![from, to]);
         strips
+    }
+
+    /// Where the delay may end: a bar from one end of its interval to the other.
+    fn interval(&self) -> Vec<Vec<Vec2D>> {
+        let decision = self.segment.decision;
+        let Some(fine) = decision.fine else { return Vec::new() };
+        let Span { low: first, high: last } = self.output.x_span();
+        let end = |delay: f64| (decision.input_step.sample as f64 + delay).clamp(first, last);
+        let [low, high] = [end(fine.low), end(fine.high)];
+        let tick = |k: f64| [3.0, 13.0].map(|up| self.output.above(k, up)).to_vec();
+        vec![tick(low), [low, high].map(|k| self.output.above(k, 8.0)).to_vec(), tick(high)]
     }
 
     /// The chosen pair if its verdict is the wanted one.
@@ -260,13 +274,15 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let decision = self.segment.decision;
         let mut labels = Labels::default();
         let p = decision.input_step.sample as f64;
-        if let Some(best) = decision.breakpoint() {
-            let q = best.candidate.breakpoint as f64;
-            let seconds = best.delay as f64 * self.trial.trial.period().seconds();
-            let delay = format!("δ = {} samples = {} s", best.delay, number(seconds));
+        if let Some((best, delay)) = decision.candidates.best().zip(decision.delay()) {
+            let seconds = number(delay * self.trial.trial.period().seconds());
+            let interval = decision.fine.map_or_else(String::new, |fine| {
+                format!(" ({} … {})", number(fine.low), number(fine.high))
+            });
+            let (q, place) = (p + delay, self.segment.place().unwrap_or_default());
+            let delay = format!("δ = {} samples{interval} = {seconds} s", number(delay));
             labels.put_whole(self.output.above(f64::midpoint(p, q), 48.0), delay);
-            let text =
-                format!("q = {}, SSE = {}", best.candidate.breakpoint, number(best.candidate.sse));
+            let text = format!("q = {place}, SSE = {}", number(best.sse));
             labels.put_whole(self.output.below(q, 2.0), text);
         }
         labels.put_whole(self.output.below(p, 24.0), format!("p = {}", decision.input_step.sample));
@@ -302,7 +318,7 @@ fn add_candidates(
         index.extend([trial.opening(segment)]);
         for (moment, candidate) in trial.candidates(segment) {
             index.extend([trial.within(segment, moment)]);
-            strips.extend(drawing.pair(&candidate));
+            strips.extend(drawing.pair(&candidate, candidate.breakpoint as f64));
             let (q, sse) = (signed(candidate.breakpoint), number(candidate.sse));
             marks.put(drawing.error_at(&candidate), format!("q {q}, δ {}, SSE {sse}", q - p));
         }

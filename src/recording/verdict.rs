@@ -7,7 +7,8 @@ use super::entity::{below, plain};
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::palette::{self, color};
-use crate::delay::{Breakpoint, Check, Condition, Outcome, Settings, Verdict};
+use crate::delay::{Check, Condition, Decision, FineDelay, Lag, LagPart, Outcome};
+use crate::delay::{Remedy, Settings, Verdict};
 use crate::experiment::Joint;
 use crate::report::number;
 
@@ -74,17 +75,24 @@ fn log_line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>)
         if joint.trials.len() > 1 { format!("{} ", trial.trial.label()) } else { String::new() };
     let step = format!("{trials}step {:>3}", decision.number);
     let period = trial.trial.period().seconds();
-    let delay = |best: Breakpoint| format!("δ {:.3} s", best.delay as f64 * period);
-    let verdict = match (decision.verdict(), decision.breakpoint()) {
+    let seconds = |delay: f64| format!("δ {}", seconds(decision, delay, period));
+    let verdict = match (decision.verdict(), decision.delay()) {
         (Verdict::Rejected(condition), _) => format!("✗ {}", condition.meaning()),
-        (Verdict::Accepted, best) => format!("✓ {}", best.map_or_else(String::new, delay)),
+        (Verdict::Accepted, delay) => format!("✓ {}", delay.map_or_else(String::new, seconds)),
     };
     let at = format!("p {}", decision.input_step.sample);
-    let found = decision.breakpoint().map_or_else(String::new, |best| {
-        let (q, sse) = (best.candidate.breakpoint, number(best.candidate.sse));
-        format!(", q {q}, δ {}, SSE {sse}", best.delay)
+    let found = decision.candidates.best().zip(decision.delay());
+    let found = found.map_or_else(String::new, |(best, delay)| {
+        let (q, sse) = (segment.place().unwrap_or_default(), number(best.sse));
+        format!(", q {q}, δ {}, SSE {sse}", number(delay))
     });
     format!("{step}  {verdict}   ({at}{found})")
+}
+
+/// Seconds: to a millisecond, and finer where delays are between samples.
+fn seconds(decision: &Decision, samples: f64, period: f64) -> String {
+    let decimals = if decision.fine.is_some() { 5 } else { 3 };
+    format!("{:.decimals$} s", samples * period)
 }
 
 fn add_lanes(
@@ -145,6 +153,10 @@ impl Facts<'_, '_> {
         format!("{:.3} s", samples * self.trial.trial.period().seconds())
     }
 
+    fn delay(&self, samples: f64) -> String {
+        seconds(self.segment.decision, samples, self.trial.trial.period().seconds())
+    }
+
     fn at(&self, sample: usize) -> String {
         format!("sample {sample} = {:.3} s", self.trial.trial.time_s(sample))
     }
@@ -155,10 +167,9 @@ impl Facts<'_, '_> {
 
     fn headline(&self) -> String {
         let decision = self.segment.decision;
-        match (decision.verdict(), decision.breakpoint()) {
-            (Verdict::Accepted, Some(best)) => {
-                let delay = self.seconds(best.delay as f64);
-                format!("## ✓ accepted: delay {delay}")
+        match (decision.verdict(), decision.delay()) {
+            (Verdict::Accepted, Some(delay)) => {
+                format!("## ✓ accepted: delay {}", self.delay(delay))
             }
             (Verdict::Accepted, None) => "## ✓ accepted".to_owned(),
             (Verdict::Rejected(first), _) => {
@@ -196,10 +207,11 @@ impl Facts<'_, '_> {
         if let Some(best) = decision.breakpoint() {
             let candidate = best.candidate;
             let slope = |slope| with_unit(slope, self.joint.output_unit.as_deref(), "/sample");
-            let delay = format!("**{} samples = {}**", best.delay, self.seconds(best.delay as f64));
+            let samples = decision.delay().unwrap_or(best.delay as f64);
+            let delay = format!("**{} samples = {}**", number(samples), self.delay(samples));
             let count = decision.candidates.len();
             rows.extend([
-                ("breakpoint q".to_owned(), self.at(candidate.breakpoint)),
+                ("breakpoint q".to_owned(), self.breakpoint(candidate.breakpoint)),
                 ("candidate f".to_owned(), format!("{} of {count}", candidate.f)),
                 ("**delay δ = q − p**".to_owned(), delay),
                 (
@@ -210,9 +222,52 @@ impl Facts<'_, '_> {
                 ("slope after".to_owned(), slope(candidate.after.slope)),
             ]);
         }
+        rows.extend(decision.fine.map(|fine| self.interval(fine)));
+        rows.extend(self.trial.estimate.lag.iter().flat_map(lag_rows));
+        rows.extend(self.how_near());
         let rows: Vec<_> =
             rows.iter().map(|(name, value)| format!("| {name} | {value} |")).collect();
         format!("| quantity | value |\n|---|---|\n{}", rows.join("\n"))
+    }
+
+    /// The breakpoint as finely as it is known.
+    fn breakpoint(&self, sample: usize) -> String {
+        let decision = self.segment.decision;
+        let Some((fine, place)) = decision.fine.zip(self.segment.place()) else {
+            return self.at(sample);
+        };
+        let trial = self.trial.trial;
+        let before = trial.time_s(decision.input_step.sample);
+        let seconds = before + fine.delay * trial.period().seconds();
+        format!("sample {place} = {seconds:.5} s")
+    }
+
+    fn interval(&self, fine: FineDelay) -> (String, String) {
+        let FineDelay { low, high, confidence, .. } = fine;
+        let samples = format!("{} … {} samples", number(low), number(high));
+        let seconds = format!("{} … {}", self.delay(low), self.delay(high));
+        (
+            format!("{} % interval of δ", number(100.0 * confidence)),
+            format!("{samples} = {seconds}"),
+        )
+    }
+
+    /// What would have accepted the step, or by how much the second-best breakpoint is worse.
+    fn how_near(&self) -> Option<(String, String)> {
+        let decision = self.segment.decision;
+        if decision.verdict() == Verdict::Accepted {
+            let second = decision.runner_up().filter(|second| second.margin.is_finite())?;
+            let (percent, q) = (number(100.0 * second.margin), second.breakpoint);
+            let near = format!("q = {q}, with an SSE {percent} % above");
+            return Some(("second-best breakpoint".to_owned(), near));
+        }
+        let remedies = decision.remedies(self.settings, self.trial.output());
+        let remedies = remedies.iter().map(|remedy| match remedy {
+            Remedy::Option(option) => format!("`{option}`"),
+            Remedy::None(_) => remedy.to_string(),
+        });
+        let remedies: Vec<_> = remedies.collect();
+        Some(("would be accepted with".to_owned(), remedies.join(", ")))
     }
 
     fn conditions(&self) -> String {
@@ -278,6 +333,25 @@ impl Facts<'_, '_> {
             }
         }
     }
+}
+
+/// What all steps of the joint follow their dead times with.
+fn lag_rows(lag: &Lag) -> Vec<(String, String)> {
+    let known =
+        |part: LagPart| format!("{} ± {}", number(part.value), number(1.96 * part.std_error));
+    if lag.order() == 0 {
+        return vec![("lag behind the dead time".to_owned(), "none".to_owned())];
+    }
+    let rows = [
+        ("lag behind the dead time", Some(lag.mean_s()), " s"),
+        ("its time constant", lag.time_constant_s(), " s"),
+        ("its period", lag.period_s(), " s"),
+        ("its damping", lag.damping(), ""),
+    ];
+    let row = |(name, part, unit): (&str, Option<LagPart>, &str)| {
+        Some((name.to_owned(), format!("{}{unit}", known(part?))))
+    };
+    rows.into_iter().filter_map(row).collect()
 }
 
 fn with_unit(value: f64, unit: Option<&str>, per: &str) -> String {

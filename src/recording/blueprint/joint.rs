@@ -15,19 +15,23 @@ use rerun::external::re_sdk_types::blueprint::datatypes::{
 use super::builder::{Builder, Node, View};
 use crate::experiment::Joint;
 use crate::recording::canvas::SHEET;
+use crate::recording::chunk::FINE;
 use crate::recording::entity::{below, joint_root};
 use crate::recording::error::RecordError;
 use crate::recording::overview::{MAP_HEIGHT, MAP_WIDTH};
 use crate::recording::{correlogram, delay_state, error_share, scatter};
+use crate::report::EstimatedJoint;
 
 /// The tab of `joint`: its decisions, its record, its table; and its models, which then
 /// come first, where there are any.
 pub(super) fn tab(
     builder: &mut Builder,
-    joint: &Joint,
+    EstimatedJoint { joint, estimate }: EstimatedJoint<'_>,
     models: &[&str],
 ) -> Result<Node, RecordError> {
-    let mut views = Views { builder, joint };
+    let mut decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
+    let fine = decisions.any(|decision| decision.fine.is_some());
+    let mut views = Views { builder, joint, fine };
     let mut pages = Vec::new();
     if !models.is_empty() {
         pages.push(views.models(models)?);
@@ -41,6 +45,8 @@ pub(super) fn tab(
 struct Views<'b> {
     builder: &'b mut Builder,
     joint: &'b Joint,
+    /// Whether some delay is known between samples.
+    fine: bool,
 }
 
 /// Entities of the drawing, from back to front. A pattern would not do: `*` inside an
@@ -119,8 +125,10 @@ impl Views<'_> {
     }
 
     fn drawing(&self) -> View<'static> {
+        let interval = self.fine.then_some("interval");
         let paths: Vec<_> = DRAWING
-            .iter()
+            .into_iter()
+            .chain(interval)
             .map(|name| {
                 let parts: Vec<_> = std::iter::once("drawing").chain(name.split('/')).collect();
                 self.path(&parts)
@@ -308,7 +316,9 @@ impl Views<'_> {
                 .with_auto_scroll(true)
                 .with_select(select)
         };
-        let whole = query(&DECISION_COLUMNS).with_filter_is_not_null(verdicts);
+        let fine = if self.fine { FINE.as_slice() } else { &[] };
+        let columns = [DECISION_COLUMNS.as_slice(), fine].concat();
+        let whole = query(&columns).with_filter_is_not_null(verdicts);
         let decisions = View::new("Dataframe", "Decisions", &[&path]);
         let decisions = self.view(decisions.with("DataframeQuery", whole))?;
         let candidates = View::new("Dataframe", "Candidates", &[&path]);

@@ -22,7 +22,7 @@ pub(super) fn messages(
     for joint in recording.joints {
         let models = recording.models.iter().filter(|m| m.joint.name == joint.joint.name);
         let models: Vec<_> = models.map(|model| model.model).collect();
-        tabs.push(joint::tab(&mut builder, joint.joint, &models)?);
+        tabs.push(joint::tab(&mut builder, *joint, &models)?);
     }
     tabs.push(builder.view(View::new("TextDocument", "About", &["/about"]))?);
     let root = builder.container(ContainerKind::Tabs, "Joints", &tabs, &[])?;

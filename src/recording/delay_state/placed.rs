@@ -5,7 +5,7 @@ use rerun::{EntityPath, Scalars};
 use super::quantity::Way;
 use crate::delay::{StepState, Verdict};
 use crate::experiment::Joint;
-use crate::recording::chunk::{Chunks, Index, integers, numbers};
+use crate::recording::chunk::{Chunks, Index, fine_columns, integers, numbers};
 use crate::recording::entity::below;
 use crate::recording::error::RecordError;
 use crate::recording::layout::{JointLayout, SegmentLayout, TrialLayout};
@@ -38,14 +38,14 @@ impl Placed<'_, '_> {
     /// Which step is marked, or why none is.
     pub(super) fn sentence(&self, joint: &Joint) -> String {
         let (words, decision) = (self.words(joint), self.segment.decision);
-        match (decision.verdict(), self.step, decision.breakpoint()) {
+        match (decision.verdict(), self.step, decision.delay()) {
             (Verdict::Rejected(condition), ..) => {
                 format!("{words}: rejected, {}", condition.meaning())
             }
-            (Verdict::Accepted, Some((_, state)), Some(best)) => {
+            (Verdict::Accepted, Some((_, state)), Some(delay)) => {
                 let direction = Way::of(state).word();
-                let seconds = number(state.delay_s);
-                format!("● {words}, {direction}: delay {} samples = {seconds} s", best.delay)
+                let (samples, seconds) = (number(delay), number(state.delay_s));
+                format!("● {words}, {direction}: delay {samples} samples = {seconds} s")
             }
             (Verdict::Accepted, ..) => words,
         }
@@ -85,7 +85,8 @@ pub(super) fn add_numbers(
     let of = |value: fn(&StepState) -> Option<f64>| -> Vec<_> {
         accepted().map(|(.., step)| value(step)).collect()
     };
-    let columns = [
+    let fine: Vec<_> = accepted().map(|(_, decision, _)| decision.fine).collect();
+    let mut columns = vec![
         integers("delta", &delta),
         numbers("delay_s", &of(|step| Some(step.delay_s))),
         numbers("average_speed", &of(|step| Some(step.average_speed))),
@@ -94,6 +95,7 @@ pub(super) fn add_numbers(
         numbers("angle", &of(|step| Some(step.angle))),
         numbers("time_s", &of(|step| Some(step.time_s))),
     ];
+    columns.extend(fine_columns(&fine));
     chunks.push(entity.clone(), index, columns)?;
     for (number, signal) in joint.covariates.iter().enumerate() {
         let measured = || {
