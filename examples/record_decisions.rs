@@ -37,6 +37,7 @@ fn main() -> anyhow::Result<()> {
         reading: &experiment.options,
         detail: Detail::Full,
         models: &[],
+        revisions: &[],
     };
     log_recording(&recording, &stream)?;
     stream.flush_blocking()?;

@@ -139,4 +139,5 @@ fn what_cannot_be_added_leaves_no_file() {
 fn both_models_are_recorded() {
     let desk = Desk::with(vec![banded("boom")]);
     assert_eq!(desk.recorded_models("add dead_band log.csv"), ["after", "before"]);
+    assert_eq!(desk.recorded_revisions(), 2);
 }

@@ -142,4 +142,5 @@ fn the_model_and_the_best_candidate_are_recorded() {
     let desk = Desk::with(vec![banded("boom")]);
     let models = desk.recorded_models("explain log.csv --effects dead_band");
     assert_eq!(models, ["integrator", "with dead_band"]);
+    assert_eq!(desk.recorded_revisions(), 1);
 }

@@ -201,4 +201,5 @@ fn every_revision_is_recorded_as_a_model() {
     let desk = Desk::with(vec![banded("boom")]);
     let models = desk.recorded_models(&format!("improve log.csv {FEW}"));
     assert_eq!(models, ["revision 0", "revision 1"]);
+    assert_eq!(desk.recorded_revisions(), 2);
 }

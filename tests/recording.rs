@@ -12,14 +12,20 @@ use rerun::external::arrow::array::{
 };
 use rerun::external::re_log_encoding::DecoderApp;
 use rerun::log::{Chunk, LogMsg};
-use tauscope::batch::{JointEstimate, Mode, Protocol, compare_joints, estimate_joints};
+use tauscope::batch::{
+    JointEstimate, Mode, Protocol, compare_joints, estimate_joints, improve_joints,
+};
 use tauscope::delay::{Decision, FineDelay, Method, Settings};
 use tauscope::diagnosis::Comparison;
+use tauscope::effect::find;
 use tauscope::experiment::{Experiment, Joint, ReadOptions};
+use tauscope::explain::{Change, Improvement, Options, Verdict};
 use tauscope::fit::Horizon;
 use tauscope::model::integrators;
 use tauscope::recording::{Detail, RecordError, Recording, write_recording};
-use tauscope::report::{ComparedJoint, DecisionRow, EstimatedJoint, decision_rows, number};
+use tauscope::report::{
+    ComparedJoint, DecisionRow, EstimatedJoint, Finding, ImprovedJoint, decision_rows, number,
+};
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate, write_log};
 
 /// Two joints, half a minute, with the estimate of their delays.
@@ -42,7 +48,10 @@ impl Recorded {
                 InputSpec::Levels { levels: vec![-1.0, -0.5, 0.5, 1.0], hold_s: [0.6, 1.5] };
             JointSpec { noise: 0.02, ..JointSpec::new(name, input, law) }
         };
-        let joints = laws.map(joint).to_vec();
+        Self::made(laws.map(joint).to_vec(), seconds, settings)
+    }
+
+    fn made(joints: Vec<JointSpec>, seconds: f64, settings: Settings) -> Self {
         let made = simulate(&PlantSpec::new(5, seconds, joints)).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log.csv");
@@ -68,11 +77,21 @@ impl Recorded {
         detail: Detail,
         out: impl Write,
     ) -> Result<(), RecordError> {
+        self.write_all(models, &[], detail, out)
+    }
+
+    fn write_all(
+        &self,
+        models: &[ComparedJoint<'_>],
+        revisions: &[ImprovedJoint<'_>],
+        detail: Detail,
+        out: impl Write,
+    ) -> Result<(), RecordError> {
         let joints = self.joints();
         let (settings, sources) = (&self.settings, self.experiment.sources.as_slice());
         let reading = &self.experiment.options;
         write_recording(
-            &Recording { joints: &joints, settings, sources, reading, detail, models },
+            &Recording { joints: &joints, settings, sources, reading, detail, models, revisions },
             out,
         )
     }
@@ -92,6 +111,28 @@ impl Recorded {
         compared.into_iter().map(|result| result.unwrap().unwrap()).collect()
     }
 
+    /// Each joint as it is improved, with the effects of a short list.
+    fn improved(&self) -> Vec<Improvement> {
+        let joints = &self.experiment.joints;
+        let estimates: Vec<_> = self.estimates.iter().cloned().map(Ok).collect();
+        let horizon = Horizon::Steps;
+        let protocol = Protocol { mode: Mode::FitOrIntegrator, split: None, horizon };
+        let effects = ["dead_band", "actuator_lag", "thermal_drift"].map(|id| find(id).unwrap());
+        let options = Options { effects: effects.to_vec(), max_effects: 3 };
+        let start = |_: &Joint| None;
+        let improved = improve_joints(joints, &estimates, start, protocol, &options, |_, _| true);
+        improved.into_iter().map(|result| result.unwrap().unwrap()).collect()
+    }
+
+    /// What is read back of a recording of `improvements`.
+    fn read_back_grown(&self, improvements: &[Improvement]) -> ReadBack {
+        let joints = self.experiment.joints.iter().zip(improvements);
+        let grown = joints.map(|(joint, improvement)| grown(joint, improvement));
+        let mut bytes = Vec::new();
+        self.write_all(&[], &grown.collect::<Vec<_>>(), Detail::Full, &mut bytes).unwrap();
+        ReadBack::of(&bytes)
+    }
+
     fn read_back(&self, detail: Detail) -> ReadBack {
         let mut bytes = Vec::new();
         self.write(detail, &mut bytes).unwrap();
@@ -99,27 +140,46 @@ impl Recorded {
     }
 }
 
+fn grown<'a>(joint: &'a Joint, improvement: &'a Improvement) -> ImprovedJoint<'a> {
+    let Improvement { revisions, verdict } = improvement;
+    let last = revisions.last().unwrap();
+    let revision = u32::try_from(revisions.len() - 1).unwrap();
+    let comparison = &last.comparison;
+    let compared = ComparedJoint { joint, model: "model", revision, comparison };
+    let ranking = &last.ranking;
+    let finding = Finding { compared, verdict: *verdict, ranking, add_arguments: "log.csv" };
+    ImprovedJoint::of(finding, revisions)
+}
+
 /// The chunks of a recording, by entity; the blueprint apart.
 struct ReadBack {
     chunks: BTreeMap<String, Vec<Chunk>>,
     blueprint: usize,
+    /// The timeline that is active when the viewer opens.
+    opens_on: String,
 }
 
 impl ReadBack {
     fn of(bytes: &[u8]) -> Self {
         let mut chunks: BTreeMap<String, Vec<Chunk>> = BTreeMap::new();
-        let mut blueprint = 0;
+        let (mut blueprint, mut opens_on) = (0, String::new());
         for message in DecoderApp::decode_lazy(Cursor::new(bytes)) {
             if let LogMsg::ArrowMsg(store, message) = message.unwrap() {
                 if store.is_blueprint() {
                     blueprint += 1;
-                    continue;
                 }
                 let chunk = Chunk::from_arrow_msg(&message).unwrap();
+                if store.is_blueprint() {
+                    let timeline = "TimePanelBlueprint:timeline".into();
+                    if let Some(cell) = chunk.components().get_array(timeline) {
+                        opens_on = cell.value(0).as_string::<i32>().value(0).to_owned();
+                    }
+                    continue;
+                }
                 chunks.entry(chunk.entity_path().to_string()).or_default().push(chunk);
             }
         }
-        Self { chunks, blueprint }
+        Self { chunks, blueprint, opens_on }
     }
 
     /// Each row of a component that has one value: its times and the value.
@@ -494,6 +554,131 @@ fn figures_of_a_model_are_those_of_its_comparison() {
         assert!(drawn("error_share/bars/0") > count);
         assert_eq!((drawn("correlation/curve/0"), drawn("correlation/band/0")), (3, 6));
     }
+}
+
+/// A joint with a dead band, and a slow spool.
+fn lacking() -> Recorded {
+    let input = InputSpec::Levels { levels: vec![-2.0, -1.0, -0.5, 0.5, 1.0], hold_s: [0.6, 1.5] };
+    let delay = DelayLaw::Constant { seconds: 0.2 };
+    let joint = JointSpec {
+        noise: 0.02,
+        dead_band: Some([-0.3, 0.4]),
+        lag_s: Some(0.1),
+        ..JointSpec::new("boom", input, delay)
+    };
+    Recorded::made(vec![joint], 60.0, Settings::default())
+}
+
+#[test]
+fn the_error_falls_along_the_revisions_as_in_the_report() {
+    let recorded = lacking();
+    let improvements = recorded.improved();
+    let back = recorded.read_back_grown(&improvements);
+    let revisions = &improvements[0].revisions;
+    assert_eq!(improvements[0].verdict, Verdict::Adequate);
+    let of = |name: &str| {
+        let rows = back.scalars(&format!("/boom/revision/{name}"));
+        let alone = rows.iter().all(|(times, _)| times.len() == 1);
+        assert!(alone, "numbers lie on `revision` alone");
+        rows.into_iter().map(|(times, value)| (times["revision"], value)).collect::<Vec<_>>()
+    };
+    let expected = |value: fn(&Comparison) -> f64| {
+        let values = revisions.iter().map(|revision| value(&revision.comparison));
+        (0..).zip(values).collect::<Vec<_>>()
+    };
+    let validation = of("validation_rmse");
+    assert_eq!(validation, expected(|c| c.validation.unwrap().rmse));
+    assert_eq!(of("training_rmse"), expected(|c| c.training.unwrap().rmse));
+    assert_eq!(of("noise_floor"), expected(|c| c.noise_floor.unwrap()));
+    assert!(validation.windows(2).all(|pair| pair[1].1 < pair[0].1), "{validation:?}");
+    let mut added: Vec<_> = back.texts("/boom/revision/added", "TextDocument:text");
+    added.sort_by(|a, b| a.1.cmp(&b.1));
+    let added: Vec<_> = added.iter().map(|(_, id)| id.as_str()).collect();
+    assert_eq!(added, ["actuator_lag", "dead_band"]);
+    assert!(back.texts("/boom/revision/removed", "TextDocument:text").is_empty());
+    assert_eq!(back.opens_on, "revision");
+}
+
+#[test]
+fn every_drawing_changes_with_the_revision_and_is_on_every_timeline() {
+    let recorded = lacking();
+    let improvements = recorded.improved();
+    let back = recorded.read_back_grown(&improvements);
+    let count = improvements[0].revisions.len();
+    let strips = "LineStrips2D:strips";
+    // The rungs of the ladder stay; the one at hand is bright.
+    for (part, component) in [
+        ("record/simulated", strips),
+        ("record/residual", strips),
+        ("share/bars", strips),
+        ("sheet/ladder", "LineStrips2D:colors"),
+    ] {
+        let rows = back.rows(&format!("/boom/revision/{part}"), component, |cell| cell.to_data());
+        assert_eq!(rows.len(), count, "{part}");
+        assert!(rows.windows(2).all(|pair| pair[0].1 != pair[1].1), "{part}");
+        for ((times, _), revision) in rows.iter().zip(0..) {
+            assert_eq!((times["revision"], times["sample"]), (revision, 1));
+        }
+    }
+    // A bar more than there are candidates, each of as many lines as the others.
+    let lines = back.rows("/boom/revision/sheet/ranking", strips, |cell| cell.len());
+    for ((_, lines), revision) in lines.iter().zip(&improvements[0].revisions) {
+        assert_eq!(lines % (1 + revision.ranking.len()), 0);
+    }
+    // What comes next is drawn through the points, but where nothing does.
+    let next = back.rows("/boom/revision/sheet/proposed", strips, |cell| cell.len());
+    assert!(next.iter().map(|(times, _)| times["revision"]).eq(0..whole(count) - 1));
+    // A dead band shows in the speeds, a lag only in what is left behind a step.
+    let titles = back.rows("/boom/revision/sheet/texts", "Points2D:labels", |cell| {
+        cell.as_string::<i32>().iter().flatten().collect::<Vec<_>>().join("\n")
+    });
+    for ((_, titles), revision) in titles.iter().zip(improvements[0].revisions.windows(2)) {
+        let title = match revision[1].change {
+            Change::Added("actuator_lag") => "against the time since a step",
+            _ => "while an input",
+        };
+        assert!(titles.contains(title), "{titles}");
+    }
+    let words = back.texts("/boom/revision/words", "TextDocument:text");
+    for ((_, text), pair) in words.iter().zip(improvements[0].revisions.windows(2)) {
+        let Change::Added(id) = pair[1].change else { panic!("{:?}", pair[1].change) };
+        assert!(text.contains(&format!("{} is missing", id.replace('_', "\\_"))), "{text}");
+    }
+    assert!(words.last().unwrap().1.contains("nothing to add"));
+}
+
+#[test]
+fn the_law_runs_through_the_speeds_once_nothing_is_missing() {
+    let recorded = lacking();
+    let improvements = recorded.improved();
+    let back = recorded.read_back_grown(&improvements);
+    let lists = |name: &'static str| {
+        let rows = back.rows("/boom/revision/evidence", name, |cell| {
+            cell.as_any().downcast_ref::<Float64Array>().unwrap().values().to_vec()
+        });
+        rows.into_iter().map(|(_, list)| list).collect::<Vec<_>>()
+    };
+    let (levels, speeds) = (lists("input"), lists("speed"));
+    let (law_levels, law_speeds) = (lists("law_input"), lists("law_speed"));
+    let missed = |at: usize| {
+        let law = |level: f64| {
+            let right = law_levels[at].partition_point(|known| *known < level).max(1);
+            let [a, b] = [right - 1, right].map(|k| (law_levels[at][k], law_speeds[at][k]));
+            a.1 + (b.1 - a.1) * (level - a.0) / (b.0 - a.0)
+        };
+        let squares = levels[at].iter().zip(&speeds[at]).map(|(u, v)| (v - law(*u)).powi(2));
+        (squares.sum::<f64>() / levels[at].len() as f64).sqrt()
+    };
+    let last = levels.len() - 1;
+    assert!(levels[0].len() > 30);
+    assert!(missed(last) < 0.1 * missed(0), "{} of {}", missed(last), missed(0));
+}
+
+#[test]
+fn a_recording_without_revisions_opens_on_the_decisions() {
+    let back = Recorded::with(Settings::default()).read_back(Detail::Full);
+    assert_eq!(back.opens_on, "decision");
+    assert!(!back.chunks.keys().any(|entity| entity.starts_with("/boom/revision")));
 }
 
 #[test]

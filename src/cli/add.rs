@@ -2,11 +2,13 @@
 
 use clap::Args as ClapArgs;
 use tauscope::batch::{Mode, add_to_joints};
+use tauscope::diagnosis::Comparison;
 use tauscope::experiment::Joint;
-use tauscope::explain::Addition;
+use tauscope::explain::{Addition, Change, Revision as Step, Verdict};
 use tauscope::fit::Horizon;
 use tauscope::model::{ModelFile, Revision};
-use tauscope::report::{AddJson, AddedJoint, ComparedJoint, add_text, gone};
+use tauscope::report::{AddJson, AddedJoint, ComparedJoint, Finding, ImprovedJoint};
+use tauscope::report::{add_text, gone};
 
 use super::Completion;
 use super::data::DataArgs;
@@ -59,7 +61,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     }
     if let Some(path) = &args.output.recording {
         let models: Vec<_> = joints.iter().flat_map(before_and_after).collect();
-        study.record(path, &models, verbosity)?;
+        let revisions: Vec<[Step; 2]> = joints.iter().map(steps).collect();
+        let grown = joints.iter().zip(&revisions).map(|(joint, steps)| grown(joint, steps));
+        study.record(path, &models, &grown.collect::<Vec<_>>(), verbosity)?;
     }
     args.model.write(&file, &revised, verbosity)?;
     let text = || add_text(&joints, &args.protocol.horizon(Horizon::Steps));
@@ -84,6 +88,26 @@ fn added<'a>(
 fn before_and_after<'a>(added: &AddedJoint<'a>) -> [ComparedJoint<'a>; 2] {
     let [before, after] = added.compared();
     [ComparedJoint { model: "before", ..before }, ComparedJoint { model: "after", ..after }]
+}
+
+/// Both models as revisions.
+fn steps(added: &AddedJoint<'_>) -> [Step; 2] {
+    let step = |change, comparison: &Comparison| Step {
+        change,
+        comparison: comparison.clone(),
+        ranking: Vec::new(),
+    };
+    let Addition { before, after, .. } = added.addition;
+    [step(Change::Start, before), step(Change::Added(added.effect), after)]
+}
+
+fn grown<'a>(added: &AddedJoint<'a>, revisions: &'a [Step]) -> ImprovedJoint<'a> {
+    let [_, compared] = added.compared();
+    let is_adequate = compared.comparison.lack_of_fit.is_none_or(|test| test.adequate);
+    // What the model still lacks was not looked for.
+    let verdict = if is_adequate { Verdict::Adequate } else { Verdict::MissingEffect };
+    let finding = Finding { compared, verdict, ranking: &[], add_arguments: "" };
+    ImprovedJoint::of(finding, revisions)
 }
 
 fn with_revision(file: &ModelFile, added: &AddedJoint<'_>) -> anyhow::Result<ModelFile> {

@@ -78,7 +78,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
         return Err(anyhow!(first.clone()));
     }
     if let Some(path) = &args.output.recording {
-        study.record(path, &compared, args.output.verbosity())?;
+        study.record(path, &compared, &[], args.output.verbosity())?;
     }
     let text = || compare_table(&compared, &args.protocol.horizon(Horizon::FreeRun));
     print(args.output.format, &failures, text, |out| {

@@ -6,10 +6,10 @@ use clap::Args as ClapArgs;
 use tauscope::batch::{Mode, OfJoints, compare_joints, explain_joints};
 use tauscope::diagnosis::Comparison;
 use tauscope::experiment::Joint;
-use tauscope::explain::{Explanation, Options};
+use tauscope::explain::{Change, Explanation, Options, Revision};
 use tauscope::fit::Horizon;
 use tauscope::model::ModelFile;
-use tauscope::report::{ComparedJoint, ExplainJson, Finding, explain_text};
+use tauscope::report::{ComparedJoint, ExplainJson, Finding, ImprovedJoint, explain_text};
 
 use super::Completion;
 use super::data::DataArgs;
@@ -74,7 +74,10 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
             Some(ComparedJoint { joint, model, revision: 0, comparison })
         });
         let models: Vec<_> = findings.iter().map(|f| f.compared).chain(bests).collect();
-        study.record(path, &models, verbosity)?;
+        let revisions: Vec<[Revision; 1]> = findings.iter().map(as_revision).collect();
+        let revisions = findings.iter().zip(&revisions);
+        let revisions: Vec<_> = revisions.map(|(f, one)| ImprovedJoint::of(*f, one)).collect();
+        study.record(path, &models, &revisions, verbosity)?;
     }
     let text = || explain_text(&findings, &args.protocol.horizon(Horizon::Steps));
     print(args.output.format, &failures, text, |out| {
@@ -93,6 +96,12 @@ fn finding<'a>(
     let Explanation { base, verdict, ranking } = explanation;
     let compared = ComparedJoint { joint, model, revision, comparison: base };
     Finding { compared, verdict: *verdict, ranking, add_arguments }
+}
+
+/// The model as the only one of its revisions.
+fn as_revision(finding: &Finding<'_>) -> [Revision; 1] {
+    let (comparison, ranking) = (finding.compared.comparison.clone(), finding.ranking.to_vec());
+    [Revision { change: Change::Start, comparison, ranking }]
 }
 
 impl Args {

@@ -10,7 +10,7 @@ use tauscope::delay::{EstimateError, Settings};
 use tauscope::effect::{Effect, REGISTRY, find_among};
 use tauscope::experiment::{Experiment, Joint};
 use tauscope::fit::{Horizon, Split};
-use tauscope::report::{ComparedJoint, EstimatedJoint};
+use tauscope::report::{ComparedJoint, EstimatedJoint, ImprovedJoint};
 
 use super::data::DataArgs;
 use super::progress::{self, Verbosity};
@@ -204,11 +204,12 @@ pub(super) fn study<T: Send>(
 }
 
 impl<T> Study<T> {
-    /// Records `models` beside the decisions.
+    /// Records `models` and `revisions` beside the decisions.
     pub(super) fn record(
         &self,
         path: &Path,
         models: &[ComparedJoint<'_>],
+        revisions: &[ImprovedJoint<'_>],
         verbosity: Verbosity,
     ) -> anyhow::Result<()> {
         let Self { experiment, estimates, settings, .. } = self;
@@ -218,7 +219,8 @@ impl<T> Study<T> {
             pairs.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect();
         let (sources, reading) = (&experiment.sources, &experiment.options);
         let detail = Detail::Full;
-        let contents = Contents { joints: &joints, settings, sources, reading, models, detail };
+        let joints = &joints;
+        let contents = Contents { joints, settings, sources, reading, models, revisions, detail };
         contents.record(path, verbosity)
     }
 }

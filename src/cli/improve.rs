@@ -80,7 +80,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     if let Some(path) = recording {
         let names = revision_names(&improved);
         let models: Vec<_> = improved.iter().flat_map(|joint| models(joint, &names)).collect();
-        study.record(path, &models, verbosity)?;
+        study.record(path, &models, &improved, verbosity)?;
     }
     args.model.write(&file, &revised(&file, &improved)?, verbosity)?;
     let text = || improve_text(&improved, &args.protocol.horizon(Horizon::Steps));

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use tauscope::delay::Settings;
 use tauscope::experiment::{ReadOptions, Source};
-use tauscope::report::{ComparedJoint, EstimatedJoint};
+use tauscope::report::{ComparedJoint, EstimatedJoint, ImprovedJoint};
 
 use super::message;
 use super::output::{OutputFile, write_file};
@@ -27,6 +27,7 @@ pub(super) struct Contents<'a> {
     pub(super) sources: &'a [Source],
     pub(super) reading: &'a ReadOptions,
     pub(super) models: &'a [ComparedJoint<'a>],
+    pub(super) revisions: &'a [ImprovedJoint<'a>],
     pub(super) detail: Detail,
 }
 
@@ -45,12 +46,12 @@ impl Contents<'_> {
     fn write(&self, file: &mut OutputFile) -> anyhow::Result<()> {
         use tauscope::recording::{self, Recording, write_recording};
 
-        let Self { joints, settings, sources, reading, models, detail } = *self;
+        let Self { joints, settings, sources, reading, models, revisions, detail } = *self;
         let detail = match detail {
             Detail::Full => recording::Detail::Full,
             Detail::Lean => recording::Detail::Lean,
         };
-        let recording = Recording { joints, settings, sources, reading, detail, models };
+        let recording = Recording { joints, settings, sources, reading, detail, models, revisions };
         Ok(write_recording(&recording, file)?)
     }
 

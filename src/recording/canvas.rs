@@ -177,7 +177,7 @@ impl Plot {
 }
 
 /// Texts at places of the sheet.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Labels {
     pub(super) places: Vec<Vec2D>,
     pub(super) texts: Vec<String>,
@@ -203,11 +203,16 @@ const CURVE_POINTS: usize = 2000;
 /// Indices that keep the shape of `values`: all of them, or of each of a thousand parts
 /// the lowest and the highest.
 pub(super) fn thinned(values: &[f64]) -> Vec<usize> {
-    if values.len() <= CURVE_POINTS {
+    thinned_to(values, CURVE_POINTS)
+}
+
+/// The same with at most so many points, two per part.
+pub(super) fn thinned_to(values: &[f64], points: usize) -> Vec<usize> {
+    if values.len() <= points.max(2) {
         return (0..values.len()).collect();
     }
-    let part = values.len().div_ceil(CURVE_POINTS / 2);
-    let mut kept = Vec::with_capacity(CURVE_POINTS);
+    let part = values.len().div_ceil((points / 2).max(1));
+    let mut kept = Vec::with_capacity(points);
     for (chunk, start) in values.chunks(part).zip((0..).step_by(part)) {
         let by_value = |a: &(usize, &f64), b: &(usize, &f64)| a.1.total_cmp(b.1);
         let lowest = chunk.iter().enumerate().min_by(by_value).map_or(0, |(index, _)| index);

@@ -27,6 +27,8 @@ pub(super) struct Index {
     pub(super) segment: Vec<i64>,
     pub(super) sample: Vec<i64>,
     pub(super) time_ns: Vec<i64>,
+    /// Revisions of a model; empty where rows are of none.
+    revision: Vec<i64>,
 }
 
 /// Where one row lies on the timelines.
@@ -62,13 +64,24 @@ impl Index {
         self.sample.len()
     }
 
-    fn columns(self) -> [TimeColumn; 4] {
-        [
+    /// A row per revision, all of them at `moment`: on the other timelines the last one
+    /// is seen.
+    pub(super) fn of_revisions(revision: Vec<i64>, moment: Moment) -> Self {
+        let moments = std::iter::repeat_n(moment, revision.len());
+        Self { revision, ..moments.collect() }
+    }
+
+    fn columns(self) -> Vec<TimeColumn> {
+        let mut columns = vec![
             TimeColumn::new_sequence("decision", self.decision),
             TimeColumn::new_sequence("segment", self.segment),
             TimeColumn::new_sequence("sample", self.sample),
             TimeColumn::new_duration_nanos("time", self.time_ns),
-        ]
+        ];
+        if !self.revision.is_empty() {
+            columns.push(TimeColumn::new_sequence("revision", self.revision));
+        }
+        columns
     }
 }
 
@@ -96,6 +109,17 @@ impl Chunks {
         self.push_rows(entity, rows, index.columns(), columns)
     }
 
+    /// Rows of `columns` on the timeline of revisions alone.
+    pub(super) fn push_revisions(
+        &mut self,
+        entity: EntityPath,
+        revisions: Vec<i64>,
+        columns: impl IntoIterator<Item = SerializedComponentColumn>,
+    ) -> Result<(), RecordError> {
+        let rows = revisions.len();
+        self.push_rows(entity, rows, [TimeColumn::new_sequence("revision", revisions)], columns)
+    }
+
     /// Data that is there at all times.
     pub(super) fn push_static(
         &mut self,
@@ -116,11 +140,11 @@ impl Chunks {
         self.push_rows(entity, 1, [TimeColumn::new_sequence("blueprint", [0])], columns)
     }
 
-    fn push_rows<const N: usize>(
+    fn push_rows(
         &mut self,
         entity: EntityPath,
         rows: usize,
-        timelines: [TimeColumn; N],
+        timelines: impl IntoIterator<Item = TimeColumn>,
         columns: impl IntoIterator<Item = SerializedComponentColumn>,
     ) -> Result<(), RecordError> {
         if rows == 0 {
@@ -179,6 +203,15 @@ pub(super) fn integers(name: &'static str, values: &[Option<i64>]) -> Serialized
 pub(super) fn texts(name: &'static str, values: &[Option<String>]) -> SerializedComponentColumn {
     let items: StringArray = values.iter().flatten().map(|text| Some(text.as_str())).collect();
     list_column(name, Arc::new(items), values.iter().map(Option::is_some))
+}
+
+/// A column of lists of numbers named `name`.
+pub(super) fn lists(name: &'static str, rows: &[Vec<f64>]) -> SerializedComponentColumn {
+    let items: Float64Array = rows.concat().into();
+    let field = Field::new_list_field(items.data_type().clone(), true);
+    let offsets = OffsetBuffer::from_lengths(rows.iter().map(Vec::len));
+    let list = ListArray::new(Arc::new(field), offsets, Arc::new(items), None);
+    SerializedComponentColumn::new(list, ComponentDescriptor::partial(name))
 }
 
 /// Numbers named `name` for one row.

@@ -1,13 +1,13 @@
 //! Where the error is: its share in each part of each feature, beside the share of time.
 
 use rerun::datatypes::Vec2D;
-use rerun::{EntityPath, LineStrips2D};
+use rerun::{Color, EntityPath, LineStrips2D};
 
 use super::canvas::{Plot, Span};
 use super::chunk::Chunks;
 use super::entity::below;
 use super::error::RecordError;
-use super::palette::{self, color};
+use super::palette::{self, Rgb, color};
 use super::sheet::Sheet;
 use crate::diagnosis::failure::{Feature, Region, Units};
 use crate::experiment::Joint;
@@ -26,36 +26,65 @@ const FILLED: f64 = 0.7;
 const LABEL: (f64, f64) = (24.0, 12.0);
 
 /// Half the width of the lines that fill a bar: their ends are round.
-const HATCH: f32 = 1.5;
+pub(super) const HATCH: f32 = 1.5;
 
-/// Draws the regions of `models` below `root`: a plot per feature, a slot per part, a bar
-/// per model. What the parts are is told of the first model; a model that has another
-/// number of them, as its speeds may, has no bars there.
+/// What a drawing of regions is made of.
+pub(super) struct Drawing {
+    pub(super) sheet: Sheet,
+    bars: Vec<Bars>,
+    /// The share of the time of each part.
+    pub(super) marks: Vec<Vec<Vec2D>>,
+}
+
+impl Drawing {
+    /// A plot per feature, a slot per part, a bar per model. What the parts are is told of
+    /// the first model; a model that has another number of them, as its speeds may, has no
+    /// bars there.
+    pub(super) fn of(models: &[&ComparedJoint<'_>]) -> Self {
+        let mut sheet = Sheet::default();
+        let mut bars = vec![Bars::default(); models.len()];
+        let mut marks = Vec::new();
+        let features = models.first().map(|first| (first.joint, by_feature(first)));
+        let (joint, features) = features.unzip();
+        for (place, of_first) in features.into_iter().flatten().enumerate() {
+            let named = of_first.first().map(|region| region.feature).zip(joint);
+            let Some((feature, joint)) = named else { continue };
+            let alike = models.iter().map(|model| alike(model, feature, of_first.len()));
+            let of_each: Vec<Vec<&Region>> = alike.collect();
+            let plot = plot(place, &of_each);
+            draw_frame(&mut sheet, &plot, &title(feature, joint), &of_first);
+            for ((bars, regions), number) in bars.iter_mut().zip(&of_each).zip(0..) {
+                bars.add(&plot, regions, (number, models.len()));
+            }
+            marks.extend(of_first.iter().zip(0..).map(|(region, slot)| mark(&plot, region, slot)));
+        }
+        Self { sheet, bars, marks }
+    }
+
+    /// The lines that fill the bars of all models, each in its colour.
+    pub(super) fn filling(&self) -> Vec<(Vec<Vec2D>, Color)> {
+        let filling = self.bars.iter().zip(palette::models()).flat_map(|(bars, rgb)| {
+            let lines = bars.strips.iter().zip(bars.shades(rgb));
+            lines.map(|(strip, color)| (strip.to_vec(), color)).collect::<Vec<_>>()
+        });
+        filling.collect()
+    }
+}
+
+/// Draws the regions of `models` below `root`.
 pub(super) fn add(
     chunks: &mut Chunks,
     root: &EntityPath,
     models: &[&ComparedJoint<'_>],
 ) -> Result<(), RecordError> {
-    let Some(first) = models.first() else { return Ok(()) };
-    let mut sheet = Sheet::default();
-    let mut bars = vec![Bars::default(); models.len()];
-    let mut marks = Vec::new();
-    for (place, of_first) in by_feature(first).into_iter().enumerate() {
-        let Some(feature) = of_first.first().map(|region| region.feature) else { continue };
-        let alike = models.iter().map(|model| alike(model, feature, of_first.len()));
-        let of_each: Vec<Vec<&Region>> = alike.collect();
-        let plot = plot(place, &of_each);
-        draw_frame(&mut sheet, &plot, &title(feature, first.joint), &of_first);
-        for ((bars, regions), number) in bars.iter_mut().zip(&of_each).zip(0..) {
-            bars.add(&plot, regions, (number, models.len()));
-        }
-        marks.extend(of_first.iter().zip(0..).map(|(region, slot)| mark(&plot, region, slot)));
+    if models.is_empty() {
+        return Ok(());
     }
+    let Drawing { sheet, bars, marks } = Drawing::of(models);
     sheet.push(chunks, root)?;
     for ((bars, rgb), number) in bars.into_iter().zip(palette::models()).zip(0..) {
-        let shade = |too_much| color(if too_much { rgb } else { palette::dimmed(rgb) });
-        let strips = LineStrips2D::new(bars.strips).with_radii([HATCH]);
-        let strips = strips.with_colors(bars.too_much.into_iter().map(shade));
+        let shades: Vec<_> = bars.shades(rgb).collect();
+        let strips = LineStrips2D::new(bars.strips).with_radii([HATCH]).with_colors(shades);
         chunks.push_static(below(root, &["bars", &format!("{number}")]), &strips)?;
     }
     let marks = LineStrips2D::new(marks).with_colors([color(palette::BORDER)]).with_radii([1.6]);
@@ -131,7 +160,7 @@ fn name(region: &Region) -> String {
 }
 
 /// A number in three digits.
-fn short(value: f64) -> String {
+pub(super) fn short(value: f64) -> String {
     format!("{value:.2e}").parse().map_or_else(|_| number(value), number)
 }
 
@@ -157,6 +186,13 @@ struct Bars {
 }
 
 impl Bars {
+    /// A colour per line: bright where there is too much error.
+    fn shades(&self, rgb: Rgb) -> impl Iterator<Item = Color> {
+        let shade =
+            move |too_much: &bool| color(if *too_much { rgb } else { palette::dimmed(rgb) });
+        self.too_much.iter().map(shade)
+    }
+
     /// A bar for each of `regions`, of the model `number` among so many.
     fn add(&mut self, plot: &Plot, regions: &[&Region], (number, models): (u32, usize)) {
         let width = FILLED / models as f64;
@@ -176,7 +212,7 @@ impl Bars {
 }
 
 /// Places between two others that lines of radius [`HATCH`] cover without a gap.
-fn hatched(left: f32, right: f32) -> impl Iterator<Item = f32> {
+pub(super) fn hatched(left: f32, right: f32) -> impl Iterator<Item = f32> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small")]
     let count = ((right - left) / (1.2 * HATCH)).ceil().max(1.0) as usize;
     let step = (right - left - 2.0 * HATCH).max(0.0) / count as f32;

@@ -2,11 +2,13 @@
 //!
 //! What a reader of the file may rely on is told in `docs/recording.md`. In short: each
 //! joint has its signals, its decisions and a drawing of every segment; four timelines
-//! (`decision`, `segment`, `sample`, `time`) move through all of them together.
+//! (`decision`, `segment`, `sample`, `time`) move through all of them together. A fifth one,
+//! `revision`, runs along a model that grows.
 //!
 //! Inside, `layout` says where samples, trials and decisions lie on the timelines, `chunk`
 //! makes columns of rows with reproducible ids, `signals`, `decisions`, `verdict`,
-//! `segment_view`, `overview`, `delay_state` and `about` are one part of the content each,
+//! `segment_view`, `overview`, `delay_state`, `model`, `revision` and `about` are one part of
+//! the content each,
 //! `blueprint` says which view shows what, and `write` brings it into a file or a stream.
 
 mod about;
@@ -24,6 +26,8 @@ mod message;
 mod model;
 mod overview;
 mod palette;
+mod revision;
+mod rows;
 mod scatter;
 mod segment_view;
 mod sheet;
@@ -32,8 +36,8 @@ mod verdict;
 mod write;
 
 use crate::delay::Settings;
-use crate::experiment::{ReadOptions, Source};
-use crate::report::{ComparedJoint, EstimatedJoint};
+use crate::experiment::{Joint, ReadOptions, Source};
+use crate::report::{ComparedJoint, EstimatedJoint, ImprovedJoint};
 
 pub use error::RecordError;
 pub use layout::Detail;
@@ -54,4 +58,16 @@ pub struct Recording<'a> {
     pub detail: Detail,
     /// Models beside the measurement; those of a joint that is not recorded are left out.
     pub models: &'a [ComparedJoint<'a>],
+    /// Models as they grew, on a timeline of their own; at most one per joint.
+    pub revisions: &'a [ImprovedJoint<'a>],
+}
+
+impl<'a> Recording<'a> {
+    /// The revisions of the model of `joint`.
+    fn revisions_of(&self, joint: &Joint) -> Option<&'a ImprovedJoint<'a>> {
+        let of_joint = |improved: &&ImprovedJoint<'_>| {
+            improved.finding.compared.joint.name == joint.name && !improved.revisions.is_empty()
+        };
+        self.revisions.iter().find(of_joint)
+    }
 }

@@ -239,7 +239,8 @@ fn headline(comparison: &Comparison) -> String {
     }
 }
 
-fn certainty(parameter: &Parameter) -> String {
+/// How sure a parameter is.
+pub(super) fn certainty(parameter: &Parameter) -> String {
     match (parameter.status, parameter.std_error) {
         (Status::Fixed, _) => "fixed".to_owned(),
         (Status::AtBound, _) => "at its bound".to_owned(),

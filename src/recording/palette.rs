@@ -26,6 +26,16 @@ pub(super) const REJECTED: Rgb = rgb(235, 85, 60);
 pub(super) const ERROR: Rgb = rgb(204, 121, 167);
 /// Borders of a segment.
 pub(super) const BORDER: Rgb = rgb(225, 225, 225);
+/// The revision of a model under the cursor.
+pub(super) const REVISION: Rgb = rgb(230, 159, 0);
+/// The revision before it.
+pub(super) const BEFORE: Rgb = rgb(150, 105, 135);
+/// The candidate that comes next.
+pub(super) const PROPOSED: Rgb = rgb(0, 190, 140);
+/// What was measured, beside revisions.
+pub(super) const MEASURED: Rgb = rgb(200, 205, 210);
+/// What noise alone would leave.
+pub(super) const NOISE: Rgb = rgb(86, 180, 233);
 /// A step of the input up.
 pub(super) const UP: Rgb = rgb(95, 160, 255);
 /// A step of the input down.

@@ -91,7 +91,7 @@ fn quantities(compared: &ComparedJoint<'_>) -> Vec<Pairs> {
 }
 
 /// Seconds since the acting input last changed.
-fn since_step(acting: &[f64], period_s: f64) -> Vec<f64> {
+pub(super) fn since_step(acting: &[f64], period_s: f64) -> Vec<f64> {
     let (mut before, mut samples) = (f64::NAN, 0.0);
     let since = |level: &f64| {
         #[expect(clippy::float_cmp, reason = "a step is any change")]

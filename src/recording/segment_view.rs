@@ -14,14 +14,12 @@ use super::chunk::{Chunks, Index};
 use super::entity::below;
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
-use super::palette::{self, Rgb, color};
+use super::palette::{self, color};
+use super::rows::Rows;
 use crate::delay::{Candidate, Line, Verdict};
 use crate::experiment::Joint;
 use crate::report::number;
 use crate::units::signed;
-
-/// Radius of a text's own point: too small to be seen.
-const HIDDEN: f32 = 0.01;
 
 /// Adds the drawings of all segments below `root`/drawing.
 pub(super) fn add(
@@ -34,7 +32,7 @@ pub(super) fn add(
         layout.segments().map(|(trial, segment)| Drawing::new(trial, segment)).collect();
     let root = below(root, &["drawing"]);
     let opening: Index = drawings.iter().map(|d| d.trial.opening(d.segment)).collect();
-    let mut sheet = Sheet { chunks, root: &root, opening: &opening };
+    let mut sheet = Rows::new(chunks, root.clone(), opening);
     let rows = || drawings.iter();
     sheet.strips("grid", palette::GRID, 0.8, rows().map(|d| d.grid().0))?;
     sheet.texts("ticks", palette::BORDER, rows().map(|d| d.grid().1))?;
@@ -57,73 +55,6 @@ pub(super) fn add(
 enum Chosen {
     Accepted,
     Rejected,
-}
-
-/// Rows for all segments at once, one call per entity.
-struct Sheet<'c> {
-    chunks: &'c mut Chunks,
-    root: &'c EntityPath,
-    opening: &'c Index,
-}
-
-impl Sheet<'_> {
-    fn strips(
-        &mut self,
-        name: &str,
-        rgb: Rgb,
-        radius: f32,
-        rows: impl Iterator<Item = Vec<Vec<Vec2D>>>,
-    ) -> Result<(), RecordError> {
-        let entity = below(self.root, &[name]);
-        let (strips, lengths) = flattened(rows);
-        let style = LineStrips2D::update_fields().with_colors([color(rgb)]).with_radii([radius]);
-        self.chunks.push_static(entity.clone(), &style)?;
-        let columns = LineStrips2D::update_fields().with_strips(strips).columns(lengths)?;
-        self.chunks.push(entity, self.opening.clone(), columns)
-    }
-
-    fn points(
-        &mut self,
-        name: &str,
-        rgb: Rgb,
-        radius: f32,
-        rows: impl Iterator<Item = Vec<Vec2D>>,
-    ) -> Result<(), RecordError> {
-        let entity = below(self.root, &[name]);
-        let (points, lengths) = flattened(rows);
-        let style = Points2D::update_fields().with_colors([color(rgb)]).with_radii([radius]);
-        self.chunks.push_static(entity.clone(), &style)?;
-        let columns = Points2D::update_fields().with_positions(points).columns(lengths)?;
-        self.chunks.push(entity, self.opening.clone(), columns)
-    }
-
-    fn texts(
-        &mut self,
-        name: &str,
-        rgb: Rgb,
-        rows: impl Iterator<Item = Labels>,
-    ) -> Result<(), RecordError> {
-        let entity = below(self.root, &[name]);
-        let style = Points2D::update_fields().with_colors([color(rgb)]).with_radii([HIDDEN]);
-        self.chunks.push_static(entity.clone(), &style.with_show_labels(true))?;
-        let (mut places, mut texts, mut lengths) = (Vec::new(), Vec::new(), Vec::new());
-        for labels in rows {
-            lengths.push(labels.places.len());
-            places.extend(labels.places);
-            texts.extend(labels.texts);
-        }
-        let points = Points2D::update_fields().with_positions(places).with_labels(texts);
-        self.chunks.push(entity, self.opening.clone(), points.columns(lengths)?)
-    }
-}
-
-fn flattened<T>(rows: impl Iterator<Item = Vec<T>>) -> (Vec<T>, Vec<usize>) {
-    let (mut all, mut lengths) = (Vec::new(), Vec::new());
-    for row in rows {
-        lengths.push(row.len());
-        all.extend(row);
-    }
-    (all, lengths)
 }
 
 /// One segment on its sheet: the output above, the error curve below.

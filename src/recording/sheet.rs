@@ -44,6 +44,11 @@ impl Sheet {
         self.labels.put(place, text);
     }
 
+    /// Lines and texts, for a drawing that changes.
+    pub(super) fn into_parts(self) -> (Vec<Vec<Vec2D>>, Labels) {
+        (self.grid, self.labels)
+    }
+
     /// Adds `grid` and `texts` below `root`.
     pub(super) fn push(self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
         strips(chunks, below(root, &["grid"]), palette::GRID, 0.7, self.grid)?;

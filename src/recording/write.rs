@@ -14,8 +14,8 @@ use super::error::RecordError;
 use super::layout::{JointLayout, TrialStarts};
 use super::message::{chunk_message, store_message};
 use super::{
-    Recording, about, blueprint, decisions, delay_state, model, overview, segment_view, signals,
-    verdict,
+    Recording, about, blueprint, decisions, delay_state, model, overview, revision, segment_view,
+    signals, verdict,
 };
 use crate::report::EstimatedJoint;
 
@@ -124,7 +124,11 @@ fn add_joint(
     overview::add(chunks, &root, layout)?;
     delay_state::add(chunks, &root, estimated, layout)?;
     let models = recording.models.iter().filter(|model| model.joint.name == joint.name);
-    model::add(chunks, &root, layout, &models.collect::<Vec<_>>())
+    model::add(chunks, &root, layout, &models.collect::<Vec<_>>())?;
+    match recording.revisions_of(joint) {
+        Some(improved) => revision::add(chunks, &root, layout, improved),
+        None => Ok(()),
+    }
 }
 
 fn recording_name(recording: &Recording<'_>) -> String {
@@ -154,6 +158,10 @@ fn recording_id(recording: &Recording<'_>) -> String {
     for model in recording.models {
         let values: Vec<_> = model.comparison.fit.model.values();
         part(&format!("{} {:?} {values:?}", model.model, model.comparison.fit.model.names()));
+    }
+    for improved in recording.revisions {
+        let changes: Vec<_> = improved.revisions.iter().map(|revision| revision.change).collect();
+        part(&format!("{} {changes:?}", improved.first_revision));
     }
     part(&format!("{:?} {:?}", recording.settings, recording.detail));
     part(env!("CARGO_PKG_VERSION"));

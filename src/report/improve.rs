@@ -5,14 +5,14 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::compare::{
-    ErrorJson, JointJson, align_right, effects, figures, parameters, parameters_json,
+    ComparedJoint, ErrorJson, JointJson, align_right, effects, figures, parameters, parameters_json,
 };
 use super::explain::FindingJson;
 use super::finding::Finding;
-use super::words::printed;
+use super::words::{Words, printed};
 use crate::diagnosis::LackOfFit;
 use crate::experiment::Joint;
-use crate::explain::{Change, Revision};
+use crate::explain::{Candidate, Change, Revision, Verdict};
 
 /// A joint whose model was improved.
 #[derive(Clone, Copy, Debug)]
@@ -73,8 +73,58 @@ impl<'a> ImproveJson<'a> {
 }
 
 impl<'a> ImprovedJoint<'a> {
-    fn numbered(&self) -> impl Iterator<Item = (u32, &'a Revision)> {
+    /// `revisions` that end with the model of `finding`, which was not stopped.
+    pub fn of(finding: Finding<'a>, revisions: &'a [Revision]) -> Self {
+        let later = u32::try_from(revisions.len().saturating_sub(1)).unwrap_or(u32::MAX);
+        let first_revision = finding.compared.revision.saturating_sub(later);
+        Self { finding, revisions, first_revision, interrupted: false }
+    }
+
+    /// The revisions with their numbers.
+    pub fn numbered(&self) -> impl Iterator<Item = (u32, &'a Revision)> {
         (self.first_revision..).zip(self.revisions)
+    }
+
+    /// The candidate of the revision at `place` that the next one took, or would take.
+    pub fn proposed(&self, place: usize) -> Option<&'a Candidate> {
+        self.ranking_behind(place).first()
+    }
+
+    /// The ranking at `place` from that candidate on.
+    fn ranking_behind(&self, place: usize) -> &'a [Candidate] {
+        let ranking = self.revisions.get(place).map_or(&[][..], |revision| &revision.ranking);
+        let first = ranking.iter().position(|candidate| self.is_taken(place, candidate));
+        first.and_then(|first| ranking.get(first..)).unwrap_or_default()
+    }
+
+    fn is_taken(&self, place: usize, candidate: &Candidate) -> bool {
+        match self.revisions.get(place + 1).map(|next| next.change) {
+            Some(Change::Added(id)) => candidate.effects.first() == Some(&id),
+            Some(_) => false,
+            None => self.finding.verdict == Verdict::MissingEffect,
+        }
+    }
+
+    /// What is to be said of the revision at `place`.
+    pub fn words_of(&self, place: usize) -> Words {
+        let next = self.revisions.get(place + 1).map(|next| next.change);
+        let known = self.numbered().nth(place).zip(next);
+        let Some(((revision, step), next)) = known else { return self.finding.words() };
+        let verdict = Verdict::MissingEffect;
+        let compared =
+            ComparedJoint { revision, comparison: &step.comparison, ..self.finding.compared };
+        let ranking = self.ranking_behind(place);
+        let finding = Finding { compared, verdict, ranking, ..self.finding };
+        match made_useless(next) {
+            Some(why) => Words {
+                headline: format!("{}: {why}", compared.joint.name),
+                paragraph: "The effects that came after it do its part, so that it no longer \
+                            earns its parameters."
+                    .to_owned(),
+                commands: Vec::new(),
+            },
+            None => finding.words(),
+        }
     }
 
     fn revision_json(&self, number: u32, revision: &Revision) -> RevisionJson {
@@ -128,8 +178,17 @@ impl<'a> ImprovedJoint<'a> {
     }
 }
 
+/// Which effect goes with a change, and why.
+fn made_useless(change: Change) -> Option<String> {
+    match change {
+        Change::Removed(id) => Some(format!("{id} has become useless")),
+        Change::Replaced { old, new } => Some(format!("{old} gives way to {new}")),
+        Change::Start | Change::Added(_) => None,
+    }
+}
+
 /// `+ dead_band`; the first revision by what it has.
-fn change_in_words(revision: &Revision) -> String {
+pub fn change_in_words(revision: &Revision) -> String {
     match revision.change {
         Change::Start => {
             let effects = effects(&revision.comparison.fit.model);

@@ -27,7 +27,7 @@ pub use decisions::{DecisionDetail, DecisionRow, decision_rows, write_decisions}
 pub use delays::write_delays;
 pub use explain::{ExplainJson, explain_text};
 pub use finding::Finding;
-pub use improve::{ImproveJson, ImprovedJoint, improve_text, revision_line};
+pub use improve::{ImproveJson, ImprovedJoint, change_in_words, improve_text, revision_line};
 pub use json::EstimateJson;
 pub use number::number;
 pub use steps::steps_table;

@@ -86,21 +86,40 @@ impl Desk {
     /// The models of `boom` in the recording of a run that went well.
     #[cfg(feature = "rrd")]
     pub(crate) fn recorded_models(&self, arguments: &str) -> Vec<String> {
-        use rerun::external::re_log_encoding::DecoderApp;
-        use rerun::log::{Chunk, LogMsg};
-
         let output = self.run(&format!("{arguments} -o models.rrd"));
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        let file = std::fs::File::open(self.folder.path().join("models.rrd")).unwrap();
         let mut models = std::collections::BTreeSet::new();
-        for message in DecoderApp::decode_lazy(std::io::BufReader::new(file)) {
-            let LogMsg::ArrowMsg(_, chunk) = message.unwrap() else { continue };
-            let entity = Chunk::from_arrow_msg(&chunk).unwrap().entity_path().to_string();
+        for chunk in self.recorded_chunks() {
+            let entity = chunk.entity_path().to_string();
             let model =
                 entity.strip_prefix("/boom/model/").and_then(|m| m.strip_suffix("/residual"));
             models.extend(model.map(|model| model.replace('\\', "")));
         }
         models.into_iter().collect()
+    }
+
+    /// How many revisions of the boom are in that recording.
+    #[cfg(feature = "rrd")]
+    pub(crate) fn recorded_revisions(&self) -> usize {
+        let chunks = self.recorded_chunks().into_iter();
+        let errors = |chunk: &rerun::log::Chunk| {
+            chunk.entity_path().to_string() == "/boom/revision/training_rmse"
+        };
+        chunks.filter(errors).map(|chunk| chunk.num_rows()).sum()
+    }
+
+    #[cfg(feature = "rrd")]
+    fn recorded_chunks(&self) -> Vec<rerun::log::Chunk> {
+        use rerun::external::re_log_encoding::DecoderApp;
+        use rerun::log::{Chunk, LogMsg};
+
+        let file = std::fs::File::open(self.folder.path().join("models.rrd")).unwrap();
+        let messages = DecoderApp::decode_lazy(std::io::BufReader::new(file));
+        let chunks = messages.filter_map(|message| match message.unwrap() {
+            LogMsg::ArrowMsg(_, chunk) => Some(Chunk::from_arrow_msg(&chunk).unwrap()),
+            _ => None,
+        });
+        chunks.collect()
     }
 
     /// The message of a run that ends with status 2, without a result.

@@ -38,6 +38,7 @@ impl<'a> Files<'a> {
                 sources: &result.experiment.sources,
                 reading: &result.experiment.options,
                 models: &[],
+                revisions: &[],
                 detail: self.args.detail,
             };
             contents.record(path, verbosity)?;

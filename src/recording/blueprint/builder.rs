@@ -110,10 +110,11 @@ impl Builder {
         Ok(node)
     }
 
-    /// The messages of the whole blueprint, which opens paused on the first decision.
+    /// The messages of the whole blueprint, which opens paused at the start of `timeline`.
     pub(super) fn finish(
         mut self,
         root: &Node,
+        timeline: &str,
         application: &ApplicationId,
         id: &str,
     ) -> Result<Vec<LogMsg>, RecordError> {
@@ -125,7 +126,7 @@ impl Builder {
         self.log("selection_panel", &collapsed)?;
         let time = TimePanelBlueprint::new()
             .with_state(PanelState::Collapsed)
-            .with_timeline("decision")
+            .with_timeline(timeline)
             .with_fps(20.0)
             .with_play_state(PlayState::Paused);
         self.log("time_panel", &time)?;

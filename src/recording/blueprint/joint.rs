@@ -19,20 +19,24 @@ use crate::recording::chunk::FINE;
 use crate::recording::entity::{below, joint_root};
 use crate::recording::error::RecordError;
 use crate::recording::overview::{MAP_HEIGHT, MAP_WIDTH};
-use crate::recording::{correlogram, delay_state, error_share, scatter};
+use crate::recording::{correlogram, delay_state, error_share, revision, scatter};
 use crate::report::EstimatedJoint;
 
-/// The tab of `joint`: its decisions, its record, its table; and its models, which then
-/// come first, where there are any.
+/// The tab of `joint`: its decisions, its record, its table; and before them the revisions
+/// of its model, and its models, where there are any.
 pub(super) fn tab(
     builder: &mut Builder,
     EstimatedJoint { joint, estimate }: EstimatedJoint<'_>,
     models: &[&str],
+    revisions: usize,
 ) -> Result<Node, RecordError> {
     let mut decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
     let fine = decisions.any(|decision| decision.fine.is_some());
     let mut views = Views { builder, joint, fine };
     let mut pages = Vec::new();
+    if revisions > 0 {
+        pages.push(views.revisions()?);
+    }
     if !models.is_empty() {
         pages.push(views.models(models)?);
     }
@@ -230,6 +234,39 @@ impl Views<'_> {
             delay_state::PARTS.iter().map(|name| self.path(&["against", name])).collect();
         View::new("2D", "Delay", &paths)
             .with("VisualBounds2D", bounds(SHEET.0, delay_state::HEIGHT))
+    }
+
+    /// A model as it grows.
+    fn revisions(&mut self) -> Result<Node, RecordError> {
+        let drawing = |name, part, parts: &[&str], (width, height)| {
+            let paths: Vec<_> =
+                parts.iter().map(|name| self.path(&["revision", part, name])).collect();
+            View::new("2D", name, &paths).with("VisualBounds2D", bounds(width, height))
+        };
+        let sheet = drawing(
+            "The error falls; what shows it; what was tried",
+            "sheet",
+            &revision::PARTS,
+            revision::SIZE,
+        );
+        let share = drawing(
+            "Where the error is: its share (bars), share of the time (white)",
+            "share",
+            &revision::SHARE_PARTS,
+            error_share::SIZE,
+        );
+        let record =
+            drawing("The whole record", "record", &revision::RECORD_PARTS, revision::RECORD_SIZE);
+        let words = [self.path(&["revision", "words"])];
+        let words = self.view(View::new("TextDocument", "In words", &words))?;
+        let tabs = [self.view(sheet)?, self.view(share)?];
+        let record = self.view(record)?;
+        let builder = &mut *self.builder;
+        let tabs = builder.container(ContainerKind::Tabs, "Ladder", &tabs, &[])?;
+        let left = [tabs, record];
+        let left = builder.container(ContainerKind::Vertical, "Drawings", &left, &[4.4, 5.6])?;
+        let columns = [left, words];
+        builder.container(ContainerKind::Horizontal, "Revisions", &columns, &[7.3, 2.7])
     }
 
     /// Models beside the measurement, and what is left.

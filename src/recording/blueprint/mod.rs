@@ -22,9 +22,14 @@ pub(super) fn messages(
     for joint in recording.joints {
         let models = recording.models.iter().filter(|m| m.joint.name == joint.joint.name);
         let models: Vec<_> = models.map(|model| model.model).collect();
-        tabs.push(joint::tab(&mut builder, *joint, &models)?);
+        let improved = recording.revisions_of(joint.joint);
+        let revisions = improved.map_or(0, |improved| improved.revisions.len());
+        tabs.push(joint::tab(&mut builder, *joint, &models, revisions)?);
     }
     tabs.push(builder.view(View::new("TextDocument", "About", &["/about"]))?);
     let root = builder.container(ContainerKind::Tabs, "Joints", &tabs, &[])?;
-    builder.finish(&root, application, id)
+    // One revision alone is there on every timeline.
+    let is_ladder = recording.revisions.iter().any(|improved| improved.revisions.len() > 1);
+    let timeline = if is_ladder { "revision" } else { "decision" };
+    builder.finish(&root, timeline, application, id)
 }

@@ -1,0 +1,360 @@
+//! The speed that each level of the input made, and the laws that models draw through it.
+//!
+//! Where a level is held, the measured output runs along a line: its slope is a speed that
+//! owes nothing to a model, but for when the level began to act. Against the level it shows
+//! a dead band, a saturation or a curve at a glance. What does not show there is in
+//! [`left`].
+
+use rerun::datatypes::Vec2D;
+
+use super::{Strips, left};
+use crate::diagnosis::Comparison;
+use crate::experiment::{Joint, Trial};
+use crate::fit::{Horizon, Record, Split};
+use crate::model::{Arrivals, JointModel, Restart, Surroundings, simulate};
+use crate::recording::canvas::{Labels, Plot, Span};
+use crate::recording::error::RecordError;
+use crate::recording::error_share::short;
+use crate::recording::palette;
+use crate::recording::rows::Rows;
+use crate::recording::sheet::Sheet;
+use crate::report::ImprovedJoint;
+
+/// Columns and rows of the plot on the sheet.
+const PLACE: ((f32, f32), (f32, f32)) = ((760.0, 1235.0), (48.0, 450.0));
+
+/// Fewest samples of a level whose speed is known.
+const SHORTEST: usize = 12;
+
+/// Points that are drawn; more hide one another.
+const POINTS: usize = 1500;
+
+/// Levels at which a law is computed.
+const LEVELS: u32 = 120;
+
+/// Width of an uncertainty in standard errors on each side: 95 %.
+const BAND: f64 = 1.96;
+
+/// The measured speed while one level of the input acted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Held {
+    pub(super) level: f64,
+    pub(super) speed: f64,
+    pub(super) std_error: f64,
+}
+
+/// Level of the input, and the speed that a model makes of it.
+pub(super) type Law = Vec<(f64, f64)>;
+
+/// Speeds and laws of each revision, and what is drawn of them.
+pub(super) struct Evidence {
+    pub(super) held: Vec<Vec<Held>>,
+    pub(super) laws: Vec<Law>,
+    figures: Vec<Figure>,
+}
+
+/// What shows the effect that comes next, of one revision.
+pub(super) struct Figure {
+    pub(super) title: String,
+    pub(super) x: Span,
+    pub(super) y: Span,
+    pub(super) points: Vec<Held>,
+    /// What the revision makes of it, the one before, and the candidate that comes next.
+    pub(super) laws: [Law; 3],
+    pub(super) names: [Option<String>; 3],
+}
+
+/// What is measured, and what the models of `improved` make of it.
+pub(super) fn evidence(improved: &ImprovedJoint<'_>) -> Evidence {
+    let joint = improved.finding.compared.joint;
+    let still = Still::of(joint);
+    let of_each = || improved.revisions.iter().map(|revision| &revision.comparison);
+    let held: Vec<Vec<Held>> = of_each().map(|comparison| speeds(joint, comparison)).collect();
+    let laws: Vec<Law> = of_each().map(|comparison| still.law(&comparison.fit.model)).collect();
+    let drawn = held.iter().flatten().map(|held| held.speed);
+    let y = Span::around(drawn.chain(laws.iter().flatten().map(|point| point.1)), 0.05);
+    let x = Span::around(still.levels().into_iter(), 0.03);
+    let mut figures = Vec::new();
+    for (at, ((number, step), held)) in improved.numbered().zip(&held).enumerate() {
+        let own = laws.get(at).cloned().unwrap_or_default();
+        let proposed = improved.proposed(at);
+        let next = proposed.map_or_else(Vec::new, |candidate| still.law(&candidate.fit.model));
+        if let Some(candidate) = proposed.filter(|_| are_alike(&own, &next)) {
+            figures.push(left::figure(joint, &step.comparison, number, candidate));
+            continue;
+        }
+        let before = at.checked_sub(1).and_then(|before| laws.get(before));
+        figures.push(Figure {
+            title: title(joint),
+            x,
+            y,
+            points: held.clone(),
+            names: [
+                Some(format!("revision {number}")),
+                before.map(|_| format!("revision {}", number - 1)),
+                proposed.map(|candidate| format!("with {}", candidate.name())),
+            ],
+            laws: [own, before.cloned().unwrap_or_default(), next],
+        });
+    }
+    Evidence { held, laws, figures }
+}
+
+/// Whether two laws are so near that the difference is not seen.
+fn are_alike(law: &Law, other: &Law) -> bool {
+    /// In parts of the largest speed.
+    const SEEN: f64 = 0.04;
+    let largest = law.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
+    law.iter().zip(other).all(|(a, b)| (a.1 - b.1).abs() <= SEEN * largest)
+}
+
+fn title(joint: &Joint) -> String {
+    let unit = |unit: &Option<String>, per: &str| {
+        unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}{per}]"))
+    };
+    let (speed, input) = (unit(&joint.output_unit, "/s"), unit(&joint.input_unit, ""));
+    format!("speed{speed} while an input{input} is held")
+}
+
+/// Adds the points, and the laws drawn through them.
+pub(super) fn add(rows: &mut Rows<'_>, evidence: &Evidence) -> Result<(), RecordError> {
+    let figures = || evidence.figures.iter();
+    for (name, which, rgb, radius) in [
+        ("before", 1, palette::BEFORE, 2.0),
+        ("proposed", 2, palette::PROPOSED, 2.0),
+        ("law", 0, palette::REVISION, 3.0),
+    ] {
+        rows.strips(name, rgb, radius, figures().map(|figure| figure.curve(which)))?;
+    }
+    rows.strips("uncertain", palette::MEASURED, 0.8, figures().map(Figure::uncertain))?;
+    rows.points("points", palette::MEASURED, 4.0, figures().map(Figure::places))?;
+    for (name, which, rgb) in [
+        ("law_name", 0, palette::REVISION),
+        ("before_name", 1, palette::BEFORE),
+        ("proposed_name", 2, palette::PROPOSED),
+    ] {
+        rows.texts(name, rgb, figures().map(|figure| figure.legend(which)))?;
+    }
+    Ok(())
+}
+
+impl Evidence {
+    /// Grid and title of the plot of the revision at `place`.
+    pub(super) fn sheet(&self, place: usize) -> Sheet {
+        let mut sheet = Sheet::default();
+        if let Some(figure) = self.figures.get(place) {
+            let plot = figure.plot();
+            let ticks = |ticks: Vec<f64>| ticks.into_iter().map(|tick| (tick, short(tick)));
+            let x_ticks = plot.x_span().ticks(5.0);
+            let y_ticks: Vec<_> = ticks(plot.y_span().ticks(4.0)).collect();
+            sheet.frame(&plot, &x_ticks, &y_ticks, &figure.title);
+            for (x, text) in ticks(x_ticks) {
+                sheet.put(plot.below(x, 2.0), text);
+            }
+        }
+        sheet
+    }
+}
+
+impl Figure {
+    fn plot(&self) -> Plot {
+        let (columns, (top, bottom)) = PLACE;
+        Plot::within(columns, top..=bottom, self.x, self.y)
+    }
+
+    fn curve(&self, which: usize) -> Strips {
+        let plot = self.plot();
+        let law = self.laws.get(which).filter(|law| !law.is_empty());
+        let curve = |law: &Law| law.iter().map(|(x, y)| plot.at(*x, *y)).collect();
+        law.into_iter().map(curve).collect()
+    }
+
+    /// The points that are drawn.
+    fn drawn(&self) -> impl Iterator<Item = &Held> {
+        self.points.iter().step_by(self.points.len().div_ceil(POINTS).max(1))
+    }
+
+    fn places(&self) -> Vec<Vec2D> {
+        let plot = self.plot();
+        self.drawn().map(|held| plot.at(held.level, held.speed)).collect()
+    }
+
+    fn uncertain(&self) -> Strips {
+        let plot = self.plot();
+        let reach = |held: &Held| {
+            [-BAND, BAND].map(|k| plot.at(held.level, held.speed + k * held.std_error)).to_vec()
+        };
+        self.drawn().map(reach).collect()
+    }
+
+    /// The name of a law, in the corner that a rising one leaves free, or in the other one.
+    fn legend(&self, which: usize) -> Labels {
+        let mut labels = Labels::default();
+        let line = self.names.iter().take(which).flatten().count();
+        if let Some(name) = self.names.get(which).and_then(Option::as_ref) {
+            let half = 7.0 * (name.chars().count() + 2) as f32;
+            let ((left, right), (top, _)) = PLACE;
+            let x = if self.falls() { right - half - 6.0 } else { left + half + 6.0 };
+            labels.put(Vec2D::new(x, top + 22.0 + 36.0 * line as f32), name.clone());
+        }
+        labels
+    }
+
+    fn falls(&self) -> bool {
+        let law = self.laws.iter().rev().find(|law| !law.is_empty());
+        let ends = law.and_then(|law| law.first().zip(law.last()));
+        ends.is_some_and(|(first, last)| first.1 > last.1)
+    }
+}
+
+/// The speed while each level acts; of parts of the record where no level is held.
+fn speeds(joint: &Joint, comparison: &Comparison) -> Vec<Held> {
+    let noise = comparison.noise_floor.unwrap_or(0.0);
+    let trials = joint.trials.iter().zip(&comparison.fit.evaluation.simulated);
+    trials.flat_map(|(trial, simulated)| of_trial(trial, &simulated.acting, noise)).collect()
+}
+
+fn of_trial(trial: &Trial, acting: &[f64], noise: f64) -> Vec<Held> {
+    #[expect(clippy::float_cmp, reason = "a step is any change")]
+    let levels: Vec<&[f64]> = acting.chunk_by(|a, b| a == b).collect();
+    let known = levels.iter().map(|part| part.len()).filter(|samples| *samples >= SHORTEST);
+    let is_held = 2 * known.sum::<usize>() > acting.len();
+    let parts = if is_held { levels } else { acting.chunks(2 * SHORTEST).collect() };
+    let mut start = 0;
+    let mut all = Vec::new();
+    for part in parts {
+        let end = start + part.len();
+        // The joint may need the first third to come up to speed.
+        let first = start + part.len() / 3;
+        let output = trial.output().get(first..end).filter(|_| part.len() >= SHORTEST);
+        if let Some(output) = output {
+            let level = part.iter().sum::<f64>() / part.len() as f64;
+            let (speed, std_error) = slope(output, trial.period().seconds(), noise);
+            all.push(Held { level, speed, std_error });
+        }
+        start = end;
+    }
+    all
+}
+
+/// The slope of the regression line per second, and its standard error.
+fn slope(values: &[f64], period_s: f64, noise: f64) -> (f64, f64) {
+    let n = values.len() as f64;
+    let spread = n * (n * n - 1.0) / 12.0;
+    let middle = 0.5 * (n - 1.0);
+    let moment: f64 = values.iter().zip(0_u32..).map(|(y, k)| (f64::from(k) - middle) * y).sum();
+    (moment / spread / period_s, noise / spread.sqrt() / period_s)
+}
+
+/// A joint that is kept in the middle of its record while its speed settles.
+struct Still {
+    angle: f64,
+    time_s: f64,
+    period_s: f64,
+    radians_per_output_unit: f64,
+    input: Span,
+}
+
+impl Still {
+    fn of(joint: &Joint) -> Self {
+        let range = Record::new(joint, Split::Time(1.0), Horizon::FreeRun).range(&[], 1.0);
+        let input = joint.trials.iter().flat_map(Trial::input).copied();
+        Self {
+            angle: f64::midpoint(range.output_min, range.output_max),
+            time_s: 0.5 * range.duration_s,
+            period_s: range.sample_period_s,
+            radians_per_output_unit: range.radians_per_output_unit,
+            input: Span::around(input, 0.0),
+        }
+    }
+
+    fn levels(&self) -> Vec<f64> {
+        let Span { low, high } = self.input;
+        (0..=LEVELS).map(|k| low + (high - low) * f64::from(k) / f64::from(LEVELS)).collect()
+    }
+
+    /// What `model` makes of levels that have long been held.
+    fn law(&self, model: &JointModel) -> Law {
+        self.levels().into_iter().map(|level| (level, self.speed(model, level))).collect()
+    }
+
+    fn speed(&self, model: &JointModel, level: f64) -> f64 {
+        /// Seconds after which what the effects remember has settled.
+        const SETTLED_S: f64 = 2.0;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in bounds")]
+        let samples = (SETTLED_S / self.period_s).clamp(2.0, 400.0) as usize;
+        let arrivals = Arrivals { initial: level, changes: Vec::new() };
+        let back = |sample| Restart { sample, output: self.angle, speed: None };
+        let restarts: Vec<Restart> = (0..samples).map(back).collect();
+        let surroundings = Surroundings {
+            others: &[],
+            radians_per_output_unit: self.radians_per_output_unit,
+            start_s: self.time_s,
+        };
+        let simulated =
+            simulate(model, &arrivals, samples, self.period_s, &restarts, &surroundings);
+        simulated.velocity.last().copied().unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::DeadBand;
+    use crate::model::Component;
+    use crate::units::SamplePeriod;
+
+    fn trial(input: Vec<f64>, output: Vec<f64>) -> Trial {
+        Trial::new("", 0.0, SamplePeriod::from_seconds(0.1).unwrap(), input, output).unwrap()
+    }
+
+    #[test]
+    fn the_slope_of_a_line_is_exact_and_its_error_is_that_of_the_noise() {
+        let values: Vec<f64> = (0..20).map(|k| 3.0 + 0.4 * f64::from(k)).collect();
+        let (speed, error) = slope(&values, 0.1, 0.05);
+        assert!((speed - 4.0).abs() < 1e-12);
+        // σ / (T √(n (n² − 1) / 12)) with n = 20: √665 = 25.788.
+        assert!((error - 0.05 / 25.787_594 / 0.1).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_level_has_one_speed_and_a_short_one_none() {
+        let acting = [vec![1.0; 30], vec![-2.0; 5], vec![0.5; 25]].concat();
+        let mut y = 0.0;
+        let outputs = acting.iter().map(|level| {
+            y += 0.3 * level;
+            y
+        });
+        let trial = trial(acting.clone(), outputs.collect());
+        let held = of_trial(&trial, &acting, 0.0);
+        let found: Vec<_> = held.iter().map(|held| (held.level, held.speed)).collect();
+        assert_eq!(found.len(), 2);
+        assert!((found[0].1 - 3.0).abs() < 1e-9 && (found[1].1 - 1.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn an_input_that_is_never_held_is_cut_into_parts() {
+        let acting: Vec<f64> = (0..240).map(|k| f64::from(k) / 240.0).collect();
+        let trial = trial(acting.clone(), acting.clone());
+        let held = of_trial(&trial, &acting, 0.0);
+        assert_eq!(held.len(), 10);
+        assert!(held.iter().all(|held| (held.speed - 10.0 / 240.0).abs() < 1e-9));
+    }
+
+    #[test]
+    fn the_law_of_a_dead_band_is_its_equation() {
+        let joint = Joint {
+            name: "boom".to_owned(),
+            input_unit: None,
+            output_unit: None,
+            covariates: Vec::new(),
+            trials: vec![trial(vec![-2.0, 2.0, 1.0], vec![0.0, 5.0, 3.0])],
+        };
+        let band = Component::new(&DeadBand, vec![(-0.5).into(), 0.6.into()]).unwrap();
+        let law = Still::of(&joint).law(&JointModel::integrator(10.0, 0.2).with(band));
+        for (level, speed) in law {
+            let expected = 10.0 * ((level - 0.6).max(0.0) + (level + 0.5).min(0.0));
+            assert!((speed - expected).abs() < 1e-9, "{level}: {speed}");
+        }
+    }
+}

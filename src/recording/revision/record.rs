@@ -1,0 +1,250 @@
+//! The whole record: what was measured, what a revision simulates, and what is left.
+
+use std::ops::Range;
+
+use rerun::datatypes::Vec2D;
+
+use super::{Strips, judged};
+use crate::diagnosis::Comparison;
+use crate::recording::canvas::{Labels, Plot, SHEET, Span, simplified, thinned_to};
+use crate::recording::error::RecordError;
+use crate::recording::error_share::short;
+use crate::recording::layout::{JointLayout, TrialLayout};
+use crate::recording::palette;
+use crate::recording::rows::Rows;
+use crate::recording::sheet::Sheet;
+use crate::report::{ImprovedJoint, change_in_words};
+
+/// Width and height of the sheet.
+pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 600.0);
+
+/// Points of a curve: two for each of 1500 columns of pixels.
+const POINTS: usize = 3000;
+
+/// Width of the noise band in standard deviations on each side: 95 % of normal noise.
+const BAND: f64 = 1.96;
+
+/// Adds the drawings of all revisions.
+pub(super) fn add(
+    rows: &mut Rows<'_>,
+    layout: &JointLayout<'_>,
+    improved: &ImprovedJoint<'_>,
+) -> Result<(), RecordError> {
+    let drawing = Drawing::of(layout, improved);
+    let of_each = || improved.revisions.iter().map(|revision| &revision.comparison);
+    let (grid, labels) = drawing.sheet(improved).into_parts();
+    let count = improved.revisions.len();
+    rows.strips("grid", palette::GRID, 0.7, std::iter::repeat_n(grid, count))?;
+    rows.texts("texts", palette::BORDER, std::iter::repeat_n(labels, count))?;
+    let window = std::iter::repeat_n(drawing.window_in_record(), count);
+    rows.strips("window", palette::BORDER, 0.9, window)?;
+    let measured = drawing.outputs(|trial| trial.trial.output());
+    rows.strips("measured", palette::MEASURED, 3.0, std::iter::repeat_n(measured, count))?;
+    rows.strips("simulated", palette::REVISION, 1.2, of_each().map(|c| drawing.simulated(c)))?;
+    rows.strips("residual", palette::REVISION, 1.0, of_each().map(|c| drawing.left(c)))?;
+    rows.strips("noise", palette::NOISE, 1.0, of_each().map(|c| drawing.band(c)))?;
+    rows.texts("names", palette::REVISION, (0..count).map(|at| drawing.names(improved, at)))
+}
+
+/// Where the curves lie on the sheet.
+struct Drawing<'l, 'a> {
+    layout: &'l JointLayout<'a>,
+    output: Plot,
+    /// The part of the record in which the first revision is worst.
+    window: Window,
+    close: Plot,
+    residual: Plot,
+    samples: usize,
+}
+
+/// Samples of a trial, counted from 0.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Window {
+    /// Its place among the trials of the layout.
+    place: usize,
+    samples: Range<usize>,
+}
+
+impl Window {
+    /// Where the squares of `residuals`, one list per trial, are largest: about a
+    /// [`PARTS`]th of all samples, within one trial.
+    fn worst(residuals: &[&[f64]]) -> Self {
+        /// Parts of the record: a few steps of the input are in one of them.
+        const PARTS: usize = 15;
+        let all: usize = residuals.iter().map(|trial| trial.len()).sum();
+        let longest = (all / PARTS).max(1);
+        let windows = residuals.iter().enumerate().flat_map(|(place, trial)| {
+            let length = longest.min(trial.len());
+            let starts = (0..=trial.len() - length).step_by((length / 4).max(1));
+            starts.map(move |start| (place, start..start + length))
+        });
+        let square = |(place, samples): &(usize, Range<usize>)| -> f64 {
+            let part = residuals.get(*place).and_then(|trial| trial.get(samples.clone()));
+            part.unwrap_or_default().iter().map(|residual| residual * residual).sum()
+        };
+        let worst = windows.max_by(|a, b| square(a).total_cmp(&square(b)));
+        worst.map_or(Self { place: 0, samples: 0..0 }, |(place, samples)| Self { place, samples })
+    }
+}
+
+impl<'l, 'a> Drawing<'l, 'a> {
+    fn of(layout: &'l JointLayout<'a>, improved: &ImprovedJoint<'_>) -> Self {
+        let trials = &layout.trials;
+        let ends = trials.iter().flat_map(|t| [seconds(t, 1), seconds(t, t.trial.len())]);
+        let x = Span::around(ends, 0.005);
+        let outputs = trials.iter().flat_map(|trial| trial.trial.output().iter().copied());
+        let residuals =
+            improved.revisions.iter().flat_map(|r| r.comparison.fit.evaluation.residuals.iter());
+        let residuals = residuals.flatten().copied();
+        let window = Window::worst(&first_residuals(layout, improved));
+        Self {
+            layout,
+            output: Plot::within((120.0, 900.0), 40.0..=290.0, x, Span::around(outputs, 0.08)),
+            close: close_up(layout, &window),
+            window,
+            residual: Plot::new(352.0..=560.0, x, Span::around(residuals, 0.05)),
+            samples: trials.iter().map(|trial| trial.trial.len()).sum(),
+        }
+    }
+
+    fn sheet(&self, improved: &ImprovedJoint<'_>) -> Sheet {
+        let unit = &improved.finding.compared.joint.output_unit;
+        let unit = unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}]"));
+        let mut sheet = Sheet::default();
+        let output = format!("measured (white) and simulated (orange){unit}");
+        sheet.frame(&self.output, &self.output.x_span().ticks(8.0), &ticks(&self.output), &output);
+        let first = improved.first_revision;
+        let close = format!("close up: where revision {first} was worst");
+        sheet.frame(&self.close, &[], &ticks(&self.close), &close);
+        let close = self.close.x_span();
+        for end in [close.low, close.high] {
+            sheet.put(self.close.below(end, 2.0), format!("{} s", short(end)));
+        }
+        let residual = format!(
+            "measured − simulated{unit}: noise alone stays between the blue lines; time [s]"
+        );
+        let x_ticks = self.residual.x_span().ticks(10.0);
+        sheet.frame(&self.residual, &x_ticks, &ticks(&self.residual), &residual);
+        for x in x_ticks {
+            sheet.put(self.residual.below(x, 2.0), short(x));
+        }
+        sheet
+    }
+
+    /// The ends of the window in the plot of the whole record.
+    fn window_in_record(&self) -> Strips {
+        let Span { low, high } = self.close.x_span();
+        [low, high].map(|x| self.output.vertical(x).to_vec()).to_vec()
+    }
+
+    /// Curves of the output: a trial each, and the close-up.
+    fn outputs<'v>(&self, values: impl Fn(&TrialLayout<'a>) -> &'v [f64]) -> Strips {
+        let mut curves = self.curves(&self.output, &values);
+        let trial = self.layout.trials.get(self.window.place);
+        let close = trial.map(|trial| {
+            let part = values(trial).get(self.window.samples.clone()).unwrap_or_default();
+            let first = self.window.samples.start + 1;
+            let kept = thinned_to(part, POINTS).into_iter();
+            let place = |k: usize| Some(self.close.at(seconds(trial, first + k), *part.get(k)?));
+            simplified(kept.filter_map(place).collect())
+        });
+        curves.extend(close);
+        curves
+    }
+
+    /// A curve per trial.
+    fn curves<'v>(&self, plot: &Plot, values: impl Fn(&TrialLayout<'a>) -> &'v [f64]) -> Strips {
+        let curve = |trial: &TrialLayout<'a>| {
+            let values = values(trial);
+            let share = POINTS * trial.trial.len() / self.samples.max(1);
+            let kept = thinned_to(values, share.max(100)).into_iter();
+            let places = kept.filter_map(|k| Some(plot.at(seconds(trial, k + 1), *values.get(k)?)));
+            simplified(places.collect())
+        };
+        self.layout.trials.iter().map(curve).collect()
+    }
+
+    fn simulated(&self, comparison: &Comparison) -> Strips {
+        let all = &comparison.fit.evaluation.simulated;
+        self.outputs(|trial| {
+            all.get(trial.index).map_or(&[], |simulated| simulated.output.as_slice())
+        })
+    }
+
+    fn left(&self, comparison: &Comparison) -> Strips {
+        let all = &comparison.fit.evaluation.residuals;
+        self.curves(&self.residual, |trial| all.get(trial.index).map_or(&[], Vec::as_slice))
+    }
+
+    fn band(&self, comparison: &Comparison) -> Strips {
+        let levels = comparison.noise_floor.map(|noise| [BAND * noise, -BAND * noise]);
+        levels.into_iter().flatten().map(|y| self.residual.level(y).to_vec()).collect()
+    }
+
+    /// What the revision is, and its error in multiples of the noise.
+    fn names(&self, improved: &ImprovedJoint<'_>, at: usize) -> Labels {
+        let mut labels = Labels::default();
+        let Some((number, revision)) = improved.numbered().nth(at) else { return labels };
+        let name = format!("revision {number}: {}", change_in_words(revision));
+        let left = self.output.x_span().low;
+        labels.put_whole(beside(&self.output, left), name);
+        let error = judged(&revision.comparison);
+        let noise = revision.comparison.noise_floor.filter(|noise| *noise > 0.0);
+        if let Some(noise) = noise {
+            let times = format!("error {} × noise", short(error / noise));
+            labels.put_whole(beside(&self.residual, left), times);
+        }
+        labels
+    }
+}
+
+/// What the first revision leaves of each trial.
+fn first_residuals<'v>(layout: &JointLayout<'_>, improved: &ImprovedJoint<'v>) -> Vec<&'v [f64]> {
+    let first = improved.revisions.first();
+    let all = first.map_or(&[][..], |first| &first.comparison.fit.evaluation.residuals);
+    let of_trial = |trial: &TrialLayout<'_>| all.get(trial.index).map_or(&[][..], Vec::as_slice);
+    layout.trials.iter().map(of_trial).collect()
+}
+
+/// The plot of a window.
+fn close_up(layout: &JointLayout<'_>, window: &Window) -> Plot {
+    let trial = layout.trials.get(window.place);
+    let ends = trial.map(|trial| {
+        let Range { start, end } = window.samples;
+        [seconds(trial, start + 1), seconds(trial, end)]
+    });
+    let output = trial.and_then(|trial| trial.trial.output().get(window.samples.clone()));
+    let output = output.unwrap_or_default().iter().copied();
+    let x = Span::around(ends.into_iter().flatten(), 0.0);
+    Plot::within((1010.0, SHEET.0 - 15.0), 40.0..=290.0, x, Span::around(output, 0.08))
+}
+
+/// Left, at the height of a plot's title.
+fn beside(plot: &Plot, left: f64) -> Vec2D {
+    plot.above(left, 26.0)
+}
+
+fn ticks(plot: &Plot) -> Vec<(f64, String)> {
+    plot.y_span().ticks(4.0).into_iter().map(|tick| (tick, short(tick))).collect()
+}
+
+fn seconds(trial: &TrialLayout<'_>, sample: usize) -> f64 {
+    trial.time_ns(sample) as f64 * 1e-9
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_is_where_the_residual_is_largest_and_within_a_trial() {
+        let quiet = vec![0.1; 600];
+        let mut loud = quiet.clone();
+        loud[300..330].fill(2.0);
+        let window = Window::worst(&[quiet.as_slice(), loud.as_slice(), quiet.as_slice()]);
+        assert_eq!(window.place, 1);
+        assert_eq!(window.samples.len(), 120);
+        assert!(window.samples.start <= 300 && window.samples.end >= 330);
+        assert_eq!(Window::worst(&[]), Window { place: 0, samples: 0..0 });
+    }
+}

@@ -1,0 +1,56 @@
+//! A revision in words.
+
+use std::fmt::Write as _;
+
+use super::judged;
+use crate::recording::entity::plain;
+use crate::recording::error_share::short;
+use crate::recording::model::certainty;
+use crate::report::{ImprovedJoint, change_in_words, number, parameter_units};
+
+/// The page of the revision at `place`.
+pub(super) fn page(improved: &ImprovedJoint<'_>, place: usize) -> String {
+    written(improved, place).unwrap_or_default()
+}
+
+fn written(improved: &ImprovedJoint<'_>, place: usize) -> Result<String, std::fmt::Error> {
+    let mut page = String::new();
+    let Some((revision, step)) = improved.numbered().nth(place) else { return Ok(page) };
+    let last = improved.numbered().last().map_or(revision, |(number, _)| number);
+    writeln!(page, "## Revision {revision} of {last}: {}\n", plain(&change_in_words(step)))?;
+    writeln!(page, "**{}**\n", plain(&fall(improved, place)))?;
+    let words = improved.words_of(place);
+    writeln!(page, "### {}\n\n{}\n", plain(&words.headline), plain(&words.paragraph))?;
+    for command in &words.commands {
+        writeln!(page, "    {command}\n")?;
+    }
+    writeln!(page, "| parameter | value | standard error |\n|---|---|---|")?;
+    let fit = &step.comparison.fit;
+    let units = parameter_units(improved.finding.compared.joint, &fit.model);
+    for (parameter, unit) in fit.parameters.iter().zip(units) {
+        let (name, value) = (plain(&parameter.name), number(parameter.value));
+        writeln!(page, "| {name} | {value} {} | {} |", plain(&unit), certainty(parameter))?;
+    }
+    writeln!(page, "\n{HOW}")?;
+    Ok(page)
+}
+
+const HOW: &str = "\
+*Right and left arrow go from revision to revision: timeline `revision`. The pages behind this \
+one follow `decision`, `sample` or `time`: choose it at the bottom.*";
+
+/// What the error is, and what it was before.
+fn fall(improved: &ImprovedJoint<'_>, place: usize) -> String {
+    let unit = improved.finding.compared.joint.output_unit.as_deref().unwrap_or("");
+    let error = |place: usize| Some(judged(&improved.revisions.get(place)?.comparison));
+    let Some(now) = error(place) else { return String::new() };
+    let comparison = improved.revisions.get(place).map(|step| &step.comparison);
+    let floor = comparison.and_then(|c| c.noise_floor).filter(|noise| *noise > 0.0);
+    let times = floor.map_or_else(String::new, |n| format!(", {} times the noise", short(now / n)));
+    match place.checked_sub(1).and_then(error) {
+        Some(before) => {
+            format!("Error: {} → {} {unit}{times}", short(before), short(now))
+        }
+        None => format!("Error: {} {unit}{times}", short(now)),
+    }
+}

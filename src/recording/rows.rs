@@ -1,0 +1,127 @@
+//! Drawings that change along a timeline: a row per drawing, one call per entity.
+
+use rerun::datatypes::Vec2D;
+use rerun::{Color, EntityPath, LineStrips2D, Points2D};
+
+use super::canvas::Labels;
+use super::chunk::{Chunks, Index};
+use super::entity::below;
+use super::error::RecordError;
+use super::palette::{Rgb, color};
+
+/// Radius of a text's own point: too small to be seen.
+const HIDDEN: f32 = 0.01;
+
+/// Rows of the entities below one root, all at the same moments.
+pub(super) struct Rows<'c> {
+    chunks: &'c mut Chunks,
+    root: EntityPath,
+    index: Index,
+    /// Where the next lines are drawn: behind those that follow, where it matters.
+    order: Option<f32>,
+}
+
+impl<'c> Rows<'c> {
+    /// Rows at the moments of `index`.
+    pub(super) fn new(chunks: &'c mut Chunks, root: EntityPath, index: Index) -> Self {
+        Self { chunks, root, index, order: None }
+    }
+
+    /// The same, what is pushed first being drawn behind the rest.
+    pub(super) fn back_to_front(self) -> Self {
+        Self { order: Some(1.0), ..self }
+    }
+
+    pub(super) fn strips(
+        &mut self,
+        name: &str,
+        rgb: Rgb,
+        radius: f32,
+        rows: impl Iterator<Item = Vec<Vec<Vec2D>>>,
+    ) -> Result<(), RecordError> {
+        let (strips, lengths) = flattened(rows);
+        let style = LineStrips2D::update_fields().with_colors([color(rgb)]).with_radii([radius]);
+        self.lines(name, style, LineStrips2D::update_fields().with_strips(strips), lengths)
+    }
+
+    /// Strips with a colour each.
+    pub(super) fn colored(
+        &mut self,
+        name: &str,
+        radius: f32,
+        rows: impl Iterator<Item = Vec<(Vec<Vec2D>, Color)>>,
+    ) -> Result<(), RecordError> {
+        let (strips, lengths) = flattened(rows);
+        let (strips, colors): (Vec<_>, Vec<_>) = strips.into_iter().unzip();
+        let lines = LineStrips2D::update_fields().with_strips(strips).with_colors(colors);
+        let style = LineStrips2D::update_fields().with_radii([radius]);
+        self.lines(name, style, lines, lengths)
+    }
+
+    fn lines(
+        &mut self,
+        name: &str,
+        mut style: LineStrips2D,
+        lines: LineStrips2D,
+        lengths: Vec<usize>,
+    ) -> Result<(), RecordError> {
+        let entity = below(&self.root, &[name]);
+        if let Some(order) = self.next_order() {
+            style = style.with_draw_order(order);
+        }
+        self.chunks.push_static(entity.clone(), &style)?;
+        self.chunks.push(entity, self.index.clone(), lines.columns(lengths)?)
+    }
+
+    pub(super) fn points(
+        &mut self,
+        name: &str,
+        rgb: Rgb,
+        radius: f32,
+        rows: impl Iterator<Item = Vec<Vec2D>>,
+    ) -> Result<(), RecordError> {
+        let entity = below(&self.root, &[name]);
+        let (points, lengths) = flattened(rows);
+        let mut style = Points2D::update_fields().with_colors([color(rgb)]).with_radii([radius]);
+        if let Some(order) = self.next_order() {
+            style = style.with_draw_order(order);
+        }
+        self.chunks.push_static(entity.clone(), &style)?;
+        let columns = Points2D::update_fields().with_positions(points).columns(lengths)?;
+        self.chunks.push(entity, self.index.clone(), columns)
+    }
+
+    pub(super) fn texts(
+        &mut self,
+        name: &str,
+        rgb: Rgb,
+        rows: impl Iterator<Item = Labels>,
+    ) -> Result<(), RecordError> {
+        let entity = below(&self.root, &[name]);
+        let style = Points2D::update_fields().with_colors([color(rgb)]).with_radii([HIDDEN]);
+        self.chunks.push_static(entity.clone(), &style.with_show_labels(true))?;
+        let (mut places, mut texts, mut lengths) = (Vec::new(), Vec::new(), Vec::new());
+        for labels in rows {
+            lengths.push(labels.places.len());
+            places.extend(labels.places);
+            texts.extend(labels.texts);
+        }
+        let points = Points2D::update_fields().with_positions(places).with_labels(texts);
+        self.chunks.push(entity, self.index.clone(), points.columns(lengths)?)
+    }
+
+    fn next_order(&mut self) -> Option<f32> {
+        let order = self.order?;
+        self.order = Some(order + 1.0);
+        Some(order)
+    }
+}
+
+fn flattened<T>(rows: impl Iterator<Item = Vec<T>>) -> (Vec<T>, Vec<usize>) {
+    let (mut all, mut lengths) = (Vec::new(), Vec::new());
+    for row in rows {
+        lengths.push(row.len());
+        all.extend(row);
+    }
+    (all, lengths)
+}
