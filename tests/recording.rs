@@ -172,7 +172,7 @@ impl ReadBack {
                 if store.is_blueprint() {
                     let timeline = "TimePanelBlueprint:timeline".into();
                     if let Some(cell) = chunk.components().get_array(timeline) {
-                        opens_on = cell.value(0).as_string::<i32>().value(0).to_owned();
+                        cell.value(0).as_string::<i32>().value(0).clone_into(&mut opens_on);
                     }
                     continue;
                 }
