@@ -1,0 +1,92 @@
+//! How often explain and improve find what is hidden in a record.
+//!
+//! Joints of the synthetic plant, which shares no equation with the models, hide nothing,
+//! each effect of the catalogue in turn, two or three of them, or something that the
+//! catalogue does not have; one is moved by a cylinder. What explain names and improve adds
+//! is held against the truth. The page goes to standard output, progress to standard error.
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "an example prints")]
+
+#[path = "hidden_effect_table/cases.rs"]
+mod cases;
+#[path = "hidden_effect_table/outcome.rs"]
+mod outcome;
+#[path = "hidden_effect_table/page.rs"]
+mod page;
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+use anyhow::anyhow;
+use clap::Parser;
+use tauscope::batch::with_threads;
+
+use cases::{Case, Counts, cases};
+use outcome::{Outcome, examine};
+use page::page;
+
+/// Hide effects in simulated joints, and count what is found of them
+#[derive(Debug, Parser)]
+struct Args {
+    #[command(flatten)]
+    counts: Counts,
+
+    /// Records at the same time [default: as many as there are processors]
+    #[arg(long)]
+    threads: Option<usize>,
+}
+
+/// A record, and what became of it.
+struct Judged {
+    case: Case,
+    outcome: anyhow::Result<Outcome>,
+}
+
+fn main() -> anyhow::Result<()> {
+    let args = Args::parse();
+    let processors = thread::available_parallelism().map_or(1, usize::from);
+    let judged = judged(cases(args.counts), args.threads.unwrap_or(processors).max(1))?;
+    print!("{}", page(args.counts, &judged));
+    Ok(())
+}
+
+/// What becomes of `cases`, `threads` at a time, in their order.
+fn judged(cases: Vec<Case>, threads: usize) -> anyhow::Result<Vec<Judged>> {
+    let (next, done) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    let work = || {
+        while let Some((index, case)) = next_of(&cases, &next) {
+            // One thread for each record: there are enough of them.
+            let outcome = with_threads(Some(1), || examine(case)).map_err(anyhow::Error::from);
+            let outcome = outcome.flatten();
+            tell(&cases, index, &outcome);
+            done.lock().map_err(|_| anyhow!("a thread has failed"))?.push((index, outcome));
+        }
+        Ok(())
+    };
+    thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        let ended = workers
+            .into_iter()
+            .map(|worker| worker.join().unwrap_or_else(|_| Err(anyhow!("a thread has failed"))));
+        ended.collect::<anyhow::Result<()>>()
+    })?;
+    let mut done = done.into_inner().map_err(|_| anyhow!("a thread has failed"))?;
+    done.sort_by_key(|(index, _)| *index);
+    let outcomes = done.into_iter().map(|(_, outcome)| outcome);
+    Ok(cases.into_iter().zip(outcomes).map(|(case, outcome)| Judged { case, outcome }).collect())
+}
+
+/// The next of `cases` that nobody has taken.
+fn next_of<'c>(cases: &'c [Case], next: &AtomicUsize) -> Option<(usize, &'c Case)> {
+    let index = next.fetch_add(1, Ordering::Relaxed);
+    cases.get(index).map(|case| (index, case))
+}
+
+fn tell(cases: &[Case], index: usize, outcome: &anyhow::Result<Outcome>) {
+    let title = cases.get(index).map(Case::title).unwrap_or_default();
+    let became = match outcome {
+        Ok(outcome) => outcome.chain.clone(),
+        Err(error) => format!("{error:#}"),
+    };
+    eprintln!("{} of {}: {title}: {became}", index + 1, cases.len());
+}

@@ -1,0 +1,409 @@
+//! The page: what was hidden against what was found, in Markdown.
+
+use std::fmt::Write as _;
+
+use tauscope::diagnosis::failure::Feature;
+use tauscope::explain::Verdict;
+use tauscope::statistics::{median, quantile};
+use tauscope::synthetic::effects::{CATALOGUE, OUTSIDE};
+
+use super::Judged;
+use super::cases::{Case, Counts, Group, NOISE};
+use super::outcome::{Named, Outcome, in_words};
+
+/// A validation error so many times the noise is down to it.
+const DOWN_TO_NOISE: f64 = 1.15;
+
+/// Part of the integrator's error that is to be taken away from the cylinder.
+const MOST_OF_IT: f64 = 0.9;
+
+/// Half the width of a 95 % interval, in standard errors.
+const QUANTILE_95: f64 = 1.96;
+
+type Pair<'j> = (&'j Case, &'j Outcome);
+
+/// The whole page.
+pub(crate) fn page(counts: Counts, judged: &[Judged]) -> String {
+    let known: Vec<Pair<'_>> = judged
+        .iter()
+        .filter_map(|judged| Some((&judged.case, judged.outcome.as_ref().ok()?)))
+        .collect();
+    let mut text = head(counts, known.len());
+    text += &one_hidden(&known);
+    text += &confusion(&known);
+    text += &nothing_hidden(&known);
+    text += &several_hidden(&known);
+    text += &outside(&known);
+    text += &cylinder(&known);
+    text += &coverage(&known);
+    text += &went_wrong(judged);
+    text
+}
+
+fn head(counts: Counts, records: usize) -> String {
+    let Counts { one, nothing, two, three, outside, cylinder, first_seed } = counts;
+    format!(
+        "# What is found of what is hidden
+
+Made by
+
+```sh
+cargo run --release --no-default-features --example hidden_effect_table -- --one {one} \\
+    --nothing {nothing} --two {two} --three {three} --outside {outside} --cylinder {cylinder} \\
+    --first-seed {first_seed} > docs/hidden_effect_table.md
+```
+
+{records} records of two minutes at 100 Hz, white or coloured noise of {NOISE} deg, each from a
+seed of its own. The plant that makes them shares no equation with the models
+([simulating.md](simulating.md)). *Clear* is what makes the nearest integrator wrong by some
+12 times the noise, *weak* by some 3 times. `explain` and `improve` start with a plain
+integrator and have the whole catalogue; both restart at every step of the input.
+
+*Named first*: the first of the ranking, with the verdict `missing_effect`; half where it is
+only among what the first cannot be told from. *Exactly*: after `improve` the model has what is
+hidden and nothing else. *Error*: validation error after `improve`, over the noise.
+"
+    )
+}
+
+/// `12 of 14 (85.7 %)`; `-` of none.
+fn share(count: usize, of: usize) -> String {
+    share_of(count as f64, of)
+}
+
+fn share_of(count: f64, of: usize) -> String {
+    if of == 0 {
+        return "-".to_owned();
+    }
+    format!("{count} of {of} ({:.1} %)", 100.0 * count / of as f64)
+}
+
+/// `| a | b |`
+fn row(cells: &[String]) -> String {
+    format!("| {} |\n", cells.join(" | "))
+}
+
+fn header(cells: &[&str]) -> String {
+    let rule: Vec<&str> = cells.iter().map(|_| "---").collect();
+    format!("\n| {} |\n| {} |\n", cells.join(" | "), rule.join(" | "))
+}
+
+/// Median, 95th percentile and share down to the noise of the final errors.
+fn errors<'j>(pairs: impl Iterator<Item = &'j Pair<'j>>) -> [String; 3] {
+    let errors: Vec<f64> = pairs.map(|(_, outcome)| outcome.errors[1]).collect();
+    let low = errors.iter().filter(|error| **error <= DOWN_TO_NOISE).count();
+    let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.3}"));
+    [number(median(&errors)), number(quantile(&errors, 0.95)), share(low, errors.len())]
+}
+
+/// 1 where the effect is named first, 1/2 where it is among the equals of the first.
+fn credit(case: &Case, named: &Named) -> f64 {
+    let [hidden] = case.hidden[..] else { return 0.0 };
+    match named.verdict {
+        Verdict::MissingEffect if named.first == hidden => 1.0,
+        Verdict::MissingEffect if named.equals.contains(&hidden) => 0.5,
+        _ => 0.0,
+    }
+}
+
+/// Whether the last revision has what is hidden, and nothing else.
+fn is_exact(case: &Case, outcome: &Outcome) -> bool {
+    has_all(case, outcome) && outcome.found.len() == case.hidden.len()
+}
+
+fn has_all(case: &Case, outcome: &Outcome) -> bool {
+    case.hidden.iter().all(|hidden| outcome.found.contains(hidden))
+}
+
+/// Strength and noise, those of `pairs` that have them; and each strength with any noise.
+fn cells<'j>(pairs: &'j [Pair<'j>]) -> Vec<([String; 2], Vec<Pair<'j>>)> {
+    let mut cells: Vec<([String; 2], Vec<Pair<'j>>)> = Vec::new();
+    for pair in pairs {
+        let (strength, noise) = (pair.0.strength().to_owned(), pair.0.noise());
+        for key in [[strength.clone(), noise], [strength, "all".to_owned()]] {
+            match cells.iter_mut().find(|(known, _)| *known == key) {
+                Some((_, members)) => members.push(*pair),
+                None => cells.push((key, vec![*pair])),
+            }
+        }
+    }
+    cells.sort_by(|a, b| (&a.0[0], a.0[1] == "all").cmp(&(&b.0[0], b.0[1] == "all")));
+    cells
+}
+
+fn of_group<'j>(pairs: &[Pair<'j>], group: Group) -> Vec<Pair<'j>> {
+    pairs.iter().filter(|(case, _)| case.group == group).copied().collect()
+}
+
+fn one_hidden(pairs: &[Pair<'_>]) -> String {
+    let pairs = of_group(pairs, Group::One);
+    if pairs.is_empty() {
+        return String::new();
+    }
+    let mut text = "\n## One effect hidden\n".to_owned();
+    text += &header(&[
+        "strength",
+        "noise",
+        "named first",
+        "exactly",
+        "error, median",
+        "95 %",
+        "error ≤ 1.15",
+    ]);
+    for ([strength, noise], members) in cells(&pairs) {
+        let credits = members.iter().filter_map(|(case, o)| Some(credit(case, o.named.as_ref()?)));
+        let exact = members.iter().filter(|(case, outcome)| is_exact(case, outcome)).count();
+        let (credits, exact) =
+            (share_of(credits.sum(), members.len()), share(exact, members.len()));
+        let mut line = vec![strength, noise, credits, exact];
+        line.extend(errors(members.iter()));
+        text += &row(&line);
+    }
+    text
+}
+
+/// What explain names, in the columns of the matrix; the verdict where it names nothing.
+fn answer(named: &Named) -> &str {
+    match named.verdict {
+        Verdict::MissingEffect => &named.first,
+        other => in_words(other),
+    }
+}
+
+/// What is hidden down, what is named first across.
+fn confusion(pairs: &[Pair<'_>]) -> String {
+    let asked: Vec<(&str, &str)> = pairs
+        .iter()
+        .filter_map(|(case, outcome)| {
+            let hidden = case.hidden.first().copied().unwrap_or("nothing");
+            Some((hidden, answer(outcome.named.as_ref()?)))
+        })
+        .collect();
+    if asked.is_empty() {
+        return String::new();
+    }
+    let verdicts = [Verdict::Adequate, Verdict::Unexplained].map(in_words);
+    let columns: Vec<&str> = CATALOGUE.into_iter().chain(verdicts).collect();
+    let rows = CATALOGUE.into_iter().chain(["nothing"]).chain(OUTSIDE);
+    let mut text = "\n## Hidden (down) and named first (across)\n\n```text\n".to_owned();
+    let numbers: String = (1..=columns.len()).map(|number| format!("{number:4}")).collect();
+    let _ = writeln!(text, "{:24}{numbers}", "");
+    for (number, hidden) in (1..).zip(rows) {
+        let count = |column: &&str| asked.iter().filter(|pair| **pair == (hidden, *column)).count();
+        let counts = columns.iter().map(|column| match count(column) {
+            0 => format!("{:>4}", "."),
+            count => format!("{count:4}"),
+        });
+        let number =
+            if number <= CATALOGUE.len() { format!("{number:2}") } else { "  ".to_owned() };
+        let _ = writeln!(text, "{number} {hidden:21}{}", counts.collect::<String>());
+    }
+    let [adequate, unexplained] = [CATALOGUE.len() + 1, CATALOGUE.len() + 2];
+    let _ = writeln!(text, "\n{adequate}: `adequate`; {unexplained}: `unexplained`\n```");
+    text
+}
+
+fn nothing_hidden(pairs: &[Pair<'_>]) -> String {
+    let own = of_group(pairs, Group::Nothing);
+    let mut text = "\n## Nothing hidden\n".to_owned();
+    text += &header(&["noise", "adequate"]);
+    let adequate =
+        |outcome: &Outcome| outcome.found.is_empty() && outcome.verdict == Verdict::Adequate;
+    let mut noises: Vec<String> = own.iter().map(|(case, _)| case.noise()).collect();
+    noises.dedup();
+    for noise in noises {
+        let members: Vec<_> = own.iter().filter(|(case, _)| case.noise() == noise).collect();
+        let right = members.iter().filter(|(_, outcome)| adequate(outcome)).count();
+        text += &row(&[noise, share(right, members.len())]);
+    }
+    let right = own.iter().filter(|(_, outcome)| adequate(outcome)).count();
+    text += &row(&["all".to_owned(), share(right, own.len())]);
+    let others: Vec<bool> =
+        pairs.iter().filter_map(|(_, outcome)| outcome.other_adequate).collect();
+    let right = others.iter().filter(|adequate| **adequate).count();
+    text += &row(&["the joint beside it, in every record".to_owned(), share(right, others.len())]);
+    text
+}
+
+fn several_hidden(pairs: &[Pair<'_>]) -> String {
+    let mut text = String::new();
+    for (group, title) in [(Group::Two, "Two"), (Group::Three, "Three")] {
+        let pairs = of_group(pairs, group);
+        if pairs.is_empty() {
+            continue;
+        }
+        let _ = writeln!(text, "\n## {title} effects hidden");
+        text += &header(&[
+            "strength",
+            "noise",
+            "exactly",
+            "all and more",
+            "error, median",
+            "95 %",
+            "error ≤ 1.15",
+        ]);
+        for ([strength, noise], members) in cells(&pairs) {
+            let exact = members.iter().filter(|(case, outcome)| is_exact(case, outcome)).count();
+            let all = members.iter().filter(|(case, outcome)| has_all(case, outcome)).count();
+            let of = members.len();
+            let mut line = vec![strength, noise, share(exact, of), share(all - exact, of)];
+            line.extend(errors(members.iter()));
+            text += &row(&line);
+        }
+    }
+    text
+}
+
+/// What a condition must be about to point at an effect outside the catalogue.
+fn place(hidden: &str) -> &'static [Feature] {
+    match hidden {
+        "input_notch" => &[Feature::Input, Feature::AbsInput],
+        "creep_memory" => &[Feature::SinceStep, Feature::Hold],
+        "sticky_spot" | "sensor_nonlinearity" => &[Feature::Output],
+        "disturbance" => &[Feature::Time],
+        _ => &[],
+    }
+}
+
+fn points_at(case: &Case, outcome: &Outcome) -> bool {
+    let place = case.hidden.first().map_or(&[][..], |hidden| place(hidden));
+    let about = |features: &[Feature]| features.iter().any(|feature| place.contains(feature));
+    outcome.fails.iter().any(|fails| about(&fails.features))
+}
+
+fn outside(pairs: &[Pair<'_>]) -> String {
+    let pairs = of_group(pairs, Group::Outside);
+    if pairs.is_empty() {
+        return String::new();
+    }
+    let mut text = "\n## Outside the catalogue\n".to_owned();
+    text += "\n*Points at it*: where the integrator fails is told by what the effect depends on.\n";
+    text += &header(&[
+        "hidden",
+        "strength",
+        "explain: unexplained",
+        "improve: adequate",
+        "points at it",
+    ]);
+    for hidden in OUTSIDE {
+        for strength in ["clear", "weak"] {
+            let here =
+                |(case, _): &&Pair<'_>| case.hidden == [hidden] && case.strength() == strength;
+            let members: Vec<_> = pairs.iter().filter(here).collect();
+            let of = members.len();
+            let count = |is: &dyn Fn(&Pair<'_>) -> bool| {
+                share(members.iter().filter(|pair| is(pair)).count(), of)
+            };
+            text += &row(&[
+                hidden.to_owned(),
+                strength.to_owned(),
+                count(&|(_, outcome)| says(outcome, Verdict::Unexplained)),
+                count(&|(_, outcome)| outcome.verdict == Verdict::Adequate),
+                count(&|(case, outcome)| points_at(case, outcome)),
+            ]);
+        }
+    }
+    text
+}
+
+/// Whether explain comes to this verdict.
+fn says(outcome: &Outcome, verdict: Verdict) -> bool {
+    outcome.named.as_ref().is_some_and(|named| named.verdict == verdict)
+}
+
+fn cylinder(pairs: &[Pair<'_>]) -> String {
+    let pairs = of_group(pairs, Group::Cylinder);
+    if pairs.is_empty() {
+        return String::new();
+    }
+    let mut text = "\n## The cylinder\n".to_owned();
+    text += &header(&["seed", "integrator", "after improve", "taken away", "effects"]);
+    for (case, outcome) in pairs {
+        let [before, after] = outcome.errors;
+        text += &row(&[
+            case.seed.to_string(),
+            format!("{before:.2}"),
+            format!("{after:.2}"),
+            format!("{:.1} %", 100.0 * (1.0 - after / before)),
+            outcome.found.join(", "),
+        ]);
+    }
+    text
+}
+
+/// Of parameters that both plant and model have, where exactly the hidden was found.
+fn coverage(pairs: &[Pair<'_>]) -> String {
+    let exact = pairs.iter().filter(|(case, outcome)| is_exact(case, outcome));
+    let estimates: Vec<_> = exact.flat_map(|(_, outcome)| &outcome.estimates).collect();
+    let mut names: Vec<&str> = estimates.iter().map(|estimate| estimate.name.as_str()).collect();
+    names.sort_by_key(|name| (name.contains('.'), *name));
+    names.dedup();
+    let mut text = "\n## Parameters\n\nOf records where exactly what is hidden was found, and of \
+                    parameters that the plant has\nunder the same name; its formulas are others.\n"
+        .to_owned();
+    text += &header(&["parameter", "in the 95 % interval", "median error / SE", "no SE"]);
+    for name in names {
+        let of_name = estimates.iter().filter(|estimate| estimate.name == name);
+        let all = of_name.clone().count();
+        let scores: Vec<f64> = of_name.filter_map(|estimate| estimate.score).collect();
+        let inside = scores.iter().filter(|score| score.abs() <= QUANTILE_95).count();
+        let middle = median(&scores).map_or("-".to_owned(), |middle| format!("{middle:+.1}"));
+        let without = (all - scores.len()).to_string();
+        text += &row(&[name.to_owned(), share(inside, scores.len()), middle, without]);
+    }
+    text
+}
+
+/// Why a record went wrong; nothing where it did not.
+fn fault(case: &Case, outcome: &Outcome) -> Option<String> {
+    let [before, after] = outcome.errors;
+    let named = outcome.named.as_ref();
+    let mut faults = Vec::new();
+    if case.group == Group::One && named.is_some_and(|named| credit(case, named) < 1.0) {
+        faults.push(format!("explain: {}", named.map_or("", answer)));
+    }
+    match case.group {
+        Group::Cylinder if after > (1.0 - MOST_OF_IT) * before => {
+            faults.push("too little taken away".to_owned());
+        }
+        Group::Cylinder => (),
+        Group::Outside => {
+            if outcome.verdict == Verdict::Adequate {
+                faults.push("adequate".to_owned());
+            }
+            if !says(outcome, Verdict::Unexplained) {
+                faults.push(format!("explain: {}", named.map_or("", answer)));
+            }
+            if !points_at(case, outcome) {
+                let conditions = outcome.fails.iter().map(|fails| fails.condition.as_str());
+                faults.push(format!("points at [{}]", conditions.collect::<Vec<_>>().join("; ")));
+            }
+        }
+        _ if !is_exact(case, outcome) => faults.push("other effects".to_owned()),
+        _ if case.group != Group::Nothing && after > DOWN_TO_NOISE => {
+            faults.push("above the noise".to_owned());
+        }
+        _ if outcome.verdict != Verdict::Adequate => {
+            faults.push(in_words(outcome.verdict).to_owned())
+        }
+        _ => (),
+    }
+    (!faults.is_empty()).then(|| faults.join(", "))
+}
+
+fn went_wrong(judged: &[Judged]) -> String {
+    let wrong = judged.iter().filter_map(|Judged { case, outcome }| match outcome {
+        Ok(outcome) => {
+            Some(format!("- {}: **{}**; {}\n", case.title(), fault(case, outcome)?, outcome.chain))
+        }
+        Err(error) => Some(format!("- {}: **not made**: {error:#}\n", case.title())),
+    });
+    let wrong: Vec<String> = wrong.collect();
+    let count = share(wrong.len(), judged.len());
+    format!(
+        "\n## Records that went wrong\n\n{count}; each with its revisions and their validation \
+         errors over the noise.\n`tauscope simulate --effect NAME --strength STRENGTH --seed SEED` \
+         makes those that hide one\neffect again, with `--noise-correlation 0.9` for AR(1).\n\n{}",
+        wrong.concat()
+    )
+}
