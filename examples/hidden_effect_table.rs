@@ -20,6 +20,7 @@ use std::thread;
 use anyhow::anyhow;
 use clap::Parser;
 use tauscope::batch::with_threads;
+use tauscope::explain::Options;
 
 use cases::{Case, Counts, cases};
 use outcome::{Outcome, examine};
@@ -45,18 +46,20 @@ struct Judged {
 fn main() -> anyhow::Result<()> {
     let args = Args::parse();
     let processors = thread::available_parallelism().map_or(1, usize::from);
-    let judged = judged(cases(args.counts), args.threads.unwrap_or(processors).max(1))?;
+    let (threads, options) = (args.threads.unwrap_or(processors).max(1), Options::default());
+    let judged = judged(cases(args.counts), &options, threads)?;
     print!("{}", page(args.counts, &judged));
     Ok(())
 }
 
 /// What becomes of `cases`, `threads` at a time, in their order.
-fn judged(cases: Vec<Case>, threads: usize) -> anyhow::Result<Vec<Judged>> {
+fn judged(cases: Vec<Case>, options: &Options, threads: usize) -> anyhow::Result<Vec<Judged>> {
     let (next, done) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     let work = || {
         while let Some((index, case)) = next_of(&cases, &next) {
             // One thread for each record: there are enough of them.
-            let outcome = with_threads(Some(1), || examine(case)).map_err(anyhow::Error::from);
+            let outcome =
+                with_threads(Some(1), || examine(case, options)).map_err(anyhow::Error::from);
             let outcome = outcome.flatten();
             tell(&cases, index, &outcome);
             done.lock().map_err(|_| anyhow!("a thread has failed"))?.push((index, outcome));
@@ -89,4 +92,23 @@ fn tell(cases: &[Case], index: usize, outcome: &anyhow::Result<Outcome>) {
         Err(error) => format!("{error:#}"),
     };
     eprintln!("{} of {}: {title}: {became}", index + 1, cases.len());
+}
+
+/// A record that hides one effect and one that hides none, and few effects to choose from.
+#[test]
+fn what_is_hidden_is_found_and_nothing_is_not() -> anyhow::Result<()> {
+    let counts =
+        Counts { one: 1, nothing: 1, two: 0, three: 0, outside: 0, cylinder: 0, first_seed: 1 };
+    let known = ["dead_band", "actuator_lag", "thermal_drift"];
+    let effects = known.into_iter().filter_map(tauscope::effect::by_id).collect();
+    let wanted = ["clear dead_band, white", "nothing, AR(1) 0.9"];
+    let is_wanted = |case: &Case| wanted.iter().any(|title| case.title().starts_with(title));
+    let some: Vec<Case> = cases(counts).into_iter().filter(is_wanted).collect();
+    let options = Options { effects, ..Options::default() };
+    let page = page(counts, &judged(some, &options, 2)?);
+    let all = "1 of 1 (100.0 %)";
+    assert!(page.contains(&format!("| clear | white | {all} | {all} | ")), "{page}");
+    assert!(page.contains(&format!("| AR(1) 0.9 | {all} |")), "{page}");
+    assert!(page.contains("\n0 of 2 (0.0 %); each"), "{page}");
+    Ok(())
 }

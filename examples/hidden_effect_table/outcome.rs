@@ -69,21 +69,19 @@ const PROTOCOL: Protocol =
     Protocol { mode: Mode::Integrator, split: None, horizon: Horizon::Steps };
 
 impl Log {
-    fn improved(&self) -> anyhow::Result<(Improvement, Option<bool>)> {
-        let options = Options::default();
+    fn improved(&self, options: &Options) -> anyhow::Result<(Improvement, Option<bool>)> {
         // Of the joint beside it only the verdict counts.
         let goes_on = |index: usize, _: &Revision| index == 0;
         let joints = &self.joints;
-        let found = improve_joints(joints, &self.estimates, |_| None, PROTOCOL, &options, goes_on);
+        let found = improve_joints(joints, &self.estimates, |_| None, PROTOCOL, options, goes_on);
         let mut found = found.into_iter().flatten();
         let first = found.next().context("no joint")??;
         let other = found.next().transpose()?;
         Ok((first, other.map(|other| other.verdict == Verdict::Adequate)))
     }
 
-    fn named(&self) -> anyhow::Result<Named> {
-        let options = Options::default();
-        let explained = explain_joints(&self.joints, &self.estimates, |_| None, PROTOCOL, &options);
+    fn named(&self, options: &Options) -> anyhow::Result<Named> {
+        let explained = explain_joints(&self.joints, &self.estimates, |_| None, PROTOCOL, options);
         let explained = explained.into_iter().flatten().next().context("no joint")??;
         let best = explained.ranking.first();
         Ok(Named {
@@ -94,15 +92,15 @@ impl Log {
     }
 }
 
-/// Makes the record of `case`, explains and improves it.
-pub(crate) fn examine(case: &Case) -> anyhow::Result<Outcome> {
+/// Makes the record of `case`, explains and improves it with the effects of `options`.
+pub(crate) fn examine(case: &Case, options: &Options) -> anyhow::Result<Outcome> {
     let plant = case.plant()?;
     let joints = simulate(&plant)?.joints;
     let estimates = estimate_joints(&joints, &Settings::default(), || ());
     let log = Log { joints, estimates };
-    let (improvement, other_adequate) = log.improved()?;
+    let (improvement, other_adequate) = log.improved(options)?;
     let is_asked = matches!(case.group, Group::One | Group::Outside | Group::Nothing);
-    let named = is_asked.then(|| log.named()).transpose()?;
+    let named = is_asked.then(|| log.named(options)).transpose()?;
     let spec = plant.joints.first().context("no joint")?;
     outcome(spec, &improvement, named, other_adequate)
 }

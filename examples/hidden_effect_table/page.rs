@@ -407,3 +407,79 @@ fn went_wrong(judged: &[Judged]) -> String {
         wrong.concat()
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use anyhow::anyhow;
+    use tauscope::synthetic::scenario::Strength;
+
+    use super::*;
+
+    fn case(group: Group, hidden: &[&'static str]) -> Case {
+        let (hidden, strength) = (hidden.to_vec(), Strength::Weak);
+        Case { group, hidden, strength, correlation: 0.0, spikes: false, seed: 7 }
+    }
+
+    fn named(first: &str, equals: &[&'static str]) -> Named {
+        let (first, equals) = (first.to_owned(), equals.to_vec());
+        Named { verdict: Verdict::MissingEffect, first, equals }
+    }
+
+    fn outcome(named: Named, found: &[&'static str], error: f64) -> Outcome {
+        Outcome {
+            named: Some(named),
+            found: found.to_vec(),
+            verdict: Verdict::Adequate,
+            errors: [3.0, error],
+            estimates: Vec::new(),
+            fails: Vec::new(),
+            chain: "the chain".to_owned(),
+            other_adequate: None,
+        }
+    }
+
+    #[test]
+    fn an_equal_of_the_first_counts_half_and_a_verdict_without_a_name_nothing() {
+        let case = case(Group::One, &["backlash"]);
+        let credit = |named: &Named| credit(&case, named).to_string();
+        assert_eq!(credit(&named("backlash", &[])), "1");
+        assert_eq!(credit(&named("stiction", &["backlash"])), "0.5");
+        assert_eq!(credit(&named("stiction", &["dead_band"])), "0");
+        let verdict = Verdict::Unexplained;
+        assert_eq!(credit(&Named { verdict, ..named("backlash", &[]) }), "0");
+    }
+
+    #[test]
+    fn what_went_wrong_is_told() {
+        let case = case(Group::One, &["backlash"]);
+        let told = |named, found: &[&'static str], error| {
+            fault(&case, &outcome(named, found, error)).unwrap_or_default()
+        };
+        assert_eq!(told(named("backlash", &[]), &["backlash"], 1.0), "");
+        assert_eq!(told(named("stiction", &[]), &["backlash"], 1.0), "explain: stiction");
+        assert_eq!(told(named("backlash", &[]), &["backlash", "stiction"], 1.0), "other effects");
+        assert_eq!(told(named("backlash", &[]), &["backlash"], 1.2), "above the noise");
+    }
+
+    #[test]
+    fn a_record_that_is_wrong_and_one_that_was_not_made_are_listed() {
+        let case = case(Group::One, &["backlash"]);
+        let wrong = Ok(outcome(named("stiction", &[]), &["stiction"], 2.5));
+        let not_made = Err(anyhow!("out of reach"));
+        let judged = [wrong, not_made].map(|outcome| Judged { case: case.clone(), outcome });
+        let counts =
+            Counts { one: 2, nothing: 0, two: 0, three: 0, outside: 0, cylinder: 0, first_seed: 7 };
+        let page = page(counts, &judged);
+        for part in [
+            "| weak | white | 0 of 1 (0.0 %) | 0 of 1 (0.0 %) | 2.500 | 2.500 | 0 of 1 (0.0 %) |",
+            "- weak backlash, white, seed 7: **explain: stiction, other effects**; the chain\n",
+            "- weak backlash, white, seed 7: **not made**: out of reach\n",
+            "2 of 2 (100.0 %); each",
+        ] {
+            assert!(page.contains(part), "no `{part}` in {page}");
+        }
+        let matrix = page.lines().find(|line| line.starts_with("18 backlash")).unwrap_or_default();
+        let counted: Vec<&str> = matrix.split_whitespace().collect();
+        assert_eq!((counted[4], counted[19]), ("1", "."), "named stiction, which is the third");
+    }
+}
