@@ -13,11 +13,10 @@ mod outcome;
 #[path = "hidden_effect_table/page.rs"]
 mod page;
 
-use std::sync::Mutex;
+use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
+use std::thread::{self, ScopedJoinHandle};
 
-use anyhow::anyhow;
 use clap::Parser;
 use tauscope::batch::with_threads;
 use tauscope::explain::Options;
@@ -54,26 +53,23 @@ fn main() -> anyhow::Result<()> {
 
 /// What becomes of `cases`, `threads` at a time, in their order.
 fn judged(cases: Vec<Case>, options: &Options, threads: usize) -> anyhow::Result<Vec<Judged>> {
-    let (next, done) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
-    let work = || {
-        while let Some((index, case)) = next_of(&cases, &next) {
-            // One thread for each record: there are enough of them.
-            let outcome =
-                with_threads(Some(1), || examine(case, options)).map_err(anyhow::Error::from);
-            let outcome = outcome.flatten();
-            tell(&cases, index, &outcome);
-            done.lock().map_err(|_| anyhow!("a thread has failed"))?.push((index, outcome));
-        }
-        Ok(())
+    let next = AtomicUsize::new(0);
+    let one = |(index, case): (usize, &Case)| {
+        // One thread for each record: there are enough of them.
+        let outcome = with_threads(Some(1), || examine(case, options))?;
+        tell(&cases, index, &outcome);
+        Ok((index, outcome))
     };
-    thread::scope(|scope| {
+    let work = || std::iter::from_fn(|| next_of(&cases, &next)).map(one).collect();
+    let parts: Vec<anyhow::Result<Vec<_>>> = thread::scope(|scope| {
         let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        let ended = workers
-            .into_iter()
-            .map(|worker| worker.join().unwrap_or_else(|_| Err(anyhow!("a thread has failed"))));
-        ended.collect::<anyhow::Result<()>>()
-    })?;
-    let mut done = done.into_inner().map_err(|_| anyhow!("a thread has failed"))?;
+        let ended = workers.into_iter().map(ScopedJoinHandle::join);
+        ended.map(|part| part.unwrap_or_else(|panic| resume_unwind(panic))).collect()
+    });
+    let mut done = Vec::new();
+    for part in parts {
+        done.extend(part?);
+    }
     done.sort_by_key(|(index, _)| *index);
     let outcomes = done.into_iter().map(|(_, outcome)| outcome);
     Ok(cases.into_iter().zip(outcomes).map(|(case, outcome)| Judged { case, outcome }).collect())
@@ -101,7 +97,7 @@ fn what_is_hidden_is_found_and_nothing_is_not() -> anyhow::Result<()> {
         Counts { one: 1, nothing: 1, two: 0, three: 0, outside: 0, cylinder: 0, first_seed: 1 };
     let known = ["dead_band", "actuator_lag", "thermal_drift"];
     let effects = known.into_iter().filter_map(tauscope::effect::by_id).collect();
-    let wanted = ["clear dead_band, white", "nothing, AR(1) 0.9"];
+    let wanted = ["clear dead_band, white", "nothing, AR(1) 0.9, "];
     let is_wanted = |case: &Case| wanted.iter().any(|title| case.title().starts_with(title));
     let some: Vec<Case> = cases(counts).into_iter().filter(is_wanted).collect();
     let options = Options { effects, ..Options::default() };

@@ -186,8 +186,8 @@ fn confusion(pairs: &[Pair<'_>]) -> String {
     let columns: Vec<&str> = CATALOGUE.into_iter().chain(verdicts).collect();
     let rows = CATALOGUE.into_iter().chain(["nothing"]).chain(OUTSIDE);
     let mut text = "\n## Hidden (down) and named first (across)\n\n```text\n".to_owned();
-    let numbers: String = (1..=columns.len()).map(|number| format!("{number:4}")).collect();
-    let _ = writeln!(text, "{:24}{numbers}", "");
+    let numbers = (1..=columns.len()).map(|number| format!("{number:4}"));
+    let _ = writeln!(text, "{:24}{}", "", numbers.collect::<Vec<_>>().concat());
     for (number, hidden) in (1..).zip(rows) {
         let count = |column: &&str| asked.iter().filter(|pair| **pair == (hidden, *column)).count();
         let counts = columns.iter().map(|column| match count(column) {
@@ -196,7 +196,7 @@ fn confusion(pairs: &[Pair<'_>]) -> String {
         });
         let number =
             if number <= CATALOGUE.len() { format!("{number:2}") } else { "  ".to_owned() };
-        let _ = writeln!(text, "{number} {hidden:21}{}", counts.collect::<String>());
+        let _ = writeln!(text, "{number} {hidden:21}{}", counts.collect::<Vec<_>>().concat());
     }
     let [adequate, unexplained] = [CATALOGUE.len() + 1, CATALOGUE.len() + 2];
     let _ = writeln!(text, "\n{adequate}: `adequate`; {unexplained}: `unexplained`\n```");
@@ -384,7 +384,7 @@ fn fault(case: &Case, outcome: &Outcome) -> Option<String> {
             faults.push("above the noise".to_owned());
         }
         _ if outcome.verdict != Verdict::Adequate => {
-            faults.push(in_words(outcome.verdict).to_owned())
+            faults.push(in_words(outcome.verdict).to_owned());
         }
         _ => (),
     }
