@@ -41,7 +41,7 @@ fn the_next_revision_is_written_and_what_was_written_by_hand_stays() {
     assert_eq!(fields(&boom["before"]), ["revision", "effects", "error"]);
     for part in ["train", "validation"] {
         let [before, after] = [&boom["before"], boom].map(|of| number(&of["error"][part]["rmse"]));
-        assert!(after < 0.1 * before, "{part}: {before} to {after}");
+        assert!(after < 0.2 * before, "{part}: {before} to {after}");
     }
     let text = desk.read("boom.toml");
     for line in [

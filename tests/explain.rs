@@ -31,7 +31,7 @@ fn a_missing_dead_band_is_named_with_its_numbers_and_its_command_works() {
     let error = number(&upper["std_error"]);
     assert!((number(&upper["value"]) - 0.3).abs() < 4.0 * error && error < 0.01, "{upper}");
     assert_eq!(upper["unit"], "V");
-    assert!(number(&first["error_reduction_percent"]) > 90.0);
+    assert!(number(&first["error_reduction_percent"]) > 80.0);
     assert!(number(&first["p_value"]) < 1e-6);
     let ranked = boom["ranking"].as_array().unwrap();
     assert!(ranked.len() > 1, "{ranked:?}");

@@ -8,6 +8,7 @@ use super::{ErrorFigures, InputCorrelation, LackOfFit, TestColumns, TrialSignals
 use super::{input_correlation, lack_of_fit, noise_floor, whiteness};
 use crate::fit::{Evaluation, Fit, Horizon, Part, Record};
 use crate::model::JointModel;
+use crate::statistics::median;
 
 /// A fitted model beside the measurement.
 #[derive(Clone, Debug)]
@@ -78,14 +79,27 @@ pub(crate) fn floor_of(record: &Record<'_>, fit: &Fit) -> Option<f64> {
 
 /// Whether `fit` leaves more than noise on the training part of `record`.
 pub(crate) fn lack_of(record: &Record<'_>, fit: &Fit) -> Option<LackOfFit> {
-    let error = ErrorFigures::of(record, &fit.evaluation, Part::Training);
-    let times_noise = error.zip(floor_of(record, fit)).map(|(error, floor)| error.rmse / floor);
+    let residuals = cut(record, &fit.evaluation);
+    let size = size_without_outliers(&residuals);
+    let times_noise = size.zip(floor_of(record, fit)).map(|(size, floor)| size / floor);
     lack_of_fit(&TestColumns {
-        residuals: cut(record, &fit.evaluation),
+        residuals,
         own: sensitivities(record, fit),
         shapes: shapes(record, &fit.evaluation, Part::Training),
         times_noise: times_noise.filter(|times| times.is_finite()),
     })
+}
+
+/// Root mean square of residuals, those beyond six robust standard deviations counted as if
+/// they were just there: a sensor's spikes say nothing of the model.
+fn size_without_outliers(windows: &[Vec<f64>]) -> Option<f64> {
+    /// Median distance of a normal variable from its mean, in standard deviations.
+    const NORMAL: f64 = 0.674_489_750_196_081_7;
+    const OUTLIER: f64 = 6.0;
+    let distances: Vec<f64> = windows.iter().flatten().map(|r| r.abs()).collect();
+    let limit = OUTLIER * median(&distances)? / NORMAL;
+    let squares: f64 = distances.iter().map(|r| r.min(limit).powi(2)).sum();
+    Some((squares / distances.len() as f64).sqrt())
 }
 
 /// The training part of each trial.

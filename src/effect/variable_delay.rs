@@ -109,9 +109,9 @@ impl Effect for VariableDelay {
     }
 }
 
-/// Range of the scales in a fit, in parts of the largest input and of a long hold: from a
-/// switch to what is straight to some percent.
-const FITTED_SCALES: (f64, f64) = (0.05, 20.0);
+/// Range of the scales in a fit, in parts of the largest input and of a long hold: from what
+/// can still be told from a constant to what is straight to some percent.
+const FITTED_SCALES: (f64, f64) = (0.3, 20.0);
 
 /// A hold that is long, in seconds.
 const LONG_HOLD_S: f64 = 5.0;
@@ -133,7 +133,7 @@ mod tests {
         let rising = InputChange { before: -1.0, after: 2.0, held_s: 4.0, time_s: 50.0 };
         assert!((extra(rising) - (-0.03 + 0.02 + 0.05)).abs() < 1e-12);
         let falling = InputChange { before: 2.0, after: -1.0, held_s: 0.0, time_s: 0.0 };
-        assert!((extra(falling) - (-0.03 + 0.02)).abs() < 1e-15);
+        assert!((extra(falling) - (-0.03 + 0.02)).abs() < 1e-12);
     }
 
     #[test]
