@@ -73,7 +73,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let improved = |index: usize, joint, improvement| {
         let stopped = stopped.get(index).copied().unwrap_or(false);
         let add_arguments = arguments.get(index).map_or("", String::as_str);
-        improved(&file, &name, joint, improvement, stopped, add_arguments)
+        let mut improved = improved(&file, &name, joint, improvement, add_arguments)?;
+        improved.interrupted = stopped && improved.finding.verdict != Verdict::Adequate;
+        Some(improved)
     };
     let (improved, failures) = outcomes(&study.experiment, results, improved)?;
     let improved: Vec<_> = improved.into_iter().flatten().collect();
@@ -149,7 +151,6 @@ fn improved<'a>(
     model: &'a str,
     joint: &'a Joint,
     improvement: &'a Improvement,
-    stopped: bool,
     add_arguments: &'a str,
 ) -> Option<ImprovedJoint<'a>> {
     let Improvement { revisions, verdict } = improvement;
@@ -158,8 +159,7 @@ fn improved<'a>(
     let revision = (first_revision..).zip(revisions).last()?.0;
     let compared = ComparedJoint { joint, model, revision, comparison: &last.comparison };
     let finding = Finding { compared, verdict: *verdict, ranking: &last.ranking, add_arguments };
-    let interrupted = stopped && *verdict != Verdict::Adequate;
-    Some(ImprovedJoint { finding, revisions, first_revision, interrupted })
+    Some(ImprovedJoint { finding, revisions, first_revision, interrupted: false })
 }
 
 /// `file` with all revisions of all joints. A joint that has no new one stays as it is.
