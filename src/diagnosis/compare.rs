@@ -80,7 +80,7 @@ pub(crate) fn floor_of(record: &Record<'_>, fit: &Fit) -> Option<f64> {
 /// Whether `fit` leaves more than noise on the training part of `record`.
 pub(crate) fn lack_of(record: &Record<'_>, fit: &Fit) -> Option<LackOfFit> {
     let residuals = cut(record, &fit.evaluation);
-    let size = size_without_outliers(&residuals);
+    let size = size_without_spikes(&residuals);
     let times_noise = size.zip(floor_of(record, fit)).map(|(size, floor)| size / floor);
     lack_of_fit(&TestColumns {
         residuals,
@@ -90,15 +90,20 @@ pub(crate) fn lack_of(record: &Record<'_>, fit: &Fit) -> Option<LackOfFit> {
     })
 }
 
-/// Root mean square of residuals, those beyond six robust standard deviations counted as if
-/// they were just there: a sensor's spikes say nothing of the model.
-fn size_without_outliers(windows: &[Vec<f64>]) -> Option<f64> {
+/// Root mean square of residuals; one that stands alone beyond six robust standard
+/// deviations counts as if it were just there: a sensor's spikes say nothing of the model.
+fn size_without_spikes(windows: &[Vec<f64>]) -> Option<f64> {
     /// Median distance of a normal variable from its mean, in standard deviations.
     const NORMAL: f64 = 0.674_489_750_196_081_7;
-    const OUTLIER: f64 = 6.0;
+    const SPIKE: f64 = 6.0;
     let distances: Vec<f64> = windows.iter().flatten().map(|r| r.abs()).collect();
-    let limit = OUTLIER * median(&distances)? / NORMAL;
-    let squares: f64 = distances.iter().map(|r| r.min(limit).powi(2)).sum();
+    let limit = SPIKE * median(&distances)? / NORMAL;
+    let at = |index: usize| distances.get(index).copied().unwrap_or_default();
+    let square = |index: usize| {
+        let beside = at(index + 1).max(index.checked_sub(1).map_or(0.0, at));
+        if beside > limit { at(index).powi(2) } else { at(index).min(limit).powi(2) }
+    };
+    let squares: f64 = (0..distances.len()).map(square).sum();
     Some((squares / distances.len() as f64).sqrt())
 }
 
@@ -194,4 +199,21 @@ fn sensitivities(record: &Record<'_>, fit: &Fit) -> Vec<Vec<Vec<f64>>> {
             .collect()
     };
     (0..values.len()).map(column).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_spike_counts_little_and_a_burst_in_full() {
+        let calm: Vec<f64> = (0..1000).map(|k| if k % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let mut spiked = calm.clone();
+        spiked[500] = 100.0;
+        let mut burst = calm.clone();
+        burst[500..510].fill(100.0);
+        let size = |residuals| size_without_spikes(&[residuals]).unwrap();
+        assert!((size(calm) - 1.0).abs() < 1e-12);
+        assert!(size(spiked) < 1.05 && size(burst) > 9.0);
+    }
 }
