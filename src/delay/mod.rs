@@ -20,7 +20,6 @@
 //! Sample numbers are the paper's: counted from 1 within the trial.
 
 mod against;
-mod autoregression;
 mod broken_line;
 mod chain;
 mod condition;

@@ -1,6 +1,6 @@
 //! The noise of the output, and what takes its memory away.
 
-use super::autoregression::{Autoregression, autocovariances};
+use crate::statistics::{Autoregression, autocovariances};
 
 /// Longest memory of the noise that is looked for, samples.
 const LONGEST_MEMORY: usize = 8;

@@ -1,6 +1,6 @@
 //! Small least squares by normal equations, solved column by column.
 
-use super::autoregression::dot;
+use crate::statistics::dot;
 
 /// Pivots below this part of a column's own square belong to columns that the ones before
 /// them already make up.

@@ -8,7 +8,7 @@ use super::{ErrorFigures, InputCorrelation, LackOfFit, TestColumns, TrialSignals
 use super::{input_correlation, lack_of_fit, noise_floor, whiteness};
 use crate::fit::{Evaluation, Fit, Horizon, Part, Record};
 use crate::model::JointModel;
-use crate::statistics::median;
+use crate::statistics::robust_scale;
 
 /// A fitted model beside the measurement.
 #[derive(Clone, Debug)]
@@ -79,7 +79,7 @@ pub(crate) fn floor_of(record: &Record<'_>, fit: &Fit) -> Option<f64> {
 
 /// Whether `fit` leaves more than noise on the training part of `record`.
 pub(crate) fn lack_of(record: &Record<'_>, fit: &Fit) -> Option<LackOfFit> {
-    let residuals = cut(record, &fit.evaluation);
+    let residuals = record.cut(&fit.evaluation.residuals, Part::Training);
     let size = size_without_spikes(&residuals);
     let times_noise = size.zip(floor_of(record, fit)).map(|(size, floor)| size / floor);
     lack_of_fit(&TestColumns {
@@ -93,18 +93,16 @@ pub(crate) fn lack_of(record: &Record<'_>, fit: &Fit) -> Option<LackOfFit> {
 /// Root mean square of residuals; one that stands alone beyond six robust standard
 /// deviations counts as if it were just there: a sensor's spikes say nothing of the model.
 fn size_without_spikes(windows: &[Vec<f64>]) -> Option<f64> {
-    /// Median distance of a normal variable from its mean, in standard deviations.
-    const NORMAL: f64 = 0.674_489_750_196_081_7;
     const SPIKE: f64 = 6.0;
     let distances: Vec<f64> = windows.iter().flatten().map(|r| r.abs()).collect();
-    let limit = SPIKE * median(&distances)? / NORMAL;
+    let limit = SPIKE * robust_scale(&distances);
     let at = |index: usize| distances.get(index).copied().unwrap_or_default();
     let square = |index: usize| {
         let beside = at(index + 1).max(index.checked_sub(1).map_or(0.0, at));
         if beside > limit { at(index).powi(2) } else { at(index).min(limit).powi(2) }
     };
     let squares: f64 = (0..distances.len()).map(square).sum();
-    Some((squares / distances.len() as f64).sqrt())
+    (!distances.is_empty()).then(|| (squares / distances.len() as f64).sqrt())
 }
 
 /// The training part of each trial.
@@ -170,13 +168,6 @@ fn levels(acting: &[f64]) -> Vec<Range<usize>> {
     acting.chunk_by(same).map(span).collect()
 }
 
-/// Residuals of the training windows, one list per window.
-fn cut(record: &Record<'_>, evaluation: &Evaluation) -> Vec<Vec<f64>> {
-    let windows = record.part(Part::Training);
-    let values = windows.filter_map(|w| evaluation.residuals.get(w.trial)?.get(w.start..w.end));
-    values.map(<[f64]>::to_vec).collect()
-}
-
 /// Derivatives of the residual to each parameter, by central differences.
 fn sensitivities(record: &Record<'_>, fit: &Fit) -> Vec<Vec<Vec<f64>>> {
     /// Part of a value, or of one unit where the value is small, that is stepped.
@@ -191,7 +182,7 @@ fn sensitivities(record: &Record<'_>, fit: &Fit) -> Vec<Vec<Vec<f64>>> {
                 *value += shift;
             }
             let model: JointModel = fit.model.with_values(&values);
-            cut(record, &record.evaluate(&model))
+            record.cut(&record.evaluate(&model).residuals, Part::Training)
         });
         let pairs = above.into_iter().zip(below);
         pairs

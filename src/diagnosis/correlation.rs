@@ -29,7 +29,7 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use crate::statistics::chi_square_tail;
+use crate::statistics::{chi_square_tail, dot};
 
 /// Part of the correlations that chance keeps within the bands.
 pub const CONFIDENCE: f64 = 0.99;
@@ -330,45 +330,15 @@ fn products(late: &[Vec<f64>], early: &[Vec<f64>], lag: usize) -> f64 {
     late.iter().zip(early).map(pair).sum()
 }
 
-/// In four sums, so that one addition need not wait for the other: a third of the time.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    const LANES: usize = 4;
-    let common = a.len().min(b.len());
-    let (a, b) = (a.get(..common).unwrap_or_default(), b.get(..common).unwrap_or_default());
-    let (fours_a, fours_b) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
-    let rest: f64 = fours_a.remainder().iter().zip(fours_b.remainder()).map(|(a, b)| a * b).sum();
-    let mut sums = [0.0; LANES];
-    for (a, b) in fours_a.zip(fours_b) {
-        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
-            *sum += a * b;
-        }
-    }
-    sums.iter().sum::<f64>() + rest
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
-    use rand::SeedableRng as _;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution as _, StandardNormal};
 
+    use super::super::testing::noise;
     use super::*;
 
     /// Slow sampling, so that the longest lag is few samples.
     const PERIOD_S: f64 = 0.05;
-
-    /// Normal noise of first order with variance 1.
-    fn noise(seed: u64, rho: f64, count: usize) -> Vec<f64> {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let mut value = 0.0;
-        let mut next = || {
-            let e: f64 = StandardNormal.sample(&mut random);
-            value = rho * value + (1.0 - rho * rho).sqrt() * e;
-            value
-        };
-        (0..count + 200).map(|_| next()).skip(200).collect()
-    }
 
     /// Random levels, each held for 20 to 59 samples.
     fn steps(seed: u64, count: usize) -> Vec<f64> {

@@ -41,7 +41,8 @@ pub struct LackOfFit {
     pub misfit_share: f64,
     /// The root mean square residual over the noise of the measurement, where it is known.
     pub times_noise: Option<f64>,
-    /// No lack of fit is shown at [`SIGNIFICANCE`], or one that is below [`NEGLIGIBLE`].
+    /// No lack of fit is shown at [`SIGNIFICANCE`], or one that is below [`NEGLIGIBLE`]; near
+    /// the noise always, far beyond it never.
     pub adequate: bool,
 }
 
@@ -138,23 +139,8 @@ fn test(columns: &TestColumns, noise: &[f64]) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng as _;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution as _, StandardNormal};
-
+    use super::super::testing::noise;
     use super::*;
-
-    /// Noise of first order.
-    fn noise(seed: u64, rho: f64, count: usize) -> Vec<f64> {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let mut value = 0.0;
-        let mut next = || {
-            let e: f64 = StandardNormal.sample(&mut random);
-            value = rho * value + (1.0 - rho * rho).sqrt() * e;
-            value
-        };
-        (0..count + 200).map(|_| next()).skip(200).collect()
-    }
 
     /// Slow shapes, as integrated velocities are.
     fn shapes(count: usize) -> Vec<Vec<Vec<f64>>> {

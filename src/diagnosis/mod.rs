@@ -15,6 +15,8 @@ mod lack_of_fit;
 mod noise;
 pub(crate) mod regression;
 mod shapes;
+#[cfg(test)]
+mod testing;
 pub(crate) mod whitening;
 
 pub use compare::{Comparison, compare};

@@ -2,6 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::statistics::dot;
+
 /// A least-squares regression of one column on others.
 pub(crate) struct Regression {
     pub(crate) coefficients: DVector<f64>,
@@ -50,10 +52,6 @@ impl Regression {
             rank: inverses.iter().filter(|inverse| **inverse > 0.0).count(),
         }
     }
-}
-
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// What is left of `target` after its regression on `columns`.

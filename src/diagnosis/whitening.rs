@@ -1,12 +1,11 @@
 //! Noise with a memory, and the filter that takes its memory away.
 
-use super::regression::dot;
+use crate::statistics::{Autoregression, dot};
 
 /// Longest memory of the noise, in samples, that is told from motion.
 const LONGEST_MEMORY: usize = 12;
 
-/// Coefficients `a` of `e_k = Σ a_i e_(k−i) + white noise`, the order by Schwarz's
-/// criterion, by the recursion of Levinson and Durbin.
+/// Coefficients `a` of `e_k = Σ a_i e_(k−i) + white noise`.
 ///
 /// The mean of each window is taken for zero, and was taken off: what that took from the
 /// covariances, the variance of the mean of a window, is put back. It follows from the
@@ -16,14 +15,14 @@ pub(crate) fn autoregression(windows: &[Vec<f64>]) -> Vec<f64> {
     const TURNS: usize = 6;
     let sampled = covariances(windows);
     let samples: usize = windows.iter().map(Vec::len).sum();
-    let mut noise = levinson(&sampled, samples);
+    let mut noise = Autoregression::of(&sampled, samples).coefficients;
     for _ in 0..TURNS {
         if noise.is_empty() {
             break;
         }
         let lost = mean_variance(windows, &noise, sampled.first().copied().unwrap_or_default());
         let whole: Vec<f64> = sampled.iter().map(|covariance| covariance + lost).collect();
-        noise = levinson(&whole, samples);
+        noise = Autoregression::of(&whole, samples).coefficients;
     }
     noise
 }
@@ -91,40 +90,6 @@ fn correlations(noise: &[f64], count: usize) -> Vec<f64> {
     (0..count.min(response.len())).map(correlation).collect()
 }
 
-/// The memory that has these covariances, of Schwarz's order for so many samples.
-fn levinson(covariances: &[f64], samples: usize) -> Vec<f64> {
-    let most = covariances.len().saturating_sub(1);
-    let Some(&power) = covariances.first().filter(|power| **power > 0.0) else { return Vec::new() };
-    let (mut current, mut variance): (Vec<f64>, f64) = (Vec::new(), power);
-    let score = |variance: f64, order: usize| {
-        samples as f64 * variance.ln() + order as f64 * (samples as f64).ln()
-    };
-    let mut best = (score(power, 0), Vec::new());
-    for order in 1..=most {
-        let predicted: f64 = current
-            .iter()
-            .zip(covariances.iter().take(order).skip(1).rev())
-            .map(|(a, c)| a * c)
-            .sum();
-        let Some(reflection) = covariances.get(order).map(|c| (c - predicted) / variance) else {
-            break;
-        };
-        let turned: Vec<f64> = current.iter().rev().copied().collect();
-        for (a, b) in current.iter_mut().zip(turned) {
-            *a -= reflection * b;
-        }
-        current.push(reflection);
-        variance *= 1.0 - reflection * reflection;
-        if variance <= 0.0 {
-            break;
-        }
-        if score(variance, order) < best.0 {
-            best = (score(variance, order), current.clone());
-        }
-    }
-    best.1
-}
-
 /// `x_k − Σ a_i x_(k−i)`, and the mean of each window off; its first samples are lost.
 pub(crate) fn whitened(windows: &[Vec<f64>], noise: &[f64]) -> Vec<Vec<f64>> {
     let order = noise.len();
@@ -148,27 +113,16 @@ pub(crate) fn whitened(windows: &[Vec<f64>], noise: &[f64]) -> Vec<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng as _;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution as _, StandardNormal};
-
+    use super::super::testing::noise;
     use super::*;
 
     /// Noise of first order in windows, each without its mean.
     fn windows(rho: f64, length: usize, count: usize) -> Vec<Vec<f64>> {
-        let mut random = ChaCha8Rng::seed_from_u64(5);
-        let mut value = 0.0;
-        let mut next = || {
-            let e: f64 = StandardNormal.sample(&mut random);
-            value = rho * value + (1.0 - rho * rho).sqrt() * e;
-            value
+        let centred = |window: &[f64]| {
+            let mean = window.iter().sum::<f64>() / length as f64;
+            window.iter().map(|value| value - mean).collect()
         };
-        let window = |_| {
-            let values: Vec<f64> = (0..length).map(|_| next()).collect();
-            let mean = values.iter().sum::<f64>() / length as f64;
-            values.iter().map(|value| value - mean).collect()
-        };
-        (0..count).map(window).collect()
+        noise(5, rho, length * count).chunks_exact(length).map(centred).collect()
     }
 
     #[test]

@@ -3,10 +3,10 @@
 use crate::diagnosis::ErrorFigures;
 use crate::fit::Fit;
 
-/// A model with one effect more, or two, beside the measurement.
+/// A model with one effect more, or several, beside the measurement.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// What was added: one id, or two where no single effect suffices.
+    /// Ids of what was added.
     pub effects: Vec<&'static str>,
     /// The fitted model.
     pub fit: Fit,
@@ -21,8 +21,8 @@ pub struct Candidate {
     pub training_reduction_percent: f64,
     /// Probability of so much or more when the effect is not there, on the training part.
     pub p_value: f64,
-    /// Share of the misfit that it takes away: of the mean square error beyond the noise
-    /// that the best candidate leaves.
+    /// Share of the misfit that it takes away: of the mean square error of the training part
+    /// beyond the noise of the measurement.
     pub share_of_misfit: f64,
     /// Twice the difference in log-likelihood to the best candidate, both parts of the
     /// record, with Schwarz's penalty: 0 for the best.

@@ -44,8 +44,8 @@ impl Noise {
     /// What is far more than the noise of the measurement is a misfit, whose memory is no
     /// noise's: models are then compared as if noise had none.
     pub(super) fn of(record: &Record<'_>, fit: &Fit) -> Self {
-        let mut windows = cut(record, &fit.evaluation, Part::Training);
-        windows.extend(cut(record, &fit.evaluation, Part::Validation));
+        let mut windows = record.cut(&fit.evaluation.residuals, Part::Training);
+        windows.extend(record.cut(&fit.evaluation.residuals, Part::Validation));
         let error = ErrorFigures::of(record, &fit.evaluation, Part::Training);
         let is_misfit = error
             .zip(floor_of(record, fit))
@@ -61,7 +61,7 @@ impl Noise {
         parameters: usize,
     ) -> Evidence {
         let squares = |part| {
-            let windows = whitened(&cut(record, evaluation, part), &self.memory);
+            let windows = whitened(&record.cut(&evaluation.residuals, part), &self.memory);
             let sum: f64 = windows.iter().flatten().map(|e| e * e).sum();
             Squares { sum, samples: windows.iter().map(Vec::len).sum() }
         };
@@ -99,13 +99,6 @@ impl Squares {
         }
         self.samples as f64 * (self.sum / self.samples as f64).max(f64::MIN_POSITIVE).ln()
     }
-}
-
-/// Residuals of the windows of one part.
-fn cut(record: &Record<'_>, evaluation: &Evaluation, part: Part) -> Vec<Vec<f64>> {
-    let windows = record.part(part);
-    let values = windows.filter_map(|w| evaluation.residuals.get(w.trial)?.get(w.start..w.end));
-    values.map(<[f64]>::to_vec).collect()
 }
 
 #[cfg(test)]

@@ -3,10 +3,10 @@
 use super::Workers;
 use super::candidate::Candidate;
 use super::evidence::Noise;
-use super::race::{Options, parameters, race, range};
+use super::race::{Options, parameters, race, range, takes_part};
 use super::verdict::Verdict;
 use crate::diagnosis::{LackOfFit, floor_of, lack_of};
-use crate::effect::{Effect, REGISTRY, by_id};
+use crate::effect::{Effect, by_id};
 use crate::fit::{Fit, Record, fit_to_compare, survey};
 use crate::model::{Component, JointModel};
 
@@ -53,9 +53,11 @@ impl Step {
         self.lack_of_fit.is_none_or(|test| test.adequate && test.is_near_noise())
     }
 
-    /// Looks for what is missing, where that is not done. A model whose lack of fit the test
-    /// does not show is adequate still when an effect shows it beyond doubt: the test knows
-    /// shapes, the effects know physics.
+    /// Looks for what is missing, where that is not done; whether anything is. The first of
+    /// the ranking is then one that is significant, if any is.
+    ///
+    /// A model that passes the test lacks something still when an effect shows it beyond
+    /// doubt: the test knows shapes, the effects know physics.
     pub(super) fn look(
         &mut self,
         record: &Record<'_>,
@@ -70,8 +72,10 @@ impl Step {
             self.ranking = race(record, &self.fit, floor, options, workers);
         }
         let lacks = !self.is_adequate() || self.ranking.iter().any(Candidate::is_beyond_doubt);
-        if !lacks {
-            self.ranking.clear();
+        match self.ranking.iter().position(Candidate::is_significant) {
+            _ if !lacks => self.ranking.clear(),
+            Some(place) => put_first(&mut self.ranking, place),
+            None => {}
         }
         lacks
     }
@@ -95,17 +99,17 @@ pub(super) fn grow(
             visit(&step);
             return Verdict::Adequate;
         }
-        let found = step.ranking.iter().find(|best| best.is_significant()).cloned();
+        let found = step.ranking.first().filter(|best| best.is_significant()).cloned();
+        let explained = found.is_some();
         let added = ids(&step.fit.model).len().saturating_sub(given.len());
         let goes_on = visit(&step) && added < options.max_effects;
         let Some(found) = found.filter(|_| goes_on) else {
-            let explained = step.ranking.iter().any(Candidate::is_significant);
             return if explained { Verdict::MissingEffect } else { Verdict::Unexplained };
         };
         let newest = found.effects.first().copied().unwrap_or_default();
         step = Step::new(record, Change::Added(newest), found.fit);
-        let mut fixed = vec![newest];
-        while let Some((change, fit)) = tidied(record, &step.fit, given, &mut fixed, workers) {
+        let mut tidying = Tidying { given, settled: vec![newest], options };
+        while let Some((change, fit)) = tidying.better(record, &step.fit, workers) {
             if !visit(&step) {
                 return if step.is_adequate() { Verdict::Adequate } else { Verdict::MissingEffect };
             }
@@ -114,34 +118,65 @@ pub(super) fn grow(
     }
 }
 
-/// A simpler or better model with the effects of `whole`, where there is one: without one
-/// of them, or with another in the place of one.
-fn tidied(
-    record: &Record<'_>,
-    whole: &Fit,
-    given: &[&'static str],
-    settled: &mut Vec<&'static str>,
-    workers: &impl Workers,
-) -> Option<(Change, Fit)> {
-    let own = ids(&whole.model).into_iter().filter(|id| !given.contains(id));
-    let own: Vec<&'static str> = own.collect();
-    let removals = own.iter().filter(|id| !settled.contains(id)).map(|id| Change::Removed(id));
-    let mut changes: Vec<Change> = removals.collect();
-    if own.len() > 1 {
-        let alike = |old: &&'static str| alternatives(old, &own);
-        let open = own.iter().filter(|id| !settled.contains(id));
-        changes.extend(open.flat_map(alike));
+/// Moves the candidate at `place` to the front.
+pub(super) fn put_first(ranking: &mut [Candidate], place: usize) {
+    if let Some(front) = ranking.get_mut(..=place) {
+        front.rotate_right(1);
     }
-    let tried = promising(record, whole, &changes, workers);
-    let noise = Noise::of(record, whole);
-    let criterion =
-        |fit: &Fit| noise.evidence(record, &fit.evaluation, parameters(fit)).criterion();
-    let best = tried.into_iter().min_by(|a, b| criterion(&a.1).total_cmp(&criterion(&b.1)))?;
-    let better = (criterion(&best.1) < criterion(whole)).then_some(best)?;
-    if let Change::Replaced { new, .. } = better.0 {
-        settled.push(new);
+}
+
+/// What may be made simpler or better of a model that grew.
+struct Tidying<'a> {
+    /// Effects that stay.
+    given: &'a [&'static str],
+    /// Effects that were chosen with all others in sight.
+    settled: Vec<&'static str>,
+    options: &'a Options,
+}
+
+impl Tidying<'_> {
+    /// A model that is as likely without one of the effects of `whole`, or more with another
+    /// in the place of one.
+    fn better(
+        &mut self,
+        record: &Record<'_>,
+        whole: &Fit,
+        workers: &impl Workers,
+    ) -> Option<(Change, Fit)> {
+        let tried = promising(record, whole, &self.changes(record, &whole.model), workers);
+        let noise = Noise::of(record, whole);
+        let criterion =
+            |fit: &Fit| noise.evidence(record, &fit.evaluation, parameters(fit)).criterion();
+        let best = tried.into_iter().min_by(|a, b| criterion(&a.1).total_cmp(&criterion(&b.1)))?;
+        let better = (criterion(&best.1) < criterion(whole)).then_some(best)?;
+        if let Change::Replaced { new, .. } = better.0 {
+            self.settled.push(new);
+        }
+        Some(better)
     }
-    Some(better)
+
+    /// Removals of effects that may go, and exchanges for those that look like them.
+    fn changes(&self, record: &Record<'_>, model: &JointModel) -> Vec<Change> {
+        let may_go = |id: &&'static str| !self.given.contains(id) && !self.settled.contains(id);
+        let others = |old: &'static str| {
+            let effects = self.options.effects.iter().map(|effect| effect.spec());
+            let alike = effects.filter(move |spec| looks_like(old, spec.id));
+            let able = alike.filter(|spec| takes_part(record, &model.without(old), spec.id));
+            able.map(move |spec| Change::Replaced { old, new: spec.id }).collect::<Vec<_>>()
+        };
+        let old: Vec<&'static str> = ids(model).into_iter().filter(may_go).collect();
+        let removals = old.iter().map(|id| Change::Removed(id));
+        removals.chain(old.iter().flat_map(|old| others(old))).collect()
+    }
+}
+
+/// Whether one effect is taken for the other, or contains it.
+fn looks_like(one: &str, other: &str) -> bool {
+    let near = |a: &str, b: &str| {
+        let spec = by_id(a).map(Effect::spec);
+        spec.is_some_and(|spec| spec.confused_with.contains(&b) || spec.absorbs.contains(&b))
+    };
+    one != other && (near(one, other) || near(other, one))
 }
 
 /// The models after those of `changes` that a glance does not rule out, fitted.
@@ -153,6 +188,9 @@ fn promising(
 ) -> Vec<(Change, Fit)> {
     /// What the error may be after a glance, in parts of that of the whole model.
     const MOST: f64 = 1.3;
+    if changes.is_empty() {
+        return Vec::new();
+    }
     let levels = record.input_levels();
     let range = range(record, &whole.model, &levels);
     let Ok(of_whole) = survey(record, &whole.model, &range) else { return Vec::new() };
@@ -162,18 +200,6 @@ fn promising(
         (glance.cost < MOST * of_whole.cost).then(fit).flatten().map(|fit| (*change, fit))
     };
     workers.map(changes, apply).into_iter().flatten().collect()
-}
-
-/// What may stand in the place of `old`: the effects that look like it, or are contained in
-/// it, and are not there.
-fn alternatives(old: &'static str, own: &[&'static str]) -> Vec<Change> {
-    let near = |a: &str, b: &str| {
-        let spec = by_id(a).map(Effect::spec);
-        spec.is_some_and(|spec| spec.confused_with.contains(&b) || spec.absorbs.contains(&b))
-    };
-    let looks_like = |id: &&'static str| !own.contains(id) && (near(old, id) || near(id, old));
-    let known = REGISTRY.iter().map(|effect| effect.spec().id).filter(looks_like);
-    known.map(|new| Change::Replaced { old, new }).collect()
 }
 
 /// `model` after a change.

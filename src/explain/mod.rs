@@ -11,8 +11,7 @@
 //!
 //! A closed world always blames somebody: the nearest effect lowers any error a little. So
 //! an effect is only named when the model with it, or with it and a few more, is adequate,
-//! or when it alone takes most of the misfit away; and when it does more than effects that
-//! mean nothing.
+//! or when it alone takes most of the misfit away.
 //!
 //! # References
 //! T. Bohlin, "Practical Grey-box Process Identification", 2006. N. R. Kristensen,

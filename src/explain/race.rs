@@ -45,7 +45,7 @@ pub(super) fn race(
     options: &Options,
     workers: &impl Workers,
 ) -> Vec<Candidate> {
-    let able = |effect: &&&'static dyn Effect| takes_part(record, &base.model, **effect);
+    let able = |effect: &&&'static dyn Effect| takes_part(record, &base.model, effect.spec().id);
     let effects: Vec<&'static dyn Effect> = options.effects.iter().filter(able).copied().collect();
     let levels = record.input_levels();
     let range = range(record, &base.model, &levels);
@@ -77,10 +77,9 @@ pub(super) fn range<'l>(
     record.range(levels, model.gain.value.abs() * levels.last().copied().unwrap_or(1.0))
 }
 
-/// Whether `effect` could be missing: it is not there already, nor contained in one that
-/// is, and the record could show it.
-fn takes_part(record: &Record<'_>, model: &JointModel, effect: &'static dyn Effect) -> bool {
-    let id = effect.spec().id;
+/// Whether the effect `id` could be missing: it is not there already, nor contained in one
+/// that is, and the record could show it.
+pub(super) fn takes_part(record: &Record<'_>, model: &JointModel, id: &'static str) -> bool {
     let has = |component: &Component| {
         let spec = component.effect().spec();
         spec.id == id || spec.absorbs.contains(&id)

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::Workers;
 use super::candidate::Candidate;
-use super::grow::{Change, Step, grow, ids};
+use super::grow::{Change, Step, grow, ids, put_first};
 use super::race::Options;
 use crate::diagnosis::{Comparison, compare_knowing};
 use crate::fit::{Fit, Record};
@@ -65,13 +65,11 @@ pub fn explain(
 /// gives way to the first that remains.
 fn accounts_for_it(
     record: &Record<'_>,
-    ranking: &mut Vec<Candidate>,
+    ranking: &mut [Candidate],
     options: &Options,
     workers: &impl Workers,
 ) -> bool {
-    let Some(place) = ranking.iter().position(Candidate::is_significant) else { return false };
-    let best = ranking.remove(place);
-    ranking.insert(0, best.clone());
+    let Some(best) = ranking.first().filter(|best| best.is_significant()) else { return false };
     let id = best.effects.first().copied().unwrap_or_default();
     let first = Step::new(record, Change::Added(id), best.fit.clone());
     let given: Vec<_> = ids(&best.fit.model).into_iter().filter(|given| *given != id).collect();
@@ -85,8 +83,7 @@ fn accounts_for_it(
     if verdict == Verdict::Adequate {
         let remains = |candidate: &Candidate| candidate.effects.iter().all(|id| last.contains(id));
         if let Some(place) = ranking.iter().position(remains) {
-            let first = ranking.remove(place);
-            ranking.insert(0, first);
+            put_first(ranking, place);
         }
     }
     named

@@ -176,18 +176,6 @@ fn bandwidth(residuals: &[f64]) -> usize {
     lags
 }
 
-/// The standard deviation of normal values, from their median distance from zero.
-pub(super) fn robust_scale(values: &[f64]) -> f64 {
-    /// Median distance of a normal variable in standard deviations.
-    const NORMAL: f64 = 0.674_489_750_196_081_7;
-    let mut distances: Vec<f64> = values.iter().map(|value| value.abs()).collect();
-    let middle = distances.len() / 2;
-    if distances.is_empty() {
-        return 0.0;
-    }
-    *distances.select_nth_unstable_by(middle, f64::total_cmp).1 / NORMAL
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

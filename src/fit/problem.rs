@@ -7,10 +7,10 @@ use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 
 use super::bounds::Bounds;
-use super::covariance::robust_scale;
 use super::record::{Evaluation, Record, Weights};
 use super::space::Space;
 use crate::model::JointModel;
+use crate::statistics::robust_scale;
 
 /// What the optimiser works on.
 pub(super) struct Problem<'p, 'r> {

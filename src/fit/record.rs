@@ -167,6 +167,12 @@ impl<'a> Record<'a> {
         self.windows.iter().filter(move |window| window.part == part)
     }
 
+    /// `values`, one per trial and sample, of the windows of one part.
+    pub(crate) fn cut(&self, values: &[Vec<f64>], part: Part) -> Vec<Vec<f64>> {
+        let cut = |w: &Window| values.get(w.trial)?.get(w.start..w.end);
+        self.part(part).filter_map(cut).map(<[f64]>::to_vec).collect()
+    }
+
     /// Simulates `model` on all trials.
     pub fn evaluate(&self, model: &JointModel) -> Evaluation {
         self.evaluate_weighted(model, None)

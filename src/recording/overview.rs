@@ -3,14 +3,15 @@
 
 use rerun::components::{Color, MarkerShape};
 use rerun::datatypes::Vec2D;
-use rerun::{Boxes2D, EntityPath, LineStrips2D, Points2D, Scalars, SeriesLines, SeriesPoints};
+use rerun::{Boxes2D, EntityPath, Points2D, Scalars, SeriesLines, SeriesPoints};
 
 use super::canvas::{Labels, Plot, SHEET, Span, thinned};
 use super::chunk::{Chunks, Index, Moment};
 use super::entity::below;
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
-use super::palette::{self, Rgb, color};
+use super::palette::{self, color};
+use super::sheet::strips;
 use crate::delay::Verdict;
 use crate::report::number;
 
@@ -249,17 +250,6 @@ impl Map {
         let boxes = Boxes2D::update_fields().with_centers(centers).with_half_sizes(halves);
         chunks.push(entity.clone(), index, boxes.columns_of_unit_batches()?)
     }
-}
-
-fn strips(
-    chunks: &mut Chunks,
-    entity: EntityPath,
-    rgb: Rgb,
-    radius: f32,
-    strips: Vec<Vec<Vec2D>>,
-) -> Result<(), RecordError> {
-    let strips = LineStrips2D::new(strips).with_colors([color(rgb)]).with_radii([radius]);
-    chunks.push_static(entity, &strips)
 }
 
 /// Width of the sheet, for the view's bounds.

@@ -1,13 +1,17 @@
-//! Statistics that are no model's own: quantiles, rank tests, tails of distributions.
+//! Statistics that are no model's own: quantiles, rank tests, tails of distributions,
+//! autoregressions.
 
+mod autoregression;
 mod chi_square;
 mod fisher;
 mod quantile;
 mod rank;
 mod student;
 
+pub(crate) use autoregression::{Autoregression, autocovariances, dot};
 pub use chi_square::chi_square_tail;
 pub use fisher::fisher_tail;
+pub(crate) use quantile::robust_scale;
 pub use quantile::{median, quantile};
 pub use rank::{RankTest, holm, mann_whitney, ranks, spearman};
 pub use student::student_quantile;

@@ -2,15 +2,15 @@
 
 /// An autoregression: what of a signal its own past explains.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Autoregression {
+pub(crate) struct Autoregression {
     /// `a_1, a_2, …`; empty for white noise.
-    pub(super) coefficients: Vec<f64>,
+    pub(crate) coefficients: Vec<f64>,
     /// The part of the variance that they explain, 0 to 1.
-    pub(super) explained: f64,
+    pub(crate) explained: f64,
 }
 
 /// The sum of products, in lanes that a processor adds at the same time.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     const LANES: usize = 8;
     let length = a.len().min(b.len());
     let (a, b) = (a.get(..length).unwrap_or_default(), b.get(..length).unwrap_or_default());
@@ -26,7 +26,7 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Mean products of the values in `windows` with those 0, 1, … `longest` samples before.
-pub(super) fn autocovariances(windows: &[Vec<f64>], longest: usize) -> Vec<f64> {
+pub(crate) fn autocovariances(windows: &[Vec<f64>], longest: usize) -> Vec<f64> {
     let samples: usize = windows.iter().map(Vec::len).sum();
     let covariance = |lag: usize| -> f64 {
         windows.iter().map(|w| dot(w, w.get(lag..).unwrap_or_default())).sum::<f64>()
@@ -39,7 +39,7 @@ impl Autoregression {
     /// Coefficients `a` of `e_k = Σ a_i e_(k−i) + white noise` with these autocovariances,
     /// estimated from so many samples: the order by Schwarz's criterion, by the recursion
     /// of Levinson and Durbin.
-    pub(super) fn of(covariances: &[f64], samples: usize) -> Self {
+    pub(crate) fn of(covariances: &[f64], samples: usize) -> Self {
         let Some(&power) = covariances.first().filter(|power| **power > 0.0) else {
             return Self::default();
         };
