@@ -3,12 +3,12 @@
 use std::ops::Range;
 
 use super::failure::{self, Diagnosis, Region, Samples, diagnose, regions};
+use super::residual_size::ResidualSize;
 use super::shapes::shapes;
 use super::{ErrorFigures, InputCorrelation, LackOfFit, TestColumns, TrialSignals, Whiteness};
 use super::{input_correlation, lack_of_fit, noise_floor, whiteness};
 use crate::fit::{Evaluation, Fit, Horizon, Part, Record};
 use crate::model::JointModel;
-use crate::statistics::robust_scale;
 
 /// A fitted model beside the measurement.
 #[derive(Clone, Debug)]
@@ -79,30 +79,12 @@ pub(crate) fn floor_of(record: &Record<'_>, fit: &Fit) -> Option<f64> {
 
 /// Whether `fit` leaves more than noise on the training part of `record`.
 pub(crate) fn lack_of(record: &Record<'_>, fit: &Fit) -> Option<LackOfFit> {
-    let residuals = record.cut(&fit.evaluation.residuals, Part::Training);
-    let size = size_without_spikes(&residuals);
-    let times_noise = size.zip(floor_of(record, fit)).map(|(size, floor)| size / floor);
     lack_of_fit(&TestColumns {
-        residuals,
+        residuals: record.cut(&fit.evaluation.residuals, Part::Training),
         own: sensitivities(record, fit),
         shapes: shapes(record, &fit.evaluation, Part::Training),
-        times_noise: times_noise.filter(|times| times.is_finite()),
+        size: ResidualSize::of(record, &fit.evaluation, floor_of(record, fit)),
     })
-}
-
-/// Root mean square of residuals; one that stands alone beyond six robust standard
-/// deviations counts as if it were just there: a sensor's spikes say nothing of the model.
-fn size_without_spikes(windows: &[Vec<f64>]) -> Option<f64> {
-    const SPIKE: f64 = 6.0;
-    let distances: Vec<f64> = windows.iter().flatten().map(|r| r.abs()).collect();
-    let limit = SPIKE * robust_scale(&distances);
-    let at = |index: usize| distances.get(index).copied().unwrap_or_default();
-    let square = |index: usize| {
-        let beside = at(index + 1).max(index.checked_sub(1).map_or(0.0, at));
-        if beside > limit { at(index).powi(2) } else { at(index).min(limit).powi(2) }
-    };
-    let squares: f64 = (0..distances.len()).map(square).sum();
-    (!distances.is_empty()).then(|| (squares / distances.len() as f64).sqrt())
 }
 
 /// The training part of each trial.
@@ -172,6 +154,7 @@ fn levels(acting: &[f64]) -> Vec<Range<usize>> {
 fn sensitivities(record: &Record<'_>, fit: &Fit) -> Vec<Vec<Vec<f64>>> {
     /// Part of a value, or of one unit where the value is small, that is stepped.
     const STEP: f64 = 1e-4;
+    let record = record.for_training();
     let values: Vec<f64> = fit.model.values().iter().map(|value| value.value).collect();
     let column = |index: usize| {
         let value = values.get(index).copied().unwrap_or_default();
@@ -190,21 +173,4 @@ fn sensitivities(record: &Record<'_>, fit: &Fit) -> Vec<Vec<Vec<f64>>> {
             .collect()
     };
     (0..values.len()).map(column).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_spike_counts_little_and_a_burst_in_full() {
-        let calm: Vec<f64> = (0..1000).map(|k| if k % 2 == 0 { 1.0 } else { -1.0 }).collect();
-        let mut spiked = calm.clone();
-        spiked[500] = 100.0;
-        let mut burst = calm.clone();
-        burst[500..510].fill(100.0);
-        let size = |residuals| size_without_spikes(&[residuals]).unwrap();
-        assert!((size(calm) - 1.0).abs() < 1e-12);
-        assert!(size(spiked) < 1.05 && size(burst) > 9.0);
-    }
 }

@@ -18,7 +18,8 @@
 //!    the first where the residual is too large for noise.
 //! 4. Size: the test holds all that changes slowly for noise, and finds every trace in a long
 //!    record. Up to 1.15 times the noise of the measurement nothing is left that is worth an
-//!    effect; beyond three times it is no noise.
+//!    effect; beyond three times it is no noise. Nor is it where it is larger on the part that
+//!    was not fitted.
 //!
 //! # References
 //! T. Bohlin, "Practical Grey-box Process Identification", 2006, chapter 2 (falsification
@@ -27,6 +28,7 @@
 use serde::Serialize;
 
 use super::regression::{Regression, residuals_of};
+use super::residual_size::{BEYOND_NOISE, ResidualSize, is_near_noise};
 use super::whitening::{autoregression, whitened};
 use crate::statistics::fisher_tail;
 
@@ -41,8 +43,12 @@ pub struct LackOfFit {
     pub misfit_share: f64,
     /// The root mean square residual over the noise of the measurement, where it is known.
     pub times_noise: Option<f64>,
+    /// The root mean square residual of the part that was not fitted over that of the part
+    /// that was.
+    pub times_training: Option<f64>,
     /// No lack of fit is shown at [`SIGNIFICANCE`], or one that is below [`NEGLIGIBLE`]; near
-    /// the noise always, far beyond it never.
+    /// the noise always, far beyond it never, nor where the error is larger on data that were
+    /// not fitted.
     pub adequate: bool,
 }
 
@@ -53,14 +59,6 @@ pub const SIGNIFICANCE: f64 = 0.001;
 /// consequence, however sure it is: without it the error would be 1 % less.
 pub const NEGLIGIBLE: f64 = 0.02;
 
-/// A residual so many times the noise of the measurement is no noise, however well it
-/// would pass for one that changes slowly.
-pub(crate) const BEYOND_NOISE: f64 = 3.0;
-
-/// A residual no more than so many times the noise leaves nothing that is worth an effect,
-/// however sure it is that something is left.
-const NEAR_NOISE: f64 = 1.15;
-
 /// The columns of the test, one window below the other.
 #[derive(Clone, Debug, Default)]
 pub struct TestColumns {
@@ -70,8 +68,8 @@ pub struct TestColumns {
     pub own: Vec<Vec<Vec<f64>>>,
     /// What a missing effect could add: column, window, sample.
     pub shapes: Vec<Vec<Vec<f64>>>,
-    /// The root mean square residual over the noise of the measurement, where it is known.
-    pub times_noise: Option<f64>,
+    /// How large the residuals are.
+    pub size: ResidualSize,
 }
 
 /// Tests whether `columns.shapes` explain more of the residual than noise would.
@@ -85,32 +83,26 @@ pub fn lack_of_fit(columns: &TestColumns) -> Option<LackOfFit> {
     let [whole, rest] = [&before_shapes, &after_shapes].map(|r| square(r));
     let misfit_share = if whole > 0.0 { (1.0 - rest / whole).max(0.0) } else { 0.0 };
     let mut judged = vec![test(columns, &autoregression(&after_shapes))?];
-    if columns.times_noise.is_none_or(|times| times <= BEYOND_NOISE) {
+    if columns.size.times_noise.is_none_or(|times| times <= BEYOND_NOISE) {
         judged.push(test(columns, &autoregression(&before_shapes))?);
     }
     let (statistic, p_value) = judged.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let adequate = p_value >= SIGNIFICANCE || misfit_share < NEGLIGIBLE;
-    let found = LackOfFit { statistic, p_value, misfit_share, times_noise: None, adequate };
-    Some(found.with_size(columns.times_noise))
+    let ResidualSize { times_noise, times_training, .. } = columns.size;
+    Some(LackOfFit {
+        statistic,
+        p_value,
+        misfit_share,
+        times_noise,
+        times_training,
+        adequate: columns.size.verdict().unwrap_or(adequate),
+    })
 }
 
 impl LackOfFit {
-    /// Judged by the size of the residual too, which is so many times the noise.
-    ///
-    /// The test holds all that changes slowly for noise, and finds every trace in a long
-    /// record; the size knows better at both ends.
-    fn with_size(self, times_noise: Option<f64>) -> Self {
-        let adequate = match times_noise {
-            Some(times) if times <= NEAR_NOISE => true,
-            Some(times) if times > BEYOND_NOISE => false,
-            _ => self.adequate,
-        };
-        Self { times_noise, adequate, ..self }
-    }
-
     /// Whether the residual is hardly more than the noise.
     pub fn is_near_noise(&self) -> bool {
-        self.times_noise.is_some_and(|times| times <= NEAR_NOISE)
+        is_near_noise(self.times_noise)
     }
 }
 

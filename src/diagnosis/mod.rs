@@ -14,6 +14,7 @@ pub mod failure;
 mod lack_of_fit;
 mod noise;
 pub(crate) mod regression;
+mod residual_size;
 mod shapes;
 #[cfg(test)]
 mod testing;
@@ -26,6 +27,7 @@ pub use correlation::{
     whiteness,
 };
 pub use error::ErrorFigures;
-pub(crate) use lack_of_fit::BEYOND_NOISE;
 pub use lack_of_fit::{LackOfFit, NEGLIGIBLE, SIGNIFICANCE, TestColumns, lack_of_fit};
 pub use noise::noise_floor;
+pub(crate) use residual_size::BEYOND_NOISE;
+pub use residual_size::ResidualSize;

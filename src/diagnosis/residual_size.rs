@@ -1,0 +1,141 @@
+//! How large a residual is: beside the noise, and beside itself on data not fitted to.
+
+use crate::fit::{Evaluation, Part, Record};
+use crate::statistics::{fisher_tail, robust_scale};
+
+/// A residual so many times the noise of the measurement is no noise, however well it
+/// would pass for one that changes slowly.
+pub(crate) const BEYOND_NOISE: f64 = 3.0;
+
+/// A residual no more than so many times the noise leaves nothing that is worth an effect,
+/// however sure it is that something is left.
+const NEAR_NOISE: f64 = 1.15;
+
+/// The root mean square residual on both parts of a record.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ResidualSize {
+    /// Over the noise of the measurement, on the part that was fitted; `None` where the
+    /// noise is not known.
+    pub times_noise: Option<f64>,
+    /// On the part that was not fitted, over that on the part that was.
+    pub times_training: Option<f64>,
+    /// Samples that were fitted, and that were not.
+    samples: (usize, usize),
+}
+
+impl ResidualSize {
+    /// The size of the residual of `evaluation`, with the noise `floor`.
+    pub(crate) fn of(record: &Record<'_>, evaluation: &Evaluation, floor: Option<f64>) -> Self {
+        let part = |part| record.cut(&evaluation.residuals, part);
+        let (training, validation) = (part(Part::Training), part(Part::Validation));
+        let size = |windows: &[Vec<f64>]| without_spikes(windows);
+        let ratio = |above: Option<f64>, below: Option<f64>| {
+            above.zip(below).map(|(a, b)| a / b).filter(|ratio| ratio.is_finite())
+        };
+        let count = |windows: &[Vec<f64>]| windows.iter().map(Vec::len).sum();
+        Self {
+            times_noise: ratio(size(&training), floor),
+            times_training: ratio(size(&validation), size(&training)),
+            samples: (count(&training), count(&validation)),
+        }
+    }
+
+    /// Whether it could be noise at all; `None` where it may be or not.
+    pub(super) fn verdict(&self) -> Option<bool> {
+        match self.times_noise {
+            Some(times) if times > BEYOND_NOISE => Some(false),
+            Some(times) if self.is_larger_unseen() && times > 0.0 => Some(false),
+            Some(times) if times <= NEAR_NOISE => Some(true),
+            _ => None,
+        }
+    }
+
+    /// Whether the residual of the part that was not fitted is beyond the noise, and larger
+    /// than that of the part that was.
+    ///
+    /// Noise is as large on both. A variance is Fisher's, of fewer samples than there are
+    /// where noise has a memory: of `n (1 − ρ²) / (1 + ρ²)` at first order.
+    fn is_larger_unseen(&self) -> bool {
+        /// The longest memory that noise is held to have.
+        const RHO: f64 = 0.95;
+        /// Probability of calling noise a misfit.
+        const SIGNIFICANCE: f64 = 0.001;
+        let Some((noise, training)) = self.times_noise.zip(self.times_training) else {
+            return false;
+        };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
+        let independent =
+            |samples: usize| (samples as f64 * (1.0 - RHO * RHO) / (1.0 + RHO * RHO)) as usize;
+        let (fitted, unseen) = (independent(self.samples.0), independent(self.samples.1));
+        let p_value = fisher_tail(training * training, unseen, fitted);
+        noise * training > NEAR_NOISE && p_value.is_some_and(|p| p < SIGNIFICANCE)
+    }
+}
+
+/// Whether a residual of `times_noise` is hardly more than the noise.
+pub(super) fn is_near_noise(times_noise: Option<f64>) -> bool {
+    times_noise.is_some_and(|times| times <= NEAR_NOISE)
+}
+
+/// Root mean square of residuals; one that stands alone beyond six robust standard
+/// deviations counts as if it were just there: a sensor's spikes say nothing of the model.
+fn without_spikes(windows: &[Vec<f64>]) -> Option<f64> {
+    const SPIKE: f64 = 6.0;
+    let distances: Vec<f64> = windows.iter().flatten().map(|r| r.abs()).collect();
+    let limit = SPIKE * robust_scale(&distances);
+    let at = |index: usize| distances.get(index).copied().unwrap_or_default();
+    let square = |index: usize| {
+        let beside = at(index + 1).max(index.checked_sub(1).map_or(0.0, at));
+        if beside > limit { at(index).powi(2) } else { at(index).min(limit).powi(2) }
+    };
+    let squares: f64 = (0..distances.len()).map(square).sum();
+    (!distances.is_empty()).then(|| (squares / distances.len() as f64).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::noise;
+    use super::*;
+
+    #[test]
+    fn a_spike_counts_little_and_a_burst_in_full() {
+        let calm: Vec<f64> = (0..1000).map(|k| if k % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let mut spiked = calm.clone();
+        spiked[500] = 100.0;
+        let mut burst = calm.clone();
+        burst[500..510].fill(100.0);
+        let size = |residuals| without_spikes(&[residuals]).unwrap();
+        assert!((size(calm) - 1.0).abs() < 1e-12);
+        assert!(size(spiked) < 1.05 && size(burst) > 9.0);
+    }
+
+    /// Noise of first order in training, and so many times it behind.
+    fn size(rho: f64, seed: u64, times: f64) -> ResidualSize {
+        let values = noise(seed, rho, 12_000);
+        let rmse = |values: &[f64]| {
+            (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
+        };
+        let (training, validation) = values.split_at(8400);
+        ResidualSize {
+            times_noise: Some(2.0),
+            times_training: Some(times * rmse(validation) / rmse(training)),
+            samples: (8400, 3600),
+        }
+    }
+
+    #[test]
+    fn noise_is_as_large_where_it_was_not_fitted() {
+        for rho in [0.0, 0.5, 0.95] {
+            let found = (0..200).filter(|seed| size(rho, *seed, 1.0).is_larger_unseen()).count();
+            assert!(found <= 4, "{found} of 200 at {rho}");
+        }
+    }
+
+    #[test]
+    fn what_is_larger_there_is_no_noise() {
+        assert!((0..20).all(|seed| size(0.95, seed, 1.6).verdict() == Some(false)));
+        // Near the noise it does not matter.
+        let near = ResidualSize { times_noise: Some(0.7), ..size(0.0, 1, 1.6) };
+        assert_eq!(near.verdict(), Some(true));
+    }
+}
