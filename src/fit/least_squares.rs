@@ -143,15 +143,15 @@ fn fit_to(
 ) -> Result<Fit, FitError> {
     let space = Space::of(model, range);
     check_size(record, &space)?;
-    let short = record.shortened();
+    let (training, short) = (record.for_training(), record.shortened());
     let (searches, given_up) = rough(&short, model, &space, range);
     let mut finished: Vec<_> =
-        searches.into_iter().map(|s| s.across_flats().onto(record).descended(depth)).collect();
+        searches.into_iter().map(|s| s.across_flats().onto(&training).descended(depth)).collect();
     finished.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let simulations: usize = finished.iter().map(Search::simulations).sum();
     let best = finished.into_iter().next();
-    let best = best.unwrap_or_else(|| Search::new(record, model, &space, plain(model)));
-    Ok(best.into_fit(simulations + given_up))
+    let best = best.unwrap_or_else(|| Search::new(&training, model, &space, plain(model)));
+    Ok(best.into_fit(record, simulations + given_up))
 }
 
 /// A glance at each start and a rough descent from the best few: the best of these, and the
@@ -220,7 +220,8 @@ pub fn assess(
 ) -> Result<Fit, FitError> {
     let space = Space::of(model, range);
     check_size(record, &space)?;
-    Ok(Search::new(record, model, &space, plain(model)).into_fit(0))
+    let training = record.for_training();
+    Ok(Search::new(&training, model, &space, plain(model)).into_fit(record, 0))
 }
 
 fn check_size(record: &Record<'_>, space: &Space) -> Result<(), FitError> {
@@ -260,7 +261,8 @@ impl Termination {
 }
 
 impl Search<'_, '_> {
-    fn into_fit(self, simulations: usize) -> Fit {
+    /// The fit to the training windows that was searched, on all of `whole`.
+    fn into_fit(self, whole: &Record<'_>, simulations: usize) -> Fit {
         let Problem { record, space, weights, .. } = &self.problem;
         let model = self.problem.model_now();
         let evaluation = self.problem.here();
@@ -280,7 +282,7 @@ impl Search<'_, '_> {
         let named = model.names().into_iter().zip(plain(&model)).enumerate();
         Fit {
             parameters: named.map(parameter).collect(),
-            evaluation: evaluation.clone(),
+            evaluation: self.problem.on(whole),
             cost: self.cost,
             model,
             termination: self.termination,

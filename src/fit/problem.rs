@@ -47,6 +47,15 @@ impl Problem<'_, '_> {
         })
     }
 
+    /// The model as it is now on another cut of the record; outliers there are weighted down
+    /// too.
+    pub(super) fn on(&self, record: &Record<'_>) -> Evaluation {
+        let model = self.model_now();
+        let evaluation = record.evaluate_weighted(&model, self.weights.as_ref());
+        let weights = self.weights.as_ref().and_then(|_| huber(record, &evaluation.residuals));
+        weights.map_or(evaluation, |w| record.evaluate_weighted(&model, Some(&w)))
+    }
+
     /// The residuals of the training windows, one behind the other, times the roots of
     /// their weights.
     fn weighted(&self, residuals: &[Vec<f64>]) -> DVector<f64> {
@@ -91,19 +100,28 @@ impl Problem<'_, '_> {
     /// Moves a variable on whose small changes nothing depends to the best of the values
     /// between which it matters; whether that is another one.
     pub(super) fn cross_flat(&mut self, place: usize) -> bool {
-        /// Values that are tried first; then those about the best of them.
-        const COARSE: usize = 24;
         let values = self.space.flats.get(place).map_or(&[][..], Vec::as_slice);
-        let stride = values.len().div_ceil(COARSE).max(1);
         let (cost, start) = (self.cost(), self.variables.clone());
-        let coarse: Vec<usize> = (0..values.len()).step_by(stride).collect();
-        let Some((_, about)) = self.best_of(place, values, coarse) else { return false };
-        let near = about.saturating_sub(stride)..(about + stride).min(values.len());
-        let best = self.best_of(place, values, near).filter(|(least, _)| *least < cost);
+        let best = self.best_within(place, values).filter(|(least, _)| *least < cost);
         self.set_params(&start);
         let Some(value) = best.and_then(|(_, index)| values.get(index)) else { return false };
         self.set_value(place, *value);
         true
+    }
+
+    /// The least error with one of `values` for a variable, and its index: some of them are
+    /// tried, then those about the best of these, ever closer.
+    fn best_within(&mut self, place: usize, values: &[f64]) -> Option<(f64, usize)> {
+        /// Values that are tried at a time.
+        const COARSE: usize = 24;
+        let mut stride = values.len().div_ceil(COARSE).max(1);
+        let mut best = self.best_of(place, values, (0..values.len()).step_by(stride))?;
+        while stride > 1 {
+            let about = best.1.saturating_sub(stride)..(best.1 + stride).min(values.len());
+            stride = (2 * stride).div_ceil(COARSE);
+            best = self.best_of(place, values, about.step_by(stride))?;
+        }
+        Some(best)
     }
 
     /// The least error with one of `values` for a variable, and its index.

@@ -17,7 +17,8 @@ pub enum Horizon {
     /// Never: each part of a trial is one run.
     #[default]
     FreeRun,
-    /// At every step of the input; every 200 samples where it is not held between steps.
+    /// At every step of the input, and in between so that no run is longer than 200 samples;
+    /// every 200 samples where the input is not held between steps.
     Steps,
     /// Every so many seconds.
     Seconds(f64),
@@ -173,7 +174,7 @@ impl<'a> Record<'a> {
         self.part(part).filter_map(cut).map(<[f64]>::to_vec).collect()
     }
 
-    /// Simulates `model` on all trials.
+    /// Simulates `model` on all trials, each to the end of its last window.
     pub fn evaluate(&self, model: &JointModel) -> Evaluation {
         self.evaluate_weighted(model, None)
     }
@@ -225,6 +226,12 @@ impl<'a> Record<'a> {
             shorter(*window, changes(input).count())
         });
         Self { windows: windows.collect(), ..self.clone() }
+    }
+
+    /// The same with the training windows only: what lies behind the last of a trial is not
+    /// simulated.
+    pub(crate) fn for_training(&self) -> Self {
+        Self { windows: self.part(Part::Training).copied().collect(), ..self.clone() }
     }
 
     /// Samples that are for training.
@@ -356,8 +363,11 @@ fn cut(trial: &Trial, index: usize, split: Split, horizon: Horizon) -> Vec<Windo
     let mut borders = vec![0, border, samples];
     match horizon {
         Horizon::FreeRun => {}
-        Horizon::Steps if is_held(trial.input()) => borders.extend(changes(trial.input())),
-        Horizon::Steps => borders.extend((0..samples).step_by(UNHELD_WINDOW)),
+        Horizon::Steps if is_held(trial.input()) => {
+            borders.extend(changes(trial.input()));
+            borders = divided(borders);
+        }
+        Horizon::Steps => borders.extend((0..samples).step_by(LONGEST_STEP)),
         Horizon::Seconds(seconds) => {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 1")]
             let every = (seconds / trial.period().seconds()).round().max(1.0) as usize;
@@ -378,8 +388,22 @@ fn cut(trial: &Trial, index: usize, split: Split, horizon: Horizon) -> Vec<Windo
     windows
 }
 
-/// Samples of a window where the input is not held.
-const UNHELD_WINDOW: usize = 200;
+/// Samples of a window between steps of the input, at most: a small error of the speed would
+/// else grow with the square of a long hold, and the longest holds alone decide a fit.
+const LONGEST_STEP: usize = 200;
+
+/// `borders`, and between those that are far apart further ones at equal distances.
+fn divided(mut borders: Vec<usize>) -> Vec<usize> {
+    borders.sort_unstable();
+    let between = borders.windows(2).flat_map(|pair| {
+        let &[start, end] = pair else { return Vec::new() };
+        let parts = (end - start).div_ceil(LONGEST_STEP);
+        (1..parts).map(|part| start + (end - start) * part / parts).collect()
+    });
+    let between: Vec<usize> = between.collect();
+    borders.extend(between);
+    borders
+}
 
 /// Whether the input is held for some samples between its steps.
 fn is_held(input: &[f64]) -> bool {
@@ -433,5 +457,15 @@ mod tests {
         let windows = cut(&trial, 0, Split::Time(0.5), Horizon::Steps);
         let borders: Vec<_> = windows.iter().map(|window| window.start).collect();
         assert_eq!(borders, [0, 200, 400, 500, 600, 800]);
+    }
+
+    #[test]
+    fn a_long_hold_is_divided_evenly() {
+        let input: Vec<f64> = (0..1000).map(|k| if k < 450 { 1.0 } else { 2.0 }).collect();
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let trial = Trial::new("a", 0.0, period, input, vec![0.0; 1000]).unwrap();
+        let windows = cut(&trial, 0, Split::Time(1.0), Horizon::Steps);
+        let borders: Vec<_> = windows.iter().map(|window| window.start).collect();
+        assert_eq!(borders, [0, 150, 300, 450, 633, 816]);
     }
 }

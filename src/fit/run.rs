@@ -74,7 +74,8 @@ impl Run<'_> {
                 .flatten(),
         };
         let restarts: Vec<_> = self.windows.iter().zip(starts).map(restart).collect();
-        let (samples, period_s) = (self.trial.len(), self.trial.period().seconds());
+        let samples = self.windows.last().map_or(0, |window| window.end);
+        let period_s = self.trial.period().seconds();
         simulate(self.model, &self.arrivals, samples, period_s, &restarts, &self.surroundings)
     }
 
