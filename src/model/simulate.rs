@@ -54,7 +54,7 @@ pub struct Simulated {
 /// - exact but for rounding (1e-10): the plain integrator, each effect of the input and of
 ///   the transport, an end stop, and backlash;
 /// - as exact, though the finer integration is not (1e-6): one effect of the dynamics;
-/// - 1e-5: effects of the load that depend on angle or time, by the midpoint rule;
+/// - 5e-5: effects of the load that depend on angle or time, by the midpoint rule;
 /// - 1e-4: two effects of the dynamics, of which the second sees the mean of the first over
 ///   each interval; the load or backlash behind a dynamic;
 /// - 5e-4: an end stop behind a dynamic, which the joint leaves at a sample.
@@ -163,6 +163,8 @@ struct Joint<'a> {
     sensor: Vec<Running>,
     /// Whether an effect of the load remembers anything.
     load_remembers: bool,
+    /// What the load added to the commanded velocity in the last interval.
+    load_adds: f64,
     surroundings: &'a Surroundings<'a>,
     others: f64,
     angle: f64,
@@ -183,6 +185,7 @@ impl<'a> Joint<'a> {
             drive: stage(Stage::Input).chain(stage(Stage::Dynamics)).collect(),
             load_remembers: load.iter().any(|running| !running.memory.is_empty()),
             load,
+            load_adds: 0.0,
             limits: limits.into_iter().map(Running::new).collect(),
             sensor: sensor.into_iter().map(Running::new).collect(),
             surroundings,
@@ -312,16 +315,15 @@ impl<'a> Joint<'a> {
         self.measure(time_s, dt);
     }
 
-    /// The velocity that the load leaves of the commanded one, by the midpoint rule.
+    /// The velocity that the load leaves of the commanded one, by the midpoint rule: half an
+    /// interval ahead the joint is where it comes if the load does what it did before.
     fn loaded(&mut self, start: Moment) -> f64 {
-        let remembered = self.load_remembers.then(|| self.load.clone());
-        let first = through(&mut self.load, start);
-        if let Some(remembered) = remembered {
-            self.load = remembered;
-        }
         let half = 0.5 * start.dt_s;
-        let position = start.position + half * first;
-        through(&mut self.load, Moment { position, time_s: start.time_s + half, ..start })
+        let position = start.position + half * (start.signal + self.load_adds);
+        let middle = Moment { position, time_s: start.time_s + half, ..start };
+        let loaded = through(&mut self.load, middle);
+        self.load_adds = loaded - start.signal;
+        loaded
     }
 
     fn limit(&mut self, time_s: f64, dt: f64) {
