@@ -98,6 +98,11 @@ impl ProtocolArgs {
         Protocol { mode, split: self.split, horizon: self.horizon.unwrap_or(default) }
     }
 
+    /// How training and validation are told apart, where that was said.
+    pub(super) fn split(&self) -> Option<Split> {
+        self.split
+    }
+
     /// The horizon in words.
     pub(super) fn horizon(&self, default: Horizon) -> String {
         match self.horizon.unwrap_or(default) {

@@ -146,7 +146,8 @@ impl<'a> Progress<'a> {
     }
 }
 
-fn improved<'a>(
+/// What is to be said of a joint that was improved.
+pub(super) fn improved<'a>(
     file: &ModelFile,
     model: &'a str,
     joint: &'a Joint,
@@ -163,7 +164,10 @@ fn improved<'a>(
 }
 
 /// `file` with all revisions of all joints. A joint that has no new one stays as it is.
-fn revised(file: &ModelFile, improved: &[ImprovedJoint<'_>]) -> anyhow::Result<ModelFile> {
+pub(super) fn revised(
+    file: &ModelFile,
+    improved: &[ImprovedJoint<'_>],
+) -> anyhow::Result<ModelFile> {
     let mut file = file.clone();
     for joint in improved {
         let name = &joint.finding.compared.joint.name;
@@ -197,13 +201,16 @@ fn entry(revision: u32, before: &Step, after: &Step) -> Revision {
 }
 
 /// `revision 0` and so on, to the last number there is.
-fn revision_names(improved: &[ImprovedJoint<'_>]) -> Vec<String> {
+pub(super) fn revision_names(improved: &[ImprovedJoint<'_>]) -> Vec<String> {
     let last = improved.iter().map(|joint| joint.finding.compared.revision).max().unwrap_or(0);
     (0..=last).map(|number| format!("revision {number}")).collect()
 }
 
 /// The revisions of a joint, each as a model.
-fn models<'a>(improved: &ImprovedJoint<'a>, names: &'a [String]) -> Vec<ComparedJoint<'a>> {
+pub(super) fn models<'a>(
+    improved: &ImprovedJoint<'a>,
+    names: &'a [String],
+) -> Vec<ComparedJoint<'a>> {
     let joint = improved.finding.compared.joint;
     let numbered = (improved.first_revision..).zip(improved.revisions);
     let named = (0..).zip(names).map(|(number, name)| (number, name.as_str()));

@@ -13,6 +13,7 @@ mod model_file;
 mod output;
 mod progress;
 mod record;
+mod report;
 mod simulate;
 
 use std::io::{self, Write as _};
@@ -36,6 +37,7 @@ enum Command {
     Explain(Box<explain::Args>),
     Add(Box<add::Args>),
     Improve(Box<improve::Args>),
+    Report(Box<report::Args>),
     Effects(effects::Args),
     Simulate(Box<simulate::Args>),
 }
@@ -59,6 +61,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Explain(args) => explain::run(&args),
         Command::Add(args) => add::run(&args),
         Command::Improve(args) => improve::run(&args),
+        Command::Report(args) => report::run(&args),
         Command::Effects(args) => effects::run(&args),
         Command::Simulate(args) => simulate::run(&args),
     };

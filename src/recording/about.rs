@@ -9,9 +9,8 @@ use super::chunk::Chunks;
 use super::entity::plain;
 use super::error::RecordError;
 use super::layout::{Detail, JointLayout};
-use crate::delay::{Method, Settings};
 use crate::experiment::ReadOptions;
-use crate::report::{JointSummary, SUMMARY_HEADER, number, summary_cells};
+use crate::report::{JointSummary, SUMMARY_HEADER, settings_rows, summary_cells};
 
 /// Adds the page at `/about`.
 pub(super) fn add(
@@ -34,7 +33,7 @@ fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String
         writeln!(page, "| {} |", cells.join(" | "))?;
     }
     writeln!(page, "\n## Settings\n\n| setting | value |\n|---|---|")?;
-    for (name, value) in settings(recording.settings) {
+    for (name, value) in settings_rows(recording.settings) {
         writeln!(page, "| {name} | {value} |")?;
     }
     writeln!(page, "\n{}", detail(recording, layouts))?;
@@ -90,46 +89,6 @@ fn reading(recording: &Recording<'_>) -> String {
         "Read as they are.".to_owned()
     } else {
         format!("Read with: {}.", parts.join("; "))
-    }
-}
-
-fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
-    let low_pass = settings.low_pass.map_or_else(
-        || "none".to_owned(),
-        |filter| {
-            let (hz, order) = (filter.cutoff_hz, filter.order);
-            format!("Butterworth, {hz} Hz, order {order}, forward and backward")
-        },
-    );
-    let limits = settings.output_limits;
-    let not_set = || "not set".to_owned();
-    let not_tested = || "not tested".to_owned();
-    let percent = |part: f64| format!("{} %", number(100.0 * part));
-    vec![
-        ("method", method(settings.method).to_owned()),
-        ("α", format!("{} samples", settings.alpha)),
-        ("β", format!("{} samples", settings.beta)),
-        ("low-pass", low_pass),
-        ("shortest hold τ_min", format!("{} samples", settings.min_delay)),
-        ("longest delay", settings.max_delay.map_or_else(not_set, |n| format!("{n} samples"))),
-        ("output limits", limits.map_or_else(not_set, |(low, high)| format!("{low} … {high}"))),
-        ("smallest slope change", format!("{} per sample", settings.min_slope_change)),
-        ("largest SSE", settings.max_sse.map_or_else(not_set, |limit| limit.to_string())),
-        (
-            "first and last step",
-            if settings.keep_first_last { "judged" } else { "left out" }.to_owned(),
-        ),
-        ("smallest input step", settings.min_step.to_string()),
-        ("τ between steps", format!("{:?}", settings.interpolation).to_lowercase()),
-        ("confidence of a reaction", settings.confidence.map_or_else(not_tested, percent)),
-        ("interval of a delay", percent(settings.interval)),
-    ]
-}
-
-fn method(method: Method) -> &'static str {
-    match method {
-        Method::TwoLine => "two-line regression (Albrecht and Taylor, Algorithm 1)",
-        Method::Hinge | Method::LagAware => method.meaning(),
     }
 }
 

@@ -7,6 +7,8 @@ use std::ops::RangeInclusive;
 
 use rerun::datatypes::Vec2D;
 
+pub(super) use crate::report::{Span, thinned_to};
+
 /// Width and height of the sheet.
 pub(super) const SHEET: (f32, f32) = (1600.0, 640.0);
 
@@ -19,50 +21,6 @@ pub(super) struct Plot {
     bottom: f32,
     x: Span,
     y: Span,
-}
-
-/// Data range of an axis; never empty.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Span {
-    pub(super) low: f64,
-    pub(super) high: f64,
-}
-
-impl Span {
-    pub(super) fn new(low: f64, high: f64) -> Self {
-        let room = match (high - low > 0.0, low.abs() > 0.0) {
-            (true, _) => 0.0,
-            (false, true) => 0.1 * low.abs(),
-            (false, false) => 1.0,
-        };
-        Self { low: low - room, high: high + room }
-    }
-
-    /// The range of `values`, with a part of it added on both sides.
-    pub(super) fn around(values: impl Iterator<Item = f64>, margin: f64) -> Self {
-        let wider = |(low, high): (f64, f64), y: f64| (low.min(y), high.max(y));
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), wider);
-        if low > high {
-            return Self { low: 0.0, high: 1.0 };
-        }
-        let room = margin * (high - low);
-        Self::new(low - room, high + room)
-    }
-
-    fn part(self, value: f64) -> f64 {
-        (value - self.low) / (self.high - self.low)
-    }
-
-    /// Round numbers in the range, about `count` of them.
-    pub(super) fn ticks(self, count: f64) -> Vec<f64> {
-        let rough = (self.high - self.low) / count;
-        let power = 10f64.powf(rough.log10().floor());
-        let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|s| *s >= rough);
-        let step = step.unwrap_or(rough);
-        let first = (self.low / step).ceil();
-        let ticks = (0..100).map(|n| (first + f64::from(n)) * step);
-        ticks.take_while(|tick| *tick <= self.high).collect()
-    }
 }
 
 /// How far below its point the middle of a text is drawn.
@@ -206,25 +164,6 @@ pub(super) fn thinned(values: &[f64]) -> Vec<usize> {
     thinned_to(values, CURVE_POINTS)
 }
 
-/// The same with at most so many points, two per part.
-pub(super) fn thinned_to(values: &[f64], points: usize) -> Vec<usize> {
-    if values.len() <= points.max(2) {
-        return (0..values.len()).collect();
-    }
-    let part = values.len().div_ceil((points / 2).max(1));
-    let mut kept = Vec::with_capacity(points);
-    for (chunk, start) in values.chunks(part).zip((0..).step_by(part)) {
-        let by_value = |a: &(usize, &f64), b: &(usize, &f64)| a.1.total_cmp(b.1);
-        let lowest = chunk.iter().enumerate().min_by(by_value).map_or(0, |(index, _)| index);
-        let highest = chunk.iter().enumerate().max_by(by_value).map_or(0, |(index, _)| index);
-        kept.push(start + lowest.min(highest));
-        if lowest != highest {
-            kept.push(start + lowest.max(highest));
-        }
-    }
-    kept
-}
-
 /// Leaves out points of a curve (x ascending) that the line between their neighbours
 /// meets to within [`INVISIBLE`]: a swinging door that opens no wider than that.
 pub(super) fn simplified(points: Vec<Vec2D>) -> Vec<Vec2D> {
@@ -260,13 +199,6 @@ const INVISIBLE: f32 = 0.5;
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn ticks_are_round_and_inside() {
-        assert_eq!(Span::new(0.3, 4.2).ticks(5.0), [1.0, 2.0, 3.0, 4.0]);
-        assert_eq!(Span::new(-3.0, 12.0).ticks(4.0), [0.0, 5.0, 10.0]);
-        assert_eq!(Span::new(7.0, 7.0).ticks(3.0), [6.5, 7.0, 7.5]);
-    }
 
     #[test]
     fn a_text_at_the_edge_moves_inward() {

@@ -19,12 +19,9 @@ pub fn against_table<'a>(joints: impl IntoIterator<Item = (&'a str, &'a AgainstS
     table
         .load_style(presets::UTF8_BORDERS_ONLY)
         .set_content_arrangement(ContentArrangement::Disabled)
-        .set_header(["joint", "delay against", "steps", "rank correlation", "p", "depends"]);
+        .set_header(AGAINST_HEADER);
     for (joint, found) in joints {
-        for correlation in &found.correlations {
-            table.add_row(correlation_row(joint, correlation));
-        }
-        table.add_row(direction_row(joint, &found.direction));
+        table.add_rows(against_rows(joint, found));
     }
     for right in [2, 3, 4] {
         if let Some(column) = table.column_mut(right) {
@@ -32,6 +29,16 @@ pub fn against_table<'a>(joints: impl IntoIterator<Item = (&'a str, &'a AgainstS
         }
     }
     format!("{table}\nSpearman's rank correlation; `yes`: p at most 0.05 after Holm's correction\n")
+}
+
+/// What the cells of [`against_rows`] are.
+pub(super) const AGAINST_HEADER: [&str; 6] =
+    ["joint", "delay against", "steps", "rank correlation", "p", "depends"];
+
+/// The rows of a joint, for people.
+pub(super) fn against_rows(joint: &str, found: &AgainstState) -> Vec<[String; 6]> {
+    let correlations = found.correlations.iter().map(|one| correlation_row(joint, one));
+    correlations.chain([direction_row(joint, &found.direction)]).collect()
 }
 
 fn correlation_row(joint: &str, found: &Correlation) -> [String; 6] {

@@ -1,4 +1,4 @@
-//! Results as text, CSV and JSON: pure functions to bytes.
+//! Results as text, CSV, JSON, and a page with figures: pure functions to bytes.
 
 mod add;
 mod against;
@@ -11,6 +11,9 @@ mod finding;
 mod improve;
 mod json;
 mod number;
+mod page;
+mod settings;
+mod span;
 mod steps;
 mod summary;
 mod text;
@@ -30,6 +33,11 @@ pub use finding::Finding;
 pub use improve::{ImproveJson, ImprovedJoint, change_in_words, improve_text, revision_line};
 pub use json::EstimateJson;
 pub use number::number;
+pub use page::{Document, Markdown, PlotError, RecordingFile, Report, ReportJson, report_text};
+#[cfg(feature = "rrd")]
+pub(crate) use settings::settings_rows;
+#[cfg(feature = "rrd")]
+pub(crate) use span::{Span, thinned_to};
 pub use steps::steps_table;
 pub use summary::{DelayRange, JointSummary};
 pub use text::estimate_table;

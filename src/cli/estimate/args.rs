@@ -27,7 +27,7 @@ pub(crate) struct Args {
 /// The settings of the algorithm.
 #[derive(ClapArgs, Debug)]
 #[command(next_help_heading = "Algorithm")]
-pub(super) struct AlgorithmArgs {
+pub(crate) struct AlgorithmArgs {
     /// How a breakpoint is found. May be repeated: the first one is the answer, the others
     /// are told beside it
     #[arg(long, value_enum, default_values_t = [Method::TwoLine])]
@@ -235,6 +235,18 @@ impl AlgorithmArgs {
             }
         }
         runs
+    }
+
+    /// The settings of the only method.
+    ///
+    /// # Errors
+    /// When several were asked for.
+    pub(crate) fn only(&self) -> anyhow::Result<Settings> {
+        let mut runs = self.runs();
+        match (runs.pop(), runs.is_empty()) {
+            (Some(settings), true) => Ok(settings),
+            _ => anyhow::bail!("--method: only one method at a time can be used here"),
+        }
     }
 
     fn settings(&self, method: delay::Method) -> Settings {

@@ -17,7 +17,7 @@ use super::progress::{self, Verbosity};
 use super::{Completion, message, read_failures};
 use files::Files;
 
-pub(super) use args::Args;
+pub(super) use args::{AlgorithmArgs, Args};
 
 type JointResult = Result<JointEstimate, EstimateError>;
 
@@ -78,7 +78,7 @@ struct Estimated<'a> {
 }
 
 /// The joints that have an estimate, in the order of the log.
-fn estimated<'a>(
+pub(super) fn estimated<'a>(
     experiment: &'a Experiment,
     results: &'a [JointResult],
 ) -> Vec<EstimatedJoint<'a>> {
@@ -88,7 +88,7 @@ fn estimated<'a>(
 }
 
 /// A message on each file, joint and trial that failed.
-fn failures(experiment: &Experiment, results: &[JointResult]) -> Vec<String> {
+pub(super) fn failures(experiment: &Experiment, results: &[JointResult]) -> Vec<String> {
     // With several files a trial's name tells which one it is from.
     let file = match experiment.sources.as_slice() {
         [source] => format!("{}: ", source.path.display()),
@@ -107,7 +107,7 @@ fn failures(experiment: &Experiment, results: &[JointResult]) -> Vec<String> {
 }
 
 /// What a person should know who looks at the numbers.
-fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
+pub(super) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
     let mut notes = Vec::new();
     for EstimatedJoint { joint, estimate } in joints {
         let name = &joint.name;

@@ -1,0 +1,226 @@
+//! The delays of a joint: over time, and against its state.
+
+use super::document::Figure;
+use super::palette::Role;
+use super::plot::{Axis, Mark, Panel, Place, PlotError, Shape, draw};
+use super::timeline::Timeline;
+use super::{HALF, WIDTH, named};
+use crate::delay::{AgainstState, Correlation, DelayProfile};
+use crate::report::EstimatedJoint;
+use crate::report::against::{p_text, variable_text};
+use crate::report::span::{Span, thinned_to};
+
+/// What a joint's delays are over time.
+#[derive(Default)]
+struct Delays {
+    accepted: Vec<Place>,
+    intervals: Vec<Vec<Place>>,
+    rejected: Vec<f64>,
+    held: Vec<Vec<Place>>,
+}
+
+/// The delay of each step over time; none where none was accepted.
+pub(super) fn over_time(
+    estimated: EstimatedJoint<'_>,
+    file: String,
+) -> Result<Option<Figure>, PlotError> {
+    let timeline = Timeline::of(estimated.joint);
+    let Delays { accepted, intervals, rejected, held } = delays(estimated, &timeline);
+    if accepted.is_empty() {
+        return Ok(None);
+    }
+    let values = accepted.iter().chain(intervals.iter().flatten()).map(|place| place.1);
+    let y = Span::around(values, 0.14);
+    let bottom = y.low + 0.05 * (y.high - y.low);
+    let rejected: Vec<Place> = rejected.into_iter().map(|time| (time, bottom)).collect();
+    let mut marks = vec![
+        Mark::new(Role::Faint, Shape::Verticals(timeline.borders())),
+        Mark::new(Role::Smoothed, Shape::Lines(held, 1.0)).named("delay of every sample"),
+    ];
+    if !intervals.is_empty() {
+        marks.push(Mark::new(Role::Faint, Shape::Lines(intervals, 1.4)).named("interval"));
+    }
+    marks.push(Mark::new(Role::Accepted, Shape::Dots(accepted)).named("accepted step"));
+    if !rejected.is_empty() {
+        marks.push(Mark::new(Role::Rejected, Shape::Crosses(rejected)).named("rejected step"));
+    }
+    let panel = Panel { x: timeline.axis(), y: Axis::new(y, "delay [s]", 5.0), height: 150, marks };
+    let svg = draw(&[panel], WIDTH, &format!("Delay of {} over time", estimated.joint.name))?;
+    let caption = "The delay of each step, at the time of the step; rejected steps stand at \
+                   the bottom."
+        .to_owned();
+    Ok(Some(Figure { file, svg, caption }))
+}
+
+fn delays(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> Delays {
+    let mut delays = Delays::default();
+    let trials = estimated.joint.trials.iter().zip(&estimated.estimate.trials).enumerate();
+    for (index, (trial, result)) in trials {
+        let Ok(estimate) = result else { continue };
+        let period_s = trial.period().seconds();
+        for decision in &estimate.decisions {
+            let at = timeline.at(index, decision.input_step.sample as f64);
+            let Some(delay) = decision.accepted_delay() else {
+                delays.rejected.push(at);
+                continue;
+            };
+            delays.accepted.push((at, delay * period_s));
+            delays.intervals.extend(
+                decision
+                    .fine
+                    .map(|fine| vec![(at, fine.low * period_s), (at, fine.high * period_s)]),
+            );
+        }
+        let place = |(k, tau): (usize, f64)| (timeline.at(index, (k + 1) as f64), tau * period_s);
+        let runs = runs(&estimate.profile).into_iter();
+        delays.held.extend(runs.map(|run| run.into_iter().map(place).collect()));
+    }
+    delays
+}
+
+/// Spans of samples with a delay, each as its corners.
+fn runs(profile: &DelayProfile) -> Vec<Vec<(usize, f64)>> {
+    let known: Vec<_> = profile.iter().enumerate().collect();
+    let same = |a: &(usize, Option<f64>), b: &(usize, Option<f64>)| a.1.is_some() == b.1.is_some();
+    let runs = known.chunk_by(same).filter(|run| run.iter().all(|(_, tau)| tau.is_some()));
+    runs.map(|run| {
+        corners(&run.iter().filter_map(|(k, tau)| Some((*k, (*tau)?))).collect::<Vec<_>>())
+    })
+    .collect()
+}
+
+/// A run without samples whose neighbours have the same delay, thinned to what is seen.
+fn corners(run: &[(usize, f64)]) -> Vec<(usize, f64)> {
+    #[expect(clippy::float_cmp, reason = "a held delay is the same number")]
+    let is_inside = |trio: &[(usize, f64)]| match trio {
+        [a, b, c] => a.1 == b.1 && b.1 == c.1,
+        _ => false,
+    };
+    let inside = run.windows(3).filter(|trio| !is_inside(trio)).filter_map(|trio| trio.get(1));
+    let kept: Vec<_> = run.first().into_iter().chain(inside).chain(run.last()).copied().collect();
+    let values: Vec<f64> = kept.iter().map(|one| one.1).collect();
+    thinned_to(&values, 4000).into_iter().filter_map(|index| kept.get(index)).copied().collect()
+}
+
+/// The delay against the speed, and against what it goes with most besides.
+pub(super) fn against(
+    joint: &str,
+    found: &AgainstState,
+    file: &str,
+) -> Result<Vec<Figure>, PlotError> {
+    /// Number of the speed among the variables.
+    const SPEED: usize = 0;
+    let strength = |index: &usize| {
+        let p_value = found.correlations.get(*index).and_then(|one| one.p_value);
+        p_value.unwrap_or(f64::INFINITY)
+    };
+    let others = (0..found.correlations.len()).filter(|index| *index != SPEED);
+    let strongest = others.min_by(|a, b| strength(a).total_cmp(&strength(b)));
+    let shown = std::iter::once(SPEED).chain(strongest);
+    let drawn = shown.filter_map(|variable| scatter(joint, found, variable, file).transpose());
+    drawn.collect()
+}
+
+/// The delays against one variable; none where it is not known.
+fn scatter(
+    joint: &str,
+    found: &AgainstState,
+    variable: usize,
+    file: &str,
+) -> Result<Option<Figure>, PlotError> {
+    let Some(correlation) = found.correlations.get(variable) else { return Ok(None) };
+    let steps = found.steps.iter();
+    let place = |up: bool| {
+        let same = steps.clone().filter(move |step| (step.input_change > 0.0) == up);
+        same.filter_map(|step| Some((step.value(variable)?, step.delay_s))).collect::<Vec<Place>>()
+    };
+    let (up, down) = (place(true), place(false));
+    if up.is_empty() && down.is_empty() {
+        return Ok(None);
+    }
+    let all = || up.iter().chain(&down);
+    let x = Span::around(all().map(|place| place.0), 0.05);
+    let y = Span::around(all().map(|place| place.1), 0.1);
+    let name = variable_text(&correlation.variable, correlation.unit.as_deref());
+    let panel = Panel {
+        x: Axis::new(x, name.clone(), 6.0),
+        y: Axis::new(y, "delay [s]", 5.0),
+        height: 190,
+        marks: vec![
+            Mark::new(Role::Smoothed, Shape::Dots(up)).named("step up"),
+            Mark::new(Role::Model, Shape::Crosses(down)).named("step down"),
+        ],
+    };
+    let svg = draw(&[panel], HALF, &format!("Delay of {joint} against {name}"))?;
+    let file = format!("{file}-against-{}", super::document::slug(&correlation.variable));
+    Ok(Some(Figure { file, svg, caption: caption(correlation) }))
+}
+
+fn caption(found: &Correlation) -> String {
+    let variable = found.variable.replace('_', " ");
+    let Some(rho) = found.rho else {
+        return format!("Delay against {variable}: too few steps, or no change, to tell more.");
+    };
+    let p = p_text(found.p_holm);
+    let p = if p.starts_with('<') { format!("p {p}") } else { format!("p = {p}") };
+    let said = if found.significant { "the delay depends on it" } else { "no dependence shown" };
+    format!(
+        "Delay against {variable}: {said} (Spearman's ρ = {rho:+.2}, {p} after Holm's correction)."
+    )
+}
+
+/// An axis' name for the spread of delays of all joints.
+pub(super) fn overview(joints: &[EstimatedJoint<'_>]) -> Result<Option<Figure>, PlotError> {
+    let rows: Vec<_> = joints.iter().filter_map(|joint| Spread::of(*joint)).collect();
+    if rows.len() < 2 {
+        return Ok(None);
+    }
+    let names: Vec<String> = rows.iter().map(|row| row.name.clone()).collect();
+    let row = |index: usize| -(index as f64);
+    let line = |from: fn(&Spread) -> f64, to: fn(&Spread) -> f64| {
+        let ends =
+            |(index, one): (usize, &Spread)| vec![(from(one), row(index)), (to(one), row(index))];
+        rows.iter().enumerate().map(ends).collect::<Vec<_>>()
+    };
+    let medians = rows.iter().enumerate().map(|(index, one)| (one.median, row(index))).collect();
+    let x = Span::around(rows.iter().flat_map(|one| [one.low, one.high]).chain([0.0]), 0.03);
+    let panel = Panel {
+        x: Axis::new(x, named("delay", Some("s")), 8.0),
+        y: Axis::of_names(&names, ""),
+        height: 22 * u32::try_from(rows.len()).unwrap_or(1) + 10,
+        marks: vec![
+            Mark::new(Role::Faint, Shape::Lines(line(|s| s.low, |s| s.high), 1.2))
+                .named("least to greatest"),
+            Mark::new(Role::Smoothed, Shape::Lines(line(|s| s.lower, |s| s.upper), 6.0))
+                .named("middle half"),
+            Mark::new(Role::Ink, Shape::Dots(medians)).named("median"),
+        ],
+    };
+    let svg = draw(&[panel], WIDTH, "Delays of all joints")?;
+    let caption = "The accepted delays of each joint.".to_owned();
+    Ok(Some(Figure { file: "delays".to_owned(), svg, caption }))
+}
+
+/// How the accepted delays of a joint are spread, in seconds.
+struct Spread {
+    name: String,
+    low: f64,
+    lower: f64,
+    median: f64,
+    upper: f64,
+    high: f64,
+}
+
+impl Spread {
+    fn of(estimated: EstimatedJoint<'_>) -> Option<Self> {
+        let mut delays: Vec<f64> = crate::report::decision_rows(estimated)
+            .filter(|(_, row)| row.verdict == "accepted")
+            .filter_map(|(_, row)| row.delta_s)
+            .collect();
+        delays.sort_by(f64::total_cmp);
+        let at = |share: f64| crate::statistics::quantile(&delays, share);
+        let name = estimated.joint.name.clone();
+        let (low, high) = (*delays.first()?, *delays.last()?);
+        Some(Self { name, low, lower: at(0.25)?, median: at(0.5)?, upper: at(0.75)?, high })
+    }
+}

@@ -1,0 +1,113 @@
+//! What a report says, before it is written down as a page or as Markdown.
+
+/// A report: what it says in its order, and what is drawn.
+#[derive(Clone, Debug, Default)]
+pub struct Document {
+    pub(super) title: String,
+    pub(super) blocks: Vec<Block>,
+}
+
+/// A part of a report.
+#[derive(Clone, Debug)]
+pub(super) enum Block {
+    /// A heading, its depth (2 for a section), and where links to it lead.
+    Heading { depth: u8, text: String, anchor: Option<String> },
+    /// A paragraph.
+    Text(String),
+    /// A paragraph that tells the most of its section.
+    Lead(String),
+    /// A line for each entry.
+    List(Vec<String>),
+    /// A line for each entry, which starts with a link to a section.
+    Contents(Vec<Entry>),
+    /// Something to be typed, or printed as it is.
+    Code(String),
+    /// Drawings that stand beside one another where there is room.
+    Figures(Vec<Figure>),
+    /// A table.
+    Table(Table),
+    /// What is shown when it is asked for.
+    Details { summary: String, blocks: Vec<Self> },
+    /// A file that is in the page.
+    Attachment(Attachment),
+}
+
+/// An entry of a list of sections.
+#[derive(Clone, Debug)]
+pub(super) struct Entry {
+    pub(super) name: String,
+    pub(super) anchor: String,
+    pub(super) text: String,
+}
+
+/// A drawing.
+#[derive(Clone, Debug)]
+pub(super) struct Figure {
+    /// A name for its file, without suffix.
+    pub(super) file: String,
+    /// The SVG.
+    pub(super) svg: String,
+    pub(super) caption: String,
+}
+
+/// A table; numbers stand right.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Table {
+    pub(super) header: Vec<String>,
+    pub(super) rows: Vec<Vec<String>>,
+    /// Columns of numbers.
+    pub(super) numbers: Vec<usize>,
+}
+
+/// A file that is in the page.
+#[derive(Clone, Debug)]
+pub(super) struct Attachment {
+    pub(super) name: String,
+    pub(super) bytes: Vec<u8>,
+}
+
+impl Block {
+    pub(super) fn section(text: impl Into<String>, anchor: &str) -> Self {
+        Self::Heading { depth: 2, text: text.into(), anchor: Some(anchor.to_owned()) }
+    }
+
+    pub(super) fn part(text: impl Into<String>) -> Self {
+        Self::Heading { depth: 3, text: text.into(), anchor: None }
+    }
+
+    pub(super) fn text(text: impl Into<String>) -> Self {
+        Self::Text(text.into())
+    }
+}
+
+impl Table {
+    pub(super) fn new<const N: usize>(header: [&str; N], numbers: &[usize]) -> Self {
+        let header = header.map(str::to_owned).to_vec();
+        Self { header, rows: Vec::new(), numbers: numbers.to_vec() }
+    }
+
+    pub(super) fn row<const N: usize>(&mut self, cells: [String; N]) {
+        self.rows.push(cells.into());
+    }
+
+    /// Whether a column holds numbers.
+    pub(super) fn is_number(&self, column: usize) -> bool {
+        self.numbers.contains(&column)
+    }
+}
+
+/// `name` as a part of a link or of a file's name: small letters, digits and `-`.
+pub(super) fn slug(name: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
+    name.chars().map(plain).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slug_is_safe_in_links_and_file_names() {
+        assert_eq!(slug("Boom_<1>/é"), "boom--1---");
+    }
+}

@@ -1,0 +1,250 @@
+//! What is said of a joint's model: verdict, equations, parameters, errors, ranking.
+
+use super::document::{Block, Table};
+use super::plot::PlotError;
+use super::{Report, ladder, share, simulated};
+use crate::effect::Stage;
+use crate::explain::{Candidate, Revision, Verdict};
+use crate::fit::{Parameter, Split, Status};
+use crate::model::Component;
+use crate::report::compare::effects;
+use crate::report::equation::filled_in;
+use crate::report::number::{measure, number, probability, with_error, with_unit};
+use crate::report::{
+    ComparedJoint, ImprovedJoint, correlation_sentences, parameter_units, sentences,
+};
+
+/// All that is said of the model of a joint.
+pub(super) fn blocks(
+    report: &Report<'_>,
+    improved: &ImprovedJoint<'_>,
+    file: &str,
+) -> Result<Vec<Block>, PlotError> {
+    let compared = &improved.finding.compared;
+    let words = improved.finding.words();
+    let stopped = if improved.interrupted { " (stopped before the end)" } else { "" };
+    let mut blocks = vec![
+        Block::part("Model"),
+        Block::Lead(format!("{}{stopped}.", words.headline)),
+        Block::text(words.paragraph),
+    ];
+    blocks.extend(words.commands.into_iter().map(Block::Code));
+    blocks.push(Block::Code(equations(compared)));
+    blocks.push(Block::Table(parameters(compared)));
+    blocks.push(Block::text(format!("The fit: {}.", compared.comparison.fit.termination)));
+    blocks.extend(errors(report, improved, file)?);
+    blocks.extend(beside_the_measurement(report, compared, file)?);
+    blocks.extend(failures(improved, file)?);
+    blocks.extend(rankings(improved));
+    Ok(blocks)
+}
+
+/// What is said of the model in one sentence.
+pub(super) fn sentence(improved: &ImprovedJoint<'_>) -> String {
+    let compared = &improved.finding.compared;
+    let comparison = compared.comparison;
+    let own = effects(&comparison.fit.model);
+    let model = ["integrator"].into_iter().chain(own).collect::<Vec<_>>().join(" + ");
+    let judged = comparison.validation.or(comparison.training);
+    let error = judged.map_or_else(String::new, |error| {
+        let rmse = measure(error.rmse, compared.joint.output_unit.as_deref());
+        let noise = comparison.noise_floor.filter(|noise| *noise > 0.0);
+        let times = noise.map_or_else(String::new, |noise| {
+            format!(", {:.2} times the noise", error.rmse / noise)
+        });
+        format!(" leaves {rmse}{times} (fit {:.1} %)", error.fit_percent)
+    });
+    let best = improved.finding.ranking.first().map(Candidate::name);
+    let verdict = match (improved.finding.verdict, best) {
+        (Verdict::Adequate, _) => "nothing is missing".to_owned(),
+        (Verdict::MissingEffect, Some(best)) => format!("{best} is missing"),
+        (Verdict::MissingEffect, None) => "more is missing".to_owned(),
+        (Verdict::Unexplained, _) => "it fails, and no effect accounts for it".to_owned(),
+    };
+    format!("Model: {model}{error}; {verdict}.")
+}
+
+/// The model in equations with its numbers, in the order in which a signal runs through it.
+fn equations(compared: &ComparedJoint<'_>) -> String {
+    let fit = &compared.comparison.fit;
+    let units = parameter_units(compared.joint, &fit.model);
+    let own = |index: usize| {
+        let known = fit.parameters.get(index).zip(units.get(index));
+        known.map_or_else(String::new, |(parameter, unit)| value(parameter, unit))
+    };
+    let laws = |from: Stage, to: Stage| {
+        let components = fit.model.components().iter();
+        let of_stages = move |one: &&Component| (from..=to).contains(&one.effect().spec().stage);
+        components.filter(of_stages).map(law)
+    };
+    let mut lines = vec![format!("in = input(t − delay), delay = {}", own(1))];
+    lines.extend(laws(Stage::Transport, Stage::Dynamics));
+    let acting = behind("in", laws(Stage::Input, Stage::Dynamics).count());
+    lines.push(format!("speed = gain · {acting}, gain = {}", own(0)));
+    lines.extend(laws(Stage::Load, Stage::Load));
+    let speed = behind("speed", laws(Stage::Load, Stage::Load).count());
+    lines.push(format!("d output/dt = {speed}"));
+    lines.extend(laws(Stage::Output, Stage::Output));
+    lines.join("\n")
+}
+
+/// What a signal is called behind so many effects.
+fn behind(name: &str, effects: usize) -> &str {
+    if effects == 0 { name } else { "out" }
+}
+
+/// `    dead_band, on the delayed input: out = …`.
+fn law(component: &Component) -> String {
+    let spec = component.effect().spec();
+    let place = match spec.stage {
+        Stage::Transport => "on the delay",
+        Stage::Input => "on the delayed input",
+        Stage::Dynamics => "on the input as it acts",
+        Stage::Load => "on the speed",
+        Stage::Output => "on the output",
+    };
+    format!("    {}, {place}: {}", spec.id, filled_in(component))
+}
+
+/// `11.900 ± 0.020 deg/s/V`.
+fn value(parameter: &Parameter, unit: &str) -> String {
+    format!("{} {unit}{}", known(parameter), remark(parameter.status)).trim_end().to_owned()
+}
+
+/// `11.900 ± 0.020`.
+fn known(parameter: &Parameter) -> String {
+    let Parameter { value, std_error, .. } = parameter;
+    std_error.map_or_else(|| number(*value), |error| with_error(*value, error))
+}
+
+fn remark(status: Status) -> &'static str {
+    match status {
+        Status::Fitted => "",
+        Status::Fixed => " (fixed)",
+        Status::AtBound => " (at its bound)",
+        Status::Undetermined => " (not determined by this record)",
+    }
+}
+
+/// A row per parameter.
+fn parameters(compared: &ComparedJoint<'_>) -> Table {
+    let fit = &compared.comparison.fit;
+    let units = parameter_units(compared.joint, &fit.model);
+    let header = ["parameter", "value ± standard error", "unit", "remark"];
+    let mut table = Table::new(header, &[1]);
+    for (parameter, unit) in fit.parameters.iter().zip(units) {
+        let remark = remark(parameter.status).trim_matches([' ', '(', ')']).to_owned();
+        table.row([parameter.name.clone(), known(parameter), unit, remark]);
+    }
+    table
+}
+
+/// The ladder of errors; without several revisions, the error alone.
+fn errors(
+    report: &Report<'_>,
+    improved: &ImprovedJoint<'_>,
+    file: &str,
+) -> Result<Vec<Block>, PlotError> {
+    let mut blocks = vec![Block::part("Errors")];
+    if improved.revisions.len() > 1 {
+        let figure = ladder::figure(improved, format!("{file}-ladder"))?;
+        blocks.push(Block::Figures(vec![figure]));
+    }
+    blocks.push(Block::Table(ladder::table(improved)));
+    blocks.push(Block::text(format!("Root-mean-square errors, {}.", report.horizon)));
+    blocks.extend(history(report, improved));
+    Ok(blocks)
+}
+
+/// What the model file tells of revisions before this report.
+fn history(report: &Report<'_>, improved: &ImprovedJoint<'_>) -> Option<Block> {
+    let joint = improved.finding.compared.joint;
+    let entries = report.model.map_or(&[][..], |file| file.history(&joint.name));
+    let mut table = Table::new(["revision", "added", "removed", "validation"], &[0, 3]);
+    let dash = |id: &Option<String>| id.clone().unwrap_or_else(|| "-".to_owned());
+    for entry in entries {
+        let unit = joint.output_unit.as_deref();
+        let error = entry.validation_rmse.map_or_else(|| "-".to_owned(), |e| with_unit(e, unit));
+        table.row([entry.revision.to_string(), dash(&entry.added), dash(&entry.removed), error]);
+    }
+    let blocks = vec![Block::Table(table)];
+    let summary = "The ladder before: what the model file tells of its revisions".to_owned();
+    (!entries.is_empty()).then_some(Block::Details { summary, blocks })
+}
+
+/// What the model simulates, and what is left.
+fn beside_the_measurement(
+    report: &Report<'_>,
+    compared: &ComparedJoint<'_>,
+    file: &str,
+) -> Result<Vec<Block>, PlotError> {
+    let split = report.split.unwrap_or_else(|| Split::of(compared.joint));
+    let figure = simulated::figure(compared, split, format!("{file}-simulated"))?;
+    let mut blocks = vec![Block::part("Measured and simulated"), Block::Figures(vec![figure])];
+    let left = correlation_sentences(compared.comparison).join("; ");
+    if !left.is_empty() {
+        blocks.push(Block::text(format!("What is left of the part that was fitted: {left}.")));
+    }
+    Ok(blocks)
+}
+
+/// Where the last revision that fails does so; nothing where none fails.
+fn failures(improved: &ImprovedJoint<'_>, file: &str) -> Result<Vec<Block>, PlotError> {
+    let fails = |revision: &Revision| revision.comparison.failure.is_some();
+    let failing = improved.numbered().filter(|(_, revision)| fails(revision)).last();
+    let Some((revision, step)) = failing else { return Ok(Vec::new()) };
+    let last = improved.finding.compared;
+    let compared = ComparedJoint { revision, comparison: &step.comparison, ..last };
+    let heading = if revision == last.revision {
+        "Where it fails".to_owned()
+    } else {
+        format!("Where revision {revision} failed")
+    };
+    let said = sentences(&compared).into_iter().map(|sentence| format!("{sentence}."));
+    let said: Vec<String> = said.collect();
+    let mut blocks = vec![Block::part(heading)];
+    if said.is_empty() {
+        let none = "No condition holds much more of the error than of the time.";
+        blocks.push(Block::text(none));
+    } else {
+        blocks.push(Block::List(said));
+    }
+    let share = share::figure(&compared, format!("{file}-error-share"))?;
+    let worst = simulated::worst(&compared, format!("{file}-worst-segment"))?;
+    blocks.push(Block::Figures(share.into_iter().chain(worst).collect()));
+    Ok(blocks)
+}
+
+/// What was tried on each revision, the last one first.
+fn rankings(improved: &ImprovedJoint<'_>) -> Vec<Block> {
+    let tried: Vec<_> =
+        improved.numbered().filter(|(_, revision)| !revision.ranking.is_empty()).collect();
+    let mut blocks = Vec::new();
+    if !tried.is_empty() {
+        blocks.push(Block::part("Effects that were tried"));
+    }
+    for (number, revision) in tried.into_iter().rev() {
+        let table = Block::Table(ranking(improved, &revision.ranking));
+        let summary = format!("Ranking on revision {number}, best first");
+        blocks.push(Block::Details { summary, blocks: vec![table] });
+    }
+    blocks
+}
+
+/// A row per candidate.
+fn ranking(improved: &ImprovedJoint<'_>, candidates: &[Candidate]) -> Table {
+    let unit = improved.finding.compared.joint.output_unit.as_deref();
+    let header = ["effect", "error", "reduction", "chance", "cannot be told from"];
+    let mut table = Table::new(header, &[1, 2]);
+    for candidate in candidates {
+        let same = &candidate.indistinguishable_from;
+        table.row([
+            candidate.name(),
+            with_unit(candidate.rmse(), unit),
+            format!("{:.1} %", candidate.error_reduction_percent),
+            probability(candidate.p_value),
+            if same.is_empty() { "-".to_owned() } else { same.join(", ") },
+        ]);
+    }
+    table
+}

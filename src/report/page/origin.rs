@@ -1,0 +1,61 @@
+//! What a report was made from and with, so that it can be made again.
+
+use super::document::{Attachment, Block, Table};
+use super::{RecordingFile, Report};
+use crate::report::settings::settings_rows;
+
+pub(super) fn blocks(report: &Report<'_>) -> Vec<Block> {
+    let mut blocks = vec![Block::section("How this was made", "how-this-was-made")];
+    blocks.push(Block::text(format!(
+        "Made by tauscope {} with this command, which makes it again from the same files:",
+        env!("CARGO_PKG_VERSION")
+    )));
+    blocks.push(Block::Code(report.command.to_owned()));
+    blocks.push(Block::Table(files(report)));
+    if !report.notes.is_empty() {
+        blocks.push(Block::List(report.notes.to_vec()));
+    }
+    blocks.extend(report.recording.iter().flat_map(recording));
+    blocks.push(Block::part("Settings"));
+    blocks.push(Block::Table(settings(report)));
+    if let Some(text) = report.revised {
+        let summary = "The models, as a model file".to_owned();
+        blocks.push(Block::Details { summary, blocks: vec![Block::Code(text.to_owned())] });
+    }
+    blocks
+}
+
+/// The files that were read.
+fn files(report: &Report<'_>) -> Table {
+    let mut table = Table::new(["file", "bytes", "SHA-256"], &[1]);
+    for source in &report.experiment.sources {
+        let path = source.path.display().to_string();
+        table.row([path, source.bytes.to_string(), source.sha256.clone()]);
+    }
+    table
+}
+
+fn settings(report: &Report<'_>) -> Table {
+    let mut table = Table::new(["setting", "value"], &[]);
+    for (name, value) in settings_rows(report.settings) {
+        table.row([name.to_owned(), value]);
+    }
+    table
+}
+
+/// How to look at the recording.
+fn recording(recording: &RecordingFile<'_>) -> Vec<Block> {
+    let RecordingFile { name, bytes } = recording;
+    let place = if bytes.is_some() { "is in this page" } else { "stands beside this report" };
+    let mut blocks = vec![
+        Block::part("Recording"),
+        Block::text(format!(
+            "{name} {place}: every decision, to be stepped through in the Rerun viewer 0.36.3 \
+             (package rerun-sdk of PyPI), with:"
+        )),
+        Block::Code(format!("rerun {name}")),
+    ];
+    let file = bytes.map(|bytes| Attachment { name: (*name).to_owned(), bytes: bytes.to_vec() });
+    blocks.extend(file.map(Block::Attachment));
+    blocks
+}

@@ -1,0 +1,406 @@
+//! Drawings as SVG: panels above one another with axes, grid and a legend.
+//!
+//! Coordinates of the drawing library are whole numbers, so that a figure is drawn
+//! [`FINE`] times as large as it is shown.
+
+use std::ops::Range;
+
+use plotters::coord::Shift;
+use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::palette::Role;
+use crate::report::number;
+use crate::report::span::Span;
+
+/// Parts of a pixel that a coordinate tells.
+const FINE: u32 = 4;
+
+/// Height of letters in pixels.
+const LETTERS: u32 = 12;
+
+/// Room for the numbers and the name of the vertical axis.
+const LEFT: u32 = 66;
+
+/// Room beyond the right end of the horizontal axis.
+const RIGHT: u32 = 14;
+
+/// Room for a legend.
+const LEGEND: u32 = 22;
+
+/// Width of a letter, on average, in parts of its height.
+const LETTER_WIDTH: f64 = 0.56;
+
+/// Why a figure is not there.
+#[derive(Debug, thiserror::Error)]
+#[error("a figure cannot be drawn: {0}")]
+pub struct PlotError(String);
+
+type Svg<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Axes = Cartesian2d<Axis, Axis>;
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Axes>;
+
+/// An axis: its range, its name with the unit, and its ticks.
+#[derive(Clone, Debug)]
+pub(super) struct Axis {
+    span: Span,
+    name: String,
+    ticks: Vec<(f64, String)>,
+}
+
+/// A place in a panel.
+pub(super) type Place = (f64, f64);
+
+/// What is drawn.
+#[derive(Clone, Debug)]
+pub(super) enum Shape {
+    /// Lines through places, and their width in pixels.
+    Lines(Vec<Vec<Place>>, f64),
+    /// Filled circles.
+    Dots(Vec<Place>),
+    /// Crosses.
+    Crosses(Vec<Place>),
+    /// Lines from the lower to the upper edge.
+    Verticals(Vec<f64>),
+    /// Between two values, from the left to the right edge.
+    Band(f64, f64),
+    /// Between two values of the horizontal axis, from edge to edge.
+    Stretches(Vec<(f64, f64)>),
+    /// Filled between two corners.
+    Bars(Vec<(Place, Place)>),
+    /// Words that start beside a place.
+    Words(Vec<(Place, String)>),
+}
+
+/// Something drawn, what it means, and its name in the legend.
+#[derive(Clone, Debug)]
+pub(super) struct Mark {
+    role: Role,
+    name: Option<String>,
+    shape: Shape,
+}
+
+/// One pair of axes.
+#[derive(Clone, Debug)]
+pub(super) struct Panel {
+    pub(super) x: Axis,
+    pub(super) y: Axis,
+    /// Height of the part within the axes, in pixels.
+    pub(super) height: u32,
+    pub(super) marks: Vec<Mark>,
+}
+
+impl Axis {
+    /// An axis with about so many round numbers at it.
+    pub(super) fn new(span: Span, name: impl Into<String>, ticks: f64) -> Self {
+        let ticks = span.ticks(ticks).into_iter().map(|tick| (tick, number(tick))).collect();
+        Self { span, name: name.into(), ticks }
+    }
+
+    /// An axis of numbers whose logarithms to base ten are drawn.
+    pub(super) fn logarithmic(span: Span, name: impl Into<String>, ticks: f64) -> Self {
+        // Two digits are enough at an axis.
+        let power = |tick: f64| format!("{:.1e}", 10f64.powf(tick)).parse().map_or(0.0, |p: f64| p);
+        let ticks = span.ticks(ticks).into_iter().map(|tick| (tick, number(power(tick)))).collect();
+        Self { span, name: name.into(), ticks }
+    }
+
+    /// An axis of names, one at each whole number from 0, from the top down.
+    pub(super) fn of_names(names: &[String], name: impl Into<String>) -> Self {
+        let ticks = (0..).zip(names).map(|(row, name)| (-f64::from(row), name.clone()));
+        let span = Span::new(0.6 - names.len() as f64, 0.6);
+        Self { span, name: name.into(), ticks: ticks.collect() }
+    }
+
+    /// The same without numbers and name: those of the panel below hold for it.
+    pub(super) fn bare(&self) -> Self {
+        let ticks = self.ticks.iter().map(|(tick, _)| (*tick, String::new())).collect();
+        Self { name: String::new(), ticks, span: self.span }
+    }
+
+    fn is_bare(&self) -> bool {
+        self.ticks.iter().all(|(_, text)| text.is_empty()) && self.name.is_empty()
+    }
+
+    fn has_names(&self) -> bool {
+        self.name.is_empty() && !self.is_bare()
+    }
+
+    /// The text at a tick.
+    fn text(&self, at: f64) -> String {
+        let near = |tick: f64| (tick - at).abs() <= 1e-9 * (self.span.high - self.span.low);
+        let found = self.ticks.iter().find(|(tick, _)| near(*tick));
+        found.map_or_else(String::new, |(_, text)| text.clone())
+    }
+
+    /// Room for its texts, in pixels.
+    fn width(&self) -> u32 {
+        let longest = self.ticks.iter().map(|(_, text)| text.chars().count()).max().unwrap_or(0);
+        if self.has_names() { LEFT.max(text_width(longest) + 12) } else { LEFT }
+    }
+}
+
+impl Ranged for Axis {
+    type FormatOption = DefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
+        /// How far beyond the axis something is still drawn, in its lengths.
+        const BEYOND: f64 = 0.02;
+        let part = self.span.part(*value).clamp(-BEYOND, 1.0 + BEYOND);
+        #[expect(clippy::cast_possible_truncation, reason = "a place in the drawing")]
+        let offset = (part * f64::from(to - from)).round() as i32;
+        from + offset
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        if hint.weight().allow_light_points() {
+            return Vec::new();
+        }
+        self.ticks.iter().map(|(tick, _)| *tick).collect()
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.span.low..self.span.high
+    }
+}
+
+impl Mark {
+    pub(super) fn new(role: Role, shape: Shape) -> Self {
+        Self { role, name: None, shape }
+    }
+
+    /// The same with a name in the legend.
+    pub(super) fn named(self, name: impl Into<String>) -> Self {
+        Self { name: Some(name.into()), ..self }
+    }
+}
+
+/// Pixels that so many letters take, about.
+fn text_width(letters: usize) -> u32 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few letters")]
+    let width = (letters as f64 * LETTER_WIDTH * f64::from(LETTERS)).ceil() as u32;
+    width
+}
+
+fn fine(pixels: u32) -> i32 {
+    i32::try_from(pixels * FINE).unwrap_or(i32::MAX)
+}
+
+fn color(role: Role, opacity: f64) -> RGBAColor {
+    let (red, green, blue) = role.rgb();
+    RGBAColor(red, green, blue, opacity)
+}
+
+fn stroke(role: Role, width: f64) -> ShapeStyle {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few pixels")]
+    let stroke_width = (width * f64::from(FINE)).round() as u32;
+    ShapeStyle { color: color(role, 1.0), filled: false, stroke_width }
+}
+
+fn filled(role: Role, opacity: f64) -> ShapeStyle {
+    ShapeStyle { color: color(role, opacity), filled: true, stroke_width: 0 }
+}
+
+/// The letters of texts; the library asks for 1.24 times their height.
+fn letters(role: Role) -> TextStyle<'static> {
+    let size = f64::from(LETTERS * FINE) * 1.24;
+    ("sans-serif", size).into_font().color(&color(role, 1.0))
+}
+
+/// Draws `panels` above one another, `width` pixels wide; the SVG without what stands
+/// around it, so that it may go into a page.
+pub(super) fn draw(panels: &[Panel], width: u32, name: &str) -> Result<String, PlotError> {
+    let height: u32 = panels.iter().map(Panel::whole_height).sum();
+    let mut text = String::new();
+    let failed = |error: DrawingAreaErrorKind<std::io::Error>| PlotError(error.to_string());
+    {
+        let backend = SVGBackend::with_string(&mut text, (width * FINE, height * FINE));
+        let mut rest = backend.into_drawing_area();
+        let left = panels.iter().map(|panel| panel.y.width()).max().unwrap_or(LEFT);
+        for panel in panels {
+            let (own, below) = rest.split_vertically(fine(panel.whole_height()));
+            panel.draw(&own, left).map_err(failed)?;
+            rest = below;
+        }
+        rest.present().map_err(failed)?;
+    }
+    Ok(framed(&text, (width, height), name))
+}
+
+/// The drawing in a frame of its own size, with its name for those who do not see it.
+fn framed(text: &str, (width, height): (u32, u32), name: &str) -> String {
+    let inside = text.split_once(">\n").map_or("", |(_, inside)| inside);
+    let inside = inside.replace(" opacity=\"1\"", "");
+    let (wide, high) = (width * FINE, height * FINE);
+    let name = maud::html! { (name) }.into_string();
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+         viewBox=\"0 0 {wide} {high}\" role=\"img\"><title>{name}</title>\n{inside}"
+    )
+}
+
+impl Panel {
+    fn has_legend(&self) -> bool {
+        self.marks.iter().any(|mark| mark.name.is_some())
+    }
+
+    fn top(&self) -> u32 {
+        if self.has_legend() { LEGEND } else { 8 }
+    }
+
+    fn bottom(&self) -> u32 {
+        match (self.x.is_bare(), self.x.name.is_empty()) {
+            (true, _) => 6,
+            (false, true) => 20,
+            (false, false) => 40,
+        }
+    }
+
+    fn whole_height(&self) -> u32 {
+        self.top() + self.height + self.bottom()
+    }
+
+    fn draw(&self, area: &Svg<'_>, left: u32) -> Result<(), DrawingAreaErrorKind<std::io::Error>> {
+        let mut chart = ChartBuilder::on(area)
+            .margin_top(fine(self.top()))
+            .margin_right(fine(RIGHT))
+            .x_label_area_size(fine(self.bottom()))
+            .y_label_area_size(fine(left))
+            .build_cartesian_2d(self.x.clone(), self.y.clone())?;
+        let (behind, before): (Vec<&Mark>, Vec<&Mark>) =
+            self.marks.iter().partition(|mark| mark.is_ground());
+        for mark in behind {
+            mark.draw(&mut chart, self)?;
+        }
+        self.mesh(&mut chart)?;
+        for mark in before {
+            mark.draw(&mut chart, self)?;
+        }
+        self.legend(area, left)
+    }
+
+    fn mesh(&self, chart: &mut Chart<'_, '_>) -> Result<(), DrawingAreaErrorKind<std::io::Error>> {
+        let (x_text, y_text) = (|x: &f64| self.x.text(*x), |y: &f64| self.y.text(*y));
+        let mut mesh = chart.configure_mesh();
+        mesh.x_label_formatter(&x_text)
+            .y_label_formatter(&y_text)
+            .label_style(letters(Role::Faint))
+            .axis_desc_style(letters(Role::Ink))
+            .axis_style(stroke(Role::Faint, 1.0))
+            .bold_line_style(stroke(Role::Grid, 1.0))
+            .light_line_style(ShapeStyle::from(&TRANSPARENT))
+            .set_all_tick_mark_size(fine(3));
+        if self.y.has_names() {
+            mesh.disable_y_mesh();
+        }
+        if !self.x.name.is_empty() {
+            mesh.x_desc(&self.x.name);
+        }
+        if !self.y.name.is_empty() {
+            mesh.y_desc(&self.y.name);
+        }
+        mesh.draw()
+    }
+
+    /// A swatch and a name for each mark that has one, in a line above the axes.
+    fn legend(
+        &self,
+        area: &Svg<'_>,
+        left: u32,
+    ) -> Result<(), DrawingAreaErrorKind<std::io::Error>> {
+        let middle = fine(LEGEND) / 2 - fine(1);
+        let mut x = left;
+        for mark in &self.marks {
+            let Some(name) = &mark.name else { continue };
+            mark.swatch(area, (fine(x), middle))?;
+            let style = letters(Role::Ink).pos(Pos::new(HPos::Left, VPos::Center));
+            area.draw(&Text::new(name.clone(), (fine(x + 24), middle), style))?;
+            x += 24 + text_width(name.chars().count()) + 18;
+        }
+        Ok(())
+    }
+}
+
+impl Mark {
+    /// Whether the grid is drawn over it.
+    fn is_ground(&self) -> bool {
+        matches!(self.shape, Shape::Band(..) | Shape::Stretches(_))
+    }
+
+    fn swatch(
+        &self,
+        area: &Svg<'_>,
+        (x, y): (i32, i32),
+    ) -> Result<(), DrawingAreaErrorKind<std::io::Error>> {
+        let (middle, end) = (x + fine(9), x + fine(18));
+        let block = [(x, y - fine(4)), (end, y + fine(4))];
+        match &self.shape {
+            Shape::Lines(_, width) => {
+                area.draw(&PathElement::new([(x, y), (end, y)], stroke(self.role, *width)))
+            }
+            Shape::Verticals(_) => {
+                let ends = [(middle, y - fine(6)), (middle, y + fine(6))];
+                area.draw(&PathElement::new(ends, stroke(self.role, 1.2)))
+            }
+            Shape::Dots(_) => area.draw(&dot((middle, y), self.role)),
+            Shape::Crosses(_) => area.draw(&cross((middle, y), self.role)),
+            Shape::Band(..) | Shape::Stretches(_) => {
+                area.draw(&Rectangle::new(block, filled(self.role, 0.3)))
+            }
+            Shape::Bars(_) => area.draw(&Rectangle::new(block, filled(self.role, 1.0))),
+            Shape::Words(_) => Ok(()),
+        }
+    }
+
+    fn draw(
+        &self,
+        chart: &mut Chart<'_, '_>,
+        panel: &Panel,
+    ) -> Result<(), DrawingAreaErrorKind<std::io::Error>> {
+        let (x, y, role) = (panel.x.span, panel.y.span, self.role);
+        let line = |ends: [Place; 2]| PathElement::new(ends.to_vec(), stroke(role, 1.2));
+        let area = chart.plotting_area();
+        match &self.shape {
+            Shape::Lines(lines, width) => lines.iter().try_for_each(|line| {
+                area.draw(&PathElement::new(line.clone(), stroke(role, *width)))
+            }),
+            Shape::Dots(places) => {
+                places.iter().try_for_each(|place| area.draw(&dot(*place, role)))
+            }
+            Shape::Crosses(places) => {
+                places.iter().try_for_each(|place| area.draw(&cross(*place, role)))
+            }
+            Shape::Verticals(places) => {
+                places.iter().try_for_each(|at| area.draw(&line([(*at, y.low), (*at, y.high)])))
+            }
+            Shape::Band(low, high) => {
+                let corners = [(x.low, *low), (x.high, *high)];
+                area.draw(&Rectangle::new(corners, filled(role, 0.18)))
+            }
+            Shape::Stretches(places) => places.iter().try_for_each(|(from, to)| {
+                let corners = [(*from, y.low), (*to, y.high)];
+                area.draw(&Rectangle::new(corners, filled(role, 0.22)))
+            }),
+            Shape::Bars(bars) => bars.iter().try_for_each(|(from, to)| {
+                area.draw(&Rectangle::new([*from, *to], filled(role, 1.0)))
+            }),
+            Shape::Words(words) => {
+                let style = letters(role).pos(Pos::new(HPos::Left, VPos::Center));
+                words.iter().try_for_each(|(place, text)| {
+                    let text = Text::new(text.clone(), (fine(5), 0), style.clone());
+                    area.draw(&(EmptyElement::at(*place) + text))
+                })
+            }
+        }
+    }
+}
+
+fn dot<P>(place: P, role: Role) -> Circle<P, i32> {
+    Circle::new(place, fine(3), filled(role, 1.0))
+}
+
+fn cross<P>(place: P, role: Role) -> Cross<P, i32> {
+    Cross::new(place, fine(4), stroke(role, 1.8))
+}

@@ -1,0 +1,73 @@
+//! The whole record of a joint: its output with the breakpoints, and its input.
+
+use super::document::Figure;
+use super::palette::Role;
+use super::plot::{Axis, Mark, Panel, Place, PlotError, Shape, draw};
+use super::timeline::Timeline;
+use super::{WIDTH, named, values_of};
+use crate::delay::{Decision, Verdict};
+use crate::experiment::Trial;
+use crate::report::EstimatedJoint;
+use crate::report::span::Span;
+
+/// Input and output over time.
+pub(super) fn figure(estimated: EstimatedJoint<'_>, file: String) -> Result<Figure, PlotError> {
+    let joint = estimated.joint;
+    let timeline = Timeline::of(joint);
+    let (accepted, rejected) = breakpoints(estimated, &timeline);
+    let span = |values: fn(&Trial) -> &[f64]| Span::around(values_of(joint, values), 0.06);
+    let output = Panel {
+        x: timeline.axis().bare(),
+        y: Axis::new(span(Trial::output), named("output", joint.output_unit.as_deref()), 5.0),
+        height: 170,
+        marks: vec![
+            Mark::new(Role::Faint, Shape::Verticals(timeline.borders())),
+            Mark::new(Role::Measured, Shape::Lines(timeline.lines(|_, t| t.output()), 1.3))
+                .named("output"),
+            Mark::new(Role::Accepted, Shape::Dots(accepted)).named("breakpoint, accepted"),
+            Mark::new(Role::Rejected, Shape::Crosses(rejected)).named("rejected"),
+        ],
+    };
+    let input = Panel {
+        x: timeline.axis(),
+        y: Axis::new(span(Trial::input), named("input", joint.input_unit.as_deref()), 3.0),
+        height: 80,
+        marks: vec![
+            Mark::new(Role::Faint, Shape::Verticals(timeline.borders())),
+            Mark::new(Role::Input, Shape::Lines(timeline.held(|_, t| t.input()), 1.4)),
+        ],
+    };
+    let name = format!("Input and output of {} over time", joint.name);
+    let svg = draw(&[output, input], WIDTH, &name)?;
+    let caption =
+        "What was measured, and where the output of each step of the input breaks.".to_owned();
+    Ok(Figure { file, svg, caption })
+}
+
+/// Where each breakpoint is: of accepted decisions, and of rejected ones.
+fn breakpoints(estimated: EstimatedJoint<'_>, timeline: &Timeline<'_>) -> (Vec<Place>, Vec<Place>) {
+    let (mut accepted, mut rejected) = (Vec::new(), Vec::new());
+    let trials = estimated.joint.trials.iter().zip(&estimated.estimate.trials).enumerate();
+    for (index, (trial, result)) in trials {
+        for decision in result.iter().flat_map(|estimate| &estimate.decisions) {
+            let Some(place) = breakpoint(decision, trial, index, timeline) else { continue };
+            match decision.verdict() {
+                Verdict::Accepted => accepted.push(place),
+                Verdict::Rejected(_) => rejected.push(place),
+            }
+        }
+    }
+    (accepted, rejected)
+}
+
+fn breakpoint(
+    decision: &Decision,
+    trial: &Trial,
+    index: usize,
+    timeline: &Timeline<'_>,
+) -> Option<Place> {
+    let best = decision.breakpoint()?.candidate;
+    let sample = decision.input_step.sample as f64 + decision.delay()?;
+    let output = *trial.output().get(best.breakpoint.checked_sub(1)?)?;
+    Some((timeline.at(index, sample), output))
+}

@@ -1,0 +1,217 @@
+//! Single decisions: the segment with both lines, and the error of every candidate.
+
+use super::document::Figure;
+use super::palette::Role;
+use super::plot::{Axis, Mark, Panel, Place, PlotError, Shape, draw};
+use super::{NARROW, named};
+use crate::delay::{Candidate, Condition, Decision, Line, Verdict};
+use crate::experiment::{Joint, Trial};
+use crate::report::number::rounded;
+use crate::report::span::{Span, thinned_to};
+use crate::report::{EstimatedJoint, number};
+
+/// Errors less than this part of the largest are drawn at it: the fit is exact there.
+const EXACT: f64 = 1e-9;
+
+/// A decision that is worth a look, and why.
+struct Choice<'a> {
+    why: &'static str,
+    trial: &'a Trial,
+    /// The output that the lines were fitted to.
+    output: &'a [f64],
+    decision: &'a Decision,
+}
+
+/// The best, a typical and the worst of the accepted decisions, and a rejected one.
+pub(super) fn figures(estimated: EstimatedJoint<'_>, file: &str) -> Result<Vec<Figure>, PlotError> {
+    let choices = choices(estimated);
+    let drawn = choices.iter().map(|choice| choice.figure(estimated.joint, file));
+    drawn.collect()
+}
+
+fn choices(estimated: EstimatedJoint<'_>) -> Vec<Choice<'_>> {
+    let mut accepted: Vec<_> =
+        all(estimated).filter_map(|choice| Some((vagueness(choice.decision)?, choice))).collect();
+    accepted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let last = accepted.len().saturating_sub(1);
+    let places = [(0, "Clearest"), (last / 2, "Typical"), (last, "Least clear")];
+    let mut chosen: Vec<Choice<'_>> = Vec::new();
+    for (place, why) in places {
+        let Some((_, choice)) = accepted.get(place) else { continue };
+        let same = |other: &Choice<'_>| std::ptr::eq(other.decision, choice.decision);
+        if !chosen.iter().any(same) {
+            chosen.push(Choice { why, ..*choice });
+        }
+    }
+    chosen.extend(rejected(estimated));
+    chosen
+}
+
+/// All decisions of a joint.
+fn all(estimated: EstimatedJoint<'_>) -> impl Iterator<Item = Choice<'_>> {
+    let trials = estimated.joint.trials.iter().zip(&estimated.estimate.trials);
+    let known = trials.filter_map(|(trial, result)| Some((trial, result.as_ref().ok()?)));
+    known.flat_map(|(trial, estimate)| {
+        let output = estimate.smoothed.as_deref().unwrap_or(trial.output());
+        let choice = move |decision| Choice { why: "", trial, output, decision };
+        estimate.decisions.iter().map(choice)
+    })
+}
+
+/// How vague the breakpoint of an accepted decision is, in samples: the error of the lines
+/// against the change of slope.
+fn vagueness(decision: &Decision) -> Option<f64> {
+    decision.accepted_delay()?;
+    let best = decision.breakpoint()?.candidate;
+    let rmse = (best.sse / decision.segment.len() as f64).sqrt();
+    Some(rmse / best.slope_change().abs()).filter(|vague| vague.is_finite())
+}
+
+/// The first rejected decision that says something: the first and the last step of a trial
+/// are never judged.
+fn rejected(estimated: EstimatedJoint<'_>) -> Option<Choice<'_>> {
+    let is_telling = |choice: &Choice<'_>| match choice.decision.verdict() {
+        Verdict::Accepted | Verdict::Rejected(Condition::FirstOrLast) => false,
+        Verdict::Rejected(_) => choice.decision.breakpoint().is_some(),
+    };
+    let found = all(estimated).find(is_telling);
+    found.map(|choice| Choice { why: "Rejected", ..choice })
+}
+
+impl Choice<'_> {
+    fn figure(&self, joint: &Joint, file: &str) -> Result<Figure, PlotError> {
+        let x = Axis::new(self.window_s(), "time [s]", 5.0);
+        let panels = [self.lines(joint, x.bare()), self.errors(joint, x)];
+        let number = self.decision.number;
+        let name = format!("{} step of {}: number {number}", self.why, joint.name);
+        let svg = draw(&panels, NARROW, &name)?;
+        let file = format!("{file}-{}", self.why.to_ascii_lowercase().replace(' ', "-"));
+        Ok(Figure { file, svg, caption: self.caption(joint) })
+    }
+
+    fn caption(&self, joint: &Joint) -> String {
+        let Self { why, trial, decision, .. } = self;
+        let trial_said = match joint.trials.len() {
+            1 => String::new(),
+            _ => format!(" of trial {}", trial.label()),
+        };
+        let at = rounded_time(trial.time_s(decision.input_step.sample));
+        let (i, delay) = (decision.number, decision.delay());
+        let delay = delay.map_or_else(
+            || "no delay".to_owned(),
+            |delay| format!("delay {} s", number(tidy(delay * trial.period().seconds()))),
+        );
+        let verdict = match decision.verdict() {
+            Verdict::Accepted => "accepted".to_owned(),
+            Verdict::Rejected(condition) => {
+                format!("rejected as {condition}: {}", condition.meaning())
+            }
+        };
+        format!("{why}: step {i}{trial_said} at {at} s, {delay}, {verdict}.")
+    }
+
+    /// First and last sample that are drawn.
+    fn window(&self) -> (usize, usize) {
+        let segment = self.decision.segment;
+        let margin = (segment.len() / 12).max(3);
+        let first = segment.first.min(self.decision.input_step.sample);
+        let first = first.saturating_sub(margin).max(1);
+        (first, (segment.last + margin).min(self.trial.len()))
+    }
+
+    fn window_s(&self) -> Span {
+        let (first, last) = self.window();
+        Span::new(self.trial.time_s(first), self.trial.time_s(last))
+    }
+
+    /// The time of a sample, which may be between two.
+    fn at(&self, sample: f64) -> f64 {
+        self.trial.time_s(1) + (sample - 1.0) * self.trial.period().seconds()
+    }
+
+    fn signal(&self, values: &[f64]) -> Vec<Place> {
+        let (first, last) = self.window();
+        let window = values.get(first - 1..last).unwrap_or_default();
+        let kept = thinned_to(window, 600);
+        let place = |k: usize| Some((self.at((first + k) as f64), *window.get(k)?));
+        kept.into_iter().filter_map(place).collect()
+    }
+
+    /// The sample at which the lines break.
+    fn broken_at(&self) -> Option<f64> {
+        Some(self.decision.input_step.sample as f64 + self.decision.delay()?)
+    }
+
+    /// The output with both lines.
+    fn lines(&self, joint: &Joint, x: Axis) -> Panel {
+        let measured = self.signal(self.trial.output());
+        let smoothed = self.signal(self.output);
+        let chosen = self.decision.breakpoint().map(|best| self.both(&best.candidate));
+        let chosen = chosen.unwrap_or_default();
+        let values = measured.iter().chain(&smoothed).chain(chosen.iter().flatten());
+        let y = Span::around(values.map(|place| place.1), 0.08);
+        let role = match self.decision.verdict() {
+            Verdict::Accepted => Role::Accepted,
+            Verdict::Rejected(_) => Role::Rejected,
+        };
+        let step = vec![self.at(self.decision.input_step.sample as f64)];
+        let q: Vec<f64> = self.broken_at().map(|q| self.at(q)).into_iter().collect();
+        Panel {
+            x,
+            y: Axis::new(y, named("output", joint.output_unit.as_deref()), 4.0),
+            height: 170,
+            marks: vec![
+                Mark::new(role, Shape::Lines(chosen, 4.0)).named("lines"),
+                Mark::new(Role::Measured, Shape::Lines(vec![measured], 1.2)).named("output"),
+                Mark::new(Role::Smoothed, Shape::Lines(vec![smoothed], 1.0)).named("smoothed"),
+                Mark::new(Role::Input, Shape::Verticals(step)).named("p"),
+                Mark::new(role, Shape::Verticals(q)).named("q"),
+            ],
+        }
+    }
+
+    /// Both lines of a candidate.
+    fn both(&self, best: &Candidate) -> Vec<Vec<Place>> {
+        let segment = self.decision.segment;
+        let q = self.broken_at().unwrap_or(best.breakpoint as f64);
+        let ends = |line: Line, from: f64, to: f64| {
+            [from, to].map(|sample| (self.at(sample), line.at(sample))).to_vec()
+        };
+        let before = ends(best.before, segment.first as f64, q);
+        vec![before, ends(best.after, q, segment.last as f64)]
+    }
+
+    /// The squared error of every candidate.
+    fn errors(&self, joint: &Joint, x: Axis) -> Panel {
+        let candidates = &self.decision.candidates;
+        let highest = candidates.sse().iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let place = |candidate: Candidate| {
+            let sse = candidate.sse.max(EXACT * highest).log10();
+            (self.at(candidate.breakpoint as f64), sse)
+        };
+        let curve: Vec<Place> = candidates.iter().map(place).collect();
+        let best: Vec<Place> = candidates.best().map(place).into_iter().collect();
+        let y = Span::around(curve.iter().map(|place| place.1), 0.12);
+        let unit = joint.output_unit.as_ref().map(|unit| format!("{unit}²"));
+        let curve = Mark::new(Role::Error, Shape::Lines(vec![curve], 1.6));
+        Panel {
+            x,
+            y: Axis::logarithmic(y, named("SSE", unit.as_deref()), 3.0),
+            height: 76,
+            marks: vec![
+                curve.named("error of each candidate"),
+                Mark::new(Role::Error, Shape::Dots(best)).named("least"),
+            ],
+        }
+    }
+}
+
+/// Seconds without what rounding left behind the ninth digit.
+fn tidy(seconds: f64) -> f64 {
+    (seconds * 1e9).round() / 1e9
+}
+
+/// A time to the hundredth, where that tells it.
+fn rounded_time(seconds: f64) -> String {
+    if seconds.abs() < 1e6 { number((seconds * 100.0).round() / 100.0) } else { rounded(seconds) }
+}

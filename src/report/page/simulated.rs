@@ -1,0 +1,158 @@
+//! A model beside the measurement: what it simulates, what is left, and where that is most.
+
+use super::document::Figure;
+use super::palette::Role;
+use super::plot::{Axis, Mark, Panel, Place, PlotError, Shape, draw};
+use super::timeline::Timeline;
+use super::{HALF, WIDTH, named, values_of};
+use crate::diagnosis::failure::WorstSegment;
+use crate::experiment::{Joint, Trial};
+use crate::fit::{Horizon, Part, Record, Split, Window};
+use crate::report::ComparedJoint;
+use crate::report::number::percent;
+use crate::report::span::{Span, thinned_to};
+
+/// Width of the noise band in standard deviations on each side: 95 % of normal noise.
+const BAND: f64 = 1.96;
+
+/// Measured and simulated output over time, and what is left.
+pub(super) fn figure(
+    compared: &ComparedJoint<'_>,
+    split: Split,
+    file: String,
+) -> Result<Figure, PlotError> {
+    let joint = compared.joint;
+    let timeline = Timeline::of(joint);
+    let unfitted = Mark::new(Role::Grid, Shape::Stretches(unfitted(joint, split, &timeline)));
+    let borders = Mark::new(Role::Faint, Shape::Verticals(timeline.borders()));
+    let worst = worst_stretches(compared, &timeline);
+    let output = Panel {
+        x: timeline.axis().bare(),
+        y: Axis::new(outputs(compared), named("output", joint.output_unit.as_deref()), 5.0),
+        height: 170,
+        marks: vec![
+            unfitted.clone().named("not fitted"),
+            borders.clone(),
+            Mark::new(Role::Measured, Shape::Lines(timeline.lines(|_, t| t.output()), 3.0))
+                .named("measured"),
+            Mark::new(
+                Role::Model,
+                Shape::Lines(timeline.lines(|index, _| simulated(compared, index)), 1.3),
+            )
+            .named("simulated"),
+        ],
+    };
+    let mut marks = vec![unfitted, borders];
+    if !worst.is_empty() {
+        marks.push(Mark::new(Role::Stretch, Shape::Stretches(worst)).named("worst segments"));
+    }
+    marks.extend(noise(compared).map(|mark| mark.named("95 % of the noise")));
+    let left = timeline.lines(|index, _| residual(compared, index));
+    marks.push(Mark::new(Role::Model, Shape::Lines(left, 1.0)).named("measured − simulated"));
+    marks.extend(noise_edges(compared, timeline.ends()));
+    let y = Axis::new(residuals(compared), named("residual", joint.output_unit.as_deref()), 6.0);
+    let left = Panel { x: timeline.axis(), y, height: 110, marks };
+    let name = format!("Measured and simulated output of {}", joint.name);
+    let svg = draw(&[output, left], WIDTH, &name)?;
+    let caption =
+        "The measured output beside the simulated one, and what is left of it.".to_owned();
+    Ok(Figure { file, svg, caption })
+}
+
+/// The segment with the largest share of the squared error, larger; none where no lack of
+/// fit is shown.
+pub(super) fn worst(
+    compared: &ComparedJoint<'_>,
+    file: String,
+) -> Result<Option<Figure>, PlotError> {
+    let joint = compared.joint;
+    let failure = compared.comparison.failure.as_ref();
+    let Some(worst) = failure.and_then(|failure| failure.worst_segments.first()) else {
+        return Ok(None);
+    };
+    let found = joint.trials.iter().enumerate().find(|(_, trial)| trial.label() == worst.trial);
+    let Some((index, trial)) = found else { return Ok(None) };
+    let cut = |values: &[f64]| around(values, trial, worst);
+    let (measured, simulated) = (cut(trial.output()), cut(simulated(compared, index)));
+    let x = Span::around(measured.iter().map(|place| place.0), 0.0);
+    let y = Span::around(measured.iter().chain(&simulated).map(|place| place.1), 0.08);
+    let panel = Panel {
+        x: Axis::new(x, "time [s]", 6.0),
+        y: Axis::new(y, named("output", joint.output_unit.as_deref()), 5.0),
+        height: 190,
+        marks: vec![
+            Mark::new(Role::Stretch, Shape::Stretches(vec![(worst.start_s, worst.end_s)])),
+            Mark::new(Role::Measured, Shape::Lines(vec![measured], 3.0)).named("measured"),
+            Mark::new(Role::Model, Shape::Lines(vec![simulated], 1.4)).named("simulated"),
+        ],
+    };
+    let svg = draw(&[panel], HALF, &format!("The worst segment of {}", joint.name))?;
+    let share = percent(worst.share_of_squared_error);
+    let caption = format!("The worst segment: it holds {share} of the squared error.");
+    Ok(Some(Figure { file, svg, caption }))
+}
+
+/// The samples of a segment, with a part of it before and behind.
+fn around(values: &[f64], trial: &Trial, worst: &WorstSegment) -> Vec<Place> {
+    let room = 0.5 * (worst.end_s - worst.start_s).max(trial.period().seconds());
+    let (from, to) = (worst.start_s - room, worst.end_s + room);
+    let places = values.iter().enumerate().map(|(k, y)| (trial.time_s(k + 1), *y));
+    let inside: Vec<Place> = places.filter(|place| (from..=to).contains(&place.0)).collect();
+    let outputs: Vec<f64> = inside.iter().map(|place| place.1).collect();
+    thinned_to(&outputs, 900).into_iter().filter_map(|k| inside.get(k)).copied().collect()
+}
+
+fn simulated<'a>(compared: &ComparedJoint<'a>, trial: usize) -> &'a [f64] {
+    let all = &compared.comparison.fit.evaluation.simulated;
+    all.get(trial).map_or(&[], |simulated| simulated.output.as_slice())
+}
+
+fn residual<'a>(compared: &ComparedJoint<'a>, trial: usize) -> &'a [f64] {
+    let all = &compared.comparison.fit.evaluation.residuals;
+    all.get(trial).map_or(&[], Vec::as_slice)
+}
+
+fn outputs(compared: &ComparedJoint<'_>) -> Span {
+    let all = &compared.comparison.fit.evaluation.simulated;
+    let simulated = all.iter().flat_map(|simulated| simulated.output.iter().copied());
+    Span::around(values_of(compared.joint, Trial::output).chain(simulated), 0.06)
+}
+
+fn residuals(compared: &ComparedJoint<'_>) -> Span {
+    let all = compared.comparison.fit.evaluation.residuals.iter().flatten().copied();
+    let band = compared.comparison.noise_floor.unwrap_or(0.0) * BAND;
+    Span::around(all.chain([-band, band]), 0.06)
+}
+
+/// Between these values 95 % of normal noise would be.
+fn noise(compared: &ComparedJoint<'_>) -> Option<Mark> {
+    let band = compared.comparison.noise_floor.filter(|noise| *noise > 0.0)? * BAND;
+    Some(Mark::new(Role::Noise, Shape::Band(-band, band)))
+}
+
+/// The edges of that, which show over the residual.
+fn noise_edges(compared: &ComparedJoint<'_>, (from, to): (f64, f64)) -> Option<Mark> {
+    let band = compared.comparison.noise_floor.filter(|noise| *noise > 0.0)? * BAND;
+    let edges = [-band, band].map(|edge| vec![(from, edge), (to, edge)]);
+    Some(Mark::new(Role::Noise, Shape::Lines(edges.to_vec(), 1.4)))
+}
+
+/// What parameters were not fitted to.
+fn unfitted(joint: &Joint, split: Split, timeline: &Timeline<'_>) -> Vec<(f64, f64)> {
+    let record = Record::new(joint, split, Horizon::FreeRun);
+    let ends = |window: &Window| {
+        let at = |sample: usize| timeline.at(window.trial, sample as f64);
+        (at(window.start + 1), at(window.end))
+    };
+    record.part(Part::Validation).map(ends).collect()
+}
+
+fn worst_stretches(compared: &ComparedJoint<'_>, timeline: &Timeline<'_>) -> Vec<(f64, f64)> {
+    let worst = compared.comparison.failure.iter().flat_map(|failure| &failure.worst_segments);
+    let trials = &compared.joint.trials;
+    let stretch = |worst: &WorstSegment| {
+        let trial = trials.iter().position(|trial| trial.label() == worst.trial)?;
+        Some((timeline.of_log(trial, worst.start_s), timeline.of_log(trial, worst.end_s)))
+    };
+    worst.filter_map(stretch).collect()
+}

@@ -1,0 +1,159 @@
+//! Trials on one time axis, and signals as lines along it.
+
+use super::plot::{Axis, Place};
+use crate::experiment::{Joint, Trial};
+use crate::report::span::{Span, thinned_to};
+
+/// Points of a line over the whole width: two for each column that is seen.
+const POINTS: f64 = 1500.0;
+
+/// When each trial of a joint is: as in the log where trials follow one another there, else
+/// each behind the one before it.
+pub(super) struct Timeline<'a> {
+    trials: &'a [Trial],
+    /// What is added to the times of each trial, seconds.
+    shifts_s: Vec<f64>,
+    name: &'static str,
+}
+
+impl<'a> Timeline<'a> {
+    pub(super) fn of(joint: &'a Joint) -> Self {
+        let trials = joint.trials.as_slice();
+        let follows = |pair: &[Trial]| match pair {
+            [before, after] => end_s(before) < after.time_s(1),
+            _ => true,
+        };
+        if trials.windows(2).all(follows) {
+            return Self { trials, shifts_s: vec![0.0; trials.len()], name: "time [s]" };
+        }
+        let mut start = 0.0;
+        let shift = |trial: &Trial| {
+            let shift = start - trial.time_s(1);
+            start += end_s(trial) - trial.time_s(1);
+            shift
+        };
+        let name = "time, one trial behind the other [s]";
+        Self { trials, shifts_s: trials.iter().map(shift).collect(), name }
+    }
+
+    /// The place of a sample, counted from 1, of a trial.
+    pub(super) fn at(&self, trial: usize, sample: f64) -> f64 {
+        let shift = self.shifts_s.get(trial).copied().unwrap_or_default();
+        self.trials
+            .get(trial)
+            .map_or(shift, |own| shift + own.time_s(1) + (sample - 1.0) * own.period().seconds())
+    }
+
+    /// A time of the log in a trial.
+    pub(super) fn of_log(&self, trial: usize, time_s: f64) -> f64 {
+        self.shifts_s.get(trial).copied().unwrap_or_default() + time_s
+    }
+
+    pub(super) fn axis(&self) -> Axis {
+        let (from, to) = self.ends();
+        Axis::new(Span::new(from, to), self.name, 10.0)
+    }
+
+    /// The first and the last moment.
+    pub(super) fn ends(&self) -> (f64, f64) {
+        let last = self.trials.len().saturating_sub(1);
+        let samples = self.trials.last().map_or(1, Trial::len);
+        (self.at(0, 1.0), self.at(last, samples as f64))
+    }
+
+    /// Where trials after the first begin.
+    pub(super) fn borders(&self) -> Vec<f64> {
+        (1..self.trials.len()).map(|trial| self.at(trial, 1.0)).collect()
+    }
+
+    /// A signal of each trial as lines, thinned to what can be seen.
+    pub(super) fn lines<'v>(
+        &self,
+        values: impl Fn(usize, &'a Trial) -> &'v [f64],
+    ) -> Vec<Vec<Place>> {
+        let all: usize = self.trials.iter().map(Trial::len).sum();
+        let line = |(index, trial): (usize, &'a Trial)| {
+            let values = values(index, trial);
+            let kept = thinned_to(values, points(values.len(), all));
+            let place = |k: usize| Some((self.at(index, (k + 1) as f64), *values.get(k)?));
+            kept.into_iter().filter_map(place).collect()
+        };
+        self.trials.iter().enumerate().map(line).collect()
+    }
+
+    /// A signal that is held between its changes, in steps.
+    pub(super) fn held<'v>(
+        &self,
+        values: impl Fn(usize, &'a Trial) -> &'v [f64],
+    ) -> Vec<Vec<Place>> {
+        self.lines(values).into_iter().map(|line| steps(&line)).collect()
+    }
+}
+
+/// Time of the end of the last sample.
+fn end_s(trial: &Trial) -> f64 {
+    trial.time_s(trial.len() + 1)
+}
+
+/// Points for a part of a line.
+fn points(part: usize, whole: usize) -> usize {
+    /// Fewest for any part.
+    const FEWEST: usize = 8;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of it")]
+    let share = (POINTS * part as f64 / whole.max(1) as f64) as usize;
+    share.max(FEWEST)
+}
+
+/// Corners of a line that keeps each value until the next place.
+fn steps(line: &[Place]) -> Vec<Place> {
+    let mut corners: Vec<Place> = Vec::new();
+    let mut level = f64::NAN;
+    for (x, y) in line.iter().copied() {
+        #[expect(clippy::float_cmp, reason = "a step is any change")]
+        if y != level {
+            corners.extend((!level.is_nan()).then_some((x, level)));
+            corners.push((x, y));
+            level = y;
+        }
+    }
+    corners.extend(line.last().map(|last| (last.0, level)));
+    corners
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::SamplePeriod;
+
+    fn joint(starts_s: &[f64]) -> Joint {
+        let period = SamplePeriod::from_seconds(0.1).unwrap();
+        let trial =
+            |start: &f64| Trial::new("t", *start, period, vec![0.0; 50], vec![0.0; 50]).unwrap();
+        let trials = starts_s.iter().map(trial).collect();
+        let name = "boom".to_owned();
+        Joint { name, input_unit: None, output_unit: None, covariates: Vec::new(), trials }
+    }
+
+    #[test]
+    fn trials_that_follow_one_another_keep_their_times() {
+        let joint = joint(&[10.0, 20.0]);
+        let timeline = Timeline::of(&joint);
+        assert!((timeline.at(1, 1.0) - 20.0).abs() < 1e-12);
+        assert_eq!(timeline.name, "time [s]");
+    }
+
+    #[test]
+    fn trials_that_each_count_from_zero_stand_in_a_row() {
+        let joint = joint(&[0.0, 0.0]);
+        let timeline = Timeline::of(&joint);
+        assert!((timeline.at(1, 1.0) - 5.0).abs() < 1e-12);
+        assert!((timeline.of_log(1, 0.3) - 5.3).abs() < 1e-12);
+        assert_eq!(timeline.borders().len(), 1);
+    }
+
+    #[test]
+    fn a_held_signal_has_corners_only() {
+        let line = [(0.0, 1.0), (1.0, 1.0), (2.0, 3.0), (3.0, 3.0)];
+        assert_eq!(steps(&line), [(0.0, 1.0), (2.0, 1.0), (2.0, 3.0), (3.0, 3.0)]);
+    }
+}

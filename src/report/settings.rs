@@ -1,0 +1,45 @@
+//! The settings in words.
+
+use super::number;
+use crate::delay::{Method, Settings};
+
+/// Each setting with its value, as a person would say it.
+pub(crate) fn settings_rows(settings: &Settings) -> Vec<(&'static str, String)> {
+    let low_pass = settings.low_pass.map_or_else(
+        || "none".to_owned(),
+        |filter| {
+            let (hz, order) = (filter.cutoff_hz, filter.order);
+            format!("Butterworth, {hz} Hz, order {order}, forward and backward")
+        },
+    );
+    let limits = settings.output_limits;
+    let not_set = || "not set".to_owned();
+    let not_tested = || "not tested".to_owned();
+    let percent = |part: f64| format!("{} %", number(100.0 * part));
+    vec![
+        ("method", method(settings.method).to_owned()),
+        ("α", format!("{} samples", settings.alpha)),
+        ("β", format!("{} samples", settings.beta)),
+        ("low-pass", low_pass),
+        ("shortest hold τ_min", format!("{} samples", settings.min_delay)),
+        ("longest delay", settings.max_delay.map_or_else(not_set, |n| format!("{n} samples"))),
+        ("output limits", limits.map_or_else(not_set, |(low, high)| format!("{low} … {high}"))),
+        ("smallest slope change", format!("{} per sample", settings.min_slope_change)),
+        ("largest SSE", settings.max_sse.map_or_else(not_set, |limit| limit.to_string())),
+        (
+            "first and last step",
+            if settings.keep_first_last { "judged" } else { "left out" }.to_owned(),
+        ),
+        ("smallest input step", settings.min_step.to_string()),
+        ("τ between steps", format!("{:?}", settings.interpolation).to_lowercase()),
+        ("confidence of a reaction", settings.confidence.map_or_else(not_tested, percent)),
+        ("interval of a delay", percent(settings.interval)),
+    ]
+}
+
+fn method(method: Method) -> &'static str {
+    match method {
+        Method::TwoLine => "two-line regression (Albrecht and Taylor, Algorithm 1)",
+        Method::Hinge | Method::LagAware => method.meaning(),
+    }
+}
