@@ -36,7 +36,7 @@ use document::{Block, Entry, slug};
 const WIDTH: u32 = 760;
 
 /// Width of one of two beside one another.
-const HALF: u32 = 460;
+const HALF: u32 = 400;
 
 /// Width of one of three.
 const NARROW: u32 = 350;

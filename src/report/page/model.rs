@@ -3,6 +3,7 @@
 use super::document::{Block, Table};
 use super::plot::PlotError;
 use super::{Report, ladder, share, simulated};
+use crate::diagnosis::Comparison;
 use crate::effect::Stage;
 use crate::explain::{Candidate, Revision, Verdict};
 use crate::fit::{Parameter, Split, Status};
@@ -25,7 +26,7 @@ pub(super) fn blocks(
     let stopped = if improved.interrupted { " (stopped before the end)" } else { "" };
     let mut blocks = vec![
         Block::part("Model"),
-        Block::Lead(format!("{}{stopped}.", words.headline)),
+        Block::Lead(format!("{}{stopped}", lead(improved, &words.headline))),
         Block::text(words.paragraph),
     ];
     blocks.extend(words.commands.into_iter().map(Block::Code));
@@ -39,29 +40,65 @@ pub(super) fn blocks(
     Ok(blocks)
 }
 
+/// What is found, or, where effects were added, what came of that.
+fn lead(improved: &ImprovedJoint<'_>, headline: &str) -> String {
+    if came(improved).is_empty() { format!("{headline}.") } else { sentence(improved) }
+}
+
 /// What is said of the model in one sentence.
 pub(super) fn sentence(improved: &ImprovedJoint<'_>) -> String {
-    let compared = &improved.finding.compared;
-    let comparison = compared.comparison;
+    let comparison = improved.finding.compared.comparison;
     let own = effects(&comparison.fit.model);
     let model = ["integrator"].into_iter().chain(own).collect::<Vec<_>>().join(" + ");
-    let judged = comparison.validation.or(comparison.training);
-    let error = judged.map_or_else(String::new, |error| {
-        let rmse = measure(error.rmse, compared.joint.output_unit.as_deref());
-        let noise = comparison.noise_floor.filter(|noise| *noise > 0.0);
-        let times = noise.map_or_else(String::new, |noise| {
-            format!(", {:.2} times the noise", error.rmse / noise)
-        });
-        format!(" leaves {rmse}{times} (fit {:.1} %)", error.fit_percent)
-    });
+    let (error, rest) = (error_of(improved, comparison), missing(improved));
+    match (improved.revisions.first(), came(improved).as_slice()) {
+        (Some(first), [_, ..]) => {
+            let came = came(improved).join(" and ");
+            let before = judged_error(improved, &first.comparison);
+            format!(
+                "Model: {came} was missing; with it ({model}) the error falls from {before} to \
+                 {error}; {rest}."
+            )
+        }
+        _ => format!("Model: {model}, error {error}; {rest}."),
+    }
+}
+
+/// Effects that the last revision has and the first has not.
+fn came(improved: &ImprovedJoint<'_>) -> Vec<&'static str> {
+    let of = |revision: &Revision| effects(&revision.comparison.fit.model);
+    let given = improved.revisions.first().map(of).unwrap_or_default();
+    let last = improved.revisions.last().map(of).unwrap_or_default();
+    last.into_iter().filter(|id| !given.contains(id)).collect()
+}
+
+/// What is still missing.
+fn missing(improved: &ImprovedJoint<'_>) -> String {
+    let more = if improved.revisions.len() > 1 { " more" } else { "" };
     let best = improved.finding.ranking.first().map(Candidate::name);
-    let verdict = match (improved.finding.verdict, best) {
-        (Verdict::Adequate, _) => "nothing is missing".to_owned(),
+    match (improved.finding.verdict, best) {
+        (Verdict::Adequate, _) => format!("nothing{more} is missing"),
         (Verdict::MissingEffect, Some(best)) => format!("{best} is missing"),
         (Verdict::MissingEffect, None) => "more is missing".to_owned(),
         (Verdict::Unexplained, _) => "it fails, and no effect accounts for it".to_owned(),
-    };
-    format!("Model: {model}{error}; {verdict}.")
+    }
+}
+
+/// The error by which a model is judged.
+fn judged_error(improved: &ImprovedJoint<'_>, comparison: &Comparison) -> String {
+    let judged = comparison.validation.or(comparison.training);
+    let unit = improved.finding.compared.joint.output_unit.as_deref();
+    judged.map_or_else(|| "-".to_owned(), |error| measure(error.rmse, unit))
+}
+
+/// The same, against the noise and the signal.
+fn error_of(improved: &ImprovedJoint<'_>, comparison: &Comparison) -> String {
+    let rmse = judged_error(improved, comparison);
+    let Some(error) = comparison.validation.or(comparison.training) else { return rmse };
+    let noise = comparison.noise_floor.filter(|noise| *noise > 0.0);
+    let times = noise
+        .map_or_else(String::new, |noise| format!(", {:.2} times the noise", error.rmse / noise));
+    format!("{rmse}{times} (fit {:.1} %)", error.fit_percent)
 }
 
 /// The model in equations with its numbers, in the order in which a signal runs through it.
@@ -215,17 +252,24 @@ fn failures(improved: &ImprovedJoint<'_>, file: &str) -> Result<Vec<Block>, Plot
     Ok(blocks)
 }
 
-/// What was tried on each revision, the last one first.
+/// What was tried: the best of the last race, and all of each.
 fn rankings(improved: &ImprovedJoint<'_>) -> Vec<Block> {
-    let tried: Vec<_> =
-        improved.numbered().filter(|(_, revision)| !revision.ranking.is_empty()).collect();
-    let mut blocks = Vec::new();
-    if !tried.is_empty() {
-        blocks.push(Block::part("Effects that were tried"));
-    }
-    for (number, revision) in tried.into_iter().rev() {
+    /// Rows that stand openly.
+    const BEST: usize = 5;
+    let tried = improved.numbered().filter(|(_, revision)| !revision.ranking.is_empty());
+    let tried: Vec<_> = tried.collect();
+    let Some((number, last)) = tried.last() else { return Vec::new() };
+    let best = last.ranking.get(..BEST).unwrap_or(&last.ranking);
+    let mut blocks = vec![
+        Block::part(format!("Effects that were tried on revision {number}, best first")),
+        Block::Table(ranking(improved, best)),
+    ];
+    for (number, revision) in
+        tried.iter().filter(|(_, r)| tried.len() > 1 || r.ranking.len() > BEST)
+    {
         let table = Block::Table(ranking(improved, &revision.ranking));
-        let summary = format!("Ranking on revision {number}, best first");
+        let count = revision.ranking.len();
+        let summary = format!("All {count} that were tried on revision {number}");
         blocks.push(Block::Details { summary, blocks: vec![table] });
     }
     blocks

@@ -29,6 +29,9 @@ const RIGHT: u32 = 14;
 /// Room for a legend.
 const LEGEND: u32 = 22;
 
+/// Width of what stands before a name in a legend.
+const SWATCH: u32 = 18;
+
 /// Width of a letter, on average, in parts of its height.
 const LETTER_WIDTH: f64 = 0.56;
 
@@ -184,6 +187,11 @@ fn text_width(letters: usize) -> u32 {
     width
 }
 
+/// Room for an entry of a legend.
+fn entry_width(name: &str) -> u32 {
+    SWATCH + 6 + text_width(name.chars().count()) + 10
+}
+
 fn fine(pixels: u32) -> i32 {
     i32::try_from(pixels * FINE).unwrap_or(i32::MAX)
 }
@@ -311,13 +319,16 @@ impl Panel {
         left: u32,
     ) -> Result<(), DrawingAreaErrorKind<std::io::Error>> {
         let middle = fine(LEGEND) / 2 - fine(1);
-        let mut x = left;
+        let names = || self.marks.iter().filter_map(|mark| mark.name.as_deref());
+        let width: u32 = names().map(entry_width).sum();
+        let (whole, _) = area.dim_in_pixel();
+        let mut x = if left + width <= whole / FINE { left } else { 4 };
         for mark in &self.marks {
             let Some(name) = &mark.name else { continue };
             mark.swatch(area, (fine(x), middle))?;
             let style = letters(Role::Ink).pos(Pos::new(HPos::Left, VPos::Center));
-            area.draw(&Text::new(name.clone(), (fine(x + 24), middle), style))?;
-            x += 24 + text_width(name.chars().count()) + 18;
+            area.draw(&Text::new(name.clone(), (fine(x + SWATCH + 6), middle), style))?;
+            x += entry_width(name);
         }
         Ok(())
     }
@@ -334,7 +345,7 @@ impl Mark {
         area: &Svg<'_>,
         (x, y): (i32, i32),
     ) -> Result<(), DrawingAreaErrorKind<std::io::Error>> {
-        let (middle, end) = (x + fine(9), x + fine(18));
+        let (middle, end) = (x + fine(SWATCH / 2), x + fine(SWATCH));
         let block = [(x, y - fine(4)), (end, y + fine(4))];
         match &self.shape {
             Shape::Lines(_, width) => {
