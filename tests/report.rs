@@ -3,7 +3,9 @@
 
 mod desk;
 
-use std::collections::HashSet;
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::io::Write as _;
 use std::path::Path;
 use std::process::Command;
 
@@ -143,13 +145,11 @@ fn markdown_shows_drawings_that_stand_beside_it() {
     let desk = Desk::with(vec![joint("boom")]);
     assert!(desk.run("report log.csv -o my.md").status.success());
     let text = desk.read("my.md");
-    let links = text.match_indices("](my_files/").map(|(start, found)| {
-        &text[start + 2..][..found.len() - 2 + text[start + found.len()..].find(')').unwrap()]
-    });
-    let links: HashSet<&str> = links.collect();
+    let behind = text.split("](my_files/").skip(1);
+    let links: BTreeSet<&str> = behind.filter_map(|rest| rest.split(')').next()).collect();
     assert!(links.len() > 5, "{links:?}");
     for link in &links {
-        let drawing = desk.read(link);
+        let drawing = desk.read(&format!("my_files/{link}"));
         let svg = Xml::parse(&drawing).unwrap();
         assert_eq!(svg.root_element().tag_name().name(), "svg");
         assert!(
@@ -205,7 +205,8 @@ fn a_long_record_makes_a_small_page() {
         let level = f64::from((k / 130).wrapping_mul(2_654_435_761) >> 29) - 3.5;
         output = 0.9995 * output + 0.01 * level;
         let noise = f64::from(k.wrapping_mul(2_246_822_519) >> 22) / 1024.0;
-        log += &format!("{:.2},{level},{:.4}\n", f64::from(k) / 100.0, output + 0.02 * noise);
+        let time_s = f64::from(k) / 100.0;
+        writeln!(log, "{time_s:.2},{level},{:.4}", output + 0.02 * noise).unwrap();
     }
     desk.write("long.csv", &log);
     assert!(desk.run("report long.csv --no-recording -o long.html").status.success());
@@ -266,7 +267,9 @@ fn shown(browser: &str, page: &Path, profile: &Path, arguments: &[&str]) -> (Str
 #[test]
 fn a_browser_has_nothing_to_complain_of() {
     let Some(browser) = browser() else {
-        eprintln!("skipped: there is no chromium here to look at the page with");
+        // Not `eprintln`, which the test runner keeps to itself.
+        let mut stderr = std::io::stderr();
+        writeln!(stderr, "skipped: there is no chromium here to look at a page with").unwrap();
         return;
     };
     let desk = Desk::with(vec![banded("boom")]);

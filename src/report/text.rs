@@ -26,7 +26,7 @@ pub fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings) -> Str
 }
 
 /// The lag of a joint in words, where one was looked for.
-fn lag_line(joint: &EstimatedJoint<'_>) -> Option<String> {
+pub(super) fn lag_line(joint: &EstimatedJoint<'_>) -> Option<String> {
     let lag = joint.lag()?;
     let known = |part: LagPart| format!("{:.4} ± {:.4}", part.value, 1.96 * part.std_error);
     let parts = [

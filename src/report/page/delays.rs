@@ -10,6 +10,9 @@ use crate::report::EstimatedJoint;
 use crate::report::against::{p_text, variable_text};
 use crate::report::span::{Span, thinned_to};
 
+/// Steps between which the delay is drawn.
+const MOST_STEPS: usize = 2000;
+
 /// What a joint's delays are over time.
 #[derive(Default)]
 struct Delays {
@@ -33,11 +36,14 @@ pub(super) fn over_time(
     let y = Span::around(values, 0.14);
     let bottom = y.low + 0.05 * (y.high - y.low);
     let rejected: Vec<Place> = rejected.into_iter().map(|time| (time, bottom)).collect();
-    let mut marks = vec![
-        Mark::new(Role::Faint, Shape::Verticals(timeline.borders())),
-        Mark::new(Role::Smoothed, Shape::Lines(held, 1.0)).named("delay of every sample"),
-    ];
-    if !intervals.is_empty() {
+    let mut marks = vec![timeline.borders()];
+    // Of more steps than that only a filled area would be seen.
+    let are_apart = accepted.len() <= MOST_STEPS;
+    if are_apart {
+        let held = Mark::new(Role::Smoothed, Shape::Lines(held, 1.0));
+        marks.push(held.named("delay of every sample"));
+    }
+    if !intervals.is_empty() && are_apart {
         marks.push(Mark::new(Role::Faint, Shape::Lines(intervals, 1.4)).named("interval"));
     }
     marks.push(Mark::new(Role::Accepted, Shape::Dots(accepted)).named("accepted step"));

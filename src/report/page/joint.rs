@@ -3,10 +3,13 @@
 use super::document::{Block, Table};
 use super::plot::PlotError;
 use super::{Report, delays, model, record, segment};
-use crate::delay::{AgainstState, Condition};
+use crate::delay::{AgainstState, Condition, Method};
 use crate::report::against::{AGAINST_HEADER, against_rows};
 use crate::report::decisions::detailed_rows;
-use crate::report::{DelayRange, EstimatedJoint, JointSummary, number};
+use crate::report::text::lag_line;
+use crate::report::{
+    DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary, number,
+};
 
 /// Rows of a table that a reader may still want to scroll through.
 const MOST_ROWS: usize = 2000;
@@ -71,6 +74,7 @@ fn delay_blocks(estimated: EstimatedJoint<'_>, file: &str) -> Result<Vec<Block>,
     };
     let found = estimated.against_state();
     blocks.push(Block::part("Delay"));
+    blocks.extend(lag_line(&estimated).map(|line| Block::text(line.trim_end())));
     blocks.push(Block::Figures(vec![figure]));
     blocks.push(Block::Figures(delays::against(&estimated.joint.name, &found, file)?));
     let table = Block::Table(against(&estimated.joint.name, &found));
@@ -103,47 +107,9 @@ fn rejections(estimated: EstimatedJoint<'_>) -> Vec<Block> {
     vec![Block::part("Rejected steps"), Block::Table(table)]
 }
 
-/// The table of decisions: numbers as in `--decisions`, to five digits.
+/// All decisions, numbers to five digits.
 fn decisions(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Block {
-    let header = [
-        "trial",
-        "i",
-        "p",
-        "r",
-        "end",
-        "q",
-        "δ [samples]",
-        "δ [s]",
-        "interval",
-        "SSE",
-        "verdict",
-        "accepted with",
-    ];
-    let mut table = Table::new(header, &[1, 2, 3, 4, 5, 6, 7, 8, 9]);
-    let optional = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), number);
-    let rows = detailed_rows(estimated, report.settings);
-    let all = rows.count();
-    for (row, detail) in detailed_rows(estimated, report.settings).take(MOST_ROWS) {
-        let interval = detail.delta_low.zip(detail.delta_high);
-        let interval = interval.map_or_else(
-            || "-".to_owned(),
-            |(low, high)| format!("{} … {}", number(low), number(high)),
-        );
-        table.row([
-            row.trial.to_owned(),
-            row.i.to_string(),
-            row.p.to_string(),
-            row.r.to_string(),
-            row.end.to_string(),
-            optional(row.q),
-            optional(row.delta),
-            optional(row.delta_s),
-            interval,
-            optional(row.sse),
-            row.verdict,
-            detail.accepted_with,
-        ]);
-    }
+    let all = detailed_rows(estimated, report.settings).count();
     let mut blocks = vec![Block::text(
         "Sample numbers count from 1 within the trial: p is the step of the input, r and end \
          are the first and the last sample of the segment, q is the breakpoint, δ = q − p the \
@@ -155,6 +121,40 @@ fn decisions(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Block {
              writes them all."
         )));
     }
-    blocks.push(Block::Table(table));
+    blocks.push(Block::Table(decision_table(report, estimated)));
     Block::Details { summary: format!("All {all} decisions"), blocks }
+}
+
+/// A row per decision; intervals only of a method that tells them.
+fn decision_table(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Table {
+    let unit = estimated.joint.output_unit.as_ref();
+    let sse = unit.map_or_else(|| "SSE".to_owned(), |unit| format!("SSE [{unit}²]"));
+    let before = ["trial", "i", "p", "r", "end", "q", "δ [samples]", "δ [s]"];
+    let method = report.settings.method;
+    let interval = tells_intervals(method).then(|| "interval [samples]".to_owned());
+    let header = before.map(str::to_owned).into_iter().chain(interval).chain([sse]);
+    let behind = ["verdict", "accepted with"].map(str::to_owned);
+    let rows = detailed_rows(estimated, report.settings).take(MOST_ROWS);
+    Table {
+        numbers: (1..before.len() + 1 + usize::from(tells_intervals(method))).collect(),
+        header: header.chain(behind).collect(),
+        rows: rows.map(|(row, detail)| decision_row(row, detail, method)).collect(),
+    }
+}
+
+fn tells_intervals(method: Method) -> bool {
+    method != Method::TwoLine
+}
+
+fn decision_row(row: DecisionRow<'_>, detail: DecisionDetail, method: Method) -> Vec<String> {
+    let dash = || "-".to_owned();
+    let optional = |value: Option<f64>| value.map_or_else(dash, number);
+    let ends = detail.delta_low.zip(detail.delta_high);
+    let interval =
+        || ends.map_or_else(dash, |(low, high)| format!("{} … {}", number(low), number(high)));
+    let samples = [row.i, row.p, row.r, row.end].map(|number| number.to_string());
+    let delay = [row.q, row.delta, row.delta_s].map(optional);
+    let before = [row.trial.to_owned()].into_iter().chain(samples).chain(delay);
+    let behind = [optional(row.sse), row.verdict, detail.accepted_with];
+    before.chain(tells_intervals(method).then(interval)).chain(behind).collect()
 }

@@ -28,7 +28,7 @@ pub(super) fn figure(improved: &ImprovedJoint<'_>, file: String) -> Result<Figur
         Mark::new(Role::Ink, Shape::Words(rows().map(words).collect())),
     ];
     marks.extend(noise.map(|noise| {
-        Mark::new(Role::Noise, Shape::Verticals(vec![noise])).named("noise of the measurement")
+        Mark::new(Role::Noise, Shape::Verticals(vec![noise], 1.2)).named("noise of the measurement")
     }));
     let name = named("root-mean-square error", joint.output_unit.as_deref());
     let panel = Panel {

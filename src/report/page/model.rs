@@ -55,8 +55,11 @@ pub(super) fn sentence(improved: &ImprovedJoint<'_>) -> String {
         (Some(first), [_, ..]) => {
             let came = came(improved).join(" and ");
             let before = judged_error(improved, &first.comparison);
+            // What is not shown to be the cause is not said to be.
+            let is_cause = improved.finding.verdict != Verdict::Unexplained;
+            let what = if is_cause { "was missing" } else { "was tried" };
             format!(
-                "Model: {came} was missing; with it ({model}) the error falls from {before} to \
+                "Model: {came} {what}; with it ({model}) the error falls from {before} to \
                  {error}; {rest}."
             )
         }
@@ -74,13 +77,13 @@ fn came(improved: &ImprovedJoint<'_>) -> Vec<&'static str> {
 
 /// What is still missing.
 fn missing(improved: &ImprovedJoint<'_>) -> String {
-    let more = if improved.revisions.len() > 1 { " more" } else { "" };
+    let (more, still) = if improved.revisions.len() > 1 { (" more", " still") } else { ("", "") };
     let best = improved.finding.ranking.first().map(Candidate::name);
     match (improved.finding.verdict, best) {
         (Verdict::Adequate, _) => format!("nothing{more} is missing"),
         (Verdict::MissingEffect, Some(best)) => format!("{best} is missing"),
         (Verdict::MissingEffect, None) => "more is missing".to_owned(),
-        (Verdict::Unexplained, _) => "it fails, and no effect accounts for it".to_owned(),
+        (Verdict::Unexplained, _) => format!("it{still} fails, and no effect accounts for it"),
     }
 }
 
@@ -264,9 +267,9 @@ fn rankings(improved: &ImprovedJoint<'_>) -> Vec<Block> {
         Block::part(format!("Effects that were tried on revision {number}, best first")),
         Block::Table(ranking(improved, best)),
     ];
-    for (number, revision) in
-        tried.iter().filter(|(_, r)| tried.len() > 1 || r.ranking.len() > BEST)
-    {
+    let is_shown =
+        |revision: &Revision| std::ptr::eq(revision, *last) && best.len() == revision.ranking.len();
+    for (number, revision) in tried.iter().filter(|(_, revision)| !is_shown(revision)) {
         let table = Block::Table(ranking(improved, &revision.ranking));
         let count = revision.ranking.len();
         let summary = format!("All {count} that were tried on revision {number}");

@@ -3,6 +3,7 @@
 //! Coordinates of the drawing library are whole numbers, so that a figure is drawn
 //! [`FINE`] times as large as it is shown.
 
+use std::collections::HashSet;
 use std::ops::Range;
 
 use plotters::coord::Shift;
@@ -64,12 +65,12 @@ pub(super) enum Shape {
     Dots(Vec<Place>),
     /// Crosses.
     Crosses(Vec<Place>),
-    /// Lines from the lower to the upper edge.
-    Verticals(Vec<f64>),
+    /// Lines from the lower to the upper edge, and their width in pixels.
+    Verticals(Vec<f64>, f64),
     /// Between two values, from the left to the right edge.
     Band(f64, f64),
-    /// Between two values of the horizontal axis, from edge to edge.
-    Stretches(Vec<(f64, f64)>),
+    /// Between two values of the horizontal axis, from edge to edge; and how dense.
+    Stretches(Vec<(f64, f64)>, f64),
     /// Filled between two corners.
     Bars(Vec<(Place, Place)>),
     /// Words that start beside a place.
@@ -140,7 +141,9 @@ impl Axis {
     /// Room for its texts, in pixels.
     fn width(&self) -> u32 {
         let longest = self.ticks.iter().map(|(_, text)| text.chars().count()).max().unwrap_or(0);
-        if self.has_names() { LEFT.max(text_width(longest) + 12) } else { LEFT }
+        // The name stands upright beside the numbers.
+        let name = if self.has_names() { 12 } else { 30 };
+        LEFT.max(text_width(longest) + name)
     }
 }
 
@@ -273,6 +276,7 @@ impl Panel {
     fn draw(&self, area: &Svg<'_>, left: u32) -> Result<(), DrawingAreaErrorKind<std::io::Error>> {
         let mut chart = ChartBuilder::on(area)
             .margin_top(fine(self.top()))
+            .margin_left(fine(2))
             .margin_right(fine(RIGHT))
             .x_label_area_size(fine(self.bottom()))
             .y_label_area_size(fine(left))
@@ -337,7 +341,7 @@ impl Panel {
 impl Mark {
     /// Whether the grid is drawn over it.
     fn is_ground(&self) -> bool {
-        matches!(self.shape, Shape::Band(..) | Shape::Stretches(_))
+        matches!(self.shape, Shape::Band(..) | Shape::Stretches(..))
     }
 
     fn swatch(
@@ -351,13 +355,13 @@ impl Mark {
             Shape::Lines(_, width) => {
                 area.draw(&PathElement::new([(x, y), (end, y)], stroke(self.role, *width)))
             }
-            Shape::Verticals(_) => {
+            Shape::Verticals(_, width) => {
                 let ends = [(middle, y - fine(6)), (middle, y + fine(6))];
-                area.draw(&PathElement::new(ends, stroke(self.role, 1.2)))
+                area.draw(&PathElement::new(ends, stroke(self.role, *width)))
             }
             Shape::Dots(_) => area.draw(&dot((middle, y), self.role)),
             Shape::Crosses(_) => area.draw(&cross((middle, y), self.role)),
-            Shape::Band(..) | Shape::Stretches(_) => {
+            Shape::Band(..) | Shape::Stretches(..) => {
                 area.draw(&Rectangle::new(block, filled(self.role, 0.3)))
             }
             Shape::Bars(_) => area.draw(&Rectangle::new(block, filled(self.role, 1.0))),
@@ -371,28 +375,29 @@ impl Mark {
         panel: &Panel,
     ) -> Result<(), DrawingAreaErrorKind<std::io::Error>> {
         let (x, y, role) = (panel.x.span, panel.y.span, self.role);
-        let line = |ends: [Place; 2]| PathElement::new(ends.to_vec(), stroke(role, 1.2));
+        let apart = |places: &[Place]| apart(places, |place| chart.backend_coord(place));
         let area = chart.plotting_area();
         match &self.shape {
             Shape::Lines(lines, width) => lines.iter().try_for_each(|line| {
                 area.draw(&PathElement::new(line.clone(), stroke(role, *width)))
             }),
             Shape::Dots(places) => {
-                places.iter().try_for_each(|place| area.draw(&dot(*place, role)))
+                apart(places).into_iter().try_for_each(|place| area.draw(&dot(place, role)))
             }
             Shape::Crosses(places) => {
-                places.iter().try_for_each(|place| area.draw(&cross(*place, role)))
+                apart(places).into_iter().try_for_each(|place| area.draw(&cross(place, role)))
             }
-            Shape::Verticals(places) => {
-                places.iter().try_for_each(|at| area.draw(&line([(*at, y.low), (*at, y.high)])))
-            }
+            Shape::Verticals(places, width) => places.iter().try_for_each(|at| {
+                let ends = vec![(*at, y.low), (*at, y.high)];
+                area.draw(&PathElement::new(ends, stroke(role, *width)))
+            }),
             Shape::Band(low, high) => {
                 let corners = [(x.low, *low), (x.high, *high)];
                 area.draw(&Rectangle::new(corners, filled(role, 0.18)))
             }
-            Shape::Stretches(places) => places.iter().try_for_each(|(from, to)| {
+            Shape::Stretches(places, density) => places.iter().try_for_each(|(from, to)| {
                 let corners = [(*from, y.low), (*to, y.high)];
-                area.draw(&Rectangle::new(corners, filled(role, 0.22)))
+                area.draw(&Rectangle::new(corners, filled(role, *density)))
             }),
             Shape::Bars(bars) => bars.iter().try_for_each(|(from, to)| {
                 area.draw(&Rectangle::new([*from, *to], filled(role, 1.0)))
@@ -406,6 +411,18 @@ impl Mark {
             }
         }
     }
+}
+
+/// Places without those that the sign at one before them hides.
+fn apart(places: &[Place], drawn_at: impl Fn(&Place) -> (i32, i32)) -> Vec<Place> {
+    /// Side of a square in which one sign hides the others, in pixels.
+    const SQUARE: u32 = 4;
+    let mut taken = HashSet::new();
+    let square = |place: &Place| {
+        let (x, y) = drawn_at(place);
+        (x.div_euclid(fine(SQUARE)), y.div_euclid(fine(SQUARE)))
+    };
+    places.iter().filter(|place| taken.insert(square(place))).copied().collect()
 }
 
 fn dot<P>(place: P, role: Role) -> Circle<P, i32> {

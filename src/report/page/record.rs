@@ -21,7 +21,7 @@ pub(super) fn figure(estimated: EstimatedJoint<'_>, file: String) -> Result<Figu
         y: Axis::new(span(Trial::output), named("output", joint.output_unit.as_deref()), 5.0),
         height: 170,
         marks: vec![
-            Mark::new(Role::Faint, Shape::Verticals(timeline.borders())),
+            timeline.borders(),
             Mark::new(Role::Measured, Shape::Lines(timeline.lines(|_, t| t.output()), 1.3))
                 .named("output"),
             Mark::new(Role::Accepted, Shape::Dots(accepted)).named("breakpoint, accepted"),
@@ -33,7 +33,7 @@ pub(super) fn figure(estimated: EstimatedJoint<'_>, file: String) -> Result<Figu
         y: Axis::new(span(Trial::input), named("input", joint.input_unit.as_deref()), 3.0),
         height: 80,
         marks: vec![
-            Mark::new(Role::Faint, Shape::Verticals(timeline.borders())),
+            timeline.borders(),
             Mark::new(Role::Input, Shape::Lines(timeline.held(|_, t| t.input()), 1.4)),
         ],
     };

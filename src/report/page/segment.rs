@@ -17,8 +17,8 @@ const EXACT: f64 = 1e-9;
 struct Choice<'a> {
     why: &'static str,
     trial: &'a Trial,
-    /// The output that the lines were fitted to.
-    output: &'a [f64],
+    /// The output that the lines were fitted to, where that is not the measured one.
+    smoothed: Option<&'a [f64]>,
     decision: &'a Decision,
 }
 
@@ -52,8 +52,8 @@ fn all(estimated: EstimatedJoint<'_>) -> impl Iterator<Item = Choice<'_>> {
     let trials = estimated.joint.trials.iter().zip(&estimated.estimate.trials);
     let known = trials.filter_map(|(trial, result)| Some((trial, result.as_ref().ok()?)));
     known.flat_map(|(trial, estimate)| {
-        let output = estimate.smoothed.as_deref().unwrap_or(trial.output());
-        let choice = move |decision| Choice { why: "", trial, output, decision };
+        let smoothed = estimate.smoothed.as_deref();
+        let choice = move |decision| Choice { why: "", trial, smoothed, decision };
         estimate.decisions.iter().map(choice)
     })
 }
@@ -96,11 +96,7 @@ impl Choice<'_> {
             _ => format!(" of trial {}", trial.label()),
         };
         let at = rounded_time(trial.time_s(decision.input_step.sample));
-        let (i, delay) = (decision.number, decision.delay());
-        let delay = delay.map_or_else(
-            || "no delay".to_owned(),
-            |delay| format!("delay {} s", number(tidy(delay * trial.period().seconds()))),
-        );
+        let (i, delay) = (decision.number, self.delay());
         let verdict = match decision.verdict() {
             Verdict::Accepted => "accepted".to_owned(),
             Verdict::Rejected(condition) => {
@@ -108,6 +104,15 @@ impl Choice<'_> {
             }
         };
         format!("{why}: step {i}{trial_said} at {at} s, {delay}, {verdict}.")
+    }
+
+    /// `delay 0.17 s`, with its interval where there is one.
+    fn delay(&self) -> String {
+        let seconds = |samples: f64| rounded(samples * self.trial.period().seconds());
+        let Some(delay) = self.decision.delay() else { return "no delay".to_owned() };
+        let ends = self.decision.fine.map(|fine| (seconds(fine.low), seconds(fine.high)));
+        let ends = ends.map_or_else(String::new, |(low, high)| format!(" ({low} to {high} s)"));
+        format!("delay {} s{ends}", seconds(delay))
     }
 
     /// First and last sample that are drawn.
@@ -145,10 +150,11 @@ impl Choice<'_> {
     /// The output with both lines.
     fn lines(&self, joint: &Joint, x: Axis) -> Panel {
         let measured = self.signal(self.trial.output());
-        let smoothed = self.signal(self.output);
+        let smoothed = self.smoothed.map(|values| self.signal(values));
         let chosen = self.decision.breakpoint().map(|best| self.both(&best.candidate));
         let chosen = chosen.unwrap_or_default();
-        let values = measured.iter().chain(&smoothed).chain(chosen.iter().flatten());
+        let values =
+            measured.iter().chain(smoothed.iter().flatten()).chain(chosen.iter().flatten());
         let y = Span::around(values.map(|place| place.1), 0.08);
         let role = match self.decision.verdict() {
             Verdict::Accepted => Role::Accepted,
@@ -156,18 +162,17 @@ impl Choice<'_> {
         };
         let step = vec![self.at(self.decision.input_step.sample as f64)];
         let q: Vec<f64> = self.broken_at().map(|q| self.at(q)).into_iter().collect();
-        Panel {
-            x,
-            y: Axis::new(y, named("output", joint.output_unit.as_deref()), 4.0),
-            height: 170,
-            marks: vec![
-                Mark::new(role, Shape::Lines(chosen, 4.0)).named("lines"),
-                Mark::new(Role::Measured, Shape::Lines(vec![measured], 1.2)).named("output"),
-                Mark::new(Role::Smoothed, Shape::Lines(vec![smoothed], 1.0)).named("smoothed"),
-                Mark::new(Role::Input, Shape::Verticals(step)).named("p"),
-                Mark::new(role, Shape::Verticals(q)).named("q"),
-            ],
-        }
+        let mut marks = vec![
+            Mark::new(role, Shape::Lines(chosen, 4.0)).named("lines"),
+            Mark::new(Role::Measured, Shape::Lines(vec![measured], 1.2)).named("output"),
+        ];
+        marks.extend(smoothed.map(|line| {
+            Mark::new(Role::Smoothed, Shape::Lines(vec![line], 1.0)).named("smoothed")
+        }));
+        marks.push(Mark::new(Role::Input, Shape::Verticals(step, 1.2)).named("p"));
+        marks.push(Mark::new(role, Shape::Verticals(q, 1.2)).named("q"));
+        let y = Axis::new(y, named("output", joint.output_unit.as_deref()), 4.0);
+        Panel { x, y, height: 170, marks }
     }
 
     /// Both lines of a candidate.
@@ -204,11 +209,6 @@ impl Choice<'_> {
             ],
         }
     }
-}
-
-/// Seconds without what rounding left behind the ninth digit.
-fn tidy(seconds: f64) -> f64 {
-    (seconds * 1e9).round() / 1e9
 }
 
 /// A time to the hundredth, where that tells it.

@@ -23,8 +23,9 @@ pub(super) fn figure(
 ) -> Result<Figure, PlotError> {
     let joint = compared.joint;
     let timeline = Timeline::of(joint);
-    let unfitted = Mark::new(Role::Grid, Shape::Stretches(unfitted(joint, split, &timeline)));
-    let borders = Mark::new(Role::Faint, Shape::Verticals(timeline.borders()));
+    let unfitted =
+        Mark::new(Role::Faint, Shape::Stretches(unfitted(joint, split, &timeline), 0.13));
+    let borders = timeline.borders();
     let worst = worst_stretches(compared, &timeline);
     let output = Panel {
         x: timeline.axis().bare(),
@@ -44,7 +45,7 @@ pub(super) fn figure(
     };
     let mut marks = vec![unfitted, borders];
     if !worst.is_empty() {
-        marks.push(Mark::new(Role::Stretch, Shape::Stretches(worst)).named("worst segments"));
+        marks.push(Mark::new(Role::Stretch, Shape::Stretches(worst, 0.3)).named("worst segments"));
     }
     marks.extend(noise(compared).map(|mark| mark.named("95 % of the noise")));
     let left = timeline.lines(|index, _| residual(compared, index));
@@ -81,7 +82,7 @@ pub(super) fn worst(
         y: Axis::new(y, named("output", joint.output_unit.as_deref()), 5.0),
         height: 190,
         marks: vec![
-            Mark::new(Role::Stretch, Shape::Stretches(vec![(worst.start_s, worst.end_s)])),
+            Mark::new(Role::Stretch, Shape::Stretches(vec![(worst.start_s, worst.end_s)], 0.22)),
             Mark::new(Role::Measured, Shape::Lines(vec![measured], 3.0)).named("measured"),
             Mark::new(Role::Model, Shape::Lines(vec![simulated], 1.4)).named("simulated"),
         ],
