@@ -16,7 +16,7 @@
 //! - [`diagnosis`]: how good a model is, and where it fails
 //! - [`explain`]: which physical effect a model lacks
 //! - [`batch`]: all joints in parallel
-//! - [`report`]: results as text, CSV and JSON
+//! - [`report`]: results as text, CSV and JSON, and as a page with figures
 //! - `recording`: results as a Rerun recording (feature `rrd`)
 
 pub mod batch;

@@ -289,3 +289,31 @@ fn a_browser_has_nothing_to_complain_of() {
     let (_, complaints) = shown(browser, &bad, &profile, &["--dump-dom"]);
     assert!(complaints.contains("CONSOLE"), "{complaints}");
 }
+
+#[cfg(feature = "rrd")]
+#[test]
+fn the_recording_is_in_the_page_when_that_is_asked_for() {
+    use base64::Engine as _;
+    use base64::engine::general_purpose::STANDARD;
+
+    let desk = Desk::with(vec![joint("boom")]);
+    assert!(desk.run("report log.csv --embed -o report.html").status.success());
+    let page = parsed(&desk.read("report.html"));
+    assert_stands_alone(&page);
+    let link = page.select(&select("a[download]")).next().unwrap();
+    assert_eq!(link.value().attr("download"), Some("report.rrd"));
+    let data = link.value().attr("href").unwrap().split_once(',').unwrap().1;
+    let beside = std::fs::read(desk.folder.path().join("report.rrd")).unwrap();
+    assert_eq!(STANDARD.decode(data).unwrap(), beside);
+    assert!(words(page.root_element()).contains("rerun report.rrd"));
+}
+
+#[cfg(not(feature = "rrd"))]
+#[test]
+fn without_recordings_there_is_none_to_embed() {
+    let desk = Desk::with(vec![joint("boom")]);
+    let refused = desk.refusal("report log.csv --embed -o report.html");
+    assert!(refused.contains("built without recordings"), "{refused}");
+    assert!(desk.run("report log.csv -o report.html").status.success());
+    assert!(!desk.has("report.rrd") && !desk.read("report.html").contains("rerun"));
+}

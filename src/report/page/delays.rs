@@ -230,3 +230,15 @@ impl Spread {
         Some(Self { name, low, lower: at(0.25)?, median: at(0.5)?, upper: at(0.75)?, high })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_of_equal_delays_is_drawn_by_its_corners() {
+        let run = [(3, 1.0), (4, 1.0), (5, 1.0), (6, 2.0), (7, 2.0), (8, 2.0)];
+        assert_eq!(corners(&run), [(3, 1.0), (5, 1.0), (6, 2.0), (8, 2.0)]);
+        assert_eq!(corners(&run[..1]).first(), Some(&(3, 1.0)));
+    }
+}

@@ -432,3 +432,63 @@ fn dot<P>(place: P, role: Role) -> Circle<P, i32> {
 fn cross<P>(place: P, role: Role) -> Cross<P, i32> {
     Cross::new(place, fine(4), stroke(role, 1.8))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn panel(marks: Vec<Mark>) -> Panel {
+        let axis = |name: &str| Axis::new(Span::new(0.0, 10.0), name, 5.0);
+        Panel { x: axis("time [s]"), y: axis("<angle> & more"), height: 100, marks }
+    }
+
+    #[test]
+    fn a_drawing_is_well_formed_and_tells_its_name() {
+        let lines = Shape::Lines(vec![vec![(0.0, 0.0), (10.0, 10.0)]], 1.0);
+        let drawn = panel(vec![Mark::new(Role::Model, lines).named("a < b")]);
+        let svg = draw(&[drawn], 300, "1 < 2").unwrap();
+        let parsed = roxmltree::Document::parse(&svg).unwrap();
+        let root = parsed.root_element();
+        assert_eq!(root.attribute("width"), Some("300"));
+        let texts: Vec<_> =
+            parsed.descendants().filter_map(|node| node.text()).map(str::trim).collect();
+        for expected in ["1 < 2", "a < b", "time [s]", "<angle> & more", "10"] {
+            assert!(texts.contains(&expected), "no {expected} in {texts:?}");
+        }
+    }
+
+    #[test]
+    fn a_line_runs_from_corner_to_corner_of_the_axes() {
+        let lines = Shape::Lines(vec![vec![(0.0, 0.0), (10.0, 10.0)]], 1.0);
+        let svg = draw(&[panel(vec![Mark::new(Role::Model, lines)])], 300, "").unwrap();
+        let parsed = roxmltree::Document::parse(&svg).unwrap();
+        let (red, green, blue) = Role::Model.rgb();
+        let shade = format!("#{red:02X}{green:02X}{blue:02X}");
+        let line = parsed.descendants().find(|node| node.attribute("stroke") == Some(&shade));
+        let points = line.unwrap().attribute("points").unwrap();
+        let numbers: Vec<i32> =
+            points.split([',', ' ']).filter_map(|number| number.parse().ok()).collect();
+        let [from_x, from_y, to_x, to_y] = numbers[..] else { panic!("{points}") };
+        assert!((to_x - from_x - fine(300 - LEFT - RIGHT - 2)).abs() <= fine(1), "{points}");
+        assert!((from_y - to_y - fine(100)).abs() <= fine(1), "{points}");
+    }
+
+    #[test]
+    fn of_places_that_hide_one_another_one_is_drawn() {
+        let places: Vec<Place> = (0..1000).map(|k| (f64::from(k) / 100.0, 5.0)).collect();
+        let at = |pixels: f64| {
+            let shape = Shape::Dots(places.iter().map(|(x, y)| (x * pixels, *y)).collect());
+            let svg = draw(&[panel(vec![Mark::new(Role::Accepted, shape)])], 300, "").unwrap();
+            svg.matches("<circle").count()
+        };
+        assert!((40..70).contains(&at(1.0)), "{}", at(1.0));
+        assert_eq!(at(0.0), 1);
+    }
+
+    #[test]
+    fn numbers_at_an_axis_of_logarithms_are_those_themselves() {
+        let axis = Axis::logarithmic(Span::new(-2.0, 2.0), "SSE", 4.0);
+        let texts: Vec<_> = axis.ticks.iter().map(|(_, text)| text.as_str()).collect();
+        assert_eq!(texts, ["0.01", "0.1", "1", "10", "100"]);
+    }
+}

@@ -215,3 +215,51 @@ impl Choice<'_> {
 fn rounded_time(seconds: f64) -> String {
     if seconds.abs() < 1e6 { number((seconds * 100.0).round() / 100.0) } else { rounded(seconds) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::batch::estimate_joints;
+    use crate::delay::Settings;
+    use crate::units::SamplePeriod;
+
+    /// Steps of a joint whose noise grows with the time.
+    fn joint() -> Joint {
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let input: Vec<f64> = (0..600).map(|k| f64::from((k / 100) % 2)).collect();
+        let (mut angle, mut output) = (0.0, Vec::new());
+        for k in 0..600_u32 {
+            angle += f64::from((k.saturating_sub(12) / 100) % 2) - 0.5;
+            let noise = f64::from(k.wrapping_mul(2_654_435_761) >> 22) / 1024.0 - 0.5;
+            output.push(angle + 0.004 * f64::from(k) * noise);
+        }
+        let trial = Trial::new("t", 0.0, period, input, output).unwrap();
+        let name = "boom".to_owned();
+        let (input_unit, output_unit) = (None, None);
+        Joint { name, input_unit, output_unit, covariates: Vec::new(), trials: vec![trial] }
+    }
+
+    fn chosen(settings: &Settings) -> Vec<(&'static str, usize)> {
+        let joint = joint();
+        let estimate = estimate_joints(std::slice::from_ref(&joint), settings, || ());
+        let estimate = estimate.into_iter().next().unwrap().unwrap();
+        let estimated = EstimatedJoint { joint: &joint, estimate: &estimate };
+        let choices = choices(estimated);
+        choices.iter().map(|choice| (choice.why, choice.decision.number)).collect()
+    }
+
+    #[test]
+    fn the_clearest_decision_is_where_the_noise_is_least() {
+        let settings = Settings { low_pass: None, keep_first_last: true, ..Settings::default() };
+        let chosen = chosen(&settings);
+        assert_eq!(chosen, [("Clearest", 1), ("Typical", 3), ("Least clear", 5)]);
+    }
+
+    #[test]
+    fn a_rejected_decision_is_shown_where_one_says_something() {
+        let settings = Settings { low_pass: None, ..Settings::default() };
+        assert!(chosen(&settings).iter().all(|(why, _)| *why != "Rejected"), "ends are not judged");
+        let settings = Settings { min_delay: 1000, ..settings };
+        assert_eq!(chosen(&settings), [("Rejected", 2)]);
+    }
+}
