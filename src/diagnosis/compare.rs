@@ -120,12 +120,17 @@ fn restarted(record: &Record<'_>, model: &JointModel) -> Option<failure::Record>
     for (index, (trial, simulated)) in trials.iter().zip(&evaluation.simulated).enumerate() {
         let first = samples.residual.len();
         let period = trial.period().seconds();
-        for level in levels(&simulated.acting) {
+        let levels = levels(&simulated.acting);
+        for level in &levels {
             let held = level.len() as f64 * period;
             samples.since_step_s.extend((0..level.len()).map(|k| k as f64 * period));
             samples.hold_s.extend(std::iter::repeat_n(held, level.len()));
-            segments.push(first + level.start..first + level.end);
         }
+        // An input that is never held has no levels to look at.
+        let windows = restarted.windows().iter().filter(|window| window.trial == index);
+        let windows: Vec<_> = windows.map(|window| window.start..window.end).collect();
+        let own = if levels.len() > windows.len().saturating_mul(20) { windows } else { levels };
+        segments.extend(own.into_iter().map(|span| first + span.start..first + span.end));
         samples.residual.extend(evaluation.residuals.get(index)?);
         samples.input.extend(&simulated.acting);
         samples.output.extend(trial.output());

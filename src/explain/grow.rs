@@ -7,7 +7,7 @@ use super::race::{Options, parameters, race, range, takes_part};
 use super::verdict::Verdict;
 use crate::diagnosis::{LackOfFit, floor_of, lack_of};
 use crate::effect::{Effect, by_id};
-use crate::fit::{Fit, Record, fit_to_compare, survey};
+use crate::fit::{Fit, Record, Survey, fit_to_compare, survey};
 use crate::model::{Component, JointModel};
 
 /// What a revision changed.
@@ -179,7 +179,7 @@ fn looks_like(one: &str, other: &str) -> bool {
     one != other && (near(one, other) || near(other, one))
 }
 
-/// The models after those of `changes` that a glance does not rule out, fitted.
+/// The models after the best few of `changes` that a glance does not rule out, fitted.
 fn promising(
     record: &Record<'_>,
     whole: &Fit,
@@ -188,6 +188,8 @@ fn promising(
 ) -> Vec<(Change, Fit)> {
     /// What the error may be after a glance, in parts of that of the whole model.
     const MOST: f64 = 1.3;
+    /// Changes that are fitted.
+    const FEW: usize = 6;
     if changes.is_empty() {
         return Vec::new();
     }
@@ -195,12 +197,17 @@ fn promising(
     let range = range(record, &whole.model, &levels);
     let thinned = record.thinned();
     let Ok(of_whole) = survey(&thinned, &whole.model, &range) else { return Vec::new() };
-    let apply = |change: &Change| {
-        let glance = survey(&thinned, &changed(&whole.model, *change)?, &range).ok()?;
-        let fit = || fit_to_compare(record, &glance.model, &range).ok();
-        (glance.cost < MOST * of_whole.cost).then(fit).flatten().map(|fit| (*change, fit))
+    let glance = |change: &Change| {
+        let found = survey(&thinned, &changed(&whole.model, *change)?, &range).ok()?;
+        (found.cost < MOST * of_whole.cost).then_some((*change, found))
     };
-    workers.map(changes, apply).into_iter().flatten().collect()
+    let mut glances: Vec<_> = workers.map(changes, glance).into_iter().flatten().collect();
+    glances.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+    glances.truncate(FEW);
+    let fit = |(change, found): &(Change, Survey)| {
+        Some((*change, fit_to_compare(record, &found.model, &range).ok()?))
+    };
+    workers.map(&glances, fit).into_iter().flatten().collect()
 }
 
 /// `model` after a change.
