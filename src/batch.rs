@@ -5,6 +5,7 @@
 
 use rayon::prelude::*;
 
+use crate::delay::sweep::{Grid, JointSweep, RunTold};
 use crate::delay::{Decision, EstimateError, Settings, Shared, TrialEstimate};
 use crate::diagnosis::{Comparison, compare};
 use crate::effect::Effect;
@@ -43,22 +44,77 @@ pub fn estimate_joints(
     settings: &Settings,
     done: impl Fn() + Sync,
 ) -> Vec<Result<JointEstimate, EstimateError>> {
+    joints.par_iter().map(|joint| estimate_one(joint, settings, &done)).collect()
+}
+
+fn estimate_one(
+    joint: &Joint,
+    settings: &Settings,
+    done: &(impl Fn() + Sync),
+) -> Result<JointEstimate, EstimateError> {
+    let needed = settings.beta.saturating_mul(2);
+    let longest = joint.trials.iter().map(Trial::len).max();
+    if let Some(samples) = longest.filter(|samples| *samples < needed) {
+        return Err(EstimateError::TooFewSamples { samples, needed });
+    }
+    let shared = Shared::of(&joint.trials, settings)?;
+    let one_trial = |trial| {
+        let estimate = shared.estimate(trial, settings);
+        done();
+        estimate
+    };
+    let trials: Vec<_> = joint.trials.par_iter().map(one_trial).collect();
+    match trials.first() {
+        Some(Err(first)) if trials.iter().all(Result::is_err) => Err(first.clone()),
+        _ => Ok(JointEstimate { trials }),
+    }
+}
+
+/// The delays of a joint with all settings of a grid.
+#[derive(Clone, Debug)]
+pub struct SweptJoint {
+    /// What came out.
+    pub sweep: JointSweep,
+    /// The runs that failed, by their index in the grid, and why.
+    pub failed: Vec<(usize, EstimateError)>,
+}
+
+/// Estimates every joint with all settings of `grid` and tells how its delays move; delays
+/// agree within `tolerance` samples. `done` is called after each run of a joint.
+///
+/// A joint fails when all runs do, with the first one's error.
+pub fn sweep_joints(
+    joints: &[Joint],
+    grid: &Grid,
+    tolerance: f64,
+    done: impl Fn() + Sync,
+) -> Vec<Result<SweptJoint, EstimateError>> {
+    let one_run = |joint: &Joint, settings: &Settings| {
+        let estimate = estimate_one(joint, settings, &|| ());
+        done();
+        let estimate = estimate?;
+        let trials = estimate.trials.iter().map(|trial| trial.as_ref().ok());
+        Ok(RunTold::of(&joint.trials, trials, settings))
+    };
     let one_joint = |joint: &Joint| {
-        let needed = settings.beta.saturating_mul(2);
-        let longest = joint.trials.iter().map(Trial::len).max();
-        if let Some(samples) = longest.filter(|samples| *samples < needed) {
-            return Err(EstimateError::TooFewSamples { samples, needed });
+        let runs: Vec<Result<RunTold, EstimateError>> =
+            grid.runs().par_iter().map(|settings| one_run(joint, settings)).collect();
+        let (mut told, mut failed) = (Vec::with_capacity(runs.len()), Vec::new());
+        for (index, run) in runs.into_iter().enumerate() {
+            match run {
+                Ok(run) => told.push(Some(run)),
+                Err(error) => {
+                    failed.push((index, error));
+                    told.push(None);
+                }
+            }
         }
-        let shared = Shared::of(&joint.trials, settings)?;
-        let one_trial = |trial| {
-            let estimate = shared.estimate(trial, settings);
-            done();
-            estimate
-        };
-        let trials: Vec<_> = joint.trials.par_iter().map(one_trial).collect();
-        match trials.first() {
-            Some(Err(first)) if trials.iter().all(Result::is_err) => Err(first.clone()),
-            _ => Ok(JointEstimate { trials }),
+        match failed.first() {
+            Some((_, first)) if failed.len() == told.len() => Err(first.clone()),
+            _ => Ok(SweptJoint {
+                sweep: JointSweep::of(grid, &joint.trials, &told, tolerance),
+                failed,
+            }),
         }
     };
     joints.par_iter().map(one_joint).collect()

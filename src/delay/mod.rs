@@ -16,6 +16,7 @@
 //! - [`step_delays`]: the delays alone, by the best method
 //! - [`DelayProfile`]: the delay of every sample
 //! - [`AgainstState`]: what the delay may depend on
+//! - [`sweep`]: how every delay moves with the settings
 //!
 //! Sample numbers are the paper's: counted from 1 within the trial.
 
@@ -40,6 +41,7 @@ mod segment;
 mod step_delay;
 mod steps;
 mod stretch;
+pub mod sweep;
 mod two_line;
 
 pub use against::{AgainstState, Correlation, Direction, StepState};

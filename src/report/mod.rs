@@ -13,6 +13,7 @@ mod json;
 mod number;
 mod steps;
 mod summary;
+mod sweep;
 mod text;
 mod words;
 
@@ -32,6 +33,7 @@ pub use json::EstimateJson;
 pub use number::number;
 pub use steps::steps_table;
 pub use summary::{DelayRange, JointSummary};
+pub use sweep::{ReportedSweep, StepsShown, SweepJson, sweep_text};
 pub use text::estimate_table;
 #[cfg(feature = "rrd")]
 pub(crate) use text::{SUMMARY_HEADER, summary_cells};
