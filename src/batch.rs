@@ -6,7 +6,9 @@
 use rayon::prelude::*;
 
 use crate::delay::sweep::{Grid, JointSweep, RunTold};
-use crate::delay::{Decision, EstimateError, Settings, Shared, TrialEstimate};
+use crate::delay::{
+    Automatic, Chosen, Decision, EstimateError, Settings, Shared, TrialEstimate, choose,
+};
 use crate::diagnosis::{Comparison, compare};
 use crate::effect::Effect;
 use crate::experiment::{Joint, Trial, activity};
@@ -21,6 +23,10 @@ use crate::statistics::median;
 pub struct JointEstimate {
     /// One result per trial of the joint, in the same order.
     pub trials: Vec<Result<TrialEstimate, EstimateError>>,
+    /// The settings that it was made with.
+    pub settings: Settings,
+    /// Which of them were chosen from the record, and from what.
+    pub chosen: Option<Chosen>,
 }
 
 impl JointEstimate {
@@ -44,7 +50,27 @@ pub fn estimate_joints(
     settings: &Settings,
     done: impl Fn() + Sync,
 ) -> Vec<Result<JointEstimate, EstimateError>> {
-    joints.par_iter().map(|joint| estimate_one(joint, settings, &done)).collect()
+    estimate_joints_with(joints, settings, Automatic::default(), done)
+}
+
+/// The same with settings of which some are chosen for each joint from its own record: see
+/// [`choose`].
+pub fn estimate_joints_with(
+    joints: &[Joint],
+    settings: &Settings,
+    automatic: Automatic,
+    done: impl Fn() + Sync,
+) -> Vec<Result<JointEstimate, EstimateError>> {
+    let one_joint = |joint: &Joint| {
+        if !automatic.any() {
+            return estimate_one(joint, settings, &done);
+        }
+        settings.check()?;
+        let (settings, chosen) = choose(&joint.trials, settings, automatic);
+        let estimate = estimate_one(joint, &settings, &done)?;
+        Ok(JointEstimate { chosen: Some(chosen), ..estimate })
+    };
+    joints.par_iter().map(one_joint).collect()
 }
 
 fn estimate_one(
@@ -66,7 +92,7 @@ fn estimate_one(
     let trials: Vec<_> = joint.trials.par_iter().map(one_trial).collect();
     match trials.first() {
         Some(Err(first)) if trials.iter().all(Result::is_err) => Err(first.clone()),
-        _ => Ok(JointEstimate { trials }),
+        _ => Ok(JointEstimate { trials, settings: settings.clone(), chosen: None }),
     }
 }
 

@@ -36,7 +36,7 @@ pub use summary::{DelayRange, JointSummary};
 pub use sweep::{ReportedSweep, StepsShown, SweepJson, sweep_text};
 pub use text::estimate_table;
 #[cfg(feature = "rrd")]
-pub(crate) use text::{SUMMARY_HEADER, summary_cells};
+pub(crate) use text::{SUMMARY_HEADER, chosen_line, summary_cells};
 pub use words::Words;
 
 use crate::batch::JointEstimate;

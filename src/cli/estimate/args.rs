@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, ValueEnum};
-use tauscope::delay::{self, Interpolation, Settings};
+use tauscope::delay::{self, Automatic, Interpolation, Settings};
 
 use crate::cli::data::{DataArgs, threads};
 use crate::cli::progress::Verbosity;
@@ -33,18 +33,19 @@ pub(super) struct AlgorithmArgs {
     #[arg(long, value_enum, default_values_t = [Method::TwoLine])]
     method: Vec<Method>,
 
-    /// Samples that a segment reaches beyond its input steps
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = at_least_one, allow_negative_numbers = true)]
-    alpha: usize,
+    /// Samples that a segment reaches beyond its input steps; `auto` chooses this and the
+    /// next two from the record of each joint [default: 10]
+    #[arg(long, value_name = "N|auto", value_parser = or_auto(at_least_one), allow_negative_numbers = true)]
+    alpha: Option<OrAuto<usize>>,
 
-    /// Samples between two candidate breakpoints
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = at_least_one, allow_negative_numbers = true)]
-    beta: usize,
+    /// Samples between two candidate breakpoints [default: 5]
+    #[arg(long, value_name = "N|auto", value_parser = or_auto(at_least_one), allow_negative_numbers = true)]
+    beta: Option<OrAuto<usize>>,
 
     /// Zero-phase low-pass on the output: its cutoff, or `none` [default: 5 for two-line,
     /// else none]
-    #[arg(long, value_name = "HZ|none", value_parser = passband, allow_negative_numbers = true)]
-    passband: Option<Passband>,
+    #[arg(long, value_name = "HZ|none|auto", value_parser = or_auto(passband), allow_negative_numbers = true)]
+    passband: Option<OrAuto<Passband>>,
 
     #[command(flatten)]
     conditions: ConditionArgs,
@@ -96,6 +97,30 @@ pub(super) struct OutputArgs {
     pub(super) quiet: bool,
 }
 
+/// A value, or one that the record is to tell.
+#[derive(Clone, Copy, Debug)]
+enum OrAuto<T> {
+    Given(T),
+    Auto,
+}
+
+/// What `one` understands, and `auto`.
+fn or_auto<T: 'static>(
+    one: fn(&str) -> Result<T, String>,
+) -> impl Fn(&str) -> Result<OrAuto<T>, String> + Clone {
+    move |text| match text {
+        "auto" => Ok(OrAuto::Auto),
+        _ => one(text).map(OrAuto::Given).map_err(|expected| format!("{expected}, or `auto`")),
+    }
+}
+
+fn given<T>(value: Option<OrAuto<T>>) -> Option<T> {
+    match value {
+        Some(OrAuto::Given(value)) => Some(value),
+        Some(OrAuto::Auto) | None => None,
+    }
+}
+
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Between {
     /// Keep the delay until the next step
@@ -126,7 +151,9 @@ impl AlgorithmArgs {
 
     fn settings(&self, method: delay::Method) -> Settings {
         let base = self.conditions.settings(method);
-        let low_pass = match self.passband {
+        let (alpha, beta) = (given(self.alpha), given(self.beta));
+        let (alpha, beta) = (alpha.unwrap_or(base.alpha), beta.unwrap_or(base.beta));
+        let low_pass = match given(self.passband) {
             Some(passband) => passband.low_pass(self.conditions.filter_order),
             None => base.low_pass,
         };
@@ -134,7 +161,16 @@ impl AlgorithmArgs {
             Between::Hold => Interpolation::Hold,
             Between::Linear => Interpolation::Linear,
         };
-        Settings { alpha: self.alpha, beta: self.beta, low_pass, interpolation, ..base }
+        Settings { alpha, beta, low_pass, interpolation, ..base }
+    }
+
+    /// Which settings are to be chosen from the record.
+    pub(super) fn automatic(&self) -> Automatic {
+        Automatic {
+            alpha: matches!(self.alpha, Some(OrAuto::Auto)),
+            beta: matches!(self.beta, Some(OrAuto::Auto)),
+            passband: matches!(self.passband, Some(OrAuto::Auto)),
+        }
     }
 }
 
