@@ -245,7 +245,8 @@ fn odd_levels(grid: &Grid, found: &Hanging, period_s: f64) -> String {
     /// Values that are shown.
     const SHOWN: usize = 2;
     let name = |level: usize| level_text(grid, found.factor, level);
-    let told: Vec<(usize, f64, f64)> = found.levels.iter().enumerate().filter_map(tuple).collect();
+    let told: Vec<(usize, f64, f64)> =
+        found.levels.iter().enumerate().filter_map(numbered).collect();
     let odd = told.iter().filter(|(_, _, agree)| *agree < 0.5);
     let odd =
         odd.map(|(level, delay, _)| format!("{} says {:.3} s", name(*level), delay * period_s));
@@ -266,6 +267,6 @@ fn odd_levels(grid: &Grid, found: &Hanging, period_s: f64) -> String {
 }
 
 /// A value's index, its delay and how much of it agrees.
-fn tuple((level, told): (usize, &Option<(f64, f64)>)) -> Option<(usize, f64, f64)> {
+fn numbered((level, told): (usize, &Option<(f64, f64)>)) -> Option<(usize, f64, f64)> {
     told.map(|(delay, agree)| (level, delay, agree))
 }
