@@ -5,7 +5,10 @@
 
 use rayon::prelude::*;
 
-use crate::delay::{Decision, EstimateError, Settings, Shared, TrialEstimate};
+use crate::delay::sweep::{Grid, JointSweep, RunTold};
+use crate::delay::{
+    Automatic, Chosen, Decision, EstimateError, Settings, Shared, TrialEstimate, choose,
+};
 use crate::diagnosis::{Comparison, compare};
 use crate::effect::Effect;
 use crate::experiment::{Joint, Trial, activity};
@@ -20,6 +23,10 @@ use crate::statistics::median;
 pub struct JointEstimate {
     /// One result per trial of the joint, in the same order.
     pub trials: Vec<Result<TrialEstimate, EstimateError>>,
+    /// The settings that it was made with.
+    pub settings: Settings,
+    /// Which of them were chosen from the record, and from what.
+    pub chosen: Option<Chosen>,
 }
 
 impl JointEstimate {
@@ -43,22 +50,97 @@ pub fn estimate_joints(
     settings: &Settings,
     done: impl Fn() + Sync,
 ) -> Vec<Result<JointEstimate, EstimateError>> {
+    estimate_joints_with(joints, settings, Automatic::default(), done)
+}
+
+/// The same with settings of which some are chosen for each joint from its own record: see
+/// [`choose`].
+pub fn estimate_joints_with(
+    joints: &[Joint],
+    settings: &Settings,
+    automatic: Automatic,
+    done: impl Fn() + Sync,
+) -> Vec<Result<JointEstimate, EstimateError>> {
     let one_joint = |joint: &Joint| {
-        let needed = settings.beta.saturating_mul(2);
-        let longest = joint.trials.iter().map(Trial::len).max();
-        if let Some(samples) = longest.filter(|samples| *samples < needed) {
-            return Err(EstimateError::TooFewSamples { samples, needed });
+        if !automatic.any() {
+            return estimate_one(joint, settings, &done);
         }
-        let shared = Shared::of(&joint.trials, settings)?;
-        let one_trial = |trial| {
-            let estimate = shared.estimate(trial, settings);
-            done();
-            estimate
-        };
-        let trials: Vec<_> = joint.trials.par_iter().map(one_trial).collect();
-        match trials.first() {
-            Some(Err(first)) if trials.iter().all(Result::is_err) => Err(first.clone()),
-            _ => Ok(JointEstimate { trials }),
+        settings.check()?;
+        let (settings, chosen) = choose(&joint.trials, settings, automatic);
+        let estimate = estimate_one(joint, &settings, &done)?;
+        Ok(JointEstimate { chosen: Some(chosen), ..estimate })
+    };
+    joints.par_iter().map(one_joint).collect()
+}
+
+fn estimate_one(
+    joint: &Joint,
+    settings: &Settings,
+    done: &(impl Fn() + Sync),
+) -> Result<JointEstimate, EstimateError> {
+    let needed = settings.beta.saturating_mul(2);
+    let longest = joint.trials.iter().map(Trial::len).max();
+    if let Some(samples) = longest.filter(|samples| *samples < needed) {
+        return Err(EstimateError::TooFewSamples { samples, needed });
+    }
+    let shared = Shared::of(&joint.trials, settings)?;
+    let one_trial = |trial| {
+        let estimate = shared.estimate(trial, settings);
+        done();
+        estimate
+    };
+    let trials: Vec<_> = joint.trials.par_iter().map(one_trial).collect();
+    match trials.first() {
+        Some(Err(first)) if trials.iter().all(Result::is_err) => Err(first.clone()),
+        _ => Ok(JointEstimate { trials, settings: settings.clone(), chosen: None }),
+    }
+}
+
+/// The delays of a joint with all settings of a grid.
+#[derive(Clone, Debug)]
+pub struct SweptJoint {
+    /// What came out.
+    pub sweep: JointSweep,
+    /// The runs that failed, by their index in the grid, and why.
+    pub failed: Vec<(usize, EstimateError)>,
+}
+
+/// Estimates every joint with all settings of `grid` and tells how its delays move; delays
+/// agree within `tolerance` samples. `done` is called after each run of a joint.
+///
+/// A joint fails when all runs do, with the first one's error.
+pub fn sweep_joints(
+    joints: &[Joint],
+    grid: &Grid,
+    tolerance: f64,
+    done: impl Fn() + Sync,
+) -> Vec<Result<SweptJoint, EstimateError>> {
+    let one_run = |joint: &Joint, settings: &Settings| {
+        let estimate = estimate_one(joint, settings, &|| ());
+        done();
+        let estimate = estimate?;
+        let trials = estimate.trials.iter().map(|trial| trial.as_ref().ok());
+        Ok(RunTold::of(&joint.trials, trials, settings))
+    };
+    let one_joint = |joint: &Joint| {
+        let runs: Vec<Result<RunTold, EstimateError>> =
+            grid.runs().par_iter().map(|settings| one_run(joint, settings)).collect();
+        let (mut told, mut failed) = (Vec::with_capacity(runs.len()), Vec::new());
+        for (index, run) in runs.into_iter().enumerate() {
+            match run {
+                Ok(run) => told.push(Some(run)),
+                Err(error) => {
+                    failed.push((index, error));
+                    told.push(None);
+                }
+            }
+        }
+        match failed.first() {
+            Some((_, first)) if failed.len() == told.len() => Err(first.clone()),
+            _ => Ok(SweptJoint {
+                sweep: JointSweep::of(grid, &joint.trials, &told, tolerance),
+                failed,
+            }),
         }
     };
     joints.par_iter().map(one_joint).collect()

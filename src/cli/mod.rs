@@ -14,7 +14,9 @@ mod output;
 mod progress;
 mod record;
 mod report;
+mod settings;
 mod simulate;
+mod sweep;
 
 use std::io::{self, Write as _};
 use std::process::ExitCode;
@@ -33,6 +35,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Estimate(Box<estimate::Args>),
+    Sweep(Box<sweep::Args>),
     Compare(Box<compare::Args>),
     Explain(Box<explain::Args>),
     Add(Box<add::Args>),
@@ -57,6 +60,7 @@ enum Completion {
 pub(crate) fn run() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Estimate(args) => estimate::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Explain(args) => explain::run(&args),
         Command::Add(args) => add::run(&args),

@@ -44,6 +44,11 @@ impl Method {
         }
     }
 
+    /// Whether β says anything to it.
+    pub fn has_rows(self) -> bool {
+        self == Self::TwoLine
+    }
+
     /// Whether it looks at all trials of a joint for a lag that they share.
     pub(super) fn shares_a_lag(self) -> bool {
         self == Self::LagAware

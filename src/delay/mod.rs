@@ -16,10 +16,13 @@
 //! - [`step_delays`]: the delays alone, by the best method
 //! - [`DelayProfile`]: the delay of every sample
 //! - [`AgainstState`]: what the delay may depend on
+//! - [`choose`]: α, β and the passband from a joint's own record
+//! - [`sweep`]: how every delay moves with the settings
 //!
 //! Sample numbers are the paper's: counted from 1 within the trial.
 
 mod against;
+mod auto;
 mod broken_line;
 mod chain;
 mod condition;
@@ -40,9 +43,11 @@ mod segment;
 mod step_delay;
 mod steps;
 mod stretch;
+pub mod sweep;
 mod two_line;
 
 pub use against::{AgainstState, Correlation, Direction, StepState};
+pub use auto::{Automatic, Chosen, Grounds, choose};
 pub use broken_line::{BrokenLine, broken_line};
 pub use condition::{Check, Condition, Outcome};
 pub use estimate::{

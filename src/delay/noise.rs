@@ -66,6 +66,17 @@ impl Noise {
         self.coefficients.len()
     }
 
+    /// `|1 − Σ a_i e^(−iωi)|²`: what whitening makes of power at `omega` radians per sample.
+    pub(super) fn memory_gain(&self, omega: f64) -> f64 {
+        let terms = self.coefficients.iter().zip(1..);
+        let part = |(real, imaginary): (f64, f64), (a, i): (&f64, i32)| {
+            let (sine, cosine) = (omega * f64::from(i)).sin_cos();
+            (real - a * cosine, imaginary + a * sine)
+        };
+        let (real, imaginary) = terms.fold((1.0, 0.0), part);
+        real * real + imaginary * imaginary
+    }
+
     /// What whitening makes, `d = 1 … order` samples behind the break, of a level and of a
     /// ramp that begin there: `(w_d, h_d)`.
     pub(super) fn onset(&self) -> Vec<(f64, f64)> {

@@ -10,7 +10,7 @@ use super::entity::plain;
 use super::error::RecordError;
 use super::layout::{Detail, JointLayout};
 use crate::experiment::ReadOptions;
-use crate::report::{JointSummary, SUMMARY_HEADER, settings_rows, summary_cells};
+use crate::report::{JointSummary, SUMMARY_HEADER, chosen_line, settings_rows, summary_cells};
 
 /// Adds the page at `/about`.
 pub(super) fn add(
@@ -35,6 +35,9 @@ fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String
     writeln!(page, "\n## Settings\n\n| setting | value |\n|---|---|")?;
     for (name, value) in settings_rows(recording.settings) {
         writeln!(page, "| {name} | {value} |")?;
+    }
+    for line in recording.joints.iter().filter_map(chosen_line) {
+        writeln!(page, "\nChosen from the record of {}", plain(line.trim_end()))?;
     }
     writeln!(page, "\n{}", detail(recording, layouts))?;
     writeln!(page, "\n## Signals\n\n| joint | input | output | trials | sample period |")?;

@@ -119,7 +119,7 @@ fn add_joint(
     let root = joint_root(&joint.name);
     signals::add(chunks, &root, joint, layout)?;
     decisions::add(chunks, &root, layout)?;
-    verdict::add(chunks, &root, joint, layout, recording.settings)?;
+    verdict::add(chunks, &root, joint, layout, &estimated.estimate.settings)?;
     segment_view::add(chunks, &root, joint, layout)?;
     overview::add(chunks, &root, layout)?;
     delay_state::add(chunks, &root, estimated, layout)?;
@@ -164,6 +164,9 @@ fn recording_id(recording: &Recording<'_>) -> String {
         part(&format!("{} {changes:?}", improved.first_revision));
     }
     part(&format!("{:?} {:?}", recording.settings, recording.detail));
+    for joint in recording.joints.iter().filter(|joint| joint.estimate.chosen.is_some()) {
+        part(&format!("{:?}", joint.estimate.settings));
+    }
     part(env!("CARGO_PKG_VERSION"));
     let digest = base16ct::lower::encode_string(&hash.finalize());
     digest.chars().take(32).collect()

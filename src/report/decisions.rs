@@ -151,10 +151,10 @@ pub fn decision_rows(
 }
 
 /// The rows of one joint with all that is told of them.
-pub(super) fn detailed_rows<'a>(
-    joint: EstimatedJoint<'a>,
-    settings: &'a Settings,
-) -> impl Iterator<Item = (DecisionRow<'a>, DecisionDetail)> + 'a {
+pub(super) fn detailed_rows(
+    joint: EstimatedJoint<'_>,
+) -> impl Iterator<Item = (DecisionRow<'_>, DecisionDetail)> + '_ {
+    let settings = &joint.estimate.settings;
     let trials = joint.joint.trials.iter().zip(&joint.estimate.trials);
     let estimated = trials.filter_map(|(trial, result)| Some((trial, result.as_ref().ok()?)));
     estimated.flat_map(move |(trial, estimate)| {
@@ -180,8 +180,8 @@ pub fn write_decisions(
     let paper = runs.iter().all(|(settings, _)| settings.method == Method::TwoLine);
     let more: &[&str] = if paper { &[] } else { &DETAILS };
     writer.write_record(COLUMNS.iter().chain(more))?;
-    for (settings, joints) in runs {
-        for (row, detail) in joints.iter().flat_map(|joint| detailed_rows(*joint, settings)) {
+    for (_, joints) in runs {
+        for (row, detail) in joints.iter().flat_map(|joint| detailed_rows(*joint)) {
             if paper {
                 writer.serialize(row)?;
             } else {

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::decisions::detailed_rows;
 use super::{DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary};
-use crate::delay::{AgainstState, Condition, Lag, LagPart, Settings};
+use crate::delay::{AgainstState, Chosen, Condition, Lag, LagPart, Settings};
 use crate::experiment::{Experiment, ReadOptions, Source};
 
 /// The document of `estimate --format json`, schema `tauscope/estimate/1`.
@@ -65,6 +65,10 @@ struct JointJson<'a> {
     delay_samples: Option<DelayRange>,
     delay_s: Option<DelayRange>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    settings: Option<&'a Settings>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chosen: Option<Chosen>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     lag: Option<LagJson>,
     against_state: AgainstState,
     decisions: Vec<DecisionJson<'a>>,
@@ -78,13 +82,13 @@ impl<'a> EstimateJson<'a> {
         runs: &[(&'a Settings, &'a [EstimatedJoint<'a>])],
         failures: &'a [String],
     ) -> Option<Self> {
-        let joints = |settings: &'a Settings, joints: &[EstimatedJoint<'a>]| {
-            joints.iter().map(|joint| JointJson::new(*joint, settings)).collect()
+        let joints = |joints: &[EstimatedJoint<'a>]| {
+            joints.iter().map(|joint| JointJson::new(*joint)).collect()
         };
         let (&(settings, first), others) = runs.split_first()?;
         let run = |run: &(&'a Settings, &'a [EstimatedJoint<'a>])| RunJson {
             settings: run.0,
-            joints: joints(run.0, run.1),
+            joints: joints(run.1),
         };
         let source = |source: &'a Source| SourceJson {
             path: source.path.display().to_string(),
@@ -97,7 +101,7 @@ impl<'a> EstimateJson<'a> {
             sources: experiment.sources.iter().map(source).collect(),
             reading: &experiment.options,
             settings,
-            joints: joints(settings, first),
+            joints: joints(first),
             also: others.iter().map(run).collect(),
             notes: &experiment.notes,
             failures,
@@ -106,7 +110,8 @@ impl<'a> EstimateJson<'a> {
 }
 
 impl<'a> JointJson<'a> {
-    fn new(joint: EstimatedJoint<'a>, settings: &'a Settings) -> Self {
+    fn new(joint: EstimatedJoint<'a>) -> Self {
+        let chosen = joint.estimate.chosen;
         let JointSummary { steps, accepted, rejected, delay_samples, delay_s } =
             JointSummary::of(joint);
         let count = |(condition, count): (Condition, usize)| (condition.to_string(), count.into());
@@ -119,9 +124,11 @@ impl<'a> JointJson<'a> {
             rejected: rejected.into_iter().map(count).collect(),
             delay_samples,
             delay_s,
+            settings: chosen.map(|_| &joint.estimate.settings),
+            chosen,
             lag: joint.lag().map(LagJson::new),
             against_state: joint.against_state(),
-            decisions: detailed_rows(joint, settings)
+            decisions: detailed_rows(joint)
                 .map(|(row, detail)| DecisionJson { row, detail })
                 .collect(),
         }

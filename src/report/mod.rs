@@ -16,6 +16,7 @@ mod settings;
 mod span;
 mod steps;
 mod summary;
+mod sweep;
 mod text;
 mod words;
 
@@ -40,9 +41,10 @@ pub(crate) use settings::settings_rows;
 pub(crate) use span::{Span, thinned_to};
 pub use steps::steps_table;
 pub use summary::{DelayRange, JointSummary};
+pub use sweep::{ReportedSweep, StepsShown, SweepJson, sweep_text};
 pub use text::estimate_table;
 #[cfg(feature = "rrd")]
-pub(crate) use text::{SUMMARY_HEADER, summary_cells};
+pub(crate) use text::{SUMMARY_HEADER, chosen_line, summary_cells};
 pub use words::Words;
 
 use crate::batch::JointEstimate;

@@ -4,18 +4,17 @@ use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
 use super::decisions::detailed_rows;
 use super::{EstimatedJoint, number};
-use crate::delay::Settings;
 
 /// A row per step: its delay with the interval, the verdict, and what would have accepted
 /// it, or by how much the second-best breakpoint is worse.
-pub fn steps_table(joints: &[EstimatedJoint<'_>], settings: &Settings) -> String {
+pub fn steps_table(joints: &[EstimatedJoint<'_>]) -> String {
     let mut table = Table::new();
     table
         .load_style(presets::UTF8_BORDERS_ONLY)
         .set_content_arrangement(ContentArrangement::Disabled)
         .set_header(["joint", "trial", "step", "delay", "interval", "verdict", "how near"]);
     for joint in joints {
-        for (row, detail) in detailed_rows(*joint, settings) {
+        for (row, detail) in detailed_rows(*joint) {
             let delay = row.delta.map_or_else(|| "-".to_owned(), number);
             let ends = detail.delta_low.zip(detail.delta_high);
             let interval = ends.map_or_else(

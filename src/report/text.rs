@@ -2,8 +2,9 @@
 
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
+use super::number::{measure, rounded};
 use super::{DelayRange, EstimatedJoint, JointSummary};
-use crate::delay::{Condition, Interpolation, LagPart, Method, Settings};
+use crate::delay::{Automatic, Chosen, Condition, Interpolation, LagPart, Method, Settings};
 use crate::filter::LowPass;
 
 /// The table of `estimate`: a row per joint, and the settings below it.
@@ -22,7 +23,47 @@ pub fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings) -> Str
         }
     }
     let lags: String = joints.iter().filter_map(lag_line).collect();
-    format!("{table}\n{lags}{}\n", settings_line(settings))
+    let chosen: String = joints.iter().filter_map(chosen_line).collect();
+    let automatic = joints.iter().find_map(|joint| joint.estimate.chosen);
+    let automatic = automatic.map(|chosen| chosen.automatic).unwrap_or_default();
+    format!("{table}\n{lags}{chosen}{}\n", settings_line(settings, automatic))
+}
+
+/// The settings that were chosen for a joint, and why, where any were.
+pub(crate) fn chosen_line(joint: &EstimatedJoint<'_>) -> Option<String> {
+    let Chosen { automatic, grounds } = joint.estimate.chosen?;
+    let settings = &joint.estimate.settings;
+    let unit = joint.joint.output_unit.as_deref();
+    let mut parts = Vec::new();
+    if automatic.alpha {
+        parts.push(match grounds.short_delay {
+            Some(delay) => format!(
+                "α = {} (nine delays of ten are above {} samples)",
+                settings.alpha,
+                rounded(delay)
+            ),
+            None => format!("α = {} (as usual: no delay is known)", settings.alpha),
+        });
+    }
+    if automatic.beta && settings.method.has_rows() {
+        parts.push(format!("β = {}", settings.beta));
+    }
+    if automatic.passband {
+        let noise = grounds.noise.map_or_else(
+            || "nothing known of the noise".to_owned(),
+            |noise| format!("noise {}", measure(noise, unit)),
+        );
+        parts.push(format!("{} ({noise})", low_pass_text(settings)));
+    }
+    let name = &joint.joint.name;
+    (!parts.is_empty()).then(|| format!("{name}: {}\n", parts.join(", ")))
+}
+
+fn low_pass_text(settings: &Settings) -> String {
+    settings.low_pass.map_or_else(
+        || "no low-pass".to_owned(),
+        |LowPass { cutoff_hz, order }| format!("zero-phase low-pass {cutoff_hz} Hz, order {order}"),
+    )
 }
 
 /// The lag of a joint in words, where one was looked for.
@@ -73,15 +114,21 @@ fn reasons(rejected: &[(Condition, usize)]) -> String {
 }
 
 /// The settings in one line, as a person would say them.
-fn settings_line(settings: &Settings) -> String {
-    let low_pass = settings.low_pass.map_or_else(
-        || "no low-pass".to_owned(),
-        |LowPass { cutoff_hz, order }| format!("zero-phase low-pass {cutoff_hz} Hz, order {order}"),
-    );
+fn settings_line(settings: &Settings, automatic: Automatic) -> String {
+    let own = |name: &str, is_chosen: bool, value: usize| {
+        if is_chosen { format!("{name} as above") } else { format!("{name} = {value}") }
+    };
     let grid = match settings.method {
-        Method::TwoLine => format!("α = {}, β = {} samples", settings.alpha, settings.beta),
+        Method::TwoLine => {
+            let alpha = own("α", automatic.alpha, settings.alpha);
+            let beta = own("β", automatic.beta, settings.beta);
+            let both = automatic.alpha && automatic.beta;
+            format!("{alpha}, {beta}{}", if both { "" } else { " samples" })
+        }
         Method::Hinge | Method::LagAware => format!("{} % intervals", 100.0 * settings.interval),
     };
+    let low_pass = low_pass_text(settings);
+    let low_pass = if automatic.passband { "low-pass as above".to_owned() } else { low_pass };
     let mut parts = vec![grid, low_pass];
     if let Some(confidence) = settings.confidence {
         parts.push(format!("reactions at {} %", 100.0 * confidence));

@@ -378,7 +378,7 @@ pub(super) fn printed(words: &Words) -> String {
 }
 
 /// `text` in lines of at most [`WIDTH`] columns where words allow.
-fn filled(text: &str) -> String {
+pub(super) fn filled(text: &str) -> String {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         let length = |line: &str| line.chars().count();

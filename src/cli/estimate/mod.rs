@@ -6,7 +6,7 @@ mod files;
 use std::io::{self, Write as _};
 
 use anyhow::{Context as _, anyhow};
-use tauscope::batch::{JointEstimate, estimate_joints, with_threads};
+use tauscope::batch::{JointEstimate, estimate_joints_with, with_threads};
 use tauscope::delay::{Condition, EstimateError, Settings};
 use tauscope::experiment::Experiment;
 use tauscope::report::{
@@ -31,7 +31,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     };
     let trials: u64 = experiment.joints.iter().map(|joint| joint.trials.len() as u64).sum();
     let bar = progress::bar(verbosity, "estimating", trials * settings.len() as u64);
-    let one = |settings| estimate_joints(&experiment.joints, settings, || bar.inc(1));
+    let automatic = args.algorithm.automatic();
+    let one =
+        |settings| estimate_joints_with(&experiment.joints, settings, automatic, || bar.inc(1));
     let work = || settings.iter().map(one).collect::<Vec<Vec<JointResult>>>();
     let results = with_threads(args.output.threads, work)
         .map_err(|error| anyhow!("threads cannot be started: {error}"))?;
@@ -141,7 +143,7 @@ fn print(
             for (settings, joints) in result.runs {
                 out.write_all(estimate_table(joints, settings).as_bytes())?;
                 if args.steps {
-                    out.write_all(steps_table(joints, settings).as_bytes())?;
+                    out.write_all(steps_table(joints).as_bytes())?;
                 }
             }
             if args.against_state {

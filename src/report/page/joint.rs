@@ -109,7 +109,7 @@ fn rejections(estimated: EstimatedJoint<'_>) -> Vec<Block> {
 
 /// All decisions, numbers to five digits.
 fn decisions(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Block {
-    let all = detailed_rows(estimated, report.settings).count();
+    let all = detailed_rows(estimated).count();
     let mut blocks = vec![Block::text(
         "Sample numbers count from 1 within the trial: p is the step of the input, r and end \
          are the first and the last sample of the segment, q is the breakpoint, δ = q − p the \
@@ -134,7 +134,7 @@ fn decision_table(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Table {
     let interval = tells_intervals(method).then(|| "interval [samples]".to_owned());
     let header = before.map(str::to_owned).into_iter().chain(interval).chain([sse]);
     let behind = ["verdict", "accepted with"].map(str::to_owned);
-    let rows = detailed_rows(estimated, report.settings).take(MOST_ROWS);
+    let rows = detailed_rows(estimated).take(MOST_ROWS);
     Table {
         numbers: (1..before.len() + 1 + usize::from(tells_intervals(method))).collect(),
         header: header.chain(behind).collect(),

@@ -2,6 +2,7 @@
 
 use super::document::{Attachment, Block, Table};
 use super::{RecordingFile, Report};
+use crate::report::chosen_line;
 use crate::report::settings::settings_rows;
 
 pub(super) fn blocks(report: &Report<'_>) -> Vec<Block> {
@@ -18,6 +19,11 @@ pub(super) fn blocks(report: &Report<'_>) -> Vec<Block> {
     blocks.extend(report.recording.iter().flat_map(recording));
     blocks.push(Block::part("Settings"));
     blocks.push(Block::Table(settings(report)));
+    let chosen: Vec<String> = report.joints.iter().filter_map(chosen_line).collect();
+    if !chosen.is_empty() {
+        blocks.push(Block::text("Chosen from the record of"));
+        blocks.push(Block::List(chosen));
+    }
     if let Some(text) = report.revised {
         let summary = "The models, as a model file".to_owned();
         blocks.push(Block::Details { summary, blocks: vec![Block::Code(text.to_owned())] });

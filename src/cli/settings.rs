@@ -1,0 +1,162 @@
+//! The settings that every command takes whose delays are asked for.
+
+use clap::{Args, ValueEnum};
+use tauscope::delay::{self, Settings};
+use tauscope::filter::LowPass;
+
+/// The settings that are no part of how a breakpoint is searched.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Algorithm")]
+pub(super) struct ConditionArgs {
+    /// Reject a step as `nothing_happened` unless its change of slope is this unlikely to
+    /// be noise, or `none` [default: 0.99; `none` for two-line]
+    #[arg(long, value_name = "X|none", value_parser = confidence, allow_negative_numbers = true)]
+    confidence: Option<Confidence>,
+
+    /// How often the interval of a delay is to hold the true one
+    #[arg(long, value_name = "X", default_value_t = 0.95, value_parser = probability, allow_negative_numbers = true)]
+    interval: f64,
+
+    /// Order of the low-pass
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = at_least_one, allow_negative_numbers = true)]
+    pub(super) filter_order: usize,
+
+    /// Reject a step that is held for fewer samples (`τ_min`)
+    #[arg(long, value_name = "SAMPLES", default_value_t = 0, allow_negative_numbers = true)]
+    min_delay: usize,
+
+    /// Look for delays up to this many samples only: for holds so long that the output
+    /// meets an end stop on its way
+    #[arg(long, value_name = "SAMPLES", value_parser = at_least_one, allow_negative_numbers = true)]
+    max_delay: Option<usize>,
+
+    /// Reject a step when the output touches a limit
+    #[arg(long, value_name = "LO,HI", value_parser = limits, allow_hyphen_values = true)]
+    output_limits: Option<(f64, f64)>,
+
+    /// Reject a step when the slope changes by less, in output units per sample
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = threshold, allow_negative_numbers = true)]
+    min_slope_change: f64,
+
+    /// Reject a step unless the squared error of its lines is below this
+    #[arg(long, value_name = "X", value_parser = threshold, allow_negative_numbers = true)]
+    max_sse: Option<f64>,
+
+    /// Judge the first and the last step like the others
+    #[arg(long)]
+    keep_first_last: bool,
+
+    /// Count a change of the input as a step when it is more than this: for an input
+    /// that was measured
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = threshold, allow_negative_numbers = true)]
+    min_step: f64,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum Method {
+    /// Two regression lines (Albrecht and Taylor)
+    TwoLine,
+    /// A continuous broken line, with intervals
+    Hinge,
+    /// A broken line behind a lag: dead time apart from lag, with intervals
+    LagAware,
+}
+
+impl From<Method> for delay::Method {
+    fn from(method: Method) -> Self {
+        match method {
+            Method::TwoLine => Self::TwoLine,
+            Method::Hinge => Self::Hinge,
+            Method::LagAware => Self::LagAware,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Confidence {
+    Of(f64),
+    None,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Passband {
+    Hz(f64),
+    None,
+}
+
+pub(super) fn at_least_one(text: &str) -> Result<usize, String> {
+    let number = text.parse().ok().filter(|number: &usize| *number > 0);
+    number.ok_or_else(|| "expected a whole number from 1 up".to_owned())
+}
+
+pub(super) fn threshold(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|x: &f64| x.is_finite() && *x >= 0.0);
+    number.ok_or_else(|| "expected a number from 0 up".to_owned())
+}
+
+pub(super) fn passband(text: &str) -> Result<Passband, String> {
+    if text == "none" {
+        return Ok(Passband::None);
+    }
+    let hz = text.parse().ok().filter(|hz: &f64| hz.is_finite() && *hz > 0.0);
+    hz.map(Passband::Hz).ok_or_else(|| "expected a frequency in Hz, or `none`".to_owned())
+}
+
+fn probability(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|x: &f64| *x > 0.0 && *x < 1.0);
+    number.ok_or_else(|| "expected a number between 0 and 1, as in 0.99".to_owned())
+}
+
+fn confidence(text: &str) -> Result<Confidence, String> {
+    if text == "none" {
+        return Ok(Confidence::None);
+    }
+    let found = probability(text).map(Confidence::Of);
+    found.map_err(|expected| format!("{expected}, or `none`"))
+}
+
+fn limits(text: &str) -> Result<(f64, f64), String> {
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| !x.is_nan());
+    let pair = text.split_once(',').and_then(|(low, high)| Some((number(low)?, number(high)?)));
+    match pair {
+        Some((low, high)) if low < high => Ok((low, high)),
+        Some(_) => Err("the lower limit comes first".to_owned()),
+        None => Err("expected two numbers, as in -40,40".to_owned()),
+    }
+}
+
+impl Passband {
+    /// The low-pass of `order` that it stands for.
+    pub(super) fn low_pass(self, order: usize) -> Option<LowPass> {
+        match self {
+            Self::Hz(cutoff_hz) => Some(LowPass { cutoff_hz, order }),
+            Self::None => None,
+        }
+    }
+}
+
+impl ConditionArgs {
+    /// The settings of `method` with these conditions; all else is as usual.
+    pub(super) fn settings(&self, method: delay::Method) -> Settings {
+        let usual = Settings::of(method);
+        let order = self.filter_order;
+        let confidence = match self.confidence {
+            Some(Confidence::Of(confidence)) => Some(confidence),
+            Some(Confidence::None) => None,
+            None => usual.confidence,
+        };
+        Settings {
+            low_pass: usual.low_pass.map(|usual| LowPass { order, ..usual }),
+            min_delay: self.min_delay,
+            max_delay: self.max_delay,
+            output_limits: self.output_limits,
+            min_slope_change: self.min_slope_change,
+            max_sse: self.max_sse,
+            keep_first_last: self.keep_first_last,
+            min_step: self.min_step,
+            confidence,
+            interval: self.interval,
+            ..usual
+        }
+    }
+}

@@ -1,0 +1,237 @@
+//! The settings that are tried: every combination of some values of each.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::delay::Settings;
+use crate::filter::LowPass;
+
+/// A setting that is varied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Factor {
+    /// How a delay is found.
+    Method,
+    /// The low-pass on the output.
+    Passband,
+    /// α: samples that a segment reaches beyond its input steps.
+    Alpha,
+    /// β: samples between two candidates.
+    Beta,
+}
+
+impl Factor {
+    /// All of them, the slowest of a [`Grid`] first.
+    pub const ALL: [Self; 4] = [Self::Method, Self::Passband, Self::Alpha, Self::Beta];
+
+    /// Its name in sentences.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Method => "method",
+            Self::Passband => "passband",
+            Self::Alpha => "α",
+            Self::Beta => "β",
+        }
+    }
+}
+
+impl fmt::Display for Factor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.word())
+    }
+}
+
+/// One value of each setting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Combination {
+    /// Index of the value of each factor, in the order of [`Factor::ALL`].
+    pub levels: [usize; 4],
+    /// Index of its run: methods that know no β have one run for all of them.
+    pub run: usize,
+}
+
+/// A method, with all settings that are not varied.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Base {
+    /// The settings.
+    pub settings: Settings,
+    /// It keeps its own low-pass, or none, whatever the others try.
+    pub keeps_low_pass: bool,
+}
+
+/// Every combination of some methods, passbands, α and β.
+///
+/// Each combination counts once when votes are counted, so that a method that knows no β
+/// counts as much as one that does; what is the same is run once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    bases: Vec<Base>,
+    passbands: Vec<Option<LowPass>>,
+    alphas: Vec<usize>,
+    betas: Vec<usize>,
+    runs: Vec<Settings>,
+    combinations: Vec<Combination>,
+}
+
+impl Grid {
+    /// All combinations of the methods of `bases` with `passbands`, `alphas` and `betas`.
+    pub fn new(
+        bases: Vec<Base>,
+        passbands: Vec<Option<LowPass>>,
+        alphas: Vec<usize>,
+        betas: Vec<usize>,
+    ) -> Self {
+        let (runs, combinations) = (Vec::new(), Vec::new());
+        let mut grid = Self { bases, passbands, alphas, betas, runs, combinations };
+        for m in 0..grid.bases.len() {
+            for p in 0..grid.passbands.len() {
+                for a in 0..grid.alphas.len() {
+                    grid.add_row([m, p, a]);
+                }
+            }
+        }
+        grid
+    }
+
+    /// The combinations with every β.
+    fn add_row(&mut self, [m, p, a]: [usize; 3]) {
+        let Some(Base { settings, keeps_low_pass }) = self.bases.get(m).cloned() else { return };
+        let known = keeps_low_pass && p > 0;
+        let low_pass = self.passbands.get(p).copied().flatten().filter(|_| !keeps_low_pass);
+        let low_pass = if keeps_low_pass { settings.low_pass } else { low_pass };
+        let alpha = self.alphas.get(a).copied().unwrap_or(settings.alpha);
+        for b in 0..self.betas.len() {
+            let levels = [m, p, a, b];
+            if !known && (b == 0 || settings.method.has_rows()) {
+                let beta = self.betas.get(b).copied().unwrap_or(settings.beta);
+                self.runs.push(Settings { alpha, beta, low_pass, ..settings.clone() });
+            }
+            let same = if known { self.run_at([m, 0, a, b]) } else { None };
+            let run = same.unwrap_or(self.runs.len() - 1);
+            self.combinations.push(Combination { levels, run });
+        }
+    }
+
+    /// The run of these levels, where they come before the last.
+    fn run_at(&self, levels: [usize; 4]) -> Option<usize> {
+        let place =
+            |place: usize, (factor, level): (Factor, usize)| place * self.levels(factor) + level;
+        let index = Factor::ALL.into_iter().zip(levels).fold(0, place);
+        self.combinations.get(index).map(|one| one.run)
+    }
+
+    /// The settings that are run, each once.
+    pub fn runs(&self) -> &[Settings] {
+        &self.runs
+    }
+
+    /// All combinations; the values of β vary fastest.
+    pub fn combinations(&self) -> &[Combination] {
+        &self.combinations
+    }
+
+    /// The methods that are tried, and what is not varied.
+    pub fn bases(&self) -> &[Base] {
+        &self.bases
+    }
+
+    /// The low-passes that are tried.
+    pub fn passbands(&self) -> &[Option<LowPass>] {
+        &self.passbands
+    }
+
+    /// The values of α that are tried.
+    pub fn alphas(&self) -> &[usize] {
+        &self.alphas
+    }
+
+    /// The values of β that are tried.
+    pub fn betas(&self) -> &[usize] {
+        &self.betas
+    }
+
+    /// How many values of `factor` there are.
+    pub fn levels(&self, factor: Factor) -> usize {
+        match factor {
+            Factor::Method => self.bases.len(),
+            Factor::Passband => self.passbands.len(),
+            Factor::Alpha => self.alphas.len(),
+            Factor::Beta => self.betas.len(),
+        }
+    }
+
+    /// The combinations with the value `level` of `factor`, of methods that it says
+    /// anything to.
+    pub fn at(&self, factor: Factor, level: usize) -> impl Iterator<Item = &Combination> {
+        let place = factor as usize;
+        let has = move |one: &&Combination| one.levels.get(place) == Some(&level);
+        self.combinations.iter().filter(has).filter(move |one| self.knows(one, factor))
+    }
+
+    /// Sets of combinations that differ in `factor` alone, as indices.
+    pub(super) fn lines(&self, factor: Factor) -> impl Iterator<Item = Vec<usize>> {
+        let place = factor as usize;
+        let faster = Factor::ALL.iter().skip(place + 1).map(|factor| self.levels(*factor));
+        let stride: usize = faster.product();
+        let count = self.levels(factor);
+        let first = move |one: &Combination| one.levels.get(place) == Some(&0);
+        let starts = self.combinations.iter().enumerate();
+        let starts = starts.filter(move |(_, one)| first(one) && self.knows(one, factor));
+        starts.map(move |(start, _)| (0..count).map(|n| start + n * stride).collect())
+    }
+
+    /// Whether `factor` says anything to the method of a combination.
+    fn knows(&self, one: &Combination, factor: Factor) -> bool {
+        let [method, ..] = one.levels;
+        let knows = |base: &Base| match factor {
+            Factor::Method | Factor::Alpha => true,
+            Factor::Passband => !base.keeps_low_pass,
+            Factor::Beta => base.settings.method.has_rows(),
+        };
+        self.bases.get(method).is_some_and(knows)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delay::Method;
+
+    /// Two methods, of which the one that is told keeps its own low-pass.
+    fn grid(kept: Option<Method>) -> Grid {
+        let bases = [Method::TwoLine, Method::Hinge].map(|method| Base {
+            settings: Settings::of(method),
+            keeps_low_pass: kept == Some(method),
+        });
+        let slow = Some(LowPass { cutoff_hz: 2.0, order: 4 });
+        Grid::new(bases.to_vec(), vec![slow, None], vec![10], vec![1, 2, 5])
+    }
+
+    fn runs(grid: &Grid) -> Vec<usize> {
+        grid.combinations().iter().map(|one| one.run).collect()
+    }
+
+    #[test]
+    fn what_is_the_same_is_run_once() {
+        let all = grid(None);
+        assert_eq!(runs(&all), [0, 1, 2, 3, 4, 5, 6, 6, 6, 7, 7, 7]);
+        assert_eq!((all.runs()[4].beta, all.runs()[4].low_pass), (2, None));
+        let kept = grid(Some(Method::Hinge));
+        assert_eq!(runs(&kept), [0, 1, 2, 3, 4, 5, 6, 6, 6, 6, 6, 6]);
+        assert_eq!(kept.runs()[6].low_pass, None);
+    }
+
+    #[test]
+    fn a_line_varies_one_setting_alone() {
+        let all = grid(None);
+        let lines = |grid: &Grid, factor| grid.lines(factor).collect::<Vec<_>>();
+        // The broken line knows no β.
+        assert_eq!(lines(&all, Factor::Beta), [[0, 1, 2], [3, 4, 5]]);
+        assert_eq!(lines(&all, Factor::Passband)[1], [1, 4]);
+        assert_eq!(lines(&all, Factor::Method)[2], [2, 8]);
+        assert_eq!(all.at(Factor::Beta, 0).count(), 2);
+        assert_eq!(all.at(Factor::Passband, 0).count(), 6);
+        assert_eq!(lines(&grid(Some(Method::Hinge)), Factor::Passband).len(), 3);
+    }
+}

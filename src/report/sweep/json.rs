@@ -1,0 +1,194 @@
+//! `sweep` as JSON, numbers in full precision.
+
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+
+use super::{ReportedSweep, value};
+use crate::delay::sweep::{Factor, Grid, Hanging, LevelSummary, RunSummary, SweptStep};
+use crate::delay::{LagPart, Settings};
+
+/// The document of `sweep --format json`, schema `tauscope/sweep/1`.
+#[derive(Debug, Serialize)]
+pub struct SweepJson<'a> {
+    schema: &'static str,
+    version: &'static str,
+    tolerance_samples: f64,
+    combinations: usize,
+    settings: Vec<RunJson<'a>>,
+    joints: Vec<JointJson<'a>>,
+    notes: &'a [String],
+    failures: &'a [String],
+}
+
+/// A run, and how many combinations it stands for.
+#[derive(Debug, Serialize)]
+struct RunJson<'a> {
+    combinations: usize,
+    #[serde(flatten)]
+    settings: &'a Settings,
+}
+
+#[derive(Debug, Serialize)]
+struct JointJson<'a> {
+    joint: &'a str,
+    steps: usize,
+    accepted_by_any: usize,
+    settled: usize,
+    hanging_on: Map<String, Value>,
+    agreeing_settings: Vec<usize>,
+    settings: Vec<Option<SettingJson>>,
+    levels: Map<String, Value>,
+    decisions: Vec<StepJson<'a>>,
+}
+
+/// A run over a joint.
+#[derive(Debug, Serialize)]
+struct SettingJson {
+    accepted: usize,
+    median_delay_s: Option<f64>,
+    disagreements: usize,
+    agrees: Option<f64>,
+    lag_mean_s: Option<LagPart>,
+}
+
+/// A step over all runs; delays in samples.
+#[derive(Debug, Serialize)]
+struct StepJson<'a> {
+    trial: &'a str,
+    i: usize,
+    p: usize,
+    time_s: f64,
+    sample_period_s: f64,
+    tried: usize,
+    accepted: usize,
+    delay_samples: Value,
+    agreed: Value,
+    settled: bool,
+    delay_hangs_on: Option<Value>,
+    verdict_hangs_on: Option<Factor>,
+    apart_samples: f64,
+    delays: Vec<Option<f64>>,
+}
+
+impl<'a> SweepJson<'a> {
+    /// Collects the delays of all joints over `grid`; `failures` are messages on joints,
+    /// files and settings that failed.
+    pub fn new(
+        grid: &'a Grid,
+        tolerance_samples: f64,
+        joints: &[ReportedSweep<'a>],
+        notes: &'a [String],
+        failures: &'a [String],
+    ) -> Self {
+        let run = |(index, settings): (usize, &'a Settings)| {
+            let combinations = grid.combinations().iter().filter(|one| one.run == index).count();
+            RunJson { combinations, settings }
+        };
+        Self {
+            schema: "tauscope/sweep/1",
+            version: env!("CARGO_PKG_VERSION"),
+            tolerance_samples,
+            combinations: grid.combinations().len(),
+            settings: grid.runs().iter().enumerate().map(run).collect(),
+            joints: joints.iter().map(|joint| JointJson::new(grid, joint)).collect(),
+            notes,
+            failures,
+        }
+    }
+}
+
+impl<'a> JointJson<'a> {
+    fn new(grid: &Grid, reported: &ReportedSweep<'a>) -> Self {
+        let sweep = reported.sweep;
+        let hanging = |factor: Factor| {
+            let on = |step: &&SweptStep| {
+                step.delay_hangs_on.as_ref().is_some_and(|hanging| hanging.factor == factor)
+            };
+            (id(factor), sweep.steps.iter().filter(on).count().into())
+        };
+        let agreeing = reported.agreeing().into_iter().enumerate();
+        let levels = Factor::ALL.into_iter().zip(&sweep.levels);
+        let levels = levels.map(|(factor, levels)| (id(factor), levels_json(grid, factor, levels)));
+        Self {
+            joint: &reported.joint.name,
+            steps: sweep.steps.len(),
+            accepted_by_any: sweep.judged().count(),
+            settled: sweep.judged().filter(|step| step.is_settled()).count(),
+            hanging_on: Factor::ALL.into_iter().map(hanging).collect(),
+            agreeing_settings: agreeing.filter_map(|(n, agrees)| agrees.then_some(n)).collect(),
+            settings: sweep.runs.iter().map(|run| run.as_ref().map(SettingJson::new)).collect(),
+            levels: levels.collect(),
+            decisions: sweep.steps.iter().map(|step| StepJson::new(grid, step)).collect(),
+        }
+    }
+}
+
+/// The name of a factor as a key.
+fn id(factor: Factor) -> String {
+    let id = match factor {
+        Factor::Method => "method",
+        Factor::Passband => "passband",
+        Factor::Alpha => "alpha",
+        Factor::Beta => "beta",
+    };
+    id.to_owned()
+}
+
+fn levels_json(grid: &Grid, factor: Factor, levels: &[LevelSummary]) -> Value {
+    let one = |(level, summary): (usize, &LevelSummary)| {
+        json!({
+            "value": value(grid, factor, level),
+            "accepted": summary.accepted,
+            "median_delay_s": summary.median_s,
+            "shift_samples": summary.shift_samples,
+            "disagrees": summary.disagrees,
+        })
+    };
+    levels.iter().enumerate().map(one).collect()
+}
+
+impl SettingJson {
+    fn new(run: &RunSummary) -> Self {
+        let lag = run.lag.as_ref().filter(|lag| lag.order() > 0);
+        Self {
+            accepted: run.accepted,
+            median_delay_s: run.median_s,
+            disagreements: run.disagreements,
+            agrees: run.agrees,
+            lag_mean_s: lag.map(crate::delay::Lag::mean_s),
+        }
+    }
+}
+
+impl<'a> StepJson<'a> {
+    fn new(grid: &Grid, step: &'a SweptStep) -> Self {
+        Self {
+            trial: &step.trial,
+            i: step.number,
+            p: step.sample,
+            time_s: step.time_s,
+            sample_period_s: step.period_s,
+            tried: step.tried,
+            accepted: step.accepted,
+            delay_samples: json!(step.spread),
+            agreed: json!(step.agreement),
+            settled: step.is_settled(),
+            delay_hangs_on: step.delay_hangs_on.as_ref().map(|found| hanging_json(grid, found)),
+            verdict_hangs_on: step.verdict_hangs_on,
+            apart_samples: step.apart,
+            delays: step.told.iter().map(|told| told.map(|told| told.delay)).collect(),
+        }
+    }
+}
+
+fn hanging_json(grid: &Grid, found: &Hanging) -> Value {
+    let level = |(level, told): (usize, &Option<(f64, f64)>)| {
+        json!({
+            "value": value(grid, found.factor, level),
+            "median_delay": told.map(|told| told.0),
+            "agree": told.map(|told| told.1),
+        })
+    };
+    let levels: Vec<Value> = found.levels.iter().enumerate().map(level).collect();
+    json!({ "setting": id(found.factor), "gap_samples": found.gap, "levels": levels })
+}

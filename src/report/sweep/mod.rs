@@ -1,0 +1,56 @@
+//! How delays move with the settings, as text and JSON.
+
+mod json;
+mod sets;
+mod text;
+
+pub use json::SweepJson;
+pub use text::{StepsShown, sweep_text};
+
+use crate::delay::sweep::{Factor, Grid, JointSweep};
+use crate::experiment::Joint;
+
+/// Part of the steps, of those that most settings agree on, on which a setting must agree
+/// to be named among those that do.
+const AGREES: f64 = 0.9;
+
+/// A joint as it was measured, and its delays over all settings.
+#[derive(Clone, Copy, Debug)]
+pub struct ReportedSweep<'a> {
+    /// What was measured.
+    pub joint: &'a Joint,
+    /// What the settings make of it.
+    pub sweep: &'a JointSweep,
+}
+
+impl ReportedSweep<'_> {
+    /// For each run whether it agrees with most of the others on nine steps of ten.
+    fn agreeing(&self) -> Vec<bool> {
+        let runs = self.sweep.runs.iter();
+        runs.map(|run| run.as_ref().and_then(|run| run.agrees) >= Some(AGREES)).collect()
+    }
+}
+
+/// A value of a setting as an option takes it.
+fn value(grid: &Grid, factor: Factor, level: usize) -> String {
+    let found = match factor {
+        Factor::Method => grid.bases().get(level).map(|base| base.settings.method.to_string()),
+        Factor::Passband => grid.passbands().get(level).map(|low_pass| {
+            low_pass.map_or_else(|| "none".to_owned(), |low_pass| low_pass.cutoff_hz.to_string())
+        }),
+        Factor::Alpha => grid.alphas().get(level).map(ToString::to_string),
+        Factor::Beta => grid.betas().get(level).map(ToString::to_string),
+    };
+    found.unwrap_or_default()
+}
+
+/// A value of a setting in words.
+fn level_text(grid: &Grid, factor: Factor, level: usize) -> String {
+    let value = value(grid, factor, level);
+    match (factor, value.as_str()) {
+        (Factor::Method, _) => value,
+        (Factor::Passband, "none") => "no low-pass".to_owned(),
+        (Factor::Passband, _) => format!("{value} Hz"),
+        (Factor::Alpha | Factor::Beta, _) => format!("{factor} {value}"),
+    }
+}

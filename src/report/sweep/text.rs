@@ -1,0 +1,272 @@
+//! What a person wants to know of a sweep: a sentence for each joint, what each value of a
+//! setting does, and the steps to look at.
+
+use comfy_table::{Cell, CellAlignment, ContentArrangement, Table, presets};
+
+use super::sets::clauses;
+use super::{ReportedSweep, level_text};
+use crate::delay::sweep::{Factor, Grid, Hanging, LevelSummary, SweptStep};
+use crate::report::number::{percent, rounded};
+use crate::report::words::filled;
+
+/// Clauses of the settings that agree that are said; the JSON has all.
+const CLAUSES: usize = 3;
+
+/// How many steps that hang on a setting are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepsShown {
+    /// Those that hang on it most: ten, three of a joint.
+    Worst,
+    /// All of them.
+    All,
+}
+
+/// The text of `sweep`.
+pub fn sweep_text(
+    grid: &Grid,
+    tolerance: f64,
+    joints: &[ReportedSweep<'_>],
+    shown: StepsShown,
+) -> String {
+    let paragraphs: Vec<String> = joints.iter().map(|joint| paragraph(grid, joint)).collect();
+    let note = format!(
+        "{} combinations of settings. Delays agree when they differ by {} samples at most, \
+         beside what the distance of candidates (β) or their own intervals allow.",
+        grid.combinations().len(),
+        rounded(tolerance)
+    );
+    let of_values = "Median delay with each value of a setting, and the part of its delays that \
+                     differ from what most settings say:";
+    [
+        paragraphs.join("\n"),
+        format!("{}\n{}", filled(of_values), levels_table(grid, joints)),
+        steps_part(grid, joints, shown),
+        filled(&note),
+    ]
+    .join("\n\n")
+        + "\n"
+}
+
+/// A joint in sentences.
+fn paragraph(grid: &Grid, reported: &ReportedSweep<'_>) -> String {
+    let name = &reported.joint.name;
+    let judged = reported.sweep.judged().count();
+    if judged == 0 {
+        return filled(&format!("{name}: no step is accepted with any of the settings."));
+    }
+    let settled = reported.sweep.judged().filter(|step| step.is_settled()).count();
+    let mut sentences = vec![match judged - settled {
+        0 => format!("{name}: all {judged} delays are the same whatever the settings."),
+        _ => format!(
+            "{name}: {settled} of {judged} delays are the same whatever the settings. {}.",
+            on_what(reported)
+        ),
+    }];
+    if settled < judged {
+        sentences.push(who_agrees(grid, reported));
+    }
+    sentences.extend(lag_sentence(grid, reported));
+    filled(&sentences.join(" "))
+}
+
+/// On which settings how many delays hang.
+fn on_what(reported: &ReportedSweep<'_>) -> String {
+    let hanging = reported.sweep.hanging();
+    let (moved, told_by_some): (Vec<_>, Vec<_>) =
+        hanging.into_iter().partition(|step| step.disagreeing() > 0);
+    let on = |factor: Option<Factor>| {
+        let own = |step: &&&SweptStep| step.delay_hangs_on.as_ref().map(|on| on.factor) == factor;
+        moved.iter().filter(own).count()
+    };
+    let known = Factor::ALL.map(|factor| (on(Some(factor)), named(factor)));
+    let mut parts: Vec<_> = known.into_iter().collect();
+    parts.push((on(None), "several settings at once".to_owned()));
+    parts.sort_by_key(|(count, _)| std::cmp::Reverse(*count));
+    parts.retain(|(count, _)| *count > 0);
+    let part = |(place, (count, what)): (usize, &(usize, String))| match (place, count) {
+        (0, 1) => format!("1 hangs on {what}"),
+        (0, _) => format!("{count} hang on {what}"),
+        _ => format!("{count} on {what}"),
+    };
+    let mut parts: Vec<String> = parts.iter().enumerate().map(part).collect();
+    match told_by_some.len() {
+        0 => {}
+        1 => parts.push("1 is accepted by some settings only".to_owned()),
+        count => parts.push(format!("{count} are accepted by some settings only")),
+    }
+    parts.join(", ")
+}
+
+fn named(factor: Factor) -> String {
+    match factor {
+        Factor::Method | Factor::Passband => format!("the {factor}"),
+        Factor::Alpha | Factor::Beta => factor.to_string(),
+    }
+}
+
+/// The settings that agree with each other.
+fn who_agrees(grid: &Grid, reported: &ReportedSweep<'_>) -> String {
+    let found = clauses(grid, &reported.agreeing());
+    let total: usize = found.iter().map(|clause| clause.combinations).sum();
+    if total == 0 {
+        return "No setting agrees with most others on nine steps of ten.".to_owned();
+    }
+    if total == grid.combinations().len() {
+        return "All settings agree on nine steps of ten.".to_owned();
+    }
+    let said: Vec<_> = found.iter().take(CLAUSES).collect();
+    let left = total - said.iter().map(|clause| clause.combinations).sum::<usize>();
+    let mut said: Vec<String> = said.iter().map(|clause| clause.words.join(", ")).collect();
+    if left > 0 {
+        said.push(format!("{left} more combinations"));
+    }
+    format!("On nine steps of ten these agree: {}.", said.join("; "))
+}
+
+/// Where a lag was found that other methods take for delay.
+fn lag_sentence(grid: &Grid, reported: &ReportedSweep<'_>) -> Option<String> {
+    let of_run = |(index, run): (usize, &Option<crate::delay::sweep::RunSummary>)| {
+        let lag = run.as_ref()?.lag.as_ref().filter(|lag| lag.order() > 0)?;
+        let settings = grid.runs().get(index)?;
+        Some((settings.low_pass, lag.mean_s().value))
+    };
+    let mut lags: Vec<_> = reported.sweep.runs.iter().enumerate().filter_map(of_run).collect();
+    // A low-pass looks like a lag; what was found without it is told first.
+    lags.sort_by_key(|(low_pass, _)| low_pass.is_some());
+    let (low_pass, seconds) = lags.first()?;
+    let others = grid.bases().len() > 1 && low_pass.is_none();
+    others.then(|| {
+        format!(
+            "`lag-aware` finds a lag of {} s, which the other methods take for delay: that \
+             they agree does not make them right.",
+            rounded(*seconds)
+        )
+    })
+}
+
+/// What each value of a setting does to each joint.
+fn levels_table(grid: &Grid, joints: &[ReportedSweep<'_>]) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_BORDERS_ONLY);
+    table.set_content_arrangement(ContentArrangement::Disabled);
+    let names = joints.iter().map(|joint| joint.joint.name.clone());
+    table.set_header(std::iter::once("setting".to_owned()).chain(names));
+    for (place, factor) in Factor::ALL.into_iter().enumerate() {
+        let varied = grid.levels(factor) > 1;
+        for level in (0..grid.levels(factor)).filter(|_| varied) {
+            let of_joint = |joint: &ReportedSweep<'_>| {
+                let levels = joint.sweep.levels.get(place);
+                let summary = levels.and_then(|levels| levels.get(level));
+                summary.map_or_else(|| "-".to_owned(), level_cell)
+            };
+            let cells = joints.iter().map(of_joint);
+            let cells = cells.map(|cell| Cell::new(cell).set_alignment(CellAlignment::Right));
+            let name = Cell::new(level_text(grid, factor, level));
+            table.add_row(std::iter::once(name).chain(cells));
+        }
+    }
+    table.to_string()
+}
+
+/// The median delay, and the part of delays that are not what most say.
+fn level_cell(summary: &LevelSummary) -> String {
+    match (summary.median_s, summary.disagrees) {
+        (Some(seconds), Some(part)) => format!("{seconds:.3} s {:>5}", percent(part)),
+        _ => "-".to_owned(),
+    }
+}
+
+/// The steps that hang on a setting, worst first.
+fn steps_part(grid: &Grid, joints: &[ReportedSweep<'_>], shown: StepsShown) -> String {
+    /// Steps that are shown where not all are asked for, and how many of one joint: where
+    /// all its steps hang on the method the first ones tell it.
+    const WORST: [usize; 2] = [10, 3];
+    let all: usize = joints.iter().map(|joint| joint.sweep.hanging().len()).sum();
+    let [most, of_one] = if shown == StepsShown::All { [all; 2] } else { WORST };
+    let mut steps: Vec<(&str, &SweptStep)> = Vec::new();
+    for ReportedSweep { joint, sweep } in joints {
+        let worst = sweep.hanging().into_iter().take(of_one);
+        steps.extend(worst.map(|step| (joint.name.as_str(), step)));
+    }
+    // As in each joint; the sort is stable, so that joints keep their order.
+    steps.sort_by(|(_, a), (_, b)| b.apart.total_cmp(&a.apart));
+    if all == 0 {
+        return "No step hangs on a setting.".to_owned();
+    }
+    steps.truncate(most);
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_BORDERS_ONLY);
+    table.set_content_arrangement(ContentArrangement::Disabled);
+    table.set_header(["look at", "trial", "step", "at", "most say", "agree", "range", "hangs on"]);
+    for (name, step) in &steps {
+        table.add_row(step_cells(grid, name, step));
+    }
+    for right in 2..6 {
+        if let Some(column) = table.column_mut(right) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    let more = match all - steps.len() {
+        0 => String::new(),
+        more => format!("\n{more} more steps hang on a setting: `--steps` shows all."),
+    };
+    format!("{table}{more}")
+}
+
+fn step_cells(grid: &Grid, name: &str, step: &SweptStep) -> [String; 8] {
+    let seconds = |samples: f64| format!("{:.3} s", samples * step.period_s);
+    let dash = || "-".to_owned();
+    let agree = |part: usize| percent(part as f64 / step.tried.max(1) as f64);
+    [
+        name.to_owned(),
+        step.trial.clone(),
+        step.number.to_string(),
+        format!("{:.2} s", step.time_s),
+        step.agreement.map_or_else(dash, |agreed| seconds(agreed.delay)),
+        step.agreement.map_or_else(dash, |agreed| agree(agreed.combinations)),
+        step.spread.map_or_else(dash, |all| {
+            format!("{:.3} … {}", all.min * step.period_s, seconds(all.max))
+        }),
+        hangs_on(grid, step),
+    ]
+}
+
+/// On what a step hangs, and what the odd values of that setting say.
+fn hangs_on(grid: &Grid, step: &SweptStep) -> String {
+    let delay = step.delay_hangs_on.as_ref().map(|found| odd_levels(grid, found, step.period_s));
+    let accepted = percent(step.accepted as f64 / step.tried.max(1) as f64);
+    let verdict = step.verdict_hangs_on.map(|factor| format!("{factor}, {accepted} accept it"));
+    let several = (step.disagreeing() > 0 && delay.is_none()).then(|| "several at once".to_owned());
+    [delay, several, verdict].into_iter().flatten().collect::<Vec<_>>().join("; ")
+}
+
+/// The setting, with those of its values that mostly disagree, or the one that most does.
+fn odd_levels(grid: &Grid, found: &Hanging, period_s: f64) -> String {
+    /// Values that are shown.
+    const SHOWN: usize = 2;
+    let name = |level: usize| level_text(grid, found.factor, level);
+    let told: Vec<(usize, f64, f64)> =
+        found.levels.iter().enumerate().filter_map(numbered).collect();
+    let odd = told.iter().filter(|(_, _, agree)| *agree < 0.5);
+    let odd =
+        odd.map(|(level, delay, _)| format!("{} says {:.3} s", name(*level), delay * period_s));
+    let mut odd: Vec<String> = odd.collect();
+    if odd.is_empty() {
+        let most = told.iter().min_by(|a, b| a.2.total_cmp(&b.2));
+        odd.extend(most.map(|(level, ..)| format!("{} at times", name(*level))));
+    }
+    if odd.len() > SHOWN {
+        odd.truncate(SHOWN);
+        odd.push("…".to_owned());
+    }
+    let odd = odd.join(", ");
+    match found.factor {
+        Factor::Method | Factor::Passband => format!("{}: {odd}", found.factor),
+        Factor::Alpha | Factor::Beta => odd,
+    }
+}
+
+/// A value's index, its delay and how much of it agrees.
+fn numbered((level, told): (usize, &Option<(f64, f64)>)) -> Option<(usize, f64, f64)> {
+    told.map(|(delay, agree)| (level, delay, agree))
+}
