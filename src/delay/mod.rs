@@ -12,6 +12,8 @@
 //! - [`estimate`]: all of it, in the order of the steps
 //! - [`FineDelay`]: a delay between samples, with its interval
 //! - [`Lag`]: what all steps of a joint follow their dead times with
+//! - [`broken_line`], [`broken_regression`], [`stroke`]: one break in samples, in points, and
+//!   both ends of a stroke
 //! - [`Remedy`], [`RunnerUp`]: how near a verdict was
 //! - [`step_delays`]: the delays alone, by the best method
 //! - [`DelayProfile`]: the delay of every sample
@@ -37,11 +39,13 @@ mod normal_equations;
 mod profile;
 mod reaction;
 mod response;
+mod scattered;
 mod search;
 mod segment;
 mod step_delay;
 mod steps;
 mod stretch;
+mod stroke;
 mod two_line;
 
 pub use against::{AgainstState, Correlation, Direction, StepState};
@@ -56,7 +60,9 @@ pub use margin::{Remedy, RunnerUp};
 pub use method::Method;
 pub use profile::{DelayProfile, Interpolation};
 pub use response::{Lag, LagPart};
+pub use scattered::{BrokenRegression, broken_regression};
 pub use search::{Candidate, Candidates};
 pub use segment::Segment;
 pub use step_delay::{StepDelay, step_delays};
 pub use steps::{InputStep, input_steps};
+pub use stroke::{Stroke, stroke};

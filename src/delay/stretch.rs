@@ -151,6 +151,8 @@ impl Stretch<'_> {
         /// Samples: after a step as small as this the next one does not matter, since each
         /// is about the square of the one before.
         const FINE: f64 = 0.02;
+        /// Samples that no interval shows.
+        const THERE: f64 = 0.001;
         let mut best = self.at(shape, noise);
         let mut factor = 1.0;
         let mut moves = best.moves(&[0.0; MOST]);
@@ -161,6 +163,9 @@ impl Stretch<'_> {
                 .collect();
             let largest = self.places.iter().zip(&places).map(|(a, b)| (a - b).abs());
             let largest = largest.fold(0.0, f64::max);
+            if largest < THERE {
+                break;
+            }
             let there = Self { values: self.values, places };
             let found = there.at(shape, noise);
             if found.sse > best.sse {
