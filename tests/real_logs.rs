@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use serde::Deserialize;
-use tauscope::delay::{broken_regression, stroke};
+use tauscope::delay::{broken_regression, delay_scan, stroke};
 
 #[derive(Deserialize)]
 struct Row {
@@ -189,4 +189,25 @@ fn the_break_of_a_stagnant_layer_is_that_of_the_literature() {
         assert!((value - expected).abs() <= rounding, "{value} {expected}");
     }
     assert_eq!(found.freedom, 24);
+}
+
+/// The whole delay that explains a table's output best, from its columns.
+fn scanned(log: &Path, input: usize, output: usize) -> usize {
+    let mut table = csv::Reader::from_path(log).unwrap();
+    let rows: Vec<Vec<f64>> = table.deserialize().map(Result::unwrap).collect();
+    let column = |index: usize| rows.iter().map(|row| row[index]).collect::<Vec<_>>();
+    let errors = delay_scan(&column(input), &column(output), 10);
+    (0..errors.len()).min_by(|a, b| errors[*a].total_cmp(&errors[*b])).unwrap()
+}
+
+#[test]
+fn sales_follow_their_leading_indicator_after_three_months() {
+    let Some(log) = log("bj_sales_seriesM.csv") else { return };
+    assert_eq!(scanned(&log, 1, 2), 3);
+}
+
+#[test]
+fn a_gas_furnace_answers_after_three_samples() {
+    let Some(log) = log("gas_furnace_seriesJ.csv") else { return };
+    assert_eq!(scanned(&log, 1, 2), 3);
 }

@@ -247,37 +247,37 @@ impl<'a> Joint<'a> {
     pub(super) fn reconsidered(self, caution: f64) -> Self {
         let usual = self.settle(1);
         let usual = usual.of_those(&usual.plausible());
-        let usual = usual.whitened(usual.left()).agreed();
-        let all = usual.whitened(usual.left()).nearby();
+        let rivals = usual.whitened(usual.left()).rivals();
+        let noise = rivals.iter().min_by(|a, b| a.sse().total_cmp(&b.sse())).map(Self::left);
+        let noise = noise.unwrap_or_else(Noise::white);
+        let settled = rivals.iter().map(|rival| rival.whitened(noise.clone()).settle(STEPS));
+        let all: Vec<_> = settled.collect();
         let least = all.iter().map(Self::criterion).fold(f64::INFINITY, f64::min);
         let enough = least + caution * usual.samples() as f64;
         let simplest = all.into_iter().find(|joint| joint.criterion() <= enough);
         simplest.unwrap_or(usual)
     }
 
-    /// The stretches that no lag which explains most of them has trouble with, under the
-    /// best one: what one lag makes of a mistaken place is no reason to prefer it.
-    fn agreed(&self) -> Self {
+    /// The lags of each kind about as late as this one that explain most stretches, with
+    /// those that none of them has trouble with: what one lag makes of a mistaken place is no
+    /// reason to prefer it.
+    fn rivals(&self) -> Vec<Self> {
         /// Times the least squared error.
         const GOOD: f64 = 1.2;
-        let all = self.nearby();
-        let Some(least) = all.iter().map(Self::sse).min_by(f64::total_cmp) else {
-            return self.clone();
-        };
+        /// Steps that tell whether a lag is a rival.
+        const FEW: usize = 4;
+        let starts = self.shape.nearby();
+        let started = starts.into_iter().map(|starts| self.started(&starts).settle(FEW));
+        let mut rivals: Vec<_> = started.collect();
+        let least = rivals.iter().map(Self::sse).fold(f64::INFINITY, f64::min);
+        rivals.retain(|joint| joint.sse() <= GOOD * least);
         let mut kept = vec![true; self.stretches.len()];
-        for joint in all.iter().filter(|joint| joint.sse() <= GOOD * least) {
-            for (kept, plausible) in kept.iter_mut().zip(joint.plausible()) {
+        for rival in &rivals {
+            for (kept, plausible) in kept.iter_mut().zip(rival.plausible()) {
                 *kept &= plausible;
             }
         }
-        let best = all.iter().find(|joint| joint.sse() <= least);
-        best.unwrap_or(self).of_those(&kept)
-    }
-
-    /// The joint under lags of each kind that are about as late.
-    fn nearby(&self) -> Vec<Self> {
-        let starts = self.shape.nearby();
-        starts.into_iter().map(|starts| self.started(&starts).settle(STEPS)).collect()
+        rivals.iter().map(|rival| rival.of_those(&kept)).collect()
     }
 
     /// The joint under the best lag of each kind.

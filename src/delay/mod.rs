@@ -14,6 +14,7 @@
 //! - [`Lag`]: what all steps of a joint follow their dead times with
 //! - [`broken_line`], [`broken_regression`], [`stroke`]: one break in samples, in points, and
 //!   both ends of a stroke
+//! - [`delay_scan`]: one delay for a whole record
 //! - [`Remedy`], [`RunnerUp`]: how near a verdict was
 //! - [`step_delays`]: the delays alone, by the best method
 //! - [`DelayProfile`]: the delay of every sample
@@ -39,6 +40,7 @@ mod normal_equations;
 mod profile;
 mod reaction;
 mod response;
+mod scan;
 mod scattered;
 mod search;
 mod segment;
@@ -60,6 +62,7 @@ pub use margin::{Remedy, RunnerUp};
 pub use method::Method;
 pub use profile::{DelayProfile, Interpolation};
 pub use response::{Lag, LagPart};
+pub use scan::delay_scan;
 pub use scattered::{BrokenRegression, broken_regression};
 pub use search::{Candidate, Candidates};
 pub use segment::Segment;
