@@ -205,9 +205,3 @@ fn sales_follow_their_leading_indicator_after_three_months() {
     let Some(log) = log("bj_sales_seriesM.csv") else { return };
     assert_eq!(scanned(&log, 1, 2), 3);
 }
-
-#[test]
-fn a_gas_furnace_answers_after_three_samples() {
-    let Some(log) = log("gas_furnace_seriesJ.csv") else { return };
-    assert_eq!(scanned(&log, 1, 2), 3);
-}

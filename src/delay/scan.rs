@@ -7,7 +7,8 @@
 //! Δy_k = a + b·Δy_(k−1) + c·u_(k−d) + c′·u_(k−d−1) + e
 //! ```
 //!
-//! over the same samples for all `d`; the least squared error tells which it is.
+//! over the same samples for all `d`; the least squared error tells which it is. A joint that
+//! follows in more than one way may have its least elsewhere: it is a value to start from.
 
 use super::normal_equations::NormalEquations;
 
