@@ -173,6 +173,97 @@ fn odd_outputs_are_estimated_or_refused_but_nothing_panics() {
     }
 }
 
+/// What became of the moving steps of some records of 120 s, pooled; the last one of each is
+/// not over at the end.
+#[derive(Debug, Default)]
+struct Pool {
+    errors: Vec<f64>,
+    covered: usize,
+    still: usize,
+    still_accepted: usize,
+}
+
+impl Pool {
+    fn of(joint: &JointSpec, method: Method, seeds: std::ops::RangeInclusive<u64>) -> Self {
+        let mut pool = Self::default();
+        for seed in seeds {
+            let made = simulate(&PlantSpec::new(seed, 120.0, vec![joint.clone()])).unwrap();
+            let found = estimate(&made.joints[0].trials[0], &Settings::of(method)).unwrap();
+            let steps = made.truth.len() - 2;
+            for (truth, decision) in made.truth.iter().zip(&found.decisions).take(steps) {
+                let delay = decision.accepted_delay();
+                if truth.slope_change == 0.0 {
+                    pool.still += 1;
+                    pool.still_accepted += usize::from(delay.is_some());
+                } else if let (Some(delay), Some(fine)) = (delay, decision.fine) {
+                    let truth = truth.delay_samples;
+                    pool.errors.push((delay - truth).abs());
+                    pool.covered += usize::from((fine.low..=fine.high).contains(&truth));
+                }
+            }
+        }
+        pool
+    }
+
+    fn mean_error(&self) -> f64 {
+        self.errors.iter().sum::<f64>() / self.errors.len() as f64
+    }
+
+    fn coverage(&self) -> f64 {
+        self.covered as f64 / self.errors.len() as f64
+    }
+}
+
+const RINGING: Option<Ringing> = Some(Ringing { period_s: 0.4, damping: 0.25 });
+
+#[test]
+fn errors_are_small_and_intervals_hold_what_they_say() {
+    let ideal = Pool::of(&joint(), Method::Hinge, 1..=10);
+    assert!(ideal.mean_error() <= 0.1, "{}", ideal.mean_error());
+    assert!((0.92..=0.98).contains(&ideal.coverage()), "{}", ideal.coverage());
+    let plants = [
+        joint(),
+        JointSpec { lag_s: Some(0.06), ..joint() },
+        JointSpec { ringing: RINGING, ..joint() },
+    ];
+    for plant in plants {
+        let pool = Pool::of(&plant, Method::LagAware, 1..=10);
+        assert!(pool.mean_error() <= 0.15, "{plant:?}: {}", pool.mean_error());
+        assert!((0.92..=0.98).contains(&pool.coverage()), "{plant:?}: {}", pool.coverage());
+    }
+}
+
+#[test]
+fn holds_may_be_shorter_than_delay_and_lag() {
+    let short = JointSpec {
+        input: InputSpec::Levels {
+            levels: (-4..=4).map(|half| 0.5 * f64::from(half)).collect(),
+            hold_s: [0.2, 0.5],
+        },
+        delay: DelayLaw::Uniform { min: 0.05, max: 0.3 },
+        ..joint()
+    };
+    for plant in
+        [JointSpec { lag_s: Some(0.06), ..short.clone() }, JointSpec { ringing: RINGING, ..short }]
+    {
+        let pool = Pool::of(&plant, Method::LagAware, 1..=1);
+        assert!(pool.mean_error() <= 1.5, "{plant:?}: {}", pool.mean_error());
+        assert!(pool.errors.len() > 250, "{plant:?}: {}", pool.errors.len());
+    }
+}
+
+#[test]
+fn one_still_step_of_a_hundred_is_taken_for_a_reaction() {
+    let levels = vec![-1.0, -0.4, -0.2, 0.2, 0.4, 1.0];
+    let input = InputSpec::Levels { levels, hold_s: [0.9, 2.0] };
+    let dead = JointSpec { input, dead_band: Some([-0.5, 0.5]), gain: 20.0, ..joint() };
+    for plant in [JointSpec { lag_s: Some(0.06), ..dead.clone() }, dead] {
+        let pool = Pool::of(&plant, Method::LagAware, 1..=10);
+        assert!(pool.still > 300, "{}", pool.still);
+        assert!(100 * pool.still_accepted <= pool.still, "{pool:?}");
+    }
+}
+
 /// `tauscope estimate` in a folder with the log of a lagged joint.
 fn run(folder: &Path, arguments: &str) -> Output {
     let log = std::fs::File::create(folder.join("log.csv")).unwrap();

@@ -110,15 +110,15 @@ pub(super) struct Window<'a> {
 
 /// Level and ramp behind a sample, without what a line can do.
 #[derive(Clone, Copy, Debug, Default)]
-struct Piece {
-    level_y: f64,
-    ramp_y: f64,
-    level_level: f64,
-    level_ramp: f64,
-    ramp_ramp: f64,
+pub(super) struct Piece {
+    pub(super) level_y: f64,
+    pub(super) ramp_y: f64,
+    pub(super) level_level: f64,
+    pub(super) level_ramp: f64,
+    pub(super) ramp_ramp: f64,
     /// Parts of level and ramp along a constant, and along a slope.
-    level_line: [f64; 2],
-    ramp_line: [f64; 2],
+    pub(super) level_line: [f64; 2],
+    pub(super) ramp_line: [f64; 2],
 }
 
 impl Piece {
@@ -134,7 +134,7 @@ impl Piece {
     }
 
     /// The best break within the piece, 0 to 1, and what it takes away.
-    fn best(&self) -> (f64, f64) {
+    pub(super) fn best(&self) -> (f64, f64) {
         let below = self.level_y * self.level_ramp - self.ramp_y * self.level_level;
         let stationary = (self.level_y * self.ramp_ramp - self.ramp_y * self.level_ramp) / below;
         let inside = if (0.0..=1.0).contains(&stationary) { stationary } else { 0.0 };

@@ -8,10 +8,24 @@
 use std::ops::Range;
 
 use super::estimate::Settings;
+use super::free_motion::FreeMotion;
+use super::response::{Response, Shape};
 use super::steps::InputStep;
 
 /// Places of each reaction that are tried at a time.
 const TRIED: usize = 10;
+
+/// Samples of a piece in which earlier steps may still be felt, at most.
+const LONGEST_MOTION: usize = 2000;
+
+/// What the output is between two reactions.
+#[derive(Clone, Debug)]
+enum Pieces {
+    /// About a line.
+    Lines,
+    /// What is left of earlier reactions behind a lag.
+    Motions(FreeMotion),
+}
 
 /// A reaction in the chain; places are indices of the trial's samples.
 #[derive(Clone, Copy, Debug)]
@@ -47,11 +61,30 @@ impl Chain {
         chain
     }
 
-    /// Whether three of four reactions have room before the next step of the input. Some
+    /// The same reactions where they are cheapest behind a lag.
+    pub(super) fn behind(mut self, shape: &Shape, output: &[f64]) -> Self {
+        let links = self.links.iter().zip(self.links.iter().skip(2));
+        let longest = links.map(|(link, later)| later.latest - link.origin).max();
+        let longest = longest.unwrap_or(output.len()).min(LONGEST_MOTION);
+        let pieces = Pieces::Motions(FreeMotion::of(shape, longest));
+        self.place(output, lateness(output), &pieces);
+        self
+    }
+
+    /// The same with each reaction so much earlier as this lag makes it late.
+    pub(super) fn without(mut self, shape: &Shape) -> Self {
+        let late = Response::of(shape).mean;
+        for link in &mut self.links {
+            link.place = (link.place - late).max(link.earliest as f64);
+        }
+        self
+    }
+
+    /// Whether nine of ten reactions have room before the next step of the input. Some
     /// others are where nothing happened; then neighbours are known well enough at once.
     pub(super) fn in_time(&self) -> bool {
         let in_time = self.links.iter().filter(|link| link.in_time()).count();
-        4 * in_time >= 3 * self.links.len()
+        10 * in_time >= 9 * self.links.len()
     }
 
     /// The nearest link before `index` that counts.
@@ -98,13 +131,12 @@ impl Chain {
     /// At first every reaction is taken to come before the next step; where a hold is not
     /// long beside the delays that gives, it may also come later.
     fn connect(&mut self, output: &[f64]) {
-        let noise = second_difference_noise(output);
-        let late = 2.0 * noise * (output.len() as f64).ln();
+        let late = lateness(output);
         let latest: Vec<usize> = self.links.iter().map(|link| link.latest).collect();
         for link in &mut self.links {
             link.latest = link.latest.min(link.next);
         }
-        self.place(output, late);
+        self.place(output, late, &Pieces::Lines);
         let longest = self.longest_delay();
         let mut any_late = false;
         for (link, latest) in self.links.iter_mut().zip(latest) {
@@ -114,7 +146,7 @@ impl Chain {
             }
         }
         if any_late {
-            self.place(output, late);
+            self.place(output, late, &Pieces::Lines);
         }
     }
 
@@ -128,13 +160,13 @@ impl Chain {
     }
 
     /// Puts every link at its place, with the places that it may have.
-    fn place(&mut self, output: &[f64], late: f64) {
+    fn place(&mut self, output: &[f64], late: f64, pieces: &Pieces) {
         let coarse: Vec<Vec<usize>> = self.links.iter().map(Link::spread).collect();
-        let found = cheapest(output, &self.links, &coarse, late);
+        let found = cheapest(output, &self.links, &coarse, late, pieces);
         let fine = self.links.iter().zip(&coarse).zip(&found);
         let fine: Vec<Vec<usize>> =
             fine.map(|((link, tried), at)| link.about(tried, *at)).collect();
-        let found = cheapest(output, &self.links, &fine, late);
+        let found = cheapest(output, &self.links, &fine, late, pieces);
         for (link, place) in self.links.iter_mut().zip(found) {
             link.place = place as f64;
         }
@@ -177,6 +209,11 @@ fn links(samples: usize, steps: &[InputStep], settings: &Settings) -> Vec<Link> 
 fn usual_longest(mut holds: Vec<usize>) -> usize {
     holds.sort_unstable();
     holds.get(holds.len() * 9 / 10).copied().unwrap_or(0)
+}
+
+/// What a reaction after the next step of the input costs more than one before it.
+fn lateness(output: &[f64]) -> f64 {
+    2.0 * second_difference_noise(output) * (output.len() as f64).ln()
 }
 
 /// Variance of white noise that would make the second differences of `output`.
@@ -278,11 +315,33 @@ impl Sums {
     }
 }
 
-/// The cheapest chain through one of the `tried` places of each link; a reaction `late`,
-/// after the next step of the input, costs that much more.
-fn cheapest(output: &[f64], links: &[Link], tried: &[Vec<usize>], late: f64) -> Vec<usize> {
-    /// Samples between two reactions, at least.
-    const APART: usize = 2;
+impl Pieces {
+    /// The squared errors of the pieces from `start` to each of the `ends`, which ascend;
+    /// infinite where the two are too close.
+    fn errors(&self, output: &[f64], sums: &Sums, start: usize, ends: &[usize]) -> Vec<f64> {
+        /// Samples between two reactions, at least.
+        const APART: usize = 2;
+        let apart = |end: &usize| start + APART <= *end;
+        let line = |end: &usize| if apart(end) { sums.line(start, *end) } else { f64::INFINITY };
+        let Self::Motions(motion) = self else { return ends.iter().map(line).collect() };
+        let values = output.get(start..).unwrap_or_default();
+        let felt = motion.errors(values, ends.iter().map(|end| end.saturating_sub(start)));
+        let unfelt = start + LONGEST_MOTION;
+        let rest = |end: &usize| if *end > unfelt { sums.line(unfelt, *end) } else { 0.0 };
+        let errors = felt.into_iter().zip(ends);
+        errors.map(|(e, end)| if apart(end) { e + rest(end) } else { f64::INFINITY }).collect()
+    }
+}
+
+/// The cheapest chain of `pieces` through one of the `tried` places of each link; a
+/// reaction `late`, after the next step of the input, costs that much more.
+fn cheapest(
+    output: &[f64],
+    links: &[Link],
+    tried: &[Vec<usize>],
+    late: f64,
+    pieces: &Pieces,
+) -> Vec<usize> {
     let start = vec![0];
     let mut before = (&start, vec![0.0]);
     let mut ways: Vec<Vec<usize>> = Vec::with_capacity(links.len());
@@ -292,17 +351,19 @@ fn cheapest(output: &[f64], links: &[Link], tried: &[Vec<usize>], late: f64) -> 
         let (from, costs) = (before.0, &before.1);
         let first = from.first().copied().unwrap_or(0);
         let sums = Sums::of(output, first..places.last().copied().unwrap_or(first).max(first));
-        let step = |place: usize| {
-            let cost = |(index, (start, cost)): (usize, (&usize, &f64))| {
-                let apart = start + APART <= place;
-                let line = if apart { sums.line(*start, place) } else { f64::INFINITY };
-                (cost + line, index)
-            };
-            let ways = from.iter().zip(costs).enumerate().map(cost);
-            let (cost, way) = ways.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0));
-            (if place > next { cost + late } else { cost }, way)
-        };
-        let (mut costs, way): (Vec<f64>, Vec<usize>) = places.iter().map(|p| step(*p)).unzip();
+        let mut best = vec![(f64::INFINITY, 0); places.len()];
+        for (way, (start, cost)) in from.iter().zip(costs).enumerate() {
+            let errors = pieces.errors(output, &sums, *start, places);
+            for (best, error) in best.iter_mut().zip(errors) {
+                if cost + error < best.0 {
+                    *best = (cost + error, way);
+                }
+            }
+        }
+        let late = |place: &usize| if *place > next { late } else { 0.0 };
+        let late = places.iter().map(late);
+        let (mut costs, way): (Vec<f64>, Vec<usize>) =
+            best.into_iter().zip(late).map(|((cost, way), late)| (cost + late, way)).unzip();
         // Steps too close for any chain: go on from here as if they had none.
         if costs.iter().all(|cost| cost.is_infinite()) {
             costs.fill(0.0);

@@ -26,6 +26,14 @@ const TOGETHER: usize = 4;
 /// Samples that are enough to tell what kind of lag it is, and to know it well.
 const ENOUGH: [usize; 2] = [6_000, 20_000];
 
+/// Times that the lag is looked for where holds are short.
+const ROUNDS: usize = 4;
+
+/// The first of them, in which a simpler lag is taken although its squared error is larger by
+/// this part.
+const CAUTIOUS: usize = 2;
+const CAUTION: f64 = 0.02;
+
 /// Times that reactions are searched where holds are short.
 const PASSES: usize = 3;
 
@@ -56,16 +64,31 @@ pub(super) fn lag_of(trials: &[Prepared<'_>], settings: &Settings) -> Lag {
         return Lag::new(period, found.shape, found.covariance());
     }
     // With the dead times known better, stretches reach as far as they may.
-    let known: Vec<_> = chains
-        .into_iter()
-        .map(|(output, chain)| {
-            Reactions::of(output, chain, found.shape, found.noise.clone()).settled(1)
-        })
-        .collect();
-    let all = known.iter().flat_map(|trial| stretches(trial.output, &trial.chain, Places::Known));
-    let again = Joint::new(some(all.collect(), ENOUGH[1])).under(found.shape, found.noise.clone());
-    let settled = if again.stretches.is_empty() { found } else { again.settled_again() };
-    Lag::new(period, settled.shape, settled.covariance())
+    for round in 0..if clear { 1 } else { ROUNDS } {
+        let known = known(&chains, &found);
+        let all = known.iter().flat_map(|it| stretches(it.output, &it.chain, Places::Known));
+        let again = Joint::new(some(all.collect(), ENOUGH[1]));
+        if again.stretches.is_empty() {
+            break;
+        }
+        let again = again.under(found.shape, found.noise.clone());
+        // Places suit the lag behind which they were found: at first only what is plain counts.
+        let caution = if round < CAUTIOUS { CAUTION } else { 0.0 };
+        found = if clear { again.settled_again() } else { again.reconsidered(caution) };
+        if found.shape.order() == 0 {
+            break;
+        }
+    }
+    Lag::new(period, found.shape, found.covariance())
+}
+
+/// The reactions of each trial behind the lag that was found.
+fn known<'a>(chains: &[(&'a [f64], Chain)], found: &Joint<'_>) -> Vec<Reactions<'a>> {
+    let known = |(output, chain): &(&'a [f64], Chain)| {
+        let chain = behind(chain, output, &found.shape);
+        Reactions::of(output, chain, found.shape, found.noise.clone()).settled(1)
+    };
+    chains.iter().map(known).collect()
 }
 
 /// Where broken lines put the reactions. What they leave of a lag is no noise, so its
@@ -74,6 +97,13 @@ fn rough(output: &[f64], steps: &[InputStep], settings: &Settings) -> Chain {
     let (mut chain, _) = hinge::located(output, steps, settings, 1);
     chain.links.iter_mut().for_each(|link| link.counts = true);
     chain
+}
+
+/// About where reactions behind a lag begin, given where broken lines put them. Where holds
+/// are short, what is left of earlier reactions hides which one belongs to which step.
+fn behind(rough: &Chain, output: &[f64], shape: &Shape) -> Chain {
+    let chain = rough.clone();
+    if chain.in_time() { chain.without(shape) } else { chain.behind(shape, output) }
 }
 
 /// How well the places of a chain are known.
@@ -88,12 +118,16 @@ enum Places {
 fn stretches<'a>(output: &'a [f64], chain: &Chain, places: Places) -> Vec<Stretch<'a>> {
     /// Samples that a reaction needs before the next one may be.
     const ROOM: f64 = 10.0;
+    /// Samples by which a reaction of another step may be later than it was found, behind a
+    /// lag that is not known yet.
+    const GUARD: usize = 4;
     let rough = places == Places::Rough;
+    let guard = if rough || chain.in_time() { 0 } else { GUARD };
     let counting: Vec<_> = chain.links.iter().filter(|link| rough || link.counts).collect();
     let groups = counting.chunks(TOGETHER).enumerate();
     let stretch = |(index, group): (usize, &[&super::chain::Link])| {
         let before = (index * TOGETHER).checked_sub(1).and_then(|i| counting.get(i));
-        let start = before.map_or(0, |before| ceil(before.place));
+        let start = before.map_or(0, |before| ceil(before.place) + guard);
         let next = counting.get((index + 1) * TOGETHER);
         let last = group.last()?.place;
         let end = match next {
@@ -125,7 +159,7 @@ pub(super) fn decide_all(
     settings: &Settings,
 ) -> Vec<Decision> {
     let shape = lag.shape_at(period);
-    let chain = rough(output, steps, settings);
+    let chain = behind(&rough(output, steps, settings), output, &shape);
     let trial = Reactions::of(output, chain, shape, Noise::white()).settled(2);
     let decide = |(index, step): (usize, &InputStep)| {
         let place = Place { steps, index, step: *step, output, settings };
@@ -152,13 +186,9 @@ struct Found<'a> {
 }
 
 impl<'a> Reactions<'a> {
-    /// The reactions behind this lag, from where broken lines put them.
-    fn of(output: &'a [f64], mut chain: Chain, shape: Shape, noise: Noise) -> Self {
-        let response = Response::of(&shape);
-        for link in &mut chain.links {
-            link.place = (link.place - response.mean).max(link.earliest as f64);
-        }
-        Self { output, chain, shape, response, noise }
+    /// The reactions behind this lag, from about where they are.
+    fn of(output: &'a [f64], chain: Chain, shape: Shape, noise: Noise) -> Self {
+        Self { output, chain, shape, response: Response::of(&shape), noise }
     }
 
     /// The same after all reactions were searched between neighbours of the time before,
@@ -174,19 +204,23 @@ impl<'a> Reactions<'a> {
 
     /// Searches all reactions; tells the noise about them.
     fn settle(&mut self) -> Noise {
+        /// Reactions that are enough to know the noise.
+        const ENOUGH: usize = 100;
         let doubtful = if self.chain.in_time() { DOUBTFUL } else { DOUBTFUL_IF_SHORT };
-        let (mut residuals, mut parameters) = (Vec::new(), 0);
+        let every = self.chain.links.len().div_ceil(ENOUGH).max(1);
+        let mut leftovers = Vec::new();
         for index in 0..self.chain.links.len() {
             let Some(found) = self.find(index) else { continue };
-            residuals.push(found.stretch.residuals(&self.shape, &found.fit.parts));
-            parameters = parameters.max(found.fit.parameters());
+            if index % every == 0 {
+                leftovers.push(found.stretch.leftover(&self.shape));
+            }
             let p_value = self.chance(index, &found);
             if let Some(link) = self.chain.links.get_mut(index) {
                 link.place = found.place();
                 link.counts = p_value <= doubtful;
             }
         }
-        Noise::of(&residuals, parameters)
+        Noise::left_by(&leftovers)
     }
 
     /// The reaction of step `index`, with its neighbours where they are near.
@@ -229,7 +263,8 @@ impl<'a> Reactions<'a> {
         let start = range.start as f64;
         let low = place(self.chain.before(index)).unwrap_or(0.0).max(link.earliest as f64);
         let high = place(self.chain.after(index)).unwrap_or(f64::INFINITY) - 2.0;
-        let high = high.min(link.last_place() as f64).min(range.end as f64 - 2.0);
+        let last = if self.chain.in_time() { link.last_place() } else { link.latest };
+        let high = high.min(last as f64).min(range.end as f64 - 2.0);
         (low - start, (high - start).max(low - start))
     }
 

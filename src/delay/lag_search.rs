@@ -10,6 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::noise::Noise;
 use super::response::{MOST, Poles, Response, Shape};
 use super::stretch::{Linearised, Stretch};
+use crate::statistics::{median, robust_scale};
 
 /// Squared errors below this part of the output's are rounding.
 const ROUNDING: f64 = 1e-14;
@@ -60,18 +61,38 @@ impl<'a> Joint<'a> {
     fn without_strangers(&self) -> Self {
         /// Times the median of the squared error per sample.
         const STRANGE: f64 = 6.0;
+        let levels = self.levels();
+        let most = STRANGE * median(&levels).unwrap_or(0.0);
+        self.of_those(&levels.iter().map(|level| *level <= most).collect::<Vec<_>>())
+    }
+
+    /// Which stretches have an error within what chance makes of that of most: where holds
+    /// are short, reactions are easily mistaken for others.
+    fn plausible(&self) -> Vec<bool> {
+        /// Standard deviations.
+        const CHANCE: f64 = 3.0;
+        let levels = self.levels();
+        let middle = median(&levels).unwrap_or(0.0);
+        let about: Vec<f64> = levels.iter().map(|level| level - middle).collect();
+        let most = middle + CHANCE * robust_scale(&about);
+        levels.iter().map(|level| *level <= most).collect()
+    }
+
+    /// The squared error of each stretch per degree of freedom.
+    fn levels(&self) -> Vec<f64> {
         let pairs = self.stretches.iter().zip(&self.found);
         let level = |(stretch, found): (&Stretch<'_>, &Linearised)| {
-            found.sse / stretch.values.len().max(1) as f64
+            found.sse / stretch.values.len().saturating_sub(found.parameters()).max(1) as f64
         };
-        let levels: Vec<f64> = pairs.map(level).collect();
-        let mut sorted = levels.clone();
-        sorted.sort_by(f64::total_cmp);
-        let median = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+        pairs.map(level).collect()
+    }
+
+    /// The joint with those stretches alone.
+    fn of_those(&self, kept: &[bool]) -> Self {
         let mut joint = self.clone();
-        let mut keep = levels.iter().map(|level| *level <= STRANGE * median);
+        let mut keep = kept.iter().copied();
         joint.stretches.retain(|_| keep.next().unwrap_or(true));
-        let mut keep = levels.iter().map(|level| *level <= STRANGE * median);
+        let mut keep = kept.iter().copied();
         joint.found.retain(|_| keep.next().unwrap_or(true));
         joint
     }
@@ -106,8 +127,13 @@ impl<'a> Joint<'a> {
 
     /// The least squared error near a shape that is almost right, without what is strange.
     pub(super) fn settled_again(self) -> Self {
+        self.settle(1).without_strangers().refined()
+    }
+
+    /// The least squared error near a shape that is almost right.
+    fn refined(self) -> Self {
         const STEPS: usize = 4;
-        let settled = self.settle(1).without_strangers().settle(STEPS);
+        let settled = self.settle(STEPS);
         let noise = settled.left();
         settled.whitened(noise).settle(STEPS)
     }
@@ -193,10 +219,8 @@ impl<'a> Joint<'a> {
 
     /// The noise that the fits leave.
     pub(super) fn left(&self) -> Noise {
-        let pairs = self.stretches.iter().zip(&self.found);
-        let residuals = pairs.map(|(stretch, found)| stretch.residuals(&self.shape, &found.parts));
-        let parameters = self.found.iter().map(Linearised::parameters).max().unwrap_or(0);
-        Noise::of(&residuals.collect::<Vec<_>>(), parameters)
+        let leftovers = some(&self.stretches).map(|stretch| stretch.leftover(&self.shape));
+        Noise::left_by(&leftovers.collect::<Vec<_>>())
     }
 
     /// The best lag: no poles, a real one, a pair, or all three.
@@ -216,6 +240,44 @@ impl<'a> Joint<'a> {
         };
         let best = all.into_iter().min_by(|a, b| a.criterion().total_cmp(&b.criterion()));
         best.unwrap_or(self)
+    }
+
+    /// The best lag of any kind from places that are about right behind the one at hand; a
+    /// simpler one if it is worse by no more than the part `caution` of a squared error.
+    pub(super) fn reconsidered(self, caution: f64) -> Self {
+        let usual = self.settle(1);
+        let usual = usual.of_those(&usual.plausible());
+        let rivals = usual.whitened(usual.left()).rivals();
+        let noise = rivals.iter().min_by(|a, b| a.sse().total_cmp(&b.sse())).map(Self::left);
+        let noise = noise.unwrap_or_else(Noise::white);
+        let settled = rivals.iter().map(|rival| rival.whitened(noise.clone()).settle(STEPS));
+        let all: Vec<_> = settled.collect();
+        let least = all.iter().map(Self::criterion).fold(f64::INFINITY, f64::min);
+        let enough = least + caution * usual.samples() as f64;
+        let simplest = all.into_iter().find(|joint| joint.criterion() <= enough);
+        simplest.unwrap_or(usual)
+    }
+
+    /// The lags of each kind about as late as this one that explain most stretches, with
+    /// those that none of them has trouble with: what one lag makes of a mistaken place is no
+    /// reason to prefer it.
+    fn rivals(&self) -> Vec<Self> {
+        /// Times the least squared error.
+        const GOOD: f64 = 1.2;
+        /// Steps that tell whether a lag is a rival.
+        const FEW: usize = 4;
+        let starts = self.shape.nearby();
+        let started = starts.into_iter().map(|starts| self.started(&starts).settle(FEW));
+        let mut rivals: Vec<_> = started.collect();
+        let least = rivals.iter().map(Self::sse).fold(f64::INFINITY, f64::min);
+        rivals.retain(|joint| joint.sse() <= GOOD * least);
+        let mut kept = vec![true; self.stretches.len()];
+        for rival in &rivals {
+            for (kept, plausible) in kept.iter_mut().zip(rival.plausible()) {
+                *kept &= plausible;
+            }
+        }
+        rivals.iter().map(|rival| rival.of_those(&kept)).collect()
     }
 
     /// The joint under the best lag of each kind.
@@ -303,6 +365,12 @@ impl Information {
             |i: usize, j: usize| if i < order && j < order { *inverse.index((i, j)) } else { 0.0 };
         std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
     }
+}
+
+/// Enough of the stretches to know the noise.
+fn some<'a, 'b>(all: &'b [Stretch<'a>]) -> impl Iterator<Item = &'b Stretch<'a>> {
+    const ENOUGH: usize = 50;
+    all.iter().step_by(all.len().div_ceil(ENOUGH).max(1))
 }
 
 fn reals(longest: f64) -> Vec<Shape> {

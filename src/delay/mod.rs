@@ -12,6 +12,9 @@
 //! - [`estimate`]: all of it, in the order of the steps
 //! - [`FineDelay`]: a delay between samples, with its interval
 //! - [`Lag`]: what all steps of a joint follow their dead times with
+//! - [`broken_line`], [`broken_regression`], [`stroke`]: one break in samples, in points, and
+//!   both ends of a stroke
+//! - [`delay_scan`]: one delay for a whole record
 //! - [`Remedy`], [`RunnerUp`]: how near a verdict was
 //! - [`step_delays`]: the delays alone, by the best method
 //! - [`DelayProfile`]: the delay of every sample
@@ -27,9 +30,11 @@ mod broken_line;
 mod chain;
 mod condition;
 mod estimate;
+mod free_motion;
 mod hinge;
 mod lag_aware;
 mod lag_search;
+mod leftover;
 mod line;
 mod margin;
 mod method;
@@ -38,11 +43,14 @@ mod normal_equations;
 mod profile;
 mod reaction;
 mod response;
+mod scan;
+mod scattered;
 mod search;
 mod segment;
 mod step_delay;
 mod steps;
 mod stretch;
+mod stroke;
 pub mod sweep;
 mod two_line;
 
@@ -59,7 +67,10 @@ pub use margin::{Remedy, RunnerUp};
 pub use method::Method;
 pub use profile::{DelayProfile, Interpolation};
 pub use response::{Lag, LagPart};
+pub use scan::delay_scan;
+pub use scattered::{BrokenRegression, broken_regression};
 pub use search::{Candidate, Candidates};
 pub use segment::Segment;
 pub use step_delay::{StepDelay, step_delays};
 pub use steps::{InputStep, input_steps};
+pub use stroke::{Stroke, stroke};

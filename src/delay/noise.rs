@@ -1,6 +1,7 @@
 //! The noise of the output, and what takes its memory away.
 
-use crate::statistics::{Autoregression, autocovariances};
+use super::leftover::{self, Leftover};
+use crate::statistics::{Autoregression, autocovariances, dot};
 
 /// Longest memory of the noise that is looked for, samples.
 const LONGEST_MEMORY: usize = 8;
@@ -46,7 +47,8 @@ impl Noise {
     pub(super) fn of(residuals: &[Vec<f64>], parameters: usize) -> Self {
         /// Times that `S` is estimated from what it corrects.
         const ROUNDS: usize = 3;
-        let residuals = usual(residuals);
+        let power = |values: &Vec<f64>| dot(values, values) / values.len().max(1) as f64;
+        let residuals: Vec<_> = usual_ones(residuals, power).into_iter().cloned().collect();
         let samples: usize = residuals.iter().map(Vec::len).sum();
         let length = samples as f64 / residuals.len().max(1) as f64;
         let measured = autocovariances(&residuals, LONGEST_MEMORY.min(samples / 10));
@@ -58,6 +60,15 @@ impl Noise {
             let whole: Vec<f64> = measured.iter().map(|value| value + taken).collect();
             found = Autoregression::of(&whole, samples);
         }
+        if found.explained > LEAST * LEAST { Self::new(found.coefficients) } else { Self::white() }
+    }
+
+    /// The noise that regressions of short windows leave.
+    pub(super) fn left_by(leftovers: &[Leftover]) -> Self {
+        let usual = usual_ones(leftovers, Leftover::power);
+        let samples: usize = usual.iter().map(|leftover| leftover.samples()).sum();
+        let longest = LONGEST_MEMORY.min(samples / 10);
+        let found = Autoregression::of(&leftover::autocovariances(&usual, longest), samples);
         if found.explained > LEAST * LEAST { Self::new(found.coefficients) } else { Self::white() }
     }
 
@@ -109,18 +120,16 @@ impl Noise {
     }
 }
 
-/// The residuals without those that are far larger than most: what is left there is no
+/// Those whose `power` is not far larger than that of most: what is left in others is no
 /// noise.
-fn usual(residuals: &[Vec<f64>]) -> Vec<Vec<f64>> {
+fn usual_ones<T>(all: &[T], power: impl Fn(&T) -> f64) -> Vec<&T> {
     /// Times the median of the mean squares.
     const STRANGE: f64 = 2.5;
-    let level = |values: &Vec<f64>| {
-        values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64
-    };
-    let mut levels: Vec<f64> = residuals.iter().map(level).collect();
-    levels.sort_by(f64::total_cmp);
-    let most = levels.get(levels.len() / 2).map_or(0.0, |median| STRANGE * median);
-    residuals.iter().filter(|values| level(values) <= most).cloned().collect()
+    let powers: Vec<f64> = all.iter().map(power).collect();
+    let mut sorted = powers.clone();
+    sorted.sort_by(f64::total_cmp);
+    let most = sorted.get(sorted.len() / 2).map_or(0.0, |median| STRANGE * median);
+    all.iter().zip(powers).filter(|(_, power)| *power <= most).map(|(one, _)| one).collect()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use crate::statistics::dot;
 
 /// Pivots below this part of a column's own square belong to columns that the ones before
 /// them already make up.
-const DEPENDENT: f64 = 1e-11;
+pub(super) const DEPENDENT: f64 = 1e-11;
 
 /// The products of all columns with each other, the last of them the target; eliminated
 /// from the front as far as is asked for.

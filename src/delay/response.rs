@@ -169,6 +169,28 @@ impl Shape {
         }
     }
 
+    /// Starts for each kind of lag that is about as late as this one.
+    pub(super) fn nearby(&self) -> Vec<Vec<Self>> {
+        const FACTORS: [f64; 3] = [0.6, 1.0, 1.7];
+        const ZETAS: [f64; 3] = [0.2, 0.5, 1.2];
+        let mean = Response::of(self).mean.max(0.2);
+        let real = vec![Self::real(mean)];
+        let pairs = match self.pair() {
+            Some((omega, zeta)) => {
+                FACTORS.map(|factor| Self::pair_of(omega * factor, zeta)).to_vec()
+            }
+            None => ZETAS.map(|zeta| Self::pair_of(2.0 * zeta / mean, zeta)).to_vec(),
+        };
+        let both = match (self.time_constant(), self.pair()) {
+            (Some(_), Some(_)) => vec![*self],
+            (_, Some((omega, _))) => [0.1, 0.5].map(|part| self.behind(part / omega)).to_vec(),
+            _ => {
+                ZETAS.map(|zeta| Self::pair_of(4.0 * zeta / mean, zeta).behind(mean / 2.0)).to_vec()
+            }
+        };
+        vec![vec![Self::NONE], real, pairs, both]
+    }
+
     /// The same lag with all times `factor` as long.
     fn stretched(mut self, factor: f64) -> Self {
         let shift = factor.ln();

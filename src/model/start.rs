@@ -1,7 +1,7 @@
 //! The plain integrator that the estimated delays suggest: where a model begins.
 
 use super::JointModel;
-use crate::delay::{Decision, TrialEstimate};
+use crate::delay::{Decision, TrialEstimate, delay_scan};
 use crate::experiment::Joint;
 
 /// The delay of a joint of which nothing is known, in seconds.
@@ -11,7 +11,8 @@ const UNKNOWN_DELAY_S: f64 = 0.1;
 ///
 /// The gain is the regression of the output's slope behind each accepted step on the
 /// input there, `Σ u·v / Σ u²`; the delays are the quartiles of the accepted ones.
-/// Without an accepted step they come from the whole record.
+/// Without an accepted step they come from the whole record, as for an input that changes
+/// all the time.
 pub fn integrators(joint: &Joint, estimates: &[&TrialEstimate]) -> Vec<JointModel> {
     let trials = joint.trials.iter().filter_map(|trial| {
         let estimate = estimates.iter().find(|estimate| estimate.label == trial.label())?;
@@ -28,6 +29,9 @@ pub fn integrators(joint: &Joint, estimates: &[&TrialEstimate]) -> Vec<JointMode
     }
     let gain = if squared > 0.0 { with_speed / squared } else { overall_gain(joint) };
     let mut delays: Vec<f64> = quartiles(delays);
+    if delays.is_empty() {
+        delays = scanned(joint).into_iter().chain([UNKNOWN_DELAY_S]).collect();
+    }
     delays.dedup();
     delays.into_iter().map(|delay| JointModel::integrator(gain, delay.max(0.0))).collect()
 }
@@ -36,13 +40,24 @@ fn slope_after(decision: &Decision) -> f64 {
     decision.breakpoint().map_or(0.0, |best| best.candidate.after.slope)
 }
 
-/// The quartiles of `delays`; without any, a delay that is not unusual.
+/// The delay that explains the longest trial best, in seconds.
+fn scanned(joint: &Joint) -> Option<f64> {
+    /// Longest delay that is tried, in samples and as a part of the trial.
+    const LONGEST: usize = 100;
+    const PART: usize = 10;
+    let trial = joint.trials.iter().max_by_key(|trial| trial.len())?;
+    let longest = LONGEST.min(trial.len() / PART);
+    let errors = delay_scan(trial.input(), trial.output(), longest);
+    let best = errors.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1))?;
+    Some(best.0 as f64 * trial.period().seconds())
+}
+
+/// The quartiles of `delays`.
 fn quartiles(mut delays: Vec<f64>) -> Vec<f64> {
     delays.sort_by(f64::total_cmp);
     let last = delays.len().saturating_sub(1);
     let quartiles = [1, 2, 3].map(|part| delays.get(part * last / 4).copied());
-    let found: Vec<f64> = quartiles.into_iter().flatten().collect();
-    if found.is_empty() { vec![UNKNOWN_DELAY_S] } else { found }
+    quartiles.into_iter().flatten().collect()
 }
 
 /// Speed over input, from the steps of the output between samples.

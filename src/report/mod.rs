@@ -42,9 +42,10 @@ pub(crate) use span::{Span, thinned_to};
 pub use steps::steps_table;
 pub use summary::{DelayRange, JointSummary};
 pub use sweep::{ReportedSweep, StepsShown, SweepJson, sweep_text};
+pub(crate) use text::chosen_line;
 pub use text::estimate_table;
 #[cfg(feature = "rrd")]
-pub(crate) use text::{SUMMARY_HEADER, chosen_line, summary_cells};
+pub(crate) use text::{SUMMARY_HEADER, summary_cells};
 pub use words::Words;
 
 use crate::batch::JointEstimate;

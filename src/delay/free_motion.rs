@@ -1,0 +1,157 @@
+//! How well a joint that nothing moves anew explains a piece of its output: the squared
+//! error of a line and of the modes that earlier steps left, for pieces of any length.
+//!
+//! What the columns have in common depends on the length alone, so that it is worked out
+//! once; a piece costs a product per column and sample.
+
+use super::normal_equations::DEPENDENT;
+use super::response::{Response, Shape};
+
+/// Most columns: the line, and the modes of three poles.
+const MOST: usize = 5;
+
+/// Columns of the line.
+const LINE: usize = 2;
+
+/// The columns of free motion, and how they are told apart at each length.
+#[derive(Clone, Debug)]
+pub(super) struct FreeMotion {
+    /// The columns side by side, sample by sample.
+    rows: Vec<[f64; MOST]>,
+    /// For each number of samples.
+    factors: Vec<Factors>,
+}
+
+/// The triangular factors of the products of all columns.
+#[derive(Clone, Copy, Debug, Default)]
+struct Factors {
+    /// Multiples of earlier columns in a later one.
+    lower: [[f64; MOST]; MOST],
+    /// One over the squares of what is left of each column; 0 where nothing is.
+    per_square: [f64; MOST],
+}
+
+impl FreeMotion {
+    /// For pieces of `longest` samples at most.
+    pub(super) fn of(shape: &Shape, longest: usize) -> Self {
+        let response = Response::of(shape);
+        let modes = response.modes();
+        let mut columns = vec![0.0; modes * longest];
+        response.fill_modes(&mut columns, longest);
+        let row = |k: usize| {
+            let mut row = [0.0; MOST];
+            row[0] = 1.0;
+            row[1] = k as f64;
+            for (slot, mode) in row.iter_mut().skip(LINE).zip(columns.chunks_exact(longest.max(1)))
+            {
+                *slot = mode.get(k).copied().unwrap_or_default();
+            }
+            row
+        };
+        let rows: Vec<_> = (0..longest).map(row).collect();
+        let mut products = [[0.0; MOST]; MOST];
+        let mut factors = vec![Factors::default()];
+        for row in &rows {
+            for (sums, a) in products.iter_mut().zip(row) {
+                sums.iter_mut().zip(row).for_each(|(sum, b)| *sum += a * b);
+            }
+            factors.push(Factors::of(&products));
+        }
+        Self { rows, factors }
+    }
+
+    /// The squared error of each piece of `values` from its first sample up to one of the
+    /// `ends`, which ascend.
+    pub(super) fn errors(&self, values: &[f64], ends: impl Iterator<Item = usize>) -> Vec<f64> {
+        let offset = values.first().copied().unwrap_or_default();
+        let (mut sums, mut square, mut done) = ([0.0; MOST], 0.0, 0);
+        let error = |end: usize| {
+            let end = end.min(values.len()).min(self.rows.len());
+            let piece = values.get(done..end).unwrap_or_default();
+            for (y, row) in piece.iter().zip(self.rows.iter().skip(done)) {
+                let y = y - offset;
+                square += y * y;
+                sums.iter_mut().zip(row).for_each(|(sum, value)| *sum += y * value);
+            }
+            done = done.max(end);
+            let factors = self.factors.get(end);
+            factors.map_or(0.0, |factors| (square - factors.explained(&sums)).max(0.0))
+        };
+        ends.map(error).collect()
+    }
+}
+
+impl Factors {
+    fn of(products: &[[f64; MOST]; MOST]) -> Self {
+        let mut left = *products;
+        let mut factors = Self::default();
+        for column in 0..MOST {
+            let pivot_row = left.get(column).copied().unwrap_or_default();
+            let pivot = pivot_row.get(column).copied().unwrap_or_default();
+            let whole = products.get(column).and_then(|row| row.get(column)).copied();
+            if pivot <= DEPENDENT * whole.unwrap_or_default() {
+                continue;
+            }
+            if let Some(slot) = factors.per_square.get_mut(column) {
+                *slot = pivot.recip();
+            }
+            let later = left.iter_mut().zip(&mut factors.lower).skip(column + 1);
+            for (row, lower) in later {
+                let multiple = row.get(column).copied().unwrap_or_default() / pivot;
+                row.iter_mut().zip(&pivot_row).for_each(|(slot, value)| *slot -= multiple * value);
+                if let Some(slot) = lower.get_mut(column) {
+                    *slot = multiple;
+                }
+            }
+        }
+        factors
+    }
+
+    /// What the columns explain of a target, given its products with them.
+    fn explained(&self, sums: &[f64; MOST]) -> f64 {
+        let mut left = *sums;
+        let mut explained = 0.0;
+        for (column, per_square) in self.per_square.iter().enumerate() {
+            let value = left.get(column).copied().unwrap_or_default();
+            explained += value * value * per_square;
+            for (slot, lower) in left.iter_mut().zip(&self.lower).skip(column + 1) {
+                *slot -= lower.get(column).copied().unwrap_or_default() * value;
+            }
+        }
+        explained
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_left_of_a_motion_that_dies_away() {
+        let shape = Shape::pair_of(0.157, 0.25).behind(6.0);
+        let (mut y, mut unused) = (vec![0.0; 90], vec![0.0; 90]);
+        Response::of(&shape).fill(-11.0, &mut y, &mut unused);
+        let y: Vec<f64> = y.iter().zip(0_u32..).map(|(y, k)| y + 0.3 * f64::from(k)).collect();
+        let free = FreeMotion::of(&shape, 90);
+        let left = free.errors(&y, [3, 20, 90].into_iter());
+        assert!(left.iter().all(|error| *error < 1e-8), "{left:?}");
+        // Another motion is none of it.
+        let left = free.errors(&y.iter().map(|y| y * y).collect::<Vec<_>>(), std::iter::once(90));
+        assert!(left[0] > 1.0, "{left:?}");
+    }
+
+    #[test]
+    fn the_error_is_that_of_a_regression() {
+        let shape = Shape::real(6.0);
+        let y: Vec<f64> = (0..40).map(|k| f64::from(k * k % 17)).collect();
+        let left = FreeMotion::of(&shape, 64).errors(&y, [12, 40].into_iter());
+        for (left, end) in left.into_iter().zip([12_usize, 40]) {
+            let row = |k: usize, i: usize| [1.0, k as f64, (-(k as f64) / 6.0).exp()][i];
+            let columns = nalgebra::DMatrix::from_fn(end, 3, row);
+            let target = nalgebra::DVector::from_column_slice(&y[..end]);
+            let solved = columns.clone().svd(true, true).solve(&target, 1e-14).unwrap();
+            let expected = (target - columns * solved).norm_squared();
+            assert!((left - expected).abs() < 1e-8 * expected, "{left} {expected}");
+        }
+    }
+}
