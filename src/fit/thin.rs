@@ -63,9 +63,9 @@ mod tests {
     #[test]
     fn a_long_one_is_thinned_evenly() {
         let kept = thinned(&windows(1, 120));
-        assert_eq!(kept.len(), 30);
+        assert_eq!(kept.len(), 40);
         let starts: Vec<_> = kept.iter().step_by(5).map(|window| window.start).collect();
-        assert_eq!(starts, [1500, 3500, 5500, 7500, 9500, 11500]);
+        assert_eq!(starts, [1000, 2500, 4000, 5500, 7000, 8500, 10_000, 11_500]);
         assert_eq!(thinned(&windows(1, 2000)).len(), 200);
     }
 
@@ -73,6 +73,6 @@ mod tests {
     fn every_trial_of_many_counts() {
         let kept = thinned(&windows(40, 4));
         let trials: Vec<_> = kept.iter().step_by(4).map(|window| window.trial).collect();
-        assert_eq!(trials, [5, 10, 15, 21, 26, 31, 37]);
+        assert_eq!(trials, [3, 7, 11, 15, 19, 23, 27, 31, 35, 39]);
     }
 }
