@@ -193,9 +193,10 @@ fn promising(
     }
     let levels = record.input_levels();
     let range = range(record, &whole.model, &levels);
-    let Ok(of_whole) = survey(record, &whole.model, &range) else { return Vec::new() };
+    let thinned = record.thinned();
+    let Ok(of_whole) = survey(&thinned, &whole.model, &range) else { return Vec::new() };
     let apply = |change: &Change| {
-        let glance = survey(record, &changed(&whole.model, *change)?, &range).ok()?;
+        let glance = survey(&thinned, &changed(&whole.model, *change)?, &range).ok()?;
         let fit = || fit_to_compare(record, &glance.model, &range).ok();
         (glance.cost < MOST * of_whole.cost).then(fit).flatten().map(|fit| (*change, fit))
     };

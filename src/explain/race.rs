@@ -38,8 +38,26 @@ const HOPELESS: f64 = 3.0;
 
 /// Surveys `base` with each effect of `options` that it has not, fits the best few to the
 /// end and ranks them, best first.
+///
+/// A long record is surveyed in part first, and as a whole where that shows nothing.
 pub(super) fn race(
     record: &Record<'_>,
+    base: &Fit,
+    noise_floor: f64,
+    options: &Options,
+    workers: &impl Workers,
+) -> Vec<Candidate> {
+    let [thinned, training] = [record.thinned(), record.for_training()];
+    let of = |surveyed| race_on(record, surveyed, base, noise_floor, options, workers);
+    let ranking = of(&thinned);
+    let is_whole = thinned.windows().len() == training.windows().len();
+    let shows = ranking.iter().any(Candidate::is_significant);
+    if is_whole || shows { ranking } else { of(&training) }
+}
+
+fn race_on(
+    record: &Record<'_>,
+    surveyed: &Record<'_>,
     base: &Fit,
     noise_floor: f64,
     options: &Options,
@@ -51,20 +69,20 @@ pub(super) fn race(
     let range = range(record, &base.model, &levels);
     let glance = |effect: &&'static dyn Effect| {
         let model = base.model.with(Component::neutral(*effect));
-        Some((effect.spec().id, survey(record, &model, &range).ok()?))
+        Some((effect.spec().id, survey(surveyed, &model, &range).ok()?))
     };
-    let surveyed = workers.map(&effects, glance).into_iter().flatten();
-    let mut surveyed: Vec<(&'static str, Survey)> = surveyed.collect();
-    surveyed.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+    let glances = workers.map(&effects, glance).into_iter().flatten();
+    let mut glances: Vec<(&'static str, Survey)> = glances.collect();
+    glances.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
     let (most, least) = FINALISTS;
-    let limit = surveyed.first().map_or(0.0, |best| HOPELESS * best.1.cost);
-    let hopeful = surveyed.iter().filter(|entry| entry.1.cost <= limit).count();
-    surveyed.truncate(hopeful.clamp(least, most));
+    let limit = glances.first().map_or(0.0, |best| HOPELESS * best.1.cost);
+    let hopeful = glances.iter().filter(|entry| entry.1.cost <= limit).count();
+    glances.truncate(hopeful.clamp(least, most));
     let to_the_end = |(id, survey): &(&'static str, Survey)| {
         let fit = fit_to_compare(record, &survey.model, &range).ok()?;
         Some(Entry { effects: vec![*id], fit })
     };
-    let entries: Vec<Entry> = workers.map(&surveyed, to_the_end).into_iter().flatten().collect();
+    let entries: Vec<Entry> = workers.map(&glances, to_the_end).into_iter().flatten().collect();
     ranked(record, base, noise_floor, entries)
 }
 

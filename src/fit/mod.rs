@@ -15,6 +15,7 @@ mod search;
 mod space;
 mod speed;
 mod starts;
+mod thin;
 
 pub use least_squares::{
     Fit, FitError, Parameter, Status, Survey, Termination, assess, fit, fit_to_compare, survey,

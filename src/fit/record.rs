@@ -4,6 +4,7 @@ use nalgebra::DVector;
 
 use super::run::Run;
 use super::speed;
+use super::thin::thinned;
 use crate::effect::RecordRange;
 use crate::experiment::{Joint, Trial};
 use crate::model::{Arrivals, JointModel, Simulated, Surroundings, arrivals};
@@ -216,6 +217,13 @@ impl<'a> Record<'a> {
             Some(run.from(starts, slope.as_deref()).1)
         });
         residuals.collect()
+    }
+
+    /// The same with a part of the training windows, where they are many: enough to see which
+    /// models are worth a fit.
+    pub(crate) fn thinned(&self) -> Self {
+        let training = self.for_training();
+        Self { windows: thinned(&training.windows), ..training }
     }
 
     /// The same with training windows of no more than a few steps of the input.

@@ -1,5 +1,7 @@
 //! The simulations of a model on one trial.
 
+use std::ops::Range;
+
 use super::record::Window;
 use super::speed;
 use crate::experiment::Trial;
@@ -64,6 +66,7 @@ impl Run<'_> {
         PART * (high - low).max(f64::MIN_POSITIVE.sqrt())
     }
 
+    /// The simulation of all windows; not a number where there is none.
     fn simulate(&self, starts: &[f64]) -> Simulated {
         let restart = |(window, output): (&Window, &f64)| Restart {
             sample: window.start,
@@ -74,9 +77,37 @@ impl Run<'_> {
                 .flatten(),
         };
         let restarts: Vec<_> = self.windows.iter().zip(starts).map(restart).collect();
-        let samples = self.windows.last().map_or(0, |window| window.end);
+        let stretches = stretches(&self.windows);
+        if let [only] = stretches.as_slice()
+            && only.start == 0
+        {
+            return self.simulate_stretch(only, &restarts);
+        }
+        let mut whole = Simulated::default();
+        for stretch in stretches {
+            let own = restarts.iter().filter(|restart| stretch.contains(&restart.sample));
+            let shifted = own.map(|r| Restart { sample: r.sample - stretch.start, ..*r });
+            let output = self.trial.output().get(stretch.start).copied().unwrap_or_default();
+            let begin = Restart { sample: 0, output, speed: None };
+            let restarts: Vec<_> = std::iter::once(begin).chain(shifted).collect();
+            whole.resume_at(stretch.start);
+            whole.append(self.simulate_stretch(&stretch, &restarts));
+        }
+        whole
+    }
+
+    /// The simulation of one stretch, whose restarts count from its start.
+    fn simulate_stretch(&self, stretch: &Range<usize>, restarts: &[Restart]) -> Simulated {
         let period_s = self.trial.period().seconds();
-        simulate(self.model, &self.arrivals, samples, period_s, &restarts, &self.surroundings)
+        let from_s = stretch.start as f64 * period_s;
+        let surroundings = Surroundings {
+            others: self.surroundings.others.get(stretch.start..).unwrap_or_default(),
+            start_s: self.surroundings.start_s + from_s,
+            ..self.surroundings
+        };
+        let later = (stretch.start > 0).then(|| self.arrivals.after(from_s));
+        let arrivals = later.as_ref().unwrap_or(&self.arrivals);
+        simulate(self.model, arrivals, stretch.len(), period_s, restarts, &surroundings)
     }
 
     /// By how much the start of each window is wrong: `Σ w g r / Σ w g²`, with the slope
@@ -94,4 +125,21 @@ impl Run<'_> {
         };
         self.windows.iter().map(shift).collect()
     }
+}
+
+/// Samples before a stretch that are simulated, so that it does not begin at rest.
+const LEAD_IN: usize = 150;
+
+/// Samples that are simulated: windows without a gap are one stretch, and the first of them
+/// has a lead-in.
+fn stretches(windows: &[Window]) -> Vec<Range<usize>> {
+    let mut stretches: Vec<Range<usize>> = Vec::new();
+    for window in windows {
+        let before = stretches.last_mut().map(|last| (last.end, last));
+        match before {
+            Some((end, last)) if window.start <= end + LEAD_IN => last.end = window.end,
+            _ => stretches.push(window.start.saturating_sub(LEAD_IN)..window.end),
+        }
+    }
+    stretches
 }

@@ -64,6 +64,17 @@ fn delay_of(model: &JointModel, change: &InputChange) -> f64 {
 }
 
 impl Arrivals {
+    /// What arrives from `time_s` on, which is then time zero.
+    pub(crate) fn after(&self, time_s: f64) -> Self {
+        let over = self.changes.partition_point(|change| change.time_s <= time_s);
+        let (before, after) = self.changes.split_at(over);
+        let shifted = after.iter().map(|a| Arrival { time_s: a.time_s - time_s, ..*a });
+        Self {
+            initial: before.last().map_or(self.initial, |change| change.level),
+            changes: shifted.collect(),
+        }
+    }
+
     /// Adds a change that was commanded after all others.
     fn insert(&mut self, arrival: Arrival) {
         while self.changes.last().is_some_and(|last| last.time_s >= arrival.time_s) {

@@ -90,6 +90,20 @@ pub fn simulate(
 }
 
 impl Simulated {
+    /// Fills up to sample `sample` with what is not a number.
+    pub(crate) fn resume_at(&mut self, sample: usize) {
+        for values in [&mut self.output, &mut self.velocity, &mut self.acting] {
+            values.resize(sample, f64::NAN);
+        }
+    }
+
+    /// Adds what comes behind.
+    pub(crate) fn append(&mut self, mut next: Self) {
+        self.output.append(&mut next.output);
+        self.velocity.append(&mut next.velocity);
+        self.acting.append(&mut next.acting);
+    }
+
     fn with_capacity(samples: usize) -> Self {
         Self {
             output: Vec::with_capacity(samples),

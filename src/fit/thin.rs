@@ -1,0 +1,78 @@
+//! A part of a record from which it is seen which models are worth a fit.
+
+use super::record::Window;
+
+/// Samples that are kept of a record at least.
+const FEWEST: usize = 4000;
+
+/// One sample of so many is kept of a long record.
+const ONE_OF: usize = 10;
+
+/// Samples of a block: several windows, so that one level is seen to follow another.
+const BLOCK: usize = 500;
+
+/// Some of `windows`, in blocks that are spread evenly over all of them; all of them where
+/// they are few.
+pub(super) fn thinned(windows: &[Window]) -> Vec<Window> {
+    let all: usize = windows.iter().map(samples).sum();
+    let kept = FEWEST.max(all / ONE_OF);
+    if 2 * all <= 3 * kept {
+        return windows.to_vec();
+    }
+    let blocks = blocks(windows);
+    let is_kept = |index: &usize| (index + 1) * kept / all > index * kept / all;
+    let kept = blocks.iter().enumerate().filter(|(index, _)| is_kept(index));
+    kept.flat_map(|(_, block)| block.iter().copied()).collect()
+}
+
+fn samples(window: &Window) -> usize {
+    window.end - window.start
+}
+
+/// Windows that follow one another in the same trial, each block about as long.
+fn blocks(windows: &[Window]) -> Vec<&[Window]> {
+    let mut blocks = Vec::new();
+    let (mut first, mut length) = (0, 0);
+    for (index, window) in windows.iter().enumerate() {
+        length += samples(window);
+        let follows = windows.get(index + 1).is_some_and(|next| next.trial == window.trial);
+        if length >= BLOCK || !follows {
+            blocks.extend(windows.get(first..=index));
+            (first, length) = (index + 1, 0);
+        }
+    }
+    blocks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Part;
+    use super::*;
+
+    fn windows(trials: usize, each: usize) -> Vec<Window> {
+        let window =
+            |trial, k| Window { trial, start: 100 * k, end: 100 * (k + 1), part: Part::Training };
+        (0..trials).flat_map(|trial| (0..each).map(move |k| window(trial, k))).collect()
+    }
+
+    #[test]
+    fn a_short_record_is_kept() {
+        assert_eq!(thinned(&windows(3, 14)), windows(3, 14));
+    }
+
+    #[test]
+    fn a_long_one_is_thinned_evenly() {
+        let kept = thinned(&windows(1, 120));
+        assert_eq!(kept.len(), 30);
+        let starts: Vec<_> = kept.iter().step_by(5).map(|window| window.start).collect();
+        assert_eq!(starts, [1500, 3500, 5500, 7500, 9500, 11500]);
+        assert_eq!(thinned(&windows(1, 2000)).len(), 200);
+    }
+
+    #[test]
+    fn every_trial_of_many_counts() {
+        let kept = thinned(&windows(40, 4));
+        let trials: Vec<_> = kept.iter().step_by(4).map(|window| window.trial).collect();
+        assert_eq!(trials, [5, 10, 15, 21, 26, 31, 37]);
+    }
+}
