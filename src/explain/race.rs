@@ -3,7 +3,7 @@
 use super::Workers;
 use super::candidate::Candidate;
 use super::evidence::Noise;
-use crate::diagnosis::ErrorFigures;
+use crate::diagnosis::{ErrorFigures, floor_of};
 use crate::effect::{Effect, REGISTRY, RecordRange};
 use crate::fit::{Fit, Part, Record, Status, Survey, fit_to_compare, survey};
 use crate::model::{Component, JointModel};
@@ -140,6 +140,8 @@ fn ranked(
             behind: evidence.criterion(),
             deviance: evidence.deviance(),
             indistinguishable_from: Vec::new(),
+            separated_by: Vec::new(),
+            noise_floor: floor_of(record, &entry.fit),
             fit: entry.fit,
         }
     };
@@ -154,11 +156,13 @@ fn ranked(
     candidates
 }
 
+/// Twice the difference in log-likelihood below which two models are as likely: a likelihood
+/// of one in 150.
+pub(super) const ALIKE: f64 = 10.0;
+
 /// For each candidate the others under which the record is as likely, but for what noise
 /// does.
 fn alike(candidates: &[Candidate]) -> Vec<Vec<&'static str>> {
-    /// Twice the difference in log-likelihood: a likelihood of one in 150.
-    const ALIKE: f64 = 10.0;
     let of = |one: &Candidate| {
         let others = candidates.iter().filter(|other| other.effects != one.effects);
         let others = others.filter(|other| (other.deviance - one.deviance).abs() < ALIKE);

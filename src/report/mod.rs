@@ -11,6 +11,7 @@ mod finding;
 mod improve;
 mod json;
 mod number;
+mod separation;
 mod steps;
 mod summary;
 mod text;
