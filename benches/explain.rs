@@ -19,7 +19,7 @@ fn joints(samples: usize, count: usize) -> Vec<Joint> {
     let joint = |index: usize| {
         let input = InputSpec::Levels { levels: levels.clone(), hold_s: [0.8, 1.6] };
         let law = DelayLaw::Constant { seconds: 0.12 };
-        let spec = JointSpec::new(format!("joint{index}"), input, law);
+        let spec = JointSpec::new(&format!("joint{index}"), input, law);
         let dead_band = Some([-0.3, 0.3]);
         let mut spec = JointSpec { noise: 0.05, lag_s: Some(0.1), dead_band, ..spec };
         spec.hide("direction_gain", &[("negative_factor".to_owned(), 0.7)]).unwrap();

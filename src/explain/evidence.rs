@@ -83,8 +83,12 @@ impl Evidence {
     }
 
     /// Fisher's test of this model against one with fewer parameters, on the training part.
-    pub(super) fn p_value_against(&self, simpler: &Self) -> f64 {
-        let added = self.parameters.saturating_sub(simpler.parameters).max(1);
+    ///
+    /// Where the simpler model is no special case of this one, the way from it to the nearest
+    /// of this one's is a direction in which noise may lie, too: it counts as a parameter.
+    pub(super) fn p_value_against(&self, simpler: &Self, nests: bool) -> f64 {
+        let added = self.parameters.saturating_sub(simpler.parameters) + usize::from(!nests);
+        let added = added.max(1);
         let freedom = self.training.samples.saturating_sub(self.parameters).max(1);
         let gained = (simpler.training.sum - self.training.sum).max(0.0) / added as f64;
         let left = (self.training.sum / freedom as f64).max(f64::MIN_POSITIVE);
@@ -122,8 +126,20 @@ mod tests {
     fn fisher_judges_what_a_parameter_gains() {
         let plain = evidence(1000.0, 2);
         // F(1, 997) of 2.7 is exceeded with probability 0.10, of 10 with 0.0016.
-        let by = |gain: f64| evidence(1000.0 - gain, 3).p_value_against(&plain);
+        let by = |gain: f64| evidence(1000.0 - gain, 3).p_value_against(&plain, true);
         assert!((by(2.7) - 0.1).abs() < 0.01 && (by(10.0) - 0.0015).abs() < 0.0003);
+    }
+
+    #[test]
+    fn the_way_to_a_model_that_does_not_nest_counts_as_a_parameter() {
+        // One parameter turns a shift of any size: it meets the larger part of noise in two
+        // directions, whose square is beyond 9.21 with probability 0.01.
+        let plain = evidence(1000.0, 2);
+        let by =
+            |parameters, nests| evidence(1000.0 - 9.21, parameters).p_value_against(&plain, nests);
+        assert!((by(3, false) - 0.01).abs() < 0.001 && by(3, true) < 0.003);
+        // Without a parameter of its own there is only the way.
+        assert!((by(2, false) - by(3, true)).abs() < 1e-4);
     }
 
     #[test]

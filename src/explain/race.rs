@@ -128,6 +128,7 @@ fn ranked(
             (Some(before), Some(after)) => (before.rmse, after.rmse),
             _ => (square(trained).sqrt(), square(training).sqrt()),
         };
+        let p_value = evidence.p_value_against(&of_base, nests(&entry));
         let misfit = (square(trained) - noise_floor * noise_floor).max(f64::MIN_POSITIVE);
         Candidate {
             effects: entry.effects,
@@ -135,7 +136,7 @@ fn ranked(
             validation,
             error_reduction_percent: 100.0 * (1.0 - after / before),
             training_reduction_percent: 100.0 * (1.0 - (square(training) / square(trained)).sqrt()),
-            p_value: evidence.p_value_against(&of_base),
+            p_value,
             share_of_misfit: (square(trained) - square(training)) / misfit,
             behind: evidence.criterion(),
             deviance: evidence.deviance(),
@@ -154,6 +155,13 @@ fn ranked(
         candidate.indistinguishable_from = alike;
     }
     candidates
+}
+
+/// Whether the base is a special case of an entry.
+fn nests(entry: &Entry) -> bool {
+    let added = entry.fit.model.components().iter().map(Component::effect);
+    let mut added = added.filter(|effect| entry.effects.contains(&effect.spec().id));
+    added.all(Effect::nests)
 }
 
 /// Twice the difference in log-likelihood below which two models are as likely: a likelihood

@@ -392,3 +392,77 @@ fn two_digits_of(value: f64, size: f64) -> f64 {
     let unit = 10_f64.powi(exponent.abs());
     if exponent < 0 { (value * unit).round() / unit } else { (value / unit).round() * unit }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::{DeadBand, FlowCurve};
+    use crate::model::Component;
+
+    fn proposal(pattern: Pattern, levels: &[f64], angle: f64) -> Proposal {
+        let starts = vec![Start { angle, others: 0.0, worked_s: 0.0 }];
+        Proposal { pattern, levels: levels.to_vec(), hold_s: 1.0, starts }
+    }
+
+    fn setting() -> Setting {
+        Setting {
+            period_s: 0.01,
+            hold_s: 1.0,
+            levels: (1.0, 2.0),
+            range: (-30.0, 30.0),
+            duration_s: 60.0,
+            radians_per_output_unit: 1_f64.to_radians(),
+        }
+    }
+
+    fn model(effect: &'static dyn crate::effect::Effect, values: &[f64]) -> JointModel {
+        let values = values.iter().map(|value| (*value).into()).collect();
+        JointModel::integrator(10.0, 0.0).with(Component::new(effect, values).unwrap())
+    }
+
+    #[test]
+    fn each_pattern_goes_both_ways() {
+        let levels = |pattern| proposal(pattern, &[1.0, 2.0], 0.0).sequence();
+        assert_eq!(levels(Pattern::Ladder), [0.0, 1.0, 2.0, 1.0, -1.0, -2.0, -1.0]);
+        assert_eq!(levels(Pattern::Pulses), [0.0, 1.0, 0.0, -1.0, 0.0, 2.0, 0.0, -2.0, 0.0]);
+        assert_eq!(levels(Pattern::Reversals), [0.0, 1.0, -1.0, 2.0, -2.0]);
+    }
+
+    #[test]
+    fn the_difference_is_that_of_the_outputs() {
+        // At 0.4 V the one rests and the other moves at 4 deg/s.
+        let (band, plain) = (model(&DeadBand, &[-0.5, 0.5]), model(&FlowCurve, &[1.0]));
+        let tried = proposal(Pattern::Reversals, &[0.4], 0.0);
+        let found = setting().run(&tried, [&band, &plain], 0.1).unwrap();
+        assert!((found.times_noise - 40.0).abs() < 1e-6 && (found.after_s - 2.0).abs() < 1e-9);
+        // The outputs are 4 deg/s apart for two holds of 100 samples: 2 · 100 · 4² / 12.
+        let expected = 2.0 * 100.0 * 16.0 / 12.0 / 0.01;
+        assert!((found.evidence / expected - 1.0).abs() < 0.01, "{}", found.evidence);
+    }
+
+    #[test]
+    fn another_gain_is_no_difference() {
+        let slow = JointModel::integrator(10.0, 0.1);
+        let fast = JointModel::integrator(11.0, 0.1);
+        let tried = proposal(Pattern::Ladder, &[0.5, 1.0], 0.0);
+        let found = setting().run(&tried, [&slow, &fast], 0.1).unwrap();
+        assert!(found.times_noise > 10.0 && found.evidence < 1e-6);
+    }
+
+    #[test]
+    fn no_experiment_leaves_the_range_of_the_record() {
+        let same = JointModel::integrator(10.0, 0.1);
+        let run = |angle| {
+            let tried = proposal(Pattern::Ladder, &[1.0, 2.0], angle);
+            setting().run(&tried, [&same, &same], 0.1).is_some()
+        };
+        // It goes 40 deg up.
+        assert!(run(-5.0) && !run(0.0));
+    }
+
+    #[test]
+    fn levels_are_said_in_two_digits() {
+        assert_eq!([0.123_4, 1.55, 0.0, 123.0].map(two_digits), [0.12, 1.6, 0.0, 120.0]);
+        assert!((two_digits_of(32.456, 80.0) - 32.0).abs() < 1e-12);
+    }
+}
