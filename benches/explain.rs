@@ -13,15 +13,20 @@ use tauscope::explain::Options;
 use tauscope::fit::Horizon;
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate};
 
-/// Joints at 100 Hz that all hide a dead band, a lag and another gain for each direction.
-fn joints(samples: usize, count: usize) -> Vec<Joint> {
+/// Joints at 100 Hz that all hide a dead band, or three effects: a lag, too, and another gain
+/// for each direction.
+fn joints(samples: usize, count: usize, hidden: usize) -> Vec<Joint> {
     let levels = vec![-2.0, -1.5, -1.0, -0.5, 0.5, 1.0, 1.5, 2.0];
     let joint = |index: usize| {
         let input = InputSpec::Levels { levels: levels.clone(), hold_s: [0.8, 1.6] };
         let law = DelayLaw::Constant { seconds: 0.12 };
         let spec = JointSpec::new(&format!("joint{index}"), input, law);
         let dead_band = Some([-0.3, 0.3]);
-        let mut spec = JointSpec { noise: 0.05, lag_s: Some(0.1), dead_band, ..spec };
+        let spec = JointSpec { noise: 0.05, dead_band, ..spec };
+        if hidden == 1 {
+            return spec;
+        }
+        let mut spec = JointSpec { lag_s: Some(0.1), ..spec };
         spec.hide("direction_gain", &[("negative_factor".to_owned(), 0.7)]).unwrap();
         spec
     };
@@ -73,10 +78,11 @@ fn growth(criterion: &mut Criterion) {
             group.bench_function(id, |bencher| bencher.iter(|| work(joints, effects)));
         };
         for samples in [3_000, 12_000, 48_000] {
-            measure("samples", samples, &joints(samples, 1), REGISTRY);
+            measure("samples", samples, &joints(samples, 1, 1), REGISTRY);
         }
-        measure("effects", 6, &joints(12_000, 1), &six());
-        measure("joints", 4, &joints(12_000, 4), REGISTRY);
+        measure("effects", 6, &joints(12_000, 1, 1), &six());
+        measure("joints", 4, &joints(12_000, 4, 1), REGISTRY);
+        measure("hidden", 3, &joints(12_000, 1, 3), REGISTRY);
         group.finish();
     }
 }

@@ -56,11 +56,16 @@ pub(super) fn sentence(joint: &Joint, separation: &Separation) -> String {
     if separation.is_clear {
         return format!("To tell it from {other}: {}.", experiment(joint, separation));
     }
-    format!(
-        "No input that was tried at the angles of this record would tell it from {other}: what the \
-         two differ by is noise, or another gain."
-    )
+    let why = if separation.times_noise < UNSEEN {
+        "with these numbers the two do the same"
+    } else {
+        "what the two differ by is noise, or another gain"
+    };
+    format!("No input that was tried at the angles of this record tells it from {other}: {why}.")
 }
+
+/// A difference of a smaller part of the noise is none.
+const UNSEEN: f64 = 0.1;
 
 /// `hold 0.3, 0.4, 0.5 V for 2 s each, …: after 6 s the two differ by 14 times the noise`.
 fn experiment(joint: &Joint, separation: &Separation) -> String {
@@ -173,7 +178,10 @@ mod tests {
     #[test]
     fn what_no_input_tells_apart_is_said_too() {
         let separation = Separation { is_clear: false, ..separation(&[1.0]) };
-        assert!(sentence(&joint(), &separation).starts_with("No input that was tried"));
+        let said = sentence(&joint(), &separation);
+        assert!(said.starts_with("No input that was tried") && said.ends_with("another gain."));
+        let same = Separation { times_noise: 0.0, ..separation.clone() };
+        assert!(sentence(&joint(), &same).ends_with("the two do the same."));
         let json = serde_json::to_value(SeparationJson::new(&joint(), &separation)).unwrap();
         assert_eq!((&json["other"], &json["experiment"]), (&"stiction".into(), &().into()));
     }
