@@ -40,9 +40,9 @@ fn with_experiment(
     proposal: &Proposal,
     seed: u64,
 ) -> Joint {
-    let samples = (proposal.hold_s / PERIOD_S).round() as usize;
+    let samples = (1..).find(|k| *k as f64 * PERIOD_S > proposal.hold_s - 0.5 * PERIOD_S).unwrap();
     let levels = proposal.sequence();
-    let changes = (1..levels.len()).filter(|k| levels[*k] != levels[k - 1]);
+    let changes = (1..levels.len()).filter(|k| (levels[*k] - levels[k - 1]).abs() > 0.0);
     let steps: Vec<_> = changes.map(|k| (k * samples + 1, levels[k])).collect();
     let input = InputSpec::Steps { steps, initial: levels[0] };
     let seconds = levels.len() as f64 * proposal.hold_s;
@@ -94,7 +94,7 @@ fn small_levels_tell_a_progressive_valve_from_a_dead_band() {
 #[test]
 fn other_levels_tell_an_offset_from_a_direction() {
     // A valve that is driven fully one way or the other, and never rests.
-    let level = |k: usize| if k % 2 == 0 { 1.0 } else { -1.0 };
+    let level = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
     let steps = (1..50).map(|k| (60 * k + 1, level(k))).collect();
     let input = InputSpec::Steps { steps, initial: level(0) };
     is_told_apart(("input_offset", &[("offset", 0.2)]), "direction_gain", input);

@@ -57,7 +57,7 @@ pub fn add(
     let with = fit(record, &model, &range(record, &model, &levels))?;
     let noise = Noise::of(record, &with);
     let evidence = |fit: &Fit| noise.evidence(record, &fit.evaluation, parameters(fit));
-    let p_value = evidence(&with).p_value_against(&evidence(&base), true);
+    let p_value = evidence(&with).p_value_against(&evidence(&base));
     Ok(Addition {
         before: compare(record, base),
         after: compare(record, with),

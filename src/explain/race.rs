@@ -128,7 +128,8 @@ fn ranked(
             (Some(before), Some(after)) => (before.rmse, after.rmse),
             _ => (square(trained).sqrt(), square(training).sqrt()),
         };
-        let p_value = evidence.p_value_against(&of_base, nests(&entry));
+        let tested = if nests(&entry) { evidence } else { evidence.apart() };
+        let p_value = tested.p_value_against(&of_base);
         let misfit = (square(trained) - noise_floor * noise_floor).max(f64::MIN_POSITIVE);
         Candidate {
             effects: entry.effects,
