@@ -70,9 +70,11 @@ fn without_a_model_file_a_new_one_is_made_and_none_is_replaced_by_accident() {
     let output = desk.run("add dead_band log.csv");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let printed = String::from_utf8(output.stdout).unwrap();
-    for part in
-        ["│ boom    integrator", "│ boom    dead_band", "boom: with dead_band the error falls"]
-    {
+    for part in [
+        "│ boom    integrator",
+        "boom (revision 1, + dead_band)",
+        "boom: with dead_band the error falls",
+    ] {
         assert!(printed.contains(part), "no `{part}` in {printed}");
     }
     let first = desk.read("model.toml");
@@ -138,6 +140,6 @@ fn what_cannot_be_added_leaves_no_file() {
 #[test]
 fn both_models_are_recorded() {
     let desk = Desk::with(vec![banded("boom")]);
-    assert_eq!(desk.recorded_models("add dead_band log.csv"), ["after", "before"]);
+    assert_eq!(desk.recorded_models("add dead_band log.csv"), ["revision 0", "revision 1"]);
     assert_eq!(desk.recorded_revisions(), 2);
 }

@@ -60,7 +60,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
         revised = with_revision(&revised, joint)?;
     }
     if let Some(path) = &args.output.recording {
-        let models: Vec<_> = joints.iter().flat_map(before_and_after).collect();
+        let names: Vec<_> = joints.iter().map(revision_names).collect();
+        let named = joints.iter().zip(&names);
+        let models: Vec<_> = named.flat_map(|(joint, names)| as_models(joint, names)).collect();
         let revisions: Vec<[Step; 2]> = joints.iter().map(steps).collect();
         let grown = joints.iter().zip(&revisions).map(|(joint, steps)| grown(joint, steps));
         study.record(path, &models, &grown.collect::<Vec<_>>(), verbosity)?;
@@ -84,10 +86,15 @@ fn added<'a>(
     AddedJoint { joint, model, effect, revision, addition }
 }
 
-/// Both models under names of their own.
-fn before_and_after<'a>(added: &AddedJoint<'a>) -> [ComparedJoint<'a>; 2] {
-    let [before, after] = added.compared();
-    [ComparedJoint { model: "before", ..before }, ComparedJoint { model: "after", ..after }]
+/// Names of both models, as `improve` gives them.
+fn revision_names(added: &AddedJoint<'_>) -> [String; 2] {
+    added.compared().map(|compared| format!("revision {}", compared.revision))
+}
+
+/// Both models under these names.
+fn as_models<'a>(added: &AddedJoint<'a>, names: &'a [String; 2]) -> [ComparedJoint<'a>; 2] {
+    let ([before, after], [first, second]) = (added.compared(), names);
+    [ComparedJoint { model: first, ..before }, ComparedJoint { model: second, ..after }]
 }
 
 /// Both models as revisions.

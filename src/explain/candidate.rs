@@ -1,5 +1,6 @@
 //! A model with one effect more, fitted.
 
+use super::separate::Separation;
 use crate::diagnosis::ErrorFigures;
 use crate::fit::Fit;
 
@@ -31,6 +32,10 @@ pub struct Candidate {
     pub(super) deviance: f64,
     /// Other candidates that this record cannot tell from this one.
     pub indistinguishable_from: Vec<&'static str>,
+    /// What would tell it from each of them, where it is significant.
+    pub separated_by: Vec<Separation>,
+    /// Standard deviation of the measurement noise with its delay, output units.
+    pub noise_floor: Option<f64>,
 }
 
 impl Candidate {

@@ -82,6 +82,13 @@ impl Evidence {
         self.training.deviance() + self.validation.deviance()
     }
 
+    /// The same beside a simpler model that is no special case of it: the way from that to
+    /// the nearest of its own is a direction in which noise may lie, too, and counts as a
+    /// parameter.
+    pub(super) fn apart(self) -> Self {
+        Self { parameters: self.parameters + 1, ..self }
+    }
+
     /// Fisher's test of this model against one with fewer parameters, on the training part.
     pub(super) fn p_value_against(&self, simpler: &Self) -> f64 {
         let added = self.parameters.saturating_sub(simpler.parameters).max(1);
@@ -124,6 +131,19 @@ mod tests {
         // F(1, 997) of 2.7 is exceeded with probability 0.10, of 10 with 0.0016.
         let by = |gain: f64| evidence(1000.0 - gain, 3).p_value_against(&plain);
         assert!((by(2.7) - 0.1).abs() < 0.01 && (by(10.0) - 0.0015).abs() < 0.0003);
+    }
+
+    #[test]
+    fn the_way_to_a_model_that_does_not_nest_counts_as_a_parameter() {
+        // One parameter turns a shift of any size: it meets the larger part of noise in two
+        // directions, whose square is beyond 9.21 with probability 0.01.
+        let plain = evidence(1000.0, 2);
+        let found = |parameters| evidence(1000.0 - 9.21, parameters);
+        let nested = found(3).p_value_against(&plain);
+        let apart = found(3).apart().p_value_against(&plain);
+        assert!((apart - 0.01).abs() < 0.001 && nested < 0.003);
+        // Without a parameter of its own there is only the way.
+        assert!((found(2).apart().p_value_against(&plain) / nested - 1.0).abs() < 1e-9);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use super::Workers;
 use super::candidate::Candidate;
 use super::grow::{Change, Step, grow, ids};
 use super::race::Options;
+use super::separate::separate;
 use super::verdict::Verdict;
 use crate::diagnosis::{Comparison, compare_knowing};
 use crate::fit::{Fit, Record};
@@ -43,7 +44,8 @@ pub fn improve(
     let first = Step::new(record, Change::Start, fit);
     let mut revisions = Vec::new();
     let verdict = grow(record, first, &given, options, workers, |step| {
-        let Step { change, fit, lack_of_fit, ranking } = step.clone();
+        let Step { change, fit, lack_of_fit, mut ranking } = step.clone();
+        separate(record, &mut ranking, workers);
         let comparison = compare_knowing(record, fit, lack_of_fit);
         let revision = Revision { change, comparison, ranking };
         let goes_on = done(&revision);

@@ -7,6 +7,7 @@
 //! - [`explain`]: verdict and ranking for one model
 //! - [`add()`]: an effect that the user chose
 //! - [`improve`]: explain and add until nothing significant is left
+//! - [`Separation`]: the experiment that would tell two effects apart
 //! - [`Workers`]: who does the fits, one after the other or in parallel
 //!
 //! A closed world always blames somebody: the nearest effect lowers any error a little. So
@@ -26,6 +27,7 @@ mod evidence;
 mod grow;
 mod improve;
 mod race;
+mod separate;
 mod verdict;
 mod workers;
 
@@ -34,5 +36,6 @@ pub use candidate::Candidate;
 pub use grow::Change;
 pub use improve::{Improvement, Revision, improve};
 pub use race::Options;
+pub use separate::{Pattern, Proposal, Separation, Start};
 pub use verdict::{Explanation, Verdict, explain};
 pub use workers::{Sequential, Workers};

@@ -3,7 +3,7 @@
 use super::Workers;
 use super::candidate::Candidate;
 use super::evidence::Noise;
-use crate::diagnosis::ErrorFigures;
+use crate::diagnosis::{ErrorFigures, floor_of};
 use crate::effect::{Effect, REGISTRY, RecordRange};
 use crate::fit::{Fit, Part, Record, Status, Survey, fit_to_compare, survey};
 use crate::model::{Component, JointModel};
@@ -128,6 +128,8 @@ fn ranked(
             (Some(before), Some(after)) => (before.rmse, after.rmse),
             _ => (square(trained).sqrt(), square(training).sqrt()),
         };
+        let tested = if nests(&entry) { evidence } else { evidence.apart() };
+        let p_value = tested.p_value_against(&of_base);
         let misfit = (square(trained) - noise_floor * noise_floor).max(f64::MIN_POSITIVE);
         Candidate {
             effects: entry.effects,
@@ -135,11 +137,13 @@ fn ranked(
             validation,
             error_reduction_percent: 100.0 * (1.0 - after / before),
             training_reduction_percent: 100.0 * (1.0 - (square(training) / square(trained)).sqrt()),
-            p_value: evidence.p_value_against(&of_base),
+            p_value,
             share_of_misfit: (square(trained) - square(training)) / misfit,
             behind: evidence.criterion(),
             deviance: evidence.deviance(),
             indistinguishable_from: Vec::new(),
+            separated_by: Vec::new(),
+            noise_floor: floor_of(record, &entry.fit),
             fit: entry.fit,
         }
     };
@@ -154,11 +158,20 @@ fn ranked(
     candidates
 }
 
+/// Whether the base is a special case of an entry.
+fn nests(entry: &Entry) -> bool {
+    let added = entry.fit.model.components().iter().map(Component::effect);
+    let mut added = added.filter(|effect| entry.effects.contains(&effect.spec().id));
+    added.all(Effect::nests)
+}
+
+/// Twice the difference in log-likelihood below which two models are as likely: a likelihood
+/// of one in 150.
+pub(super) const ALIKE: f64 = 10.0;
+
 /// For each candidate the others under which the record is as likely, but for what noise
 /// does.
 fn alike(candidates: &[Candidate]) -> Vec<Vec<&'static str>> {
-    /// Twice the difference in log-likelihood: a likelihood of one in 150.
-    const ALIKE: f64 = 10.0;
     let of = |one: &Candidate| {
         let others = candidates.iter().filter(|other| other.effects != one.effects);
         let others = others.filter(|other| (other.deviance - one.deviance).abs() < ALIKE);

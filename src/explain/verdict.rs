@@ -6,6 +6,7 @@ use super::Workers;
 use super::candidate::Candidate;
 use super::grow::{Change, Step, grow, ids, put_first};
 use super::race::Options;
+use super::separate::separate;
 use crate::diagnosis::{Comparison, compare_knowing};
 use crate::fit::{Fit, Record};
 
@@ -57,6 +58,7 @@ pub fn explain(
         return Explanation { base, verdict: Verdict::Adequate, ranking };
     }
     let named = accounts_for_it(record, &mut ranking, options, workers);
+    separate(record, &mut ranking, workers);
     let verdict = if named { Verdict::MissingEffect } else { Verdict::Unexplained };
     Explanation { base, verdict, ranking }
 }

@@ -7,7 +7,7 @@ use super::speed;
 use super::thin::thinned;
 use crate::effect::RecordRange;
 use crate::experiment::{Joint, Trial};
-use crate::model::{Arrivals, JointModel, Simulated, Surroundings, arrivals};
+use crate::model::{Arrivals, Commands, JointModel, Simulated, Surroundings};
 
 /// How long a simulation runs before its angle is set to the measured one again.
 ///
@@ -83,6 +83,10 @@ pub struct Record<'a> {
     speeds_measured: bool,
     /// Seconds from the start of the record to that of each trial.
     starts_s: Vec<f64>,
+    /// Changes of the input, per trial.
+    commands: Vec<Commands>,
+    /// Highest minus lowest output, per trial.
+    spans: Vec<f64>,
 }
 
 /// A model on a record: what it simulates, and what is left.
@@ -124,6 +128,8 @@ impl<'a> Record<'a> {
             radians_per_output_unit,
             speeds_measured,
             starts_s: starts_s(&joint.trials),
+            commands: joint.trials.iter().map(Commands::of).collect(),
+            spans: joint.trials.iter().map(span).collect(),
         }
     }
 
@@ -277,15 +283,16 @@ impl<'a> Record<'a> {
             surroundings,
             windows: windows.collect(),
             weights,
+            span: self.spans.get(index).copied().unwrap_or_default(),
             speeds_measured: self.speeds_measured && model.has_dynamics(),
         })
     }
 
     /// When each level of the input of a trial begins to act.
     pub fn arrivals(&self, model: &JointModel, trial: usize) -> Arrivals {
-        let Some(measured) = self.joint.trials.get(trial) else { return Arrivals::default() };
+        let Some(commands) = self.commands.get(trial) else { return Arrivals::default() };
         let delays = self.delays.as_ref().and_then(|delays| delays.get(trial));
-        arrivals(model, measured, self.start_s(trial), delays.map(Vec::as_slice))
+        commands.arriving(model, self.start_s(trial), delays.map(Vec::as_slice))
     }
 
     fn start_s(&self, trial: usize) -> f64 {
@@ -343,6 +350,13 @@ fn starts_s(trials: &[Trial]) -> Vec<f64> {
         before
     };
     trials.iter().map(before).collect()
+}
+
+/// Highest minus lowest output.
+fn span(trial: &Trial) -> f64 {
+    let output = trial.output().iter().copied();
+    let (low, high) = output.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
+    high - low
 }
 
 fn length_s(trial: &Trial) -> f64 {

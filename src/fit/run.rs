@@ -15,6 +15,8 @@ pub(super) struct Run<'a> {
     pub(super) surroundings: Surroundings<'a>,
     pub(super) windows: Vec<Window>,
     pub(super) weights: Option<&'a [f64]>,
+    /// Highest minus lowest output of the trial.
+    pub(super) span: f64,
     pub(super) speeds_measured: bool,
 }
 
@@ -61,9 +63,7 @@ impl Run<'_> {
     fn nudge(&self) -> f64 {
         /// Small against what changes an effect, large against rounding.
         const PART: f64 = 1e-5;
-        let output = self.trial.output().iter().copied();
-        let (low, high) = output.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
-        PART * (high - low).max(f64::MIN_POSITIVE.sqrt())
+        PART * self.span.max(f64::MIN_POSITIVE.sqrt())
     }
 
     /// The simulation of all windows; not a number where there is none.

@@ -22,6 +22,52 @@ pub struct Arrivals {
     pub changes: Vec<Arrival>,
 }
 
+/// The changes of a trial's input, as they are commanded.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Commands {
+    initial: f64,
+    /// Seconds since the first sample, and the level from then on.
+    changes: Vec<(f64, f64)>,
+}
+
+impl Commands {
+    /// The input of `trial`.
+    pub(crate) fn of(trial: &Trial) -> Self {
+        let period = trial.period().seconds();
+        let mut levels = trial.input().iter();
+        let initial = levels.next().copied().unwrap_or_default();
+        let (mut before, mut changes) = (initial, Vec::new());
+        for (&level, sample) in levels.zip(1..) {
+            #[expect(clippy::float_cmp, reason = "a step is any change")]
+            if level != before {
+                changes.push((f64::from(sample) * period, level));
+                before = level;
+            }
+        }
+        Self { initial, changes }
+    }
+
+    /// The changes as they arrive: see [`arrivals`].
+    pub(crate) fn arriving(
+        &self,
+        model: &JointModel,
+        start_s: f64,
+        per_step: Option<&[Option<f64>]>,
+    ) -> Arrivals {
+        let mut arrivals = Arrivals { initial: self.initial, changes: Vec::new() };
+        let (mut before, mut since) = (self.initial, 0.0);
+        for (number, &(time_s, level)) in self.changes.iter().enumerate() {
+            let held_s = time_s - since;
+            let change = InputChange { before, after: level, held_s, time_s: start_s + time_s };
+            let known = per_step.and_then(|delays| delays.get(number).copied().flatten());
+            let delay = known.unwrap_or_else(|| delay_of(model, &change));
+            arrivals.insert(Arrival { time_s: time_s + delay.max(0.0), level });
+            (before, since) = (level, time_s);
+        }
+        arrivals
+    }
+}
+
 /// The input of `trial` as it arrives at the joint: change `i` at `t_i + delay + extra_i`.
 ///
 /// `extra` comes from the effects of the transport stage. With `per_step`, delays in
@@ -37,25 +83,7 @@ pub fn arrivals(
     start_s: f64,
     per_step: Option<&[Option<f64>]>,
 ) -> Arrivals {
-    let period = trial.period().seconds();
-    let mut levels = trial.input().iter();
-    let initial = levels.next().copied().unwrap_or_default();
-    let mut arrivals = Arrivals { initial, changes: Vec::new() };
-    let (mut before, mut since, mut number) = (initial, 0.0, 0);
-    for (&level, sample) in levels.zip(1..) {
-        #[expect(clippy::float_cmp, reason = "a step is any change")]
-        if level == before {
-            continue;
-        }
-        let time_s = f64::from(sample) * period;
-        let held_s = time_s - since;
-        let change = InputChange { before, after: level, held_s, time_s: start_s + time_s };
-        let known = per_step.and_then(|delays| delays.get(number).copied().flatten());
-        let delay = known.unwrap_or_else(|| delay_of(model, &change));
-        arrivals.insert(Arrival { time_s: time_s + delay.max(0.0), level });
-        (before, since, number) = (level, time_s, number + 1);
-    }
-    arrivals
+    Commands::of(trial).arriving(model, start_s, per_step)
 }
 
 fn delay_of(model: &JointModel, change: &InputChange) -> f64 {

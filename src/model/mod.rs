@@ -15,6 +15,7 @@ mod joint_model;
 mod simulate;
 mod start;
 
+pub(crate) use arrivals::Commands;
 pub use arrivals::{Arrival, Arrivals, arrivals};
 pub use file::{ModelError, ModelFile, Revision};
 pub use joint_model::{Component, JointModel, Value};

@@ -90,6 +90,15 @@ impl<'a> AddedJoint<'a> {
         [before, compared(revision, &addition.after)]
     }
 
+    /// Names of both models, as `revision 0, integrator` and `revision 1, + dead_band`.
+    fn labels(&self) -> [String; 2] {
+        let [before, after] = self.compared();
+        let had = effects(&before.comparison.fit.model);
+        let had = if had.is_empty() { "integrator".to_owned() } else { had.join(" + ") };
+        let (first, second) = (before.revision, after.revision);
+        [format!("revision {first}, {had}"), format!("revision {second}, + {}", self.effect)]
+    }
+
     /// `boom: dead_band takes 87 % of the error away, …`.
     fn sentence(&self) -> String {
         let error = |comparison: &Comparison| {
@@ -116,7 +125,12 @@ impl<'a> AddedJoint<'a> {
 
 /// Each joint's model before and after, and what it means.
 pub fn add_text(joints: &[AddedJoint<'_>], horizon: &str) -> String {
-    let compared: Vec<_> = joints.iter().flat_map(AddedJoint::compared).collect();
+    let labels: Vec<_> = joints.iter().map(AddedJoint::labels).collect();
+    let named = joints.iter().zip(&labels).flat_map(|(joint, [first, second])| {
+        let [before, after] = joint.compared();
+        [ComparedJoint { model: first, ..before }, ComparedJoint { model: second, ..after }]
+    });
+    let compared: Vec<_> = named.collect();
     let sentences: Vec<_> = joints.iter().map(AddedJoint::sentence).collect();
     format!("{}\n{}\n", compare_table(&compared, horizon), sentences.join("\n"))
 }

@@ -7,6 +7,7 @@ use serde_json::{Map, Value};
 use super::ComparedJoint;
 use super::compare::{align_right, parameters_json};
 use super::number::{probability, with_unit};
+use super::separation::SeparationJson;
 use crate::effect::Spec;
 use crate::experiment::Joint;
 use crate::explain::{Candidate, Verdict};
@@ -38,10 +39,13 @@ pub(super) struct CandidateJson<'a> {
     share_of_misfit: f64,
     parameters: Map<String, Value>,
     indistinguishable_from: &'a [&'static str],
+    separated_by: Vec<SeparationJson<'a>>,
+    noise_floor: Option<f64>,
 }
 
 impl<'a> CandidateJson<'a> {
     pub(super) fn new(joint: &Joint, candidate: &'a Candidate) -> Self {
+        let separations = candidate.separated_by.iter();
         Self {
             effect: candidate.name(),
             effects: &candidate.effects,
@@ -53,6 +57,8 @@ impl<'a> CandidateJson<'a> {
             share_of_misfit: candidate.share_of_misfit,
             parameters: own_parameters(joint, candidate),
             indistinguishable_from: &candidate.indistinguishable_from,
+            separated_by: separations.map(|s| SeparationJson::new(joint, s)).collect(),
+            noise_floor: candidate.noise_floor,
         }
     }
 }

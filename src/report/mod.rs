@@ -12,6 +12,7 @@ mod improve;
 mod json;
 mod number;
 mod page;
+mod separation;
 mod settings;
 mod span;
 mod steps;

@@ -5,6 +5,7 @@ use super::equation::filled_in;
 use super::finding::{Finding, added, specs};
 use super::number::{measure, number, percent, probability, rounded, with_error};
 use super::parameter_units;
+use super::separation::sentence;
 use crate::diagnosis::Comparison;
 use crate::diagnosis::failure::{Feature, Region, Units, WorstSegment};
 use crate::experiment::{Joint, Trial};
@@ -97,7 +98,9 @@ impl Finding<'_> {
             "With it the error on data that were {part} falls from {before} to {after}, by \
              {taken} % ({chance})"
         );
-        let Some(noise) = self.noise() else { return format!("{falls}.") };
+        // Its own: how steady a joint is depends on when its steps arrive.
+        let noise = best.noise_floor.filter(|noise| *noise > 0.0).or(self.noise());
+        let Some(noise) = noise else { return format!("{falls}.") };
         let times = best.rmse() / noise;
         if times > ABOVE_NOISE {
             let times = rounded(times);
@@ -131,9 +134,10 @@ impl Finding<'_> {
         let same = &best.indistinguishable_from;
         if !same.is_empty() {
             let same = same.join(", ");
-            return format!(
-                "This record cannot tell it from {same}: only one of them need be there."
-            );
+            let alike =
+                format!("This record cannot tell it from {same}: only one of them need be there.");
+            let apart = best.separated_by.iter().map(|s| sentence(self.joint(), s));
+            return std::iter::once(alike).chain(apart).collect::<Vec<_>>().join(" ");
         }
         match self.ranking.get(1) {
             Some(next) => {

@@ -10,6 +10,7 @@ use super::grid::{Choice, Family, Grid, Selection};
 use super::record::{Record, Units};
 use super::regions::trial_label;
 use super::significance::{Chance, Shuffler, blocks};
+use super::threshold::three_digits;
 
 /// Conditions that are named.
 const MOST: usize = 3;
@@ -79,6 +80,18 @@ impl fmt::Display for Clause {
 }
 
 impl Clause {
+    /// Whether it holds where its feature is `value`.
+    fn holds(&self, record: &Record, value: f64) -> bool {
+        match (&self.bound, self.relation) {
+            (Bound::Label(label), _) => trial_label(record, value) == label,
+            (Bound::Number(bound), Relation::Below) => value < *bound,
+            (Bound::Number(bound), Relation::Above) => value > *bound,
+            (Bound::Number(bound), Relation::AtLeast) => value >= *bound,
+            #[expect(clippy::float_cmp, reason = "a sign is a number that is set")]
+            (Bound::Number(bound), Relation::Equal) => value == *bound,
+        }
+    }
+
     /// With the unit, as people read it.
     pub fn with_unit(&self, units: &Units) -> String {
         let unit = self.feature.unit(units).map_or_else(String::new, |unit| format!(" {unit}"));
@@ -175,12 +188,15 @@ pub fn fails_where(record: &Record) -> Vec<FailsWhere> {
         if search.gain(&new) < MIN_GAIN {
             break;
         }
-        let samples = grid.members(&choice.selections, &all);
+        let exact = grid.members(&choice.selections, &all);
         rows.retain(|row| new.binary_search(row).is_err());
-        if found.iter().all(|other| overlap(&other.samples, &samples) <= SAME) {
+        let said = |digits: fn(f64) -> f64| -> Vec<Clause> {
             let selections = choice.selections.iter();
-            let clauses = selections.flat_map(|one| clauses(record, &grid.axes[one.axis], *one));
-            found.push(search.report(record, clauses.collect(), samples, p_value));
+            selections.flat_map(|one| clauses(record, &grid.axes[one.axis], *one, digits)).collect()
+        };
+        let (clauses, samples) = search.in_few_digits(record, said, exact);
+        if found.iter().all(|other| overlap(&other.samples, &samples) <= SAME) {
+            found.push(search.report(record, clauses, samples, p_value));
         }
     }
     found
@@ -246,6 +262,20 @@ impl Search {
         (sharp.score > choice.score + DIGITS_COST).then_some((grid, sharp))
     }
 
+    /// The clauses with bounds of three digits and the samples for which these hold; as they
+    /// are where that would be another condition.
+    fn in_few_digits(
+        &self,
+        record: &Record,
+        said: impl Fn(fn(f64) -> f64) -> Vec<Clause>,
+        exact: Vec<usize>,
+    ) -> (Vec<Clause>, Vec<usize>) {
+        let rounded = said(three_digits);
+        let samples = holding(record, &rounded);
+        let is_same = (self.gain(&samples) - self.gain(&exact)).abs() < DIGITS_COST;
+        if is_same { (rounded, samples) } else { (said(|cut| cut), exact) }
+    }
+
     /// The squared error of each sample beyond an even spread, as shares of that of `rows`.
     fn excess(&self, rows: &[usize]) -> Option<Vec<f64>> {
         let total: f64 = rows.iter().map(|row| self.shares[*row]).sum();
@@ -293,8 +323,25 @@ fn overlap(a: &[usize], b: &[usize]) -> f64 {
     common as f64 / (a.len() + b.len() - common).max(1) as f64
 }
 
-/// A selection in words.
-fn clauses(record: &Record, axis: &Axis, Selection { span, .. }: Selection) -> Vec<Clause> {
+/// The samples for which all of `clauses` hold.
+fn holding(record: &Record, clauses: &[Clause]) -> Vec<usize> {
+    let known: Vec<_> = clauses.iter().map(|c| (c, c.feature.values(record.samples()))).collect();
+    let holds = |row: &usize| {
+        let mut all = known.iter();
+        all.all(|(clause, values)| {
+            values.get(*row).is_some_and(|value| clause.holds(record, *value))
+        })
+    };
+    (0..record.len()).filter(holds).collect()
+}
+
+/// A selection in words, its bounds as `digits` makes them.
+fn clauses(
+    record: &Record,
+    axis: &Axis,
+    Selection { span, .. }: Selection,
+    digits: fn(f64) -> f64,
+) -> Vec<Clause> {
     let feature = axis.feature;
     let (from, to) = (usize::from(span.from), usize::from(span.to));
     if feature.has_kinds() {
@@ -303,6 +350,7 @@ fn clauses(record: &Record, axis: &Axis, Selection { span, .. }: Selection) -> V
     }
     let values = feature.values(record.samples());
     let lower = from.checked_sub(1).and_then(|cut| axis.cuts.get(cut)).map(|&cut| {
+        let cut = digits(cut);
         let touched = values.iter().any(|value| value.partial_cmp(&cut) == Some(EQUAL));
         let relation = if touched { Relation::AtLeast } else { Relation::Above };
         Clause { feature, relation, bound: Bound::Number(cut) }
@@ -310,7 +358,7 @@ fn clauses(record: &Record, axis: &Axis, Selection { span, .. }: Selection) -> V
     let upper = axis.cuts.get(to - 1).map(|&cut| Clause {
         feature,
         relation: Relation::Below,
-        bound: Bound::Number(cut),
+        bound: Bound::Number(digits(cut)),
     });
     lower.into_iter().chain(upper).collect()
 }
@@ -356,6 +404,64 @@ mod tests {
                         when |input| < 1.2 V and speed >= -3 deg/s";
         assert_eq!(found.sentence(&units), expected);
         assert_eq!([0.004, 0.996, 0.0, 1.0].map(percent), ["0.4 %", "99.6 %", "0 %", "100 %"]);
+    }
+
+    /// A residual that is large for the first part of `output`.
+    fn failing(output: Vec<f64>, part: usize) -> Record {
+        let samples = output.len();
+        let size = |k: usize| if k < part { 5.0 } else { 0.1 };
+        let sign = |k: usize| if k * 7919 % 13 < 6 { -1.0 } else { 1.0 };
+        let samples = super::super::Samples {
+            residual: (0..samples).map(|k| size(k) * sign(k)).collect(),
+            input: vec![1.0; samples],
+            output,
+            speed: vec![1.0; samples],
+            since_step_s: vec![0.0; samples],
+            hold_s: vec![1.0; samples],
+            time_s: vec![0.0; samples],
+            trial: vec![0; samples],
+        };
+        let all = 0..samples.residual.len();
+        Record::new(samples, vec!["1".to_owned()], vec![all]).unwrap()
+    }
+
+    #[test]
+    fn the_shares_are_those_of_the_condition_as_it_is_said() {
+        // A quantile near the end of the failure lies where samples are dense.
+        let dense = |k: usize| 12.345 + 1e-6 * k as f64;
+        let at = |k: usize| if (1100..1300).contains(&k) { dense(k) } else { k as f64 / 100.0 };
+        let record = failing((0..4000).map(at).collect(), 1230);
+        let found = fails_where(&record);
+        let bound: f64 = found[0].condition.strip_prefix("output < ").unwrap().parse().unwrap();
+        let below = record.samples().output.iter().filter(|output| **output < bound).count();
+        assert_eq!(found[0].samples.len(), below);
+        assert!((found[0].share_of_time - below as f64 / 4000.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn bounds_have_no_more_digits_than_matter() {
+        let record = failing((0..4000).map(|k| f64::from(k) / 100.0).collect(), 1230);
+        let search = Search {
+            grid: Grid::new(&record),
+            block_of: blocks(&record),
+            shares: record.error_shares().unwrap(),
+        };
+        let said = |bound: f64| {
+            let clause = |digits: fn(f64) -> f64| Clause {
+                feature: Feature::Output,
+                relation: Relation::Below,
+                bound: Bound::Number(digits(bound)),
+            };
+            let exact = holding(&record, &[clause(|cut| cut)]);
+            let (clauses, samples) = search.in_few_digits(&record, |d| vec![clause(d)], exact);
+            assert_eq!(samples, holding(&record, &clauses));
+            clauses[0].to_string()
+        };
+        assert_eq!(said(12.345_678), "output < 12.3");
+        // Levels that only the fifth digit parts.
+        let near = |k| if k < 2000 { 12.3451 } else { 12.3459 };
+        let found = fails_where(&failing((0..4000).map(near).collect(), 2000));
+        assert_eq!(found[0].condition, "output < 12.3455");
     }
 
     #[test]

@@ -74,6 +74,16 @@ fn roundest(low: f64, high: f64) -> f64 {
     inside.next().unwrap_or(high)
 }
 
+/// `value` to three significant digits.
+pub(super) fn three_digits(value: f64) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return value;
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "an exponent is small")]
+    let exponent = value.abs().log10().floor().clamp(-300.0, 300.0) as i32;
+    round_to(value, exponent - 2)
+}
+
 /// `value` rounded to a multiple of `10^exponent`; a decimal fraction is the nearest double.
 fn round_to(value: f64, exponent: i32) -> f64 {
     let unit = 10_f64.powi(exponent.abs());
@@ -91,6 +101,12 @@ mod tests {
         let levels = [-2.5, -1.0, 0.0, 1.0, 1.5, 4.0].repeat(9);
         let shown: Vec<String> = cuts(&levels, 12).iter().map(f64::to_string).collect();
         assert_eq!(shown, ["-2", "-0.5", "0.5", "1.3", "3"]);
+    }
+
+    #[test]
+    fn three_digits_are_kept() {
+        let values = [12.345_678, -0.001_239, 987_654.0, 0.5, 0.0];
+        assert_eq!(values.map(three_digits), [12.3, -0.00124, 988_000.0, 0.5, 0.0]);
     }
 
     #[test]
