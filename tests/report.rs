@@ -1,6 +1,7 @@
 //! `tauscope report` as a user sees it: a page, and Markdown with its drawings.
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
+#[cfg_attr(feature = "rrd", expect(dead_code, reason = "the page is read, not the recording"))]
 mod desk;
 
 use std::collections::BTreeSet;
