@@ -40,7 +40,9 @@ fn with_experiment(
     proposal: &Proposal,
     seed: u64,
 ) -> Joint {
-    let samples = (1..).find(|k| *k as f64 * PERIOD_S > proposal.hold_s - 0.5 * PERIOD_S).unwrap();
+    let samples = (1_usize..100_000)
+        .find(|k| *k as f64 * PERIOD_S > proposal.hold_s - 0.5 * PERIOD_S)
+        .unwrap();
     let levels = proposal.sequence();
     let changes = (1..levels.len()).filter(|k| (levels[*k] - levels[k - 1]).abs() > 0.0);
     let steps: Vec<_> = changes.map(|k| (k * samples + 1, levels[k])).collect();
