@@ -18,7 +18,8 @@ fn log(name: &str) -> Option<PathBuf> {
         return Some(path);
     }
     // Not `eprintln`, which the test runner keeps to itself.
-    writeln!(std::io::stderr(), "skipped: {} is not here", path.display()).unwrap();
+    let mut stderr = std::io::stderr();
+    writeln!(stderr, "skipped: {} is not here", path.display()).unwrap();
     None
 }
 

@@ -77,19 +77,19 @@ pub(super) fn is_near_noise(times_noise: Option<f64>) -> bool {
     times_noise.is_some_and(|times| times <= NEAR_NOISE)
 }
 
-/// Root mean square of residuals; one that stands alone beyond six robust standard
-/// deviations counts as if it were just there: a sensor's spikes say nothing of the model.
+/// Root mean square of residuals; up to two beside one another beyond six robust standard
+/// deviations count as if they were just there: a sensor's spikes say nothing of the model.
 fn without_spikes(windows: &[Vec<f64>]) -> Option<f64> {
     const SPIKE: f64 = 6.0;
+    const LONGEST: usize = 2;
     let distances: Vec<f64> = windows.iter().flatten().map(|r| r.abs()).collect();
     let limit = SPIKE * robust_scale(&distances);
-    let at = |index: usize| distances.get(index).copied().unwrap_or_default();
-    let square = |index: usize| {
-        let beside = at(index + 1).max(index.checked_sub(1).map_or(0.0, at));
-        if beside > limit { at(index).powi(2) } else { at(index).min(limit).powi(2) }
-    };
-    let squares: f64 = (0..distances.len()).map(square).sum();
-    (!distances.is_empty()).then(|| (squares / distances.len() as f64).sqrt())
+    let runs = distances.chunk_by(|a, b| (*a > limit) == (*b > limit));
+    let squares = runs.map(|run| {
+        let most = if run.len() > LONGEST { f64::INFINITY } else { limit };
+        run.iter().map(|r| r.min(most).powi(2)).sum::<f64>()
+    });
+    (!distances.is_empty()).then(|| (squares.sum::<f64>() / distances.len() as f64).sqrt())
 }
 
 #[cfg(test)]
@@ -101,7 +101,7 @@ mod tests {
     fn a_spike_counts_little_and_a_burst_in_full() {
         let calm: Vec<f64> = (0..1000).map(|k| if k % 2 == 0 { 1.0 } else { -1.0 }).collect();
         let mut spiked = calm.clone();
-        spiked[500] = 100.0;
+        spiked[500..502].fill(100.0);
         let mut burst = calm.clone();
         burst[500..510].fill(100.0);
         let size = |residuals| without_spikes(&[residuals]).unwrap();
