@@ -21,8 +21,8 @@ use super::{Completion, message, read_failures};
 #[derive(Args, Debug)]
 pub(super) struct ProtocolArgs {
     /// How long a simulation runs before its angle is set to the measured one: `free`
-    /// (never), `steps` (at every step of the input), or seconds [default: free to compare,
-    /// else steps, where an error counts where it is made]
+    /// (never), `steps` (at every step of the input, in long holds every 200 samples), or
+    /// seconds [default: free to compare, else steps, where an error counts where it is made]
     #[arg(long, value_name = "free|steps|SECONDS", value_parser = horizon, help_heading = "Model")]
     horizon: Option<Horizon>,
 
