@@ -75,3 +75,33 @@ fn every_example_is_in_the_readme() {
         assert!(readme.contains(&format!("examples/{name}")), "{name}");
     }
 }
+
+/// What the tutorial says in its own words at the end is what the program printed before.
+#[test]
+fn figures_of_the_tutorial_are_those_that_were_printed() {
+    let text = fs::read_to_string("docs/tutorial.md").unwrap();
+    let (before, end) = text.split_once("## What it was").unwrap();
+    let printed: Vec<&str> = before.lines().filter(|line| line.contains("kappa ")).collect();
+    let number = |text: &str| -> f64 { text.split([' ', ',']).next().unwrap().parse().unwrap() };
+    for row in end.lines().filter(|line| line.contains(" ± ")) {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        let (value, error) = cells[3].split_once(" ± ").unwrap();
+        let last_digit =
+            10_f64.powi(-i32::try_from(value.split('.').nth(1).unwrap().len()).unwrap());
+        let full = format!("{} ", cells[1]);
+        let agrees = printed.iter().any(|line| {
+            let Some((_, found)) = line.split_once(&full) else { return false };
+            let Some((_, found_error)) = found.split_once(" ± ") else { return false };
+            (number(found) - number(value)).abs() <= last_digit
+                && (number(found_error) - number(error)).abs() <= last_digit
+        });
+        assert!(agrees, "{row}");
+    }
+    // The guess, and what is left of it.
+    let of_guess = |count: usize| {
+        let after = before.match_indices("direction_gain.negative_factor ").nth(count).unwrap();
+        number(&before[after.0 + after.1.len()..])
+    };
+    let said = format!("was {:.2} and is {:.3} ±", of_guess(0), of_guess(1));
+    assert!(before.contains(&said), "{said}");
+}

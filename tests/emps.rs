@@ -3,8 +3,7 @@
 //! `TAUSCOPE_REAL_LOGS`, or `../shared/data`.
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
-use std::io::Write as _;
-use std::path::PathBuf;
+mod real;
 
 use tauscope::effect::find;
 use tauscope::experiment::{Joint, Trial};
@@ -16,15 +15,7 @@ use tauscope::units::SamplePeriod;
 
 /// The record, or `None` after saying that the test is skipped.
 fn joint(name: &str) -> Option<Joint> {
-    let folder = std::env::var_os("TAUSCOPE_REAL_LOGS");
-    let folder = folder.map_or_else(|| PathBuf::from("../shared/data"), PathBuf::from);
-    let path = folder.join(name);
-    if !path.exists() {
-        // Not `eprintln`, which the test runner keeps to itself.
-        let mut stderr = std::io::stderr();
-        writeln!(stderr, "skipped: {} is not here", path.display()).unwrap();
-        return None;
-    }
+    let path = real::log(name)?;
     let mut reader = csv::Reader::from_path(path).unwrap();
     let headers = reader.headers().unwrap().clone();
     let place = |name: &str| headers.iter().position(|header| header == name).unwrap();

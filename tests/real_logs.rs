@@ -2,13 +2,16 @@
 //! project: the folder that holds them is `TAUSCOPE_REAL_LOGS`, or `../shared/data`.
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
+mod real;
+
 use std::collections::BTreeMap;
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use serde::Deserialize;
 use tauscope::delay::{broken_regression, delay_scan, stroke};
+
+use real::log;
 
 #[derive(Deserialize)]
 struct Row {
@@ -18,20 +21,6 @@ struct Row {
     q: Option<f64>,
     delta_s: Option<f64>,
     verdict: String,
-}
-
-/// The log, or `None` after saying that the test is skipped.
-fn log(name: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("TAUSCOPE_REAL_LOGS");
-    let folder = folder.map_or_else(|| PathBuf::from("../shared/data"), PathBuf::from);
-    let path = folder.join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    // Not `eprintln`, which the test runner keeps to itself.
-    let mut stderr = std::io::stderr();
-    writeln!(stderr, "skipped: {} is not here", path.display()).unwrap();
-    None
 }
 
 /// The decisions of `estimate` with these options.

@@ -3,25 +3,13 @@
 //! `../shared/data`.
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
-use std::io::Write as _;
-use std::path::PathBuf;
+mod real;
+
 use std::process::Command;
 
 use serde_json::Value;
 
-/// The path of a log, or `None` after saying that the test is skipped.
-fn log(name: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("TAUSCOPE_REAL_LOGS");
-    let folder = folder.map_or_else(|| PathBuf::from("../shared/data"), PathBuf::from);
-    let path = folder.join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    // Not `eprintln`, which the test runner keeps to itself.
-    let mut stderr = std::io::stderr();
-    writeln!(stderr, "skipped: {} is not here", path.display()).unwrap();
-    None
-}
+use real::log;
 
 fn parameter(revision: &Value, name: &str) -> f64 {
     revision["parameters"][name]["value"].as_f64().unwrap()

@@ -12,7 +12,7 @@ const ONE_OF: usize = 10;
 const BLOCK: usize = 500;
 
 /// Some of `windows`, in blocks that are spread evenly over all of them; all of them where
-/// they are few.
+/// they are few, or too long to be chosen from.
 pub(super) fn thinned(windows: &[Window]) -> Vec<Window> {
     let all: usize = windows.iter().map(samples).sum();
     let kept = FEWEST.max(all / ONE_OF);
@@ -21,8 +21,10 @@ pub(super) fn thinned(windows: &[Window]) -> Vec<Window> {
     }
     let blocks = blocks(windows);
     let is_kept = |index: &usize| (index + 1) * kept / all > index * kept / all;
-    let kept = blocks.iter().enumerate().filter(|(index, _)| is_kept(index));
-    kept.flat_map(|(_, block)| block.iter().copied()).collect()
+    let chosen = blocks.iter().enumerate().filter(|(index, _)| is_kept(index));
+    let chosen: Vec<_> = chosen.flat_map(|(_, block)| block.iter().copied()).collect();
+    let enough = 2 * chosen.iter().map(samples).sum::<usize>() >= kept;
+    if enough { chosen } else { windows.to_vec() }
 }
 
 fn samples(window: &Window) -> usize {
@@ -67,6 +69,13 @@ mod tests {
         let starts: Vec<_> = kept.iter().step_by(5).map(|window| window.start).collect();
         assert_eq!(starts, [1000, 2500, 4000, 5500, 7000, 8500, 10_000, 11_500]);
         assert_eq!(thinned(&windows(1, 2000)).len(), 200);
+    }
+
+    #[test]
+    fn a_window_of_a_free_run_is_kept_whole() {
+        let part = Part::Training;
+        let run = [Window { trial: 0, start: 0, end: 100_000, part }];
+        assert_eq!(thinned(&run), run);
     }
 
     #[test]
