@@ -3,8 +3,10 @@
 use std::ops::Range;
 
 use super::failure::{self, Diagnosis, Region, Samples, diagnose, regions};
-use super::residual_size::ResidualSize;
+use super::local_misfit::local_misfit;
+use super::residual_size::{ResidualSize, clipped};
 use super::shapes::shapes;
+use super::speed_error::speed_error;
 use super::{ErrorFigures, InputCorrelation, LackOfFit, TestColumns, TrialSignals, Whiteness};
 use super::{input_correlation, lack_of_fit, noise_floor, whiteness};
 use crate::fit::{Evaluation, Fit, Horizon, Part, Record};
@@ -79,11 +81,16 @@ pub(crate) fn floor_of(record: &Record<'_>, fit: &Fit) -> Option<f64> {
 
 /// Whether `fit` leaves more than noise on the training part of `record`.
 pub(crate) fn lack_of(record: &Record<'_>, fit: &Fit) -> Option<LackOfFit> {
+    let floor = floor_of(record, fit);
+    let residuals = |part| record.cut(&fit.evaluation.residuals, part);
+    let mut everywhere = residuals(Part::Training);
+    everywhere.extend(residuals(Part::Validation));
     lack_of_fit(&TestColumns {
-        residuals: record.cut(&fit.evaluation.residuals, Part::Training),
+        residuals: residuals(Part::Training),
         own: sensitivities(record, fit),
         shapes: shapes(record, &fit.evaluation, Part::Training),
-        size: ResidualSize::of(record, &fit.evaluation, floor_of(record, fit)),
+        size: ResidualSize::of(record, &fit.evaluation, floor),
+        local: local_misfit(&clipped(&everywhere), floor),
     })
 }
 
@@ -129,9 +136,11 @@ fn restarted(record: &Record<'_>, model: &JointModel) -> Option<failure::Record>
         // An input that is never held has no levels to look at.
         let windows = restarted.windows().iter().filter(|window| window.trial == index);
         let windows: Vec<_> = windows.map(|window| window.start..window.end).collect();
+        let residual = evaluation.residuals.get(index)?;
+        samples.speed_error.extend(speed_error(residual, &windows, period));
         let own = if levels.len() > windows.len().saturating_mul(20) { windows } else { levels };
         segments.extend(own.into_iter().map(|span| first + span.start..first + span.end));
-        samples.residual.extend(evaluation.residuals.get(index)?);
+        samples.residual.extend(residual);
         samples.input.extend(&simulated.acting);
         samples.output.extend(trial.output());
         samples.speed.extend(&simulated.velocity);

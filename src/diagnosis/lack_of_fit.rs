@@ -20,6 +20,7 @@
 //!    record. Up to 1.15 times the noise of the measurement nothing is left that is worth an
 //!    effect; beyond three times it is no noise. Nor is it where it is larger on the part that
 //!    was not fitted.
+//! 5. Evenness: nor is it where it stands out in a few windows ([`LocalMisfit`]).
 //!
 //! # References
 //! T. Bohlin, "Practical Grey-box Process Identification", 2006, chapter 2 (falsification
@@ -27,8 +28,10 @@
 
 use serde::Serialize;
 
+use super::local_misfit::LocalMisfit;
 use super::regression::{Regression, residuals_of};
-use super::residual_size::{BEYOND_NOISE, ResidualSize, is_near_noise};
+use super::residual_size::{BEYOND_NOISE, ResidualSize, Says, is_near_noise};
+use super::shown_by::ShownBy;
 use super::whitening::{autoregression, whitened};
 use crate::statistics::fisher_tail;
 
@@ -46,9 +49,13 @@ pub struct LackOfFit {
     /// The root mean square residual of the part that was not fitted over that of the part
     /// that was.
     pub times_training: Option<f64>,
+    /// Where the residual stands out most; `None` where there are too few windows to tell.
+    pub local: Option<LocalMisfit>,
+    /// What shows it, where it is shown; the first of these that does.
+    pub shown_by: Option<ShownBy>,
     /// No lack of fit is shown at [`SIGNIFICANCE`], or one that is below [`NEGLIGIBLE`]; near
     /// the noise always, far beyond it never, nor where the error is larger on data that were
-    /// not fitted.
+    /// not fitted, nor where it stands out in a part of the record.
     pub adequate: bool,
 }
 
@@ -70,6 +77,8 @@ pub struct TestColumns {
     pub shapes: Vec<Vec<Vec<f64>>>,
     /// How large the residuals are.
     pub size: ResidualSize,
+    /// Where they stand out most.
+    pub local: Option<LocalMisfit>,
 }
 
 /// Tests whether `columns.shapes` explain more of the residual than noise would.
@@ -87,7 +96,14 @@ pub fn lack_of_fit(columns: &TestColumns) -> Option<LackOfFit> {
         judged.push(test(columns, &autoregression(&before_shapes))?);
     }
     let (statistic, p_value) = judged.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let adequate = p_value >= SIGNIFICANCE || misfit_share < NEGLIGIBLE;
+    let by_shapes = p_value < SIGNIFICANCE && misfit_share >= NEGLIGIBLE;
+    let as_a_whole = match columns.size.verdict() {
+        Some(Says::Misfit(shown_by)) => Some(shown_by),
+        Some(Says::Noise) => None,
+        None => by_shapes.then_some(ShownBy::Shapes),
+    };
+    let is_uneven = columns.local.is_some_and(|local| local.is_shown());
+    let shown_by = as_a_whole.or_else(|| is_uneven.then_some(ShownBy::FewWindows));
     let ResidualSize { times_noise, times_training, .. } = columns.size;
     Some(LackOfFit {
         statistic,
@@ -95,7 +111,9 @@ pub fn lack_of_fit(columns: &TestColumns) -> Option<LackOfFit> {
         misfit_share,
         times_noise,
         times_training,
-        adequate: columns.size.verdict().unwrap_or(adequate),
+        local: columns.local,
+        shown_by,
+        adequate: shown_by.is_none(),
     })
 }
 

@@ -12,10 +12,13 @@ mod correlation;
 mod error;
 pub mod failure;
 mod lack_of_fit;
+mod local_misfit;
 mod noise;
 pub(crate) mod regression;
 mod residual_size;
 mod shapes;
+mod shown_by;
+mod speed_error;
 #[cfg(test)]
 mod testing;
 pub(crate) mod whitening;
@@ -28,6 +31,8 @@ pub use correlation::{
 };
 pub use error::ErrorFigures;
 pub use lack_of_fit::{LackOfFit, NEGLIGIBLE, SIGNIFICANCE, TestColumns, lack_of_fit};
+pub use local_misfit::LocalMisfit;
 pub use noise::noise_floor;
-pub(crate) use residual_size::BEYOND_NOISE;
 pub use residual_size::ResidualSize;
+pub(crate) use residual_size::{BEYOND_NOISE, NEAR_NOISE};
+pub use shown_by::ShownBy;

@@ -1,5 +1,6 @@
 //! How large a residual is: beside the noise, and beside itself on data not fitted to.
 
+use super::shown_by::ShownBy;
 use crate::fit::{Evaluation, Part, Record};
 use crate::statistics::{fisher_tail, robust_scale};
 
@@ -9,7 +10,16 @@ pub(crate) const BEYOND_NOISE: f64 = 3.0;
 
 /// A residual no more than so many times the noise leaves nothing that is worth an effect,
 /// however sure it is that something is left.
-const NEAR_NOISE: f64 = 1.15;
+pub(crate) const NEAR_NOISE: f64 = 1.15;
+
+/// What the size of a residual says of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Says {
+    /// Nothing is left that is worth an effect.
+    Noise,
+    /// It is no noise.
+    Misfit(ShownBy),
+}
 
 /// The root mean square residual on both parts of a record.
 #[derive(Clone, Copy, Debug, Default)]
@@ -40,12 +50,14 @@ impl ResidualSize {
         }
     }
 
-    /// Whether it could be noise at all; `None` where it may be or not.
-    pub(super) fn verdict(&self) -> Option<bool> {
+    /// What it says by itself; `None` where it may be noise or not.
+    pub(super) fn verdict(&self) -> Option<Says> {
         match self.times_noise {
-            Some(times) if times > BEYOND_NOISE => Some(false),
-            Some(times) if self.is_larger_unseen() && times > 0.0 => Some(false),
-            Some(times) if times <= NEAR_NOISE => Some(true),
+            Some(times) if times > BEYOND_NOISE => Some(Says::Misfit(ShownBy::Size)),
+            Some(times) if self.is_larger_unseen() && times > 0.0 => {
+                Some(Says::Misfit(ShownBy::UnseenPart))
+            }
+            Some(times) if times <= NEAR_NOISE => Some(Says::Noise),
             _ => None,
         }
     }
@@ -77,19 +89,27 @@ pub(super) fn is_near_noise(times_noise: Option<f64>) -> bool {
     times_noise.is_some_and(|times| times <= NEAR_NOISE)
 }
 
-/// Root mean square of residuals; up to two beside one another beyond six robust standard
-/// deviations count as if they were just there: a sensor's spikes say nothing of the model.
+/// Root mean square of residuals, without their spikes.
 fn without_spikes(windows: &[Vec<f64>]) -> Option<f64> {
+    let clipped = clipped(windows);
+    let values = || clipped.iter().flatten();
+    let count = values().count();
+    (count > 0).then(|| (values().map(|r| r * r).sum::<f64>() / count as f64).sqrt())
+}
+
+/// Residuals whose spikes are as if they were just there: a sensor's say nothing of the
+/// model. Up to two samples beside one another beyond six robust standard deviations are one.
+pub(super) fn clipped(windows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     const SPIKE: f64 = 6.0;
     const LONGEST: usize = 2;
     let distances: Vec<f64> = windows.iter().flatten().map(|r| r.abs()).collect();
     let limit = SPIKE * robust_scale(&distances);
-    let runs = distances.chunk_by(|a, b| (*a > limit) == (*b > limit));
-    let squares = runs.map(|run| {
-        let most = if run.len() > LONGEST { f64::INFINITY } else { limit };
-        run.iter().map(|r| r.min(most).powi(2)).sum::<f64>()
-    });
-    (!distances.is_empty()).then(|| (squares.sum::<f64>() / distances.len() as f64).sqrt())
+    let clip = |window: &Vec<f64>| -> Vec<f64> {
+        let runs = window.chunk_by(|a, b| (a.abs() > limit) == (b.abs() > limit));
+        let most = |run: &[f64]| if run.len() > LONGEST { f64::INFINITY } else { limit };
+        runs.flat_map(|run| run.iter().map(move |r| r.clamp(-most(run), most(run)))).collect()
+    };
+    windows.iter().map(clip).collect()
 }
 
 #[cfg(test)]
@@ -133,9 +153,10 @@ mod tests {
 
     #[test]
     fn what_is_larger_there_is_no_noise() {
-        assert!((0..20).all(|seed| size(0.95, seed, 1.6).verdict() == Some(false)));
+        let unseen = Some(Says::Misfit(ShownBy::UnseenPart));
+        assert!((0..20).all(|seed| size(0.95, seed, 1.6).verdict() == unseen));
         // Near the noise it does not matter.
         let near = ResidualSize { times_noise: Some(0.7), ..size(0.0, 1, 1.6) };
-        assert_eq!(near.verdict(), Some(true));
+        assert_eq!(near.verdict(), Some(Says::Noise));
     }
 }

@@ -71,7 +71,7 @@ fn mean_variance(windows: &[Vec<f64>], noise: &[f64], power: f64) -> f64 {
 
 /// Correlations of noise with the memory `noise` at lags from 0 to below `count`, as far as
 /// they matter.
-fn correlations(noise: &[f64], count: usize) -> Vec<f64> {
+pub(super) fn correlations(noise: &[f64], count: usize) -> Vec<f64> {
     // Impulse response, whose products with itself are the covariances.
     /// Below this part of its first value the response is over.
     const OVER: f64 = 1e-4;

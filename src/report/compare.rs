@@ -9,7 +9,8 @@ use serde_json::{Map, Value, json};
 use super::number::{number, probability, with_unit};
 use crate::diagnosis::failure::{FailsWhere, Region, Units, WorstSegment};
 use crate::diagnosis::{
-    CONFIDENCE, Comparison, ErrorFigures, InputCorrelation, LackOfFit, Whiteness,
+    CONFIDENCE, Comparison, ErrorFigures, InputCorrelation, LackOfFit, SIGNIFICANCE, ShownBy,
+    Whiteness,
 };
 use crate::effect::Dimension;
 use crate::experiment::Joint;
@@ -252,12 +253,21 @@ pub(super) fn figures(joint: &Joint, comparison: &Comparison) -> [String; 5] {
     let output = |value: f64| with_unit(value, joint.output_unit.as_deref());
     let rmse = |error: &Option<ErrorFigures>| error.map_or_else(dash, |error| output(error.rmse));
     let percent = validation.map_or_else(dash, |error| format!("{:.1} %", error.fit_percent));
-    let verdict = lack_of_fit.map_or_else(dash, |test| {
-        let shown = if test.adequate { "not shown" } else { "shown" };
-        format!("{shown} ({})", probability(test.p_value))
-    });
+    let verdict = lack_of_fit.map_or_else(dash, shown);
     let noise = noise_floor.map_or_else(dash, output);
     [rmse(training), rmse(validation), percent, noise, verdict]
+}
+
+/// Whether a lack of fit is shown, and by what.
+fn shown(test: LackOfFit) -> String {
+    let p_value = probability(test.p_value);
+    match test.shown_by {
+        None => format!("not shown ({p_value})"),
+        _ if test.p_value < SIGNIFICANCE => format!("shown ({p_value})"),
+        Some(ShownBy::FewWindows) => "shown (in few windows)".to_owned(),
+        Some(ShownBy::UnseenPart) => "shown (on unseen data)".to_owned(),
+        Some(ShownBy::Size | ShownBy::Shapes) => "shown (beyond noise)".to_owned(),
+    }
 }
 
 /// The parameters of a model in one line.

@@ -6,8 +6,8 @@ use super::finding::{Finding, added, specs};
 use super::number::{measure, number, percent, probability, rounded, with_error};
 use super::parameter_units;
 use super::separation::sentence;
-use crate::diagnosis::Comparison;
 use crate::diagnosis::failure::{Feature, Region, Units, WorstSegment};
+use crate::diagnosis::{Comparison, ShownBy};
 use crate::experiment::{Joint, Trial};
 use crate::explain::{Candidate, Verdict};
 use crate::fit::{Fit, Parameter, Status};
@@ -263,8 +263,28 @@ impl Finding<'_> {
             }
             None => format!("The error is {error}."),
         }];
+        said.extend(self.shown_beside_size());
         said.extend(self.where_it_fails());
         said
+    }
+
+    /// What shows the lack of fit of an error that may be no larger than noise.
+    fn shown_beside_size(&self) -> Option<String> {
+        let test = self.comparison().lack_of_fit?;
+        match test.shown_by? {
+            ShownBy::UnseenPart => {
+                let times = rounded(test.times_training?);
+                Some(format!("On the part that was not fitted it is {times} times as large."))
+            }
+            ShownBy::FewWindows => {
+                let times = rounded(test.local?.times_noise?);
+                Some(format!(
+                    "It is not spread as noise would be: in one window the motion that is \
+                     missed is {times} times the noise."
+                ))
+            }
+            ShownBy::Shapes | ShownBy::Size => None,
+        }
     }
 
     /// How the residual runs with what it follows most.

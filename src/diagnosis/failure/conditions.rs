@@ -6,20 +6,14 @@ use serde::Serialize;
 
 use super::axis::Axis;
 use super::feature::Feature;
-use super::grid::{Choice, Family, Grid, Selection};
+use super::grid::{Choice, Grid, Selection};
 use super::record::{Record, Units};
 use super::regions::trial_label;
-use super::significance::{Chance, Shuffler, blocks};
-use super::threshold::three_digits;
+use super::search::{DIGITS_COST, MIN_GAIN, Search};
+use super::threshold::to_digits;
 
 /// Conditions that are named.
 const MOST: usize = 3;
-
-/// The gain below which a condition is not worth acting on.
-const MIN_GAIN: f64 = 0.1;
-
-/// What a threshold with more digits must add to the gain.
-const DIGITS_COST: f64 = 0.01;
 
 /// Common samples, as a share of those of either, above which two conditions say the same.
 const SAME: f64 = 0.5;
@@ -106,7 +100,8 @@ pub struct FailsWhere {
     pub condition: String,
     /// Share of the samples for which it holds.
     pub share_of_time: f64,
-    /// Share of the sum of squared residuals that they hold.
+    /// Share of the squared error that arises in them: of the error of the speed, where that
+    /// is known, else of the residual.
     pub share_of_squared_error: f64,
     /// Root mean square of their residuals, output units.
     pub rmse: f64,
@@ -121,12 +116,12 @@ pub struct FailsWhere {
 }
 
 impl FailsWhere {
-    /// A sentence for people: `88 % of the squared error is in the 31 % of the time when
-    /// |input| < 1.2 V`.
+    /// A sentence for people: `88 % of the squared error arises in the 31 % of the time
+    /// when |input| < 1.2 V`.
     pub fn sentence(&self, units: &Units) -> String {
         let clauses: Vec<_> = self.clauses.iter().map(|clause| clause.with_unit(units)).collect();
         format!(
-            "{} of the squared error is in the {} of the time when {}",
+            "{} of the squared error arises in the {} of the time when {}",
             percent(self.share_of_squared_error),
             percent(self.share_of_time),
             clauses.join(" and ")
@@ -146,10 +141,12 @@ fn percent(share: f64) -> String {
 
 /// The conditions that hold most of the squared error in least of the time, the best first.
 ///
-/// A condition `S` is scored by its gain, with `r` the residuals of `n` samples:
+/// An error of an integrating joint stays for the rest of a hold, wherever it was made. What
+/// is looked at is therefore the error `e` of the speed, where it is known; the residual
+/// stands for it where not. A condition `S` is scored by its gain, of `n` samples:
 ///
 /// ```text
-/// J(S) = Σ_S r² / Σ r² - |S| / n = share of the squared error - share of the time
+/// J(S) = Σ_S e² / Σ e² - |S| / n = share of the squared error - share of the time
 /// ```
 ///
 /// It is the squared error in `S` beyond an even spread, as a share of all; so it grows
@@ -167,6 +164,11 @@ fn percent(share: f64) -> String {
 /// that those before it do not hold, so that each tells of another failure; one that
 /// shares more than half of its samples with one before is dropped.
 ///
+/// A gain that is wrong everywhere makes the larger error where the joint is faster. Where
+/// the first condition has no larger a share of the squared error than of the squared speed,
+/// it says no more than that; then the condition on one feature on which the relative error
+/// `e / v` depends most, among the samples of the first, is put before it.
+///
 /// The shuffles keep correlation over up to a fortieth of the record. A residual that wanders
 /// more slowly, as that of a free run without restarts does, may be reported by chance.
 ///
@@ -175,145 +177,88 @@ fn percent(share: f64) -> String {
 /// (the gain); J. H. Friedman, N. I. Fisher, "Bump hunting in high-dimensional data",
 /// Statistics and Computing 9 (1999), 123-143 (covering one after the other).
 pub fn fails_where(record: &Record) -> Vec<FailsWhere> {
-    let Some(shares) = record.error_shares() else { return Vec::new() };
-    let search = Search { grid: Grid::new(record), block_of: blocks(record), shares };
+    let Some(shares) = record.shares_of_what_arises() else { return Vec::new() };
+    let search = Search::new(record, shares);
     let mut rows: Vec<usize> = (0..record.len()).collect();
     let all = rows.clone();
     let mut found: Vec<FailsWhere> = Vec::new();
     for _ in 0..MOST {
         let Some((choice, p_value)) = search.best(&rows) else { break };
         let sharp = search.sharpened(record, &choice, &rows);
-        let (grid, choice) = sharp.as_ref().map_or((&search.grid, &choice), |(g, c)| (g, c));
+        let (grid, choice) = sharp.as_ref().map_or((search.grid(), &choice), |(g, c)| (g, c));
         let new = grid.members(&choice.selections, &rows);
         if search.gain(&new) < MIN_GAIN {
             break;
         }
         let exact = grid.members(&choice.selections, &all);
         rows.retain(|row| new.binary_search(row).is_err());
-        let said = |digits: fn(f64) -> f64| -> Vec<Clause> {
-            let selections = choice.selections.iter();
-            selections.flat_map(|one| clauses(record, &grid.axes[one.axis], *one, digits)).collect()
-        };
-        let (clauses, samples) = search.in_few_digits(record, said, exact);
+        let (clauses, samples) = in_few_digits(record, &search, grid, choice, &exact);
         if found.iter().all(|other| overlap(&other.samples, &samples) <= SAME) {
-            found.push(search.report(record, clauses, samples, p_value));
+            found.push(report(record, &search, clauses, samples, p_value));
         }
     }
-    found
+    match found.first().filter(|first| search.only_moves(record, &first.samples)) {
+        Some(first) => beside_motion(record, &search, first).into_iter().chain(found).collect(),
+        None => found,
+    }
 }
 
-/// A record made ready to be searched.
-struct Search {
-    grid: Grid,
-    block_of: Vec<usize>,
-    shares: Vec<f64>,
+/// The condition on which the relative error depends most where the joint moves, which is
+/// all that `moving` says.
+fn beside_motion(record: &Record, search: &Search, moving: &FailsWhere) -> Option<FailsWhere> {
+    let relative = search.relative(record, &moving.samples)?;
+    let (choice, p_value) = relative.best_on_one_feature(&moving.samples)?;
+    let inside = relative.grid().members(&choice.selections, &moving.samples);
+    if relative.gain_among(&moving.samples, &inside) < MIN_GAIN {
+        return None;
+    }
+    let all: Vec<usize> = (0..record.len()).collect();
+    let exact = relative.grid().members(&choice.selections, &all);
+    let (clauses, samples) = in_few_digits(record, search, relative.grid(), &choice, &exact);
+    let is_new = overlap(&moving.samples, &samples) <= SAME;
+    is_new.then(|| report(record, search, clauses, samples, p_value))
 }
 
-impl Search {
-    /// The best condition for the samples `rows` that chance does not explain.
-    fn best(&self, rows: &[usize]) -> Option<(Choice, f64)> {
-        let excess = self.excess(rows)?;
-        let sums = self.grid.part_sums(rows, &excess);
-        let one = self.grid.best_of(&sums, Family::OneFeature);
-        if one.selections.is_empty() {
-            return None;
-        }
-        let shuffler = Shuffler::new(&self.grid, rows, &excess, &self.block_of);
-        let chance = shuffler.stands_out(Family::OneFeature, one.score)?;
-        let one_p = chance.p_value(Family::OneFeature, one.score)?;
-        let pair = self.grid.best_pair(rows, &excess);
-        if pair.score <= one.score {
-            return Some((one, one_p));
-        }
-        let pair_p = self.pair_p_value(&pair, rows, &chance);
-        Some(pair_p.map_or((one, one_p), |p_value| (pair, p_value)))
-    }
+/// The clauses of `choice` with bounds of three digits, or more where that would be another
+/// condition, and the samples for which these hold; as they are, with the samples `exact`,
+/// where six do not do.
+fn in_few_digits(
+    record: &Record,
+    search: &Search,
+    grid: &Grid,
+    choice: &Choice,
+    exact: &[usize],
+) -> (Vec<Clause>, Vec<usize>) {
+    let said = |digits: &dyn Fn(f64) -> f64| -> Vec<Clause> {
+        let selections = choice.selections.iter();
+        selections.flat_map(|one| clauses(record, &grid.axes[one.axis], *one, digits)).collect()
+    };
+    let rounded = (3..=6).map(|digits| {
+        let clauses = said(&|cut| to_digits(cut, digits));
+        let samples = holding(record, &clauses);
+        (clauses, samples)
+    });
+    let apart = |samples: &[usize]| (search.gain(samples) - search.gain(exact)).abs();
+    let mut near = rounded.filter(|(_, samples)| apart(samples) < DIGITS_COST);
+    near.next().unwrap_or_else(|| (said(&|cut| cut), exact.to_vec()))
+}
 
-    /// The p-value of two clauses: of either alone, and of the other among its samples.
-    fn pair_p_value(&self, pair: &Choice, rows: &[usize], chance: &Chance) -> Option<f64> {
-        let [a, b] = pair.selections.as_slice() else { return None };
-        let orders = [(*a, *b), (*b, *a)];
-        let p_value = |(first, second)| {
-            let inside = self.grid.members(&[first], rows);
-            let alone = chance.p_value(Family::OneClause, self.gain_among(rows, &inside))?;
-            let gain = self.gain_among(&inside, &self.grid.members(&[second], &inside));
-            let excess = self.excess(&inside)?;
-            let shuffler = Shuffler::new(&self.grid, &inside, &excess, &self.block_of);
-            let chance = shuffler.stands_out(Family::OneClause, gain)?;
-            Some(alone.max(chance.p_value(Family::OneClause, gain)?))
-        };
-        orders.into_iter().find_map(p_value)
-    }
-
-    /// The condition with its thresholds moved to where the gain is largest, and the grid
-    /// it is of; none when that gains too little to be worth the digits.
-    fn sharpened(
-        &self,
-        record: &Record,
-        choice: &Choice,
-        rows: &[usize],
-    ) -> Option<(Grid, Choice)> {
-        let excess = self.excess(rows)?;
-        let grid = self.grid.about(record, choice)?;
-        let sharp = match choice.selections.len() {
-            1 => grid.best_of(&grid.part_sums(rows, &excess), Family::OneFeature),
-            _ => grid.best_pair(rows, &excess),
-        };
-        (sharp.score > choice.score + DIGITS_COST).then_some((grid, sharp))
-    }
-
-    /// The clauses with bounds of three digits and the samples for which these hold; as they
-    /// are where that would be another condition.
-    fn in_few_digits(
-        &self,
-        record: &Record,
-        said: impl Fn(fn(f64) -> f64) -> Vec<Clause>,
-        exact: Vec<usize>,
-    ) -> (Vec<Clause>, Vec<usize>) {
-        let rounded = said(three_digits);
-        let samples = holding(record, &rounded);
-        let is_same = (self.gain(&samples) - self.gain(&exact)).abs() < DIGITS_COST;
-        if is_same { (rounded, samples) } else { (said(|cut| cut), exact) }
-    }
-
-    /// The squared error of each sample beyond an even spread, as shares of that of `rows`.
-    fn excess(&self, rows: &[usize]) -> Option<Vec<f64>> {
-        let total: f64 = rows.iter().map(|row| self.shares[*row]).sum();
-        let even = 1.0 / rows.len() as f64;
-        (total > 0.0).then(|| rows.iter().map(|row| self.shares[*row] / total - even).collect())
-    }
-
-    /// Share of the squared error minus share of the time, of the whole record.
-    fn gain(&self, rows: &[usize]) -> f64 {
-        let share: f64 = rows.iter().map(|row| self.shares[*row]).sum();
-        share - rows.len() as f64 / self.shares.len() as f64
-    }
-
-    /// The same of a part of the record.
-    fn gain_among(&self, part: &[usize], rows: &[usize]) -> f64 {
-        let sum = |rows: &[usize]| rows.iter().map(|row| self.shares[*row]).sum::<f64>();
-        sum(rows) / sum(part) - rows.len() as f64 / part.len() as f64
-    }
-
-    fn report(
-        &self,
-        record: &Record,
-        clauses: Vec<Clause>,
-        samples: Vec<usize>,
-        p_value: f64,
-    ) -> FailsWhere {
-        let texts: Vec<_> = clauses.iter().map(Clause::to_string).collect();
-        let share_of_time = samples.len() as f64 / record.len() as f64;
-        let share: f64 = samples.iter().map(|row| self.shares[*row]).sum();
-        FailsWhere {
-            condition: texts.join(" and "),
-            share_of_time,
-            share_of_squared_error: share,
-            rmse: record.rmse() * (share / share_of_time).sqrt(),
-            p_value,
-            clauses,
-            samples,
-        }
+fn report(
+    record: &Record,
+    search: &Search,
+    clauses: Vec<Clause>,
+    samples: Vec<usize>,
+    p_value: f64,
+) -> FailsWhere {
+    let texts: Vec<_> = clauses.iter().map(Clause::to_string).collect();
+    FailsWhere {
+        condition: texts.join(" and "),
+        share_of_time: samples.len() as f64 / record.len() as f64,
+        share_of_squared_error: search.share(&samples),
+        rmse: record.rmse_of(&samples),
+        p_value,
+        clauses,
+        samples,
     }
 }
 
@@ -340,7 +285,7 @@ fn clauses(
     record: &Record,
     axis: &Axis,
     Selection { span, .. }: Selection,
-    digits: fn(f64) -> f64,
+    digits: &dyn Fn(f64) -> f64,
 ) -> Vec<Clause> {
     let feature = axis.feature;
     let (from, to) = (usize::from(span.from), usize::from(span.to));
@@ -400,7 +345,7 @@ mod tests {
             samples: Vec::new(),
         };
         let units = Units { input: Some("V".into()), output: Some("deg".into()) };
-        let expected = "88 % of the squared error is in the 31 % of the time \
+        let expected = "88 % of the squared error arises in the 31 % of the time \
                         when |input| < 1.2 V and speed >= -3 deg/s";
         assert_eq!(found.sentence(&units), expected);
         assert_eq!([0.004, 0.996, 0.0, 1.0].map(percent), ["0.4 %", "99.6 %", "0 %", "100 %"]);
@@ -420,6 +365,7 @@ mod tests {
             hold_s: vec![1.0; samples],
             time_s: vec![0.0; samples],
             trial: vec![0; samples],
+            speed_error: Vec::new(),
         };
         let all = 0..samples.residual.len();
         Record::new(samples, vec!["1".to_owned()], vec![all]).unwrap()
@@ -441,23 +387,14 @@ mod tests {
     #[test]
     fn bounds_have_no_more_digits_than_matter() {
         let record = failing((0..4000).map(|k| f64::from(k) / 100.0).collect(), 1230);
-        let search = Search {
-            grid: Grid::new(&record),
-            block_of: blocks(&record),
-            shares: record.error_shares().unwrap(),
-        };
-        let said = |bound: f64| {
-            let clause = |digits: fn(f64) -> f64| Clause {
-                feature: Feature::Output,
-                relation: Relation::Below,
-                bound: Bound::Number(digits(bound)),
-            };
-            let exact = holding(&record, &[clause(|cut| cut)]);
-            let (clauses, samples) = search.in_few_digits(&record, |d| vec![clause(d)], exact);
-            assert_eq!(samples, holding(&record, &clauses));
-            clauses[0].to_string()
-        };
-        assert_eq!(said(12.345_678), "output < 12.3");
+        let search = Search::new(&record, record.shares_of_what_arises().unwrap());
+        // The grid's own thresholds have all digits.
+        let choice = search.best_on_one_feature(&(0..4000).collect::<Vec<_>>()).unwrap().0;
+        let exact = search.grid().members(&choice.selections, &(0..4000).collect::<Vec<_>>());
+        let (clauses, samples) = in_few_digits(&record, &search, search.grid(), &choice, &exact);
+        assert_eq!(samples, holding(&record, &clauses));
+        assert!(clauses[0].to_string().len() <= "output < 12.3".len(), "{}", clauses[0]);
+        assert!((search.gain(&samples) - search.gain(&exact)).abs() < DIGITS_COST);
         // Levels that only the fifth digit parts.
         let near = |k| if k < 2000 { 12.3451 } else { 12.3459 };
         let found = fails_where(&failing((0..4000).map(near).collect(), 2000));

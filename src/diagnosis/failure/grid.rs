@@ -13,6 +13,10 @@ const FINE_PARTS: usize = 250;
 /// What a second clause must add to the gain to be worth reading.
 const CLAUSE_COST: f64 = 0.05;
 
+/// What a clause on the speed must add to one on the input: the input was chosen, the speed
+/// came of it.
+const SPEED_COST: f64 = 0.02;
+
 /// Parts `from .. to` of an axis, and the clauses it takes to say so.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Span {
@@ -43,7 +47,8 @@ pub(super) struct Selection {
 pub(super) struct Choice {
     /// Selections that all hold, one or two.
     pub(super) selections: Vec<Selection>,
-    /// Share of the squared error minus share of the time, minus the cost of clauses.
+    /// Share of the squared error minus share of the time, minus the cost of clauses and
+    /// features.
     pub(super) score: f64,
 }
 
@@ -92,6 +97,16 @@ pub(super) struct Grid {
 
 impl Grid {
     pub(super) fn new(record: &Record) -> Self {
+        Self::of(record, |_| true)
+    }
+
+    /// Of all features but those that say how fast the joint is driven.
+    pub(super) fn beside_motion(record: &Record) -> Self {
+        let drives = [Feature::Input, Feature::AbsInput, Feature::Speed, Feature::AbsSpeed];
+        Self::of(record, |feature| !drives.contains(&feature))
+    }
+
+    fn of(record: &Record, takes_part: impl Fn(Feature) -> bool) -> Self {
         let turns = |values: &[f64]| {
             values.iter().any(|value| *value > 0.0) && values.iter().any(|value| *value < 0.0)
         };
@@ -102,7 +117,8 @@ impl Grid {
             Feature::AbsSpeed => turns(&samples.speed),
             _ => true,
         };
-        let features = Feature::ALL.into_iter().filter(useful);
+        let all = Feature::ALL.into_iter().filter(|feature| takes_part(*feature));
+        let features = all.filter(useful);
         let axes = features.filter_map(|feature| Axis::new(record, feature, PARTS));
         let axes: Vec<_> = axes.collect();
         let spans = axes.iter().map(spans).collect();
@@ -147,7 +163,8 @@ impl Grid {
             let cumulative = cumulative(sums);
             let offered = spans.iter().filter(|span| family.has(**span));
             for &span in offered {
-                best.offer(span.of(&cumulative) - cost(span.clauses), &[Selection { axis, span }]);
+                let score = span.of(&cumulative) - self.cost(&[axis], span.clauses);
+                best.offer(score, &[Selection { axis, span }]);
             }
         }
         best
@@ -156,10 +173,10 @@ impl Grid {
     /// The scores of the best conditions on one feature, of either family.
     pub(super) fn best_scores(&self, sums: &[Vec<f64>]) -> BestScores {
         let mut best = BestScores::default();
-        for (sums, spans) in sums.iter().zip(&self.spans) {
+        for (axis, (sums, spans)) in sums.iter().zip(&self.spans).enumerate() {
             let cumulative = cumulative(sums);
             for span in spans {
-                let score = span.of(&cumulative) - cost(span.clauses);
+                let score = span.of(&cumulative) - self.cost(&[axis], span.clauses);
                 best.one_feature = best.one_feature.max(score);
                 if span.clauses == 1 {
                     best.one_clause = best.one_clause.max(score);
@@ -192,18 +209,29 @@ impl Grid {
         let table = self.table(first, second, rows, excess);
         let width = self.axes[second].parts() + 2;
         let mut inside = vec![0.0; width];
+        let cost = self.cost(&[first, second], 2);
         for &span in self.spans[first].iter().filter(|span| span.clauses == 1) {
             let (from, to) = (usize::from(span.from) * width, usize::from(span.to) * width);
             let rows = table[to..to + width].iter().zip(&table[from..from + width]);
             inside.iter_mut().zip(rows).for_each(|(slot, (to, from))| *slot = to - from);
             for &other in self.spans[second].iter().filter(|span| span.clauses == 1) {
-                let score = other.of(&inside) - cost(2);
+                let score = other.of(&inside) - cost;
                 if score > best.score {
                     let first = Selection { axis: first, span };
                     best.offer(score, &[first, Selection { axis: second, span: other }]);
                 }
             }
         }
+    }
+
+    /// What `clauses` clauses on `axes` cost.
+    fn cost(&self, axes: &[usize], clauses: u8) -> f64 {
+        let is_speed = |axis: &&usize| {
+            let feature = self.axes.get(**axis).map(|axis| axis.feature);
+            matches!(feature, Some(Feature::Speed | Feature::AbsSpeed))
+        };
+        let of_features = SPEED_COST * axes.iter().filter(is_speed).count() as f64;
+        CLAUSE_COST * (f64::from(clauses) - 1.0) + of_features
     }
 
     /// Sums over all parts below `(j, k)` of two axes, row by row.
@@ -237,11 +265,6 @@ impl Family {
     fn has(self, span: Span) -> bool {
         self == Self::OneFeature || span.clauses == 1
     }
-}
-
-/// What `clauses` clauses cost.
-fn cost(clauses: u8) -> f64 {
-    CLAUSE_COST * (f64::from(clauses) - 1.0)
 }
 
 fn cumulative(sums: &[f64]) -> Vec<f64> {
@@ -287,6 +310,7 @@ mod tests {
             since_step_s: column(4),
             hold_s: column(2),
             trial: column(3).into_iter().map(|value| usize::from(value > -2.0)).collect(),
+            speed_error: Vec::new(),
         };
         Record::new(samples, vec!["a".into(), "b".into()], Vec::new()).unwrap()
     }
@@ -317,14 +341,18 @@ mod tests {
                 let pairs = rows.iter().zip(&excess).filter(|(row, _)| inside(**row));
                 pairs.map(|(_, excess)| excess).sum::<f64>()
             };
-            let best = all_pairs(&grid).iter().map(|pair| sum(pair) - cost(2)).fold(0.0, f64::max);
+            let value = |selections: &[Selection], clauses| {
+                let axes: Vec<usize> = selections.iter().map(|one| one.axis).collect();
+                sum(selections) - grid.cost(&axes, clauses)
+            };
+            let best = all_pairs(&grid).iter().map(|pair| value(pair, 2)).fold(0.0, f64::max);
             assert!((grid.best_pair(&rows, &excess).score - best).abs() < 1e-9);
 
             let spans = grid.spans.iter().enumerate();
             let one = spans.flat_map(|(axis, spans)| {
                 spans.iter().map(move |span| Selection { axis, span: *span })
             });
-            let best = one.map(|one| sum(&[one]) - cost(one.span.clauses)).fold(0.0, f64::max);
+            let best = one.map(|one| value(&[one], one.span.clauses)).fold(0.0, f64::max);
             let sums = grid.part_sums(&rows, &excess);
             assert!((grid.best_of(&sums, Family::OneFeature).score - best).abs() < 1e-9);
             assert!((grid.best_scores(&sums).of(Family::OneFeature) - best).abs() < 1e-9);

@@ -15,6 +15,7 @@ mod feature;
 mod grid;
 mod record;
 mod regions;
+mod search;
 mod segments;
 mod significance;
 mod threshold;

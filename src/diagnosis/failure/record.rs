@@ -24,6 +24,9 @@ pub struct Samples {
     pub hold_s: Vec<f64>,
     /// Index of the trial in [`Record::trials`].
     pub trial: Vec<usize>,
+    /// Measured minus simulated speed, output units per second: where an error arises. Empty
+    /// where it is not known.
+    pub speed_error: Vec<f64>,
 }
 
 /// Units of input and output, where they are known.
@@ -49,7 +52,7 @@ pub enum RecordError {
         /// Samples of the residual.
         expected: usize,
     },
-    /// A residual is NaN or infinite.
+    /// A residual, or an error of the speed, is NaN or infinite.
     #[error("residual {index} is not a finite number")]
     NotFinite {
         /// Its index, from 0.
@@ -97,12 +100,13 @@ impl Record {
         segments: Vec<Range<usize>>,
     ) -> Result<Self, RecordError> {
         let expected = samples.residual.len();
-        let odd = samples.lengths().into_iter().find(|(_, found)| *found != expected);
+        let odd = samples.lengths().find(|(_, found)| *found != expected);
         if let Some((column, found)) = odd {
             return Err(RecordError::UnequalLengths { column, found, expected });
         }
-        if let Some(index) = samples.residual.iter().position(|value| !value.is_finite()) {
-            return Err(RecordError::NotFinite { index });
+        let mut residuals = samples.residual.iter().chain(&samples.speed_error);
+        if let Some(place) = residuals.position(|value| !value.is_finite()) {
+            return Err(RecordError::NotFinite { index: place % expected });
         }
         let unknown = samples.trial.iter().position(|trial| *trial >= trials.len());
         if let Some((index, &trial)) = unknown.and_then(|at| Some((at, samples.trial.get(at)?))) {
@@ -141,17 +145,14 @@ impl Record {
 
     /// The squared residual of each sample, as a share of their sum; `None` when that is 0.
     pub(super) fn error_shares(&self) -> Option<Vec<f64>> {
-        let largest = self.samples.residual.iter().fold(0.0, |max: f64, r| max.max(r.abs()));
-        if largest <= 0.0 {
-            return None;
-        }
-        let squares = self.samples.residual.iter().map(|r| (r / largest) * (r / largest));
-        let mut shares: Vec<f64> = squares.collect();
-        let sum: f64 = shares.iter().sum();
-        for share in &mut shares {
-            *share /= sum;
-        }
-        Some(shares)
+        squared_shares(&self.samples.residual)
+    }
+
+    /// The squared error of the speed of each sample, or its residual where that is not
+    /// known, as a share of their sum.
+    pub(super) fn shares_of_what_arises(&self) -> Option<Vec<f64>> {
+        let known = Some(&self.samples.speed_error).filter(|errors| !errors.is_empty());
+        squared_shares(known.unwrap_or(&self.samples.residual))
     }
 
     /// Root mean square of all residuals, output units.
@@ -159,11 +160,32 @@ impl Record {
         let squares: f64 = self.samples.residual.iter().map(|r| r * r).sum();
         (squares / self.len().max(1) as f64).sqrt()
     }
+
+    /// Root mean square of the residuals of the samples `rows`, output units.
+    pub(super) fn rmse_of(&self, rows: &[usize]) -> f64 {
+        let residuals = rows.iter().filter_map(|row| self.samples.residual.get(*row));
+        (residuals.map(|r| r * r).sum::<f64>() / rows.len().max(1) as f64).sqrt()
+    }
+}
+
+/// The square of each value, as a share of their sum; `None` when that is 0.
+fn squared_shares(values: &[f64]) -> Option<Vec<f64>> {
+    let largest = values.iter().fold(0.0, |max: f64, value| max.max(value.abs()));
+    if largest <= 0.0 {
+        return None;
+    }
+    let mut shares: Vec<f64> = values.iter().map(|value| (value / largest).powi(2)).collect();
+    let sum: f64 = shares.iter().sum();
+    for share in &mut shares {
+        *share /= sum;
+    }
+    Some(shares)
 }
 
 impl Samples {
-    fn lengths(&self) -> [(&'static str, usize); 7] {
-        [
+    fn lengths(&self) -> impl Iterator<Item = (&'static str, usize)> {
+        let speed_errors = Some(self.speed_error.len()).filter(|length| *length > 0);
+        let columns = [
             ("input", self.input.len()),
             ("output", self.output.len()),
             ("speed", self.speed.len()),
@@ -171,7 +193,8 @@ impl Samples {
             ("since_step_s", self.since_step_s.len()),
             ("hold_s", self.hold_s.len()),
             ("trial", self.trial.len()),
-        ]
+        ];
+        columns.into_iter().chain(speed_errors.map(|length| ("speed_error", length)))
     }
 }
 
@@ -202,6 +225,7 @@ mod tests {
             since_step_s: zeros.clone(),
             hold_s: zeros,
             trial: vec![0; count],
+            speed_error: Vec::new(),
         }
     }
 

@@ -74,14 +74,14 @@ fn roundest(low: f64, high: f64) -> f64 {
     inside.next().unwrap_or(high)
 }
 
-/// `value` to three significant digits.
-pub(super) fn three_digits(value: f64) -> f64 {
+/// `value` to so many significant digits.
+pub(super) fn to_digits(value: f64, digits: i32) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
     }
     #[expect(clippy::cast_possible_truncation, reason = "an exponent is small")]
     let exponent = value.abs().log10().floor().clamp(-300.0, 300.0) as i32;
-    round_to(value, exponent - 2)
+    round_to(value, exponent - (digits - 1))
 }
 
 /// `value` rounded to a multiple of `10^exponent`; a decimal fraction is the nearest double.
@@ -104,9 +104,9 @@ mod tests {
     }
 
     #[test]
-    fn three_digits_are_kept() {
+    fn as_many_digits_as_asked_for_are_kept() {
         let values = [12.345_678, -0.001_239, 987_654.0, 0.5, 0.0];
-        let shown = values.map(|value| three_digits(value).to_string());
+        let shown = values.map(|value| to_digits(value, 3).to_string());
         assert_eq!(shown, ["12.3", "-0.00124", "988000", "0.5", "0"]);
     }
 
