@@ -40,7 +40,7 @@ fn truth(id: &str) -> &'static [f64] {
         "flow_curve" => &[1.3],
         "direction_gain" => &[0.75],
         "rate_limit" => &[0.06],
-        "variable_delay" => &[-0.03, 0.03, 0.03, 0.0005, 3.0, 2.0],
+        "variable_delay" => &[-0.03, 0.03, 0.03, 0.0005, 3.0, 2.0, 100.0, 0.0],
         "actuator_lag" => &[0.12],
         "resonance" => &[0.3, 0.2],
         "coulomb_friction" => &[0.5, 0.4, 0.12],

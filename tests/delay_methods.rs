@@ -7,7 +7,9 @@ use std::process::{Command, Output};
 use tauscope::delay::{
     Condition, Method, Settings, TrialEstimate, Verdict, estimate, estimate_joint, step_delays,
 };
+use tauscope::effect::VariableDelay;
 use tauscope::fit::{Horizon, Record, Split};
+use tauscope::model::{Component, JointModel};
 use tauscope::synthetic::{
     DelayLaw, InputSpec, JointSpec, PlantSpec, Ringing, Synthetic, simulate, write_log,
 };
@@ -137,7 +139,8 @@ fn delays_go_into_a_fit() {
     let seconds = |one: &Option<tauscope::delay::StepDelay>| one.map(|one| one.delay_s);
     let delays = delays.iter().map(|trial| trial.iter().map(seconds).collect()).collect();
     let record = Record::new(joint, Split::Time(1.0), Horizon::Steps).with_delays(delays);
-    let model = tauscope::model::JointModel::integrator(10.0, 0.2);
+    let measured = Component::measured(&VariableDelay).unwrap();
+    let model = JointModel::integrator(10.0, 0.2).with(measured);
     let arrivals = record.arrivals(&model, 0);
     let truth = &made.truth[3];
     let expected = (truth.p as f64 - 1.0) * 0.01 + truth.delay_s;

@@ -114,7 +114,8 @@ impl Case<'_> {
             let extra = self.part("variable_delay").map_or(0.0, |p| {
                 let falls = f64::from(u8::from(after < before));
                 let levels_off = |x: f64, scale: f64| scale * (1.0 - (-x / scale).exp());
-                let slow = p[2] * levels_off(now - since, p[5]) + p[3] * (now + START_S);
+                let slow =
+                    p[2] * levels_off(now - since, p[5]) + p[3] * levels_off(now + START_S, p[6]);
                 p[0] * levels_off((after - before).abs(), p[4]) + p[1] * falls + slow
             });
             let known = self.delays.as_ref().and_then(|delays| delays[changes.len()]);
@@ -315,7 +316,7 @@ fn effects_of_the_input_and_of_transport_are_exact() {
     assert_within(&[("input_saturation", &[2.5, 0.6])], 1e-10);
     assert_within(&[("flow_curve", &[1.6])], 1e-10);
     assert_within(&[("direction_gain", &[0.7])], 1e-10);
-    assert_within(&[("variable_delay", &[-0.013, 0.021, 0.017, 0.003, 1.7, 0.9])], 1e-10);
+    assert_within(&[("variable_delay", &[-0.013, 0.021, 0.017, 0.003, 1.7, 0.9, 6.0, 0.0])], 1e-10);
 }
 
 #[test]
@@ -365,7 +366,7 @@ fn effects_together() {
     assert_within(
         &[
             ("dead_band", &[-0.5, 0.7]),
-            ("variable_delay", &[-0.01, 0.02, 0.01, 0.001, 3.0, 2.0]),
+            ("variable_delay", &[-0.01, 0.02, 0.01, 0.001, 3.0, 2.0, 20.0, 0.0]),
             ("coulomb_friction", &[0.3, 0.3, 0.1]),
             ("position_gain", &[0.004, -0.000_03, 0.0]),
             ("backlash", &[0.5]),

@@ -116,6 +116,17 @@ pub trait Effect: Debug + Send + Sync {
         0.0
     }
 
+    /// Parameters with which each step's own delay, as it was measured, takes the place of the
+    /// joint's; `None` where it has no such form.
+    fn measured_delays(&self) -> Option<Vec<f64>> {
+        None
+    }
+
+    /// Whether `parameters` are of that form.
+    fn takes_measured_delays(&self, _parameters: &[f64]) -> bool {
+        false
+    }
+
     /// Whether it has neutral parameters, at which it changes nothing.
     ///
     /// If not, a model with it and the same without are not nested: one is not a special

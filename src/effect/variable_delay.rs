@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! extra = size · f(|after − before|, size_scale) + falling · [after < before]
-//!         + dwell · f(held, dwell_scale) + drift · t
+//!         + dwell · f(held, dwell_scale) + drift · f(t, drift_scale)
 //! f(x, s) = s · (1 − exp(−x / s)): x where s is much larger, s where it is much smaller
 //! ```
 //!
@@ -12,8 +12,12 @@
 //! A small step opens the valve less, so that pressure builds up later (`size` below 0);
 //! beyond `size_scale` a larger step gains nothing. The two directions have other loads
 //! and volumes. Static friction rises with the time at rest, and is at its height after
-//! some `dwell_scale`. Oil thins as it warms: this one is the first order of a longer story.
-//! Both scales are neutral at 1e12, where `f` is a straight line.
+//! some `dwell_scale`. Oil thins as it warms, and is warm after some `drift_scale`.
+//! With `per_step` at 1 the law does nothing, and each step has the delay that was measured
+//! of it: what sets the delays may then be anything, and need not be known. So many numbers
+//! are as many parameters; where the law does as well, it is the better explanation.
+//!
+//! The scales are neutral at 1e12, where `f` is a straight line.
 //!
 //! # References
 //! Armstrong-Hélouvry, B., Dupont, P., and Canudas de Wit, C., 1994, A survey of models,
@@ -33,7 +37,7 @@ static SPEC: Spec = Spec {
     id: "variable_delay",
     summary: "the delay depends on step size, direction, dwell and time",
     equation: "extra = size f(abs(after - before), size_scale) + falling [after < before] + \
-               dwell f(held, dwell_scale) + drift t; f(x, s) = s (1 - exp(-x / s))",
+               dwell f(held, dwell_scale) + drift f(t, drift_scale); f(x, s) = s (1 - exp(-x / s))",
     source: "Armstrong-Hélouvry, Dupont and Canudas de Wit, 1994, A survey of models, analysis \
              tools and compensation methods for the control of machines with friction, \
              Automatica 30; Merritt, 1967, Hydraulic Control Systems",
@@ -49,7 +53,7 @@ static SPEC: Spec = Spec {
         Parameter::new("dwell", "extra delay per second at the level before", Dimension::One)
             .between(-1.0, 1.0)
             .typical(0.01),
-        Parameter::new("drift", "extra delay per second of the record", Dimension::One)
+        Parameter::new("drift", "extra delay per second at the start", Dimension::One)
             .between(-0.1, 0.1)
             .typical(0.0),
         Parameter::new(
@@ -62,6 +66,12 @@ static SPEC: Spec = Spec {
         Parameter::new("dwell_scale", "hold beyond which it gains little", Dimension::Seconds)
             .between(0.0, UNLIMITED)
             .neutral(UNLIMITED),
+        Parameter::new("drift_scale", "time after which it drifts little", Dimension::Seconds)
+            .between(0.0, UNLIMITED)
+            .neutral(UNLIMITED),
+        Parameter::new(PER_STEP, "1: the delay of each step as it was measured", Dimension::One)
+            .between(0.0, 1.0)
+            .not_fitted(),
     ],
     memory: 0,
     confused_with: &["actuator_lag", "rate_limit"],
@@ -80,41 +90,61 @@ impl Effect for VariableDelay {
     }
 
     fn extra_delay_s(&self, parameters: &[f64], change: &InputChange) -> f64 {
-        let &[size, falling, dwell, drift, size_scale, dwell_scale] = parameters else {
+        let &[size, falling, dwell, drift, size_scale, dwell_scale, drift_scale, _] = parameters
+        else {
             return 0.0;
         };
         let InputChange { before, after, held_s, time_s } = *change;
         let direction = if after < before { falling } else { 0.0 };
         let grown = size * saturated((after - before).abs(), size_scale);
-        grown + direction + dwell * saturated(held_s, dwell_scale) + drift * time_s
+        let rested = dwell * saturated(held_s, dwell_scale);
+        grown + direction + rested + drift * saturated(time_s, drift_scale)
+    }
+
+    fn measured_delays(&self) -> Option<Vec<f64>> {
+        let parameters = SPEC.parameters.iter();
+        Some(parameters.map(|p| if p.name == PER_STEP { 1.0 } else { p.neutral }).collect())
+    }
+
+    fn takes_measured_delays(&self, parameters: &[f64]) -> bool {
+        parameters.last().is_some_and(|per_step| *per_step >= 0.5)
     }
 
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
         let mut bounds: Vec<_> = SPEC.parameters.iter().map(|each| each.bounds(record)).collect();
+        let scales = typical_scales(record);
         let (low, high) = FITTED_SCALES;
-        if let [.., of_size, of_dwell] = bounds.as_mut_slice() {
-            let size = record.size(Dimension::Input);
-            *of_size = (low * size, high * size);
-            *of_dwell = (low * LONG_HOLD_S, high * LONG_HOLD_S);
+        for (bounds, scale) in bounds.iter_mut().rev().skip(1).zip(scales.into_iter().rev()) {
+            *bounds = (low * scale, high * scale);
         }
         bounds
     }
 
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
         let mut start: Vec<_> = SPEC.parameters.iter().map(|each| each.start(record)).collect();
-        if let [.., of_size, of_dwell] = start.as_mut_slice() {
-            (*of_size, *of_dwell) = (2.0 * record.size(Dimension::Input), 2.0 * LONG_HOLD_S);
+        let scales = typical_scales(record);
+        for (start, scale) in start.iter_mut().rev().skip(1).zip(scales.into_iter().rev()) {
+            *start = 2.0 * scale;
         }
         vec![start]
     }
 }
 
-/// Range of the scales in a fit, in parts of the largest input and of a long hold: from what
-/// can still be told from a constant to what is straight to some percent.
+/// The last parameter.
+const PER_STEP: &str = "per_step";
+
+/// Range of the scales in a fit, in parts of what is typical: from what can still be told
+/// from a constant to what is straight to some percent.
 const FITTED_SCALES: (f64, f64) = (0.3, 20.0);
 
 /// A hold that is long, in seconds.
 const LONG_HOLD_S: f64 = 5.0;
+
+/// The three scales: the largest input, a long hold, the length of the record.
+fn typical_scales(record: &RecordRange<'_>) -> [f64; 3] {
+    let (_, length_s) = record.extent(Dimension::Seconds);
+    [record.size(Dimension::Input), LONG_HOLD_S, length_s]
+}
 
 /// `scale · (1 − exp(−x / scale))`.
 fn saturated(x: f64, scale: f64) -> f64 {
@@ -128,7 +158,7 @@ mod tests {
 
     #[test]
     fn size_direction_dwell_and_time_each_add_their_part() {
-        let parameters = [-0.01, 0.02, 0.005, 0.001, UNLIMITED, UNLIMITED];
+        let parameters = [-0.01, 0.02, 0.005, 0.001, UNLIMITED, UNLIMITED, UNLIMITED, 0.0];
         let extra = |change| VariableDelay.extra_delay_s(&parameters, &change);
         let rising = InputChange { before: -1.0, after: 2.0, held_s: 4.0, time_s: 50.0 };
         assert!((extra(rising) - (-0.03 + 0.02 + 0.05)).abs() < 1e-12);
@@ -137,10 +167,22 @@ mod tests {
     }
 
     #[test]
-    fn size_and_dwell_gain_little_beyond_their_scales() {
-        let parameters = [-0.01, 0.0, 0.02, 0.0, 1.5, 2.0];
-        let change = InputChange { before: 0.0, after: 3.0, held_s: 6.0, time_s: 0.0 };
-        let expected = -0.01 * 1.5 * (1.0 - (-2_f64).exp()) + 0.02 * 2.0 * (1.0 - (-3_f64).exp());
+    fn measured_delays_take_the_place_of_the_law() {
+        let measured = VariableDelay.measured_delays().unwrap();
+        assert!(VariableDelay.takes_measured_delays(&measured));
+        let neutral: Vec<f64> = SPEC.parameters.iter().map(|p| p.neutral).collect();
+        assert!(!VariableDelay.takes_measured_delays(&neutral));
+        let change = InputChange { before: 0.0, after: 3.0, held_s: 6.0, time_s: 200.0 };
+        assert_eq!(VariableDelay.extra_delay_s(&measured, &change), 0.0);
+    }
+
+    #[test]
+    fn size_dwell_and_time_gain_little_beyond_their_scales() {
+        let parameters = [-0.01, 0.0, 0.02, 0.001, 1.5, 2.0, 50.0, 0.0];
+        let change = InputChange { before: 0.0, after: 3.0, held_s: 6.0, time_s: 200.0 };
+        let expected = -0.01 * 1.5 * (1.0 - (-2_f64).exp())
+            + 0.02 * 2.0 * (1.0 - (-3_f64).exp())
+            + 0.001 * 50.0 * (1.0 - (-4_f64).exp());
         assert!((VariableDelay.extra_delay_s(&parameters, &change) - expected).abs() < 1e-15);
     }
 }

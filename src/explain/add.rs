@@ -2,9 +2,9 @@
 
 use super::evidence::Noise;
 use super::race::{parameters, range};
-use crate::diagnosis::{Comparison, compare};
+use crate::diagnosis::{Comparison, ErrorFigures, NEAR_NOISE, compare, floor_of};
 use crate::effect::Effect;
-use crate::fit::{Fit, FitError, Record, fit};
+use crate::fit::{Fit, FitError, Part, Record, fit};
 use crate::model::{Component, JointModel};
 
 /// A model before and after an effect was added.
@@ -54,15 +54,36 @@ pub fn add(
     check(&base.model, effect)?;
     let model = base.model.with(Component::neutral(effect));
     let levels = record.input_levels();
-    let with = fit(record, &model, &range(record, &model, &levels))?;
-    let noise = Noise::of(record, &with);
-    let evidence = |fit: &Fit| noise.evidence(record, &fit.evaluation, parameters(fit));
+    let range = range(record, &model, &levels);
+    let by_law = fit(record, &model, &range)?;
+    let measured = of_measured_delays(record, &base, &by_law, effect);
+    let measured = measured.and_then(|model| fit(record, &model, &range).ok());
+    let costs_less = |other: &&Fit| other.cost < by_law.cost;
+    let noise = Noise::of(record, measured.as_ref().filter(costs_less).unwrap_or(&by_law));
+    let evidence = |fit: &Fit| noise.evidence(record, &fit.evaluation, parameters(record, fit));
+    let law = evidence(&by_law).criterion();
+    let better = measured.filter(|measured| evidence(measured).criterion() < law);
+    let with = better.unwrap_or(by_law);
     let p_value = evidence(&with).p_value_against(&evidence(&base));
     Ok(Addition {
         before: compare(record, base),
         after: compare(record, with),
         p_value: effect.nests().then_some(p_value),
     })
+}
+
+/// The model of `base` with `effect` in the form that takes measured delays, where it has one
+/// and its law does not come near the noise.
+fn of_measured_delays(
+    record: &Record<'_>,
+    base: &Fit,
+    by_law: &Fit,
+    effect: &'static dyn Effect,
+) -> Option<JointModel> {
+    let model = base.model.with(Component::measured(effect)?);
+    let error = ErrorFigures::of(record, &by_law.evaluation, Part::Training)?.rmse;
+    let is_near = floor_of(record, by_law).is_some_and(|floor| error <= NEAR_NOISE * floor);
+    (!is_near && record.measured_delays(&model) > 0).then_some(model)
 }
 
 fn check(model: &JointModel, effect: &'static dyn Effect) -> Result<(), AddError> {

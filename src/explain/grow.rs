@@ -145,8 +145,9 @@ impl Tidying<'_> {
     ) -> Option<(Change, Fit)> {
         let tried = promising(record, whole, &self.changes(record, &whole.model), workers);
         let noise = Noise::of(record, whole);
-        let criterion =
-            |fit: &Fit| noise.evidence(record, &fit.evaluation, parameters(fit)).criterion();
+        let criterion = |fit: &Fit| {
+            noise.evidence(record, &fit.evaluation, parameters(record, fit)).criterion()
+        };
         let best = tried.into_iter().min_by(|a, b| criterion(&a.1).total_cmp(&criterion(&b.1)))?;
         let better = (criterion(&best.1) < criterion(whole)).then_some(best)?;
         if let Change::Replaced { new, .. } = better.0 {

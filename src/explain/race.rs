@@ -3,7 +3,7 @@
 use super::Workers;
 use super::candidate::Candidate;
 use super::evidence::Noise;
-use crate::diagnosis::{ErrorFigures, floor_of};
+use crate::diagnosis::{ErrorFigures, NEAR_NOISE, floor_of};
 use crate::effect::{Effect, REGISTRY, RecordRange};
 use crate::fit::{Fit, Part, Record, Status, Survey, fit_to_compare, survey};
 use crate::model::{Component, JointModel};
@@ -82,8 +82,36 @@ fn race_on(
         let fit = fit_to_compare(record, &survey.model, &range).ok()?;
         Some(Entry { effects: vec![*id], fit })
     };
-    let entries: Vec<Entry> = workers.map(&glances, to_the_end).into_iter().flatten().collect();
+    let mut entries: Vec<Entry> = workers.map(&glances, to_the_end).into_iter().flatten().collect();
+    entries.extend(with_measured_delays(record, base, noise_floor, &effects, &range, &entries));
     ranked(record, base, noise_floor, entries)
+}
+
+/// `base` with each step's own delay as it was measured, where none of `entries` comes near
+/// the noise: delays may follow any law, or none.
+fn with_measured_delays(
+    record: &Record<'_>,
+    base: &Fit,
+    noise_floor: f64,
+    effects: &[&'static dyn Effect],
+    range: &RecordRange<'_>,
+    entries: &[Entry],
+) -> Option<Entry> {
+    let error = |entry: &Entry| ErrorFigures::of(record, &entry.fit.evaluation, Part::Training);
+    let errors = entries.iter().filter_map(error).map(|error| error.rmse);
+    let least = errors.fold(f64::INFINITY, f64::min);
+    if least <= NEAR_NOISE * noise_floor {
+        return None;
+    }
+    let measured = |effect: &&'static dyn Effect| Component::measured(*effect);
+    let component = effects.iter().find_map(measured)?;
+    let id = component.effect().spec().id;
+    let model = base.model.with(component);
+    if record.measured_delays(&model) == 0 {
+        return None;
+    }
+    let fit = fit_to_compare(record, &model, range).ok()?;
+    Some(Entry { effects: vec![id], fit })
 }
 
 /// How large the signals of `record` are, for a model with about the gain of `model`.
@@ -116,7 +144,7 @@ fn ranked(
         return Vec::new();
     };
     let noise = Noise::of(record, &best.fit);
-    let evidence = |fit: &Fit| noise.evidence(record, &fit.evaluation, parameters(fit));
+    let evidence = |fit: &Fit| noise.evidence(record, &fit.evaluation, parameters(record, fit));
     let of_base = evidence(base);
     let (trained, validated) = (error(base, Part::Training), error(base, Part::Validation));
     let square = |e: Option<ErrorFigures>| e.map_or(f64::NAN, |e| e.rmse * e.rmse);
@@ -149,6 +177,13 @@ fn ranked(
     };
     let mut candidates: Vec<Candidate> = entries.into_iter().map(candidate).collect();
     candidates.sort_by(|a, b| a.behind.total_cmp(&b.behind));
+    // An effect has several forms; the best one counts.
+    let mut seen = Vec::new();
+    candidates.retain(|candidate| {
+        let is_new = !seen.contains(&candidate.effects);
+        seen.push(candidate.effects.clone());
+        is_new
+    });
     let least = candidates.first().map_or(0.0, |best| best.behind);
     let alike = alike(&candidates);
     for (candidate, alike) in candidates.iter_mut().zip(alike) {
@@ -180,7 +215,8 @@ fn alike(candidates: &[Candidate]) -> Vec<Vec<&'static str>> {
     candidates.iter().map(of).collect()
 }
 
-/// Parameters that were fitted.
-pub(super) fn parameters(fit: &Fit) -> usize {
-    fit.parameters.iter().filter(|parameter| parameter.status != Status::Fixed).count()
+/// Parameters that were fitted, and delays that were measured.
+pub(super) fn parameters(record: &Record<'_>, fit: &Fit) -> usize {
+    let fitted = fit.parameters.iter().filter(|parameter| parameter.status != Status::Fixed);
+    fitted.count() + record.measured_delays(&fit.model)
 }

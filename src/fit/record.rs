@@ -1,10 +1,13 @@
 //! A joint's trials as a fit sees them: windows, restarts, residuals.
 
+use std::sync::{Arc, OnceLock};
+
 use nalgebra::DVector;
 
 use super::run::Run;
 use super::speed;
 use super::thin::thinned;
+use crate::delay::{StepDelay, step_delays};
 use crate::effect::RecordRange;
 use crate::experiment::{Joint, Trial};
 use crate::model::{Arrivals, Commands, JointModel, Simulated, Surroundings};
@@ -76,8 +79,9 @@ pub struct Record<'a> {
     windows: Vec<Window>,
     /// Activity of the other joints, per trial; empty where there are none.
     others: Vec<Vec<f64>>,
-    /// Delay of each change of the input in seconds, per trial, where it is known.
-    delays: Option<Vec<Vec<Option<f64>>>>,
+    /// Delay of each change of the input in seconds, per trial, where it is known; measured
+    /// when a model first asks for it.
+    delays: Arc<OnceLock<Delays>>,
     radians_per_output_unit: f64,
     /// Windows start at the measured speed.
     speeds_measured: bool,
@@ -88,6 +92,9 @@ pub struct Record<'a> {
     /// Highest minus lowest output, per trial.
     spans: Vec<f64>,
 }
+
+/// Delay of each change of the input in seconds, per trial, where it is known.
+type Delays = Vec<Vec<Option<f64>>>;
 
 /// A model on a record: what it simulates, and what is left.
 #[derive(Clone, Debug)]
@@ -124,7 +131,7 @@ impl<'a> Record<'a> {
             split,
             windows,
             others,
-            delays: None,
+            delays: Arc::default(),
             radians_per_output_unit,
             speeds_measured,
             starts_s: starts_s(&joint.trials),
@@ -141,11 +148,27 @@ impl<'a> Record<'a> {
         self
     }
 
-    /// The same with each change's own delay in seconds, per trial.
+    /// The same with each change's own delay in seconds, per trial, for models that take
+    /// measured delays. Without it they are measured, by [`step_delays`].
     #[must_use]
     pub fn with_delays(mut self, delays: Vec<Vec<Option<f64>>>) -> Self {
-        self.delays = Some(delays);
+        self.delays = Arc::new(OnceLock::from(delays));
         self
+    }
+
+    /// The delay of each change of the input, per trial.
+    fn delays(&self) -> &Delays {
+        let in_seconds = |step: Option<StepDelay>| step.map(|step| step.delay_s);
+        self.delays.get_or_init(|| {
+            let measured = step_delays(&self.joint.trials).unwrap_or_default();
+            measured.into_iter().map(|t| t.into_iter().map(in_seconds).collect()).collect()
+        })
+    }
+
+    /// How many delays `model` takes from the record: as many numbers that are not its own.
+    pub(crate) fn measured_delays(&self, model: &JointModel) -> usize {
+        let known = |delays: &Delays| delays.iter().flatten().flatten().count();
+        if model.takes_measured_delays() { known(self.delays()) } else { 0 }
     }
 
     /// The same trials and surroundings with another horizon.
@@ -291,7 +314,8 @@ impl<'a> Record<'a> {
     /// When each level of the input of a trial begins to act.
     pub fn arrivals(&self, model: &JointModel, trial: usize) -> Arrivals {
         let Some(commands) = self.commands.get(trial) else { return Arrivals::default() };
-        let delays = self.delays.as_ref().and_then(|delays| delays.get(trial));
+        let delays = model.takes_measured_delays().then(|| self.delays());
+        let delays = delays.and_then(|delays| delays.get(trial));
         commands.arriving(model, self.start_s(trial), delays.map(Vec::as_slice))
     }
 

@@ -26,7 +26,9 @@ impl Space {
         let mut bounds = vec![(f64::MIN, f64::MAX, true), (delay.0, delay.1, true)];
         for component in model.components() {
             let effect = component.effect();
-            let fitted = effect.spec().parameters.iter().map(|parameter| parameter.fitted);
+            let has_law = !component.takes_measured_delays();
+            let parameters = effect.spec().parameters.iter();
+            let fitted = parameters.map(|parameter| parameter.fitted && has_law);
             bounds
                 .extend(effect.bounds(range).into_iter().zip(fitted).map(|((l, h), f)| (l, h, f)));
         }

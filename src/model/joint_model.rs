@@ -43,6 +43,17 @@ impl Component {
         Self { effect, parameters }
     }
 
+    /// `effect` in the form that takes each step's delay as it was measured; `None` where it
+    /// has none.
+    pub fn measured(effect: &'static dyn Effect) -> Option<Self> {
+        Self::new(effect, effect.measured_delays()?.into_iter().map(Value::from).collect())
+    }
+
+    /// Whether it is of that form.
+    pub fn takes_measured_delays(&self) -> bool {
+        self.effect.takes_measured_delays(&self.plain())
+    }
+
     /// The effect.
     pub fn effect(&self) -> &'static dyn Effect {
         self.effect
@@ -126,6 +137,11 @@ impl JointModel {
     /// Whether any effect can make the speed depend on the angle.
     pub(crate) fn depends_on_angle(&self) -> bool {
         self.components.iter().any(|component| component.effect.depends_on_angle())
+    }
+
+    /// Whether each step has its own delay, as it was measured, where that is known.
+    pub fn takes_measured_delays(&self) -> bool {
+        self.components.iter().any(Component::takes_measured_delays)
     }
 
     /// The effects, in the order they were added.

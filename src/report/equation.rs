@@ -4,8 +4,12 @@ use super::number::number;
 use crate::effect::UNLIMITED;
 use crate::model::Component;
 
-/// The equation of `component`, each parameter replaced by its value.
+/// The equation of `component`, each parameter replaced by its value; in words where it takes
+/// measured delays.
 pub(super) fn filled_in(component: &Component) -> String {
+    if component.takes_measured_delays() {
+        return "each step has the delay that was measured of it".to_owned();
+    }
     let spec = component.effect().spec();
     let value = |word: &str| {
         let named = spec.parameters.iter().zip(component.parameters());
