@@ -73,6 +73,12 @@ pub fn broken_line(values: &[f64], confidence: f64) -> Option<BrokenLine> {
 }
 
 impl BrokenLine {
+    /// About the standard error of the place in the middle of so many samples: that of where
+    /// two lines meet that are fitted apart.
+    pub(super) fn place_error(&self, samples: usize) -> f64 {
+        4.0 * self.sse.sqrt() / samples as f64 / (self.after.slope - self.before.slope).abs()
+    }
+
     /// What it leaves of the window's output.
     pub(super) fn residuals(&self, values: &[f64]) -> Vec<f64> {
         let fitted = |k: f64| if k < self.place { self.before.at(k) } else { self.after.at(k) };

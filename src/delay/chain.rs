@@ -7,6 +7,7 @@
 
 use std::ops::Range;
 
+use super::broken_line::floor;
 use super::estimate::Settings;
 use super::free_motion::FreeMotion;
 use super::response::{Response, Shape};
@@ -39,6 +40,8 @@ pub(super) struct Link {
     /// Where the next step's input changes.
     next: usize,
     pub(super) place: f64,
+    /// Standard error of the place, samples; 0 where it is not known.
+    pub(super) error: f64,
     /// Whether its neighbours are to reckon with it.
     pub(super) counts: bool,
 }
@@ -200,7 +203,7 @@ fn links(samples: usize, steps: &[InputStep], settings: &Settings) -> Vec<Link> 
         };
         let earliest = origin.saturating_sub(settings.alpha);
         let place = origin.midpoint(latest.min(next)) as f64;
-        Link { origin, earliest, latest, within, next, place, counts: true }
+        Link { origin, earliest, latest, within, next, place, error: 0.0, counts: true }
     };
     steps.iter().zip(nexts).map(link).collect()
 }
@@ -239,6 +242,15 @@ impl Link {
         /// Samples that a reaction needs before the next one may be.
         const ROOM: f64 = 10.0;
         self.place + ROOM < self.next as f64
+    }
+
+    /// Samples about its place in which it may be as well.
+    pub(super) fn guard(&self) -> usize {
+        /// Standard errors.
+        const CHANCE: f64 = 2.0;
+        /// What is known less well is taken for known so well.
+        const MOST: f64 = 20.0;
+        if self.error.is_finite() { floor((CHANCE * self.error).min(MOST)) } else { 0 }
     }
 
     /// The latest place that is this step's own: what comes after the next change of the

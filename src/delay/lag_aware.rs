@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use super::broken_line;
-use super::chain::{Chain, ceil};
+use super::chain::{Chain, Link, ceil};
 use super::estimate::{Decision, FineDelay, Prepared, Settings};
 use super::hinge::{self, Place};
 use super::lag_search::Joint;
@@ -114,7 +114,8 @@ enum Places {
     Known,
 }
 
-/// Stretches of a few reactions each, with the places of the chain.
+/// Stretches of a few reactions each, with the places of the chain. Each begins and ends where
+/// no other reaction can be, as well as their places are known.
 fn stretches<'a>(output: &'a [f64], chain: &Chain, places: Places) -> Vec<Stretch<'a>> {
     /// Samples that a reaction needs before the next one may be.
     const ROOM: f64 = 10.0;
@@ -122,32 +123,44 @@ fn stretches<'a>(output: &'a [f64], chain: &Chain, places: Places) -> Vec<Stretc
     /// lag that is not known yet.
     const GUARD: usize = 4;
     let rough = places == Places::Rough;
-    let guard = if rough || chain.in_time() { 0 } else { GUARD };
+    let least = if rough || chain.in_time() { 0 } else { GUARD };
     let counting: Vec<_> = chain.links.iter().filter(|link| rough || link.counts).collect();
     let groups = counting.chunks(TOGETHER).enumerate();
-    let stretch = |(index, group): (usize, &[&super::chain::Link])| {
+    let range = |(index, group): (usize, &[&Link])| {
         let before = (index * TOGETHER).checked_sub(1).and_then(|i| counting.get(i));
-        let start = before.map_or(0, |before| ceil(before.place) + guard);
+        let start = before.map_or(0, |before| ceil(before.place) + before.guard().max(least));
         let next = counting.get((index + 1) * TOGETHER);
         let last = group.last()?.place;
         let end = match next {
             None => output.len(),
             // Nothing reacts to an input that has not changed yet.
             Some(next) if rough && next.origin as f64 > last + ROOM => next.origin,
-            Some(next) => ceil(next.place),
+            Some(next) => ceil(next.place).saturating_sub(next.guard()),
         };
-        let values = output.get(start..end)?;
-        let places = group.iter().map(|link| link.place - start as f64).collect();
-        (values.len() > 8 * group.len()).then_some(Stretch { values, places })
+        let known = output.get(start..end).is_some_and(|values| values.len() > 8 * group.len());
+        known.then(|| (start..end, group.iter().map(|link| link.place - start as f64).collect()))
     };
-    groups.filter_map(stretch).collect()
+    let ranges: Vec<(Range<usize>, Vec<f64>)> = groups.filter_map(range).collect();
+    let stretch = |(index, (range, places)): (usize, &(Range<usize>, Vec<f64>))| {
+        let before = index.checked_sub(1).and_then(|before| ranges.get(before));
+        let first = before.map_or(0, |(before, _)| before.end.saturating_sub(range.start));
+        let after = ranges.get(index + 1);
+        let last = after.map_or(0, |(after, _)| range.end.saturating_sub(after.start));
+        let values = output.get(range.clone())?;
+        Some(Stretch { values, places: places.clone(), shared: (first, last) })
+    };
+    ranges.iter().enumerate().filter_map(stretch).collect()
 }
 
 /// Enough of the stretches, from all over the record.
 fn some(stretches: Vec<Stretch<'_>>, enough: usize) -> Vec<Stretch<'_>> {
     let samples: usize = stretches.iter().map(|stretch| stretch.values.len()).sum();
     let every = samples.div_ceil(enough).max(1);
-    stretches.into_iter().step_by(every).collect()
+    let mut some: Vec<_> = stretches.into_iter().step_by(every).collect();
+    if every > 1 {
+        some.iter_mut().for_each(|stretch| stretch.shared = (0, 0));
+    }
+    some
 }
 
 /// The decisions on all steps of a trial with this lag.
@@ -218,6 +231,7 @@ impl<'a> Reactions<'a> {
             if let Some(link) = self.chain.links.get_mut(index) {
                 link.place = found.place();
                 link.counts = p_value <= doubtful;
+                link.error = found.place_error();
             }
         }
         Noise::left_by(&leftovers)
@@ -248,7 +262,7 @@ impl<'a> Reactions<'a> {
         if values.len() < 2 * (self.response.modes() + 2 * places.len()) + broken_line::FEWEST {
             return None;
         }
-        let mut stretch = Stretch { values, places };
+        let mut stretch = Stretch::alone(values, places);
         let mut fit = stretch.settle(&self.shape, &self.noise, &limits);
         if members.len() > 1 || Self::is_vague(&fit, values.len()) {
             self.look_around(&mut stretch, &mut fit, &limits);
@@ -370,6 +384,11 @@ impl Found<'_> {
     /// Index in the trial.
     fn place(&self) -> f64 {
         self.range.start as f64 + self.stretch.places.last().copied().unwrap_or_default()
+    }
+
+    /// Standard error of the place.
+    fn place_error(&self) -> f64 {
+        (self.fit.sse / self.range.len() as f64 * self.fit.place_variance()).sqrt()
     }
 
     /// How far the place may move, about as far as `guess`, until the squared error has

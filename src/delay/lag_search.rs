@@ -42,8 +42,8 @@ impl<'a> Joint<'a> {
         self.found.iter().map(|found| found.sse).sum()
     }
 
-    fn samples(&self) -> usize {
-        self.stretches.iter().map(|stretch| stretch.values.len()).sum()
+    fn samples(&self) -> f64 {
+        self.stretches.iter().map(Stretch::weight).sum()
     }
 
     /// Moves the reactions of every stretch to where its squared error is least.
@@ -82,7 +82,7 @@ impl<'a> Joint<'a> {
     fn levels(&self) -> Vec<f64> {
         let pairs = self.stretches.iter().zip(&self.found);
         let level = |(stretch, found): (&Stretch<'_>, &Linearised)| {
-            found.sse / stretch.values.len().saturating_sub(found.parameters()).max(1) as f64
+            found.sse / (stretch.weight() - found.parameters() as f64).max(1.0)
         };
         pairs.map(level).collect()
     }
@@ -116,7 +116,7 @@ impl<'a> Joint<'a> {
         let mut changes: Vec<f64> = self.found.iter().map(|found| found.change().abs()).collect();
         changes.sort_by(f64::total_cmp);
         let median = changes.get(changes.len() / 2).copied().unwrap_or(0.0);
-        let noise = (self.sse() / self.samples().max(1) as f64).sqrt();
+        let noise = (self.sse() / self.samples().max(1.0)).sqrt();
         median < CLEAR * noise
     }
 
@@ -125,9 +125,16 @@ impl<'a> Joint<'a> {
         Self { noise, shape, ..self }
     }
 
-    /// The least squared error near a shape that is almost right, without what is strange.
+    /// The least squared error near a shape that is almost right, without what is strange; or
+    /// a simpler lag, where places that are known better no longer speak for all of its poles.
     pub(super) fn settled_again(self) -> Self {
-        self.settle(1).without_strangers().refined()
+        let usual = self.settle(1).without_strangers().refined();
+        let simpler = usual.shape.simpler().into_iter();
+        let rivals: Vec<_> = simpler.map(|shape| usual.with(shape).settle(STEPS)).collect();
+        let better = |best: Self, rival: Self| {
+            if rival.criterion() < best.criterion() { rival } else { best }
+        };
+        rivals.into_iter().fold(usual, better)
     }
 
     /// The least squared error near a shape that is almost right.
@@ -201,7 +208,7 @@ impl<'a> Joint<'a> {
     /// Schwarz's criterion. What belongs to one stretch only takes degrees of freedom: it
     /// is no part of the shape that is chosen.
     fn criterion(&self) -> f64 {
-        let samples = self.samples() as f64;
+        let samples = self.samples();
         let sse = self.sse().max(ROUNDING * self.power).max(f64::MIN_POSITIVE);
         let own: usize = self.found.iter().map(Linearised::parameters).sum();
         let freedom = (samples - own as f64).max(1.0);
@@ -212,7 +219,7 @@ impl<'a> Joint<'a> {
     pub(super) fn covariance(&self) -> [[f64; MOST]; MOST] {
         let (_, _, information) = self.step();
         let used: usize = self.found.iter().map(Linearised::parameters).sum();
-        let freedom = self.samples().saturating_sub(used + self.shape.order()).max(1) as f64;
+        let freedom = (self.samples() - (used + self.shape.order()) as f64).max(1.0);
         let inverse = information.inverse(self.shape.order());
         inverse.map(|row| row.map(|value| value * self.sse() / freedom))
     }
@@ -253,7 +260,7 @@ impl<'a> Joint<'a> {
         let settled = rivals.iter().map(|rival| rival.whitened(noise.clone()).settle(STEPS));
         let all: Vec<_> = settled.collect();
         let least = all.iter().map(Self::criterion).fold(f64::INFINITY, f64::min);
-        let enough = least + caution * usual.samples() as f64;
+        let enough = least + caution * usual.samples();
         let simplest = all.into_iter().find(|joint| joint.criterion() <= enough);
         simplest.unwrap_or(usual)
     }
