@@ -19,8 +19,10 @@ use tauscope::synthetic::{
 
 /// Records per plant where no number is given.
 const RECORDS: u64 = 20;
-/// Records of a plant for which the bound is computed.
-const BOUNDS: u64 = 1;
+/// Records of a plant for which the bound is computed, at most.
+const BOUNDS: u64 = 40;
+/// The same where it takes long: lags of what rings, and many steps.
+const SLOW_BOUNDS: u64 = 1;
 /// The seed of the first record where none is given.
 const FIRST_SEED: u64 = 1000;
 const PERIOD_S: f64 = 0.01;
@@ -256,7 +258,8 @@ fn measure(spec: &JointSpec, records: Records) -> anyhow::Result<(Vec<Tally>, Op
             tally.samples += trial.len();
             tally.add(inner(&made, trial), &found);
         }
-        if seed < BOUNDS {
+        let slow = (spec.lag_s.is_some() && spec.ringing.is_some()) || made.truth.len() > 200;
+        if seed < if slow { SLOW_BOUNDS } else { BOUNDS } {
             bounds.extend(bound(spec, &made, trial));
         }
     }

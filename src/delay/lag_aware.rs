@@ -16,7 +16,7 @@ use super::noise::Noise;
 use super::response::{Lag, Response, Shape};
 use super::search::Candidates;
 use super::steps::InputStep;
-use super::stretch::{Linearised, Stretch};
+use super::stretch::{FINE, Linearised, Stretch};
 use crate::statistics::student_quantile;
 use crate::units::SamplePeriod;
 
@@ -36,6 +36,9 @@ const CAUTION: f64 = 0.02;
 
 /// Times that reactions are searched where holds are short.
 const PASSES: usize = 3;
+
+/// Samples by which a place that only bounds its neighbours may still move.
+const ROUGHLY: f64 = 0.2;
 
 /// A reaction that noise makes so often does not bound its neighbours.
 const DOUBTFUL: f64 = 0.01;
@@ -188,6 +191,8 @@ struct Reactions<'a> {
     shape: Shape,
     response: Response,
     noise: Noise,
+    /// Whether holds are long beside delays.
+    in_time: bool,
 }
 
 /// A reaction between its neighbours.
@@ -201,16 +206,17 @@ struct Found<'a> {
 impl<'a> Reactions<'a> {
     /// The reactions behind this lag, from about where they are.
     fn of(output: &'a [f64], chain: Chain, shape: Shape, noise: Noise) -> Self {
-        Self { output, chain, shape, response: Response::of(&shape), noise }
+        let in_time = chain.in_time();
+        Self { output, chain, shape, response: Response::of(&shape), noise, in_time }
     }
 
     /// The same after all reactions were searched between neighbours of the time before,
     /// `times` or, where holds are short, some more.
     fn settled(mut self, times: usize) -> Self {
-        let passes = if self.chain.in_time() { times } else { PASSES };
+        let passes = if self.in_time { times } else { PASSES };
         for _ in 0..passes {
-            let left = self.settle();
-            self.noise = left;
+            self.noise = self.settle();
+            self.in_time = self.chain.in_time();
         }
         self
     }
@@ -219,11 +225,11 @@ impl<'a> Reactions<'a> {
     fn settle(&mut self) -> Noise {
         /// Reactions that are enough to know the noise.
         const ENOUGH: usize = 100;
-        let doubtful = if self.chain.in_time() { DOUBTFUL } else { DOUBTFUL_IF_SHORT };
+        let doubtful = if self.in_time { DOUBTFUL } else { DOUBTFUL_IF_SHORT };
         let every = self.chain.links.len().div_ceil(ENOUGH).max(1);
         let mut leftovers = Vec::new();
         for index in 0..self.chain.links.len() {
-            let Some(found) = self.find(index) else { continue };
+            let Some(found) = self.find(index, ROUGHLY) else { continue };
             if index % every == 0 {
                 leftovers.push(found.stretch.leftover(&self.shape));
             }
@@ -237,8 +243,9 @@ impl<'a> Reactions<'a> {
         Noise::left_by(&leftovers)
     }
 
-    /// The reaction of step `index`, with its neighbours where they are near.
-    fn find(&self, index: usize) -> Option<Found<'a>> {
+    /// The reaction of step `index`, with its neighbours where they are near, after a step of no
+    /// more than `fine` samples.
+    fn find(&self, index: usize, fine: f64) -> Option<Found<'a>> {
         /// Samples behind a transient that a line needs.
         const LINE: f64 = 20.0;
         let link = self.chain.links.get(index)?;
@@ -263,9 +270,9 @@ impl<'a> Reactions<'a> {
             return None;
         }
         let mut stretch = Stretch::alone(values, places);
-        let mut fit = stretch.settle(&self.shape, &self.noise, &limits);
+        let mut fit = stretch.settle(&self.shape, &self.noise, &limits, fine);
         if members.len() > 1 || Self::is_vague(&fit, values.len()) {
-            self.look_around(&mut stretch, &mut fit, &limits);
+            self.look_around(&mut stretch, &mut fit, &limits, fine);
         }
         Some(Found { range, stretch, fit })
     }
@@ -277,7 +284,7 @@ impl<'a> Reactions<'a> {
         let start = range.start as f64;
         let low = place(self.chain.before(index)).unwrap_or(0.0).max(link.earliest as f64);
         let high = place(self.chain.after(index)).unwrap_or(f64::INFINITY) - 2.0;
-        let last = if self.chain.in_time() { link.last_place() } else { link.latest };
+        let last = if self.in_time { link.last_place() } else { link.latest };
         let high = high.min(last as f64).min(range.end as f64 - 2.0);
         (low - start, (high - start).max(low - start))
     }
@@ -289,7 +296,13 @@ impl<'a> Reactions<'a> {
     }
 
     /// Tries the reaction all over its limits, and settles where it is best.
-    fn look_around(&self, stretch: &mut Stretch<'a>, fit: &mut Linearised, limits: &[(f64, f64)]) {
+    fn look_around(
+        &self,
+        stretch: &mut Stretch<'a>,
+        fit: &mut Linearised,
+        limits: &[(f64, f64)],
+        fine: f64,
+    ) {
         const TRIED: u32 = 12;
         let Some(&(low, high)) = limits.last() else { return };
         let tried =
@@ -304,7 +317,7 @@ impl<'a> Reactions<'a> {
         };
         let best = tried.map(at).min_by(|a, b| a.0.total_cmp(&b.0));
         let Some((_, mut there)) = best else { return };
-        let found = there.settle(&self.shape, &self.noise, limits);
+        let found = there.settle(&self.shape, &self.noise, limits, fine);
         if found.sse < fit.sse {
             (*stretch, *fit) = (there, found);
         }
@@ -320,7 +333,7 @@ impl<'a> Reactions<'a> {
     }
 
     fn decision(&self, place: &Place<'_>, lag: &Lag) -> Decision {
-        let found = self.find(place.index);
+        let found = self.find(place.index, FINE);
         let range = self.chain.window(place.index);
         let Some(found) = found else {
             return place.decision(range, Candidates::default(), None, None);

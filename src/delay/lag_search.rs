@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::noise::Noise;
 use super::response::{MOST, Poles, Response, Shape};
-use super::stretch::{Linearised, Stretch};
+use super::stretch::{FINE, Linearised, Stretch};
 use crate::statistics::{median, robust_scale};
 
 /// Squared errors below this part of the output's are rounding.
@@ -48,10 +48,15 @@ impl<'a> Joint<'a> {
 
     /// Moves the reactions of every stretch to where its squared error is least.
     fn regress(&mut self) {
+        self.regress_until(FINE);
+    }
+
+    /// The same until a step is no longer than `fine` samples.
+    fn regress_until(&mut self, fine: f64) {
         let (shape, noise) = (&self.shape, &self.noise);
         let one = |stretch: &mut Stretch<'_>| {
             let limits = stretch.halfway();
-            stretch.settle(shape, noise, &limits)
+            stretch.settle(shape, noise, &limits, fine)
         };
         self.found = self.stretches.iter_mut().map(one).collect();
     }
@@ -100,12 +105,18 @@ impl<'a> Joint<'a> {
     /// The same joint with another lag; its reactions begin earlier by as much as it is
     /// late.
     fn with(&self, shape: Shape) -> Self {
+        let mut joint = self.about(shape);
+        joint.regress();
+        joint
+    }
+
+    /// The same with its reactions where they are without looking.
+    fn about(&self, shape: Shape) -> Self {
         let mut joint = Self { shape, ..self.clone() };
         let earlier = Response::of(&shape).mean - Response::of(&self.shape).mean;
         for place in joint.stretches.iter_mut().flat_map(|stretch| &mut stretch.places) {
             *place -= earlier;
         }
-        joint.regress();
         joint
     }
 
@@ -171,7 +182,9 @@ impl<'a> Joint<'a> {
     pub(super) fn settle(mut self, steps: usize) -> Self {
         /// Part by which the squared error must fall to go on.
         const WORTH: f64 = 1e-6;
-        self.regress();
+        if self.found.len() != self.stretches.len() {
+            self.regress();
+        }
         for _ in 0..steps {
             let before = self.sse();
             let Some(better) = self.better() else { break };
@@ -313,7 +326,9 @@ impl<'a> Joint<'a> {
     /// The joint under the best of the `shapes`, after a step or two with each.
     fn started(&self, shapes: &[Shape]) -> Self {
         /// Samples that are enough to tell a good start.
-        const ENOUGH: usize = 3000;
+        const ENOUGH: usize = 2000;
+        /// Samples that a place may still move: only the best start is settled.
+        const ROUGHLY: f64 = 1.0;
         let mut few = self.clone();
         let mut samples = 0;
         few.stretches.retain(|stretch| {
@@ -322,7 +337,11 @@ impl<'a> Joint<'a> {
             keep
         });
         few.found.truncate(few.stretches.len());
-        let tried = shapes.iter().map(|shape| few.with(*shape));
+        let tried = shapes.iter().map(|shape| {
+            let mut there = few.about(*shape);
+            there.regress_until(ROUGHLY);
+            there
+        });
         let best = tried.min_by(|a, b| a.sse().total_cmp(&b.sse()));
         self.with(best.map_or(self.shape, |best| best.shape))
     }
