@@ -3,7 +3,7 @@
 //! Seeded joints that only integrate, lag, ring, are noisy or are held for a short time are
 //! simulated; every step is estimated by every method. The last column is the error at the
 //! bound of Cramér and Rao, for all parameters of the record together.
-//! Usage: `delay_methods [RECORDS [PLANT...]]`
+//! Usage: `delay_methods [RECORDS [FIRST_SEED [SECONDS [PLANT...]]]]`
 #![expect(clippy::print_stdout, reason = "an example prints")]
 
 use std::f64::consts::{FRAC_2_PI, TAU};
@@ -19,9 +19,14 @@ use tauscope::synthetic::{
 
 /// Records per plant where no number is given.
 const RECORDS: u64 = 20;
-/// Records of a plant for which the bound is computed.
-const BOUNDS: u64 = 1;
+/// Records of a plant for which the bound is computed, at most.
+const BOUNDS: u64 = 40;
+/// The same where it takes long: lags of what rings, and many steps.
+const SLOW_BOUNDS: u64 = 1;
+/// The seed of the first record where none is given.
+const FIRST_SEED: u64 = 1000;
 const PERIOD_S: f64 = 0.01;
+/// Length of a record where none is given.
 const DURATION_S: f64 = 120.0;
 /// Standard deviation of the noise, output units.
 const NOISE: f64 = 0.05;
@@ -37,6 +42,7 @@ fn plants() -> Vec<(&'static str, JointSpec)> {
         JointSpec { noise: NOISE, ..JointSpec::new("ideal", input([0.9, 2.0]), delay(0.4)) };
     let lag_s = Some(LAG_S);
     let ringing = Some(RINGING);
+    let noise_correlation = 0.8;
     let short = JointSpec { input: input([0.2, 0.5]), delay: delay(0.3), ..ideal.clone() };
     let small = vec![-1.0, -0.4, -0.2, 0.2, 0.4, 1.0];
     let dead = InputSpec::Levels { levels: small, hold_s: [0.9, 2.0] };
@@ -48,7 +54,8 @@ fn plants() -> Vec<(&'static str, JointSpec)> {
         ("lag and ringing", JointSpec { lag_s, ringing, ..ideal.clone() }),
         ("noise x 16", JointSpec { noise: 16.0 * NOISE, ..ideal.clone() }),
         ("noise x 16, lag", JointSpec { noise: 16.0 * NOISE, lag_s, ..ideal.clone() }),
-        ("coloured noise", JointSpec { noise_correlation: 0.8, ..ideal.clone() }),
+        ("coloured noise", JointSpec { noise_correlation, ..ideal.clone() }),
+        ("coloured noise, both", JointSpec { noise_correlation, lag_s, ringing, ..ideal.clone() }),
         ("short holds", short.clone()),
         ("short holds, lag", JointSpec { lag_s, ..short.clone() }),
         ("short holds, ringing", JointSpec { ringing, ..short }),
@@ -220,20 +227,28 @@ fn bound(spec: &JointSpec, made: &Synthetic, trial: &Trial) -> Option<f64> {
     Some(FRAC_2_PI.sqrt() * deviations.iter().sum::<f64>() / deviations.len() as f64)
 }
 
-fn made(spec: &JointSpec, seed: u64) -> anyhow::Result<Synthetic> {
+fn made(spec: &JointSpec, seed: u64, duration_s: f64) -> anyhow::Result<Synthetic> {
     let spec = PlantSpec {
         sample_period_s: PERIOD_S,
-        ..PlantSpec::new(seed, DURATION_S, vec![spec.clone()])
+        ..PlantSpec::new(seed, duration_s, vec![spec.clone()])
     };
     Ok(simulate(&spec)?)
 }
 
-/// Every method on `records` records of a plant, and the mean bound of the first ones.
-fn measure(spec: &JointSpec, records: u64) -> anyhow::Result<(Vec<Tally>, Option<f64>)> {
+/// Which records are made.
+#[derive(Debug, Clone, Copy)]
+struct Records {
+    count: u64,
+    first_seed: u64,
+    duration_s: f64,
+}
+
+/// Every method on the records of a plant, and the mean bound of the first ones.
+fn measure(spec: &JointSpec, records: Records) -> anyhow::Result<(Vec<Tally>, Option<f64>)> {
     let mut tallies: Vec<Tally> = Method::ALL.iter().map(|_| Tally::default()).collect();
     let mut bounds = Vec::new();
-    for seed in 0..records {
-        let made = made(spec, 1000 + seed)?;
+    for seed in 0..records.count {
+        let made = made(spec, records.first_seed + seed, records.duration_s)?;
         let joint = made.joints.first().context("a plant has a joint")?;
         let trial = joint.trials.first().context("a joint has a trial")?;
         for (method, tally) in Method::ALL.into_iter().zip(&mut tallies) {
@@ -243,7 +258,8 @@ fn measure(spec: &JointSpec, records: u64) -> anyhow::Result<(Vec<Tally>, Option
             tally.samples += trial.len();
             tally.add(inner(&made, trial), &found);
         }
-        if seed < BOUNDS {
+        let slow = (spec.lag_s.is_some() && spec.ringing.is_some()) || made.truth.len() > 200;
+        if seed < if slow { SLOW_BOUNDS } else { BOUNDS } {
             bounds.extend(bound(spec, &made, trial));
         }
     }
@@ -274,10 +290,14 @@ fn print(name: &str, tallies: &[Tally], bound: Option<f64>) {
 
 fn main() -> anyhow::Result<()> {
     let mut arguments = std::env::args().skip(1);
-    let records = arguments.next().map_or(Ok(RECORDS), |records| records.parse())?;
+    let count = arguments.next().map_or(Ok(RECORDS), |records| records.parse())?;
+    let first_seed = arguments.next().map_or(Ok(FIRST_SEED), |seed| seed.parse())?;
+    let duration_s = arguments.next().map_or(Ok(DURATION_S), |seconds| seconds.parse())?;
+    let records = Records { count, first_seed, duration_s };
     let chosen: Vec<String> = arguments.collect();
     println!(
-        "{records} records each; errors in samples, shares in percent, speed in million samples/s"
+        "{count} records of {duration_s} s each, seeds from {first_seed} on; errors in samples, \
+         shares in percent, speed in million samples/s"
     );
     println!(
         "plant                method    steps accepted  error    bias covered   false   bound   speed"
@@ -297,7 +317,8 @@ fn the_lag_is_not_booked_as_delay() -> anyhow::Result<()> {
     let all = plants();
     for name in ["ideal", "lag of 6"] {
         let (_, spec) = all.iter().find(|(plant, _)| *plant == name).context("it is one")?;
-        let (tallies, _) = measure(spec, 1)?;
+        let records = Records { count: 1, first_seed: FIRST_SEED, duration_s: DURATION_S };
+        let (tallies, _) = measure(spec, records)?;
         let error = tallies.last().context("a tally for each method")?.mean_error();
         assert!(error < 0.15, "{name}: {error}");
     }

@@ -73,6 +73,12 @@ pub fn broken_line(values: &[f64], confidence: f64) -> Option<BrokenLine> {
 }
 
 impl BrokenLine {
+    /// About the standard error of the place in the middle of so many samples: that of where
+    /// two lines meet that are fitted apart.
+    pub(super) fn place_error(&self, samples: usize) -> f64 {
+        4.0 * self.sse.sqrt() / samples as f64 / (self.after.slope - self.before.slope).abs()
+    }
+
     /// What it leaves of the window's output.
     pub(super) fn residuals(&self, values: &[f64]) -> Vec<f64> {
         let fitted = |k: f64| if k < self.place { self.before.at(k) } else { self.after.at(k) };
@@ -93,9 +99,10 @@ pub(super) struct Evidence {
 #[derive(Clone, Debug)]
 pub(super) struct Window<'a> {
     noise: &'a Noise,
-    onset: Vec<(f64, f64)>,
-    /// What one line leaves; the first samples, which the noise remembers, are 0.
-    left: Vec<f64>,
+    onset: Onset,
+    /// What one line leaves, whitened once more backwards: sums of it behind a sample are what
+    /// a whitened level has in common with what is left.
+    pulled: Vec<f64>,
     /// The squared error of one line.
     power: f64,
     rows: f64,
@@ -103,6 +110,8 @@ pub(super) struct Window<'a> {
     /// One over the length of a constant, and of a slope.
     per_level: f64,
     per_slope: f64,
+    /// One over what whitening makes of 1.
+    per_noise_level: f64,
     /// The line's value in the middle, and its slope.
     value: f64,
     slope: f64,
@@ -123,21 +132,33 @@ pub(super) struct Piece {
 
 impl Piece {
     /// How much of the squared error a break at `s` takes away.
+    #[inline]
     fn gain(&self, s: f64) -> f64 {
         let with = self.ramp_y - s * self.level_y;
         let size = self.size(s);
         if size > 0.0 { with * with / size } else { 0.0 }
     }
 
+    /// The change of slope at a break at `s`.
+    #[inline]
+    fn change(&self, s: f64) -> f64 {
+        let size = self.size(s);
+        if size > 0.0 { (self.ramp_y - s * self.level_y) / size } else { 0.0 }
+    }
+
+    #[inline]
     fn size(&self, s: f64) -> f64 {
         self.ramp_ramp - 2.0 * s * self.level_ramp + s * s * self.level_level
     }
 
     /// The best break within the piece, 0 to 1, and what it takes away.
+    #[inline]
     pub(super) fn best(&self) -> (f64, f64) {
         let below = self.level_y * self.level_ramp - self.ramp_y * self.level_level;
-        let stationary = (self.level_y * self.ramp_ramp - self.ramp_y * self.level_ramp) / below;
-        let inside = if (0.0..=1.0).contains(&stationary) { stationary } else { 0.0 };
+        let above = self.level_y * self.ramp_ramp - self.ramp_y * self.level_ramp;
+        // Most pieces have nothing inside: they cost no division.
+        let within = above * below >= 0.0 && above.abs() <= below.abs() && below != 0.0;
+        let inside = if within { above / below } else { 0.0 };
         (inside, self.gain(inside))
     }
 
@@ -180,69 +201,87 @@ impl<'a> Window<'a> {
             fitted += slope;
         }
         let (value, slope) = (offset + mean / noise.level, slope / noise.level);
-        let onset = noise.onset();
+        noise.pull(&mut left);
+        let (onset, pulled) = (Onset::of(noise), left);
         let (per_level, per_slope) = (rows.sqrt().recip(), spread.sqrt().recip());
-        Some(Self { noise, onset, left, power, rows, middle, per_level, per_slope, value, slope })
+        let per_noise_level = noise.level.recip();
+        Some(Self {
+            noise,
+            onset,
+            pulled,
+            power,
+            rows,
+            middle,
+            per_level,
+            per_slope,
+            per_noise_level,
+            value,
+            slope,
+        })
     }
 
     /// Places at which a break leaves enough samples on both sides.
     pub(super) fn places(&self) -> RangeInclusive<usize> {
         let order = self.noise.order();
-        order.max(1)..=self.left.len().saturating_sub(3 + order)
+        order.max(1)..=self.pulled.len().saturating_sub(3 + order)
     }
 
-    /// The piece behind sample `j`, given the sums over the samples behind its onset.
-    fn piece(&self, j: usize, tail: f64, tail_moment: f64) -> Piece {
+    /// The piece behind sample `j`, given what its level and its ramp have in common with the
+    /// output.
+    #[inline]
+    fn piece(&self, j: usize, level_y: f64, ramp_y: f64) -> Piece {
         let order = self.noise.order() as f64;
         let (level, shift) = (self.noise.level, self.noise.shift);
-        let reach = (self.left.len() - 1 - j) as f64;
+        let reach = (self.pulled.len() - 1 - j) as f64;
         let count = reach - order;
-        let sum = (reach * (reach + 1.0) - order * (order + 1.0)) / 2.0;
-        let cubes = |d: f64| d * (d + 1.0) * (2.0 * d + 1.0) / 6.0;
+        let sum = (reach * (reach + 1.0) - order * (order + 1.0)) * 0.5;
+        let cubes = |d: f64| d * (d + 1.0) * (2.0 * d + 1.0) * (1.0 / 6.0);
         let squares = cubes(reach) - cubes(order);
-        let mut of = Sums {
-            level: level * count,
-            ramp: level * sum + shift * count,
-            level_d: level * sum,
-            ramp_d: level * squares + shift * sum,
-            level_level: level * level * count,
-            level_ramp: level * (level * sum + shift * count),
-            ramp_ramp: level * (level * squares + 2.0 * shift * sum) + shift * shift * count,
-            level_y: level * tail,
-            ramp_y: level * tail_moment + shift * tail,
-        };
-        for (d, (&(w, h), y)) in self.onset.iter().zip(self.left.iter().skip(j + 1)).enumerate() {
-            of.add(d as f64 + 1.0, w, h, *y);
-        }
-        let along = |sum: f64, moment: f64| {
-            [sum * self.per_level, ((j as f64 - self.middle) * sum + moment) * self.per_slope]
-        };
-        let (level_line, ramp_line) = (along(of.level, of.level_d), along(of.ramp, of.ramp_d));
+        let (with_count, with_sum) = (level * count, level * sum);
+        let onset = &self.onset;
+        let levels = onset.level + with_count;
+        let ramps = onset.ramp + with_sum + shift * count;
+        let level_d = onset.level_d + with_sum;
+        let ramp_d = onset.ramp_d + level * squares + shift * sum;
+        let level_level = onset.level_level + level * with_count;
+        let level_ramp = onset.level_ramp + level * (with_sum + shift * count);
+        let ramp_ramp =
+            onset.ramp_ramp + level * (level * squares + 2.0 * shift * sum) + shift * shift * count;
+        let x = j as f64 - self.middle;
+        let along =
+            |sum: f64, moment: f64| [sum * self.per_level, (x * sum + moment) * self.per_slope];
+        let (level_line, ramp_line) = (along(levels, level_d), along(ramps, ramp_d));
         let less = |product: f64, a: [f64; 2], b: [f64; 2]| product - a[0] * b[0] - a[1] * b[1];
         Piece {
-            level_y: of.level_y,
-            ramp_y: of.ramp_y,
-            level_level: less(of.level_level, level_line, level_line),
-            level_ramp: less(of.level_ramp, level_line, ramp_line),
-            ramp_ramp: less(of.ramp_ramp, ramp_line, ramp_line),
+            level_y,
+            ramp_y,
+            level_level: less(level_level, level_line, level_line),
+            level_ramp: less(level_ramp, level_line, ramp_line),
+            ramp_ramp: less(ramp_ramp, ramp_line, ramp_line),
             level_line,
             ramp_line,
         }
     }
 
     /// Goes through the pieces of `places` from the back.
+    #[inline]
     fn for_each_piece(&self, places: RangeInclusive<usize>, mut visit: impl FnMut(usize, Piece)) {
-        let order = self.noise.order();
-        let (mut tail, mut moment) = (0.0, 0.0);
-        let nearest = order as f64 + 1.0;
-        for k in (places.start() + 1 + order..self.left.len()).rev() {
-            let y = self.left.get(k).copied().unwrap_or_default();
-            moment += tail + nearest * y;
-            tail += y;
-            let j = k - 1 - order;
-            if j <= *places.end() {
-                visit(j, self.piece(j, tail, moment));
-            }
+        let (mut level_y, mut ramp_y) = (0.0, 0.0);
+        let mut add = |y: &f64| {
+            level_y += y;
+            ramp_y += level_y;
+            (level_y, ramp_y)
+        };
+        let (first, behind) = (places.start() + 1, places.end() + 2);
+        let (searched, rest) = self.pulled.split_at(behind.min(self.pulled.len()));
+        rest.iter().rev().for_each(|y| {
+            add(y);
+        });
+        let searched = searched.get(first..).unwrap_or_default();
+        for (index, y) in searched.iter().enumerate().rev() {
+            let (level_y, ramp_y) = add(y);
+            let j = places.start() + index;
+            visit(j, self.piece(j, level_y, ramp_y));
         }
     }
 
@@ -263,13 +302,13 @@ impl<'a> Window<'a> {
         let empty = vec![Line::default(); count];
         let mut evidence =
             Evidence { first, sse: vec![0.0; count], before: empty.clone(), after: empty };
+        let Evidence { sse, before, after, .. } = &mut evidence;
+        let mut slots = sse.iter_mut().zip(before.iter_mut().zip(after)).rev();
         let mut line = self.search(places, |j, piece| {
-            let index = j - first;
-            let Evidence { sse, before, after, .. } = &mut evidence;
-            let slots = (sse.get_mut(index), before.get_mut(index), after.get_mut(index));
-            if let (Some(sse), Some(before), Some(after)) = slots {
-                *sse = (self.power - piece.gain(0.0)).max(0.0);
-                (*before, *after) = self.lines(piece, j as f64, 0.0);
+            if let Some((sse, (before, after))) = slots.next() {
+                let change = piece.change(0.0);
+                *sse = (self.power - change * piece.ramp_y).max(0.0);
+                (*before, *after) = self.lines_of(piece, j as f64, 0.0, change);
             }
         })?;
         let freedom = (self.rows - PARAMETERS as f64).max(1.0);
@@ -301,7 +340,7 @@ impl<'a> Window<'a> {
         let (gain, j, s, piece) = best;
         let place = j as f64 + s;
         let ends = (first as f64 + 0.5, last as f64 + 1.0);
-        let samples = self.left.len() as f64;
+        let samples = self.pulled.len() as f64;
         let p_value = chance(gain / self.power, self.rows - 2.0, samples, ends);
         let (before, after) = self.lines(&piece, j as f64, s);
         let sse = (self.power - gain).max(0.0);
@@ -310,15 +349,19 @@ impl<'a> Window<'a> {
 
     /// The lines of a break at `j + s`, over the indices of the window.
     fn lines(&self, piece: &Piece, j: f64, s: f64) -> (Line, Line) {
-        let size = piece.size(s);
-        let change = if size > 0.0 { (piece.ramp_y - s * piece.level_y) / size } else { 0.0 };
+        self.lines_of(piece, j, s, piece.change(s))
+    }
+
+    /// The same given the change of slope.
+    #[inline]
+    fn lines_of(&self, piece: &Piece, j: f64, s: f64, change: f64) -> (Line, Line) {
         let part = |index: usize| match (piece.ramp_line.get(index), piece.level_line.get(index)) {
-            (Some(ramp), Some(level)) => change * (ramp - s * level) / self.noise.level,
+            (Some(ramp), Some(level)) => change * (ramp - s * level) * self.per_noise_level,
             _ => 0.0,
         };
         let slope = self.slope - part(1) * self.per_slope;
         let value = self.value - part(0) * self.per_level;
-        let at = self.middle + self.noise.shift / self.noise.level;
+        let at = self.middle + self.noise.shift * self.per_noise_level;
         let before = Line { slope, intercept: value - slope * at };
         let after = Line { slope: slope + change, intercept: before.intercept - change * (j + s) };
         (before, after)
@@ -375,8 +418,9 @@ pub(super) fn floor(value: f64) -> usize {
     value.max(0.0) as usize
 }
 
-/// Sums of level and ramp behind a sample, over their samples.
-struct Sums {
+/// Sums of a whitened level and ramp over the samples in which they begin.
+#[derive(Clone, Copy, Debug, Default)]
+struct Onset {
     level: f64,
     ramp: f64,
     level_d: f64,
@@ -384,21 +428,22 @@ struct Sums {
     level_level: f64,
     level_ramp: f64,
     ramp_ramp: f64,
-    level_y: f64,
-    ramp_y: f64,
 }
 
-impl Sums {
-    fn add(&mut self, d: f64, w: f64, h: f64, y: f64) {
-        self.level += w;
-        self.ramp += h;
-        self.level_d += w * d;
-        self.ramp_d += h * d;
-        self.level_level += w * w;
-        self.level_ramp += w * h;
-        self.ramp_ramp += h * h;
-        self.level_y += w * y;
-        self.ramp_y += h * y;
+impl Onset {
+    fn of(noise: &Noise) -> Self {
+        let mut sums = Self::default();
+        for ((w, h), d) in noise.onset().into_iter().zip(1_u32..) {
+            let d = f64::from(d);
+            sums.level += w;
+            sums.ramp += h;
+            sums.level_d += w * d;
+            sums.ramp_d += h * d;
+            sums.level_level += w * w;
+            sums.level_ramp += w * h;
+            sums.ramp_ramp += h * h;
+        }
+        sums
     }
 }
 

@@ -7,6 +7,7 @@
 
 use std::ops::Range;
 
+use super::broken_line::floor;
 use super::estimate::Settings;
 use super::free_motion::FreeMotion;
 use super::response::{Response, Shape};
@@ -39,6 +40,8 @@ pub(super) struct Link {
     /// Where the next step's input changes.
     next: usize,
     pub(super) place: f64,
+    /// Standard error of the place, samples; 0 where it is not known.
+    pub(super) error: f64,
     /// Whether its neighbours are to reckon with it.
     pub(super) counts: bool,
 }
@@ -200,7 +203,7 @@ fn links(samples: usize, steps: &[InputStep], settings: &Settings) -> Vec<Link> 
         };
         let earliest = origin.saturating_sub(settings.alpha);
         let place = origin.midpoint(latest.min(next)) as f64;
-        Link { origin, earliest, latest, within, next, place, counts: true }
+        Link { origin, earliest, latest, within, next, place, error: 0.0, counts: true }
     };
     steps.iter().zip(nexts).map(link).collect()
 }
@@ -220,11 +223,14 @@ fn lateness(output: &[f64]) -> f64 {
 fn second_difference_noise(output: &[f64]) -> f64 {
     /// The median of a normal variable's magnitude.
     const MEDIAN: f64 = 0.674_49;
+    /// Differences that are enough to know it.
+    const ENOUGH: usize = 10_000;
     let bend = |w: &[f64]| match w {
         [a, b, c] => (a - 2.0 * b + c).abs(),
         _ => 0.0,
     };
-    let mut bends: Vec<f64> = output.windows(3).map(bend).collect();
+    let every = output.len().div_ceil(ENOUGH).max(1);
+    let mut bends: Vec<f64> = output.windows(3).step_by(every).map(bend).collect();
     if bends.is_empty() {
         return 0.0;
     }
@@ -239,6 +245,15 @@ impl Link {
         /// Samples that a reaction needs before the next one may be.
         const ROOM: f64 = 10.0;
         self.place + ROOM < self.next as f64
+    }
+
+    /// Samples about its place in which it may be as well.
+    pub(super) fn guard(&self) -> usize {
+        /// Standard errors.
+        const CHANCE: f64 = 2.0;
+        /// What is known less well is taken for known so well.
+        const MOST: f64 = 20.0;
+        if self.error.is_finite() { floor((CHANCE * self.error).min(MOST)) } else { 0 }
     }
 
     /// The latest place that is this step's own: what comes after the next change of the
@@ -275,61 +290,93 @@ impl Link {
     }
 }
 
-/// Sums over samples from `first` on, for the squared error of any line.
-struct Sums {
-    first: usize,
-    /// `Σ y, Σ k·y, Σ y²` up to each sample, about the first of them.
-    sums: Vec<[f64; 3]>,
+/// Sums of the output up to a place, about the first sample of all.
+#[derive(Clone, Copy, Debug, Default)]
+struct Mark {
+    place: usize,
+    /// Samples up to here.
+    count: f64,
+    /// `Σ y, Σ k·y, Σ y²`.
+    sums: [f64; 3],
 }
 
-impl Sums {
-    fn of(output: &[f64], range: Range<usize>) -> Self {
-        let first = range.start;
-        let values = output.get(range).unwrap_or_default();
-        let offset = values.first().copied().unwrap_or_default();
-        let mut sums = Vec::with_capacity(values.len() + 1);
-        let mut sum = [0.0; 3];
-        sums.push(sum);
-        let mut k = 0.0;
-        for y in values {
-            let y = y - offset;
-            sum = [sum[0] + y, sum[1] + k * y, sum[2] + y * y];
-            sums.push(sum);
-            k += 1.0;
-        }
-        Self { first, sums }
+impl Mark {
+    /// The marks at all of the `places`, in their order; those before the first of them all,
+    /// or behind the end, are left empty.
+    fn all(output: &[f64], first: usize, places: &[usize]) -> Vec<Self> {
+        let mut sorted = places.to_vec();
+        sorted.retain(|place| (first..=output.len()).contains(place));
+        sorted.sort_unstable();
+        let offset = output.get(first).copied().unwrap_or_default();
+        let mut now = Self { place: first, ..Self::default() };
+        let up_to = |place: usize| {
+            let [mut y_sum, mut moment, mut square] = now.sums;
+            let mut k = now.count;
+            for y in output.get(now.place..place).unwrap_or_default() {
+                let y = y - offset;
+                y_sum += y;
+                moment += k * y;
+                square += y * y;
+                k += 1.0;
+            }
+            now = Self { place, count: k, sums: [y_sum, moment, square] };
+            now
+        };
+        let marks: Vec<Self> = sorted.into_iter().map(up_to).collect();
+        let of = |place: &usize| {
+            let index = marks.binary_search_by_key(place, |mark| mark.place).ok();
+            index.and_then(|index| marks.get(index)).copied().unwrap_or_default()
+        };
+        places.iter().map(of).collect()
     }
 
-    /// The squared error of the line through samples `start .. end`.
-    fn line(&self, start: usize, end: usize) -> f64 {
-        let at = |place: usize| self.sums.get(place.saturating_sub(self.first));
-        let (Some(low), Some(high)) = (at(start), at(end)) else { return 0.0 };
-        let n = end.saturating_sub(start) as f64;
+    /// The squared error of the line from here up to `end`.
+    fn line(&self, end: &Self) -> f64 {
+        let n = end.count - self.count;
         if n < 3.0 {
             return 0.0;
         }
-        let [y, ky, yy] = [high[0] - low[0], high[1] - low[1], high[2] - low[2]];
-        let middle = (start - self.first) as f64 + (n - 1.0) / 2.0;
+        let part = |index: usize| match (end.sums.get(index), self.sums.get(index)) {
+            (Some(high), Some(low)) => high - low,
+            _ => 0.0,
+        };
+        let (y, ky, yy) = (part(0), part(1), part(2));
+        let middle = self.count + (n - 1.0) / 2.0;
         let moment = ky - middle * y;
         (yy - y * y / n - 12.0 * moment * moment / (n * (n * n - 1.0))).max(0.0)
     }
 }
 
 impl Pieces {
-    /// The squared errors of the pieces from `start` to each of the `ends`, which ascend;
-    /// infinite where the two are too close.
-    fn errors(&self, output: &[f64], sums: &Sums, start: usize, ends: &[usize]) -> Vec<f64> {
+    /// The squared errors of the pieces from each place of `from` to each of `to`, both of
+    /// which ascend; infinite where the two are too close.
+    fn errors(&self, output: &[f64], from: &[usize], to: &[usize]) -> Vec<Vec<f64>> {
         /// Samples between two reactions, at least.
         const APART: usize = 2;
-        let apart = |end: &usize| start + APART <= *end;
-        let line = |end: &usize| if apart(end) { sums.line(start, *end) } else { f64::INFINITY };
-        let Self::Motions(motion) = self else { return ends.iter().map(line).collect() };
+        let first = from.first().copied().unwrap_or(0);
+        let starts = match self {
+            Self::Lines => from.to_vec(),
+            Self::Motions(_) => from.iter().map(|start| start + LONGEST_MOTION).collect(),
+        };
+        let places: Vec<usize> = starts.iter().chain(to).copied().collect();
+        let marks = Mark::all(output, first, &places);
+        let (low, high) = marks.split_at(starts.len());
+        let errors = |(start, low): (&usize, &Mark)| {
+            let felt = self.felt(output, *start, to).into_iter();
+            let ends = felt.chain(std::iter::repeat(0.0)).zip(high).zip(to);
+            let error = |((felt, high), end): ((f64, &Mark), &usize)| {
+                if start + APART <= *end { felt + low.line(high) } else { f64::INFINITY }
+            };
+            ends.map(error).collect()
+        };
+        from.iter().zip(low).map(errors).collect()
+    }
+
+    /// The squared errors while earlier reactions are felt; none for lines.
+    fn felt(&self, output: &[f64], start: usize, ends: &[usize]) -> Vec<f64> {
+        let Self::Motions(motion) = self else { return Vec::new() };
         let values = output.get(start..).unwrap_or_default();
-        let felt = motion.errors(values, ends.iter().map(|end| end.saturating_sub(start)));
-        let unfelt = start + LONGEST_MOTION;
-        let rest = |end: &usize| if *end > unfelt { sums.line(unfelt, *end) } else { 0.0 };
-        let errors = felt.into_iter().zip(ends);
-        errors.map(|(e, end)| if apart(end) { e + rest(end) } else { f64::INFINITY }).collect()
+        motion.errors(values, ends.iter().map(|end| end.saturating_sub(start)))
     }
 }
 
@@ -349,11 +396,9 @@ fn cheapest(
     let all = links.iter().map(|link| link.next).chain([usize::MAX]);
     for (places, next) in tried.iter().chain([&end]).zip(all) {
         let (from, costs) = (before.0, &before.1);
-        let first = from.first().copied().unwrap_or(0);
-        let sums = Sums::of(output, first..places.last().copied().unwrap_or(first).max(first));
         let mut best = vec![(f64::INFINITY, 0); places.len()];
-        for (way, (start, cost)) in from.iter().zip(costs).enumerate() {
-            let errors = pieces.errors(output, &sums, *start, places);
+        let errors = pieces.errors(output, from, places);
+        for (way, (errors, cost)) in errors.into_iter().zip(costs).enumerate() {
             for (best, error) in best.iter_mut().zip(errors) {
                 if cost + error < best.0 {
                     *best = (cost + error, way);

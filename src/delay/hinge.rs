@@ -73,6 +73,7 @@ pub(super) fn located(
             if let Some(link) = chain.links.get_mut(index) {
                 link.place = start as f64 + line.place;
                 link.counts = line.p_value <= DOUBTFUL;
+                link.error = line.place_error(values.len());
             }
         }
         noise = Noise::of(&residuals, PARAMETERS);

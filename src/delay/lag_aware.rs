@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use super::broken_line;
-use super::chain::{Chain, ceil};
+use super::chain::{Chain, Link, ceil};
 use super::estimate::{Decision, FineDelay, Prepared, Settings};
 use super::hinge::{self, Place};
 use super::lag_search::Joint;
@@ -16,7 +16,7 @@ use super::noise::Noise;
 use super::response::{Lag, Response, Shape};
 use super::search::Candidates;
 use super::steps::InputStep;
-use super::stretch::{Linearised, Stretch};
+use super::stretch::{FINE, Linearised, Stretch};
 use crate::statistics::student_quantile;
 use crate::units::SamplePeriod;
 
@@ -36,6 +36,9 @@ const CAUTION: f64 = 0.02;
 
 /// Times that reactions are searched where holds are short.
 const PASSES: usize = 3;
+
+/// Samples by which a place that only bounds its neighbours may still move.
+const ROUGHLY: f64 = 0.2;
 
 /// A reaction that noise makes so often does not bound its neighbours.
 const DOUBTFUL: f64 = 0.01;
@@ -114,7 +117,8 @@ enum Places {
     Known,
 }
 
-/// Stretches of a few reactions each, with the places of the chain.
+/// Stretches of a few reactions each, with the places of the chain. Each begins and ends where
+/// no other reaction can be, as well as their places are known.
 fn stretches<'a>(output: &'a [f64], chain: &Chain, places: Places) -> Vec<Stretch<'a>> {
     /// Samples that a reaction needs before the next one may be.
     const ROOM: f64 = 10.0;
@@ -122,32 +126,44 @@ fn stretches<'a>(output: &'a [f64], chain: &Chain, places: Places) -> Vec<Stretc
     /// lag that is not known yet.
     const GUARD: usize = 4;
     let rough = places == Places::Rough;
-    let guard = if rough || chain.in_time() { 0 } else { GUARD };
+    let least = if rough || chain.in_time() { 0 } else { GUARD };
     let counting: Vec<_> = chain.links.iter().filter(|link| rough || link.counts).collect();
     let groups = counting.chunks(TOGETHER).enumerate();
-    let stretch = |(index, group): (usize, &[&super::chain::Link])| {
+    let range = |(index, group): (usize, &[&Link])| {
         let before = (index * TOGETHER).checked_sub(1).and_then(|i| counting.get(i));
-        let start = before.map_or(0, |before| ceil(before.place) + guard);
+        let start = before.map_or(0, |before| ceil(before.place) + before.guard().max(least));
         let next = counting.get((index + 1) * TOGETHER);
         let last = group.last()?.place;
         let end = match next {
             None => output.len(),
             // Nothing reacts to an input that has not changed yet.
             Some(next) if rough && next.origin as f64 > last + ROOM => next.origin,
-            Some(next) => ceil(next.place),
+            Some(next) => ceil(next.place).saturating_sub(next.guard()),
         };
-        let values = output.get(start..end)?;
-        let places = group.iter().map(|link| link.place - start as f64).collect();
-        (values.len() > 8 * group.len()).then_some(Stretch { values, places })
+        let known = output.get(start..end).is_some_and(|values| values.len() > 8 * group.len());
+        known.then(|| (start..end, group.iter().map(|link| link.place - start as f64).collect()))
     };
-    groups.filter_map(stretch).collect()
+    let ranges: Vec<(Range<usize>, Vec<f64>)> = groups.filter_map(range).collect();
+    let stretch = |(index, (range, places)): (usize, &(Range<usize>, Vec<f64>))| {
+        let before = index.checked_sub(1).and_then(|before| ranges.get(before));
+        let first = before.map_or(0, |(before, _)| before.end.saturating_sub(range.start));
+        let after = ranges.get(index + 1);
+        let last = after.map_or(0, |(after, _)| range.end.saturating_sub(after.start));
+        let values = output.get(range.clone())?;
+        Some(Stretch { values, places: places.clone(), shared: (first, last) })
+    };
+    ranges.iter().enumerate().filter_map(stretch).collect()
 }
 
 /// Enough of the stretches, from all over the record.
 fn some(stretches: Vec<Stretch<'_>>, enough: usize) -> Vec<Stretch<'_>> {
     let samples: usize = stretches.iter().map(|stretch| stretch.values.len()).sum();
     let every = samples.div_ceil(enough).max(1);
-    stretches.into_iter().step_by(every).collect()
+    let mut some: Vec<_> = stretches.into_iter().step_by(every).collect();
+    if every > 1 {
+        some.iter_mut().for_each(|stretch| stretch.shared = (0, 0));
+    }
+    some
 }
 
 /// The decisions on all steps of a trial with this lag.
@@ -175,6 +191,8 @@ struct Reactions<'a> {
     shape: Shape,
     response: Response,
     noise: Noise,
+    /// Whether holds are long beside delays.
+    in_time: bool,
 }
 
 /// A reaction between its neighbours.
@@ -188,16 +206,17 @@ struct Found<'a> {
 impl<'a> Reactions<'a> {
     /// The reactions behind this lag, from about where they are.
     fn of(output: &'a [f64], chain: Chain, shape: Shape, noise: Noise) -> Self {
-        Self { output, chain, shape, response: Response::of(&shape), noise }
+        let in_time = chain.in_time();
+        Self { output, chain, shape, response: Response::of(&shape), noise, in_time }
     }
 
     /// The same after all reactions were searched between neighbours of the time before,
     /// `times` or, where holds are short, some more.
     fn settled(mut self, times: usize) -> Self {
-        let passes = if self.chain.in_time() { times } else { PASSES };
+        let passes = if self.in_time { times } else { PASSES };
         for _ in 0..passes {
-            let left = self.settle();
-            self.noise = left;
+            self.noise = self.settle();
+            self.in_time = self.chain.in_time();
         }
         self
     }
@@ -206,11 +225,11 @@ impl<'a> Reactions<'a> {
     fn settle(&mut self) -> Noise {
         /// Reactions that are enough to know the noise.
         const ENOUGH: usize = 100;
-        let doubtful = if self.chain.in_time() { DOUBTFUL } else { DOUBTFUL_IF_SHORT };
+        let doubtful = if self.in_time { DOUBTFUL } else { DOUBTFUL_IF_SHORT };
         let every = self.chain.links.len().div_ceil(ENOUGH).max(1);
         let mut leftovers = Vec::new();
         for index in 0..self.chain.links.len() {
-            let Some(found) = self.find(index) else { continue };
+            let Some(found) = self.find(index, ROUGHLY) else { continue };
             if index % every == 0 {
                 leftovers.push(found.stretch.leftover(&self.shape));
             }
@@ -218,13 +237,15 @@ impl<'a> Reactions<'a> {
             if let Some(link) = self.chain.links.get_mut(index) {
                 link.place = found.place();
                 link.counts = p_value <= doubtful;
+                link.error = found.place_error();
             }
         }
         Noise::left_by(&leftovers)
     }
 
-    /// The reaction of step `index`, with its neighbours where they are near.
-    fn find(&self, index: usize) -> Option<Found<'a>> {
+    /// The reaction of step `index`, with its neighbours where they are near, after a step of no
+    /// more than `fine` samples.
+    fn find(&self, index: usize, fine: f64) -> Option<Found<'a>> {
         /// Samples behind a transient that a line needs.
         const LINE: f64 = 20.0;
         let link = self.chain.links.get(index)?;
@@ -248,10 +269,10 @@ impl<'a> Reactions<'a> {
         if values.len() < 2 * (self.response.modes() + 2 * places.len()) + broken_line::FEWEST {
             return None;
         }
-        let mut stretch = Stretch { values, places };
-        let mut fit = stretch.settle(&self.shape, &self.noise, &limits);
+        let mut stretch = Stretch::alone(values, places);
+        let mut fit = stretch.settle(&self.shape, &self.noise, &limits, fine);
         if members.len() > 1 || Self::is_vague(&fit, values.len()) {
-            self.look_around(&mut stretch, &mut fit, &limits);
+            self.look_around(&mut stretch, &mut fit, &limits, fine);
         }
         Some(Found { range, stretch, fit })
     }
@@ -263,7 +284,7 @@ impl<'a> Reactions<'a> {
         let start = range.start as f64;
         let low = place(self.chain.before(index)).unwrap_or(0.0).max(link.earliest as f64);
         let high = place(self.chain.after(index)).unwrap_or(f64::INFINITY) - 2.0;
-        let last = if self.chain.in_time() { link.last_place() } else { link.latest };
+        let last = if self.in_time { link.last_place() } else { link.latest };
         let high = high.min(last as f64).min(range.end as f64 - 2.0);
         (low - start, (high - start).max(low - start))
     }
@@ -275,7 +296,13 @@ impl<'a> Reactions<'a> {
     }
 
     /// Tries the reaction all over its limits, and settles where it is best.
-    fn look_around(&self, stretch: &mut Stretch<'a>, fit: &mut Linearised, limits: &[(f64, f64)]) {
+    fn look_around(
+        &self,
+        stretch: &mut Stretch<'a>,
+        fit: &mut Linearised,
+        limits: &[(f64, f64)],
+        fine: f64,
+    ) {
         const TRIED: u32 = 12;
         let Some(&(low, high)) = limits.last() else { return };
         let tried =
@@ -290,7 +317,7 @@ impl<'a> Reactions<'a> {
         };
         let best = tried.map(at).min_by(|a, b| a.0.total_cmp(&b.0));
         let Some((_, mut there)) = best else { return };
-        let found = there.settle(&self.shape, &self.noise, limits);
+        let found = there.settle(&self.shape, &self.noise, limits, fine);
         if found.sse < fit.sse {
             (*stretch, *fit) = (there, found);
         }
@@ -306,7 +333,7 @@ impl<'a> Reactions<'a> {
     }
 
     fn decision(&self, place: &Place<'_>, lag: &Lag) -> Decision {
-        let found = self.find(place.index);
+        let found = self.find(place.index, FINE);
         let range = self.chain.window(place.index);
         let Some(found) = found else {
             return place.decision(range, Candidates::default(), None, None);
@@ -370,6 +397,11 @@ impl Found<'_> {
     /// Index in the trial.
     fn place(&self) -> f64 {
         self.range.start as f64 + self.stretch.places.last().copied().unwrap_or_default()
+    }
+
+    /// Standard error of the place.
+    fn place_error(&self) -> f64 {
+        (self.fit.sse / self.range.len() as f64 * self.fit.place_variance()).sqrt()
     }
 
     /// How far the place may move, about as far as `guess`, until the squared error has

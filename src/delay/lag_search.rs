@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::noise::Noise;
 use super::response::{MOST, Poles, Response, Shape};
-use super::stretch::{Linearised, Stretch};
+use super::stretch::{FINE, Linearised, Stretch};
 use crate::statistics::{median, robust_scale};
 
 /// Squared errors below this part of the output's are rounding.
@@ -42,16 +42,21 @@ impl<'a> Joint<'a> {
         self.found.iter().map(|found| found.sse).sum()
     }
 
-    fn samples(&self) -> usize {
-        self.stretches.iter().map(|stretch| stretch.values.len()).sum()
+    fn samples(&self) -> f64 {
+        self.stretches.iter().map(Stretch::weight).sum()
     }
 
     /// Moves the reactions of every stretch to where its squared error is least.
     fn regress(&mut self) {
+        self.regress_until(FINE);
+    }
+
+    /// The same until a step is no longer than `fine` samples.
+    fn regress_until(&mut self, fine: f64) {
         let (shape, noise) = (&self.shape, &self.noise);
         let one = |stretch: &mut Stretch<'_>| {
             let limits = stretch.halfway();
-            stretch.settle(shape, noise, &limits)
+            stretch.settle(shape, noise, &limits, fine)
         };
         self.found = self.stretches.iter_mut().map(one).collect();
     }
@@ -82,7 +87,7 @@ impl<'a> Joint<'a> {
     fn levels(&self) -> Vec<f64> {
         let pairs = self.stretches.iter().zip(&self.found);
         let level = |(stretch, found): (&Stretch<'_>, &Linearised)| {
-            found.sse / stretch.values.len().saturating_sub(found.parameters()).max(1) as f64
+            found.sse / (stretch.weight() - found.parameters() as f64).max(1.0)
         };
         pairs.map(level).collect()
     }
@@ -100,12 +105,18 @@ impl<'a> Joint<'a> {
     /// The same joint with another lag; its reactions begin earlier by as much as it is
     /// late.
     fn with(&self, shape: Shape) -> Self {
+        let mut joint = self.about(shape);
+        joint.regress();
+        joint
+    }
+
+    /// The same with its reactions where they are without looking.
+    fn about(&self, shape: Shape) -> Self {
         let mut joint = Self { shape, ..self.clone() };
         let earlier = Response::of(&shape).mean - Response::of(&self.shape).mean;
         for place in joint.stretches.iter_mut().flat_map(|stretch| &mut stretch.places) {
             *place -= earlier;
         }
-        joint.regress();
         joint
     }
 
@@ -116,7 +127,7 @@ impl<'a> Joint<'a> {
         let mut changes: Vec<f64> = self.found.iter().map(|found| found.change().abs()).collect();
         changes.sort_by(f64::total_cmp);
         let median = changes.get(changes.len() / 2).copied().unwrap_or(0.0);
-        let noise = (self.sse() / self.samples().max(1) as f64).sqrt();
+        let noise = (self.sse() / self.samples().max(1.0)).sqrt();
         median < CLEAR * noise
     }
 
@@ -125,9 +136,16 @@ impl<'a> Joint<'a> {
         Self { noise, shape, ..self }
     }
 
-    /// The least squared error near a shape that is almost right, without what is strange.
+    /// The least squared error near a shape that is almost right, without what is strange; or
+    /// a simpler lag, where places that are known better no longer speak for all of its poles.
     pub(super) fn settled_again(self) -> Self {
-        self.settle(1).without_strangers().refined()
+        let usual = self.settle(1).without_strangers().refined();
+        let simpler = usual.shape.simpler().into_iter();
+        let rivals: Vec<_> = simpler.map(|shape| usual.with(shape).settle(STEPS)).collect();
+        let better = |best: Self, rival: Self| {
+            if rival.criterion() < best.criterion() { rival } else { best }
+        };
+        rivals.into_iter().fold(usual, better)
     }
 
     /// The least squared error near a shape that is almost right.
@@ -164,7 +182,9 @@ impl<'a> Joint<'a> {
     pub(super) fn settle(mut self, steps: usize) -> Self {
         /// Part by which the squared error must fall to go on.
         const WORTH: f64 = 1e-6;
-        self.regress();
+        if self.found.len() != self.stretches.len() {
+            self.regress();
+        }
         for _ in 0..steps {
             let before = self.sse();
             let Some(better) = self.better() else { break };
@@ -201,7 +221,7 @@ impl<'a> Joint<'a> {
     /// Schwarz's criterion. What belongs to one stretch only takes degrees of freedom: it
     /// is no part of the shape that is chosen.
     fn criterion(&self) -> f64 {
-        let samples = self.samples() as f64;
+        let samples = self.samples();
         let sse = self.sse().max(ROUNDING * self.power).max(f64::MIN_POSITIVE);
         let own: usize = self.found.iter().map(Linearised::parameters).sum();
         let freedom = (samples - own as f64).max(1.0);
@@ -212,7 +232,7 @@ impl<'a> Joint<'a> {
     pub(super) fn covariance(&self) -> [[f64; MOST]; MOST] {
         let (_, _, information) = self.step();
         let used: usize = self.found.iter().map(Linearised::parameters).sum();
-        let freedom = self.samples().saturating_sub(used + self.shape.order()).max(1) as f64;
+        let freedom = (self.samples() - (used + self.shape.order()) as f64).max(1.0);
         let inverse = information.inverse(self.shape.order());
         inverse.map(|row| row.map(|value| value * self.sse() / freedom))
     }
@@ -253,7 +273,7 @@ impl<'a> Joint<'a> {
         let settled = rivals.iter().map(|rival| rival.whitened(noise.clone()).settle(STEPS));
         let all: Vec<_> = settled.collect();
         let least = all.iter().map(Self::criterion).fold(f64::INFINITY, f64::min);
-        let enough = least + caution * usual.samples() as f64;
+        let enough = least + caution * usual.samples();
         let simplest = all.into_iter().find(|joint| joint.criterion() <= enough);
         simplest.unwrap_or(usual)
     }
@@ -306,7 +326,9 @@ impl<'a> Joint<'a> {
     /// The joint under the best of the `shapes`, after a step or two with each.
     fn started(&self, shapes: &[Shape]) -> Self {
         /// Samples that are enough to tell a good start.
-        const ENOUGH: usize = 3000;
+        const ENOUGH: usize = 2000;
+        /// Samples that a place may still move: only the best start is settled.
+        const ROUGHLY: f64 = 1.0;
         let mut few = self.clone();
         let mut samples = 0;
         few.stretches.retain(|stretch| {
@@ -315,7 +337,11 @@ impl<'a> Joint<'a> {
             keep
         });
         few.found.truncate(few.stretches.len());
-        let tried = shapes.iter().map(|shape| few.with(*shape));
+        let tried = shapes.iter().map(|shape| {
+            let mut there = few.about(*shape);
+            there.regress_until(ROUGHLY);
+            there
+        });
         let best = tried.min_by(|a, b| a.sse().total_cmp(&b.sse()));
         self.with(best.map_or(self.shape, |best| best.shape))
     }

@@ -102,6 +102,21 @@ impl Noise {
         onset
     }
 
+    /// Turns whitened `values` into those whose products with any column are the products of
+    /// `values` with the whitened column.
+    pub(super) fn pull(&self, values: &mut [f64]) {
+        if self.order() == 0 {
+            return;
+        }
+        for k in 0..values.len() {
+            let (now, later) = values.split_at_mut(k + 1);
+            let expected: f64 = self.coefficients.iter().zip(later).map(|(a, y)| a * *y).sum();
+            if let Some(now) = now.last_mut() {
+                *now -= expected;
+            }
+        }
+    }
+
     /// Takes the memory out of `values` in place; the first ones become 0.
     pub(super) fn whiten(&self, values: &mut [f64]) {
         let order = self.order();
@@ -147,6 +162,19 @@ mod tests {
         for (d, (_, h)) in noise.onset().into_iter().enumerate() {
             assert!((ramp[5 + d] - h).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn products_with_what_is_pulled_are_those_with_a_whitened_column() {
+        let noise = Noise::new(vec![0.5, -0.2]);
+        let mut column: Vec<f64> = (0..9).map(|k| f64::from(k * k)).collect();
+        let mut values: Vec<f64> = (0..9).map(|k| f64::from(k % 4)).collect();
+        noise.whiten(&mut values);
+        let mut pulled = values.clone();
+        noise.pull(&mut pulled);
+        let with_column = dot(&pulled, &column);
+        noise.whiten(&mut column);
+        assert!((with_column - dot(&values, &column)).abs() < 1e-12);
     }
 
     #[test]

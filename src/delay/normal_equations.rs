@@ -1,6 +1,6 @@
 //! Small least squares by normal equations, solved column by column.
 
-use crate::statistics::dot;
+use crate::statistics::{dot, dots};
 
 /// Pivots below this part of a column's own square belong to columns that the ones before
 /// them already make up.
@@ -16,16 +16,45 @@ pub(super) struct NormalEquations {
     squares: Vec<f64>,
 }
 
+/// A column that is 0 before `start`.
+#[derive(Clone, Copy, Debug)]
+struct Column<'a> {
+    values: &'a [f64],
+    start: usize,
+}
+
+impl<'a> Column<'a> {
+    fn from(&self, row: usize) -> &'a [f64] {
+        self.values.get(row..).unwrap_or_default()
+    }
+
+    /// Puts its products with the `others` into `slots`.
+    fn multiply(&self, others: &[Self], slots: &mut [f64]) {
+        let first = others.iter().map(|other| other.start).min().unwrap_or(0).max(self.start);
+        if let [a, b, c, d] = others {
+            slots.copy_from_slice(&dots(self.from(first), [a, b, c, d].map(|o| o.from(first))));
+        } else {
+            let products = others.iter().map(|other| dot(self.from(first), other.from(first)));
+            slots.iter_mut().zip(products).for_each(|(slot, product)| *slot = product);
+        }
+    }
+}
+
 impl NormalEquations {
-    /// Of `columns` of `length` samples each, one behind the other.
-    pub(super) fn of(columns: &[f64], length: usize) -> Self {
+    /// Of `columns` of `length` samples each, one behind the other; those that have one of the
+    /// `starts` are 0 before it.
+    pub(super) fn of(columns: &[f64], length: usize, starts: &[usize]) -> Self {
         let size = columns.len() / length.max(1);
         let mut products = vec![0.0; size * size];
-        for (i, a) in columns.chunks_exact(length.max(1)).enumerate() {
-            for (j, b) in columns.chunks_exact(length.max(1)).enumerate().skip(i) {
-                if let Some(slot) = products.get_mut(i * size + j) {
-                    *slot = dot(a, b);
-                }
+        let starts = starts.iter().copied().chain(std::iter::repeat(0));
+        let columns = columns.chunks_exact(length.max(1)).zip(starts);
+        let columns: Vec<Column<'_>> =
+            columns.map(|(values, start)| Column { values, start }).collect();
+        for (i, row) in products.chunks_exact_mut(size.max(1)).enumerate() {
+            let (columns, slots) = (columns.get(i..), row.get_mut(i..));
+            if let (Some(columns @ [first, ..]), Some(slots)) = (columns, slots) {
+                let groups = columns.chunks(4).zip(slots.chunks_mut(4));
+                groups.for_each(|(others, slots)| first.multiply(others, slots));
             }
         }
         let squares = (0..size).map(|i| products.get(i * size + i).copied().unwrap_or(0.0));
@@ -111,7 +140,7 @@ mod tests {
     fn a_regression_by_hand() {
         // y = 1 + 2 x on x = 0, 1, 2 with an error of (1, −2, 1), which neither explains.
         let columns = [1.0, 1.0, 1.0, 0.0, 1.0, 2.0, 2.0, 1.0, 6.0];
-        let mut equations = NormalEquations::of(&columns, 3);
+        let mut equations = NormalEquations::of(&columns, 3, &[]);
         equations.eliminate(0);
         equations.eliminate(1);
         assert!((equations.error() - 6.0).abs() < 1e-12);
@@ -122,7 +151,7 @@ mod tests {
     #[test]
     fn a_column_that_others_make_up_is_left_out() {
         let columns = [1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 1.0, 2.0, 3.0];
-        let mut equations = NormalEquations::of(&columns, 3);
+        let mut equations = NormalEquations::of(&columns, 3, &[]);
         equations.eliminate(0);
         assert!(!equations.stands_alone(1));
         equations.eliminate(1);

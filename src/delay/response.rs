@@ -191,6 +191,18 @@ impl Shape {
         vec![vec![Self::NONE], real, pairs, both]
     }
 
+    /// Lags with fewer poles that are about as late, or have the same pair.
+    pub(super) fn simpler(&self) -> Vec<Self> {
+        let real = Self::real(Response::of(self).mean.max(0.2));
+        let pair = self.pair().map(|(omega, zeta)| Self::pair_of(omega, zeta));
+        match self.poles {
+            Poles::None => Vec::new(),
+            Poles::Real => vec![Self::NONE],
+            Poles::Pair => vec![Self::NONE, real],
+            Poles::RealAndPair => [Self::NONE, real].into_iter().chain(pair).collect(),
+        }
+    }
+
     /// The same lag with all times `factor` as long.
     fn stretched(mut self, factor: f64) -> Self {
         let shift = factor.ln();

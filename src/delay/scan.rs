@@ -37,7 +37,7 @@ pub fn delay_scan(input: &[f64], output: &[f64], longest: usize) -> Vec<f64> {
             column(&|k| at(input, k - delay - 1)),
             column(&change),
         ];
-        let mut equations = NormalEquations::of(&columns.concat(), samples);
+        let mut equations = NormalEquations::of(&columns.concat(), samples, &[]);
         (0..COLUMNS).for_each(|column| equations.eliminate(column));
         equations.error()
     };

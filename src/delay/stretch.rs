@@ -10,10 +10,17 @@
 //! output, a change of the lag's shape `Σ c_j·∂G/∂θ + Σ b_m·∂mode_m/∂θ`: further columns,
 //! whose coefficients are Gauss and Newton's steps.
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use super::chain::ceil;
 use super::leftover::Leftover;
 use super::noise::Noise;
 use super::normal_equations::NormalEquations;
 use super::response::{MOST, Response, Shape};
+
+/// Samples: after a step as small as this the next one does not matter, since each is about
+/// the square of the one before.
+pub(super) const FINE: f64 = 0.02;
 
 /// Columns of the line.
 const LINE: usize = 2;
@@ -24,6 +31,9 @@ const LINE: usize = 2;
 pub(super) struct Stretch<'a> {
     pub(super) values: &'a [f64],
     pub(super) places: Vec<f64>,
+    /// Samples at its beginning and at its end that a neighbour has too: they count half in
+    /// each of the two, so that nothing is told twice.
+    pub(super) shared: (usize, usize),
 }
 
 /// A stretch regressed at its places.
@@ -41,7 +51,17 @@ pub(super) struct Linearised {
     reactions: usize,
 }
 
-impl Stretch<'_> {
+impl<'a> Stretch<'a> {
+    /// One that shares nothing.
+    pub(super) fn alone(values: &'a [f64], places: Vec<f64>) -> Self {
+        Self { values, places, shared: (0, 0) }
+    }
+
+    /// How many samples it counts for.
+    pub(super) fn weight(&self) -> f64 {
+        self.values.len() as f64 - 0.5 * (self.shared.0 + self.shared.1) as f64
+    }
+
     /// The regression with the lag as it is.
     pub(super) fn at(&self, shape: &Shape, noise: &Noise) -> Linearised {
         self.linearised(shape, noise, None)
@@ -74,11 +94,28 @@ impl Stretch<'_> {
         for (slot, y) in target.iter_mut().zip(self.values) {
             *slot = y - offset;
         }
-        if noise.order() > 0 {
-            columns.chunks_exact_mut(length.max(1)).for_each(|column| noise.whiten(column));
+        for column in columns.chunks_exact_mut(length.max(1)) {
+            noise.whiten(column);
+            self.weigh(column);
         }
-        let equations = NormalEquations::of(&columns, length);
+        let equations = NormalEquations::of(&columns, length, &self.starts(modes));
         Linearised::of(equations, modes, reactions)
+    }
+
+    /// The row at which each column begins, as far as one does: line, modes, reactions, moves.
+    fn starts(&self, modes: usize) -> Vec<usize> {
+        let places = self.places.iter().map(|place| ceil(*place));
+        std::iter::repeat_n(0, LINE + modes).chain(places.clone()).chain(places).collect()
+    }
+
+    /// Makes what is shared count half in a sum of squares.
+    fn weigh(&self, column: &mut [f64]) {
+        let (first, last) = self.shared;
+        let end = column.len().saturating_sub(last).max(first);
+        for shared in [0..first, end..column.len()] {
+            let shared = column.get_mut(shared).unwrap_or_default();
+            shared.iter_mut().for_each(|value| *value *= FRAC_1_SQRT_2);
+        }
     }
 
     /// Line, modes and reactions; and, where there is room, the derivatives of the
@@ -139,18 +176,17 @@ impl Stretch<'_> {
         self.places.iter().map(limits).collect()
     }
 
-    /// Moves all reactions to where the squared error is least, each within its `limits`.
+    /// Moves all reactions to where the squared error is least, each within its `limits`, until
+    /// a step is no longer than `fine`.
     pub(super) fn settle(
         &mut self,
         shape: &Shape,
         noise: &Noise,
         limits: &[(f64, f64)],
+        fine: f64,
     ) -> Linearised {
         /// Steps, and halvings of one step, at most.
         const STEPS: usize = 10;
-        /// Samples: after a step as small as this the next one does not matter, since each
-        /// is about the square of the one before.
-        const FINE: f64 = 0.02;
         /// Samples that no interval shows.
         const THERE: f64 = 0.001;
         let mut best = self.at(shape, noise);
@@ -166,17 +202,17 @@ impl Stretch<'_> {
             if largest < THERE {
                 break;
             }
-            let there = Self { values: self.values, places };
+            let there = Self { places, ..*self };
             let found = there.at(shape, noise);
             if found.sse > best.sse {
                 factor /= 3.0;
-                if largest < FINE {
+                if largest < fine {
                     break;
                 }
                 continue;
             }
             (self.places, best, factor) = (there.places, found, 1.0);
-            if largest < FINE {
+            if largest < fine {
                 break;
             }
             moves = best.moves(&[0.0; MOST]);
@@ -315,8 +351,8 @@ mod tests {
     fn a_reaction_is_found_between_samples_although_the_one_before_is_not_over() {
         for shape in [Shape::real(6.0), Shape::pair_of(0.157, 0.25)] {
             let values = made(&shape, 47.37);
-            let mut stretch = Stretch { values: &values, places: vec![52.0] };
-            let found = stretch.settle(&shape, &Noise::white(), &[(0.0, 120.0)]);
+            let mut stretch = Stretch::alone(&values, vec![52.0]);
+            let found = stretch.settle(&shape, &Noise::white(), &[(0.0, 120.0)], FINE);
             assert!((stretch.places[0] - 47.37).abs() < 1e-3, "{:?}", stretch.places);
             assert!((found.change() - 0.7).abs() < 1e-3, "{}", found.change());
             assert!(stretch.leftover(&shape).power() < 1e-6);
@@ -328,7 +364,7 @@ mod tests {
         let shape = Shape::pair_of(0.2, 0.4).behind(4.0);
         let values = made(&shape.nudged(1), 47.37);
         let noise = Noise::white();
-        let stretch = Stretch { values: &values, places: vec![47.37] };
+        let stretch = Stretch::alone(&values, vec![47.37]);
         let parts = stretch.at(&shape, &noise).parts;
         let found = stretch.with_shape(&shape, &noise, &parts);
         let (mut products, mut with) = ([[0.0; MOST]; MOST], [0.0; MOST]);

@@ -25,6 +25,29 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
+/// The sums of products of `a` with four others, in one pass.
+pub(crate) fn dots(a: &[f64], others: [&[f64]; 4]) -> [f64; 4] {
+    const LANES: usize = 4;
+    let length = others.iter().map(|other| other.len()).fold(a.len(), usize::min);
+    let cut = |values: &[f64]| values.len().min(length);
+    let a = a.get(..length).unwrap_or_default();
+    let others = others.map(|other| other.get(..cut(other)).unwrap_or_default());
+    let [b, c, d, e] = others.map(|other| other.chunks_exact(LANES));
+    let mut sums = [[0.0; LANES]; 4];
+    for ((a, (b, c)), (d, e)) in a.chunks_exact(LANES).zip(b.zip(c)).zip(d.zip(e)) {
+        for (sums, other) in sums.iter_mut().zip([b, c, d, e]) {
+            sums.iter_mut().zip(a).zip(other).for_each(|((sum, a), b)| *sum += a * b);
+        }
+    }
+    let heads = length - length % LANES;
+    let mut products = sums.map(|lanes| lanes.iter().sum::<f64>());
+    for (product, other) in products.iter_mut().zip(others) {
+        let rest = a.iter().zip(other).skip(heads);
+        *product += rest.map(|(a, b)| a * b).sum::<f64>();
+    }
+    products
+}
+
 /// Mean products of the values in `windows` with those 0, 1, … `longest` samples before.
 pub(crate) fn autocovariances(windows: &[Vec<f64>], longest: usize) -> Vec<f64> {
     let samples: usize = windows.iter().map(Vec::len).sum();
@@ -76,6 +99,15 @@ impl Autoregression {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn four_sums_of_products_are_those_of_each() {
+        let values = |by: i32| (0..23).map(|k| f64::from(k * by % 7)).collect::<Vec<_>>();
+        let others = [values(2), values(3), values(4), values(5)];
+        let found = dots(&values(1), others.each_ref().map(Vec::as_slice));
+        let each = others.map(|other| dot(&values(1), &other));
+        assert_eq!(found, each);
+    }
 
     #[test]
     fn the_memory_of_a_signal_is_found() {

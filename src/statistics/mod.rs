@@ -8,7 +8,7 @@ mod quantile;
 mod rank;
 mod student;
 
-pub(crate) use autoregression::{Autoregression, autocovariances, dot};
+pub(crate) use autoregression::{Autoregression, autocovariances, dot, dots};
 pub use chi_square::chi_square_tail;
 pub use fisher::fisher_tail;
 pub(crate) use quantile::robust_scale;
