@@ -12,7 +12,7 @@ use tauscope::units::SamplePeriod;
 /// Where the logs are and how they are read.
 #[derive(Args, Debug)]
 pub(super) struct DataArgs {
-    /// Logs (CSV), or folders of logs
+    /// Logs (CSV, Parquet, MATLAB, MCAP), or folders of logs
     #[arg(required = true, value_name = "DATA")]
     data: Vec<PathBuf>,
 
