@@ -113,6 +113,63 @@ mod parquet {
         assert!(message.contains(expected), "{message}");
     }
 
+    /// The cells of a Parquet file as CSV would show them, and the types of its columns.
+    fn cells(path: &Path) -> (Vec<Vec<String>>, Vec<String>) {
+        use ::parquet::file::reader::{FileReader as _, SerializedFileReader};
+        use ::parquet::record::Field;
+        let reader = SerializedFileReader::new(std::fs::File::open(path).unwrap()).unwrap();
+        let schema = reader.metadata().file_metadata().schema_descr();
+        let types = schema.columns().iter().map(|column| column.physical_type().to_string());
+        let types = types.collect();
+        let cell = |field: &Field| match field {
+            Field::Null => String::new(),
+            Field::Long(number) => number.to_string(),
+            Field::Double(number) => number.to_string(),
+            Field::Str(text) => text.clone(),
+            other => panic!("{other:?}"),
+        };
+        let row =
+            |row: ::parquet::record::Row| row.get_column_iter().map(|(_, f)| cell(f)).collect();
+        (reader.get_row_iter(None).unwrap().map(|found| row(found.unwrap())).collect(), types)
+    }
+
+    /// The cells of a CSV file, numbers as they would be printed.
+    fn csv_cells(path: &Path) -> Vec<Vec<String>> {
+        let mut reader = csv::Reader::from_path(path).unwrap();
+        let cell = |cell: &str| cell.parse::<f64>().map_or(cell.to_owned(), |n| n.to_string());
+        reader.records().map(|row| row.unwrap().iter().map(cell).collect()).collect()
+    }
+
+    #[test]
+    fn results_as_parquet_are_those_of_the_csv() {
+        let folder = tempfile::tempdir().unwrap();
+        for (option, method) in
+            [("decisions", "two-line"), ("decisions", "hinge"), ("delays", "two-line")]
+        {
+            let paths =
+                ["csv", "parquet"].map(|ending| folder.path().join(format!("{option}.{ending}")));
+            for path in &paths {
+                let status = std::process::Command::new(env!("CARGO_BIN_EXE_tauscope"))
+                    .args(["estimate", "tests/golden/formats/log.csv", "-q", "--method", method])
+                    .arg(format!("--{option}"))
+                    .arg(path)
+                    .status()
+                    .unwrap();
+                assert!(status.success());
+            }
+            let (found, types) = cells(&paths[1]);
+            let expected = csv_cells(&paths[0]);
+            assert!(found.len() > 20 && found == expected, "{option} {method}");
+            let numbers = types.iter().filter(|kind| *kind == "DOUBLE").count();
+            let expected = match (option, method) {
+                ("delays", _) => 3,
+                (_, "hinge") => 12,
+                _ => 8,
+            };
+            assert_eq!(numbers, expected, "{option} {method}: {types:?}");
+        }
+    }
+
     #[test]
     fn a_file_that_is_cut_or_damaged_is_refused() {
         let whole = std::fs::read(golden("zstd.parquet")).unwrap();

@@ -17,6 +17,7 @@ mod report;
 mod settings;
 mod simulate;
 mod sweep;
+mod table_file;
 
 use std::io::{self, Write as _};
 use std::process::ExitCode;

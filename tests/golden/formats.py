@@ -3,15 +3,18 @@
     pip install "numpy==2.4.6" "pyarrow==26.0.1" "scipy==1.17.1" "hdf5storage==0.2.2" \
         "mcap==1.6.0" "mcap-ros2-support==0.6.0"
     python formats.py
+    python formats.py FILE.parquet FILE.csv     # are these tables of tauscope the same?
 
 Two joints follow steps of their inputs after 0.12 s and 0.2 s. The files must agree to the
 last bit: the CSV holds the shortest text of each number.
 """
 import pathlib
+import sys
 
 import hdf5storage
 import numpy as np
 import pyarrow as pa
+import pyarrow.csv
 import pyarrow.parquet as pq
 from mcap.writer import CompressionType
 from mcap.writer import Writer as McapWriter
@@ -202,7 +205,18 @@ def ros():
         "grip.input": gripped, "grip.output": [k / 4 for k in range(2, samples)]})
 
 
+def check(parquet_file, csv_file):
+    """Fails unless both hold the same table, with the types that belong to it."""
+    found = pq.read_table(parquet_file)
+    types = pa.csv.ConvertOptions(column_types=found.schema, strings_can_be_null=False)
+    assert found.equals(pa.csv.read_csv(csv_file, convert_options=types)), "the tables differ"
+    assert found.num_rows > 0
+    print(f"{parquet_file}: {found.num_rows} rows as in {csv_file}")
+
+
 if __name__ == "__main__":
+    if len(sys.argv) == 3:
+        sys.exit(check(*sys.argv[1:]))
     HERE.mkdir(exist_ok=True)
     columns = native(400)
     write_csv(HERE / "log.csv", columns)

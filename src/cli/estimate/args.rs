@@ -67,12 +67,12 @@ pub(super) struct OutputArgs {
     #[arg(long, value_enum, default_value_t = Detail::Full)]
     pub(super) detail: Detail,
 
-    /// Write the table of decisions
-    #[arg(long, value_name = "FILE.csv")]
+    /// Write the table of decisions, as CSV or Parquet by the name's ending
+    #[arg(long, value_name = "FILE.csv|FILE.parquet")]
     pub(super) decisions: Option<PathBuf>,
 
-    /// Write the delay of every sample
-    #[arg(long, value_name = "FILE.csv")]
+    /// Write the delay of every sample, as CSV or Parquet
+    #[arg(long, value_name = "FILE.csv|FILE.parquet")]
     pub(super) delays: Option<PathBuf>,
 
     /// Show every step: its delay with the interval, and how near the verdict was
