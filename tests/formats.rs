@@ -153,8 +153,9 @@ mod parquet {
                     .args(["estimate", "tests/golden/formats/log.csv", "-q", "--method", method])
                     .arg(format!("--{option}"))
                     .arg(path)
-                    .status()
-                    .unwrap();
+                    .output()
+                    .unwrap()
+                    .status;
                 assert!(status.success());
             }
             let (found, types) = cells(&paths[1]);

@@ -96,6 +96,14 @@ impl DataArgs {
         })
     }
 
+    /// The logs by their names, each once; and messages on folders without any.
+    pub(super) fn logs(&self) -> (Vec<PathBuf>, Vec<String>) {
+        let (mut files, unlisted) = expand_folders(&self.data);
+        files.sort();
+        files.dedup();
+        (files, unlisted.iter().map(|failure| super::with_causes(&failure.error)).collect())
+    }
+
     /// The files that are read, where they really are.
     pub(super) fn files(&self) -> Vec<PathBuf> {
         let (files, _) = expand_folders(&self.data);

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use tauscope::report::DataTable;
 
-use super::output::OutputFile;
+use super::output::{OutputFile, write_file};
 
 /// What a table is written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,4 +44,12 @@ pub(super) fn write_parquet(table: &DataTable, file: &mut OutputFile) -> anyhow:
 #[cfg(not(feature = "parquet"))]
 pub(super) fn write_parquet(_: &DataTable, _: &mut OutputFile) -> anyhow::Result<()> {
     anyhow::bail!("Parquet is not in this build of tauscope")
+}
+
+/// Writes a table as what its name says.
+pub(super) fn write_table(table: &DataTable, path: &Path) -> anyhow::Result<()> {
+    write_file(path, |file| match FileKind::of(path) {
+        FileKind::Csv => Ok(table.write_csv(file)?),
+        FileKind::Parquet => write_parquet(table, file),
+    })
 }

@@ -65,6 +65,7 @@ pub(super) struct Wanted<'a> {
     /// The column that names the trials.
     pub(super) label: Option<usize>,
     /// The clock whose rows are wanted.
+    #[cfg_attr(not(feature = "mcap"), expect(dead_code, reason = "for other formats"))]
     pub(super) clock: usize,
 }
 
@@ -106,15 +107,19 @@ pub(super) struct Table {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum RowNumbers {
     /// Lines of the file.
-    Lines(Vec<u64>),
+    Lines(Lines),
     /// So many rows, counted from 1.
+    #[cfg_attr(
+        not(any(feature = "mat", feature = "mcap", feature = "parquet")),
+        expect(dead_code, reason = "for other formats")
+    )]
     Counted(usize),
 }
 
 impl RowNumbers {
     pub(super) fn len(&self) -> usize {
         match self {
-            Self::Lines(lines) => lines.len(),
+            Self::Lines(lines) => lines.count,
             Self::Counted(count) => *count,
         }
     }
@@ -126,9 +131,32 @@ impl RowNumbers {
     /// What messages call the row with this index.
     pub(super) fn number(&self, index: usize) -> u64 {
         match self {
-            Self::Lines(lines) => lines.get(index).copied().unwrap_or_default(),
+            Self::Lines(lines) => lines.line(index),
             Self::Counted(_) => index as u64 + 1,
         }
+    }
+}
+
+/// The lines of rows that follow one another but for comments, blank lines and quotations.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Lines {
+    /// Where lines are left out: a row's index, and its line.
+    runs: Vec<(usize, u64)>,
+    count: usize,
+}
+
+impl Lines {
+    pub(super) fn push(&mut self, line: u64) {
+        if self.count == 0 || self.line(self.count) != line {
+            self.runs.push((self.count, line));
+        }
+        self.count += 1;
+    }
+
+    fn line(&self, index: usize) -> u64 {
+        let later = self.runs.partition_point(|(first, _)| *first <= index);
+        let run = later.checked_sub(1).and_then(|run| self.runs.get(run));
+        run.map_or(0, |(first, line)| line + (index - first) as u64)
     }
 }
 
@@ -150,6 +178,7 @@ pub(super) struct Column {
 
 impl Column {
     /// Numbers in the order of their rows, counted from 1.
+    #[cfg(any(feature = "mat", feature = "mcap"))]
     pub(super) fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut column = Self::default();
         values.into_iter().for_each(|value| column.add(value));
@@ -157,11 +186,13 @@ impl Column {
     }
 
     /// A column that holds `kind`.
+    #[cfg(any(feature = "mat", feature = "parquet"))]
     pub(super) fn not_numbers(kind: &str) -> Self {
         Self { values: Vec::new(), error: Some((0, BadCell::Kind(kind.to_owned()))) }
     }
 
     /// Adds the number of the next row, counted from 1.
+    #[cfg(any(feature = "mat", feature = "mcap", feature = "parquet"))]
     pub(super) fn add(&mut self, value: f64) {
         let row = self.values.len() as u64 + 1;
         self.push(if value.is_infinite() { Err(BadCell::Infinite) } else { Ok(value) }, row);
@@ -181,6 +212,10 @@ impl Column {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum BadCell {
     /// The whole column holds something else.
+    #[cfg_attr(
+        not(any(feature = "mat", feature = "parquet")),
+        expect(dead_code, reason = "for other formats")
+    )]
     Kind(String),
     Text(String),
     Infinite,
@@ -266,17 +301,22 @@ mod tests {
     }
 
     #[test]
+    #[cfg(any(feature = "mat", feature = "mcap", feature = "parquet"))]
     fn values_end_before_one_that_is_infinite() {
-        let column = Column::of(vec![1.0, f64::NAN, f64::INFINITY, 2.0]);
+        let mut column = Column::default();
+        [1.0, f64::NAN, f64::INFINITY, 2.0].into_iter().for_each(|value| column.add(value));
         assert_eq!(column.values.len(), 2);
         assert_eq!(column.error, Some((3, BadCell::Infinite)));
-        assert_eq!(Column::of(vec![1.0]).error, None);
     }
 
     #[test]
     fn rows_without_lines_are_counted() {
         assert_eq!(RowNumbers::Counted(3).number(2), 3);
-        assert_eq!(RowNumbers::Lines(vec![5, 7]).number(1), 7);
-        assert_eq!(RowNumbers::Lines(vec![5, 7]).len(), 2);
+        let mut lines = Lines::default();
+        [2, 3, 4, 9, 10, 12].into_iter().for_each(|line| lines.push(line));
+        assert_eq!(lines.runs.len(), 3);
+        let rows = RowNumbers::Lines(lines);
+        assert_eq!([0, 2, 3, 4, 5].map(|index| rows.number(index)), [2, 4, 9, 10, 12]);
+        assert_eq!(rows.len(), 6);
     }
 }

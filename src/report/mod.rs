@@ -8,6 +8,7 @@ mod delays;
 mod equation;
 mod explain;
 mod finding;
+mod folder;
 mod improve;
 mod json;
 mod number;
@@ -36,6 +37,7 @@ pub use decisions::{
 pub use delays::{delay_table, write_delays};
 pub use explain::{ExplainJson, explain_text};
 pub use finding::Finding;
+pub use folder::{FolderJson, FolderReport, LogResult};
 pub use improve::{ImproveJson, ImprovedJoint, change_in_words, improve_text, revision_line};
 pub use json::EstimateJson;
 pub use number::number;

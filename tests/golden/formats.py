@@ -1,7 +1,6 @@
 """Makes formats/: one log in the formats that other programs write, and as CSV.
 
-    pip install "numpy==2.4.6" "pyarrow==26.0.1" "scipy==1.17.1" "hdf5storage==0.2.2" \
-        "mcap==1.6.0" "mcap-ros2-support==0.6.0"
+    pip install -r formats/requirements.txt
     python formats.py
     python formats.py FILE.parquet FILE.csv     # are these tables of tauscope the same?
 
