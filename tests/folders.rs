@@ -133,10 +133,8 @@ fn what_is_done_and_unchanged_is_not_done_again() {
 #[test]
 fn parts_merge_to_the_bytes_of_one_run() {
     let desk = Desk::with_logs(5);
-    let tables = |name: &str| match cfg!(feature = "parquet") {
-        true => format!("--decisions {name}.csv --summary {name}.parquet"),
-        false => format!("--decisions {name}.csv --summary {name}.summary.csv"),
-    };
+    let ending = if cfg!(feature = "parquet") { "parquet" } else { "summary.csv" };
+    let tables = |name: &str| format!("--decisions {name}.csv --summary {name}.{ending}");
     let one = desk.run(&format!("estimate logs --results one --threads 1 {}", tables("one")));
     one.is_whole();
     for part in [3, 1, 2] {

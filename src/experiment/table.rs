@@ -304,7 +304,9 @@ mod tests {
     #[cfg(any(feature = "mat", feature = "mcap", feature = "parquet"))]
     fn values_end_before_one_that_is_infinite() {
         let mut column = Column::default();
-        [1.0, f64::NAN, f64::INFINITY, 2.0].into_iter().for_each(|value| column.add(value));
+        for value in [1.0, f64::NAN, f64::INFINITY, 2.0] {
+            column.add(value);
+        }
         assert_eq!(column.values.len(), 2);
         assert_eq!(column.error, Some((3, BadCell::Infinite)));
     }
@@ -313,7 +315,9 @@ mod tests {
     fn rows_without_lines_are_counted() {
         assert_eq!(RowNumbers::Counted(3).number(2), 3);
         let mut lines = Lines::default();
-        [2, 3, 4, 9, 10, 12].into_iter().for_each(|line| lines.push(line));
+        for line in [2, 3, 4, 9, 10, 12] {
+            lines.push(line);
+        }
         assert_eq!(lines.runs.len(), 3);
         let rows = RowNumbers::Lines(lines);
         assert_eq!([0, 2, 3, 4, 5].map(|index| rows.number(index)), [2, 4, 9, 10, 12]);

@@ -65,7 +65,7 @@ impl FolderReport {
 
     /// The joints of all logs, each with its log.
     fn joints(&self) -> impl Iterator<Item = (&LogResult, &Value)> {
-        let joints = |log| array(&log_document(log), "joints").map(move |joint| (log, joint));
+        let joints = |log| array(log_document(log), "joints").map(move |joint| (log, joint));
         self.logs.iter().flat_map(joints)
     }
 
