@@ -4,14 +4,16 @@
 
 use std::path::{Path, PathBuf};
 
-use tauscope::experiment::{Experiment, JointColumns, ReadError, ReadOptions};
+use tauscope::experiment::{Experiment, ReadOptions};
 
 fn golden(name: &str) -> PathBuf {
     Path::new("tests/golden/formats").join(name)
 }
 
 /// How a log is read.
+#[cfg(any(feature = "mat", feature = "mcap", feature = "parquet"))]
 fn mapped(joints: &[(&str, &str, &str)]) -> ReadOptions {
+    use tauscope::experiment::JointColumns;
     let joint = |(name, input, output): &(&str, &str, &str)| JointColumns::new(name, input, output);
     let mut options = ReadOptions::default();
     options.columns.joints = joints.iter().map(joint).collect();
@@ -23,6 +25,7 @@ fn read(path: PathBuf, options: &ReadOptions) -> Experiment {
 }
 
 /// Reads a log that has nothing wrong with it.
+#[cfg(any(feature = "mat", feature = "mcap", feature = "parquet"))]
 fn read_whole(name: &str, options: &ReadOptions) -> Experiment {
     let found = read(golden(name), options);
     assert!(found.failures.is_empty(), "{name}: {:?}", found.failures);
@@ -192,6 +195,8 @@ mod parquet {
 
 #[cfg(feature = "mat")]
 mod mat {
+    use tauscope::experiment::ReadError;
+
     use super::*;
 
     /// The joints of the fixtures: a structure, and a vector with a column of a matrix.

@@ -103,60 +103,42 @@ pub(super) struct Table {
     pub(super) notes: Vec<String>,
 }
 
-/// The number of each row.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum RowNumbers {
-    /// Lines of the file.
-    Lines(Lines),
-    /// So many rows, counted from 1.
-    #[cfg_attr(
-        not(any(feature = "mat", feature = "mcap", feature = "parquet")),
-        expect(dead_code, reason = "for other formats")
-    )]
-    Counted(usize),
-}
-
-impl RowNumbers {
-    pub(super) fn len(&self) -> usize {
-        match self {
-            Self::Lines(lines) => lines.count,
-            Self::Counted(count) => *count,
-        }
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// What messages call the row with this index.
-    pub(super) fn number(&self, index: usize) -> u64 {
-        match self {
-            Self::Lines(lines) => lines.line(index),
-            Self::Counted(_) => index as u64 + 1,
-        }
-    }
-}
-
-/// The lines of rows that follow one another but for comments, blank lines and quotations.
+/// The number of each row: its line, or its place from 1 where a file has no lines. Lines
+/// follow one another but for comments, blank lines and quotations.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Lines {
-    /// Where lines are left out: a row's index, and its line.
+pub(super) struct RowNumbers {
+    /// Where numbers are left out: a row's index, and its number.
     runs: Vec<(usize, u64)>,
     count: usize,
 }
 
-impl Lines {
-    pub(super) fn push(&mut self, line: u64) {
-        if self.count == 0 || self.line(self.count) != line {
-            self.runs.push((self.count, line));
+impl RowNumbers {
+    /// So many rows, counted from 1.
+    #[cfg(any(feature = "mat", feature = "mcap", feature = "parquet"))]
+    pub(super) fn counted(count: usize) -> Self {
+        Self { runs: vec![(0, 1)], count }
+    }
+
+    pub(super) fn push(&mut self, number: u64) {
+        if self.count == 0 || self.number(self.count) != number {
+            self.runs.push((self.count, number));
         }
         self.count += 1;
     }
 
-    fn line(&self, index: usize) -> u64 {
+    pub(super) fn len(&self) -> usize {
+        self.count
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// What messages call the row with this index.
+    pub(super) fn number(&self, index: usize) -> u64 {
         let later = self.runs.partition_point(|(first, _)| *first <= index);
         let run = later.checked_sub(1).and_then(|run| self.runs.get(run));
-        run.map_or(0, |(first, line)| line + (index - first) as u64)
+        run.map_or(0, |(first, number)| number + (index - first) as u64)
     }
 }
 
@@ -312,14 +294,12 @@ mod tests {
     }
 
     #[test]
-    fn rows_without_lines_are_counted() {
-        assert_eq!(RowNumbers::Counted(3).number(2), 3);
-        let mut lines = Lines::default();
+    fn rows_bear_the_numbers_they_were_given() {
+        let mut rows = RowNumbers::default();
         for line in [2, 3, 4, 9, 10, 12] {
-            lines.push(line);
+            rows.push(line);
         }
-        assert_eq!(lines.runs.len(), 3);
-        let rows = RowNumbers::Lines(lines);
+        assert_eq!(rows.runs.len(), 3);
         assert_eq!([0, 2, 3, 4, 5].map(|index| rows.number(index)), [2, 4, 9, 10, 12]);
         assert_eq!(rows.len(), 6);
     }

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use super::super::ReadError;
 use super::super::table::{
-    BadCell, Column, Hashing, Header, Labels, Lines, OpenTable, RowNumbers, Rows, Table, Wanted,
+    BadCell, Column, Hashing, Header, Labels, OpenTable, RowNumbers, Rows, Table, Wanted,
 };
 
 /// A file whose first bytes were looked at, and a line ending behind its last line,
@@ -50,13 +50,13 @@ impl Rows for Unread {
     fn read(mut self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
         let mut columns = vec![Column::default(); wanted.numeric.len()];
         let mut labels = wanted.label.map(|_| Labels::default());
-        let mut lines = Lines::default();
+        let mut rows = RowNumbers::default();
         let mut record = csv::ByteRecord::new();
         while self.next(&mut record, wanted.path)? {
             let place = place_just_read(&mut self.reader, &record);
             check_width(wanted, &place, record.len())?;
             let row = place.row;
-            lines.push(row);
+            rows.push(row);
             let cell = |index: usize| record.get(index).unwrap_or_default().trim_ascii();
             for (column, index) in columns.iter_mut().zip(wanted.numeric) {
                 column.push(parse_cell(cell(*index)), row);
@@ -67,7 +67,6 @@ impl Rows for Unread {
         }
         let source = self.reader.into_inner().into_inner().0.inner.finish(wanted.path)?;
         let trials = labels.map_or_else(Vec::new, Labels::runs);
-        let rows = RowNumbers::Lines(lines);
         Ok(Table { source, rows, columns, trials, notes: Vec::new() })
     }
 }

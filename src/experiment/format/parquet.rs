@@ -113,7 +113,7 @@ impl Rows for Unread {
         }
         Ok(Table {
             source: source_of(wanted.path)?,
-            rows: RowNumbers::Counted(rows),
+            rows: RowNumbers::counted(rows),
             columns,
             trials: labels.runs(),
             notes: Vec::new(),

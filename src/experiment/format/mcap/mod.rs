@@ -306,7 +306,7 @@ impl Rows for Unread {
         {
             labels.push(&value.to_string(), row, wanted.path)?;
         }
-        let rows = RowNumbers::Counted(aligned.rows());
+        let rows = RowNumbers::counted(aligned.rows());
         Ok(Table { source, rows, columns, trials: labels.runs(), notes })
     }
 }
