@@ -12,7 +12,7 @@ use tauscope::units::SamplePeriod;
 /// Where the logs are and how they are read.
 #[derive(Args, Debug)]
 pub(super) struct DataArgs {
-    /// Logs (CSV), or folders of logs
+    /// Logs (CSV, Parquet, MATLAB, MCAP), or folders of logs
     #[arg(required = true, value_name = "DATA")]
     data: Vec<PathBuf>,
 
@@ -94,6 +94,14 @@ impl DataArgs {
             1 => error.context("nothing could be read (and one more failed)"),
             _ => error.context(format!("nothing could be read (and {others} more failed)")),
         })
+    }
+
+    /// The logs by their names, each once; and messages on folders without any.
+    pub(super) fn logs(&self) -> (Vec<PathBuf>, Vec<String>) {
+        let (mut files, unlisted) = expand_folders(&self.data);
+        files.sort();
+        files.dedup();
+        (files, unlisted.iter().map(|failure| super::with_causes(&failure.error)).collect())
     }
 
     /// The files that are read, where they really are.

@@ -130,6 +130,11 @@ impl ProtocolArgs {
 }
 
 impl ResultArgs {
+    /// Threads, where that was said.
+    pub(super) fn threads(&self) -> Option<usize> {
+        self.threads
+    }
+
     pub(super) fn verbosity(&self) -> Verbosity {
         if self.quiet { Verbosity::Quiet } else { Verbosity::Normal }
     }

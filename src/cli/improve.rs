@@ -13,7 +13,10 @@ use tauscope::report::{
 };
 
 use super::data::DataArgs;
-use super::fitting::{EffectArgs, ProtocolArgs, ResultArgs, outcomes, print, quoted, study};
+use super::fitting::{
+    EffectArgs, Format, ProtocolArgs, ResultArgs, outcomes, print, quoted, study,
+};
+use super::folder::{Each, FolderArgs, Print};
 use super::interrupt::Interrupt;
 use super::model_file::{ModelFileArgs, name_of, note_missing};
 use super::output::check_outputs;
@@ -45,9 +48,34 @@ pub(super) struct Args {
 
     #[command(flatten)]
     output: ResultArgs,
+
+    #[command(flatten)]
+    folder: FolderArgs,
+}
+
+/// Improves a model of each log by itself.
+fn each_log(args: &Args) -> anyhow::Result<Completion> {
+    args.folder.run(&Each {
+        command: "improve",
+        data: &args.data,
+        decisions: None,
+        refused: &[
+            ("--output", args.output.recording.is_some()),
+            ("--write", args.model.is_written_elsewhere()),
+        ],
+        print: match args.output.format {
+            Format::Text => Print::Text,
+            Format::Json => Print::Json,
+        },
+        threads: args.output.threads(),
+        verbosity: args.output.verbosity(),
+    })
 }
 
 pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
+    if args.folder.is_asked_for() {
+        return each_log(args);
+    }
     let file = args.model.read()?;
     let effects = args.effects.effects(file.candidates())?;
     let options = Options { effects, max_effects: args.max_effects };

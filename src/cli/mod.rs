@@ -7,8 +7,10 @@ mod effects;
 mod estimate;
 mod explain;
 mod fitting;
+mod folder;
 mod improve;
 mod interrupt;
+mod merge;
 mod model_file;
 mod output;
 mod progress;
@@ -17,6 +19,7 @@ mod report;
 mod settings;
 mod simulate;
 mod sweep;
+mod table_file;
 
 use std::io::{self, Write as _};
 use std::process::ExitCode;
@@ -40,6 +43,7 @@ enum Command {
     Explain(Box<explain::Args>),
     Add(Box<add::Args>),
     Improve(Box<improve::Args>),
+    Merge(merge::Args),
     Report(Box<report::Args>),
     Effects(effects::Args),
     Simulate(Box<simulate::Args>),
@@ -65,6 +69,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Explain(args) => explain::run(&args),
         Command::Add(args) => add::run(&args),
         Command::Improve(args) => improve::run(&args),
+        Command::Merge(args) => merge::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Effects(args) => effects::run(&args),
         Command::Simulate(args) => simulate::run(&args),

@@ -42,6 +42,11 @@ impl ModelFileArgs {
         }
     }
 
+    /// Whether the revised file is to go elsewhere than where it came from.
+    pub(super) fn is_written_elsewhere(&self) -> bool {
+        self.write.is_some()
+    }
+
     /// Where the revised file goes.
     pub(super) fn target(&self) -> &Path {
         self.write.as_ref().or(self.model.as_ref()).map_or(Path::new(DEFAULT), PathBuf::as_path)

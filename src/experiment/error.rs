@@ -6,7 +6,8 @@ use super::TrialError;
 
 /// Why a log, or one joint of it, could not be read.
 ///
-/// `row` is the line of the file, counted from 1, as an editor shows it.
+/// `row` is the line of the file, counted from 1, as an editor shows it; where a file has no
+/// lines, the number of the sample, and 0 stands for its header.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
@@ -26,6 +27,61 @@ pub enum ReadError {
         /// What the parser said.
         source: csv::Error,
     },
+    /// The file is not what its name or its first bytes say, or it is damaged.
+    #[error("{}: cannot be read as {format}: {reason}; {remedy}", path.display())]
+    Format {
+        /// The log.
+        path: PathBuf,
+        /// The format that was expected.
+        format: &'static str,
+        /// What is wrong.
+        reason: String,
+        /// What to do about it.
+        remedy: &'static str,
+    },
+    /// This build cannot read the format.
+    #[error(
+        "{}: {format} is not in this build of tauscope; build it with `--features {feature}`",
+        path.display()
+    )]
+    FormatLeftOut {
+        /// The log.
+        path: PathBuf,
+        /// Its format.
+        format: &'static str,
+        /// The feature that reads it.
+        feature: &'static str,
+    },
+    /// A column that is needed does not hold numbers.
+    #[error(
+        "{}, column `{column}`: it holds {found}, not numbers; choose another column, or write \
+         it as numbers", path.display()
+    )]
+    NotNumbers {
+        /// The log.
+        path: PathBuf,
+        /// The column.
+        column: String,
+        /// What it holds.
+        found: String,
+    },
+    /// Two columns that are needed differ in length.
+    #[error(
+        "{}: column `{column}` has {found} values but `{other}` has {expected}; choose columns \
+         of one length", path.display()
+    )]
+    UnequalColumns {
+        /// The log.
+        path: PathBuf,
+        /// The column.
+        column: String,
+        /// Its values.
+        found: usize,
+        /// A column before it.
+        other: String,
+        /// Values of that one.
+        expected: usize,
+    },
     /// The file holds nothing.
     #[error("{}: the file is empty; expected a header row and samples", path.display())]
     Empty {
@@ -39,7 +95,9 @@ pub enum ReadError {
         path: PathBuf,
     },
     /// A folder holds no log.
-    #[error("{}: no .csv, .tsv or .txt file in this folder", path.display())]
+    #[error(
+        "{}: no log in this folder; logs end in {}", path.display(), super::format::endings()
+    )]
     EmptyFolder {
         /// The folder.
         path: PathBuf,
@@ -63,7 +121,7 @@ pub enum ReadError {
     },
     /// Two columns have the name that is looked for.
     #[error(
-        "{}, row {row}: two columns are named `{column}`; rename one of them", path.display()
+        "{}{}: two columns are named `{column}`; rename one of them", path.display(), header(*row)
     )]
     DuplicateColumn {
         /// The log.
@@ -88,8 +146,8 @@ pub enum ReadError {
     },
     /// Time is in a unit that is not known.
     #[error(
-        "{}, row {row}, column `{column}`: time in [{unit}] is not known; expected [s], [ms], \
-         [us], [ns], [min] or no unit", path.display()
+        "{}{}, column `{column}`: time in [{unit}] is not known; expected [s], [ms], \
+         [us], [ns], [min] or no unit", path.display(), header(*row)
     )]
     TimeUnit {
         /// The log.
@@ -111,8 +169,8 @@ pub enum ReadError {
     },
     /// A column that is needed is not there.
     #[error(
-        "{}, row {row}: column `{column}` is missing{}; the columns are: {available}",
-        path.display(), suggestion(nearest.as_deref())
+        "{}{}: column `{column}` is missing{}; the columns are: {available}",
+        path.display(), header(*row), suggestion(nearest.as_deref())
     )]
     MissingColumn {
         /// The log.
@@ -128,9 +186,9 @@ pub enum ReadError {
     },
     /// No column belongs to a joint.
     #[error(
-        "{}, row {row}: no joint found; a joint needs the columns `<joint>.input` and \
+        "{}{}: no joint found; a joint needs the columns `<joint>.input` and \
          `<joint>.output`, or `--joint NAME=INPUT_COLUMN:OUTPUT_COLUMN`; the columns are: \
-         {available}", path.display()
+         {available}", path.display(), header(*row)
     )]
     NoJoints {
         /// The log.
@@ -157,8 +215,9 @@ pub enum ReadError {
     },
     /// The log has no time, and no sample period was given.
     #[error(
-        "{}, row {row}: no time column (`time_s`, `t_s`, `time` or `t`); name one with \
-         `--time COLUMN`, or give the period with `--sample-period SECONDS`", path.display()
+        "{}{}: no time column (`time_s`, `t_s`, `time` or `t`); name one with \
+         `--time COLUMN`, or give the period with `--sample-period SECONDS`",
+        path.display(), header(*row)
     )]
     NoTime {
         /// The log.
@@ -332,6 +391,11 @@ pub enum ReadError {
         /// What is wrong with them.
         source: TrialError,
     },
+}
+
+/// Where a header stands, in a file that has lines.
+fn header(row: u64) -> String {
+    if row == 0 { String::new() } else { format!(", row {row}") }
 }
 
 fn suggestion(nearest: Option<&str>) -> String {

@@ -1,5 +1,7 @@
 //! Which column of a table is time, trial, and which signal of which joint.
 
+use std::collections::HashSet;
+
 use super::error::nearest_name;
 use super::table::{Header, OpenTable};
 use super::{ColumnMap, JointColumns, ReadError, Signal};
@@ -26,11 +28,23 @@ pub(super) enum TimeSource {
     Rows(SamplePeriod),
 }
 
+impl TimeSource {
+    /// The column that it is read from.
+    pub(super) fn column(self) -> Option<usize> {
+        match self {
+            Self::Times(column, _) | Self::SampleNumbers(column, _) => Some(column),
+            Self::Rows(_) => None,
+        }
+    }
+}
+
 /// A signal of a joint and the column that holds it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct SignalColumn {
     pub(super) signal: Signal,
     pub(super) column: usize,
+    /// The clock it is sampled by.
+    pub(super) clock: usize,
 }
 
 /// The columns of one joint.
@@ -73,6 +87,28 @@ impl Layout {
             layout.add_mapped_joints(table, &map.joints)?;
         }
         Ok(layout)
+    }
+
+    /// The clock of its joints' outputs, which is one after [`Self::by_clock`].
+    pub(super) fn clock(&self) -> usize {
+        self.joints.first().map_or(0, |joint| joint.output.clock)
+    }
+
+    /// The joints apart by the clocks of their outputs; never nothing, so that the file is
+    /// read even for no joint.
+    pub(super) fn by_clock(self) -> Vec<Self> {
+        let mut clocks: Vec<usize> = self.joints.iter().map(|joint| joint.output.clock).collect();
+        let mut seen = HashSet::new();
+        clocks.retain(|clock| seen.insert(*clock));
+        if clocks.len() < 2 {
+            return vec![self];
+        }
+        let of = |clock: usize| {
+            let joints = self.joints.iter().filter(|joint| joint.output.clock == clock);
+            let joints = joints.cloned().collect();
+            Self { time: self.time, trial: self.trial, joints, incomplete: Vec::new() }
+        };
+        clocks.into_iter().map(of).collect()
     }
 
     fn add_mapped_joints(
@@ -156,7 +192,8 @@ fn signal_column(
     let column = find(table, column)?;
     let stated = table.headers.get(column).and_then(|header| header.unit.as_ref());
     let signal = Signal { name: name.to_owned(), unit: unit.or(stated).cloned() };
-    Ok(SignalColumn { signal, column })
+    let clock = table.headers.get(column).map_or(0, |header| header.clock);
+    Ok(SignalColumn { signal, column, clock })
 }
 
 fn find_time(

@@ -7,6 +7,7 @@
 mod activity;
 mod columns;
 mod error;
+mod format;
 mod layout;
 mod read;
 mod sampling;

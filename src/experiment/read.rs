@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::error::{listed, nearest_name};
+use super::format::{self, is_named_like_a_log};
 use super::layout::{JointLayout, Layout, TimeSource};
 use super::sampling::{Fault, Grid, Repair, Signals};
-use super::table::{BadCell, Column, OpenTable, Table, TrialRows};
+use super::table::{BadCell, Column, Header, OpenTable, Table, TrialRows, source_of};
 use super::{ColumnMap, Joint, ReadError, Signal, Source, Trial};
 use crate::units::SamplePeriod;
 
@@ -116,7 +117,8 @@ fn unique_stem(path: &Path, taken: &[String]) -> String {
     format!("{stem}~{number}")
 }
 
-/// Files as they are; of a folder its logs (`.csv`, `.tsv`, `.txt`), sorted by name.
+/// Files as they are; of a folder its logs (`.csv`, `.tsv`, `.txt`, `.parquet`, `.mat`,
+/// `.mcap`), sorted by name.
 ///
 /// Truth files (`*.truth.csv`) are no logs and are left out.
 ///
@@ -165,8 +167,7 @@ fn part_labels(label: &str, parts: usize, trials: &[TrialRows]) -> Vec<String> {
 
 fn is_log(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    let named = [".csv", ".tsv", ".txt"].iter().any(|ending| name.ends_with(ending));
-    named && !name.ends_with(".truth.csv") && path.is_file()
+    is_named_like_a_log(&name) && !name.ends_with(".truth.csv") && path.is_file()
 }
 
 fn read_log(
@@ -174,28 +175,60 @@ fn read_log(
     stem: Option<&str>,
     options: &ReadOptions,
 ) -> Result<Experiment, ReadError> {
-    let table = OpenTable::open(path)?;
+    let table = format::open(path)?;
     let period = sample_period(path, &options.columns)?;
     let mut layout = Layout::find(&table, &options.columns, period)?;
     let unknown = layout.keep(path, &options.joints);
-    let numeric = layout.numeric_columns();
-    let headers: Vec<String> = table.headers.iter().map(|header| header.name.clone()).collect();
-    let table = table.read(&numeric, layout.trial)?;
-    let log = Log { path, headers: &headers, numeric: &numeric, table: &table };
-    let trials = log.trials(stem);
-    let grids = log.grids(layout.time, &trials, options.repair)?;
-    let failed = |(joint, error): (String, ReadError)| Failure { joint: Some(joint), error };
-    let mut failures: Vec<_> = layout.incomplete.into_iter().chain(unknown).map(failed).collect();
-    let mut joints = Vec::new();
-    for joint in &layout.joints {
-        match log.joint(joint, &trials, &grids, options.repair) {
-            Ok(joint) => joints.push(joint),
-            Err(error) => failures.push(failed((joint.name.clone(), error))),
-        }
+    let incomplete = std::mem::take(&mut layout.incomplete);
+    let mut found = Experiment::default();
+    found.failures.extend(incomplete.into_iter().chain(unknown).map(failed));
+    let mut next = Some(table);
+    for layout in layout.by_clock() {
+        // Each clock has rows of its own, and is read in a pass of its own.
+        let table = next.take().map_or_else(|| format::open(path), Ok)?;
+        found.read_clock(table, &layout, stem, options.repair)?;
     }
-    let sources = vec![table.source];
-    let notes = joints.iter().flat_map(|joint| split_notes(joint, &trials)).collect();
-    Ok(Experiment { sources, joints, failures, notes, ..Experiment::default() })
+    Ok(found)
+}
+
+fn failed((joint, error): (String, ReadError)) -> Failure {
+    Failure { joint: Some(joint), error }
+}
+
+impl Experiment {
+    /// Adds the joints of `layout`, which share their rows.
+    fn read_clock(
+        &mut self,
+        table: OpenTable,
+        layout: &Layout,
+        stem: Option<&str>,
+        repair: Repair,
+    ) -> Result<(), ReadError> {
+        let (path, headers) = (table.path.clone(), table.headers.clone());
+        if layout.joints.is_empty() {
+            self.sources.push(source_of(&path)?);
+            return Ok(());
+        }
+        let numeric = layout.numeric_columns();
+        let table = table.read(&numeric, layout.trial, layout.clock())?;
+        let log = Log { path: &path, headers: &headers, numeric: &numeric, table: &table };
+        let trials = log.trials(stem);
+        let grids = log.grids(layout.time, &trials, repair)?;
+        for joint in &layout.joints {
+            match log.joint(joint, &trials, &grids, repair) {
+                Ok(joint) => {
+                    self.notes.extend(split_notes(&joint, &trials));
+                    self.joints.push(joint);
+                }
+                Err(error) => self.failures.push(failed((joint.name.clone(), error))),
+            }
+        }
+        self.notes.extend(table.notes);
+        if self.sources.is_empty() {
+            self.sources.push(table.source);
+        }
+        Ok(())
+    }
 }
 
 /// A line on each trial of `joint` that was split at gaps.
@@ -246,10 +279,7 @@ impl Layout {
 
     /// Indices of all columns that hold numbers, each once.
     fn numeric_columns(&self) -> Vec<usize> {
-        let mut columns = match self.time {
-            TimeSource::Times(column, _) | TimeSource::SampleNumbers(column, _) => vec![column],
-            TimeSource::Rows(_) => Vec::new(),
-        };
+        let mut columns: Vec<usize> = self.time.column().into_iter().collect();
         for joint in &self.joints {
             columns.extend([joint.input.column, joint.output.column]);
             columns.extend(joint.covariates.iter().map(|covariate| covariate.column));
@@ -263,7 +293,7 @@ impl Layout {
 /// A table that was read, with what is needed to speak of its cells.
 struct Log<'a> {
     path: &'a Path,
-    headers: &'a [String],
+    headers: &'a [Header],
     numeric: &'a [usize],
     table: &'a Table,
 }
@@ -434,11 +464,11 @@ impl Log<'_> {
     }
 
     fn header(&self, column: usize) -> String {
-        self.headers.get(column).cloned().unwrap_or_default()
+        self.headers.get(column).map(|header| header.name.clone()).unwrap_or_default()
     }
 
     fn row(&self, index: usize) -> u64 {
-        self.table.rows.get(index).copied().unwrap_or_default()
+        self.table.rows.number(index)
     }
 
     /// The first bad cell of a column.
@@ -446,6 +476,7 @@ impl Log<'_> {
         let (row, bad) = self.column(column)?.error.clone()?;
         let (path, column) = (self.path.to_owned(), self.header(column));
         Some(match bad {
+            BadCell::Kind(found) => ReadError::NotNumbers { path, column, found },
             BadCell::Text(text) => ReadError::NotANumber { path, row, column, text },
             BadCell::Infinite => ReadError::Infinite { path, row, column },
         })

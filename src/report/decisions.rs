@@ -4,7 +4,7 @@ use std::io::Write;
 
 use serde::{Serialize, Serializer};
 
-use super::EstimatedJoint;
+use super::{DataTable, EstimatedJoint, Kind};
 use crate::delay::{Check, Condition, Decision, Method, Settings};
 use crate::experiment::Trial;
 
@@ -177,12 +177,11 @@ pub fn write_decisions(
     out: impl Write,
 ) -> csv::Result<()> {
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(out);
-    let paper = runs.iter().all(|(settings, _)| settings.method == Method::TwoLine);
-    let more: &[&str] = if paper { &[] } else { &DETAILS };
-    writer.write_record(COLUMNS.iter().chain(more))?;
+    let methods = Methods::of(runs);
+    writer.write_record(decision_columns(methods).map(|(name, _)| name))?;
     for (_, joints) in runs {
         for (row, detail) in joints.iter().flat_map(|joint| detailed_rows(*joint)) {
-            if paper {
+            if methods == Methods::PaperOnly {
                 writer.serialize(row)?;
             } else {
                 writer.serialize((row, detail))?;
@@ -190,6 +189,61 @@ pub fn write_decisions(
         }
     }
     Ok(writer.flush()?)
+}
+
+/// The columns of [`decision_table`] for decisions of these methods.
+pub fn decision_columns(methods: Methods) -> impl Iterator<Item = (&'static str, Kind)> {
+    let more: &[&str] = if methods == Methods::PaperOnly { &[] } else { &DETAILS };
+    COLUMNS.iter().chain(more).map(|name| (*name, kind(name)))
+}
+
+/// Which methods the decisions are of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Methods {
+    /// The paper's.
+    PaperOnly,
+    /// Others, which tell more.
+    Others,
+}
+
+impl Methods {
+    fn of(runs: &[(&Settings, &[EstimatedJoint<'_>])]) -> Self {
+        let paper = runs.iter().all(|(settings, _)| settings.method == Method::TwoLine);
+        if paper { Self::PaperOnly } else { Self::Others }
+    }
+}
+
+fn kind(column: &str) -> Kind {
+    match column {
+        "joint" | "trial" | "verdict" | "failed" | "method" | "accepted_with" => Kind::Text,
+        "i" | "p" | "r" | "end" | "candidates" | "f_opt" | "runner_up_q" => Kind::Whole,
+        "q" | "delta" => Kind::Samples,
+        _ => Kind::Real,
+    }
+}
+
+/// The decisions that [`write_decisions`] writes, as a table with types.
+///
+/// # Errors
+/// Never: the rows have fields.
+pub fn decision_table(
+    runs: &[(&Settings, &[EstimatedJoint<'_>])],
+) -> serde_json::Result<DataTable> {
+    let mut table = DataTable::new(decision_columns(Methods::of(runs)));
+    for (_, joints) in runs {
+        for (row, detail) in joints.iter().flat_map(|joint| detailed_rows(*joint)) {
+            table.push_fields(DetailedRow { row, detail })?;
+        }
+    }
+    Ok(table)
+}
+
+#[derive(Serialize)]
+struct DetailedRow<'a> {
+    #[serde(flatten)]
+    row: DecisionRow<'a>,
+    #[serde(flatten)]
+    detail: DecisionDetail,
 }
 
 /// The header of the further columns.

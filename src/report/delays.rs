@@ -3,8 +3,9 @@
 use std::collections::HashSet;
 use std::io::Write;
 
-use super::EstimatedJoint;
 use super::decisions::tidy_seconds;
+use super::table::Cell;
+use super::{DataTable, EstimatedJoint, Kind};
 use crate::delay::DelayProfile;
 use crate::experiment::Trial;
 
@@ -34,6 +35,30 @@ pub fn write_delays(joints: &[EstimatedJoint<'_>], out: impl Write) -> csv::Resu
         }
     }
     Ok(writer.flush()?)
+}
+
+/// The delays that [`write_delays`] writes, as a table with types.
+pub fn delay_table(joints: &[EstimatedJoint<'_>]) -> DataTable {
+    let taus: Vec<_> = joints.iter().map(|joint| format!("{}.tau", joint.joint.name)).collect();
+    let first = [("trial", Kind::Text), ("sample", Kind::Whole), ("time_s", Kind::Real)];
+    let mut table = DataTable::new(
+        first.into_iter().chain(taus.iter().map(|tau| (tau.as_str(), Kind::Samples))),
+    );
+    for run in runs(joints) {
+        let columns: Vec<_> = joints.iter().map(|joint| find(*joint, run)).collect();
+        let trials = columns.iter().flatten().map(|(trial, _)| *trial);
+        let Some(longest) = trials.max_by_key(|trial| trial.len()) else { continue };
+        for sample in 1..=longest.len() {
+            let time_s = tidy_seconds(longest.time_s(sample));
+            let delays =
+                columns.iter().map(|column| column.and_then(|(_, profile)| profile.at(sample)));
+            let mut cells =
+                vec![Cell::Text(run.label()), Cell::Whole(sample), Cell::Real(Some(time_s))];
+            cells.extend(delays.map(Cell::Real));
+            table.push_cells(cells);
+        }
+    }
+    table
 }
 
 /// All trials, each once, in the order they first appear. Where joints were split at

@@ -8,6 +8,7 @@ mod delays;
 mod equation;
 mod explain;
 mod finding;
+mod folder;
 mod improve;
 mod json;
 mod number;
@@ -18,6 +19,7 @@ mod span;
 mod steps;
 mod summary;
 mod sweep;
+mod table;
 mod text;
 mod words;
 
@@ -28,10 +30,14 @@ pub(crate) use against::{p_text, variable_text};
 pub use compare::{
     CompareJson, ComparedJoint, compare_table, correlation_sentences, parameter_units, sentences,
 };
-pub use decisions::{DecisionDetail, DecisionRow, decision_rows, write_decisions};
-pub use delays::write_delays;
+pub use decisions::{
+    DecisionDetail, DecisionRow, Methods, decision_columns, decision_rows, decision_table,
+    write_decisions,
+};
+pub use delays::{delay_table, write_delays};
 pub use explain::{ExplainJson, explain_text};
 pub use finding::Finding;
+pub use folder::{FolderJson, FolderReport, LogResult};
 pub use improve::{ImproveJson, ImprovedJoint, change_in_words, improve_text, revision_line};
 pub use json::EstimateJson;
 pub use number::number;
@@ -43,6 +49,7 @@ pub(crate) use span::{Span, thinned_to};
 pub use steps::steps_table;
 pub use summary::{DelayRange, JointSummary};
 pub use sweep::{ReportedSweep, StepsShown, SweepJson, sweep_text};
+pub use table::{DataTable, Kind};
 pub(crate) use text::chosen_line;
 pub use text::estimate_table;
 #[cfg(feature = "rrd")]

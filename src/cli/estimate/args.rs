@@ -6,6 +6,7 @@ use clap::{Args as ClapArgs, ValueEnum};
 use tauscope::delay::{self, Automatic, Interpolation, Settings};
 
 use crate::cli::data::{DataArgs, threads};
+use crate::cli::folder::{FolderArgs, Print};
 use crate::cli::progress::Verbosity;
 use crate::cli::record::Detail;
 use crate::cli::settings::{ConditionArgs, Method, Passband, at_least_one, passband};
@@ -22,6 +23,8 @@ pub(crate) struct Args {
     pub(super) algorithm: AlgorithmArgs,
     #[command(flatten)]
     pub(super) output: OutputArgs,
+    #[command(flatten)]
+    pub(super) folder: FolderArgs,
 }
 
 /// The settings of the algorithm.
@@ -67,12 +70,12 @@ pub(super) struct OutputArgs {
     #[arg(long, value_enum, default_value_t = Detail::Full)]
     pub(super) detail: Detail,
 
-    /// Write the table of decisions
-    #[arg(long, value_name = "FILE.csv")]
+    /// Write the table of decisions, as CSV or Parquet by the name's ending
+    #[arg(long, value_name = "FILE.csv|FILE.parquet")]
     pub(super) decisions: Option<PathBuf>,
 
-    /// Write the delay of every sample
-    #[arg(long, value_name = "FILE.csv")]
+    /// Write the delay of every sample, as CSV or Parquet
+    #[arg(long, value_name = "FILE.csv|FILE.parquet")]
     pub(super) delays: Option<PathBuf>,
 
     /// Show every step: its delay with the interval, and how near the verdict was
@@ -130,11 +133,20 @@ enum Between {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum Format {
+pub(crate) enum Format {
     /// A table
     Text,
     /// JSON, schema `tauscope/estimate/1`
     Json,
+}
+
+impl From<Format> for Print {
+    fn from(format: Format) -> Self {
+        match format {
+            Format::Text => Self::Text,
+            Format::Json => Self::Json,
+        }
+    }
 }
 
 impl AlgorithmArgs {

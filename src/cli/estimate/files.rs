@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
-use tauscope::report::{write_decisions, write_delays};
+use tauscope::report::{decision_table, delay_table, write_decisions, write_delays};
 
 use super::Estimated;
 use super::args::OutputArgs;
 use crate::cli::output::{check_outputs, write_file};
 use crate::cli::progress::Verbosity;
 use crate::cli::record::Contents;
+use crate::cli::table_file::{FileKind, check_tables, write_parquet};
 
 /// The files that were asked for, found to be writable before the work starts.
 pub(super) struct Files<'a> {
@@ -20,16 +21,23 @@ impl<'a> Files<'a> {
     pub(super) fn check(args: &'a OutputArgs, inputs: &[PathBuf]) -> anyhow::Result<Self> {
         let outputs = [&args.recording, &args.decisions, &args.delays].into_iter().flatten();
         check_outputs(&outputs.map(PathBuf::as_path).collect::<Vec<_>>(), inputs)?;
+        check_tables(args.decisions.iter().chain(&args.delays))?;
         Ok(Self { args })
     }
 
     /// Writes each file whole and gives it its name.
     pub(super) fn write(&self, result: &Estimated<'_>, verbosity: Verbosity) -> anyhow::Result<()> {
         if let Some(path) = &self.args.decisions {
-            write_file(path, |file| Ok(write_decisions(result.runs, file)?))?;
+            write_file(path, |file| match FileKind::of(path) {
+                FileKind::Csv => Ok(write_decisions(result.runs, file)?),
+                FileKind::Parquet => write_parquet(&decision_table(result.runs)?, file),
+            })?;
         }
         if let Some(path) = &self.args.delays {
-            write_file(path, |file| Ok(write_delays(result.joints, file)?))?;
+            write_file(path, |file| match FileKind::of(path) {
+                FileKind::Csv => Ok(write_delays(result.joints, file)?),
+                FileKind::Parquet => write_parquet(&delay_table(result.joints), file),
+            })?;
         }
         if let Some(path) = &self.args.recording {
             let contents = Contents {

@@ -13,15 +13,19 @@ use tauscope::report::{
     EstimateJson, EstimatedJoint, JointSummary, against_table, estimate_table, steps_table,
 };
 
+use super::folder::Each;
 use super::progress::{self, Verbosity};
 use super::{Completion, message, read_failures};
 use files::Files;
 
-pub(super) use args::{AlgorithmArgs, Args};
+pub(super) use args::{AlgorithmArgs, Args, Format};
 
 type JointResult = Result<JointEstimate, EstimateError>;
 
 pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
+    if args.folder.is_asked_for() {
+        return each_log(args);
+    }
     let verbosity = args.output.verbosity();
     let settings = args.algorithm.runs();
     let files = Files::check(&args.output, &args.data.files())?;
@@ -63,6 +67,25 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     files.write(&result, verbosity)?;
     print(&args.output, &result, &failures).context("standard output cannot be written")?;
     Ok(if failures.is_empty() { Completion::Whole } else { Completion::Partial })
+}
+
+/// Estimates each log by itself.
+fn each_log(args: &Args) -> anyhow::Result<Completion> {
+    let output = &args.output;
+    args.folder.run(&Each {
+        command: "estimate",
+        data: &args.data,
+        decisions: output.decisions.as_deref(),
+        refused: &[
+            ("--output", output.recording.is_some()),
+            ("--delays", output.delays.is_some()),
+            ("--steps", output.steps),
+            ("--against-state", output.against_state),
+        ],
+        print: output.format.into(),
+        threads: output.threads,
+        verbosity: output.verbosity(),
+    })
 }
 
 /// The joints that have an estimate with some settings.
@@ -139,7 +162,7 @@ fn print(
 ) -> anyhow::Result<()> {
     let mut out = io::stdout().lock();
     match args.format {
-        args::Format::Text => {
+        Format::Text => {
             for (settings, joints) in result.runs {
                 out.write_all(estimate_table(joints, settings).as_bytes())?;
                 if args.steps {
@@ -155,7 +178,7 @@ fn print(
                 out.write_all(table.as_bytes())?;
             }
         }
-        args::Format::Json => {
+        Format::Json => {
             let json = EstimateJson::new(result.experiment, result.runs, failures);
             serde_json::to_writer(&mut out, &json).map_err(io::Error::from)?;
             out.write_all(b"\n")?;

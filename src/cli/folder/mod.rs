@@ -1,0 +1,218 @@
+//! `--results FOLDER`: each log an experiment of its own, whose result is kept.
+//!
+//! A log is worked on by this program itself, called for that log alone, so that its result
+//! is what anybody gets who calls it so.
+
+mod store;
+mod typed;
+mod work;
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use tauscope::report::{FolderJson, FolderReport};
+
+use super::data::DataArgs;
+use super::output::check_outputs;
+use super::progress::Verbosity;
+use super::table_file::{check_tables, write_table};
+use super::{Completion, message};
+
+pub(super) use store::read_folders;
+
+/// Many logs, each by itself.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Folders of logs")]
+pub(super) struct FolderArgs {
+    /// Take each log as an experiment of its own, and keep its result in this folder. A log
+    /// whose result is there already, from the same bytes by the same settings and version,
+    /// is not worked on again
+    #[arg(long, value_name = "FOLDER")]
+    results: Option<PathBuf>,
+
+    /// Work on the K-th of N parts of the logs only; `tauscope merge` makes the tables
+    #[arg(long, value_name = "K/N", requires = "results")]
+    shard: Option<Shard>,
+
+    /// Write a row per log and joint, as CSV or Parquet
+    #[arg(long, value_name = "FILE", requires = "results")]
+    summary: Option<PathBuf>,
+}
+
+/// A part of the logs: every `of`-th, from the `number`-th on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Shard {
+    number: usize,
+    of: usize,
+}
+
+impl std::str::FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let parts = text.split_once('/');
+        let parts = parts.and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
+        let shard = parts.map(|(number, of)| Self { number, of });
+        let shard = shard.filter(|shard| (1..=shard.of).contains(&shard.number));
+        shard.ok_or_else(|| "expected K/N, with K from 1 to N: 3/16".to_owned())
+    }
+}
+
+impl Shard {
+    fn has(self, index: usize) -> bool {
+        index % self.of + 1 == self.number
+    }
+}
+
+/// Where the tables of all logs go.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Tables<'a> {
+    pub(super) decisions: Option<&'a Path>,
+    pub(super) summary: Option<&'a Path>,
+}
+
+/// A command that is to run for each log.
+pub(super) struct Each<'a> {
+    pub(super) command: &'static str,
+    pub(super) data: &'a DataArgs,
+    /// Where all decisions go, where the command has any.
+    pub(super) decisions: Option<&'a Path>,
+    /// Options that make no sense for many logs, and whether they were given.
+    pub(super) refused: &'a [(&'static str, bool)],
+    pub(super) print: Print,
+    pub(super) threads: Option<usize>,
+    pub(super) verbosity: Verbosity,
+}
+
+/// How the result of all logs is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Print {
+    Text,
+    Json,
+}
+
+impl FolderArgs {
+    /// Whether each log is an experiment of its own.
+    pub(super) fn is_asked_for(&self) -> bool {
+        self.results.is_some()
+    }
+
+    /// Runs the command for each log that has no result yet.
+    pub(super) fn run(&self, each: &Each<'_>) -> anyhow::Result<Completion> {
+        let results = self.results.as_deref().unwrap_or(Path::new("."));
+        if let Some((name, _)) = each.refused.iter().find(|(_, given)| *given) {
+            bail!("{name}: it is for one log; leave it out, or leave out `--results`");
+        }
+        let tables = Tables { decisions: each.decisions, summary: self.summary.as_deref() };
+        if self.shard.is_some() && tables.files().next().is_some() {
+            bail!(
+                "--shard: a part of the logs makes no table of all; leave out `--decisions` and \
+                 `--summary`, and give them to `tauscope merge` when all parts are done"
+            );
+        }
+        tables.check(&each.data.files())?;
+        std::fs::create_dir_all(results)
+            .with_context(|| format!("{}: cannot be made", results.display()))?;
+        let (all, mut failures) = each.data.logs();
+        if all.is_empty() {
+            bail!(failures.into_iter().next().unwrap_or_else(|| "no log is given".to_owned()));
+        }
+        let typed = typed::options(each.command)?;
+        let part =
+            |(index, _): &(usize, &PathBuf)| self.shard.is_none_or(|shard| shard.has(*index));
+        let logs: Vec<&PathBuf> = all.iter().enumerate().filter(part).map(|(_, log)| log).collect();
+        let work = work::Work { each, results, typed: &typed, of: all.len() };
+        let done = work.run(&logs)?;
+        failures.extend(done.failures);
+        if let Some(Shard { number, of }) = self.shard {
+            return Ok(finish_part(&failures, &format!("part {number} of {of}"), results, each));
+        }
+        let report = FolderReport::new(each.command, done.results);
+        present(&report, &failures, tables, each.print, each.verbosity)
+    }
+}
+
+/// Ends the work on a part of the logs.
+fn finish_part(failures: &[String], part: &str, results: &Path, each: &Each<'_>) -> Completion {
+    for failure in failures {
+        message("warning", failure);
+    }
+    if each.verbosity == Verbosity::Normal {
+        let folder = results.display();
+        message("done", &format!("{part}; `tauscope merge {folder}` makes the tables of all"));
+    }
+    if failures.is_empty() { Completion::Whole } else { Completion::Partial }
+}
+
+impl Tables<'_> {
+    fn files(&self) -> impl Iterator<Item = PathBuf> {
+        [self.decisions, self.summary].into_iter().flatten().map(Path::to_owned)
+    }
+
+    /// Refuses what cannot be written, or would replace an input or another table.
+    pub(super) fn check(&self, inputs: &[PathBuf]) -> anyhow::Result<()> {
+        let files: Vec<PathBuf> = self.files().collect();
+        check_outputs(&files.iter().map(PathBuf::as_path).collect::<Vec<_>>(), inputs)?;
+        check_tables(&files)
+    }
+}
+
+/// Writes the tables of all logs and prints what they have in common.
+pub(super) fn present(
+    report: &FolderReport,
+    failures: &[String],
+    tables: Tables<'_>,
+    print: Print,
+    verbosity: Verbosity,
+) -> anyhow::Result<Completion> {
+    let failures: Vec<String> = failures.iter().cloned().chain(report.failures()).collect();
+    for failure in &failures {
+        message("warning", failure);
+    }
+    if report.is_empty() {
+        bail!("no log has a result");
+    }
+    if verbosity == Verbosity::Normal && tables.files().next().is_none() && print == Print::Text {
+        message("note", "`--summary FILE` writes a row per log and joint");
+    }
+    if let Some(path) = tables.decisions {
+        write_table(&report.decisions(), path)?;
+    }
+    if let Some(path) = tables.summary {
+        write_table(&report.summary(), path)?;
+    }
+    let mut out = std::io::stdout().lock();
+    match print {
+        Print::Text => std::io::Write::write_all(&mut out, report.text().as_bytes())?,
+        Print::Json => {
+            serde_json::to_writer(&mut out, &FolderJson::new(report, &failures))
+                .map_err(std::io::Error::from)?;
+            std::io::Write::write_all(&mut out, b"\n")?;
+        }
+    }
+    Ok(if failures.is_empty() { Completion::Whole } else { Completion::Partial })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_log_is_in_one_part() {
+        for of in 1..6 {
+            for index in 0..20 {
+                let parts = (1..=of).filter(|&number| Shard { number, of }.has(index));
+                assert_eq!(parts.count(), 1, "{index} of {of}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_part_is_written_as_its_number_of_all() {
+        assert_eq!("3/16".parse(), Ok(Shard { number: 3, of: 16 }));
+        for bad in ["0/4", "5/4", "3", "a/b", "1/0", "-1/2"] {
+            assert!(bad.parse::<Shard>().is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! Tables of text: delimiter, cells, line numbers.
+
+use std::collections::VecDeque;
+use std::fs::File;
+use std::io::{self, Cursor, Read};
+use std::path::Path;
+
+use super::super::ReadError;
+use super::super::table::{
+    BadCell, Column, Hashing, Header, Labels, OpenTable, RowNumbers, Rows, Table, Wanted,
+};
+
+/// A file whose first bytes were looked at, and a line ending behind its last line,
+/// so that every line has one and lines can be counted.
+type Bytes = io::Chain<LineEnds<Hashing<io::Chain<Cursor<Vec<u8>>, File>>>, &'static [u8]>;
+
+/// What follows the header, still unread.
+struct Unread {
+    reader: csv::Reader<Bytes>,
+}
+
+/// Opens the log and reads its header.
+pub(super) fn open(path: &Path) -> Result<OpenTable, ReadError> {
+    let io_error = |source| ReadError::Io { path: path.to_owned(), source };
+    let mut file = File::open(path).map_err(io_error)?;
+    let mut start = Vec::new();
+    file.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start).map_err(io_error)?;
+    let mut reader = csv::ReaderBuilder::new()
+        .delimiter(sniff_delimiter(&start))
+        .comment(Some(b'#'))
+        .flexible(true)
+        .has_headers(false)
+        .from_reader(LineEnds::new(Hashing::new(Cursor::new(start).chain(file))).chain(&b"\n"[..]));
+    let mut record = csv::ByteRecord::new();
+    let csv_error = |source| ReadError::Csv { path: path.to_owned(), source };
+    if !reader.read_byte_record(&mut record).map_err(csv_error)? {
+        return Err(ReadError::Empty { path: path.to_owned() });
+    }
+    let header_row = place_just_read(&mut reader, &record).row;
+    let text = |(cell, column): (&[u8], usize)| {
+        let not_utf8 = |_| ReadError::NotUtf8 { path: path.to_owned(), row: header_row, column };
+        std::str::from_utf8(cell).map(Header::parse).map_err(not_utf8)
+    };
+    let headers = record.iter().zip(1..).map(text).collect::<Result<_, _>>()?;
+    let rows = Box::new(Unread { reader });
+    Ok(OpenTable { path: path.to_owned(), headers, header_row, rows })
+}
+
+impl Rows for Unread {
+    fn read(mut self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
+        let mut columns = vec![Column::default(); wanted.numeric.len()];
+        let mut labels = wanted.label.map(|_| Labels::default());
+        let mut rows = RowNumbers::default();
+        let mut record = csv::ByteRecord::new();
+        while self.next(&mut record, wanted.path)? {
+            let place = place_just_read(&mut self.reader, &record);
+            check_width(wanted, &place, record.len())?;
+            let row = place.row;
+            rows.push(row);
+            let cell = |index: usize| record.get(index).unwrap_or_default().trim_ascii();
+            for (column, index) in columns.iter_mut().zip(wanted.numeric) {
+                column.push(parse_cell(cell(*index)), row);
+            }
+            if let (Some(labels), Some(index)) = (&mut labels, wanted.label) {
+                labels.push(&String::from_utf8_lossy(cell(index)), row, wanted.path)?;
+            }
+        }
+        let source = self.reader.into_inner().into_inner().0.inner.finish(wanted.path)?;
+        let trials = labels.map_or_else(Vec::new, Labels::runs);
+        Ok(Table { source, rows, columns, trials, notes: Vec::new() })
+    }
+}
+
+impl Unread {
+    /// Whether there is one more row, which is then in `record`.
+    fn next(&mut self, record: &mut csv::ByteRecord, path: &Path) -> Result<bool, ReadError> {
+        let more = self.reader.read_byte_record(record);
+        more.map_err(|source| ReadError::Csv { path: path.to_owned(), source })
+    }
+}
+
+fn check_width(wanted: &Wanted<'_>, place: &Place, found: usize) -> Result<(), ReadError> {
+    let expected = wanted.headers.len();
+    if found == expected {
+        return Ok(());
+    }
+    let (path, row, lines) = (wanted.path.to_owned(), place.row, place.lines);
+    Err(ReadError::UnequalRow { path, row, found, expected, lines })
+}
+
+/// Bytes that are looked at to tell the delimiter.
+const SNIFFED_BYTES: u64 = 64 * 1024;
+
+/// The delimiter that is most frequent in the first line that is no comment, units and
+/// quoted cells left out.
+fn sniff_delimiter(start: &[u8]) -> u8 {
+    let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
+    let line = text
+        .split(|&byte| byte == b'\n')
+        .find(|line| !line.starts_with(b"#") && !line.trim_ascii().is_empty())
+        .unwrap_or_default();
+    let mut enclosed = None;
+    let mut counts = [(b'\t', 0), (b';', 0), (b',', 0)];
+    for &byte in line {
+        enclosed = match (enclosed, byte) {
+            (None, b'[') => Some(b']'),
+            (None, b'"') => Some(b'"'),
+            (Some(end), byte) if end == byte => None,
+            (enclosed, _) => enclosed,
+        };
+        for (delimiter, count) in &mut counts {
+            *count += usize::from(enclosed.is_none() && *delimiter == byte);
+        }
+    }
+    // The comma is last, so that it wins when nothing is found.
+    counts.into_iter().max_by_key(|(_, count)| *count).map_or(b',', |(delimiter, _)| delimiter)
+}
+
+/// Where a record stands in the file.
+struct Place {
+    /// Its first line, counted from 1.
+    row: u64,
+    /// Lines it takes up.
+    lines: u64,
+}
+
+/// The place of the record that was read last.
+///
+/// The parser's own count is that of the comment lines before it, and takes "\r\n" in
+/// two halves; so the lines before the end of the record are counted here.
+fn place_just_read(reader: &mut csv::Reader<Bytes>, record: &csv::ByteRecord) -> Place {
+    let end = reader.position().byte().saturating_sub(1);
+    let file = reader.get_mut().get_mut().0;
+    let before_end = file.lines_before(end);
+    // In a quotation that is never closed, the line end behind the file is one of its own.
+    let text = record.as_slice();
+    let text = if end == file.bytes { text.strip_suffix(b"\n").unwrap_or(text) } else { text };
+    let inside = text.iter().filter(|&&byte| byte == b'\n').fold(0, |count, _| count + 1);
+    Place { row: before_end + 1 - inside, lines: inside + 1 }
+}
+
+/// The number in a cell; NaN where there is none.
+fn parse_cell(cell: &[u8]) -> Result<f64, BadCell> {
+    if cell.is_empty() {
+        return Ok(f64::NAN);
+    }
+    let number = std::str::from_utf8(cell).ok().and_then(|text| text.parse::<f64>().ok());
+    match number {
+        Some(value) if value.is_infinite() => Err(BadCell::Infinite),
+        Some(value) => Ok(value),
+        None => Err(BadCell::Text(String::from_utf8_lossy(cell).into_owned())),
+    }
+}
+
+/// Passes bytes on and notes where lines end.
+struct LineEnds<R> {
+    inner: R,
+    bytes: u64,
+    /// Places of the line ends that no record has passed yet.
+    ends: VecDeque<u64>,
+    passed: u64,
+}
+
+impl<R: Read> LineEnds<R> {
+    fn new(inner: R) -> Self {
+        Self { inner, bytes: 0, ends: VecDeque::new(), passed: 0 }
+    }
+
+    /// Number of line ends before the byte `place`, which never goes back.
+    fn lines_before(&mut self, place: u64) -> u64 {
+        while self.ends.pop_front_if(|end| *end < place).is_some() {
+            self.passed += 1;
+        }
+        self.passed
+    }
+}
+
+impl<R: Read> Read for LineEnds<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.inner.read(buffer)?;
+        let new = buffer.get(..count).unwrap_or_default();
+        let ends = new.iter().zip(self.bytes..).filter(|(byte, _)| **byte == b'\n');
+        self.ends.extend(ends.map(|(_, place)| place));
+        self.bytes += count as u64;
+        Ok(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_delimiter_is_told_from_the_header() {
+        assert_eq!(sniff_delimiter(b"# a, b, c\n\nt;a.input;a.output\n1;2;3"), b';');
+        assert_eq!(sniff_delimiter(b"t\ta,b\tc"), b'\t');
+        assert_eq!(sniff_delimiter(b"single"), b',');
+        assert_eq!(sniff_delimiter(b"\xef\xbb\xbf# a, b, c\nt;x;y"), b';');
+        assert_eq!(sniff_delimiter(b"t,x [a;b;c]"), b',');
+    }
+
+    #[test]
+    fn a_cell_is_a_number_or_missing_or_wrong() {
+        assert_eq!(parse_cell(b"-1.5e3"), Ok(-1500.0));
+        assert!(parse_cell(b"").unwrap().is_nan());
+        assert!(parse_cell(b"NaN").unwrap().is_nan());
+        assert_eq!(parse_cell(b"inf"), Err(BadCell::Infinite));
+        assert_eq!(parse_cell(b"1e999"), Err(BadCell::Infinite));
+        assert_eq!(parse_cell(b"n/a"), Err(BadCell::Text("n/a".to_owned())));
+    }
+
+    #[test]
+    fn rows_are_the_lines_of_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        let text = "# made by hand\nt,a\n0,1\n# pause\n\n1,2\n2,x";
+        let mixed = text.replacen('\n', "\r\n", 2);
+        for text in [text.to_owned(), format!("{text}\n"), text.replace('\n', "\r\n"), mixed] {
+            std::fs::write(&path, &text).unwrap();
+            let open = open(&path).unwrap();
+            assert_eq!(open.header_row, 2, "{text:?}");
+            let table = open.read(&[0, 1], None, 0).unwrap();
+            let rows = [0, 1, 2].map(|index| table.rows.number(index));
+            assert_eq!((table.rows.len(), rows), (3, [3, 6, 7]), "{text:?}");
+            assert_eq!(table.columns[1].error, Some((7, BadCell::Text("x".to_owned()))));
+        }
+    }
+}

@@ -1,0 +1,331 @@
+//! Messages of ROS 2: decoded by their definition, and their numbers by name.
+
+use std::collections::{BTreeMap, HashMap};
+
+use re_cdr::{BigEndian, CdrReader, LittleEndian};
+use re_ros_msg::MessageSchema;
+use re_ros_msg::deserialize::primitive_array::PrimitiveArray;
+use re_ros_msg::deserialize::{TypeResolver, Value, decode_message};
+use re_ros_msg::message_spec::{ComplexType, MessageSpecification, message_package};
+
+type Fields = BTreeMap<String, Value>;
+
+/// Arrays longer than this are images and the like, not joints.
+const MOST_ELEMENTS: usize = 64;
+
+/// Decodes the messages of one type.
+#[derive(Debug)]
+pub(super) struct Decoder {
+    message: MessageSpecification,
+    types: Types,
+}
+
+/// The types that a message is made of, by `package/Name`.
+#[derive(Debug)]
+struct Types(HashMap<String, MessageSpecification>);
+
+impl TypeResolver for Types {
+    fn resolve(
+        &self,
+        scope: &MessageSpecification,
+        wanted: &ComplexType,
+    ) -> Option<&MessageSpecification> {
+        match wanted {
+            ComplexType::Absolute { package, name } => {
+                self.0.get(&key(&format!("{package}/{name}")))
+            }
+            ComplexType::Relative { name } => {
+                let package = message_package(&scope.name).unwrap_or_default();
+                self.0.get(&key(&format!("{package}/{name}")))
+            }
+        }
+    }
+}
+
+/// `std_msgs/msg/Header` is `std_msgs/Header` too.
+fn key(name: &str) -> String {
+    name.replacen("/msg/", "/", 1)
+}
+
+impl Decoder {
+    /// Reads the definition of the type `name`, with those of the types in it.
+    pub(super) fn new(name: &str, definition: &[u8]) -> Result<Self, String> {
+        let text = std::str::from_utf8(definition).map_err(|error| error.to_string())?;
+        let schema = MessageSchema::parse(name, text).map_err(|error| format!("{error:#}"))?;
+        let types = schema.dependencies.into_iter().map(|part| (key(&part.name), part)).collect();
+        Ok(Self { message: schema.spec, types: Types(types) })
+    }
+
+    /// The fields of a message. Its first bytes tell the order of the others.
+    pub(super) fn decode(&self, data: &[u8]) -> Result<Value, String> {
+        let Some(([_, kind, _, _], content)) = data.split_first_chunk::<4>() else {
+            return Err("it is too short".to_owned());
+        };
+        let decoded = match kind {
+            0 => {
+                let mut reader = CdrReader::<BigEndian>::new(content);
+                decode_message(&mut reader, &self.message, &self.types)
+            }
+            1 => {
+                let mut reader = CdrReader::<LittleEndian>::new(content);
+                decode_message(&mut reader, &self.message, &self.types)
+            }
+            other => return Err(format!("its encoding {other} is not plain CDR")),
+        };
+        decoded.map_err(|error| error.to_string())
+    }
+}
+
+/// A number in the messages of a topic.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Field {
+    /// How it is called: `position[boom]`.
+    pub(super) text: String,
+    steps: Vec<Step>,
+}
+
+/// A step on the way to a number.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Step {
+    Field(String),
+    Element(String),
+}
+
+impl Field {
+    fn new() -> Self {
+        Self { text: String::new(), steps: Vec::new() }
+    }
+
+    fn field(&self, name: &str) -> Self {
+        let mut next = self.clone();
+        if !next.text.is_empty() {
+            next.text.push('.');
+        }
+        next.text += name;
+        next.steps.push(Step::Field(name.to_owned()));
+        next
+    }
+
+    fn element(&self, key: &str) -> Self {
+        let mut next = self.clone();
+        next.text.extend(["[", key, "]"]);
+        next.steps.push(Step::Element(key.to_owned()));
+        next
+    }
+
+    /// The number in a message, where it has one.
+    pub(super) fn number(&self, message: &Value) -> Option<f64> {
+        find(message, &self.steps)
+    }
+}
+
+fn find(value: &Value, steps: &[Step]) -> Option<f64> {
+    let Some((Step::Field(name), rest)) = steps.split_first() else {
+        return scalar(value).filter(|_| steps.is_empty());
+    };
+    let Value::Message(fields) = value else { return None };
+    let field = fields.get(name)?;
+    let Some((Step::Element(key), rest)) = rest.split_first() else { return find(field, rest) };
+    let index = index_of(fields, key, length(field)?)?;
+    match field {
+        Value::Array(values) | Value::Sequence(values) => find(values.get(index)?, rest),
+        Value::PrimitiveArray(values) | Value::PrimitiveSeq(values) => {
+            primitive(values, index).filter(|_| rest.is_empty())
+        }
+        _ => None,
+    }
+}
+
+/// All numbers of a message.
+pub(super) fn fields(message: &Value) -> Vec<Field> {
+    let mut found = Vec::new();
+    collect(message, &Field::new(), &mut found);
+    found
+}
+
+fn collect(value: &Value, at: &Field, found: &mut Vec<Field>) {
+    let Value::Message(fields) = value else {
+        found.extend(scalar(value).map(|_| at.clone()));
+        return;
+    };
+    for (name, field) in fields {
+        let at = at.field(name);
+        let elements = length(field).map(|length| length.min(MOST_ELEMENTS + 1));
+        let Some(length) = elements else {
+            collect(field, &at, found);
+            continue;
+        };
+        for index in 0..length.min(if length > MOST_ELEMENTS { 0 } else { length }) {
+            let at = at.element(&key_of(fields, index, length));
+            match field {
+                Value::Array(values) | Value::Sequence(values) => {
+                    values.iter().skip(index).take(1).for_each(|value| collect(value, &at, found));
+                }
+                Value::PrimitiveArray(values) | Value::PrimitiveSeq(values) => {
+                    found.extend(primitive(values, index).map(|_| at.clone()));
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+/// Elements of an array.
+fn length(value: &Value) -> Option<usize> {
+    match value {
+        Value::Array(values) | Value::Sequence(values) => Some(values.len()),
+        Value::PrimitiveArray(values) | Value::PrimitiveSeq(values) => Some(match values {
+            PrimitiveArray::Bool(values) => values.len(),
+            PrimitiveArray::I8(values) => values.len(),
+            PrimitiveArray::U8(values) => values.len(),
+            PrimitiveArray::I16(values) => values.len(),
+            PrimitiveArray::U16(values) => values.len(),
+            PrimitiveArray::I32(values) => values.len(),
+            PrimitiveArray::U32(values) => values.len(),
+            PrimitiveArray::I64(values) => values.len(),
+            PrimitiveArray::U64(values) => values.len(),
+            PrimitiveArray::F32(values) => values.len(),
+            PrimitiveArray::F64(values) => values.len(),
+            PrimitiveArray::String(values) => values.len(),
+        }),
+        _ => None,
+    }
+}
+
+/// The names of the elements of arrays with `length` of them, as the message itself gives them.
+fn names(fields: &Fields, length: usize) -> Option<&Vec<String>> {
+    fields.iter().find_map(|(name, value)| match value {
+        Value::PrimitiveSeq(PrimitiveArray::String(names))
+        | Value::PrimitiveArray(PrimitiveArray::String(names))
+            if names.len() == length && (name == "name" || name.ends_with("names")) =>
+        {
+            Some(names)
+        }
+        _ => None,
+    })
+}
+
+/// What the element at `index` is called.
+fn key_of(fields: &Fields, index: usize, length: usize) -> String {
+    let name = names(fields, length).and_then(|names| names.get(index));
+    name.cloned().unwrap_or_else(|| index.to_string())
+}
+
+/// The place of the element that is called `key`.
+fn index_of(fields: &Fields, key: &str, length: usize) -> Option<usize> {
+    match names(fields, length) {
+        Some(names) => names.iter().position(|name| name == key),
+        None => key.parse().ok().filter(|index| *index < length),
+    }
+}
+
+fn scalar(value: &Value) -> Option<f64> {
+    Some(match value {
+        Value::Bool(value) => f64::from(u8::from(*value)),
+        Value::I8(value) => f64::from(*value),
+        Value::U8(value) => f64::from(*value),
+        Value::I16(value) => f64::from(*value),
+        Value::U16(value) => f64::from(*value),
+        Value::I32(value) => f64::from(*value),
+        Value::U32(value) => f64::from(*value),
+        Value::I64(value) => *value as f64,
+        Value::U64(value) => *value as f64,
+        Value::F32(value) => f64::from(*value),
+        Value::F64(value) => *value,
+        _ => return None,
+    })
+}
+
+fn primitive(values: &PrimitiveArray, index: usize) -> Option<f64> {
+    match values {
+        PrimitiveArray::Bool(values) => values.get(index).map(|value| f64::from(u8::from(*value))),
+        PrimitiveArray::I8(values) => values.get(index).copied().map(f64::from),
+        PrimitiveArray::U8(values) => values.get(index).copied().map(f64::from),
+        PrimitiveArray::I16(values) => values.get(index).copied().map(f64::from),
+        PrimitiveArray::U16(values) => values.get(index).copied().map(f64::from),
+        PrimitiveArray::I32(values) => values.get(index).copied().map(f64::from),
+        PrimitiveArray::U32(values) => values.get(index).copied().map(f64::from),
+        PrimitiveArray::I64(values) => values.get(index).map(|value| *value as f64),
+        PrimitiveArray::U64(values) => values.get(index).map(|value| *value as f64),
+        PrimitiveArray::F32(values) => values.get(index).copied().map(f64::from),
+        PrimitiveArray::F64(values) => values.get(index).copied(),
+        PrimitiveArray::String(_) => None,
+    }
+}
+
+/// The time in a message's header, in nanoseconds.
+pub(super) fn stamp(message: &Value) -> Option<i64> {
+    let field = |value: &Value, name: &str| match value {
+        Value::Message(fields) => fields.get(name).cloned(),
+        _ => None,
+    };
+    let stamp = field(&field(message, "header")?, "stamp")?;
+    match (field(&stamp, "sec")?, field(&stamp, "nanosec")?) {
+        (Value::I32(seconds), Value::U32(rest)) => {
+            Some(i64::from(seconds) * 1_000_000_000 + i64::from(rest))
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two joints of which each has a list of values.
+    const DEFINITION: &str = "string[] joint_names\nPart[] parts\nfloat64[2] pair\nbool on\n\
+        ================================================================================\n\
+        MSG: demo/Part\nstring[] names\nfloat32[] values\n";
+
+    fn text(text: &str) -> Vec<u8> {
+        let mut bytes = u32::try_from(text.len() + 1).unwrap().to_le_bytes().to_vec();
+        bytes.extend(text.as_bytes());
+        bytes.push(0);
+        bytes.resize(bytes.len().next_multiple_of(4), 0);
+        bytes
+    }
+
+    fn message() -> Vec<u8> {
+        let mut bytes = 2_u32.to_le_bytes().to_vec();
+        bytes.extend([text("boom"), text("arm")].concat());
+        bytes.extend(2_u32.to_le_bytes());
+        for value in [1.5_f32, 2.5] {
+            bytes.extend(1_u32.to_le_bytes());
+            bytes.extend(text("effort"));
+            bytes.extend(1_u32.to_le_bytes());
+            bytes.extend(value.to_le_bytes());
+        }
+        bytes.resize(bytes.len().next_multiple_of(8), 0);
+        bytes.extend([7.0_f64, 8.0].iter().flat_map(|value| value.to_le_bytes()));
+        bytes.push(1);
+        [vec![0, 1, 0, 0], bytes].concat()
+    }
+
+    #[test]
+    fn every_number_has_a_name_by_which_it_is_found() {
+        let decoder = Decoder::new("demo/msg/Twins", DEFINITION.as_bytes()).unwrap();
+        let value = decoder.decode(&message()).unwrap();
+        let found: Vec<_> = fields(&value)
+            .into_iter()
+            .map(|field| (field.number(&value).unwrap(), field.text))
+            .collect();
+        let expected = [
+            (1.0, "on"),
+            (7.0, "pair[boom]"),
+            (8.0, "pair[arm]"),
+            (1.5, "parts[boom].values[effort]"),
+            (2.5, "parts[arm].values[effort]"),
+        ];
+        assert_eq!(found, expected.map(|(value, text)| (value, text.to_owned())));
+    }
+
+    #[test]
+    fn a_message_that_is_cut_says_so() {
+        let decoder = Decoder::new("demo/msg/Twins", DEFINITION.as_bytes()).unwrap();
+        let whole = message();
+        for length in 0..whole.len() {
+            assert!(decoder.decode(&whole[..length]).is_err(), "{length}");
+        }
+        assert!(Decoder::new("demo/msg/Twins", b"float64").is_err());
+    }
+}

@@ -1,0 +1,230 @@
+//! Parquet: columns of numbers, times or text, with a row number for messages.
+//!
+//! A column in a structure is called by its path, `boom.input`, as is a flat one of that name.
+
+use std::fs::File;
+use std::path::Path;
+
+use parquet::basic::{LogicalType, TimeUnit, Type};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::{ByteArray, DataType};
+use parquet::errors::ParquetError;
+use parquet::file::metadata::RowGroupMetaData;
+use parquet::file::reader::{FileReader as _, SerializedFileReader};
+use parquet::schema::types::ColumnDescriptor;
+
+use super::super::ReadError;
+use super::super::table::{
+    Column, Header, Labels, OpenTable, RowNumbers, Rows, Table, Wanted, source_of,
+};
+
+/// A file whose footer was read.
+struct Unread {
+    reader: SerializedFileReader<File>,
+}
+
+/// Opens the log and reads its schema.
+pub(super) fn open(path: &Path) -> Result<OpenTable, ReadError> {
+    let io_error = |source| ReadError::Io { path: path.to_owned(), source };
+    let file = File::open(path).map_err(io_error)?;
+    let size = file.metadata().map_err(io_error)?.len();
+    let reader = SerializedFileReader::new(file).map_err(|error| damaged(path, &error))?;
+    if !reader.metadata().row_groups().iter().all(|group| lies_within(group, size)) {
+        let outside = ParquetError::EOF("a column lies outside of the file".to_owned());
+        return Err(damaged(path, &outside));
+    }
+    let columns = reader.metadata().file_metadata().schema_descr().columns();
+    let headers = columns.iter().map(|column| header(column)).collect();
+    Ok(OpenTable {
+        path: path.to_owned(),
+        headers,
+        header_row: 0,
+        rows: Box::new(Unread { reader }),
+    })
+}
+
+/// Whether the columns of a group of rows lie in a file of `size` bytes, as they are said to.
+fn lies_within(group: &RowGroupMetaData, size: u64) -> bool {
+    group.columns().iter().all(|column| {
+        let start = column.dictionary_page_offset().unwrap_or_else(|| column.data_page_offset());
+        let ends = u64::try_from(start).ok().zip(u64::try_from(column.compressed_size()).ok());
+        let end = ends.and_then(|(start, length)| start.checked_add(length));
+        end.is_some_and(|end| end <= size) && group.num_rows() >= 0
+    })
+}
+
+fn damaged(path: &Path, error: &ParquetError) -> ReadError {
+    let unsupported = matches!(error, ParquetError::NYI(_));
+    let remedy = if unsupported {
+        "write it with the compression zstd, snappy, lz4, gzip or none"
+    } else {
+        "write it again: a file that is not complete cannot be read"
+    };
+    ReadError::Format {
+        path: path.to_owned(),
+        format: "Parquet",
+        reason: error.to_string(),
+        remedy,
+    }
+}
+
+/// A time without a unit in its name is in the unit of its type.
+fn header(column: &ColumnDescriptor) -> Header {
+    let mut header = Header::parse(&column.path().string());
+    let of_type = match column.logical_type_ref() {
+        Some(LogicalType::Timestamp(time) | LogicalType::Time(time)) => Some(match time.unit {
+            TimeUnit::MILLIS => "ms",
+            TimeUnit::MICROS => "us",
+            TimeUnit::NANOS => "ns",
+        }),
+        _ => None,
+    };
+    header.unit = header.unit.or(of_type.map(str::to_owned));
+    header
+}
+
+impl Rows for Unread {
+    fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
+        let schema = self.reader.metadata().file_metadata().schema_descr();
+        let kinds: Vec<_> =
+            wanted.numeric.iter().map(|index| not_numbers(&schema.column(*index))).collect();
+        let mut columns = vec![Column::default(); wanted.numeric.len()];
+        let mut labels = Labels::default();
+        let mut rows = 0;
+        for group in 0..self.reader.num_row_groups() {
+            let read = |index, cells: &mut dyn FnMut(Cell)| {
+                self.group(group, index, cells).map_err(|error| damaged(wanted.path, &error))
+            };
+            for ((column, index), kind) in columns.iter_mut().zip(wanted.numeric).zip(&kinds) {
+                match kind {
+                    Some(kind) => *column = Column::not_numbers(kind),
+                    None => read(*index, &mut |cell| column.add(cell.number()))?,
+                }
+            }
+            if let Some(index) = wanted.label {
+                let mut texts = Vec::new();
+                read(index, &mut |cell| texts.push(cell.label()))?;
+                for (text, row) in texts.iter().zip(rows + 1..) {
+                    labels.push(text, row as u64, wanted.path)?;
+                }
+            }
+            let count = self.reader.metadata().row_group(group).num_rows();
+            rows += usize::try_from(count).unwrap_or_default();
+        }
+        Ok(Table {
+            source: source_of(wanted.path)?,
+            rows: RowNumbers::counted(rows),
+            columns,
+            trials: labels.runs(),
+            notes: Vec::new(),
+        })
+    }
+}
+
+/// What a column holds instead of numbers.
+fn not_numbers(column: &ColumnDescriptor) -> Option<String> {
+    let logical = column.logical_type_ref();
+    match column.physical_type() {
+        _ if column.max_rep_level() > 0 => Some("lists".to_owned()),
+        Type::BOOLEAN | Type::FLOAT | Type::DOUBLE => None,
+        Type::INT32 | Type::INT64 => match logical {
+            Some(LogicalType::Decimal(_)) => Some("decimals".to_owned()),
+            _ => None,
+        },
+        Type::BYTE_ARRAY if matches!(logical, Some(LogicalType::String)) => Some("text".to_owned()),
+        other => Some(format!("values of the type {other}")),
+    }
+}
+
+impl Unread {
+    /// Hands on the cells of a column in a group of rows, one by one.
+    fn group(
+        &self,
+        group: usize,
+        column: usize,
+        cells: &mut dyn FnMut(Cell),
+    ) -> Result<(), ParquetError> {
+        let schema = self.reader.metadata().file_metadata().schema_descr();
+        let full = schema.column(column).max_def_level();
+        let unsigned = matches!(
+            schema.column(column).logical_type_ref(),
+            Some(LogicalType::Integer(int)) if !int.is_signed
+        );
+        #[expect(clippy::cast_sign_loss, reason = "the bits are those of an unsigned number")]
+        match self.reader.get_row_group(group)?.get_column_reader(column)? {
+            ColumnReader::BoolColumnReader(reader) => {
+                each(reader, full, |value| Cell::Number(f64::from(u8::from(value))), cells)
+            }
+            ColumnReader::Int32ColumnReader(reader) if unsigned => {
+                each(reader, full, |value| Cell::Number(f64::from(value as u32)), cells)
+            }
+            ColumnReader::Int32ColumnReader(reader) => {
+                each(reader, full, |value| Cell::Number(f64::from(value)), cells)
+            }
+            ColumnReader::Int64ColumnReader(reader) if unsigned => {
+                each(reader, full, |value| Cell::Number(value as u64 as f64), cells)
+            }
+            ColumnReader::Int64ColumnReader(reader) => {
+                each(reader, full, |value| Cell::Number(value as f64), cells)
+            }
+            ColumnReader::FloatColumnReader(reader) => {
+                each(reader, full, |value| Cell::Number(f64::from(value)), cells)
+            }
+            ColumnReader::DoubleColumnReader(reader) => each(reader, full, Cell::Number, cells),
+            ColumnReader::ByteArrayColumnReader(reader) => each(reader, full, text, cells),
+            _ => Err(ParquetError::NYI("a column of another type".to_owned())),
+        }
+    }
+}
+
+/// A value of a column.
+enum Cell {
+    Missing,
+    Number(f64),
+    Text(String),
+}
+
+impl Cell {
+    fn number(&self) -> f64 {
+        if let Self::Number(value) = self { *value } else { f64::NAN }
+    }
+
+    fn label(self) -> String {
+        match self {
+            Self::Missing => String::new(),
+            Self::Number(value) => value.to_string(),
+            Self::Text(text) => text,
+        }
+    }
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "the reader hands its values over")]
+fn text(value: ByteArray) -> Cell {
+    Cell::Text(String::from_utf8_lossy(value.data()).trim().to_owned())
+}
+
+/// Hands on the values of a column as cells; where the level is not `full` there is none.
+fn each<T: DataType>(
+    mut reader: ColumnReaderImpl<T>,
+    full: i16,
+    cell: impl Fn(T::T) -> Cell,
+    cells: &mut dyn FnMut(Cell),
+) -> Result<(), ParquetError> {
+    /// Rows that are read at once.
+    const ROWS: usize = 8192;
+    loop {
+        let (mut levels, mut values) = (Vec::new(), Vec::new());
+        let (rows, _, _) = reader.read_records(ROWS, Some(&mut levels), None, &mut values)?;
+        if rows == 0 {
+            return Ok(());
+        }
+        let mut values = values.into_iter().map(&cell);
+        if full == 0 {
+            values.by_ref().for_each(&mut *cells);
+        }
+        for level in levels {
+            let present = (level == full).then(|| values.next()).flatten();
+            cells(present.unwrap_or(Cell::Missing));
+        }
+    }
+}

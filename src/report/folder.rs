@@ -1,0 +1,302 @@
+//! The results of many logs, each by itself, in one table.
+
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+
+use comfy_table::{CellAlignment, Table, presets};
+
+use super::{DataTable, DelayRange, Kind, Methods, decision_columns};
+
+/// The result of one log: the document that the command prints as JSON.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LogResult {
+    /// The log, as it was given.
+    pub file: String,
+    /// The document, schema `tauscope/estimate/1` or `tauscope/improve/1`.
+    pub document: Value,
+}
+
+/// The results of many logs, in the order of the logs' names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FolderReport {
+    command: String,
+    logs: Vec<LogResult>,
+}
+
+/// The document of `--results … --format json` and `merge`, schema `tauscope/folder/1`.
+#[derive(Debug, Serialize)]
+pub struct FolderJson {
+    schema: &'static str,
+    version: &'static str,
+    command: String,
+    logs: Vec<String>,
+    joints: Vec<Value>,
+    summary: Vec<Value>,
+    failures: Vec<String>,
+}
+
+impl FolderReport {
+    /// Brings the results of `command` together.
+    pub fn new(command: &str, mut logs: Vec<LogResult>) -> Self {
+        logs.sort_by(|a, b| a.file.cmp(&b.file));
+        Self { command: command.to_owned(), logs }
+    }
+
+    /// Whether there is no result at all.
+    pub fn is_empty(&self) -> bool {
+        self.logs.is_empty()
+    }
+
+    /// What failed in the logs that have a result.
+    pub fn failures(&self) -> impl Iterator<Item = String> {
+        let of = |log: &LogResult| {
+            let failures = texts(&log.document, "failures");
+            let name = |failure: String| {
+                if failure.contains(&log.file) {
+                    failure
+                } else {
+                    format!("{}: {failure}", log.file)
+                }
+            };
+            failures.into_iter().map(name).collect::<Vec<_>>()
+        };
+        self.logs.iter().flat_map(of)
+    }
+
+    /// The joints of all logs, each with its log.
+    fn joints(&self) -> impl Iterator<Item = (&LogResult, &Value)> {
+        let joints = |log| array(log_document(log), "joints").map(move |joint| (log, joint));
+        self.logs.iter().flat_map(joints)
+    }
+
+    /// The decisions of all logs: the columns of `--decisions` behind one for the log.
+    pub fn decisions(&self) -> DataTable {
+        let paper = |log: &LogResult| {
+            let runs = std::iter::once(&log.document).chain(array(&log.document, "also"));
+            runs.into_iter().all(|run| run.pointer("/settings/method") == Some(&json!("two-line")))
+        };
+        let paper = self.logs.iter().all(paper);
+        let methods = if paper { Methods::PaperOnly } else { Methods::Others };
+        let mut table =
+            DataTable::new([("file", Kind::Text)].into_iter().chain(decision_columns(methods)));
+        for log in &self.logs {
+            let runs = std::iter::once(&log.document).chain(array(&log.document, "also"));
+            let joints = runs.flat_map(|run| array(run, "joints"));
+            for decision in joints.flat_map(|joint| array(joint, "decisions")) {
+                let mut row = decision.as_object().cloned().unwrap_or_default();
+                row.insert("file".to_owned(), log.file.clone().into());
+                table.push(&row);
+            }
+        }
+        table
+    }
+
+    /// A row per log and joint.
+    pub fn summary(&self) -> DataTable {
+        let columns: &[(&str, Kind)] =
+            if self.command == "improve" { &IMPROVED } else { &ESTIMATED };
+        let mut table = DataTable::new(columns.iter().copied());
+        for row in self.summary_rows() {
+            table.push(&row);
+        }
+        table
+    }
+
+    fn summary_rows(&self) -> impl Iterator<Item = Map<String, Value>> {
+        let row = |(log, joint): (&LogResult, &Value)| {
+            let at = |pointer: &str| joint.pointer(pointer).cloned().unwrap_or_default();
+            let cells: Vec<(&str, Value)> = if self.command == "improve" {
+                vec![
+                    ("verdict", at("/verdict")),
+                    ("revision", at("/revision")),
+                    ("effects", texts(joint, "effects").join(" ").into()),
+                    ("train_rmse", at("/error/train/rmse")),
+                    ("validation_rmse", at("/error/validation/rmse")),
+                    ("noise_floor", at("/error/noise_floor")),
+                ]
+            } else {
+                vec![
+                    ("steps", at("/steps")),
+                    ("accepted", at("/accepted")),
+                    ("delay_min_s", at("/delay_s/min")),
+                    ("delay_median_s", at("/delay_s/median")),
+                    ("delay_max_s", at("/delay_s/max")),
+                ]
+            };
+            let first = [("file", log.file.clone().into()), ("joint", at("/joint"))];
+            let cells = first.into_iter().chain(cells);
+            cells.map(|(name, value)| (name.to_owned(), value)).collect()
+        };
+        self.joints().map(row)
+    }
+
+    /// What each joint has in all its logs.
+    fn across(&self) -> Vec<Across> {
+        let mut across: Vec<Across> = Vec::new();
+        for (_, joint) in self.joints() {
+            let name = joint.get("joint").and_then(Value::as_str).unwrap_or_default();
+            let place = across.iter().position(|known| known.joint == name).unwrap_or_else(|| {
+                across.push(Across { joint: name.to_owned(), ..Across::default() });
+                across.len() - 1
+            });
+            if let Some(known) = across.get_mut(place) {
+                known.add(joint);
+            }
+        }
+        across
+    }
+
+    /// A table of the joints across all logs.
+    pub fn text(&self) -> String {
+        let improve = self.command == "improve";
+        let header: &[&str] = if improve {
+            &["joint", "logs", "adequate", "validation rmse min", "median", "max", "effects (logs)"]
+        } else {
+            &[
+                "joint",
+                "logs",
+                "steps",
+                "accepted",
+                "delay min",
+                "median",
+                "max",
+                "medians of the logs",
+            ]
+        };
+        let mut table = Table::new();
+        table.load_style(presets::UTF8_BORDERS_ONLY).set_header(header);
+        for joint in self.across() {
+            table.add_row(if improve { joint.improved_cells() } else { joint.estimated_cells() });
+        }
+        for column in table.column_iter_mut().skip(1).take(header.len() - 2) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+        let logs = self.logs.len();
+        format!("{table}\n{logs} {}, each by itself\n", if logs == 1 { "log" } else { "logs" })
+    }
+}
+
+const ESTIMATED: [(&str, Kind); 7] = [
+    ("file", Kind::Text),
+    ("joint", Kind::Text),
+    ("steps", Kind::Whole),
+    ("accepted", Kind::Whole),
+    ("delay_min_s", Kind::Real),
+    ("delay_median_s", Kind::Real),
+    ("delay_max_s", Kind::Real),
+];
+
+const IMPROVED: [(&str, Kind); 8] = [
+    ("file", Kind::Text),
+    ("joint", Kind::Text),
+    ("verdict", Kind::Text),
+    ("revision", Kind::Whole),
+    ("effects", Kind::Text),
+    ("train_rmse", Kind::Real),
+    ("validation_rmse", Kind::Real),
+    ("noise_floor", Kind::Real),
+];
+
+fn log_document(log: &LogResult) -> &Value {
+    &log.document
+}
+
+/// The elements of an array in a document; none where it has no such array.
+fn array<'a>(document: &'a Value, name: &str) -> impl Iterator<Item = &'a Value> + use<'a> {
+    document.get(name).and_then(Value::as_array).into_iter().flatten()
+}
+
+fn texts(document: &Value, name: &str) -> Vec<String> {
+    array(document, name).filter_map(Value::as_str).map(str::to_owned).collect()
+}
+
+/// One joint in all its logs.
+#[derive(Debug, Default)]
+struct Across {
+    joint: String,
+    logs: usize,
+    steps: u64,
+    accepted: u64,
+    delays_s: Vec<f64>,
+    medians_s: Vec<f64>,
+    adequate: usize,
+    rmse: Vec<f64>,
+    /// Effects, and in how many logs they are in the model.
+    effects: Vec<(String, usize)>,
+}
+
+impl Across {
+    fn add(&mut self, joint: &Value) {
+        let count = |name: &str| joint.get(name).and_then(Value::as_u64).unwrap_or_default();
+        self.logs += 1;
+        self.steps += count("steps");
+        self.accepted += count("accepted");
+        let accepted =
+            array(joint, "decisions").filter(|row| row.get("verdict") == Some(&json!("accepted")));
+        self.delays_s.extend(accepted.filter_map(|row| row.get("delta_s")?.as_f64()));
+        self.medians_s.extend(joint.pointer("/delay_s/median").and_then(Value::as_f64));
+        self.adequate += usize::from(joint.get("verdict") == Some(&json!("adequate")));
+        self.rmse.extend(joint.pointer("/error/validation/rmse").and_then(Value::as_f64));
+        for effect in texts(joint, "effects") {
+            match self.effects.iter_mut().find(|(known, _)| *known == effect) {
+                Some((_, logs)) => *logs += 1,
+                None => self.effects.push((effect, 1)),
+            }
+        }
+    }
+
+    fn estimated_cells(&self) -> Vec<String> {
+        let share = 100.0 * self.accepted as f64 / self.steps.max(1) as f64;
+        let accepted = format!("{} ({share:.0} %)", self.accepted);
+        let medians = DelayRange::of(self.medians_s.clone())
+            .map_or_else(String::new, |range| format!("{:.3} … {:.3} s", range.min, range.max));
+        let mut cells =
+            vec![self.joint.clone(), self.logs.to_string(), self.steps.to_string(), accepted];
+        cells.extend(range_cells(&self.delays_s, " s"));
+        cells.push(medians);
+        cells
+    }
+
+    fn improved_cells(&self) -> Vec<String> {
+        let effects: Vec<_> =
+            self.effects.iter().map(|(name, logs)| format!("{name} ({logs})")).collect();
+        let mut cells = vec![self.joint.clone(), self.logs.to_string(), self.adequate.to_string()];
+        cells.extend(range_cells(&self.rmse, ""));
+        cells.push(effects.join(", "));
+        cells
+    }
+
+    fn json(&self) -> Value {
+        let range = |values: &[f64]| DelayRange::of(values.to_vec());
+        let effects: Map<String, Value> =
+            self.effects.iter().map(|(name, logs)| (name.clone(), (*logs).into())).collect();
+        json!({
+            "joint": self.joint, "logs": self.logs, "steps": self.steps,
+            "accepted": self.accepted, "delay_s": range(&self.delays_s),
+            "median_delay_s_of_logs": range(&self.medians_s), "adequate": self.adequate,
+            "validation_rmse": range(&self.rmse), "effects": effects,
+        })
+    }
+}
+
+fn range_cells(values: &[f64], unit: &str) -> [String; 3] {
+    let range = DelayRange::of(values.to_vec());
+    range.map_or_else(Default::default, |range| {
+        [range.min, range.median, range.max].map(|value| format!("{value:.3}{unit}"))
+    })
+}
+
+impl FolderJson {
+    /// Collects what `report` holds; `failures` are messages on logs that failed.
+    pub fn new(report: &FolderReport, failures: &[String]) -> Self {
+        Self {
+            schema: "tauscope/folder/1",
+            version: env!("CARGO_PKG_VERSION"),
+            command: report.command.clone(),
+            logs: report.logs.iter().map(|log| log.file.clone()).collect(),
+            joints: report.across().iter().map(Across::json).collect(),
+            summary: report.summary_rows().map(Value::Object).collect(),
+            failures: failures.to_vec(),
+        }
+    }
+}

@@ -1,0 +1,277 @@
+//! Many logs, each by itself: one table of all, whatever way they were worked on.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate, write_log};
+use tempfile::TempDir;
+
+/// A folder with a folder of logs.
+struct Desk {
+    folder: TempDir,
+}
+
+impl Desk {
+    /// Logs of two joints, a third of a minute each, no two alike.
+    fn with_logs(count: u64) -> Self {
+        let desk = Self { folder: tempfile::tempdir().unwrap() };
+        fs::create_dir(desk.path("logs")).unwrap();
+        for seed in 0..count {
+            desk.write_log(&format!("logs/run_{seed:02}.csv"), seed);
+        }
+        desk
+    }
+
+    fn write_log(&self, name: &str, seed: u64) {
+        let joint = |name: &str, seconds| {
+            let levels = vec![-1.5, -0.5, 0.5, 1.5];
+            let input = InputSpec::Levels { levels, hold_s: [0.8, 1.6] };
+            let spec = JointSpec::new(name, input, DelayLaw::Constant { seconds });
+            JointSpec { noise: 0.05, ..spec }
+        };
+        let joints = vec![joint("boom", 0.12), joint("arm", 0.2)];
+        let plant = PlantSpec { sample_period_s: 0.02, ..PlantSpec::new(seed, 20.0, joints) };
+        let log = fs::File::create(self.path(name)).unwrap();
+        write_log(&simulate(&plant).unwrap(), log).unwrap();
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    fn run(&self, arguments: &str) -> Outcome {
+        let output = Command::new(env!("CARGO_BIN_EXE_tauscope"))
+            .current_dir(self.folder.path())
+            .args(arguments.split(' '))
+            .output()
+            .unwrap();
+        Outcome::of(&output, arguments)
+    }
+}
+
+/// What a command said.
+struct Outcome {
+    status: Option<i32>,
+    out: String,
+    error: String,
+}
+
+impl Outcome {
+    fn of(output: &Output, arguments: &str) -> Self {
+        let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+        let (out, error) = (text(&output.stdout), text(&output.stderr));
+        assert!(!error.contains("panicked"), "{arguments}: {error}");
+        Self { status: output.status.code(), out, error }
+    }
+
+    fn is_whole(&self) -> &Self {
+        assert_eq!(self.status, Some(0), "{}", self.error);
+        self
+    }
+
+    fn says(&self, part: &str) -> &Self {
+        assert!(self.error.contains(part), "{}", self.error);
+        self
+    }
+
+    fn is_refused_with(&self, part: &str) {
+        assert_eq!(self.status, Some(2), "{}", self.error);
+        assert_eq!(self.error.lines().count(), 1, "{}", self.error);
+        self.says(part);
+    }
+}
+
+#[test]
+fn the_table_of_all_decisions_is_that_of_each_log_behind_its_name() {
+    let desk = Desk::with_logs(3);
+    for method in ["two-line", "hinge"] {
+        let all = format!("estimate logs --results {method} --decisions all.csv --method {method}");
+        desk.run(&all).is_whole();
+        let mut expected = Vec::new();
+        for number in 0..3 {
+            let log = format!("logs/run_{number:02}.csv");
+            desk.run(&format!("estimate {log} --decisions one.csv --method {method}")).is_whole();
+            let one = desk.read("one.csv");
+            let mut lines = one.lines();
+            let header = format!("file,{}", lines.next().unwrap());
+            expected.extend((number == 0).then_some(header));
+            expected.extend(lines.map(|line| format!("{log},{line}")));
+        }
+        let found = desk.read("all.csv");
+        assert!(found.lines().eq(expected.iter()), "{method}:\n{found}\n{}", expected.join("\n"));
+    }
+}
+
+#[test]
+fn what_is_done_and_unchanged_is_not_done_again() {
+    let desk = Desk::with_logs(3);
+    let first = desk.run("estimate logs --results kept --summary all.csv");
+    let table = desk.read("all.csv");
+    let again = desk.run("estimate logs --results kept --summary all.csv");
+    again.is_whole().says("3 of 3 logs are done already");
+    assert_eq!((again.out.as_str(), desk.read("all.csv")), (first.out.as_str(), table));
+
+    desk.write_log("logs/run_01.csv", 40);
+    desk.run("estimate logs --results kept").is_whole().says("2 of 3 logs are done already");
+    let other = desk.run("estimate logs --results kept --beta 2");
+    assert!(!other.is_whole().error.contains("already"), "{}", other.error);
+    fs::write(desk.path("map.toml"), "time = \"time_s\"").unwrap();
+    let map = "estimate logs --results kept --columns map.toml";
+    desk.run(map).is_whole();
+    desk.run(map).says("3 of 3 logs are done already");
+    fs::write(desk.path("map.toml"), "# changed\ntime = \"time_s\"").unwrap();
+    assert!(!desk.run(map).is_whole().error.contains("already"));
+}
+
+#[test]
+fn parts_merge_to_the_bytes_of_one_run() {
+    let desk = Desk::with_logs(5);
+    let ending = if cfg!(feature = "parquet") { "parquet" } else { "summary.csv" };
+    let tables = |name: &str| format!("--decisions {name}.csv --summary {name}.{ending}");
+    let one = desk.run(&format!("estimate logs --results one --threads 1 {}", tables("one")));
+    one.is_whole();
+    for part in [3, 1, 2] {
+        let command = format!("estimate logs --results parts_{part} --shard {part}/3 --threads 2");
+        desk.run(&command).is_whole().says(&format!("part {part} of 3"));
+    }
+    let merged = desk.run(&format!("merge parts_2 parts_1 parts_3 {}", tables("merged")));
+    assert_eq!(merged.is_whole().out, one.out);
+    let mut compared = 0;
+    for entry in fs::read_dir(desk.folder.path()).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        if let Some(rest) = name.strip_prefix("one.") {
+            let merged = desk.path(&format!("merged.{rest}"));
+            assert!(fs::read(desk.path(&name)).unwrap() == fs::read(merged).unwrap(), "{name}");
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 2);
+}
+
+#[test]
+fn a_part_that_is_missing_is_told() {
+    let desk = Desk::with_logs(4);
+    desk.run("estimate logs --results parts --shard 1/2").is_whole();
+    let merged = desk.run("merge parts --summary all.csv");
+    assert_eq!(merged.status, Some(1));
+    merged.says("2 of 4 logs have no result yet");
+    assert_eq!(desk.read("all.csv").lines().count(), 1 + 2 * 2);
+}
+
+#[test]
+fn a_log_that_fails_is_named_and_tried_again() {
+    let desk = Desk::with_logs(3);
+    fs::write(desk.path("logs/run_01.csv"), "time_s,boom.input\n0,1\n").unwrap();
+    for _ in 0..2 {
+        let found = desk.run("estimate logs --results kept --summary all.csv");
+        assert_eq!(found.status, Some(1));
+        found.says("logs/run_01.csv, row 1: column `boom.output` is missing");
+        assert_eq!(desk.read("all.csv").lines().count(), 1 + 2 * 2);
+    }
+    desk.write_log("logs/run_01.csv", 1);
+    desk.run("estimate logs --results kept").is_whole().says("2 of 3 logs are done already");
+}
+
+#[test]
+fn a_joint_that_fails_is_told_by_the_run_and_by_the_merge() {
+    let desk = Desk::with_logs(2);
+    let log = desk.read("logs/run_01.csv");
+    let broken = log.replacen("arm.output", "arm.outptu", 1);
+    fs::write(desk.path("logs/run_01.csv"), broken).unwrap();
+    for command in ["estimate logs --results kept", "estimate logs --results kept", "merge kept"] {
+        let found = desk.run(command);
+        assert_eq!(found.status, Some(1), "{command}");
+        found.says("joint `arm` is left out: logs/run_01.csv");
+    }
+}
+
+#[test]
+fn joints_are_held_together_across_the_logs() {
+    let desk = Desk::with_logs(4);
+    let found = desk.run("estimate logs --results kept --format json");
+    let json: Value = serde_json::from_str(&found.is_whole().out).unwrap();
+    assert_eq!(json["schema"], "tauscope/folder/1");
+    assert_eq!(json["logs"].as_array().unwrap().len(), 4);
+    for (joint, delay_s) in json["joints"].as_array().unwrap().iter().zip([0.12, 0.2]) {
+        assert_eq!(joint["logs"], 4);
+        let summary = json["summary"].as_array().unwrap().iter();
+        let own = summary.filter(|row| row["joint"] == joint["joint"]);
+        let accepted: u64 = own.map(|row| row["accepted"].as_u64().unwrap()).sum();
+        assert_eq!(joint["accepted"], accepted);
+        let median = joint["delay_s"]["median"].as_f64().unwrap();
+        assert!((median - delay_s).abs() <= 0.05, "{joint}");
+    }
+}
+
+#[test]
+fn improve_keeps_a_model_of_each_log() {
+    let desk = Desk::with_logs(2);
+    let command = "improve logs --results kept --summary all.csv --effects dead_band,stiction";
+    desk.run(command).is_whole();
+    desk.run(command).is_whole().says("2 of 2 logs are done already");
+    let table = desk.read("all.csv");
+    assert!(table.starts_with("file,joint,verdict,revision,effects,train_rmse,validation_rmse"));
+    assert_eq!(table.lines().count(), 1 + 2 * 2, "{table}");
+    let models = fs::read_dir(desk.path("kept")).unwrap().map(|entry| entry.unwrap().path());
+    let models: Vec<_> = models.filter(|path| path.extension().unwrap() == "toml").collect();
+    assert_eq!(models.len(), 2);
+    assert!(fs::read_to_string(&models[0]).unwrap().contains("[joint.boom]"));
+    assert!(!desk.path("model.toml").exists());
+    desk.run("merge kept --decisions all.csv").is_refused_with("makes no decisions");
+}
+
+#[test]
+fn what_makes_no_sense_is_refused_with_the_remedy() {
+    let desk = Desk::with_logs(2);
+    desk.run("estimate logs --shard 1/2").says("--results");
+    desk.run("estimate logs --results r --shard 3/2").says("expected K/N");
+    desk.run("estimate logs --results r --delays d.csv").is_refused_with("it is for one log");
+    desk.run("estimate logs --results r --shard 1/2 --summary s.csv")
+        .is_refused_with("give them to `tauscope merge`");
+    desk.run("estimate nowhere --results r").says("nowhere");
+    fs::create_dir(desk.path("empty")).unwrap();
+    desk.run("merge empty").is_refused_with("give those of `--results`");
+    desk.run("merge absent").is_refused_with("cannot be read as a folder of results");
+    desk.run("estimate logs --results one").is_whole();
+    desk.run("estimate logs --results two --beta 2").is_whole();
+    desk.run("merge one two").is_refused_with("merge results of one kind only");
+    fs::write(desk.path("one/other.json"), "{}").unwrap();
+    desk.run("merge one").is_refused_with("other.json: not a result of tauscope; remove it");
+}
+
+/// The interpreter for the example, where it has what the example needs.
+fn python() -> Option<String> {
+    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let found = Command::new(&python).args(["-c", "import distributed"]).output();
+    found.is_ok_and(|output| output.status.success()).then_some(python)
+}
+
+#[test]
+fn dask_makes_the_bytes_of_one_process() {
+    let Some(python) = python() else {
+        eprintln!("skipped: no Python with dask.distributed; see examples/dask/requirements.txt");
+        return;
+    };
+    // Four logs for each of two workers.
+    let desk = Desk::with_logs(8);
+    desk.run("estimate logs --results one --decisions one.csv --beta 2").is_whole();
+    let script = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("examples/dask/estimate_folder.py");
+    let output = Command::new(python)
+        .current_dir(desk.folder.path())
+        .arg(script)
+        .args(["logs", "--results", "many", "--decisions", "many.csv", "--workers", "2"])
+        .args(["--tauscope", env!("CARGO_BIN_EXE_tauscope"), "--", "--beta", "2"])
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(desk.read("many.csv") == desk.read("one.csv"));
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("8 logs, each by itself"), "{said}");
+}

@@ -1,0 +1,392 @@
+//! Logs that other programs wrote read as the CSV of the same data does; damaged ones are
+//! refused with what to do. The files are made by `tests/golden/formats.py`.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
+
+use std::path::{Path, PathBuf};
+
+use tauscope::experiment::{Experiment, ReadOptions};
+
+fn golden(name: &str) -> PathBuf {
+    Path::new("tests/golden/formats").join(name)
+}
+
+/// How a log is read.
+#[cfg(any(feature = "mat", feature = "mcap", feature = "parquet"))]
+fn mapped(joints: &[(&str, &str, &str)]) -> ReadOptions {
+    use tauscope::experiment::JointColumns;
+    let joint = |(name, input, output): &(&str, &str, &str)| JointColumns::new(name, input, output);
+    let mut options = ReadOptions::default();
+    options.columns.joints = joints.iter().map(joint).collect();
+    options
+}
+
+fn read(path: PathBuf, options: &ReadOptions) -> Experiment {
+    Experiment::read(&[path], options)
+}
+
+/// Reads a log that has nothing wrong with it.
+#[cfg(any(feature = "mat", feature = "mcap", feature = "parquet"))]
+fn read_whole(name: &str, options: &ReadOptions) -> Experiment {
+    let found = read(golden(name), options);
+    assert!(found.failures.is_empty(), "{name}: {:?}", found.failures);
+    found
+}
+
+/// The message on the only thing that is wrong with a log.
+fn refusal(path: PathBuf, options: &ReadOptions) -> String {
+    let found = read(path, options);
+    assert_eq!(found.failures.len(), 1, "{:?}", found.failures);
+    assert!(found.joints.is_empty());
+    found.failures[0].error.to_string()
+}
+
+/// A file with these bytes, which is there as long as its folder.
+fn written(name: &str, bytes: &[u8]) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    (folder, path)
+}
+
+#[test]
+fn a_file_that_is_not_what_its_name_says_is_refused_with_the_remedy() {
+    for (name, format) in [("log.parquet", "Parquet"), ("log.mat", "MATLAB"), ("log.mcap", "MCAP")]
+    {
+        let (_folder, path) = written(name, b"time_s,a.input,a.output\n0,1,2\n");
+        let message = refusal(path, &ReadOptions::default());
+        assert!(message.contains(&format!("cannot be read as {format}")), "{message}");
+        assert!(message.contains("rename it"), "{message}");
+    }
+}
+
+#[test]
+fn a_build_without_a_format_says_which_feature_reads_it() {
+    for (name, feature, is_there) in [
+        ("zstd.parquet", "parquet", cfg!(feature = "parquet")),
+        ("v7.mat", "mat", cfg!(feature = "mat")),
+        ("zstd.mcap", "mcap", cfg!(feature = "mcap")),
+    ] {
+        if !is_there {
+            let message = refusal(golden(name), &ReadOptions::default());
+            assert!(
+                message.ends_with(&format!("build it with `--features {feature}`")),
+                "{message}"
+            );
+        }
+    }
+}
+
+#[cfg(feature = "parquet")]
+mod parquet {
+    use super::*;
+
+    #[test]
+    fn every_compression_reads_as_the_csv_does() {
+        let csv = read_whole("log.csv", &ReadOptions::default());
+        for compression in ["zstd", "snappy", "gzip", "lz4", "none"] {
+            let found = read_whole(&format!("{compression}.parquet"), &ReadOptions::default());
+            assert_eq!(found.joints, csv.joints, "{compression}");
+            assert_eq!(found.sources[0].sha256.len(), 64);
+        }
+        assert_eq!(csv.joints[0].trials.len(), 2);
+        assert_eq!(csv.joints[0].covariates.len(), 1);
+    }
+
+    #[test]
+    fn times_structures_dictionaries_and_short_numbers_are_read() {
+        let found = read_whole("typed.parquet", &ReadOptions::default());
+        assert_eq!(found.joints, read_whole("typed.csv", &ReadOptions::default()).joints);
+    }
+
+    #[test]
+    fn text_in_place_of_numbers_is_named_with_its_column() {
+        let options = mapped(&[("boom", "boom.input", "note")]);
+        let message = refusal(golden("typed.parquet"), &options);
+        assert!(message.ends_with(
+            "typed.parquet, column `note`: it holds text, not numbers; choose another column, or \
+             write it as numbers"
+        ), "{message}");
+    }
+
+    #[test]
+    fn a_column_that_is_missing_is_offered_in_its_right_spelling() {
+        let options = mapped(&[("boom", "boom.inptu", "boom.output")]);
+        let message = refusal(golden("typed.parquet"), &options);
+        let expected = "typed.parquet: column `boom.inptu` is missing (did you mean `boom.input`?)";
+        assert!(message.contains(expected), "{message}");
+    }
+
+    /// The cells of a Parquet file as CSV would show them, and the types of its columns.
+    fn cells(path: &Path) -> (Vec<Vec<String>>, Vec<String>) {
+        use ::parquet::file::reader::{FileReader as _, SerializedFileReader};
+        use ::parquet::record::Field;
+        let reader = SerializedFileReader::new(std::fs::File::open(path).unwrap()).unwrap();
+        let schema = reader.metadata().file_metadata().schema_descr();
+        let types = schema.columns().iter().map(|column| column.physical_type().to_string());
+        let types = types.collect();
+        let cell = |field: &Field| match field {
+            Field::Null => String::new(),
+            Field::Long(number) => number.to_string(),
+            Field::Double(number) => number.to_string(),
+            Field::Str(text) => text.clone(),
+            other => panic!("{other:?}"),
+        };
+        let row =
+            |row: ::parquet::record::Row| row.get_column_iter().map(|(_, f)| cell(f)).collect();
+        (reader.get_row_iter(None).unwrap().map(|found| row(found.unwrap())).collect(), types)
+    }
+
+    /// The cells of a CSV file, numbers as they would be printed.
+    fn csv_cells(path: &Path) -> Vec<Vec<String>> {
+        let mut reader = csv::Reader::from_path(path).unwrap();
+        let cell = |cell: &str| cell.parse::<f64>().map_or(cell.to_owned(), |n| n.to_string());
+        reader.records().map(|row| row.unwrap().iter().map(cell).collect()).collect()
+    }
+
+    #[test]
+    fn results_as_parquet_are_those_of_the_csv() {
+        let folder = tempfile::tempdir().unwrap();
+        for (option, method) in
+            [("decisions", "two-line"), ("decisions", "hinge"), ("delays", "two-line")]
+        {
+            let paths =
+                ["csv", "parquet"].map(|ending| folder.path().join(format!("{option}.{ending}")));
+            for path in &paths {
+                let status = std::process::Command::new(env!("CARGO_BIN_EXE_tauscope"))
+                    .args(["estimate", "tests/golden/formats/log.csv", "-q", "--method", method])
+                    .arg(format!("--{option}"))
+                    .arg(path)
+                    .output()
+                    .unwrap()
+                    .status;
+                assert!(status.success());
+            }
+            let (found, types) = cells(&paths[1]);
+            let expected = csv_cells(&paths[0]);
+            assert!(found.len() > 20 && found == expected, "{option} {method}");
+            let numbers = types.iter().filter(|kind| *kind == "DOUBLE").count();
+            let expected = match (option, method) {
+                ("delays", _) => 3,
+                (_, "hinge") => 12,
+                _ => 8,
+            };
+            assert_eq!(numbers, expected, "{option} {method}: {types:?}");
+        }
+    }
+
+    #[test]
+    fn a_file_that_is_cut_or_damaged_is_refused() {
+        let whole = std::fs::read(golden("zstd.parquet")).unwrap();
+        for length in [4, 100, whole.len() / 2, whole.len() - 1] {
+            let (_folder, path) = written("log.parquet", &whole[..length]);
+            let message = refusal(path, &ReadOptions::default());
+            assert!(message.contains("cannot be read as Parquet"), "{message}");
+            assert!(message.contains("write it again"), "{message}");
+        }
+        for place in (4..whole.len()).step_by(173) {
+            let mut damaged = whole.clone();
+            damaged[place] ^= 0x55;
+            let (_folder, path) = written("log.parquet", &damaged);
+            // Parquet has no checksums by default: what counts is that nothing panics.
+            read(path, &ReadOptions::default());
+        }
+    }
+}
+
+#[cfg(feature = "mat")]
+mod mat {
+    use tauscope::experiment::ReadError;
+
+    use super::*;
+
+    /// The joints of the fixtures: a structure, and a vector with a column of a matrix.
+    fn both() -> ReadOptions {
+        mapped(&[("boom", "boom.input", "boom.output"), ("arm", "u", "y(2)")])
+    }
+
+    #[test]
+    fn versions_6_and_7_read_as_the_csv_does() {
+        let csv = read_whole("mat.csv", &both());
+        for name in ["v6.mat", "v7.mat"] {
+            assert_eq!(read_whole(name, &both()).joints, csv.joints, "{name}");
+        }
+        assert_eq!(csv.joints[1].trials[1].label(), "second");
+    }
+
+    #[test]
+    fn version_7_3_reads_as_the_csv_does() {
+        let mut options = both();
+        options.columns.trial = Some("none".to_owned());
+        let csv = read_whole("mat.csv", &options);
+        assert_eq!(read_whole("v73.mat", &options).joints, csv.joints);
+    }
+
+    #[test]
+    fn a_structure_per_joint_needs_no_mapping() {
+        let found = read_whole("v7.mat", &ReadOptions::default());
+        assert_eq!(found.joints.len(), 1);
+        assert_eq!(found.joints[0].name, "boom");
+    }
+
+    #[test]
+    fn what_is_no_column_is_named_with_what_it_is() {
+        for name in ["v6.mat", "v7.mat", "v73.mat"] {
+            let message = refusal(golden(name), &mapped(&[("boom", "note", "y(1)")]));
+            assert!(message.contains("column `note`: it holds text, not numbers"), "{message}");
+            let message = refusal(golden(name), &mapped(&[("boom", "gain", "y(1)")]));
+            assert!(message.contains("column `gain` is missing"), "{message}");
+        }
+    }
+
+    #[test]
+    fn version_4_is_refused_with_what_to_save_instead() {
+        let message = refusal(golden("v4.mat"), &ReadOptions::default());
+        assert!(message.contains("save it with `save -v7`"), "{message}");
+    }
+
+    #[test]
+    fn a_file_that_is_cut_is_refused_and_a_damaged_one_does_no_harm() {
+        for name in ["v6.mat", "v7.mat", "v73.mat"] {
+            let whole = std::fs::read(golden(name)).unwrap();
+            for part in 1..20 {
+                let (_folder, path) = written(name, &whole[..whole.len() * part / 20]);
+                let found = read(path, &both());
+                let cut_between_variables = name != "v73.mat" && found.joints.is_empty();
+                assert!(cut_between_variables || !found.failures.is_empty(), "{name} {part}");
+            }
+            for place in (128..whole.len()).step_by(331) {
+                let mut damaged = whole.clone();
+                damaged[place] ^= 0x55;
+                let (_folder, path) = written(name, &damaged);
+                read(path, &both());
+            }
+        }
+    }
+
+    #[test]
+    fn columns_of_different_lengths_are_refused_with_both() {
+        let found = read(golden("v7.mat"), &mapped(&[("boom", "boom.input", "y(1)")]));
+        assert!(found.failures.is_empty());
+        let lengths = ReadError::UnequalColumns {
+            path: "log.mat".into(),
+            column: "u".to_owned(),
+            found: 3,
+            other: "t".to_owned(),
+            expected: 4,
+        };
+        assert!(lengths.to_string().contains("`u` has 3 values but `t` has 4"));
+    }
+}
+
+#[cfg(feature = "mcap")]
+mod mcap {
+    use super::*;
+
+    /// The joints of the fixtures.
+    fn both() -> ReadOptions {
+        mapped(&[
+            ("boom", "/valve.data[0]", "/joint_states.position[boom]"),
+            ("arm", "/valve.data[1]", "/joint_states.position[arm]"),
+        ])
+    }
+
+    fn assert_equal(name: &str, options: &ReadOptions, csv: &str) {
+        let expected = read_whole(csv, &ReadOptions::default());
+        assert!(read_whole(name, options).joints == expected.joints, "{name} differs");
+    }
+
+    #[test]
+    fn every_compression_reads_as_the_csv_does() {
+        for name in ["zstd.mcap", "lz4.mcap", "none.mcap"] {
+            assert_equal(name, &both(), "ros.csv");
+        }
+    }
+
+    #[test]
+    fn a_file_without_a_summary_or_out_of_order_reads_the_same() {
+        for name in ["no_summary.mcap", "backwards.mcap"] {
+            assert_equal(name, &both(), "ros.csv");
+        }
+    }
+
+    #[test]
+    fn times_may_be_those_of_publishing_or_of_the_messages() {
+        let options = |time: &str, joint: (&str, &str, &str)| {
+            let mut options = mapped(&[joint]);
+            options.columns.time = Some(time.to_owned());
+            options
+        };
+        let boom = ("boom", "/valve.data[0]", "/joint_states.position[boom]");
+        assert_eq!(
+            read_whole("zstd.mcap", &options("publish_time", boom)).joints,
+            read_whole("zstd.mcap", &options("log_time", boom)).joints
+        );
+        let states = ("boom", "/joint_states.position[arm]", "/joint_states.position[boom]");
+        assert_eq!(
+            read_whole("zstd.mcap", &options("header.stamp", states)).joints[0].trials[0].len(),
+            400
+        );
+        let message = refusal(golden("zstd.mcap"), &options("header.stamp", boom));
+        assert!(message.contains("the messages of `/valve` have no header.stamp"), "{message}");
+    }
+
+    #[test]
+    fn joints_of_two_topics_keep_their_own_times() {
+        let options = mapped(&[
+            ("boom", "/valve.data[0]", "/joint_states.position[boom]"),
+            ("grip", "/valve.data[0]", "/gripper_states.position[grip]"),
+        ]);
+        let found = read_whole("zstd.mcap", &options);
+        let states = read_whole("ros.csv", &ReadOptions::default());
+        let grip = read_whole("grip.csv", &ReadOptions::default());
+        assert_eq!(found.joints, [states.joints[0].clone(), grip.joints[0].clone()]);
+        assert_eq!(found.sources.len(), 1);
+    }
+
+    #[test]
+    fn nodes_that_take_turns_on_one_topic_are_told_apart() {
+        let boom = mapped(&[("boom", "/valve.data[0]", "/joint_states.position[boom]")]);
+        let trial = &read_whole("turns.mcap", &boom).joints[0].trials[0];
+        assert_eq!(trial.len(), 199);
+        assert!((trial.period().seconds() - 0.04).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_held_and_where_time_starts_is_told() {
+        let notes = read_whole("zstd.mcap", &both()).notes;
+        assert!(
+            notes[0].ends_with("times are log_time from 1700000000.000000000 s on"),
+            "{notes:?}"
+        );
+        assert!(notes[1].ends_with(
+            "`/valve` is held from its latest message at each message of `/joint_states`, of which \
+             the first 2 come too early and are left out"
+        ), "{notes:?}");
+    }
+
+    #[test]
+    fn without_a_mapping_the_columns_are_listed() {
+        let message = refusal(golden("zstd.mcap"), &ReadOptions::default());
+        assert!(message.contains("--joint NAME=INPUT_COLUMN:OUTPUT_COLUMN"), "{message}");
+        assert!(message.contains("/joint_states.position[boom]"), "{message}");
+        let misspelt = mapped(&[("boom", "/valve.data[0]", "/joint_states.position[bom]")]);
+        let message = refusal(golden("zstd.mcap"), &misspelt);
+        assert!(message.contains("did you mean `/joint_states.position[boom]`?"), "{message}");
+    }
+
+    #[test]
+    fn a_file_that_is_cut_or_damaged_is_refused() {
+        let whole = std::fs::read(golden("zstd.mcap")).unwrap();
+        for part in 1..20 {
+            let (_folder, path) = written("log.mcap", &whole[..whole.len() * part / 20]);
+            let message = refusal(path, &both());
+            assert!(message.contains("`mcap recover FILE` saves what is whole"), "{message}");
+        }
+        for place in (8..whole.len()).step_by(211) {
+            let mut damaged = whole.clone();
+            damaged[place] ^= 0x55;
+            let (_folder, path) = written("log.mcap", &damaged);
+            read(path, &both());
+        }
+    }
+}
