@@ -3,6 +3,7 @@
 mod add;
 mod compare;
 mod data;
+mod doctor;
 mod effects;
 mod estimate;
 mod explain;
@@ -10,19 +11,27 @@ mod fitting;
 mod improve;
 mod interrupt;
 mod model_file;
+mod nearest;
 mod output;
 mod progress;
 mod record;
 mod report;
 mod settings;
+mod shell;
 mod simulate;
+#[cfg(feature = "rrd")]
+mod spawn;
+mod stream;
 mod sweep;
+mod terminal;
 
-use std::io::{self, Write as _};
+use std::io;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use tauscope::experiment::{Experiment, Failure};
+
+use terminal::message;
 
 /// Estimate the variable delay of hydraulic joints, and record every decision.
 #[derive(Debug, Parser)]
@@ -43,6 +52,9 @@ enum Command {
     Report(Box<report::Args>),
     Effects(effects::Args),
     Simulate(Box<simulate::Args>),
+    Doctor(doctor::Args),
+    Completions(shell::CompletionsArgs),
+    Man(shell::ManArgs),
 }
 
 /// What became of a command that ran to its end.
@@ -58,17 +70,7 @@ enum Completion {
 ///
 /// Exit status: 0 all done; 1 some joints or files failed; 2 nothing usable.
 pub(crate) fn run() -> ExitCode {
-    let outcome = match Cli::parse().command {
-        Command::Estimate(args) => estimate::run(&args),
-        Command::Sweep(args) => sweep::run(&args),
-        Command::Compare(args) => compare::run(&args),
-        Command::Explain(args) => explain::run(&args),
-        Command::Add(args) => add::run(&args),
-        Command::Improve(args) => improve::run(&args),
-        Command::Report(args) => report::run(&args),
-        Command::Effects(args) => effects::run(&args),
-        Command::Simulate(args) => simulate::run(&args),
-    };
+    let outcome = perform(Cli::parse().command);
     match outcome {
         Ok(Completion::Whole) => ExitCode::SUCCESS,
         Ok(Completion::Partial) => ExitCode::from(1),
@@ -78,6 +80,23 @@ pub(crate) fn run() -> ExitCode {
             message("error", &format!("{error:#}"));
             ExitCode::from(2)
         }
+    }
+}
+
+fn perform(command: Command) -> anyhow::Result<Completion> {
+    match command {
+        Command::Estimate(args) => estimate::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
+        Command::Compare(args) => compare::run(&args),
+        Command::Explain(args) => explain::run(&args),
+        Command::Add(args) => add::run(&args),
+        Command::Improve(args) => improve::run(&args),
+        Command::Report(args) => report::run(&args),
+        Command::Effects(args) => effects::run(&args),
+        Command::Simulate(args) => simulate::run(&args),
+        Command::Doctor(args) => doctor::run(&args),
+        Command::Completions(args) => shell::completions(&args),
+        Command::Man(args) => shell::man(&args),
     }
 }
 
@@ -105,9 +124,4 @@ fn read_failures(experiment: &Experiment) -> Vec<String> {
 fn with_causes(error: &(dyn std::error::Error + 'static)) -> String {
     let causes = std::iter::successors(Some(error), |error| error.source());
     causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
-}
-
-/// Prints one line on stderr. That stderr is closed is no reason to stop.
-fn message(kind: &str, text: &str) {
-    writeln!(io::stderr().lock(), "{kind}: {text}").unwrap_or_default();
 }

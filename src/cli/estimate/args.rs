@@ -6,9 +6,11 @@ use clap::{Args as ClapArgs, ValueEnum};
 use tauscope::delay::{self, Automatic, Interpolation, Settings};
 
 use crate::cli::data::{DataArgs, threads};
+use crate::cli::fitting::Format;
 use crate::cli::progress::Verbosity;
 use crate::cli::record::Detail;
 use crate::cli::settings::{ConditionArgs, Method, Passband, at_least_one, passband};
+use crate::cli::stream::StreamArgs;
 
 /// Estimate the delay of every input step of every joint
 ///
@@ -62,6 +64,9 @@ pub(super) struct OutputArgs {
     /// Record every decision for the Rerun viewer
     #[arg(short = 'o', long = "output", value_name = "FILE.rrd")]
     pub(super) recording: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(super) stream: StreamArgs,
 
     /// Candidates in the recording: all, or fewer of accepted segments
     #[arg(long, value_enum, default_value_t = Detail::Full)]
@@ -127,14 +132,6 @@ enum Between {
     Hold,
     /// Go in a line to the next accepted delay
     Linear,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum Format {
-    /// A table
-    Text,
-    /// JSON, schema `tauscope/estimate/1`
-    Json,
 }
 
 impl AlgorithmArgs {

@@ -9,6 +9,7 @@ use super::args::OutputArgs;
 use crate::cli::output::{check_outputs, write_file};
 use crate::cli::progress::Verbosity;
 use crate::cli::record::Contents;
+use crate::cli::stream::Stream;
 
 /// The files that were asked for, found to be writable before the work starts.
 pub(super) struct Files<'a> {
@@ -23,26 +24,31 @@ impl<'a> Files<'a> {
         Ok(Self { args })
     }
 
-    /// Writes each file whole and gives it its name.
-    pub(super) fn write(&self, result: &Estimated<'_>, verbosity: Verbosity) -> anyhow::Result<()> {
+    /// Writes each file whole and gives it its name; shows the recording to who looks on.
+    pub(super) fn write(
+        &self,
+        result: &Estimated<'_>,
+        stream: &Stream,
+        verbosity: Verbosity,
+    ) -> anyhow::Result<()> {
         if let Some(path) = &self.args.decisions {
             write_file(path, |file| Ok(write_decisions(result.runs, file)?))?;
         }
         if let Some(path) = &self.args.delays {
             write_file(path, |file| Ok(write_delays(result.joints, file)?))?;
         }
+        let contents = Contents {
+            joints: result.joints,
+            settings: result.settings,
+            sources: &result.experiment.sources,
+            reading: &result.experiment.options,
+            models: &[],
+            revisions: &[],
+            detail: self.args.detail,
+        };
         if let Some(path) = &self.args.recording {
-            let contents = Contents {
-                joints: result.joints,
-                settings: result.settings,
-                sources: &result.experiment.sources,
-                reading: &result.experiment.options,
-                models: &[],
-                revisions: &[],
-                detail: self.args.detail,
-            };
             contents.record(path, verbosity)?;
         }
-        Ok(())
+        stream.send(&contents, None)
     }
 }
