@@ -200,6 +200,54 @@ fn revisions_are_seen_as_they_are_computed_and_end_as_in_the_file() {
     assert!(ladders("words") >= 2 && ladders("sheet/ranking") >= 2);
 }
 
+/// The number that holds at each sample: what came last.
+fn held(chunks: &[Chunk], entity: &str) -> BTreeMap<i64, String> {
+    let mut held = BTreeMap::new();
+    for chunk in chunks.iter().filter(|chunk| chunk.entity_path().to_string() == entity) {
+        let samples = chunk.timelines().values().find(|times| times.name() == "sample");
+        let columns = &chunk.components().0;
+        for (samples, column) in samples.iter().zip(columns.values()) {
+            for (row, sample) in samples.times_raw().iter().enumerate() {
+                held.insert(*sample, format!("{:?}", column.list_array.value(row)));
+            }
+        }
+    }
+    held
+}
+
+#[test]
+fn a_log_that_is_followed_is_seen_as_it_is_in_the_end() {
+    let Some(viewer) = Viewer::start(None) else { return };
+    let desk = Desk::with(vec![joint("boom")]);
+    let address = viewer.address;
+    let whole = desk.read("log.csv");
+    let mut follow = desk
+        .command(&format!("estimate grows.csv --follow --idle 1 -o file.rrd --connect {address}"));
+    let mut running = Running::start(follow.stdout(Stdio::null()).stderr(Stdio::null()));
+    for part in whole.as_bytes().chunks(whole.len() / 4) {
+        let mut log = std::fs::File::options()
+            .create(true)
+            .append(true)
+            .open(desk.folder.path().join("grows.csv"))
+            .unwrap();
+        log.write_all(part).unwrap();
+        std::thread::sleep(Duration::from_millis(600));
+    }
+    assert!(running.0.wait().unwrap().success());
+    let file = chunks_of(&desk.folder.path().join("file.rrd"));
+    let entities =
+        ["input", "output/raw", "output/smoothed", "delay/tau"].map(|name| format!("/boom/{name}"));
+    let is_as_in_file =
+        |seen: &[Chunk]| entities.iter().all(|entity| held(seen, entity) == held(&file, entity));
+    let seen = viewer.seen_when(is_as_in_file);
+    let sendings = |entity: &str| {
+        seen.iter().filter(|c| c.entity_path().to_string() == entity && !c.is_static()).count()
+    };
+    assert!(sendings("/boom/output/raw") >= 3, "it was seen to grow");
+    let rows: usize = rows(&seen).into_iter().filter(|(n, _)| n.starts_with("/boom/input")).count();
+    assert!(rows > 0);
+}
+
 #[test]
 fn viewers_that_come_later_are_served_until_ctrl_c() {
     let desk = Desk::with(vec![joint("boom")]);

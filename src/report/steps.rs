@@ -4,6 +4,27 @@ use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
 use super::decisions::detailed_rows;
 use super::{EstimatedJoint, number};
+use crate::delay::{Decision, InputStep, Verdict};
+use crate::experiment::{Joint, Trial};
+
+/// One step in a line, as it is told when it has come; `trial` names the trial, where there
+/// are several.
+pub fn step_line(joint: &Joint, trial: &Trial, decision: &Decision, name_trial: bool) -> String {
+    let name = &joint.name;
+    let label = if name_trial { format!(", trial {}", trial.label()) } else { String::new() };
+    let time = number(trial.time_s(decision.input_step.sample));
+    let InputStep { before, after, .. } = decision.input_step;
+    let unit = joint.input_unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
+    let (before, after) = (number(before), number(after));
+    let step =
+        format!("{name}{label}, step {} at {time} s, {before} to {after}{unit}", decision.number);
+    let Verdict::Rejected(condition) = decision.verdict() else {
+        let samples = decision.delay().unwrap_or(0.0);
+        let seconds = samples * trial.period().seconds();
+        return format!("{step}: delay {seconds:.3} s ({} samples)", number(samples));
+    };
+    format!("{step}: rejected, {}", condition.id())
+}
 
 /// A row per step: its delay with the interval, the verdict, and what would have accepted
 /// it, or by how much the second-best breakpoint is worse.
@@ -38,4 +59,39 @@ pub fn steps_table(joints: &[EstimatedJoint<'_>]) -> String {
         }
     }
     format!("{table}\ndelays in samples\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delay::{Settings, estimate};
+    use crate::units::SamplePeriod;
+
+    #[test]
+    fn a_step_is_one_line() {
+        let level = |k: i32| f64::from(i32::from((100..200).contains(&k)));
+        let input: Vec<f64> = (0..300).map(level).collect();
+        let moved = |k: i32| 0.2 * f64::from((k - 112).clamp(0, 100));
+        let output = (0..300).map(moved).collect();
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let trial = Trial::new("1", 0.0, period, input, output).unwrap();
+        let settings = Settings { low_pass: None, beta: 2, ..Settings::default() };
+        let kept = Settings { keep_first_last: true, ..settings.clone() };
+        let unit = Some("V".to_owned());
+        let joint = Joint {
+            name: "swing".to_owned(),
+            input_unit: unit,
+            output_unit: None,
+            covariates: Vec::new(),
+            trials: vec![trial.clone()],
+        };
+        let line = |settings, named| {
+            let found = estimate(&trial, settings).unwrap();
+            step_line(&joint, &trial, &found.decisions[0], named)
+        };
+        let accepted = "swing, step 1 at 1 s, 0 to 1 V: delay 0.120 s (12 samples)";
+        assert_eq!(line(&kept, false), accepted);
+        let rejected = "swing, trial 1, step 1 at 1 s, 0 to 1 V: rejected, first_or_last";
+        assert_eq!(line(&settings, true), rejected);
+    }
 }

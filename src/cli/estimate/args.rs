@@ -9,7 +9,7 @@ use crate::cli::data::{DataArgs, threads};
 use crate::cli::fitting::Format;
 use crate::cli::progress::Verbosity;
 use crate::cli::record::Detail;
-use crate::cli::settings::{ConditionArgs, Method, Passband, at_least_one, passband};
+use crate::cli::settings::{ConditionArgs, Method, Passband, at_least_one, passband, threshold};
 use crate::cli::stream::StreamArgs;
 
 /// Estimate the delay of every input step of every joint
@@ -23,7 +23,26 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub(super) algorithm: AlgorithmArgs,
     #[command(flatten)]
+    pub(super) follow: FollowArgs,
+    #[command(flatten)]
     pub(super) output: OutputArgs,
+}
+
+/// A log that still grows.
+#[derive(ClapArgs, Debug)]
+#[command(next_help_heading = "Reading logs")]
+pub(super) struct FollowArgs {
+    /// Follow a log that is still written: each decision is told as soon as its step is
+    /// complete. Ctrl-C ends it; then all is done as for any log
+    #[arg(long = "follow")]
+    pub(super) is_on: bool,
+
+    /// End, too, when the log has not grown for so long
+    #[arg(
+        long, value_name = "SECONDS", value_parser = threshold, requires = "is_on",
+        allow_negative_numbers = true
+    )]
+    pub(super) idle: Option<f64>,
 }
 
 /// The settings of the algorithm.

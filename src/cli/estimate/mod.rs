@@ -2,6 +2,7 @@
 
 mod args;
 mod files;
+mod follow;
 
 use anyhow::anyhow;
 use tauscope::batch::{JointEstimate, estimate_joints_with, with_threads};
@@ -26,6 +27,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let settings = args.algorithm.runs();
     let files = Files::check(&args.output, &args.data.files())?;
     let stream = args.output.stream.open(verbosity)?;
+    let told = args.follow.is_on.then(|| follow::follow(args, &settings, &stream)).transpose()?;
     let experiment = read(&args.data, verbosity)?;
     let bar = estimating(&experiment.joints, settings.len(), verbosity);
     let automatic = args.algorithm.automatic();
@@ -47,6 +49,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
         let first = failures.into_iter().next_back();
         return Err(anyhow!(first.unwrap_or_else(|| "no joint in the logs".to_owned())));
     };
+    if let Some(told) = told {
+        told.tell_changes(first_joints);
+    }
     for failure in &failures {
         message("warning", failure);
     }
