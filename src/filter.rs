@@ -151,7 +151,7 @@ impl LowPass {
 fn pole_radius(section: &Sos<f64>) -> f64 {
     let [_, a1, a2] = section.a;
     let discriminant = a1 * a1 - 4.0 * a2;
-    if discriminant < 0.0 { a2.sqrt() } else { (a1.abs() + discriminant.sqrt()) / 2.0 }
+    if discriminant < 0.0 { a2.sqrt() } else { f64::midpoint(a1.abs(), discriminant.sqrt()) }
 }
 
 /// Length of the extension at each end: three times the number of taps, as in SciPy.

@@ -5,6 +5,7 @@
 #[expect(dead_code, reason = "no numbers are read")]
 mod desk;
 
+use std::io::Write as _;
 use std::process::{Command, Output, Stdio};
 
 use desk::{Desk, banded, fields, joint};
@@ -22,6 +23,12 @@ fn tauscope(arguments: &[&str]) -> Command {
 fn printed(output: &Output) -> String {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+/// Says that a test is skipped. Not `eprintln`, which the test runner keeps to itself.
+fn skipped(why: &str) {
+    let mut stderr = std::io::stderr();
+    writeln!(stderr, "skipped: {why}").unwrap();
 }
 
 /// The commands that the program says it has.
@@ -64,7 +71,7 @@ fn offered(words: &[&str]) -> Option<Vec<String>> {
 #[test]
 fn bash_completes_commands_options_and_values() {
     let Some(first) = offered(&["tauscope", "swe"]) else {
-        eprintln!("skipped: there is no bash");
+        skipped("there is no bash");
         return;
     };
     assert_eq!(first, ["sweep"]);
@@ -242,7 +249,7 @@ fn progress_has_rate_and_time_left_on_a_terminal_and_none_where_it_is_not_wanted
     let desk = Desk::with(vec![banded("boom")]);
     let improve = "improve log.csv --effects dead_band,actuator_lag,thermal_drift --write m.toml";
     let Some(shown) = on_a_terminal(&desk, improve) else {
-        eprintln!("skipped: there is no `script` to make a terminal");
+        skipped("there is no `script` to make a terminal");
         return;
     };
     let bar = |shown: &str| shown.contains(" fits, ") && shown.contains("/s, ");

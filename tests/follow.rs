@@ -49,7 +49,7 @@ impl Growing {
     }
 
     /// What else is printed, and the program's messages.
-    fn rest(mut self) -> (Vec<Value>, String, Desk) {
+    fn rest(self) -> (Vec<Value>, String, Desk) {
         let rest = self.lines.map(|line| serde_json::from_str(&line.unwrap()).unwrap()).collect();
         let output = self.program.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(0));

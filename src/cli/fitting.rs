@@ -52,7 +52,7 @@ pub(super) struct ResultArgs {
     #[arg(long, value_name = "N", value_parser = super::data::threads, help_heading = "Output")]
     threads: Option<usize>,
 
-    /// No notices
+    /// No progress, no notices
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }

@@ -38,7 +38,7 @@ pub(super) struct Args {
     #[command(flatten)]
     effects: EffectArgs,
 
-    /// Effects that may be added
+    /// How many effects are added at most
     #[arg(long, value_name = "N", default_value_t = 6, help_heading = "Model")]
     max_effects: usize,
 

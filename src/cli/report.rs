@@ -69,7 +69,7 @@ struct ModelArgs {
     #[command(flatten)]
     effects: EffectArgs,
 
-    /// Effects that `--improve` may add
+    /// How many effects `--improve` adds at most
     #[arg(long, value_name = "N", default_value_t = 6, help_heading = "Model")]
     max_effects: usize,
 

@@ -62,7 +62,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     duration: Option<f64>,
 
-    /// No notices
+    /// No progress, no notices
     #[arg(short, long)]
     quiet: bool,
 }

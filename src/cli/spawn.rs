@@ -10,7 +10,7 @@ use super::doctor::viewer::{PORT, is_listening, on_path};
 use super::progress::{Bar, Verbosity};
 
 /// Longest time that a viewer may take to start.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 
 /// The address of the viewer that runs on this machine, or of one that is started: it lives
 /// on when this program has ended.

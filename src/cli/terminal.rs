@@ -81,33 +81,31 @@ pub(super) fn print_with(
 
 /// Frames of tables dimmed, their header lines bold; all else as it is.
 fn painted(text: &str) -> String {
-    let (dimmed, bold) = (Style::new().dimmed(), Style::new().bold());
     let mut is_header = false;
-    let mut painted = String::with_capacity(2 * text.len());
-    for line in text.split_inclusive('\n') {
+    let line = |line: &str| {
+        // The header of a table is between its upper frame and the next rule.
+        is_header = match line.chars().next() {
+            Some('┌') => true,
+            Some('│') => is_header,
+            _ => false,
+        };
         let (line, end) = line.strip_suffix('\n').map_or((line, ""), |line| (line, "\n"));
-        if line.starts_with(['┌', '╞', '└', '├']) {
-            is_header = line.starts_with('┌');
-            painted += &format!("{dimmed}{line}{dimmed:#}{end}");
-            continue;
-        }
-        let cells = line.strip_prefix('│').and_then(|line| line.strip_suffix('│'));
-        match cells {
-            Some(cells) if is_header => {
-                let bar = format!("{dimmed}│{dimmed:#}");
-                painted += &format!("{bar}{bold}{cells}{bold:#}{bar}{end}");
-            }
-            Some(cells) => {
-                let bar = format!("{dimmed}│{dimmed:#}");
-                painted += &format!("{bar}{cells}{bar}{end}");
-            }
-            None => {
-                is_header = false;
-                painted.extend([line, end]);
-            }
-        }
+        painted_line(line, if is_header { Style::new().bold() } else { Style::new() }) + end
+    };
+    text.split_inclusive('\n').map(line).collect()
+}
+
+/// A line of a table, its cells in `style`; other lines as they are.
+fn painted_line(line: &str, style: Style) -> String {
+    let dimmed = Style::new().dimmed();
+    if line.starts_with(['┌', '╞', '└', '├']) {
+        return format!("{dimmed}{line}{dimmed:#}");
     }
-    painted
+    let bar = format!("{dimmed}│{dimmed:#}");
+    match line.strip_prefix('│').and_then(|line| line.strip_suffix('│')) {
+        Some(cells) => format!("{bar}{style}{cells}{style:#}{bar}"),
+        None => line.to_owned(),
+    }
 }
 
 #[cfg(test)]

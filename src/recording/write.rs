@@ -105,7 +105,7 @@ pub(super) struct Part<'n> {
 
 impl Part<'_> {
     /// Namespaces that the chunks of `recording` need.
-    pub(super) fn uses(self, recording: &Recording<'_>) -> u64 {
+    pub(super) fn uses(recording: &Recording<'_>) -> u64 {
         recording.joints.len() as u64 + 1
     }
 

@@ -7,11 +7,12 @@ use super::{EstimatedJoint, number};
 use crate::delay::{Decision, InputStep, Verdict};
 use crate::experiment::{Joint, Trial};
 
-/// One step in a line, as it is told when it has come; `trial` names the trial, where there
-/// are several.
-pub fn step_line(joint: &Joint, trial: &Trial, decision: &Decision, name_trial: bool) -> String {
+/// One step in a line, as it is told when it has come, with its trial where there are several.
+pub fn step_line(joint: &Joint, trial: &Trial, decision: &Decision) -> String {
     let name = &joint.name;
-    let label = if name_trial { format!(", trial {}", trial.label()) } else { String::new() };
+    let is_one_of_several = joint.trials.len() > 1;
+    let label = is_one_of_several.then(|| format!(", trial {}", trial.label()));
+    let label = label.unwrap_or_default();
     let time = number(trial.time_s(decision.input_step.sample));
     let InputStep { before, after, .. } = decision.input_step;
     let unit = joint.input_unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
@@ -77,21 +78,20 @@ mod tests {
         let trial = Trial::new("1", 0.0, period, input, output).unwrap();
         let settings = Settings { low_pass: None, beta: 2, ..Settings::default() };
         let kept = Settings { keep_first_last: true, ..settings.clone() };
-        let unit = Some("V".to_owned());
-        let joint = Joint {
+        let joint = |trials| Joint {
             name: "swing".to_owned(),
-            input_unit: unit,
+            input_unit: Some("V".to_owned()),
             output_unit: None,
             covariates: Vec::new(),
-            trials: vec![trial.clone()],
+            trials,
         };
-        let line = |settings, named| {
+        let line = |settings, trials| {
             let found = estimate(&trial, settings).unwrap();
-            step_line(&joint, &trial, &found.decisions[0], named)
+            step_line(&joint(trials), &trial, &found.decisions[0])
         };
         let accepted = "swing, step 1 at 1 s, 0 to 1 V: delay 0.120 s (12 samples)";
-        assert_eq!(line(&kept, false), accepted);
+        assert_eq!(line(&kept, vec![trial.clone()]), accepted);
         let rejected = "swing, trial 1, step 1 at 1 s, 0 to 1 V: rejected, first_or_last";
-        assert_eq!(line(&settings, true), rejected);
+        assert_eq!(line(&settings, vec![trial.clone(), trial.clone()]), rejected);
     }
 }

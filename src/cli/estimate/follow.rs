@@ -136,11 +136,13 @@ impl GrowingLog {
     }
 }
 
+type DelayAndVerdict = (Option<f64>, String);
+
 /// What was told of a log so far.
 #[derive(Default)]
 pub(super) struct Told {
     /// Per joint and trial, the delay and the verdict of each step.
-    steps: BTreeMap<(String, String), Vec<(Option<f64>, String)>>,
+    steps: BTreeMap<(String, String), Vec<DelayAndVerdict>>,
     /// What could not be read, last time.
     failures: Vec<String>,
 }
@@ -192,7 +194,6 @@ impl Told {
 
     fn tell_joint(&mut self, format: Format, estimated: EstimatedJoint<'_>) -> anyhow::Result<()> {
         let EstimatedJoint { joint, estimate } = estimated;
-        let name_trial = joint.trials.len() > 1;
         let trials = joint.trials.iter().zip(estimate.estimated());
         let decisions = trials.flat_map(|(t, found)| found.decisions.iter().map(move |d| (t, d)));
         for ((trial, decision), (_, row)) in decisions.zip(decision_rows(estimated)) {
@@ -204,7 +205,7 @@ impl Told {
             steps.push((row.delta, row.verdict.clone()));
             match format {
                 Format::Text => {
-                    terminal::print(&(step_line(joint, trial, decision, name_trial) + "\n"))?;
+                    terminal::print(&(step_line(joint, trial, decision) + "\n"))?;
                 }
                 Format::Json => {
                     terminal::print_json(&StepJson { schema: "tauscope/step/1", row: &row })?;
@@ -219,7 +220,9 @@ impl Told {
         let failures = experiment.failures.iter();
         let failures: Vec<_> = failures.map(|f| log.named(&with_causes(&f.error))).collect();
         if args.output.verbosity() == Verbosity::Normal && failures != self.failures {
-            failures.iter().for_each(|failure| message("waiting", failure));
+            for failure in &failures {
+                message("waiting", failure);
+            }
         }
         self.failures = failures;
     }

@@ -28,13 +28,13 @@ pub(super) fn tab(
     builder: &mut Builder,
     EstimatedJoint { joint, estimate }: EstimatedJoint<'_>,
     models: &[&str],
-    has_revisions: bool,
+    revisions: usize,
 ) -> Result<Node, RecordError> {
     let mut decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
     let fine = decisions.any(|decision| decision.fine.is_some());
     let mut views = Views { builder, joint, fine };
     let mut pages = Vec::new();
-    if has_revisions {
+    if revisions > 0 {
         pages.push(views.revisions()?);
     }
     if !models.is_empty() {

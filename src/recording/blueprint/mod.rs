@@ -43,8 +43,10 @@ pub(super) fn messages(
         let models = recording.models.iter().filter(|m| m.joint.name == joint.joint.name);
         let models: Vec<_> = models.map(|model| model.model).collect();
         let improved = recording.revisions_of(joint.joint);
-        let has_revisions = improved.is_some() || ladder == Ladder::Growing;
-        tabs.push(joint::tab(&mut builder, *joint, &models, has_revisions)?);
+        // The first one is on its way, at least.
+        let expected = usize::from(ladder == Ladder::Growing);
+        let revisions = improved.map_or(expected, |improved| improved.revisions.len());
+        tabs.push(joint::tab(&mut builder, *joint, &models, revisions)?);
     }
     tabs.push(builder.view(View::new("TextDocument", "About", &["/about"]))?);
     let root = builder.container(ContainerKind::Tabs, "Joints", &tabs, &[])?;

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use rerun::grpc_server::GrpcServerSink;
 use rerun::log::{Chunk, LogMsg};
-use rerun::sink::{GrpcSink, GrpcSinkConnectionState, LogSink};
+use rerun::sink::{GrpcSink, GrpcSinkConnectionState, LogSink as _};
 use rerun::{EntityPath, MemoryLimit, RecordingInfo, ServerOptions, StoreId, StoreKind};
 
 use self::sent::Sent;
@@ -24,7 +24,7 @@ use super::write::{APPLICATION, Part, activation, for_each_chunk, recording_name
 const ANSWER: Duration = Duration::from_secs(5);
 
 /// Longest time that a viewer may take to read what it was sent.
-const READ: Duration = Duration::from_secs(120);
+const READ: Duration = Duration::from_mins(2);
 
 /// Share of the memory in which a server keeps what viewers that come later are sent.
 const KEPT: f32 = 0.5;
@@ -147,7 +147,7 @@ impl Live {
             self.open(recording)?;
         }
         let part = Part { used: self.used, joint };
-        self.used += part.uses(recording);
+        self.used += Part::uses(recording);
         self.sent.begin();
         for_each_chunk(recording, part, |chunk: &Chunk| match self.sent.news_of(chunk) {
             Some(news) => self.send_chunk(&news),
@@ -188,7 +188,9 @@ impl Live {
         let id = format!("{}-{}", self.store.recording_id().as_str(), self.used);
         let messages = blueprint::messages(recording, self.ladder, &APPLICATION.into(), &id)?;
         let blueprint = messages.first().map(|message| message.store_id().clone());
-        messages.into_iter().for_each(|message| self.post(message));
+        for message in messages {
+            self.post(message);
+        }
         if let Some(blueprint) = blueprint {
             self.post(activation(blueprint).into());
         }
