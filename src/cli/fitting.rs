@@ -110,11 +110,7 @@ impl ProtocolArgs {
 
     /// The horizon in words.
     pub(super) fn horizon(&self, default: Horizon) -> String {
-        match self.horizon.unwrap_or(default) {
-            Horizon::FreeRun => "free run".to_owned(),
-            Horizon::Steps => "restarted at every step of the input".to_owned(),
-            Horizon::Seconds(seconds) => format!("restarted every {seconds} s"),
-        }
+        self.horizon.unwrap_or(default).to_string()
     }
 
     /// These options as they are typed.

@@ -41,7 +41,7 @@ pub(super) fn messages(
     let mut tabs = Vec::new();
     for joint in recording.joints {
         let models = recording.models.iter().filter(|m| m.joint.name == joint.joint.name);
-        let models: Vec<_> = models.map(|model| model.model).collect();
+        let models: Vec<_> = models.collect();
         let improved = recording.revisions_of(joint.joint);
         // The first one is on its way, at least.
         let expected = usize::from(ladder == Ladder::Growing);
