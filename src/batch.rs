@@ -159,6 +159,49 @@ pub enum Mode {
     AsItIs,
 }
 
+/// Who is told how much work there is, and each time that a piece of it is done.
+pub trait Watch: Sync {
+    /// So many pieces of work have come up.
+    fn more(&self, pieces: usize);
+
+    /// One of them is done.
+    fn done(&self);
+}
+
+/// Nobody.
+impl Watch for () {
+    fn more(&self, _: usize) {}
+
+    fn done(&self) {}
+}
+
+/// A protocol, and who watches the work: a [`Protocol`] alone is watched by nobody.
+#[derive(Clone, Copy)]
+pub struct Watched<'a> {
+    protocol: Protocol,
+    watch: &'a dyn Watch,
+}
+
+impl std::fmt::Debug for Watched<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Watched").field("protocol", &self.protocol).finish_non_exhaustive()
+    }
+}
+
+impl From<Protocol> for Watched<'_> {
+    fn from(protocol: Protocol) -> Self {
+        Self { protocol, watch: &() }
+    }
+}
+
+impl Protocol {
+    /// This protocol, the work being watched. A piece is a fit, or a pair of candidates that
+    /// is told apart; more pieces come up as the work goes on.
+    pub fn watched(self, watch: &dyn Watch) -> Watched<'_> {
+        Watched { protocol: self, watch }
+    }
+}
+
 /// By what rules models are judged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Protocol {
@@ -177,53 +220,56 @@ pub type OfJoints<T> = Vec<Option<Result<T, FitError>>>;
 ///
 /// The other `joints` are the ones that share the supply with a joint: see [`activity`].
 /// `models` gives the model of a joint; it is not asked for plain integrators.
-pub fn compare_joints(
+pub fn compare_joints<'a>(
     joints: &[Joint],
     estimates: &[Result<JointEstimate, EstimateError>],
     models: impl Fn(&Joint) -> Option<JointModel> + Sync,
-    protocol: Protocol,
+    protocol: impl Into<Watched<'a>>,
 ) -> OfJoints<Comparison> {
-    for_each_joint(joints, estimates, models, protocol, |_, record, fit| compare(record, fit))
+    let watched = protocol.into();
+    for_each_joint(joints, estimates, models, watched, |_, record, fit| compare(record, fit))
 }
 
 /// Says what each joint's model lacks: see [`explain`].
-pub fn explain_joints(
+pub fn explain_joints<'a>(
     joints: &[Joint],
     estimates: &[Result<JointEstimate, EstimateError>],
     models: impl Fn(&Joint) -> Option<JointModel> + Sync,
-    protocol: Protocol,
+    protocol: impl Into<Watched<'a>>,
     options: &Options,
 ) -> OfJoints<Explanation> {
-    for_each_joint(joints, estimates, models, protocol, |_, record, fit| {
-        explain(record, fit, options, &Threads)
+    let watched = protocol.into();
+    for_each_joint(joints, estimates, models, watched, |_, record, fit| {
+        explain(record, fit, options, &Threads(watched.watch))
     })
 }
 
 /// Adds `effect` to each joint's model: see [`add`].
-pub fn add_to_joints(
+pub fn add_to_joints<'a>(
     joints: &[Joint],
     estimates: &[Result<JointEstimate, EstimateError>],
     models: impl Fn(&Joint) -> Option<JointModel> + Sync,
-    protocol: Protocol,
+    protocol: impl Into<Watched<'a>>,
     effect: &'static dyn Effect,
 ) -> Vec<Option<Result<Addition, AddError>>> {
     let work = |_: usize, record: &Record<'_>, fit: Fit| add(record, fit, effect);
-    let added = for_each_joint(joints, estimates, models, protocol, work);
+    let added = for_each_joint(joints, estimates, models, protocol.into(), work);
     added.into_iter().map(|result| Some(result?.map_err(AddError::from).flatten())).collect()
 }
 
 /// Adds to each joint's model what it lacks: see [`improve`]. `done` is called with the
 /// index of the joint and each revision; where it says no, the joint is left as it is.
-pub fn improve_joints(
+pub fn improve_joints<'a>(
     joints: &[Joint],
     estimates: &[Result<JointEstimate, EstimateError>],
     models: impl Fn(&Joint) -> Option<JointModel> + Sync,
-    protocol: Protocol,
+    protocol: impl Into<Watched<'a>>,
     options: &Options,
     done: impl Fn(usize, &Revision) -> bool + Sync,
 ) -> OfJoints<Improvement> {
-    for_each_joint(joints, estimates, models, protocol, |index, record, fit| {
-        improve(record, fit, options, &Threads, |revision| done(index, revision))
+    let watched = protocol.into();
+    for_each_joint(joints, estimates, models, watched, |index, record, fit| {
+        improve(record, fit, options, &Threads(watched.watch), |revision| done(index, revision))
     })
 }
 
@@ -232,10 +278,11 @@ fn for_each_joint<T: Send>(
     joints: &[Joint],
     estimates: &[Result<JointEstimate, EstimateError>],
     models: impl Fn(&Joint) -> Option<JointModel> + Sync,
-    protocol: Protocol,
+    Watched { protocol, watch }: Watched<'_>,
     work: impl Fn(usize, &Record<'_>, Fit) -> T + Sync,
 ) -> OfJoints<T> {
     let Protocol { mode, split, horizon } = protocol;
+    watch.more(joints.len());
     let delays_s: Vec<f64> = joints.iter().zip(estimates).map(typical_delay_s).collect();
     let one_joint = |(index, estimate): (usize, &Result<JointEstimate, EstimateError>)| {
         let joint = joints.get(index)?;
@@ -251,8 +298,9 @@ fn for_each_joint<T: Send>(
                 given.unwrap_or_else(|| integrators(joint, &estimated))
             }
         };
-        let fit = best_fit(&record, &starts, mode)?;
-        Some(fit.map(|fit| work(index, &record, fit)))
+        let fit = best_fit(&record, &starts, mode);
+        watch.done();
+        Some(fit?.map(|fit| work(index, &record, fit)))
     };
     (0..joints.len()).into_par_iter().zip(estimates).map(one_joint).collect()
 }
@@ -288,13 +336,19 @@ fn best_fit(
     fits.min_by(|a, b| cost(a).total_cmp(&cost(b)))
 }
 
-/// The threads of the pool that the caller runs in.
-#[derive(Clone, Copy, Debug)]
-struct Threads;
+/// The threads of the pool that the caller runs in, and who is told of their work.
+#[derive(Clone, Copy)]
+struct Threads<'a>(&'a dyn Watch);
 
-impl Workers for Threads {
+impl Workers for Threads<'_> {
     fn map<T: Sync, R: Send>(&self, pieces: &[T], work: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
-        pieces.par_iter().map(work).collect()
+        self.0.more(pieces.len());
+        let told = |piece| {
+            let result = work(piece);
+            self.0.done();
+            result
+        };
+        pieces.par_iter().map(told).collect()
     }
 }
 

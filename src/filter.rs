@@ -97,6 +97,25 @@ impl LowPass {
         Ok(twice)
     }
 
+    /// How many of the last samples of a growing signal are smoothed to something else when
+    /// it grows: before them the change is below a millionth of the signal's span.
+    ///
+    /// The end acts through the backward pass, whose slowest pole tells how soon it is
+    /// forgotten.
+    ///
+    /// # Errors
+    /// [`FilterError`] when the cutoff or the order is out of range.
+    pub fn reach(&self, period: SamplePeriod) -> Result<usize, FilterError> {
+        /// Part that is left of the end: below a millionth, poles of several sections
+        /// acting together.
+        const LEFT: f64 = 1e-8;
+        let sections = self.design(period)?;
+        let slowest = sections.iter().map(pole_radius).fold(0.0, f64::max);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "above zero")]
+        let samples = (LEFT.ln() / slowest.max(f64::MIN_POSITIVE).ln()).ceil() as usize;
+        Ok(samples + padding(&sections))
+    }
+
     fn design(&self, period: SamplePeriod) -> Result<Vec<Sos<f64>>, FilterError> {
         let Self { cutoff_hz, order } = *self;
         if !(1..=MAX_ORDER).contains(&order) {
@@ -126,6 +145,13 @@ impl LowPass {
             DigitalFilter::Ba(_) | DigitalFilter::Zpk(_) => Err(FilterError::Order { order }),
         }
     }
+}
+
+/// Distance from zero of the farther pole of `section`: of z² + a₁ z + a₂.
+fn pole_radius(section: &Sos<f64>) -> f64 {
+    let [_, a1, a2] = section.a;
+    let discriminant = a1 * a1 - 4.0 * a2;
+    if discriminant < 0.0 { a2.sqrt() } else { f64::midpoint(a1.abs(), discriminant.sqrt()) }
 }
 
 /// Length of the extension at each end: three times the number of taps, as in SciPy.
@@ -166,6 +192,28 @@ mod tests {
     }
 
     const DEFAULT: LowPass = LowPass { cutoff_hz: 5.0, order: 4 };
+
+    #[test]
+    fn what_comes_later_changes_nothing_before_its_reach() {
+        // A joint that swings to and fro, and stops in the middle of a motion.
+        let signal: Vec<f64> = (0..1200)
+            .map(|k| (f64::from(k) * 0.05).sin() + (f64::from(k % 90) - 45.0).abs() * 0.2)
+            .collect();
+        for (cutoff_hz, order) in [(5.0, 4), (5.0, 1), (2.0, 4), (20.0, 8), (1.0, 2)] {
+            let low_pass = LowPass { cutoff_hz, order };
+            let whole = low_pass.smooth(&signal, period()).unwrap();
+            let reach = low_pass.reach(period()).unwrap();
+            for end in [700, 755, 800, 833] {
+                let part = low_pass.smooth(&signal[..end], period()).unwrap();
+                let change = |k: usize| (part[k] - whole[k]).abs();
+                let settled = (0..end - reach).map(change).fold(0.0, f64::max);
+                assert!(settled < 1e-6 * 10.0, "{low_pass:?}, {end}: {settled}");
+                // It is no longer than needed by much.
+                let close = (end - reach / 2..end).map(change).fold(0.0, f64::max);
+                assert!(close > 1e-6 * 10.0, "{low_pass:?}, {end}: {close}");
+            }
+        }
+    }
 
     #[test]
     fn a_straight_line_passes_unchanged_but_for_its_ends() {

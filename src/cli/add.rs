@@ -46,10 +46,12 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let outputs: Vec<_> = std::iter::once(target).chain(args.output.recording.as_deref()).collect();
     check_outputs(&outputs, &args.data.files())?;
     let verbosity = args.output.verbosity();
+    let stream = args.output.stream.open(verbosity)?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
     let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
-    let study = study(&args.data, &args.output, Some("fitting"), |joints, estimates| {
-        add_to_joints(joints, estimates, starts, protocol, effect)
+    let study = study(&args.data, &args.output, ("fitting", stream), |begun, bar| {
+        let (joints, estimates) = (begun.joints, begun.estimates);
+        add_to_joints(joints, estimates, starts, protocol.watched(bar), effect)
     })?;
     note_missing(&file, &study.experiment.joints, verbosity);
     let name = name_of(Some(target));
@@ -59,20 +61,22 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     for joint in &joints {
         revised = with_revision(&revised, joint)?;
     }
-    if let Some(path) = &args.output.recording {
+    if args.output.is_recorded() {
         let names: Vec<_> = joints.iter().map(revision_names).collect();
         let named = joints.iter().zip(&names);
         let models: Vec<_> = named.flat_map(|(joint, names)| as_models(joint, names)).collect();
         let revisions: Vec<[Step; 2]> = joints.iter().map(steps).collect();
         let grown = joints.iter().zip(&revisions).map(|(joint, steps)| grown(joint, steps));
+        let path = args.output.recording.as_deref();
         study.record(path, &models, &grown.collect::<Vec<_>>(), verbosity)?;
     }
     args.model.write(&file, &revised, verbosity)?;
     let text = || add_text(&joints, &args.protocol.horizon(Horizon::Steps));
-    print(args.output.format, &failures, text, |out| {
+    let completion = print(args.output.format, &failures, text, |out| {
         let written = target.display().to_string();
         serde_json::to_writer(out, &AddJson::new(written, &joints, &failures))
-    })
+    })?;
+    study.close(completion, verbosity)
 }
 
 fn added<'a>(

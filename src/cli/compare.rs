@@ -52,14 +52,17 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     if let Some(path) = &args.output.recording {
         check_outputs(&[path.as_path()], &args.data.files())?;
     }
-    let study = study(&args.data, &args.output, Some("comparing"), |joints, estimates| {
+    let verbosity = args.output.verbosity();
+    let stream = args.output.stream.open(verbosity)?;
+    let study = study(&args.data, &args.output, ("comparing", stream), |begun, bar| {
+        let (joints, estimates) = (begun.joints, begun.estimates);
         let one = |named: &Named| {
             let starts = |joint: &Joint| named.starts(joint);
             compare_joints(
                 joints,
                 estimates,
                 starts,
-                args.protocol.with(named.mode(args), Horizon::FreeRun),
+                args.protocol.with(named.mode(args), Horizon::FreeRun).watched(bar),
             )
         };
         models.iter().map(one).collect::<Vec<_>>()
@@ -77,13 +80,12 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     if let Some(first) = failures.first().filter(|_| compared.is_empty()) {
         return Err(anyhow!(first.clone()));
     }
-    if let Some(path) = &args.output.recording {
-        study.record(path, &compared, &[], args.output.verbosity())?;
-    }
+    study.record(args.output.recording.as_deref(), &compared, &[], verbosity)?;
     let text = || compare_table(&compared, &args.protocol.horizon(Horizon::FreeRun));
-    print(args.output.format, &failures, text, |out| {
+    let completion = print(args.output.format, &failures, text, |out| {
         serde_json::to_writer(out, &CompareJson::new(&compared, &failures))
-    })
+    })?;
+    study.close(completion, verbosity)
 }
 
 fn models(paths: &[PathBuf]) -> anyhow::Result<Vec<Named>> {

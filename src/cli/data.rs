@@ -1,8 +1,8 @@
 //! The options of every command that reads logs.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use clap::Args;
 use tauscope::experiment::{
     ColumnMap, Experiment, JointColumns, ReadOptions, Repair, expand_folders,
@@ -102,6 +102,28 @@ impl DataArgs {
         files.sort();
         files.dedup();
         (files, unlisted.iter().map(|failure| super::with_causes(&failure.error)).collect())
+    }
+
+    /// The only log, which need not be there yet.
+    ///
+    /// # Errors
+    /// When there are several, or when gaps are to be filled: trials get new names at each.
+    pub(super) fn only_file(&self) -> anyhow::Result<PathBuf> {
+        let [path] = self.data.as_slice() else {
+            bail!("expected one log, and {} are given", self.data.len());
+        };
+        if path.is_dir() {
+            bail!("{}: expected a log, and this is a folder", path.display());
+        }
+        if self.fill.is_some() {
+            bail!("`--fill` names trials anew at each gap; leave it out until the log has ended");
+        }
+        Ok(path.clone())
+    }
+
+    /// Reads `path` in place of all logs.
+    pub(super) fn read_only(&self, path: &Path) -> anyhow::Result<Experiment> {
+        Ok(Experiment::read(&[path.to_owned()], &self.options()?))
     }
 
     /// The files that are read, where they really are.

@@ -1,12 +1,11 @@
 //! `tauscope effects`
 
-use std::io::{self, Write as _};
-
-use anyhow::Context as _;
-use clap::{Args as ClapArgs, ValueEnum};
+use clap::Args as ClapArgs;
 use tauscope::effect::{EffectsJson, REGISTRY, find, listing, sheet};
 
 use super::Completion;
+use super::fitting::Format;
+use super::terminal;
 
 /// List the physical effects that a model can have
 #[derive(ClapArgs, Debug)]
@@ -20,24 +19,13 @@ pub(super) struct Args {
     format: Format,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Format {
-    /// For people
-    Text,
-    /// JSON, schema `tauscope/effects/1`
-    Json,
-}
-
 pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     /// Columns of the text.
     const WIDTH: usize = 90;
-    let text = match (args.format, &args.effect) {
-        (Format::Json, _) => serde_json::to_string(&EffectsJson::new(REGISTRY))? + "\n",
-        (Format::Text, None) => listing(WIDTH),
-        (Format::Text, Some(id)) => sheet(find(id)?, WIDTH),
-    };
-    let mut out = io::stdout().lock();
-    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
-    written.context("standard output cannot be written")?;
+    match (args.format, &args.effect) {
+        (Format::Json, _) => terminal::print_json(&EffectsJson::new(REGISTRY))?,
+        (Format::Text, None) => terminal::print(&listing(WIDTH))?,
+        (Format::Text, Some(id)) => terminal::print(&sheet(find(id)?, WIDTH))?,
+    }
     Ok(Completion::Whole)
 }

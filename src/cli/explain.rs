@@ -51,12 +51,13 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
         check_outputs(&[path.as_path()], &args.data.files())?;
     }
     let verbosity = args.output.verbosity();
+    let stream = args.output.stream.open(verbosity)?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
     let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
-    let study = study(&args.data, &args.output, Some("explaining"), |joints, estimates| {
-        let explained = explain_joints(joints, estimates, starts, protocol, &options);
-        let is_recorded = args.output.recording.is_some();
-        let bests = is_recorded.then(|| args.bests(joints, estimates, &explained));
+    let study = study(&args.data, &args.output, ("explaining", stream), |begun, bar| {
+        let (joints, estimates) = (begun.joints, begun.estimates);
+        let explained = explain_joints(joints, estimates, starts, protocol.watched(bar), &options);
+        let bests = args.output.is_recorded().then(|| args.bests(joints, estimates, &explained));
         (explained, bests.unwrap_or_default())
     })?;
     note_missing(&file, &study.experiment.joints, verbosity);
@@ -68,7 +69,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     };
     let (explained, bests) = &study.result;
     let (findings, failures) = outcomes(&study.experiment, explained, finding)?;
-    if let Some(path) = &args.output.recording {
+    if args.output.is_recorded() {
         let bests = joints.iter().zip(bests).filter_map(|(joint, best)| {
             let (model, comparison) = best.as_ref()?;
             Some(ComparedJoint { joint, model, revision: 0, comparison })
@@ -77,12 +78,13 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
         let revisions: Vec<[Revision; 1]> = findings.iter().map(as_revision).collect();
         let revisions = findings.iter().zip(&revisions);
         let revisions: Vec<_> = revisions.map(|(f, one)| ImprovedJoint::of(*f, one)).collect();
-        study.record(path, &models, &revisions, verbosity)?;
+        study.record(args.output.recording.as_deref(), &models, &revisions, verbosity)?;
     }
     let text = || explain_text(&findings, &args.protocol.horizon(Horizon::Steps));
-    print(args.output.format, &failures, text, |out| {
+    let completion = print(args.output.format, &failures, text, |out| {
         serde_json::to_writer(out, &ExplainJson::new(&findings, &failures))
-    })
+    })?;
+    study.close(completion, verbosity)
 }
 
 fn finding<'a>(

@@ -1,6 +1,6 @@
 //! The options and the way of every command that fits models.
 
-use std::io::{self, StdoutLock, Write as _};
+use std::io::{StdoutLock, Write as _};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow};
@@ -13,9 +13,11 @@ use tauscope::fit::{Horizon, Split};
 use tauscope::report::{ComparedJoint, EstimatedJoint, ImprovedJoint};
 
 use super::data::DataArgs;
-use super::progress::{self, Verbosity};
+use super::progress::{Bar, Verbosity};
 use super::record::{Contents, Detail};
-use super::{Completion, message, read_failures};
+use super::stream::{Stream, StreamArgs};
+use super::terminal::{self, message};
+use super::{Completion, read_failures};
 
 /// By what rules models are judged.
 #[derive(Args, Debug)]
@@ -39,6 +41,9 @@ pub(super) struct ResultArgs {
     #[arg(short = 'o', long = "output", value_name = "FILE.rrd", help_heading = "Output")]
     pub(super) recording: Option<PathBuf>,
 
+    #[command(flatten)]
+    pub(super) stream: StreamArgs,
+
     /// How results are printed
     #[arg(long, value_enum, default_value_t = Format::Text, help_heading = "Output")]
     pub(super) format: Format,
@@ -47,7 +52,7 @@ pub(super) struct ResultArgs {
     #[arg(long, value_name = "N", value_parser = super::data::threads, help_heading = "Output")]
     threads: Option<usize>,
 
-    /// No notices
+    /// No progress, no notices
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
@@ -105,11 +110,7 @@ impl ProtocolArgs {
 
     /// The horizon in words.
     pub(super) fn horizon(&self, default: Horizon) -> String {
-        match self.horizon.unwrap_or(default) {
-            Horizon::FreeRun => "free run".to_owned(),
-            Horizon::Steps => "restarted at every step of the input".to_owned(),
-            Horizon::Seconds(seconds) => format!("restarted every {seconds} s"),
-        }
+        self.horizon.unwrap_or(default).to_string()
     }
 
     /// These options as they are typed.
@@ -137,6 +138,11 @@ impl ResultArgs {
 
     pub(super) fn verbosity(&self) -> Verbosity {
         if self.quiet { Verbosity::Quiet } else { Verbosity::Normal }
+    }
+
+    /// Whether anything is made for a viewer.
+    pub(super) fn is_recorded(&self) -> bool {
+        self.recording.is_some() || self.stream.is_asked()
     }
 }
 
@@ -178,6 +184,18 @@ pub(super) fn quoted(words: &[String]) -> String {
     words.iter().map(quote).collect::<Vec<_>>().join(" ")
 }
 
+/// Reads `data` and says so meanwhile.
+pub(super) fn read(data: &DataArgs, verbosity: Verbosity) -> anyhow::Result<Experiment> {
+    let _bar = Bar::spinner(verbosity, "reading");
+    data.read()
+}
+
+/// A bar for the trials of `joints`, each estimated `times` times.
+pub(super) fn estimating(joints: &[Joint], times: usize, verbosity: Verbosity) -> Bar {
+    let trials: usize = joints.iter().map(|joint| joint.trials.len()).sum();
+    Bar::new(verbosity, "estimating", "trials", (trials * times) as u64)
+}
+
 /// The delays of each joint.
 pub(super) type Estimates = Vec<Result<JointEstimate, EstimateError>>;
 
@@ -186,52 +204,107 @@ pub(super) struct Study<T> {
     pub(super) experiment: Experiment,
     estimates: Estimates,
     settings: Settings,
+    stream: Stream,
     pub(super) result: T,
 }
 
+/// What work on the joints begins with.
+#[derive(Clone, Copy)]
+pub(super) struct Begun<'a> {
+    experiment: &'a Experiment,
+    pub(super) joints: &'a [Joint],
+    pub(super) estimates: &'a Estimates,
+    settings: &'a Settings,
+    stream: &'a Stream,
+}
+
 /// Reads `data`, estimates the delays and does `work` with both; `what` that is, is shown
-/// meanwhile.
+/// meanwhile on a bar that counts its fits.
 pub(super) fn study<T: Send>(
     data: &DataArgs,
     output: &ResultArgs,
-    what: Option<&'static str>,
-    work: impl FnOnce(&[Joint], &Estimates) -> T + Send,
+    (what, stream): (&'static str, Stream),
+    work: impl FnOnce(Begun<'_>, &Bar) -> T + Send,
 ) -> anyhow::Result<Study<T>> {
-    let experiment = {
-        let _bar = progress::bar(output.verbosity(), "reading", 0);
-        data.read()?
-    };
-    let _bar = what.map(|what| progress::bar(output.verbosity(), what, 0));
+    let verbosity = output.verbosity();
+    let experiment = read(data, verbosity)?;
+    let joints = experiment.joints.as_slice();
     let settings = Settings::default();
-    let all = || {
-        let estimates = estimate_joints(&experiment.joints, &settings, || ());
-        let result = work(&experiment.joints, &estimates);
-        (estimates, result)
+    let all = || -> anyhow::Result<_> {
+        let bar = estimating(joints, 1, verbosity);
+        let estimates = estimate_joints(joints, &settings, || bar.step());
+        drop(bar);
+        let (estimates, settings, stream) = (&estimates, &settings, &stream);
+        let begun = Begun { experiment: &experiment, joints, estimates, settings, stream };
+        begun.show(&[], &[], None)?;
+        let bar = Bar::new(verbosity, what, "fits", 0);
+        Ok((work(begun, &bar), estimates.clone()))
     };
-    let (estimates, result) = with_threads(output.threads, all)
-        .map_err(|error| anyhow!("threads cannot be started: {error}"))?;
-    Ok(Study { experiment, estimates, settings, result })
+    let done = with_threads(output.threads, all);
+    let (result, estimates) = done.map_err(|e| anyhow!("threads cannot be started: {e}"))??;
+    Ok(Study { experiment, estimates, settings, stream, result })
+}
+
+impl Begun<'_> {
+    /// Whether somebody looks on.
+    pub(super) fn is_shown(&self) -> bool {
+        self.stream.is_open()
+    }
+
+    /// Shows `models` and `revisions` beside the decisions, in a viewer that looks on.
+    pub(super) fn show(
+        &self,
+        models: &[ComparedJoint<'_>],
+        revisions: &[ImprovedJoint<'_>],
+        joint: Option<&str>,
+    ) -> anyhow::Result<()> {
+        if !self.is_shown() {
+            return Ok(());
+        }
+        self.with_contents(models, revisions, |contents| self.stream.send(contents, joint))
+    }
+
+    fn with_contents(
+        &self,
+        models: &[ComparedJoint<'_>],
+        revisions: &[ImprovedJoint<'_>],
+        take: impl FnOnce(&Contents<'_>) -> anyhow::Result<()>,
+    ) -> anyhow::Result<()> {
+        let pairs = self.joints.iter().zip(self.estimates);
+        let pairs = pairs.filter_map(|(joint, estimate)| Some((joint, estimate.as_ref().ok()?)));
+        let joints: Vec<_> =
+            pairs.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect();
+        let (sources, reading) = (&self.experiment.sources, &self.experiment.options);
+        let (joints, settings, detail) = (&joints, self.settings, Detail::Full);
+        take(&Contents { joints, settings, sources, reading, models, revisions, detail })
+    }
 }
 
 impl<T> Study<T> {
-    /// Records `models` and `revisions` beside the decisions.
+    /// Records `models` and `revisions` beside the decisions, and shows them.
     pub(super) fn record(
         &self,
-        path: &Path,
+        path: Option<&Path>,
         models: &[ComparedJoint<'_>],
         revisions: &[ImprovedJoint<'_>],
         verbosity: Verbosity,
     ) -> anyhow::Result<()> {
-        let Self { experiment, estimates, settings, .. } = self;
-        let pairs = experiment.joints.iter().zip(estimates);
-        let pairs = pairs.filter_map(|(joint, estimate)| Some((joint, estimate.as_ref().ok()?)));
-        let joints: Vec<_> =
-            pairs.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect();
-        let (sources, reading) = (&experiment.sources, &experiment.options);
-        let detail = Detail::Full;
-        let joints = &joints;
-        let contents = Contents { joints, settings, sources, reading, models, revisions, detail };
-        contents.record(path, verbosity)
+        let Self { experiment, estimates, settings, stream, .. } = self;
+        let joints = &experiment.joints;
+        let begun = Begun { experiment, joints, estimates, settings, stream };
+        if let Some(path) = path {
+            begun.with_contents(models, revisions, |contents| contents.record(path, verbosity))?;
+        }
+        begun.show(models, revisions, None)
+    }
+
+    /// Ends what viewers are sent.
+    pub(super) fn close(
+        self,
+        completion: Completion,
+        verbosity: Verbosity,
+    ) -> anyhow::Result<Completion> {
+        self.stream.close(completion, verbosity)
     }
 }
 
@@ -272,12 +345,13 @@ pub(super) fn print(
     for failure in failures {
         message("warning", failure);
     }
-    let mut out = io::stdout().lock();
-    let written = match format {
-        Format::Text => out.write_all(text().as_bytes()),
-        Format::Json => json(&mut out).map_err(io::Error::from).and_then(|()| out.write_all(b"\n")),
-    };
-    written.and_then(|()| out.flush()).context("standard output cannot be written")?;
+    match format {
+        Format::Text => terminal::print(&text())?,
+        Format::Json => terminal::print_with(|out| {
+            json(out)?;
+            out.write_all(b"\n")
+        })?,
+    }
     Ok(if failures.is_empty() { Completion::Whole } else { Completion::Partial })
 }
 

@@ -1,5 +1,6 @@
 //! `tauscope improve`: explain and add until nothing significant is left.
 
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use clap::Args as ClapArgs;
@@ -13,10 +14,9 @@ use tauscope::report::{
 };
 
 use super::data::DataArgs;
-use super::fitting::{
-    EffectArgs, Format, ProtocolArgs, ResultArgs, outcomes, print, quoted, study,
-};
-use super::folder::{Each, FolderArgs, Print};
+use super::fitting::{Begun, EffectArgs, ProtocolArgs, ResultArgs};
+use super::fitting::{outcomes, print, quoted, study};
+use super::folder::{Each, FolderArgs};
 use super::interrupt::Interrupt;
 use super::model_file::{ModelFileArgs, name_of, note_missing};
 use super::output::check_outputs;
@@ -39,7 +39,7 @@ pub(super) struct Args {
     #[command(flatten)]
     effects: EffectArgs,
 
-    /// Effects that may be added
+    /// How many effects are added at most
     #[arg(long, value_name = "N", default_value_t = 6, help_heading = "Model")]
     max_effects: usize,
 
@@ -61,12 +61,10 @@ fn each_log(args: &Args) -> anyhow::Result<Completion> {
         decisions: None,
         refused: &[
             ("--output", args.output.recording.is_some()),
+            ("--connect, --spawn or --serve", args.output.stream.is_asked()),
             ("--write", args.model.is_written_elsewhere()),
         ],
-        print: match args.output.format {
-            Format::Text => Print::Text,
-            Format::Json => Print::Json,
-        },
+        format: args.output.format,
         threads: args.output.threads(),
         verbosity: args.output.verbosity(),
     })
@@ -84,20 +82,28 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let outputs: Vec<_> = std::iter::once(target).chain(recording).collect();
     check_outputs(&outputs, &args.data.files())?;
     let verbosity = args.output.verbosity();
-    let interrupt = Interrupt::watch();
+    let stream = args.output.stream.open(verbosity)?.expecting_revisions()?;
+    let interrupt = Interrupt::watch(STOPPING);
+    let name = name_of(Some(target));
     let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
-    let study = study(&args.data, &args.output, None, |joints, estimates| {
-        let progress = Progress::new(&file, joints, verbosity, &interrupt);
+    let study = study(&args.data, &args.output, ("improving", stream), |begun, bar| {
+        let (joints, estimates) = (begun.joints, begun.estimates);
+        let progress = Progress::new(&file, joints, verbosity, Some(interrupt));
+        let arguments = args.all_arguments(joints);
+        let stage = Stage::new(begun, &file, &name, &arguments);
         let starts = |joint: &Joint| file.joint(&joint.name).cloned();
-        let done = |index, revision: &Step| progress.done(index, revision);
-        let improved = improve_joints(joints, estimates, starts, protocol, &options, done);
+        let done = |index, revision: &Step| {
+            stage.show(index, revision);
+            progress.done(index, revision)
+        };
+        let improved =
+            improve_joints(joints, estimates, starts, protocol.watched(bar), &options, done);
         (improved, progress.stopped())
     })?;
     let joints = &study.experiment.joints;
     note_missing(&file, joints, verbosity);
     let (results, stopped) = &study.result;
-    let arguments: Vec<String> = joints.iter().map(|j| args.add_arguments(joints, j)).collect();
-    let name = name_of(Some(target));
+    let arguments = args.all_arguments(joints);
     let improved = |index: usize, joint, improvement| {
         let stopped = stopped.get(index).copied().unwrap_or(false);
         let add_arguments = arguments.get(index).map_or("", String::as_str);
@@ -107,10 +113,10 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     };
     let (improved, failures) = outcomes(&study.experiment, results, improved)?;
     let improved: Vec<_> = improved.into_iter().flatten().collect();
-    if let Some(path) = recording {
+    if args.output.is_recorded() {
         let names = revision_names(&improved);
         let models: Vec<_> = improved.iter().flat_map(|joint| models(joint, &names)).collect();
-        study.record(path, &models, &improved, verbosity)?;
+        study.record(recording, &models, &improved, verbosity)?;
     }
     args.model.write(&file, &revised(&file, &improved)?, verbosity)?;
     let text = || improve_text(&improved, &args.protocol.horizon(Horizon::Steps));
@@ -118,10 +124,19 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
         serde_json::to_writer(out, &ImproveJson::new(&improved, &failures))
     })?;
     let is_cut_short = improved.iter().any(|joint| joint.interrupted);
-    Ok(if is_cut_short { Completion::Partial } else { completion })
+    let completion = if is_cut_short { Completion::Partial } else { completion };
+    study.close(completion, verbosity)
 }
 
+/// What is said when somebody presses Ctrl-C.
+const STOPPING: &str = "after this revision; Ctrl-C again ends at once, without results";
+
 impl Args {
+    /// What stands behind the effect in the command that adds one more, for each joint.
+    fn all_arguments(&self, joints: &[Joint]) -> Vec<String> {
+        joints.iter().map(|joint| self.add_arguments(joints, joint)).collect()
+    }
+
     /// What stands behind the effect in the command that adds one more to `joint`.
     fn add_arguments(&self, joints: &[Joint], joint: &Joint) -> String {
         let one_of_several = (joints.len() > 1).then_some(joint.name.as_str());
@@ -133,20 +148,21 @@ impl Args {
 }
 
 /// Which revisions there are so far, told as they come.
-struct Progress<'a> {
+pub(super) struct Progress<'a> {
     joints: &'a [Joint],
     /// Per joint, the number of its next revision, and whether it was stopped.
     next: Vec<(AtomicU32, AtomicBool)>,
     verbosity: Verbosity,
-    interrupt: &'a Interrupt,
+    /// Who may stop it.
+    interrupt: Option<Interrupt>,
 }
 
 impl<'a> Progress<'a> {
-    fn new(
+    pub(super) fn new(
         file: &ModelFile,
         joints: &'a [Joint],
         verbosity: Verbosity,
-        interrupt: &'a Interrupt,
+        interrupt: Option<Interrupt>,
     ) -> Self {
         let first = |joint: &Joint| file.revision(&joint.name).unwrap_or(0);
         let next = joints.iter().map(|joint| (first(joint).into(), false.into())).collect();
@@ -154,7 +170,7 @@ impl<'a> Progress<'a> {
     }
 
     /// Tells of a revision; whether to go on.
-    fn done(&self, index: usize, revision: &Step) -> bool {
+    pub(super) fn done(&self, index: usize, revision: &Step) -> bool {
         let Some((joint, (next, stopped))) = self.joints.get(index).zip(self.next.get(index))
         else {
             return true;
@@ -163,7 +179,7 @@ impl<'a> Progress<'a> {
         if self.verbosity == Verbosity::Normal {
             message("improving", &revision_line(joint, number, revision));
         }
-        let stops = self.interrupt.was_pressed();
+        let stops = self.interrupt.is_some_and(Interrupt::was_pressed);
         stopped.store(stops, Ordering::Relaxed);
         !stops
     }
@@ -171,6 +187,52 @@ impl<'a> Progress<'a> {
     /// Which joints were stopped.
     fn stopped(&self) -> Vec<bool> {
         self.next.iter().map(|(_, stopped)| stopped.load(Ordering::Relaxed)).collect()
+    }
+}
+
+/// The revisions so far, shown to whoever looks on.
+struct Stage<'a> {
+    begun: Begun<'a>,
+    file: &'a ModelFile,
+    name: &'a str,
+    arguments: &'a [String],
+    /// Per joint.
+    steps: Vec<Mutex<Vec<Step>>>,
+}
+
+impl<'a> Stage<'a> {
+    fn new(begun: Begun<'a>, file: &'a ModelFile, name: &'a str, arguments: &'a [String]) -> Self {
+        let steps = begun.joints.iter().map(|_| Mutex::default()).collect();
+        Self { begun, file, name, arguments, steps }
+    }
+
+    /// Shows one more revision of a joint. What goes wrong is told, and is no reason to stop:
+    /// the results do not hang on the viewer.
+    fn show(&self, index: usize, revision: &Step) {
+        if !self.begun.is_shown() {
+            return;
+        }
+        let of_joint = self.begun.joints.get(index).zip(self.steps.get(index));
+        let Some((joint, steps)) = of_joint else { return };
+        let Ok(mut steps) = steps.lock() else { return };
+        steps.push(revision.clone());
+        let improvement = Improvement { revisions: steps.clone(), verdict: so_far(revision) };
+        let arguments = self.arguments.get(index).map_or("", String::as_str);
+        let improved = improved(self.file, self.name, joint, &improvement, arguments);
+        let revisions: Vec<_> = improved.into_iter().collect();
+        if let Err(error) = self.begun.show(&[], &revisions, Some(&joint.name)) {
+            message("warning", &format!("{error:#}"));
+        }
+    }
+}
+
+/// What is to be said of a revision that may not be the last.
+fn so_far(revision: &Step) -> Verdict {
+    let lack_of_fit = revision.comparison.lack_of_fit;
+    match (lack_of_fit.is_none_or(|test| test.adequate), revision.ranking.is_empty()) {
+        (true, _) => Verdict::Adequate,
+        (false, true) => Verdict::Unexplained,
+        (false, false) => Verdict::MissingEffect,
     }
 }
 

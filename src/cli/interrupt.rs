@@ -1,35 +1,58 @@
 //! Ctrl-C: once to stop at the next occasion, twice to end.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, Once};
+use std::time::Duration;
 
-use super::message;
+use super::terminal::message;
 
 /// Exit status of a program that was ended by an interrupt, as shells have it.
 const ENDED: i32 = 130;
 
+/// Whether Ctrl-C was pressed since somebody watched.
+static PRESSED: AtomicBool = AtomicBool::new(false);
+
+/// What is said then.
+static ANSWER: Mutex<&str> = Mutex::new("");
+
 /// Whether somebody pressed Ctrl-C.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Interrupt {
-    pressed: Arc<AtomicBool>,
-}
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Interrupt(());
 
 impl Interrupt {
-    /// Watches from now on. Where that cannot be done, Ctrl-C ends the program as ever.
-    pub(super) fn watch() -> Self {
-        let interrupt = Self::default();
-        let pressed = Arc::clone(&interrupt.pressed);
-        let handler = move || {
-            if pressed.swap(true, Ordering::SeqCst) {
-                std::process::exit(ENDED);
-            }
-            message("stopping", "after this revision; Ctrl-C again ends at once, without results");
-        };
-        ctrlc::set_handler(handler).unwrap_or_default();
-        interrupt
+    /// Watches from now on, and says `answer` when it is pressed. Where that cannot be done,
+    /// Ctrl-C ends the program as ever.
+    pub(super) fn watch(answer: &'static str) -> Self {
+        static HANDLER: Once = Once::new();
+        if let Ok(mut said) = ANSWER.lock() {
+            *said = answer;
+        }
+        PRESSED.store(false, Ordering::SeqCst);
+        HANDLER.call_once(|| ctrlc::set_handler(pressed).unwrap_or_default());
+        Self(())
     }
 
-    pub(super) fn was_pressed(&self) -> bool {
-        self.pressed.load(Ordering::SeqCst)
+    #[expect(clippy::unused_self, reason = "who has it has watched")]
+    pub(super) fn was_pressed(self) -> bool {
+        PRESSED.load(Ordering::SeqCst)
     }
+
+    /// Sleeps for `time`, or until it is pressed; whether it was.
+    pub(super) fn sleep(self, time: Duration) -> bool {
+        const TICK: Duration = Duration::from_millis(20);
+        let mut left = time;
+        while !left.is_zero() && !self.was_pressed() {
+            std::thread::sleep(TICK.min(left));
+            left = left.saturating_sub(TICK);
+        }
+        self.was_pressed()
+    }
+}
+
+fn pressed() {
+    if PRESSED.swap(true, Ordering::SeqCst) {
+        std::process::exit(ENDED);
+    }
+    let answer = ANSWER.lock().map(|answer| *answer).unwrap_or_default();
+    message("stopping", answer);
 }

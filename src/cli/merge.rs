@@ -6,7 +6,7 @@ use clap::Args as ClapArgs;
 use tauscope::report::FolderReport;
 
 use super::Completion;
-use super::estimate::Format;
+use super::fitting::Format;
 use super::folder::{Tables, present, read_folders};
 use super::progress::Verbosity;
 
@@ -46,5 +46,5 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
         anyhow::bail!("--decisions: these are results of `{command}`, which makes no decisions");
     }
     let verbosity = if args.quiet { Verbosity::Quiet } else { Verbosity::Normal };
-    present(&report, &missing, tables, args.format.into(), verbosity)
+    present(&report, &missing, tables, args.format, verbosity)
 }

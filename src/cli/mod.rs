@@ -3,6 +3,7 @@
 mod add;
 mod compare;
 mod data;
+mod doctor;
 mod effects;
 mod estimate;
 mod explain;
@@ -12,20 +13,28 @@ mod improve;
 mod interrupt;
 mod merge;
 mod model_file;
+mod nearest;
 mod output;
 mod progress;
 mod record;
 mod report;
 mod settings;
+mod shell;
 mod simulate;
+#[cfg(feature = "rrd")]
+mod spawn;
+mod stream;
 mod sweep;
 mod table_file;
+mod terminal;
 
-use std::io::{self, Write as _};
+use std::io;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use tauscope::experiment::{Experiment, Failure};
+
+use terminal::message;
 
 /// Estimate the variable delay of hydraulic joints, and record every decision.
 #[derive(Debug, Parser)]
@@ -47,6 +56,9 @@ enum Command {
     Report(Box<report::Args>),
     Effects(effects::Args),
     Simulate(Box<simulate::Args>),
+    Doctor(doctor::Args),
+    Completions(shell::CompletionsArgs),
+    Man(shell::ManArgs),
 }
 
 /// What became of a command that ran to its end.
@@ -62,7 +74,21 @@ enum Completion {
 ///
 /// Exit status: 0 all done; 1 some joints or files failed; 2 nothing usable.
 pub(crate) fn run() -> ExitCode {
-    let outcome = match Cli::parse().command {
+    let outcome = perform(Cli::parse().command);
+    match outcome {
+        Ok(Completion::Whole) => ExitCode::SUCCESS,
+        Ok(Completion::Partial) => ExitCode::from(1),
+        // Whoever read our output has seen enough, as in `tauscope … | head`.
+        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            message("error", &format!("{error:#}"));
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn perform(command: Command) -> anyhow::Result<Completion> {
+    match command {
         Command::Estimate(args) => estimate::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Compare(args) => compare::run(&args),
@@ -73,16 +99,9 @@ pub(crate) fn run() -> ExitCode {
         Command::Report(args) => report::run(&args),
         Command::Effects(args) => effects::run(&args),
         Command::Simulate(args) => simulate::run(&args),
-    };
-    match outcome {
-        Ok(Completion::Whole) => ExitCode::SUCCESS,
-        Ok(Completion::Partial) => ExitCode::from(1),
-        // Whoever read our output has seen enough, as in `tauscope … | head`.
-        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
-        Err(error) => {
-            message("error", &format!("{error:#}"));
-            ExitCode::from(2)
-        }
+        Command::Doctor(args) => doctor::run(&args),
+        Command::Completions(args) => shell::completions(&args),
+        Command::Man(args) => shell::man(&args),
     }
 }
 
@@ -110,9 +129,4 @@ fn read_failures(experiment: &Experiment) -> Vec<String> {
 fn with_causes(error: &(dyn std::error::Error + 'static)) -> String {
     let causes = std::iter::successors(Some(error), |error| error.source());
     causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
-}
-
-/// Prints one line on stderr. That stderr is closed is no reason to stop.
-fn message(kind: &str, text: &str) {
-    writeln!(io::stderr().lock(), "{kind}: {text}").unwrap_or_default();
 }

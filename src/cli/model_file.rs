@@ -6,9 +6,10 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use tauscope::model::ModelFile;
 
-use super::message;
+use super::nearest::nearest;
 use super::output::{target_of, write_file};
 use super::progress::Verbosity;
+use super::terminal::message;
 use tauscope::experiment::Joint;
 
 /// The name of a model file where none is given.
@@ -113,7 +114,14 @@ pub(super) fn note_missing(file: &ModelFile, joints: &[Joint], verbosity: Verbos
     }
     for joint in joints.iter().filter(|joint| file.joint(&joint.name).is_none()) {
         let name = &joint.name;
-        message("note", &format!("joint `{name}`: not in the model file; a plain integrator"));
+        // A name of the file that the log does not have may be a slip of the pen.
+        let is_in_log = |name: &str| joints.iter().any(|joint| joint.name == name);
+        let near = nearest(name, file.names().filter(|name| !is_in_log(name)));
+        let near = near.map_or_else(String::new, |near| format!(", which has `{near}`"));
+        message(
+            "note",
+            &format!("joint `{name}`: not in the model file{near}; a plain integrator"),
+        );
     }
 }
 

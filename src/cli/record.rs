@@ -8,7 +8,7 @@ use tauscope::report::{ComparedJoint, EstimatedJoint, ImprovedJoint};
 
 use super::message;
 use super::output::{OutputFile, write_file};
-use super::progress::Verbosity;
+use super::progress::{Bar, Verbosity};
 
 /// How many candidates are recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -34,7 +34,10 @@ pub(super) struct Contents<'a> {
 impl Contents<'_> {
     /// Writes the recording to `path` and says how to look at it.
     pub(super) fn record(&self, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
-        write_file(path, |file| self.write(file))?;
+        {
+            let _bar = Bar::spinner(verbosity, "recording");
+            write_file(path, |file| self.write(file))?;
+        }
         if verbosity == Verbosity::Normal {
             let path = path.display();
             message("recording", &format!("{path}; look at it with: rerun {path}"));
@@ -44,15 +47,19 @@ impl Contents<'_> {
 
     #[cfg(feature = "rrd")]
     fn write(&self, file: &mut OutputFile) -> anyhow::Result<()> {
-        use tauscope::recording::{self, Recording, write_recording};
+        Ok(tauscope::recording::write_recording(&self.recording(), file)?)
+    }
+
+    #[cfg(feature = "rrd")]
+    pub(super) fn recording(&self) -> tauscope::recording::Recording<'_> {
+        use tauscope::recording::{self, Recording};
 
         let Self { joints, settings, sources, reading, models, revisions, detail } = *self;
         let detail = match detail {
             Detail::Full => recording::Detail::Full,
             Detail::Lean => recording::Detail::Lean,
         };
-        let recording = Recording { joints, settings, sources, reading, detail, models, revisions };
-        Ok(write_recording(&recording, file)?)
+        Recording { joints, settings, sources, reading, detail, models, revisions }
     }
 
     #[cfg(not(feature = "rrd"))]

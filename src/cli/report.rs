@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, anyhow, bail};
 use clap::Args as ClapArgs;
 use tauscope::batch::{
-    Mode, OfJoints, Protocol, estimate_joints, explain_joints, improve_joints, with_threads,
+    Mode, OfJoints, estimate_joints, explain_joints, improve_joints, with_threads,
 };
 use tauscope::delay::Settings;
 use tauscope::effect::Effect;
@@ -22,11 +22,13 @@ use tauscope::report::{
 
 use super::data::DataArgs;
 use super::estimate::{self, AlgorithmArgs};
-use super::fitting::{EffectArgs, Estimates, Format, ProtocolArgs, print, quoted};
+use super::fitting::{EffectArgs, Estimates, Format, ProtocolArgs};
+use super::fitting::{estimating, print, quoted, read};
 use super::model_file::{name_of, note_missing};
 use super::output::{check_outputs, write_file};
-use super::progress::{self, Verbosity};
+use super::progress::{Bar, Verbosity};
 use super::record::{Contents, Detail};
+use super::stream::{Stream, StreamArgs};
 use super::{Completion, improve, message, with_causes};
 
 /// Bytes of a recording up to which it is put into the page.
@@ -67,7 +69,7 @@ struct ModelArgs {
     #[command(flatten)]
     effects: EffectArgs,
 
-    /// Effects that `--improve` may add
+    /// How many effects `--improve` adds at most
     #[arg(long, value_name = "N", default_value_t = 6, help_heading = "Model")]
     max_effects: usize,
 
@@ -92,6 +94,9 @@ struct OutputArgs {
     #[arg(long)]
     no_recording: bool,
 
+    #[command(flatten)]
+    stream: StreamArgs,
+
     /// How results are printed
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -112,26 +117,25 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let target = args.output.target()?;
     target.check(&args.data.files())?;
     let verbosity = args.output.verbosity();
-    let experiment = {
-        let _bar = progress::bar(verbosity, "reading", 0);
-        args.data.read()?
-    };
+    let stream = args.output.stream.open(verbosity)?;
+    let experiment = read(&args.data, verbosity)?;
     let joints = &experiment.joints;
     let work = || {
-        let estimates = estimate_joints(joints, &settings, || ());
-        let improved = args.model.improved(&file, joints, &estimates, effects);
+        let bar = estimating(joints, 1, verbosity);
+        let estimates = estimate_joints(joints, &settings, || bar.step());
+        drop(bar);
+        let improved = args.model.improved(&file, joints, &estimates, effects, verbosity);
         (estimates, improved)
     };
-    let (estimates, improved) = {
-        let _bar = progress::bar(verbosity, "estimating and fitting", 0);
-        with_threads(args.output.threads, work)
-            .map_err(|error| anyhow!("threads cannot be started: {error}"))?
-    };
+    let (estimates, improved) = with_threads(args.output.threads, work)
+        .map_err(|error| anyhow!("threads cannot be started: {error}"))?;
     if improved.is_some() {
         note_missing(&file, joints, verbosity);
     }
-    let study = Study { args, experiment: &experiment, settings: &settings, file: &file };
-    study.report(&estimates, improved.unwrap_or_default().as_slice(), &target)
+    let (experiment, settings, file) = (&experiment, &settings, &file);
+    let study = Study { args, experiment, settings, file, stream: &stream };
+    let completion = study.report(&estimates, improved.unwrap_or_default().as_slice(), &target)?;
+    stream.close(completion, verbosity)
 }
 
 impl ModelArgs {
@@ -147,15 +151,21 @@ impl ModelArgs {
         joints: &[Joint],
         estimates: &Estimates,
         effects: Vec<&'static dyn Effect>,
+        verbosity: Verbosity,
     ) -> Option<OfJoints<Improvement>> {
         let options = Options { effects, max_effects: self.max_effects };
         let starts = |joint: &Joint| file.joint(&joint.name).cloned();
-        let protocol: Protocol = self.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
+        let protocol = self.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
         if self.improve {
-            let goes_on = |_, _: &Revision| true;
-            return Some(improve_joints(joints, estimates, starts, protocol, &options, goes_on));
+            let bar = Bar::new(verbosity, "improving", "fits", 0);
+            let progress = improve::Progress::new(file, joints, verbosity, None);
+            let done = |index, revision: &Revision| progress.done(index, revision);
+            let protocol = protocol.watched(&bar);
+            return Some(improve_joints(joints, estimates, starts, protocol, &options, done));
         }
         self.model.as_ref()?;
+        let bar = Bar::new(verbosity, "explaining", "fits", 0);
+        let protocol = protocol.watched(&bar);
         let explained = explain_joints(joints, estimates, starts, protocol, &options);
         let one = |found: Option<Result<_, _>>| Some(found?.map(as_it_is));
         Some(explained.into_iter().map(one).collect())
@@ -256,6 +266,7 @@ struct Study<'a> {
     experiment: &'a Experiment,
     settings: &'a Settings,
     file: &'a ModelFile,
+    stream: &'a Stream,
 }
 
 impl Study<'_> {
@@ -302,7 +313,7 @@ impl Study<'_> {
         failures: &[String],
         target: &Target,
     ) -> anyhow::Result<Completion> {
-        let Self { args, experiment, settings, file } = *self;
+        let Self { args, experiment, settings, file, .. } = *self;
         let verbosity = args.output.verbosity();
         let notes: Vec<String> =
             experiment.notes.iter().cloned().chain(estimate::notes(joints)).collect();
@@ -326,7 +337,10 @@ impl Study<'_> {
             notes: &notes,
             failures,
         };
-        target.write(&report.document()?)?;
+        {
+            let _bar = Bar::spinner(verbosity, "writing the report");
+            target.write(&report.document()?)?;
+        }
         if verbosity == Verbosity::Normal {
             for note in &notes {
                 message("note", note);
@@ -353,7 +367,6 @@ impl Study<'_> {
         target: &Target,
         verbosity: Verbosity,
     ) -> anyhow::Result<Option<Vec<u8>>> {
-        let Some(path) = &target.recording else { return Ok(None) };
         let names = improve::revision_names(models);
         let compared: Vec<_> =
             models.iter().flat_map(|joint| improve::models(joint, &names)).collect();
@@ -366,6 +379,8 @@ impl Study<'_> {
             revisions: models,
             detail: Detail::Full,
         };
+        self.stream.send(&contents, None)?;
+        let Some(path) = &target.recording else { return Ok(None) };
         contents.record(path, verbosity)?;
         if !self.args.output.embed {
             return Ok(None);

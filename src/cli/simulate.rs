@@ -9,6 +9,7 @@ use tauscope::synthetic::scenario::{self, Noise, Scenario};
 use tauscope::synthetic::{PlantSpec, Synthetic, simulate, write_log, write_truth};
 
 use super::output::{OutputFile, check_outputs};
+use super::progress::{Bar, Verbosity};
 use super::{Completion, message};
 
 /// Make a log of joints whose truth is known
@@ -61,7 +62,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     duration: Option<f64>,
 
-    /// No notices
+    /// No progress, no notices
     #[arg(short, long)]
     quiet: bool,
 }
@@ -101,20 +102,31 @@ const SEED: u64 = 1;
 const NOISE: f64 = 0.05;
 
 pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
-    let spec = spec(args)?;
+    let spec = {
+        let _bar = Bar::spinner(args.verbosity(), "sizing effects");
+        spec(args)?
+    };
     let outputs = std::iter::once(&args.output).chain(&args.truth);
     let inputs = args.plant.iter().filter_map(|path| path.canonicalize().ok());
     check_outputs(&outputs.map(PathBuf::as_path).collect::<Vec<_>>(), &inputs.collect::<Vec<_>>())?;
+    let bar = Bar::spinner(args.verbosity(), "simulating");
     let made = match &args.plant {
         Some(path) => simulate(&spec).with_context(|| path.display().to_string())?,
         None => simulate(&spec)?,
     };
     write(args, &spec, &made)?;
+    drop(bar);
     if !args.quiet {
         let (joints, steps) = (made.joints.len(), made.truth.len());
         message("log", &format!("{}: {joints} joints, {steps} steps", args.output.display()));
     }
     Ok(Completion::Whole)
+}
+
+impl Args {
+    fn verbosity(&self) -> Verbosity {
+        if self.quiet { Verbosity::Quiet } else { Verbosity::Normal }
+    }
 }
 
 /// Log and truth under their final names, or nothing.

@@ -18,6 +18,7 @@
 //! - [`Remedy`], [`RunnerUp`]: how near a verdict was
 //! - [`step_delays`]: the delays alone, by the best method
 //! - [`DelayProfile`]: the delay of every sample
+//! - [`settled`]: what of a trial that still grows stays as it is
 //! - [`AgainstState`]: what the delay may depend on
 //! - [`choose`]: α, β and the passband from a joint's own record
 //! - [`sweep`]: how every delay moves with the settings
@@ -31,6 +32,7 @@ mod chain;
 mod condition;
 mod estimate;
 mod free_motion;
+mod growing;
 mod hinge;
 mod lag_aware;
 mod lag_search;
@@ -62,6 +64,7 @@ pub use estimate::{
     Breakpoint, Decision, EstimateError, FineDelay, Settings, SettingsError, Shared, TrialEstimate,
     Verdict, estimate, estimate_joint,
 };
+pub use growing::{Growing, check_growing, settled};
 pub use line::Line;
 pub use margin::{Remedy, RunnerUp};
 pub use method::Method;

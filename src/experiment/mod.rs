@@ -140,6 +140,16 @@ impl Trial {
         Ok(self)
     }
 
+    /// The first `samples` of it; none where there would be no sample.
+    #[must_use]
+    pub fn beginning(&self, samples: usize) -> Option<Self> {
+        let cut = |signal: &[f64]| signal.iter().copied().take(samples).collect::<Vec<_>>();
+        let covariates = self.covariates.iter().map(|signal| cut(signal)).collect();
+        let (input, output) = (cut(&self.input), cut(&self.output));
+        let label = self.label.clone();
+        (samples > 0).then_some(Self { label, input, output, covariates, ..*self })
+    }
+
     /// Name of the trial.
     pub fn label(&self) -> &str {
         &self.label

@@ -28,6 +28,16 @@ pub enum Horizon {
     Seconds(f64),
 }
 
+impl std::fmt::Display for Horizon {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::FreeRun => f.write_str("free run"),
+            Self::Steps => f.write_str("restarted at every step of the input"),
+            Self::Seconds(seconds) => write!(f, "restarted every {seconds} s"),
+        }
+    }
+}
+
 /// How training and validation are told apart; never sample by sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Split {
@@ -76,6 +86,7 @@ const SHORTEST_WINDOW: usize = 10;
 pub struct Record<'a> {
     joint: &'a Joint,
     split: Split,
+    horizon: Horizon,
     windows: Vec<Window>,
     /// Activity of the other joints, per trial; empty where there are none.
     others: Vec<Vec<f64>>,
@@ -99,6 +110,8 @@ type Delays = Vec<Vec<Option<f64>>>;
 /// A model on a record: what it simulates, and what is left.
 #[derive(Clone, Debug)]
 pub struct Evaluation {
+    /// How long each simulation ran before it was set right.
+    pub horizon: Horizon,
     /// One simulation per trial.
     pub simulated: Vec<Simulated>,
     /// Measured minus simulated, per trial and sample, output units. Each window is
@@ -129,6 +142,7 @@ impl<'a> Record<'a> {
         Self {
             joint,
             split,
+            horizon,
             windows,
             others,
             delays: Arc::default(),
@@ -217,6 +231,7 @@ impl<'a> Record<'a> {
     ) -> Evaluation {
         let indices = 0..self.joint.trials.len();
         let mut all = Evaluation {
+            horizon: self.horizon,
             simulated: Vec::new(),
             residuals: Vec::new(),
             starts: Vec::new(),

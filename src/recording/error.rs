@@ -3,6 +3,7 @@
 use rerun::SerializationError;
 use rerun::external::re_log_encoding::EncodeError;
 use rerun::log::ChunkError;
+use rerun::sink::SinkFlushError;
 
 /// Why a recording could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -11,6 +12,42 @@ pub enum RecordError {
     /// The file cannot be written.
     #[error("the recording cannot be written")]
     Encode(#[source] Box<EncodeError>),
+    /// This is no address of a viewer.
+    #[error("`{address}` is no address of a viewer; expected HOST:PORT, as in 127.0.0.1:9876")]
+    Address {
+        /// What was given.
+        address: String,
+    },
+    /// No viewer answers.
+    #[error("no viewer at {url} ({why}); start one with `rerun`")]
+    NoViewer {
+        /// Where it was looked for.
+        url: String,
+        /// What was found instead.
+        why: String,
+    },
+    /// Viewers cannot be served.
+    #[error("{address}: viewers cannot be served there; choose another port")]
+    Listen {
+        /// Where.
+        address: std::net::SocketAddr,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A bug: an address of this machine is none to the server.
+    #[error("{address}: viewers cannot be served there")]
+    NotServed {
+        /// Where.
+        address: std::net::SocketAddr,
+    },
+    /// The viewer went away.
+    #[error("the viewer at {url} went away, and what was sent last may be lost")]
+    Lost {
+        /// Where it was.
+        url: String,
+        /// What the connection says.
+        source: Box<SinkFlushError>,
+    },
     /// A bug: columns of a chunk do not fit together.
     #[error("the recording's columns do not fit together")]
     Chunk(#[source] Box<ChunkError>),

@@ -9,7 +9,8 @@
 //! makes columns of rows with reproducible ids, `signals`, `decisions`, `verdict`,
 //! `segment_view`, `overview`, `delay_state`, `model`, `revision` and `about` are one part of
 //! the content each,
-//! `blueprint` says which view shows what, and `write` brings it into a file or a stream.
+//! `blueprint` says which view shows what, `write` brings it into a file or a stream, and
+//! `live` to a viewer while it grows.
 
 mod about;
 mod blueprint;
@@ -22,6 +23,7 @@ mod entity;
 mod error;
 mod error_share;
 mod layout;
+mod live;
 mod message;
 mod model;
 mod overview;
@@ -41,6 +43,7 @@ use crate::report::{ComparedJoint, EstimatedJoint, ImprovedJoint};
 
 pub use error::RecordError;
 pub use layout::Detail;
+pub use live::Live;
 pub use write::{log_recording, write_recording};
 
 /// Everything that a recording holds.

@@ -1,6 +1,7 @@
 //! Models beside the measurement: what they simulate, what is left, how large it is.
 
 use std::fmt::Write as _;
+use std::ops::RangeInclusive;
 
 use rerun::{EntityPath, Scalars, SeriesLines, StateChange, TextDocument};
 
@@ -10,9 +11,9 @@ use super::error::RecordError;
 use super::layout::{JointLayout, TrialLayout};
 use super::palette::{self, Rgb, color};
 use super::{correlogram, error_share, scatter};
-use crate::diagnosis::failure::Region;
+use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures};
-use crate::fit::{Parameter, Status};
+use crate::fit::{Horizon, Parameter, Status};
 use crate::report::{ComparedJoint, correlation_sentences, number, parameter_units, sentences};
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
@@ -44,7 +45,7 @@ pub(super) fn add(
     }
     if let Some(first) = models.first() {
         band(chunks, root, layout, first.comparison.noise_floor)?;
-        let page = page(models).unwrap_or_default();
+        let page = page(layout, models).unwrap_or_default();
         let document = TextDocument::from_markdown(page);
         chunks.push_static(below(root, &["model_page"]), &document)?;
         scatter::add(chunks, &below(root, &["scatter"]), models)?;
@@ -131,18 +132,23 @@ fn worst(
     for (worst, rank) in comparison.failure.iter().flat_map(|f| &f.worst_segments).zip(1..) {
         let of_label = layout.trials.iter().find(|trial| trial.trial.label() == worst.trial);
         let Some(trial) = of_label else { continue };
-        let period = trial.trial.period().seconds();
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "inside")]
-        let sample = |time_s: f64| ((time_s - trial.trial.time_s(1)) / period).round() as usize + 1;
-        let share = 100.0 * worst.share_of_squared_error;
-        let name = format!("worst {rank}: {share:.0} %");
-        marks.push((trial.moment_of(sample(worst.start_s)), name));
-        marks.push((trial.moment_of(sample(worst.end_s) + 1), String::new()));
+        let samples = samples_of(worst, trial);
+        // A longer name would be cut off: a segment is narrow.
+        marks.push((trial.moment_of(*samples.start()), rank.to_string()));
+        marks.push((trial.moment_of(samples.end() + 1), String::new()));
     }
     marks.sort_by_key(|(moment, name)| (moment.sample, !name.is_empty()));
     let (index, names): (Vec<_>, Vec<_>) = marks.into_iter().unzip();
     let states = StateChange::new().with_state(names).columns_of_unit_batches()?;
     chunks.push(below(root, &["worst"]), index.into_iter().collect(), states)
+}
+
+/// The samples of `worst` in its trial, counted from 1.
+fn samples_of(worst: &WorstSegment, trial: &TrialLayout<'_>) -> RangeInclusive<usize> {
+    let period = trial.trial.period().seconds();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "inside")]
+    let sample = |time_s: f64| ((time_s - trial.trial.time_s(1)) / period).round() as usize + 1;
+    sample(worst.start_s)..=sample(worst.end_s)
 }
 
 /// Two level lines between which noise alone would keep the residual.
@@ -167,7 +173,10 @@ fn band(
 }
 
 /// All figures of all models of the joint.
-fn page(models: &[&ComparedJoint<'_>]) -> Result<String, std::fmt::Error> {
+fn page(
+    layout: &JointLayout<'_>,
+    models: &[&ComparedJoint<'_>],
+) -> Result<String, std::fmt::Error> {
     let mut page = String::new();
     let Some(first) = models.first() else { return Ok(page) };
     let joint = first.joint;
@@ -185,12 +194,10 @@ fn page(models: &[&ComparedJoint<'_>]) -> Result<String, std::fmt::Error> {
         let (train, valid) = (rmse(training), rmse(validation));
         writeln!(page, "| {} | {train} | {valid} | {percent} | {shown} |", compared.model)?;
     }
+    let horizon = first.comparison.fit.evaluation.horizon;
+    writeln!(page, "\nErrors are root mean squares of simulations, {horizon}.")?;
     if let Some(noise) = first.comparison.noise_floor {
-        writeln!(
-            page,
-            "\nNoise of the measurement: {} {unit}. Errors are root mean squares.",
-            number(noise)
-        )?;
+        writeln!(page, "Noise of the measurement: {} {unit}.", number(noise))?;
     }
     for compared in models {
         for sentence in sentences(compared) {
@@ -204,11 +211,14 @@ fn page(models: &[&ComparedJoint<'_>]) -> Result<String, std::fmt::Error> {
         }
     }
     if let Some(failure) = &first.comparison.failure {
-        writeln!(page, "\n| worst segments | share of the error |\n|---|---|")?;
-        for worst in &failure.worst_segments {
+        writeln!(page, "\nWorst segments of {}, {}:", first.model, Horizon::Steps)?;
+        writeln!(page, "\n| rank | trial | time | `sample` | share |\n|---|---|---|---|---|")?;
+        for (rank, worst) in (1..).zip(&failure.worst_segments) {
             let (from, to) = (number(worst.start_s), number(worst.end_s));
             let share = 100.0 * worst.share_of_squared_error;
-            writeln!(page, "| trial {}, {from} … {to} s | {share:.0} % |", plain(&worst.trial))?;
+            let samples = on_timeline(layout, worst);
+            let trial = plain(&worst.trial);
+            writeln!(page, "| {rank} | {trial} | {from} … {to} s | {samples} | {share:.0} % |")?;
         }
     }
     for compared in models {
@@ -224,6 +234,16 @@ fn page(models: &[&ComparedJoint<'_>]) -> Result<String, std::fmt::Error> {
         }
     }
     Ok(page)
+}
+
+/// Where `worst` is on the timeline `sample`.
+fn on_timeline(layout: &JointLayout<'_>, worst: &WorstSegment) -> String {
+    let of_label = layout.trials.iter().find(|trial| trial.trial.label() == worst.trial);
+    let place = of_label.map(|trial| {
+        let samples = samples_of(worst, trial);
+        format!("{} … {}", trial.sample(*samples.start()), trial.sample(*samples.end()))
+    });
+    place.unwrap_or_default()
 }
 
 /// What a reviewer should know first.

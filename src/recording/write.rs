@@ -8,6 +8,7 @@ use rerun::external::re_log_types::BlueprintActivationCommand;
 use rerun::log::{Chunk, LogMsg};
 use rerun::{EntityPath, RecordingInfo, RecordingStream, StoreId, StoreKind};
 
+use super::blueprint::Ladder;
 use super::chunk::Chunks;
 use super::entity::joint_root;
 use super::error::RecordError;
@@ -17,10 +18,11 @@ use super::{
     Recording, about, blueprint, decisions, delay_state, model, overview, revision, segment_view,
     signals, verdict,
 };
+use crate::experiment::Joint;
 use crate::report::EstimatedJoint;
 
 /// The application's name in the viewer; blueprints are kept per application.
-const APPLICATION: &str = "tauscope";
+pub(super) const APPLICATION: &str = "tauscope";
 
 /// Writes `recording` to `out` as a whole `.rrd` file, footer included.
 ///
@@ -41,7 +43,7 @@ pub fn write_recording(recording: &Recording<'_>, out: impl Write) -> Result<(),
     for chunk in chunks.into_chunks() {
         encoder.append(&chunk_message(&store, &chunk)?)?;
     }
-    for_each_chunk(recording, |chunk| {
+    for_each_chunk(recording, Part::default(), |chunk| {
         encoder.append(&chunk_message(&store, chunk)?)?;
         Ok(())
     })?;
@@ -64,7 +66,7 @@ pub fn log_recording(
     recording: &Recording<'_>,
     stream: &RecordingStream,
 ) -> Result<(), RecordError> {
-    for_each_chunk(recording, |chunk| {
+    for_each_chunk(recording, Part::default(), |chunk| {
         stream.send_chunk(chunk.clone());
         Ok(())
     })?;
@@ -72,7 +74,8 @@ pub fn log_recording(
         return Ok(());
     };
     let application = info.store_id.application_id().clone();
-    let messages = blueprint::messages(recording, &application, &recording_id(recording))?;
+    let id = recording_id(recording);
+    let messages = blueprint::messages(recording, Ladder::Finished, &application, &id)?;
     if let Some(blueprint_id) = messages.first().map(|message| message.store_id().clone()) {
         let activation = activation(blueprint_id);
         stream.send_blueprint(messages, activation);
@@ -81,27 +84,51 @@ pub fn log_recording(
 }
 
 fn blueprint_messages(recording: &Recording<'_>, id: &str) -> Result<Vec<LogMsg>, RecordError> {
-    let mut messages = blueprint::messages(recording, &APPLICATION.into(), id)?;
+    let mut messages = blueprint::messages(recording, Ladder::Finished, &APPLICATION.into(), id)?;
     let blueprint_id = messages.first().map(|message| message.store_id().clone());
     messages.extend(blueprint_id.map(|id| LogMsg::from(activation(id))));
     Ok(messages)
 }
 
-fn activation(blueprint_id: StoreId) -> BlueprintActivationCommand {
+pub(super) fn activation(blueprint_id: StoreId) -> BlueprintActivationCommand {
     BlueprintActivationCommand { blueprint_id, make_active: true, make_default: true }
 }
 
+/// Which of a recording's chunks are made, and which ids they have.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Part<'n> {
+    /// Namespaces that are taken, beside the first one.
+    pub(super) used: u64,
+    /// All joints and what is about them all, or one joint.
+    pub(super) joint: Option<&'n str>,
+}
+
+impl Part<'_> {
+    /// Namespaces that the chunks of `recording` need.
+    pub(super) fn uses(recording: &Recording<'_>) -> u64 {
+        recording.joints.len() as u64 + 1
+    }
+
+    fn has(self, joint: &Joint) -> bool {
+        self.joint.is_none_or(|name| joint.name == name)
+    }
+}
+
 /// Makes the chunks joint by joint, so that only one joint's are in memory.
-fn for_each_chunk(
+pub(super) fn for_each_chunk(
     recording: &Recording<'_>,
+    part: Part<'_>,
     mut take: impl FnMut(&Chunk) -> Result<(), RecordError>,
 ) -> Result<(), RecordError> {
     let starts = TrialStarts::of(recording.joints);
     let layout = |joint| JointLayout::of(joint, &starts, recording.detail);
     let layouts: Vec<_> = recording.joints.iter().copied().map(layout).collect();
-    let mut chunks = Chunks::new(2);
-    about::add(&mut chunks, recording, &layouts)?;
-    for (namespace, (joint, layout)) in (3..).zip(recording.joints.iter().zip(&layouts)) {
+    let mut chunks = Chunks::new(part.used + 2);
+    if part.joint.is_none() {
+        about::add(&mut chunks, recording, &layouts)?;
+    }
+    let numbered = (part.used + 3..).zip(recording.joints.iter().zip(&layouts));
+    for (namespace, (joint, layout)) in numbered.filter(|(_, (joint, _))| part.has(joint.joint)) {
         chunks.into_chunks().iter().try_for_each(&mut take)?;
         chunks = Chunks::new(namespace);
         add_joint(&mut chunks, recording, *joint, layout)?;
@@ -131,7 +158,7 @@ fn add_joint(
     }
 }
 
-fn recording_name(recording: &Recording<'_>) -> String {
+pub(super) fn recording_name(recording: &Recording<'_>) -> String {
     let names = recording.sources.iter().filter_map(|source| source.path.file_stem());
     names.map(|name| name.to_string_lossy()).collect::<Vec<_>>().join(", ")
 }

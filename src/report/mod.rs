@@ -46,7 +46,7 @@ pub use page::{Document, Markdown, PlotError, RecordingFile, Report, ReportJson,
 pub(crate) use settings::settings_rows;
 #[cfg(feature = "rrd")]
 pub(crate) use span::{Span, thinned_to};
-pub use steps::steps_table;
+pub use steps::{step_line, steps_table};
 pub use summary::{DelayRange, JointSummary};
 pub use sweep::{ReportedSweep, StepsShown, SweepJson, sweep_text};
 pub use table::{DataTable, Kind};

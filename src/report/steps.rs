@@ -4,6 +4,28 @@ use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
 use super::decisions::detailed_rows;
 use super::{EstimatedJoint, number};
+use crate::delay::{Decision, InputStep, Verdict};
+use crate::experiment::{Joint, Trial};
+
+/// One step in a line, as it is told when it has come, with its trial where there are several.
+pub fn step_line(joint: &Joint, trial: &Trial, decision: &Decision) -> String {
+    let name = &joint.name;
+    let is_one_of_several = joint.trials.len() > 1;
+    let label = is_one_of_several.then(|| format!(", trial {}", trial.label()));
+    let label = label.unwrap_or_default();
+    let time = number(trial.time_s(decision.input_step.sample));
+    let InputStep { before, after, .. } = decision.input_step;
+    let unit = joint.input_unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
+    let (before, after) = (number(before), number(after));
+    let step =
+        format!("{name}{label}, step {} at {time} s, {before} to {after}{unit}", decision.number);
+    let Verdict::Rejected(condition) = decision.verdict() else {
+        let samples = decision.delay().unwrap_or(0.0);
+        let seconds = samples * trial.period().seconds();
+        return format!("{step}: delay {seconds:.3} s ({} samples)", number(samples));
+    };
+    format!("{step}: rejected, {}", condition.id())
+}
 
 /// A row per step: its delay with the interval, the verdict, and what would have accepted
 /// it, or by how much the second-best breakpoint is worse.
@@ -38,4 +60,38 @@ pub fn steps_table(joints: &[EstimatedJoint<'_>]) -> String {
         }
     }
     format!("{table}\ndelays in samples\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delay::{Settings, estimate};
+    use crate::units::SamplePeriod;
+
+    #[test]
+    fn a_step_is_one_line() {
+        let level = |k: i32| f64::from(i32::from((100..200).contains(&k)));
+        let input: Vec<f64> = (0..300).map(level).collect();
+        let moved = |k: i32| 0.2 * f64::from((k - 112).clamp(0, 100));
+        let output = (0..300).map(moved).collect();
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let trial = Trial::new("1", 0.0, period, input, output).unwrap();
+        let settings = Settings { low_pass: None, beta: 2, ..Settings::default() };
+        let kept = Settings { keep_first_last: true, ..settings.clone() };
+        let joint = |trials| Joint {
+            name: "swing".to_owned(),
+            input_unit: Some("V".to_owned()),
+            output_unit: None,
+            covariates: Vec::new(),
+            trials,
+        };
+        let line = |settings, trials| {
+            let found = estimate(&trial, settings).unwrap();
+            step_line(&joint(trials), &trial, &found.decisions[0])
+        };
+        let accepted = "swing, step 1 at 1 s, 0 to 1 V: delay 0.120 s (12 samples)";
+        assert_eq!(line(&kept, vec![trial.clone()]), accepted);
+        let rejected = "swing, trial 1, step 1 at 1 s, 0 to 1 V: rejected, first_or_last";
+        assert_eq!(line(&settings, vec![trial.clone(), trial.clone()]), rejected);
+    }
 }

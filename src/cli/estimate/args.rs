@@ -6,10 +6,12 @@ use clap::{Args as ClapArgs, ValueEnum};
 use tauscope::delay::{self, Automatic, Interpolation, Settings};
 
 use crate::cli::data::{DataArgs, threads};
-use crate::cli::folder::{FolderArgs, Print};
+use crate::cli::fitting::Format;
+use crate::cli::folder::FolderArgs;
 use crate::cli::progress::Verbosity;
 use crate::cli::record::Detail;
-use crate::cli::settings::{ConditionArgs, Method, Passband, at_least_one, passband};
+use crate::cli::settings::{ConditionArgs, Method, Passband, at_least_one, passband, threshold};
+use crate::cli::stream::StreamArgs;
 
 /// Estimate the delay of every input step of every joint
 ///
@@ -22,9 +24,28 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub(super) algorithm: AlgorithmArgs,
     #[command(flatten)]
+    pub(super) follow: FollowArgs,
+    #[command(flatten)]
     pub(super) output: OutputArgs,
     #[command(flatten)]
     pub(super) folder: FolderArgs,
+}
+
+/// A log that still grows.
+#[derive(ClapArgs, Debug)]
+#[command(next_help_heading = "Reading logs")]
+pub(super) struct FollowArgs {
+    /// Follow a log that is still written: each decision is told as soon as its step is
+    /// complete. Ctrl-C ends it; then all is done as for any log
+    #[arg(long = "follow")]
+    pub(super) is_on: bool,
+
+    /// End, too, when the log has not grown for so long
+    #[arg(
+        long, value_name = "SECONDS", value_parser = threshold, requires = "is_on",
+        allow_negative_numbers = true
+    )]
+    pub(super) idle: Option<f64>,
 }
 
 /// The settings of the algorithm.
@@ -65,6 +86,9 @@ pub(super) struct OutputArgs {
     /// Record every decision for the Rerun viewer
     #[arg(short = 'o', long = "output", value_name = "FILE.rrd")]
     pub(super) recording: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(super) stream: StreamArgs,
 
     /// Candidates in the recording: all, or fewer of accepted segments
     #[arg(long, value_enum, default_value_t = Detail::Full)]
@@ -130,23 +154,6 @@ enum Between {
     Hold,
     /// Go in a line to the next accepted delay
     Linear,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Format {
-    /// A table
-    Text,
-    /// JSON, schema `tauscope/estimate/1`
-    Json,
-}
-
-impl From<Format> for Print {
-    fn from(format: Format) -> Self {
-        match format {
-            Format::Text => Self::Text,
-            Format::Json => Self::Json,
-        }
-    }
 }
 
 impl AlgorithmArgs {

@@ -9,6 +9,7 @@ use super::args::OutputArgs;
 use crate::cli::output::{check_outputs, write_file};
 use crate::cli::progress::Verbosity;
 use crate::cli::record::Contents;
+use crate::cli::stream::Stream;
 use crate::cli::table_file::{FileKind, check_tables, write_parquet};
 
 /// The files that were asked for, found to be writable before the work starts.
@@ -25,8 +26,13 @@ impl<'a> Files<'a> {
         Ok(Self { args })
     }
 
-    /// Writes each file whole and gives it its name.
-    pub(super) fn write(&self, result: &Estimated<'_>, verbosity: Verbosity) -> anyhow::Result<()> {
+    /// Writes each file whole and gives it its name; shows the recording to who looks on.
+    pub(super) fn write(
+        &self,
+        result: &Estimated<'_>,
+        stream: &Stream,
+        verbosity: Verbosity,
+    ) -> anyhow::Result<()> {
         if let Some(path) = &self.args.decisions {
             write_file(path, |file| match FileKind::of(path) {
                 FileKind::Csv => Ok(write_decisions(result.runs, file)?),
@@ -39,18 +45,18 @@ impl<'a> Files<'a> {
                 FileKind::Parquet => write_parquet(&delay_table(result.joints), file),
             })?;
         }
+        let contents = Contents {
+            joints: result.joints,
+            settings: result.settings,
+            sources: &result.experiment.sources,
+            reading: &result.experiment.options,
+            models: &[],
+            revisions: &[],
+            detail: self.args.detail,
+        };
         if let Some(path) = &self.args.recording {
-            let contents = Contents {
-                joints: result.joints,
-                settings: result.settings,
-                sources: &result.experiment.sources,
-                reading: &result.experiment.options,
-                models: &[],
-                revisions: &[],
-                detail: self.args.detail,
-            };
             contents.record(path, verbosity)?;
         }
-        Ok(())
+        stream.send(&contents, None)
     }
 }

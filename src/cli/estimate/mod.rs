@@ -2,10 +2,9 @@
 
 mod args;
 mod files;
+mod follow;
 
-use std::io::{self, Write as _};
-
-use anyhow::{Context as _, anyhow};
+use anyhow::anyhow;
 use tauscope::batch::{JointEstimate, estimate_joints_with, with_threads};
 use tauscope::delay::{Condition, EstimateError, Settings};
 use tauscope::experiment::Experiment;
@@ -13,12 +12,14 @@ use tauscope::report::{
     EstimateJson, EstimatedJoint, JointSummary, against_table, estimate_table, steps_table,
 };
 
+use super::fitting::{Format, estimating, read};
 use super::folder::Each;
-use super::progress::{self, Verbosity};
-use super::{Completion, message, read_failures};
+use super::progress::Verbosity;
+use super::terminal::{self, message};
+use super::{Completion, read_failures};
 use files::Files;
 
-pub(super) use args::{AlgorithmArgs, Args, Format};
+pub(super) use args::{AlgorithmArgs, Args};
 
 type JointResult = Result<JointEstimate, EstimateError>;
 
@@ -29,15 +30,13 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let verbosity = args.output.verbosity();
     let settings = args.algorithm.runs();
     let files = Files::check(&args.output, &args.data.files())?;
-    let experiment = {
-        let _bar = progress::bar(verbosity, "reading", 0);
-        args.data.read()?
-    };
-    let trials: u64 = experiment.joints.iter().map(|joint| joint.trials.len() as u64).sum();
-    let bar = progress::bar(verbosity, "estimating", trials * settings.len() as u64);
+    let stream = args.output.stream.open(verbosity)?;
+    let told = args.follow.is_on.then(|| follow::follow(args, &settings, &stream)).transpose()?;
+    let experiment = read(&args.data, verbosity)?;
+    let bar = estimating(&experiment.joints, settings.len(), verbosity);
     let automatic = args.algorithm.automatic();
     let one =
-        |settings| estimate_joints_with(&experiment.joints, settings, automatic, || bar.inc(1));
+        |settings| estimate_joints_with(&experiment.joints, settings, automatic, || bar.step());
     let work = || settings.iter().map(one).collect::<Vec<Vec<JointResult>>>();
     let results = with_threads(args.output.threads, work)
         .map_err(|error| anyhow!("threads cannot be started: {error}"))?;
@@ -54,6 +53,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
         let first = failures.into_iter().next_back();
         return Err(anyhow!(first.unwrap_or_else(|| "no joint in the logs".to_owned())));
     };
+    if let Some(told) = told {
+        told.tell_changes(first_joints);
+    }
     for failure in &failures {
         message("warning", failure);
     }
@@ -64,9 +66,10 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     }
     let result =
         Estimated { experiment: &experiment, joints: first_joints, settings: answer, runs: &runs };
-    files.write(&result, verbosity)?;
-    print(&args.output, &result, &failures).context("standard output cannot be written")?;
-    Ok(if failures.is_empty() { Completion::Whole } else { Completion::Partial })
+    files.write(&result, &stream, verbosity)?;
+    print(&args.output, &result, &failures)?;
+    let completion = if failures.is_empty() { Completion::Whole } else { Completion::Partial };
+    stream.close(completion, verbosity)
 }
 
 /// Estimates each log by itself.
@@ -78,11 +81,13 @@ fn each_log(args: &Args) -> anyhow::Result<Completion> {
         decisions: output.decisions.as_deref(),
         refused: &[
             ("--output", output.recording.is_some()),
+            ("--connect, --spawn or --serve", output.stream.is_asked()),
+            ("--follow", args.follow.is_on),
             ("--delays", output.delays.is_some()),
             ("--steps", output.steps),
             ("--against-state", output.against_state),
         ],
-        print: output.format.into(),
+        format: output.format,
         threads: output.threads,
         verbosity: output.verbosity(),
     })
@@ -160,29 +165,21 @@ fn print(
     result: &Estimated<'_>,
     failures: &[String],
 ) -> anyhow::Result<()> {
-    let mut out = io::stdout().lock();
-    match args.format {
-        Format::Text => {
-            for (settings, joints) in result.runs {
-                out.write_all(estimate_table(joints, settings).as_bytes())?;
-                if args.steps {
-                    out.write_all(steps_table(joints).as_bytes())?;
-                }
-            }
-            if args.against_state {
-                let found =
-                    result.joints.iter().map(|j| (j.joint.name.as_str(), j.against_state()));
-                let found: Vec<_> = found.collect();
-                let table = against_table(found.iter().map(|(name, found)| (*name, found)));
-                out.write_all(b"\n")?;
-                out.write_all(table.as_bytes())?;
-            }
-        }
-        Format::Json => {
-            let json = EstimateJson::new(result.experiment, result.runs, failures);
-            serde_json::to_writer(&mut out, &json).map_err(io::Error::from)?;
-            out.write_all(b"\n")?;
+    if let Format::Json = args.format {
+        return terminal::print_json(&EstimateJson::new(result.experiment, result.runs, failures));
+    }
+    let mut text = String::new();
+    for (settings, joints) in result.runs {
+        text += &estimate_table(joints, settings);
+        if args.steps {
+            text += &steps_table(joints);
         }
     }
-    Ok(out.flush()?)
+    if args.against_state {
+        let found = result.joints.iter().map(|j| (j.joint.name.as_str(), j.against_state()));
+        let found: Vec<_> = found.collect();
+        text += "\n";
+        text += &against_table(found.iter().map(|(name, found)| (*name, found)));
+    }
+    terminal::print(&text)
 }

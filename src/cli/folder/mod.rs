@@ -13,11 +13,13 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use tauscope::report::{FolderJson, FolderReport};
 
+use super::Completion;
 use super::data::DataArgs;
+use super::fitting::Format;
 use super::output::check_outputs;
 use super::progress::Verbosity;
 use super::table_file::{check_tables, write_table};
-use super::{Completion, message};
+use super::terminal::{self, message};
 
 pub(super) use store::read_folders;
 
@@ -80,16 +82,9 @@ pub(super) struct Each<'a> {
     pub(super) decisions: Option<&'a Path>,
     /// Options that make no sense for many logs, and whether they were given.
     pub(super) refused: &'a [(&'static str, bool)],
-    pub(super) print: Print,
+    pub(super) format: Format,
     pub(super) threads: Option<usize>,
     pub(super) verbosity: Verbosity,
-}
-
-/// How the result of all logs is printed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Print {
-    Text,
-    Json,
 }
 
 impl FolderArgs {
@@ -129,7 +124,7 @@ impl FolderArgs {
             return Ok(finish_part(&failures, &format!("part {number} of {of}"), results, each));
         }
         let report = FolderReport::new(each.command, done.results);
-        present(&report, &failures, tables, each.print, each.verbosity)
+        present(&report, &failures, tables, each.format, each.verbosity)
     }
 }
 
@@ -163,7 +158,7 @@ pub(super) fn present(
     report: &FolderReport,
     failures: &[String],
     tables: Tables<'_>,
-    print: Print,
+    format: Format,
     verbosity: Verbosity,
 ) -> anyhow::Result<Completion> {
     let failures: Vec<String> = failures.iter().cloned().chain(report.failures()).collect();
@@ -173,7 +168,10 @@ pub(super) fn present(
     if report.is_empty() {
         bail!("no log has a result");
     }
-    if verbosity == Verbosity::Normal && tables.files().next().is_none() && print == Print::Text {
+    if verbosity == Verbosity::Normal
+        && tables.files().next().is_none()
+        && matches!(format, Format::Text)
+    {
         message("note", "`--summary FILE` writes a row per log and joint");
     }
     if let Some(path) = tables.decisions {
@@ -182,14 +180,9 @@ pub(super) fn present(
     if let Some(path) = tables.summary {
         write_table(&report.summary(), path)?;
     }
-    let mut out = std::io::stdout().lock();
-    match print {
-        Print::Text => std::io::Write::write_all(&mut out, report.text().as_bytes())?,
-        Print::Json => {
-            serde_json::to_writer(&mut out, &FolderJson::new(report, &failures))
-                .map_err(std::io::Error::from)?;
-            std::io::Write::write_all(&mut out, b"\n")?;
-        }
+    match format {
+        Format::Text => terminal::print(&report.text())?,
+        Format::Json => terminal::print_json(&FolderJson::new(report, &failures))?,
     }
     Ok(if failures.is_empty() { Completion::Whole } else { Completion::Partial })
 }

@@ -15,7 +15,8 @@ use tauscope::report::LogResult;
 use super::store::{Kept, name_of};
 use super::typed::Typed;
 use super::{Each, Verbosity};
-use crate::cli::{message, progress};
+use crate::cli::progress::Bar;
+use crate::cli::terminal::message;
 
 /// What is to be done, and where results are kept.
 pub(super) struct Work<'a> {
@@ -42,7 +43,7 @@ impl Work<'_> {
         if left < all && self.each.verbosity == Verbosity::Normal {
             message("note", &format!("{} of {all} logs are done already", all - left));
         }
-        let bar = progress::bar(self.each.verbosity, "logs", open.len() as u64);
+        let bar = Bar::new(self.each.verbosity, "working", "logs", open.len() as u64);
         let failures = Mutex::new(Vec::new());
         let next = AtomicUsize::new(0);
         let processors = std::thread::available_parallelism().map_or(1, usize::from);
@@ -59,7 +60,7 @@ impl Work<'_> {
                     let failure = (index, format!("left out: {error:#}"));
                     failures.lock().unwrap_or_else(PoisonError::into_inner).push(failure);
                 }
-                bar.inc(1);
+                bar.step();
             }
         };
         std::thread::scope(|scope| {

@@ -2,10 +2,8 @@
 
 mod values;
 
-use std::io::{self, Write as _};
-
-use anyhow::{Context as _, anyhow, bail};
-use clap::{Args as ClapArgs, ValueEnum};
+use anyhow::{anyhow, bail};
+use clap::Args as ClapArgs;
 use tauscope::batch::{SweptJoint, sweep_joints, with_threads};
 use tauscope::delay::sweep::{Base, Grid};
 use tauscope::delay::{EstimateError, Method};
@@ -13,9 +11,11 @@ use tauscope::experiment::Experiment;
 use tauscope::report::{ReportedSweep, StepsShown, SweepJson, sweep_text};
 
 use super::data::{DataArgs, threads};
-use super::progress::{self, Verbosity};
+use super::fitting::{Format, read};
+use super::progress::{Bar, Verbosity};
 use super::settings::{ConditionArgs, Passband, threshold};
-use super::{Completion, message, read_failures};
+use super::terminal::{self, message};
+use super::{Completion, read_failures};
 use values::{Values, methods, passbands, whole};
 
 /// Estimate every delay with many settings, and say which of them it hangs on
@@ -76,26 +76,16 @@ struct OutputArgs {
     quiet: bool,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Format {
-    /// For people
-    Text,
-    /// JSON, schema `tauscope/sweep/1`
-    Json,
-}
-
 type JointResult = Result<SweptJoint, EstimateError>;
 
 pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let verbosity = if args.output.quiet { Verbosity::Quiet } else { Verbosity::Normal };
     let grid = args.grid()?;
-    let experiment = {
-        let _bar = progress::bar(verbosity, "reading", 0);
-        args.data.read()?
-    };
+    let experiment = read(&args.data, verbosity)?;
     let joints = &experiment.joints;
-    let bar = progress::bar(verbosity, "sweeping", (joints.len() * grid.runs().len()) as u64);
-    let work = || sweep_joints(joints, &grid, args.tolerance, || bar.inc(1));
+    let runs = (joints.len() * grid.runs().len()) as u64;
+    let bar = Bar::new(verbosity, "sweeping", "runs", runs);
+    let work = || sweep_joints(joints, &grid, args.tolerance, || bar.step());
     let results = with_threads(args.output.threads, work)
         .map_err(|error| anyhow!("threads cannot be started: {error}"))?;
     drop(bar);
@@ -116,8 +106,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
             message("note", note);
         }
     }
-    args.print(&grid, &swept, &experiment.notes, &failures)
-        .context("standard output cannot be written")?;
+    args.print(&grid, &swept, &experiment.notes, &failures)?;
     Ok(if failures.is_empty() { Completion::Whole } else { Completion::Partial })
 }
 
@@ -180,18 +169,13 @@ impl Args {
         notes: &[String],
         failures: &[String],
     ) -> anyhow::Result<()> {
-        let mut out = io::stdout().lock();
         let shown = if self.output.steps { StepsShown::All } else { StepsShown::Worst };
         match self.output.format {
-            Format::Text => {
-                out.write_all(sweep_text(grid, self.tolerance, joints, shown).as_bytes())?;
-            }
+            Format::Text => terminal::print(&sweep_text(grid, self.tolerance, joints, shown)),
             Format::Json => {
                 let json = SweepJson::new(grid, self.tolerance, joints, notes, failures);
-                serde_json::to_writer(&mut out, &json).map_err(io::Error::from)?;
-                out.write_all(b"\n")?;
+                terminal::print_json(&json)
             }
         }
-        Ok(out.flush()?)
     }
 }

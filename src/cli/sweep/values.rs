@@ -2,6 +2,7 @@
 
 use tauscope::delay::Method;
 
+use crate::cli::nearest::did_you_mean;
 use crate::cli::settings::{self, Passband, at_least_one};
 
 /// Most values of one range.
@@ -51,8 +52,10 @@ pub(super) fn passbands(text: &str) -> Result<Values<Passband>, String> {
 pub(super) fn methods(text: &str) -> Result<Values<Method>, String> {
     let one = |name: &str| {
         let known = Method::ALL.into_iter().find(|method| method.id() == name);
-        let names = Method::ALL.map(Method::id).join(", ");
-        known.map(|method| vec![method]).ok_or_else(|| format!("expected some of {names}"))
+        let ids = Method::ALL.map(Method::id);
+        let names = ids.join(", ");
+        let near = did_you_mean(name, ids);
+        known.map(|method| vec![method]).ok_or_else(|| format!("expected some of {names}{near}"))
     };
     listed(text, one)
 }
@@ -125,6 +128,6 @@ mod tests {
         for wrong in ["", "0", "none..5", "5..1", "1e-9..5:1e-9", "nan", "1..inf"] {
             assert!(passbands(wrong).is_err(), "{wrong}");
         }
-        assert!(methods("hinge,three-line").is_err_and(|why| why.contains("two-line")));
+        assert!(methods("hinge,tow-line").is_err_and(|why| why.contains("mean `two-line`")));
     }
 }

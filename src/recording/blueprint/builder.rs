@@ -110,11 +110,11 @@ impl Builder {
         Ok(node)
     }
 
-    /// The messages of the whole blueprint, which opens paused at the start of `timeline`.
+    /// The messages of the whole blueprint, which opens on `timeline`.
     pub(super) fn finish(
         mut self,
         root: &Node,
-        timeline: &str,
+        (timeline, play): (&str, PlayState),
         application: &ApplicationId,
         id: &str,
     ) -> Result<Vec<LogMsg>, RecordError> {
@@ -128,7 +128,7 @@ impl Builder {
             .with_state(PanelState::Collapsed)
             .with_timeline(timeline)
             .with_fps(20.0)
-            .with_play_state(PlayState::Paused);
+            .with_play_state(play);
         self.log("time_panel", &time)?;
         // Plots with a linked time axis start with all of it in view.
         let infinite = TimeRangeBoundary::Infinite;

@@ -20,14 +20,17 @@ use crate::recording::entity::{below, joint_root};
 use crate::recording::error::RecordError;
 use crate::recording::overview::{MAP_HEIGHT, MAP_WIDTH};
 use crate::recording::{correlogram, delay_state, error_share, revision, scatter};
-use crate::report::EstimatedJoint;
+use crate::report::{ComparedJoint, EstimatedJoint};
+
+/// What the lane of the worst segments is called.
+const WORST: &str = "Worst segments of the first model, restarted at every step: 1 is the worst";
 
 /// The tab of `joint`: its decisions, its record, its table; and before them the revisions
 /// of its model, and its models, where there are any.
 pub(super) fn tab(
     builder: &mut Builder,
     EstimatedJoint { joint, estimate }: EstimatedJoint<'_>,
-    models: &[&str],
+    models: &[&ComparedJoint<'_>],
     revisions: usize,
 ) -> Result<Node, RecordError> {
     let mut decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
@@ -270,8 +273,11 @@ impl Views<'_> {
     }
 
     /// Models beside the measurement, and what is left.
-    fn models(&mut self, models: &[&str]) -> Result<Node, RecordError> {
-        let of_each = |part: &'static str| models.iter().map(move |name| ["model", *name, part]);
+    fn models(&mut self, models: &[&ComparedJoint<'_>]) -> Result<Node, RecordError> {
+        let names: Vec<&str> = models.iter().map(|model| model.model).collect();
+        let of_each = |part: &'static str| names.iter().map(move |name| ["model", *name, part]);
+        let horizon = models.first().map(|model| model.comparison.fit.evaluation.horizon);
+        let horizon = horizon.unwrap_or_default();
         let simulated: Vec<_> = of_each("simulated").collect();
         let residuals: Vec<_> = of_each("residual").collect();
         let mut measured: Vec<&[&str]> = vec![&["output", "raw"]];
@@ -279,9 +285,9 @@ impl Views<'_> {
         let mut left: Vec<&[&str]> = vec![&["noise", "upper"], &["noise", "lower"]];
         left.extend(residuals.iter().map(<[&str; 3]>::as_slice));
         let rows = [
-            self.plot("Measured and simulated", &measured)?,
-            self.plot("Residual: measured − simulated, and the band of the noise", &left)?,
-            self.view(View::new("StateTimeline", "Worst segments", &[self.path(&["worst"])]))?,
+            self.plot(&format!("Measured and simulated ({horizon})"), &measured)?,
+            self.plot(&format!("Residual ({horizon}), and the band of the noise"), &left)?,
+            self.view(View::new("StateTimeline", WORST, &[self.path(&["worst"])]))?,
             self.residuals(models.len())?,
         ];
         let builder = &mut *self.builder;

@@ -1,0 +1,122 @@
+//! `tauscope doctor`: what is there to look at recordings with, and what is missing.
+
+mod surroundings;
+pub(super) mod viewer;
+
+use std::fmt::Write as _;
+
+use clap::Args as ClapArgs;
+use serde::Serialize;
+
+use super::Completion;
+use super::fitting::Format;
+use super::terminal::{self, Tone};
+
+/// Say what is missing to make recordings and to look at them
+///
+/// It looks for the Rerun viewer and its version, for a screen, and at this program and the
+/// terminal; each line that is not `ok` tells the remedy. Exit status 1 when something is
+/// missing.
+#[derive(ClapArgs, Debug)]
+pub(super) struct Args {
+    /// How results are printed
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+/// How well a thing is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum State {
+    /// As it should be.
+    Ok,
+    /// Work goes on without it.
+    Note,
+    /// Something cannot be done without it.
+    Missing,
+}
+
+/// What was found of one thing.
+#[derive(Debug, Serialize)]
+struct Check {
+    name: &'static str,
+    state: State,
+    found: String,
+    /// What to do, where it is not as it should be.
+    remedy: Option<String>,
+}
+
+impl Check {
+    fn ok(name: &'static str, found: impl Into<String>) -> Self {
+        Self { name, state: State::Ok, found: found.into(), remedy: None }
+    }
+
+    fn note(name: &'static str, found: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self { name, state: State::Note, found: found.into(), remedy: Some(remedy.into()) }
+    }
+
+    fn missing(name: &'static str, found: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self { name, state: State::Missing, found: found.into(), remedy: Some(remedy.into()) }
+    }
+}
+
+/// JSON, schema `tauscope/doctor/1`.
+#[derive(Serialize)]
+struct DoctorJson<'a> {
+    schema: &'static str,
+    version: &'static str,
+    /// Nothing is missing.
+    complete: bool,
+    checks: &'a [Check],
+}
+
+pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
+    let mut checks = vec![surroundings::program()];
+    checks.extend(viewer::check());
+    checks.extend(surroundings::all());
+    let complete = checks.iter().all(|check| check.state != State::Missing);
+    match args.format {
+        Format::Text => terminal::print(&text(&checks))?,
+        Format::Json => terminal::print_json(&DoctorJson {
+            schema: "tauscope/doctor/1",
+            version: env!("CARGO_PKG_VERSION"),
+            complete,
+            checks: &checks,
+        })?,
+    }
+    Ok(if complete { Completion::Whole } else { Completion::Partial })
+}
+
+fn text(checks: &[Check]) -> String {
+    let mut text = String::new();
+    let width = checks.iter().map(|check| check.name.len()).max().unwrap_or(0);
+    for Check { name, state, found, remedy } in checks {
+        let (word, tone) = match state {
+            State::Ok => ("ok", Tone::Good),
+            State::Note => ("note", Tone::Notice),
+            State::Missing => ("missing", Tone::Bad),
+        };
+        let word = terminal::toned(tone, &format!("{word:<7}"));
+        writeln!(text, "{word}  {name:<width$}  {found}").unwrap_or_default();
+        if let Some(remedy) = remedy {
+            writeln!(text, "{:9}{:width$}  → {remedy}", "", "").unwrap_or_default();
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_thing_has_a_line_and_what_is_missing_a_remedy() {
+        let checks = [Check::ok("threads", "2"), Check::missing("viewer", "none", "install it")];
+        let text = anstream::adapter::strip_str(&text(&checks)).to_string();
+        let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
+        assert_eq!(
+            lines,
+            ["ok       threads  2", "missing  viewer   none", "                  → install it"]
+        );
+    }
+}

@@ -1,0 +1,125 @@
+//! What of a trial that still grows stays as it is.
+//!
+//! Algorithm 1 goes step by step, so that a decision stays as soon as its segment has come
+//! whole: up to `p_(i+1) + α`, and so much further that the low-pass has forgotten the end.
+
+use super::estimate::{EstimateError, Settings, TrialEstimate};
+use super::profile::DelayProfile;
+use crate::experiment::Trial;
+use crate::filter::FilterError;
+
+/// Why decisions cannot be told while a record grows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Growing {
+    /// The method looks at the whole record before it decides on any step.
+    #[error("`{method}` looks at the whole record before it decides; expected `--method two-line`")]
+    Method {
+        /// Its id.
+        method: &'static str,
+    },
+    /// The chance of noise alone is judged by the noise of the whole record.
+    #[error(
+        "`--confidence` is judged by the noise of the whole record; expected `--confidence none`"
+    )]
+    Confidence,
+}
+
+/// Whether decisions with `settings` stay when a record grows.
+///
+/// # Errors
+/// [`Growing`] when they hang on the whole record.
+pub fn check_growing(settings: &Settings) -> Result<(), Growing> {
+    if settings.method != super::Method::TwoLine {
+        return Err(Growing::Method { method: settings.method.id() });
+    }
+    if settings.confidence.is_some() {
+        return Err(Growing::Confidence);
+    }
+    Ok(())
+}
+
+/// What of `trial` and its `estimate` stays as it is when more samples come: the samples
+/// whose smoothed value does, and the decisions within them. `None` where nothing does yet.
+///
+/// # Errors
+/// [`EstimateError::Filter`] when the filter does not fit this trial.
+pub fn settled(
+    trial: &Trial,
+    estimate: &TrialEstimate,
+    settings: &Settings,
+) -> Result<Option<(Trial, TrialEstimate)>, EstimateError> {
+    let held_back = held_back(trial, settings)?;
+    let samples = trial.len().saturating_sub(held_back);
+    let Some(beginning) = trial.beginning(samples) else { return Ok(None) };
+    let is_whole = |next: usize| next.saturating_add(settings.alpha) <= samples;
+    // The last step of a trial may be the last of all, which is rejected.
+    let all_but_last = estimate.decisions.split_last().map_or(&[][..], |(_, others)| others);
+    let decisions = all_but_last.iter().take_while(|decision| is_whole(decision.next_sample()));
+    let decisions: Vec<_> = decisions.cloned().collect();
+    let profile = DelayProfile::of(&decisions, samples, settings.interpolation);
+    let smoothed = estimate.smoothed.as_ref();
+    let smoothed = smoothed.map(|all| all.iter().copied().take(samples).collect());
+    let (label, lag) = (estimate.label.clone(), estimate.lag.clone());
+    Ok(Some((beginning, TrialEstimate { label, smoothed, decisions, profile, lag })))
+}
+
+/// How many of the last samples may still change.
+fn held_back(trial: &Trial, settings: &Settings) -> Result<usize, FilterError> {
+    settings.low_pass.map_or(Ok(0), |low_pass| low_pass.reach(trial.period()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delay::estimate;
+    use crate::units::SamplePeriod;
+
+    /// A joint that follows its steps 12 samples late, with a ripple on it.
+    fn trial(samples: u32) -> Trial {
+        let level = |k: u32| [0.0, 1.0, -0.5, 0.5][(k / 70) as usize % 4];
+        let mut angle = 0.0;
+        let output = (0..samples).map(|k| {
+            angle += 0.2 * level(k.saturating_sub(12));
+            angle + 0.01 * (f64::from(k) * 1.7).sin()
+        });
+        let output = output.collect();
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        Trial::new("1", 0.0, period, (0..samples).map(level).collect(), output).unwrap()
+    }
+
+    #[test]
+    fn decisions_that_have_settled_are_those_of_the_whole_record() {
+        let smoothed = Settings { beta: 2, ..Settings::default() };
+        let plain = Settings { low_pass: None, ..smoothed.clone() };
+        for settings in [smoothed, plain] {
+            let whole = trial(1400);
+            let all = estimate(&whole, &settings).unwrap();
+            let mut most = 0;
+            for samples in (100..1400).step_by(37) {
+                let part = whole.beginning(samples).unwrap();
+                let found = estimate(&part, &settings).unwrap();
+                let Some((kept, found)) = settled(&part, &found, &settings).unwrap() else {
+                    continue;
+                };
+                assert!(kept.len() <= samples && found.profile.iter().count() == kept.len());
+                assert!(found.decisions.len() >= most, "none is taken back");
+                most = found.decisions.len();
+                for (early, late) in found.decisions.iter().zip(&all.decisions) {
+                    assert_eq!((early.verdict(), early.delay()), (late.verdict(), late.delay()));
+                    assert_eq!(early.segment, late.segment);
+                }
+            }
+            assert!(most >= 12, "{most}");
+        }
+    }
+
+    #[test]
+    fn what_hangs_on_the_whole_record_is_refused() {
+        assert_eq!(check_growing(&Settings::default()), Ok(()));
+        let hinge = Settings::of(crate::delay::Method::Hinge);
+        assert_eq!(check_growing(&hinge), Err(Growing::Method { method: "hinge" }));
+        let judged = Settings { confidence: Some(0.99), ..Settings::default() };
+        assert_eq!(check_growing(&judged), Err(Growing::Confidence));
+    }
+}
