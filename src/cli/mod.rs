@@ -3,6 +3,7 @@
 mod add;
 mod compare;
 mod data;
+mod design;
 mod effects;
 mod estimate;
 mod explain;
@@ -43,6 +44,7 @@ enum Command {
     Report(Box<report::Args>),
     Effects(effects::Args),
     Simulate(Box<simulate::Args>),
+    Design(Box<design::Args>),
 }
 
 /// What became of a command that ran to its end.
@@ -68,6 +70,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Report(args) => report::run(&args),
         Command::Effects(args) => effects::run(&args),
         Command::Simulate(args) => simulate::run(&args),
+        Command::Design(args) => design::run(&args),
     };
     match outcome {
         Ok(Completion::Whole) => ExitCode::SUCCESS,

@@ -5,6 +5,7 @@ mod against;
 mod compare;
 mod decisions;
 mod delays;
+mod design;
 mod equation;
 mod explain;
 mod finding;
@@ -30,6 +31,7 @@ pub use compare::{
 };
 pub use decisions::{DecisionDetail, DecisionRow, decision_rows, write_decisions};
 pub use delays::write_delays;
+pub use design::{DesignJson, DesignedJoint, Told, design_text, write_input, write_preview};
 pub use explain::{ExplainJson, explain_text};
 pub use finding::Finding;
 pub use improve::{ImproveJson, ImprovedJoint, change_in_words, improve_text, revision_line};
