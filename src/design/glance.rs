@@ -4,7 +4,7 @@
 use super::predict::Stand;
 use super::schedule::Schedule;
 use super::suspects::Suspects;
-use crate::model::{Component, JointModel};
+use crate::model::JointModel;
 
 /// Samples of a window between steps of the input, at most: as of a fit.
 const LONGEST_WINDOW: usize = 200;
@@ -57,7 +57,7 @@ impl Glance {
 
 /// The parameters of a model that are fitted, in the order of its values.
 fn free(model: &JointModel) -> impl Iterator<Item = usize> {
-    let specs = model.components().iter().map(Component::effect).map(|effect| effect.spec());
+    let specs = model.components().iter().map(|component| component.effect().spec());
     let effects = specs.flat_map(|spec| spec.parameters.iter().map(|p| p.fitted));
     let fitted: Vec<bool> = [true, true].into_iter().chain(effects).collect();
     let values = model.values();

@@ -1,12 +1,14 @@
 //! How well a record knows the numbers of a model.
 
+use rand::SeedableRng as _;
+use rand::seq::IndexedRandom as _;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, StandardNormal};
 
 use super::predict::Uncertain;
 use crate::effect::UNLIMITED;
 use crate::fit::{Fit, Record, Status};
-use crate::model::{Component, JointModel};
+use crate::model::JointModel;
 
 /// Standard deviations within which a number lies.
 const DEVIATIONS: f64 = 2.0;
@@ -35,25 +37,61 @@ impl Uncertain {
                 *slot = deviation;
             }
         }
+        known.draws = likely(record, &known, noise);
         known
     }
 
     /// The model with numbers that are drawn from what is known of them.
     pub(super) fn drawn(&self, random: &mut ChaCha8Rng) -> JointModel {
+        let drawn = self.draws.choose(random).cloned();
+        drawn.unwrap_or_else(|| self.apart(1.0, random))
+    }
+
+    /// The model with each number drawn by itself, `scale` times as far as it may be off.
+    fn apart(&self, scale: f64, random: &mut ChaCha8Rng) -> JointModel {
         let limits = limits(&self.model);
         let values = self.model.values().into_iter().zip(&self.deviations).zip(limits);
         let drawn = values.map(|((value, deviation), (low, high))| {
             let by: f64 = StandardNormal.sample(random);
             let by = by.clamp(-DEVIATIONS, DEVIATIONS);
-            (value.value + by * deviation).clamp(low, high)
+            (value.value + scale * by * deviation).clamp(low, high)
         });
         self.model.with_values(&drawn.collect::<Vec<_>>())
     }
 }
 
+/// Models with numbers that are drawn each by itself, and kept where all together leave the
+/// record as likely; nearer ones where too few are.
+fn likely(record: &Record<'_>, known: &Uncertain, noise: f64) -> Vec<JointModel> {
+    const TRIED: usize = 48;
+    const ENOUGH: usize = 12;
+    let cost = |model: &JointModel| cost(record, model, noise);
+    let parameters = known.deviations.iter().filter(|deviation| **deviation > 0.0).count();
+    // Chi-square of so many parameters: mean, and two standard deviations.
+    let parameters = parameters as f64;
+    let allowed = parameters + DEVIATIONS * (2.0 * parameters).sqrt();
+    let limit = cost(&known.model) + allowed;
+    let mut random = ChaCha8Rng::seed_from_u64(0);
+    let mut kept = Vec::new();
+    for scale in [1.0, 0.5, 0.2, 0.05] {
+        let drawn = (0..TRIED).map(|_| known.apart(scale, &mut random));
+        kept.extend(drawn.filter(|model| cost(model) <= limit));
+        if kept.len() >= ENOUGH {
+            break;
+        }
+    }
+    kept
+}
+
+/// What `model` leaves of the record, in variances of the noise.
+fn cost(record: &Record<'_>, model: &JointModel, noise: f64) -> f64 {
+    let left = record.evaluate(model).residuals;
+    left.iter().flatten().map(|e| e * e).sum::<f64>() / (noise * noise)
+}
+
 /// Lowest and highest value of each parameter.
 fn limits(model: &JointModel) -> Vec<(f64, f64)> {
-    let specs = model.components().iter().map(Component::effect).map(|effect| effect.spec());
+    let specs = model.components().iter().map(|component| component.effect().spec());
     let own = specs.flat_map(|spec| spec.parameters.iter().map(|p| (p.min, p.max)));
     [(f64::MIN, f64::MAX), (0.0, f64::MAX)].into_iter().chain(own).collect()
 }
@@ -72,10 +110,7 @@ fn span(record: &Record<'_>, model: &JointModel, place: usize, noise: f64) -> Op
     if value.abs() >= UNLIMITED || value.abs() <= f64::MIN_POSITIVE {
         return None;
     }
-    let cost = |value: f64| {
-        let left = record.evaluate(&with(model, place, value)).residuals;
-        left.iter().flatten().map(|e| e * e).sum::<f64>() / (noise * noise)
-    };
+    let cost = |value: f64| cost(record, &with(model, place, value), noise);
     let least = cost(value);
     let end = |sign: f64| {
         let steps = (0..STEPS).map(|k| FIRST * GROWTH.powi(k) * value.abs());
@@ -104,13 +139,12 @@ fn with(model: &JointModel, place: usize, value: f64) -> JointModel {
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng as _;
-
     use super::super::predict::tests::stand;
     use super::super::random::{RandomSteps, random_steps};
     use super::*;
     use crate::effect::Stiction;
     use crate::fit::{Horizon, Split, assess};
+    use crate::model::Component;
 
     #[test]
     fn a_level_between_two_of_the_input_is_anywhere_between() {

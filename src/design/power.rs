@@ -65,38 +65,46 @@ impl Expected {
     /// The probability that the race tells the two apart, or more.
     pub fn power(&self) -> f64 {
         // Of two events, both happen at least as often as their chances exceed one together.
-        (self.ranks() + self.fails() - 1.0).max(0.0)
+        (normal_below(self.ranks()) + normal_below(self.fails()) - 1.0).max(0.0)
     }
 
-    /// The probability that the effect is ranked before the other, and not alike.
+    /// By how many standard deviations it is on the safe side.
+    pub(super) fn margin(&self) -> f64 {
+        self.ranks().min(self.fails())
+    }
+
+    /// How far, in standard deviations, the effect is expected to be ranked before the other
+    /// beyond what makes them alike.
     fn ranks(&self) -> f64 {
         let (n, m) = self.samples;
-        let gains = [(n, self.rival.training, self.own.training)];
-        let parts = gains.into_iter().chain([(m, self.rival.validation, self.own.validation)]);
-        let (mean, variance) = parts.fold((0.0, 0.0), |(mean, variance), (n, rival, own)| {
-            (mean + gain(n, rival) - gain(n, own), variance + spread(n, rival) + spread(n, own))
-        });
+        let parts = [
+            (n, self.rival.training, self.own.training),
+            (m, self.rival.validation, self.own.validation),
+        ];
+        let (mean, variance) =
+            parts.into_iter().fold((0.0, 0.0), |(mean, variance), (n, rival, own)| {
+                (mean + gain(n, rival) - gain(n, own), variance + spread(n, rival) + spread(n, own))
+            });
         let (own, rival) = (self.own.parameters, self.rival.parameters);
         let common = self.neither.parameters;
         let added = own.saturating_sub(common) + rival.saturating_sub(common);
         let handicap = (own as f64 - rival as f64) * (n.max(2) as f64).ln();
         let needed = ALIKE.max(handicap);
-        normal_below((mean - needed) / (variance + 2.0 * added as f64).sqrt())
+        (mean - needed) / (variance + 2.0 * added as f64).sqrt().max(1.0)
     }
 
-    /// The probability that the model with neither effect is beyond doubt worse than that with
-    /// the effect.
+    /// How far, in standard deviations, the model with neither effect is expected to be worse
+    /// than beyond doubt.
     fn fails(&self) -> f64 {
         let (n, m) = self.samples;
         let square = (1.0 - BEYOND_DOUBT_PERCENT / 100.0).powi(-2) - 1.0;
         let exceeds = |noncentrality: f64, needed: f64| {
-            normal_below((noncentrality - needed) / (4.0 * noncentrality).sqrt().max(1.0))
+            (noncentrality - needed) / (4.0 * noncentrality).sqrt().max(1.0)
         };
-        let shows = exceeds(self.neither.training, square * n as f64).max(if m > 0 {
-            exceeds(self.neither.validation, square * m as f64)
-        } else {
-            0.0
-        });
+        let mut shows = exceeds(self.neither.training, square * n as f64);
+        if m > 0 {
+            shows = shows.max(exceeds(self.neither.validation, square * m as f64));
+        }
         let added = self.own.parameters.saturating_sub(self.neither.parameters).max(1);
         let freedom = n.saturating_sub(self.own.parameters).max(1);
         shows.min(exceeds(self.neither.training, critical(added, freedom)))

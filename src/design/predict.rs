@@ -31,6 +31,8 @@ pub struct Uncertain {
     pub model: JointModel,
     /// Standard deviation of each parameter, in the order of [`JointModel::values`].
     pub deviations: Vec<f64>,
+    /// Models that the record holds for as likely, where there is a record.
+    pub draws: Vec<JointModel>,
 }
 
 /// The angle at each sample.
@@ -50,7 +52,7 @@ impl Uncertain {
     pub fn by_share(model: JointModel, share: f64) -> Self {
         let off = |value: f64| if value.abs() < UNLIMITED { share * value.abs() } else { 0.0 };
         let deviations = model.values().iter().map(|value| off(value.value)).collect();
-        Self { model, deviations }
+        Self { model, deviations, draws: Vec::new() }
     }
 
     /// The model with the parameter at `place` off by so many standard deviations.
@@ -185,7 +187,7 @@ pub(super) mod tests {
         // a tenth of the upper end 0.5 deg.
         let last = found.output.len() - 1;
         assert!((found.output[last] - 15.0).abs() < 1e-9);
-        let expected = 2.0 * (1.5_f64 * 1.5 + 0.5 * 0.5).sqrt();
+        let expected = 2.0 * 1.5_f64.hypot(0.5);
         assert!((found.margin[last] - expected).abs() < 1e-9, "{}", found.margin[last]);
         let (low, high) = found.extent();
         assert!(low.abs() < 1e-9 && (high - 15.0 - expected).abs() < 1e-9);

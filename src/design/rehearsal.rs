@@ -6,21 +6,21 @@ use rand_chacha::ChaCha8Rng;
 use super::predict::Stand;
 use super::schedule::Schedule;
 use super::suspects::{Suspects, noisy};
-use crate::explain::{Options, Sequential, Verdict, Workers, explain};
+use crate::explain::{Options, Sequential, Workers, suspected};
 use crate::fit::{Horizon, Record, Split, fit};
 use crate::model::JointModel;
 
 /// How often a rehearsed experiment told two suspects apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rehearsal {
-    /// Rehearsals that named the suspect that was there, and excluded the other.
+    /// Rehearsals that ranked the suspect first that was there, and excluded the other.
     pub told: usize,
     /// All of them.
     pub of: usize,
 }
 
 /// Rehearsals after which it is seen whether more are worth it.
-const FEW: usize = 8;
+const FEW: usize = 4;
 
 /// Rehearses `schedule` so many times with suspect number `truth`: each time with numbers
 /// drawn from what is known of them, and other noise. Given up early when more than `failures`
@@ -45,8 +45,8 @@ pub(super) fn rehearse(
     found
 }
 
-/// Whether `explain` names the suspect that is there, and excludes the other; `None` where
-/// the record is too short.
+/// Whether the race of `explain` ranks the suspect that is there first, and excludes the other;
+/// `None` where the record is too short, or nothing is missed.
 fn is_told(
     suspects: &Suspects,
     truth: usize,
@@ -63,9 +63,8 @@ fn is_told(
     let range = record.range(&levels, suspects.base.gain.value.abs() * top);
     let base = fit(&record, &suspects.base, &range).ok()?;
     let options = Options { effects: suspects.effects.to_vec(), ..Options::default() };
-    let explained = explain(&record, base, &options, &Sequential);
-    let best = explained.ranking.first()?;
+    let ranking = suspected(&record, base, &options, &Sequential);
+    let best = ranking.first()?;
     let id = suspects.effects.get(truth)?.spec().id;
-    let is_named = explained.verdict == Verdict::MissingEffect && best.effects == [id];
-    Some(is_named && best.indistinguishable_from.is_empty())
+    Some(best.effects == [id] && best.indistinguishable_from.is_empty())
 }

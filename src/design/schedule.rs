@@ -74,6 +74,16 @@ impl Schedule {
         all.fold((f64::INFINITY, 0.0), |(low, high), hold| (low.min(hold), high.max(hold)))
     }
 
+    /// How many of its holds are over after so many seconds.
+    pub(super) fn fitting(&self, seconds: f64) -> usize {
+        let most = samples_in(seconds, self.period);
+        let ends = self.holds.iter().scan(0, |end, hold| {
+            *end += hold.samples;
+            Some(*end)
+        });
+        ends.take_while(|end| *end <= most).count()
+    }
+
     /// The first `count` holds.
     #[must_use]
     pub(super) fn first(&self, count: usize) -> Self {
@@ -101,6 +111,7 @@ mod tests {
         assert_eq!((made.samples(), made.steps(), made.levels()), (6, 2, vec![-1.0, 0.0, 2.0]));
         assert_eq!((made.duration_s(), made.hold_range_s()), (3.0, (1.5, 1.5)));
         assert_eq!(made.first(2).input(), [0.0, 2.0, 2.0, 2.0]);
-        assert_eq!(samples_in(0.1, period), 1);
+        assert_eq!((made.fitting(2.0), made.fitting(1.9)), (2, 2));
+        assert_eq!((made.fitting(1.7), samples_in(0.1, period)), (1, 1));
     }
 }

@@ -76,14 +76,11 @@ pub enum DesignError {
     },
 }
 
-/// Inputs that are judged in full, at most.
-const MOST_JUDGED: usize = 120;
-
 /// The shortest input with the power that is wanted, of those that are tried.
 ///
-/// A glance tells for each kind of input how long it must be at least; the shortest is then
-/// judged with every model at its best fit, and rehearsed, and made longer where that is not
-/// enough. A suspect that the other can imitate in whatever input, as one that it contains, is
+/// A glance tells how long an input must be at least. From there on the best of each length
+/// are judged with every model at its best fit, and the best of these is rehearsed, until one
+/// passes. A suspect that the other can imitate in whatever input, as one that it contains, is
 /// left out of it.
 ///
 /// # Errors
@@ -94,7 +91,7 @@ pub fn shortest(
     limits: &Limits,
     workers: &impl Workers,
 ) -> Result<Design, DesignError> {
-    let mut best = 0.0;
+    let (mut best, mut second) = (0.0, None);
     // Short inputs are soon looked through, and mostly there is one.
     for part in [0.125, 0.25, 0.5, 1.0] {
         let longest_s = part * limits.longest_s;
@@ -108,7 +105,8 @@ pub fn shortest(
         let seen: Vec<(&Family, Glances)> = seen.collect();
         let can = |truth: usize| {
             let is_enough = |(family, seen): &(&Family, Glances)| {
-                seen.power(truth, family, family.schedule.holds().len()) >= limits.power
+                let whole = family.schedule.holds().len();
+                seen.expected(truth, family, whole).power() >= limits.power
             };
             seen.iter().any(is_enough)
         };
@@ -116,10 +114,22 @@ pub fn shortest(
         let aims = if part < 1.0 { [true; 2] } else { [can(0), can(1)] };
         match field.first_to_pass(&seen, aims, workers) {
             Ok(design) => return Ok(design),
-            Err(found) => best = f64::max(best, found),
+            Err((power, rehearsed)) => {
+                best = f64::max(best, power);
+                second = better(second, rehearsed);
+            }
         }
     }
-    Err(DesignError::NotApart { wanted: limits.power, best, longest_s: limits.longest_s })
+    // Its power will do, and how its rehearsals went is told.
+    second.ok_or(DesignError::NotApart { wanted: limits.power, best, longest_s: limits.longest_s })
+}
+
+/// The design of which more rehearsals went well; of two as good, the first.
+fn better(one: Option<Design>, other: Option<Design>) -> Option<Design> {
+    match (one, other) {
+        (Some(one), Some(other)) if one.share_told() >= other.share_told() => Some(one),
+        (one, other) => other.or(one),
+    }
 }
 
 /// What is to be told apart, where, and with what.
@@ -130,38 +140,64 @@ struct Field<'a> {
 }
 
 impl Field<'_> {
-    /// The shortest input of `seen` that passes; the best power where none does.
+    /// The shortest input of `seen` that passes; where none does, the best power, and the input
+    /// whose rehearsals went best.
+    ///
+    /// From the shortest length that may do the inputs become longer by a small part at a
+    /// time; of each length those are judged that a glance finds best.
     fn first_to_pass(
         &self,
         seen: &[(&Family, Glances)],
         aims: [bool; 2],
         workers: &impl Workers,
-    ) -> Result<Design, f64> {
-        let fewest = |family: &Family, seen: &Glances| seen.fewest(family, aims, self.limits.power);
-        let open = seen.iter().filter_map(|(family, seen)| Some((*family, fewest(family, seen)?)));
-        let mut open: Vec<(&Family, usize)> = open.collect();
-        let mut best = 0.0;
-        for _ in 0..MOST_JUDGED {
-            let length =
-                |(family, count): &(&Family, usize)| family.schedule.first(*count).samples();
-            let shortest = (0..open.len()).min_by_key(|place| open.get(*place).map(length));
-            let Some(place) = shortest else { break };
-            let (family, count) = open.swap_remove(place);
-            let design = self.judged(aims, family.order, family.schedule.first(count), workers);
+    ) -> Result<Design, (f64, Option<Design>)> {
+        /// A length and the next.
+        const LONGER: f64 = 1.1;
+        let least = |(family, seen): &(&Family, Glances)| {
+            let count = seen.fewest(family, aims, self.limits.power)?;
+            Some(family.schedule.first(count).duration_s())
+        };
+        let (mut best, mut second) = (0.0, None);
+        let Some(mut length_s) = seen.iter().filter_map(least).min_by(f64::total_cmp) else {
+            return Err((best, second));
+        };
+        while length_s <= self.limits.longest_s * LONGER {
+            let design = self.best_of_length(seen, aims, length_s, workers);
             let power = design.as_ref().map_or(0.0, Design::power);
+            best = f64::max(best, power);
             if let Some(design) = design.filter(|design| design.power() >= self.limits.power) {
                 let design = self.rehearsed(design, workers);
                 if design.passes(&self.limits) {
                     return Ok(design);
                 }
+                second = better(second, Some(design));
             }
-            best = f64::max(best, power);
-            let whole = family.schedule.holds().len();
-            if count < whole {
-                open.push((family, longer(count, power).min(whole)));
-            }
+            length_s *= LONGER;
         }
-        Err(best)
+        Err((best, second))
+    }
+
+    /// The best input that is not longer.
+    fn best_of_length(
+        &self,
+        seen: &[(&Family, Glances)],
+        aims: [bool; 2],
+        length_s: f64,
+        workers: &impl Workers,
+    ) -> Option<Design> {
+        /// Inputs of one length that are judged in full.
+        const JUDGED: usize = 3;
+        let glanced = seen.iter().filter_map(|(family, seen)| {
+            let count = family.schedule.fitting(length_s);
+            (count > 1).then(|| (seen.margin(family, aims, count), *family, count))
+        });
+        let mut glanced: Vec<(f64, &Family, usize)> = glanced.collect();
+        glanced.sort_by(|a, b| b.0.total_cmp(&a.0));
+        glanced.truncate(JUDGED);
+        let judged = glanced.into_iter().filter_map(|(_, family, count)| {
+            self.judged(aims, family.order, family.schedule.first(count), workers)
+        });
+        judged.max_by(|a, b| a.margin().total_cmp(&b.margin()))
     }
 
     /// What is expected of `schedule`, which is to tell the suspects `aims`; `None` where it is
@@ -207,8 +243,21 @@ impl Design {
         told.map(|side| side.expected.power()).fold(1.0, f64::min)
     }
 
+    /// By how many standard deviations it is on the safe side with all of them.
+    fn margin(&self) -> f64 {
+        let told = self.sides.iter().filter(|side| side.is_told);
+        told.map(|side| side.expected.margin()).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The share of its rehearsals that went well, of the suspect with the least.
+    pub fn share_told(&self) -> f64 {
+        let rehearsals = self.sides.iter().filter_map(|side| side.rehearsal);
+        let share = |found: Rehearsal| found.told as f64 / found.of.max(1) as f64;
+        rehearsals.map(share).fold(1.0, f64::min)
+    }
+
     /// Whether its rehearsals went well, where there are any.
-    fn passes(&self, limits: &Limits) -> bool {
+    pub fn passes(&self, limits: &Limits) -> bool {
         let told = self.sides.iter().filter(|side| side.is_told);
         let went_well = |found: Rehearsal| {
             found.of == limits.rehearsals && found.of - found.told <= limits.failures()
@@ -230,16 +279,6 @@ impl Limits {
     }
 }
 
-/// Holds after which an input with too little power is judged again.
-fn longer(count: usize, power: f64) -> usize {
-    /// By so much at once, in parts.
-    const FEW: usize = 12;
-    const MANY: usize = 4;
-    /// A power from which a little more will do.
-    const NEARLY: f64 = 0.3;
-    count + count.div_ceil(if power > NEARLY { FEW } else { MANY })
-}
-
 /// What a glance shows of both suspects: the other, and the model with neither.
 struct Glances {
     rivals: [Glance; 2],
@@ -258,8 +297,8 @@ impl Glances {
         Some(Self { rivals, plain, noise: suspects.noise })
     }
 
-    /// The power for one suspect of the first `count` holds.
-    fn power(&self, truth: usize, family: &Family, count: usize) -> f64 {
+    /// What is expected for one suspect of the first `count` holds.
+    fn expected(&self, truth: usize, family: &Family, count: usize) -> Expected {
         let far = |glances: &[Glance; 2]| Distance {
             training: glances
                 .get(truth)
@@ -268,14 +307,21 @@ impl Glances {
         };
         let samples = (family.schedule.first(count).samples(), 0);
         let (rival, neither) = (far(&self.rivals), far(&self.plain));
-        Expected { samples, rival, own: Distance::default(), neither }.power()
+        Expected { samples, rival, own: Distance::default(), neither }
+    }
+
+    /// By how many standard deviations the suspects of `aims` are told.
+    fn margin(&self, family: &Family, aims: [bool; 2], count: usize) -> f64 {
+        let told = aims.iter().enumerate().filter(|(_, aim)| **aim);
+        let margins = told.map(|(truth, _)| self.expected(truth, family, count).margin());
+        margins.fold(f64::INFINITY, f64::min)
     }
 
     /// The fewest holds that may tell the suspects of `aims`; `None` where all of them do not.
     fn fewest(&self, family: &Family, aims: [bool; 2], power: f64) -> Option<usize> {
         let enough = |count: usize| {
             let mut told = aims.iter().enumerate().filter(|(_, aim)| **aim);
-            told.all(|(truth, _)| self.power(truth, family, count) >= power)
+            told.all(|(truth, _)| self.expected(truth, family, count).power() >= power)
         };
         let all = family.schedule.holds().len();
         if aims == [false; 2] || !enough(all) {

@@ -304,22 +304,22 @@ fn side_table(told: &Told) -> Table {
 fn explanation(joint: &DesignedJoint, told: &Told) -> String {
     let Told { ids, design, wanted, noise, .. } = told;
     let noise = measure(*noise, joint.stand.output_unit.as_deref());
-    let mut text = format!(
+    let mut sentences = vec![format!(
         "Power: the probability that explain names the effect that is there and excludes the \
          other, with noise of {noise}; {wanted} was wanted. λ: squared distance to the best fit \
          with the other effect and with neither, in variances of the noise."
-    );
+    )];
     for (place, side) in design.sides.iter().enumerate().filter(|(_, side)| !side.is_told) {
         let (is, other) = (ids.get(place), ids.get(1 - place));
         if let (Some(is), Some(other)) = (is, other) {
             let lambda = rounded(side.expected.rival.noncentrality());
-            text += &format!(
-                " If it is {is}, {other} can do the same (λ = {lambda}), and stays possible \
+            sentences.push(format!(
+                "If it is {is}, {other} can do the same (λ = {lambda}), and stays possible \
                  whatever is played."
-            );
+            ));
         }
     }
-    text
+    sentences.join(" ")
 }
 
 /// Where the joint will be.
@@ -367,7 +367,7 @@ pub fn write_input(joints: &[DesignedJoint], out: impl Write) -> csv::Result<()>
         let name = format!("{}.input", joint.stand.name);
         (name, joint.schedule.input(), 0.0)
     });
-    write_columns(joints, columns.collect(), out)
+    write_columns(joints, &columns.collect::<Vec<_>>(), out)
 }
 
 /// Writes the input and what is expected: `<joint>.output`, and `<joint>.low` and `.high` with
@@ -392,13 +392,13 @@ pub fn write_preview(joints: &[DesignedJoint], out: impl Write) -> csv::Result<(
             add(other, outputs.clone(), f64::NAN);
         }
     }
-    write_columns(joints, columns, out)
+    write_columns(joints, &columns, out)
 }
 
 /// Columns with their names and what stands behind their ends; not a number: nothing.
 fn write_columns(
     joints: &[DesignedJoint],
-    columns: Vec<(String, Vec<f64>, f64)>,
+    columns: &[(String, Vec<f64>, f64)],
     out: impl Write,
 ) -> csv::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
@@ -408,7 +408,7 @@ fn write_columns(
     let rows = columns.iter().map(|(_, values, _)| values.len()).max().unwrap_or(0);
     for row in 0..rows {
         writer.write_field(tidy_seconds(row as f64 * period_s).to_string())?;
-        for (_, values, after) in &columns {
+        for (_, values, after) in columns {
             let value = values.get(row).copied().unwrap_or(*after);
             let text = if value.is_nan() { String::new() } else { value.to_string() };
             writer.write_field(text)?;

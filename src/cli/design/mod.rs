@@ -200,7 +200,7 @@ fn designed(args: &Args) -> anyhow::Result<(Vec<DesignedJoint>, Vec<String>)> {
     let desk = Desk::new(args)?;
     let _bar = progress::bar(args.verbosity(), "designing", 0);
     let results = if args.separate.is_empty() {
-        random::designed(args, &desk)?
+        random::designed(args, &desk)
     } else {
         separate::designed(args, &desk)?
     };

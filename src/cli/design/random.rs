@@ -6,6 +6,7 @@ use tauscope::design::{
     Band, RandomSteps, Stand, Uncertain, default_hold_s, default_largest, default_levels,
     random_steps, response_s, resting_band,
 };
+use tauscope::experiment::Joint;
 use tauscope::report::DesignedJoint;
 
 use super::Args;
@@ -17,10 +18,7 @@ use crate::cli::with_causes;
 const DURATION_S: f64 = 120.0;
 
 /// The input of each joint, or why it has none.
-pub(super) fn designed(
-    args: &Args,
-    desk: &Desk,
-) -> anyhow::Result<Vec<anyhow::Result<DesignedJoint>>> {
+pub(super) fn designed(args: &Args, desk: &Desk) -> Vec<anyhow::Result<DesignedJoint>> {
     let known = known(args, desk);
     let one = |(index, name): (usize, &String)| {
         let uncertain = match known.get(index) {
@@ -34,13 +32,13 @@ pub(super) fn designed(
         let stand = desk.stand(args, name, args.output_range);
         steps_of(args, desk, stand, uncertain.as_ref(), index)
     };
-    Ok(desk.names.iter().enumerate().map(one).collect())
+    desk.names.iter().enumerate().map(one).collect()
 }
 
 /// What logs tell of the joints.
 fn known(args: &Args, desk: &Desk) -> OfJoints<Uncertain> {
     let Some((joints, estimates)) = desk.estimated() else { return Vec::new() };
-    let models = |joint: &tauscope::experiment::Joint| desk.model(&joint.name).cloned();
+    let models = |joint: &Joint| desk.model(&joint.name).cloned();
     know_joints(joints, &estimates, models, PROTOCOL, args.uncertainty)
 }
 

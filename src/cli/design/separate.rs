@@ -111,8 +111,8 @@ fn of_model(
             ids[0]
         ),
     };
-    let history = desk.file.history(name).iter().rev();
-    let noise = args.noise.or_else(|| history.filter_map(|entry| entry.validation_rmse).next());
+    let mut history = desk.file.history(name).iter().rev();
+    let noise = args.noise.or_else(|| history.find_map(|entry| entry.validation_rmse));
     let noise = noise.filter(|noise| *noise > 0.0).context(
         "--noise: the model file has no history with an error, so the noise is not known; give it",
     )?;
@@ -153,6 +153,12 @@ fn told(
          has neither.",
         ids.join(",")
     );
+    let doubt = (!design.passes(&limits)).then(|| {
+        "Fewer rehearsals went well than were wanted: what is known of the two leaves it open \
+         whether this input will do; a log that shows them better, or larger levels, may help."
+            .to_owned()
+    });
+    let notes = doubt.into_iter().chain([next]).collect();
     let told = Some(Told { ids, design, wanted, noise, other });
-    Ok(DesignedJoint { stand, schedule, prediction, told, notes: vec![next] })
+    Ok(DesignedJoint { stand, schedule, prediction, told, notes })
 }
