@@ -9,9 +9,10 @@ use crate::model::JointModel;
 /// Samples of a window between steps of the input, at most: as of a fit.
 const LONGEST_WINDOW: usize = 200;
 
-/// Differences of two models along an input, and what each parameter of the second does.
+/// Differences of two models along an input, for several numbers of the first that are likely,
+/// and what each parameter of the second does.
 pub(super) struct Glance {
-    difference: Vec<f64>,
+    differences: Vec<Vec<f64>>,
     slopes: Vec<Vec<f64>>,
 }
 
@@ -23,21 +24,32 @@ impl Glance {
         rival: &JointModel,
         (stand, schedule): (&Stand, &Schedule),
     ) -> Option<Self> {
-        let truth = stand.output(&suspects.models.get(truth)?.model, schedule);
+        /// Further numbers of the truth that are looked at.
+        const DRAWS: usize = 5;
         let here = stand.output(rival, schedule);
         let slopes = free(rival).map(|place| {
             let moved = stand.output(&moved(rival, place), schedule);
             moved.iter().zip(&here).map(|(a, b)| a - b).collect()
         });
         let slopes = slopes.collect();
-        let difference = truth.iter().zip(&here).map(|(a, b)| a - b).collect();
-        Some(Self { difference, slopes })
+        let truth = suspects.models.get(truth)?;
+        let models = std::iter::once(&truth.model).chain(truth.draws.iter().take(DRAWS));
+        let differences = models.map(|model| {
+            let there = stand.output(model, schedule);
+            there.iter().zip(&here).map(|(a, b)| a - b).collect()
+        });
+        Some(Self { differences: differences.collect(), slopes })
     }
 
-    /// The noncentrality of the first `count` holds.
-    pub(super) fn noncentrality(&self, schedule: &Schedule, count: usize, noise: f64) -> f64 {
+    /// The noncentralities of the first `count` holds: at the numbers of the truth that are
+    /// known best, and at others.
+    pub(super) fn noncentralities(
+        &self,
+        schedule: &Schedule,
+        count: usize,
+        noise: f64,
+    ) -> Vec<f64> {
         let windows = windows(schedule, count);
-        let mut rest = centred(&self.difference, &windows);
         let mut basis: Vec<Vec<f64>> = Vec::new();
         for slope in &self.slopes {
             let mut column = centred(slope, &windows);
@@ -47,11 +59,15 @@ impl Glance {
             }
             // What others do already is left out.
             if dot(&column, &column) > 1e-8 * before {
-                take_off(&mut rest, &column);
                 basis.push(column);
             }
         }
-        dot(&rest, &rest) / (noise * noise)
+        let left = self.differences.iter().map(|difference| {
+            let mut rest = centred(difference, &windows);
+            basis.iter().for_each(|column| take_off(&mut rest, column));
+            dot(&rest, &rest) / (noise * noise)
+        });
+        left.collect()
     }
 }
 

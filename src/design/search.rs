@@ -106,7 +106,7 @@ pub fn shortest(
         let can = |truth: usize| {
             let is_enough = |(family, seen): &(&Family, Glances)| {
                 let whole = family.schedule.holds().len();
-                seen.expected(truth, family, whole).power() >= limits.power
+                seen.best_known(truth, family, whole) >= limits.power
             };
             seen.iter().any(is_enough)
         };
@@ -297,23 +297,36 @@ impl Glances {
         Some(Self { rivals, plain, noise: suspects.noise })
     }
 
-    /// What is expected for one suspect of the first `count` holds.
-    fn expected(&self, truth: usize, family: &Family, count: usize) -> Expected {
-        let far = |glances: &[Glance; 2]| Distance {
-            training: glances
-                .get(truth)
-                .map_or(0.0, |glance| glance.noncentrality(&family.schedule, count, self.noise)),
-            ..Distance::default()
-        };
-        let samples = (family.schedule.first(count).samples(), 0);
-        let (rival, neither) = (far(&self.rivals), far(&self.plain));
-        Expected { samples, rival, own: Distance::default(), neither }
+    /// The power for one suspect of the first `count` holds, at the numbers that are known best.
+    fn best_known(&self, truth: usize, family: &Family, count: usize) -> f64 {
+        self.expected(truth, family, count).first().map_or(0.0, Expected::power)
     }
 
-    /// By how many standard deviations the suspects of `aims` are told.
+    /// What is expected for one suspect of the first `count` holds: at the numbers that are
+    /// known best, and at others.
+    fn expected(&self, truth: usize, family: &Family, count: usize) -> Vec<Expected> {
+        let far = |glances: &[Glance; 2]| {
+            let glance = glances.get(truth);
+            glance.map(|glance| glance.noncentralities(&family.schedule, count, self.noise))
+        };
+        let samples = (family.schedule.first(count).samples(), 0);
+        let distance = |training| Distance { training, ..Distance::default() };
+        let pairs =
+            far(&self.rivals).into_iter().flatten().zip(far(&self.plain).into_iter().flatten());
+        let expected = pairs.map(|(rival, neither)| Expected {
+            samples,
+            rival: distance(rival),
+            own: Distance::default(),
+            neither: distance(neither),
+        });
+        expected.collect()
+    }
+
+    /// By how many standard deviations the suspects of `aims` are told at least.
     fn margin(&self, family: &Family, aims: [bool; 2], count: usize) -> f64 {
         let told = aims.iter().enumerate().filter(|(_, aim)| **aim);
-        let margins = told.map(|(truth, _)| self.expected(truth, family, count).margin());
+        let expected = told.flat_map(|(truth, _)| self.expected(truth, family, count));
+        let margins = expected.map(|expected| expected.margin());
         margins.fold(f64::INFINITY, f64::min)
     }
 
@@ -321,7 +334,7 @@ impl Glances {
     fn fewest(&self, family: &Family, aims: [bool; 2], power: f64) -> Option<usize> {
         let enough = |count: usize| {
             let mut told = aims.iter().enumerate().filter(|(_, aim)| **aim);
-            told.all(|(truth, _)| self.expected(truth, family, count).power() >= power)
+            told.all(|(truth, _)| self.best_known(truth, family, count) >= power)
         };
         let all = family.schedule.holds().len();
         if aims == [false; 2] || !enough(all) {
