@@ -106,17 +106,3 @@ fn judged(cases: &[Case], threads: usize) -> anyhow::Result<Vec<Judged>> {
     done.sort_by_key(|(index, _)| *index);
     Ok(done.into_iter().map(|(_, judged)| judged).collect())
 }
-
-/// Few joints, and few rehearsals.
-#[test]
-fn what_is_designed_tells_what_is_hidden_and_a_random_input_as_long_does_not() -> anyhow::Result<()>
-{
-    let cases = cases(|pair| *pair == ["dead_band", "stiction"], 1..3, 16);
-    let judged = judged(&cases, 2)?;
-    let outcomes: Vec<_> = judged.iter().filter_map(|j| j.outcome.as_ref().ok()).collect();
-    assert!(outcomes.len() >= 3, "{}", page(&judged));
-    assert!(outcomes.iter().all(|outcome| outcome.designed), "{}", page(&judged));
-    let random = outcomes.iter().filter(|outcome| outcome.random[0] == Some(true)).count();
-    assert!(random < outcomes.len(), "{}", page(&judged));
-    Ok(())
-}

@@ -64,7 +64,9 @@ impl Glance {
         }
         let left = self.differences.iter().map(|difference| {
             let mut rest = centred(difference, &windows);
-            basis.iter().for_each(|column| take_off(&mut rest, column));
+            for column in &basis {
+                take_off(&mut rest, column);
+            }
             dot(&rest, &rest) / (noise * noise)
         });
         left.collect()

@@ -102,7 +102,7 @@ fn span(record: &Record<'_>, model: &JointModel, place: usize, noise: f64) -> Op
     /// First step from the value, in parts of it, and the growth of further ones.
     const FIRST: f64 = 0.01;
     const GROWTH: f64 = 1.5;
-    const STEPS: i32 = 12;
+    const STEPS: i32 = 18;
     /// Twice the log-likelihood ratio of two standard deviations.
     const AS_LIKELY: f64 = DEVIATIONS * DEVIATIONS;
     let value = model.values().get(place)?.value;

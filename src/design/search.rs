@@ -112,13 +112,12 @@ pub fn shortest(
         };
         // One of them alone is told only where all the time there is does not show the other.
         let aims = if part < 1.0 { [true; 2] } else { [can(0), can(1)] };
-        match field.first_to_pass(&seen, aims, workers) {
-            Ok(design) => return Ok(design),
-            Err((power, rehearsed)) => {
-                best = f64::max(best, power);
-                second = better(second, rehearsed);
-            }
+        let found = field.first_to_pass(&seen, aims, workers);
+        if let Some(design) = found.passed {
+            return Ok(design);
         }
+        best = f64::max(best, found.power);
+        second = better(second, found.second);
     }
     // Its power will do, and how its rehearsals went is told.
     second.ok_or(DesignError::NotApart { wanted: limits.power, best, longest_s: limits.longest_s })
@@ -130,6 +129,17 @@ fn better(one: Option<Design>, other: Option<Design>) -> Option<Design> {
         (Some(one), Some(other)) if one.share_told() >= other.share_told() => Some(one),
         (one, other) => other.or(one),
     }
+}
+
+/// What came of inputs up to some length.
+#[derive(Default)]
+struct Found {
+    /// The shortest that passes.
+    passed: Option<Design>,
+    /// Where none does, the one whose rehearsals went best.
+    second: Option<Design>,
+    /// The best power.
+    power: f64,
 }
 
 /// What is to be told apart, where, and with what.
@@ -150,31 +160,31 @@ impl Field<'_> {
         seen: &[(&Family, Glances)],
         aims: [bool; 2],
         workers: &impl Workers,
-    ) -> Result<Design, (f64, Option<Design>)> {
+    ) -> Found {
         /// A length and the next.
         const LONGER: f64 = 1.1;
         let least = |(family, seen): &(&Family, Glances)| {
             let count = seen.fewest(family, aims, self.limits.power)?;
             Some(family.schedule.first(count).duration_s())
         };
-        let (mut best, mut second) = (0.0, None);
+        let mut found = Found::default();
         let Some(mut length_s) = seen.iter().filter_map(least).min_by(f64::total_cmp) else {
-            return Err((best, second));
+            return found;
         };
         while length_s <= self.limits.longest_s * LONGER {
             let design = self.best_of_length(seen, aims, length_s, workers);
             let power = design.as_ref().map_or(0.0, Design::power);
-            best = f64::max(best, power);
+            found.power = found.power.max(power);
             if let Some(design) = design.filter(|design| design.power() >= self.limits.power) {
                 let design = self.rehearsed(design, workers);
                 if design.passes(&self.limits) {
-                    return Ok(design);
+                    return Found { passed: Some(design), ..found };
                 }
-                second = better(second, Some(design));
+                found.second = better(found.second, Some(design));
             }
             length_s *= LONGER;
         }
-        Err((best, second))
+        found
     }
 
     /// The best input that is not longer.
