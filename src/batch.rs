@@ -9,7 +9,10 @@ use crate::delay::sweep::{Grid, JointSweep, RunTold};
 use crate::delay::{
     Automatic, Chosen, Decision, EstimateError, Settings, Shared, TrialEstimate, choose,
 };
-use crate::diagnosis::{Comparison, compare};
+use crate::design::{
+    Design, DesignError, Limits, Stand, Suspects, SuspectsError, Uncertain, shortest,
+};
+use crate::diagnosis::{Comparison, compare, floor_of};
 use crate::effect::Effect;
 use crate::experiment::{Joint, Trial, activity};
 use crate::explain::{AddError, Addition, add};
@@ -271,6 +274,50 @@ pub fn improve_joints<'a>(
     for_each_joint(joints, estimates, models, watched, |index, record, fit| {
         improve(record, fit, options, &Threads(watched.watch), |revision| done(index, revision))
     })
+}
+
+/// Fits each joint's model and says how well its log knows the numbers; what it does not
+/// determine is off by `share` of its value.
+pub fn know_joints(
+    joints: &[Joint],
+    estimates: &[Result<JointEstimate, EstimateError>],
+    models: impl Fn(&Joint) -> Option<JointModel> + Sync,
+    protocol: Protocol,
+    share: f64,
+) -> OfJoints<Uncertain> {
+    for_each_joint(joints, estimates, models, protocol, |_, record, fit| {
+        let noise = floor_of(record, &fit).unwrap_or_default().max(f64::MIN_POSITIVE);
+        Uncertain::of_fit(record, &fit, noise, share)
+    })
+}
+
+/// Fits two effects to each joint, each beside its model: see [`Suspects::of_record`].
+pub fn suspect_joints(
+    joints: &[Joint],
+    estimates: &[Result<JointEstimate, EstimateError>],
+    models: impl Fn(&Joint) -> Option<JointModel> + Sync,
+    protocol: Protocol,
+    effects: [&'static dyn Effect; 2],
+    (noise, share): (Option<f64>, f64),
+) -> Vec<Option<Result<Suspects, SuspectsError>>> {
+    let work = |_: usize, record: &Record<'_>, fit: Fit| {
+        Suspects::of_record(record, &fit.model, effects, noise, share)
+    };
+    let suspects = for_each_joint(joints, estimates, models, protocol, work);
+    let flat = |of: Result<Result<_, _>, FitError>| of.map_err(SuspectsError::from).flatten();
+    suspects.into_iter().map(|result| result.map(flat)).collect()
+}
+
+/// The shortest input that tells two suspects apart: see [`shortest`].
+///
+/// # Errors
+/// [`DesignError`] where no input will do.
+pub fn design_separation(
+    suspects: &Suspects,
+    stand: &Stand,
+    limits: &Limits,
+) -> Result<Design, DesignError> {
+    shortest(suspects, stand, limits, &Threads)
 }
 
 /// Fits the model of each joint and does `work` with it.

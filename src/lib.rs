@@ -15,12 +15,14 @@
 //! - [`fit`]: models fitted to measurements
 //! - [`diagnosis`]: how good a model is, and where it fails
 //! - [`explain`]: which physical effect a model lacks
+//! - [`design`]: the next experiment
 //! - [`batch`]: all joints in parallel
 //! - [`report`]: results as text, CSV and JSON, and as a page with figures
 //! - `recording`: results as a Rerun recording (feature `rrd`)
 
 pub mod batch;
 pub mod delay;
+pub mod design;
 pub mod diagnosis;
 pub mod effect;
 pub mod experiment;

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The library's modules; each may use those before it.
-const ORDER: [&str; 14] = [
+const ORDER: [&str; 15] = [
     "units",
     "statistics",
     "effect",
@@ -17,6 +17,7 @@ const ORDER: [&str; 14] = [
     "fit",
     "diagnosis",
     "explain",
+    "design",
     "batch",
     "report",
     "recording",

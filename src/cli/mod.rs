@@ -3,6 +3,7 @@
 mod add;
 mod compare;
 mod data;
+mod design;
 mod doctor;
 mod effects;
 mod estimate;
@@ -56,6 +57,7 @@ enum Command {
     Report(Box<report::Args>),
     Effects(effects::Args),
     Simulate(Box<simulate::Args>),
+    Design(Box<design::Args>),
     Doctor(doctor::Args),
     Completions(shell::CompletionsArgs),
     Man(shell::ManArgs),
@@ -99,6 +101,7 @@ fn perform(command: Command) -> anyhow::Result<Completion> {
         Command::Report(args) => report::run(&args),
         Command::Effects(args) => effects::run(&args),
         Command::Simulate(args) => simulate::run(&args),
+        Command::Design(args) => design::run(&args),
         Command::Doctor(args) => doctor::run(&args),
         Command::Completions(args) => shell::completions(&args),
         Command::Man(args) => shell::man(&args),

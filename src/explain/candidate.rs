@@ -38,6 +38,12 @@ pub struct Candidate {
     pub noise_floor: Option<f64>,
 }
 
+/// Probability that no memory of the noise accounts for.
+pub(crate) const BEYOND_DOUBT: f64 = 1e-6;
+
+/// Percent of the error that an effect beyond doubt takes away.
+pub(crate) const BEYOND_DOUBT_PERCENT: f64 = 5.0;
+
 impl Candidate {
     /// What was added, in one word: `dead_band`, or `dead_band + actuator_lag`.
     pub fn name(&self) -> String {
@@ -53,9 +59,7 @@ impl Candidate {
 
     /// Whether it is needed even where the model passes for adequate.
     pub(super) fn is_beyond_doubt(&self) -> bool {
-        /// Probability that no memory of the noise accounts for.
-        const SIGNIFICANCE: f64 = 1e-6;
-        self.p_value < SIGNIFICANCE && self.takes_away(5.0)
+        self.p_value < BEYOND_DOUBT && self.takes_away(BEYOND_DOUBT_PERCENT)
     }
 
     /// Whether it takes `percent` off the error: on data that were not fitted, or, where it

@@ -33,9 +33,13 @@ mod workers;
 
 pub use add::{AddError, Addition, add};
 pub use candidate::Candidate;
+pub(crate) use candidate::{BEYOND_DOUBT, BEYOND_DOUBT_PERCENT};
 pub use grow::Change;
 pub use improve::{Improvement, Revision, improve};
+pub(crate) use race::ALIKE;
 pub use race::Options;
 pub use separate::{Pattern, Proposal, Separation, Start};
+pub(crate) use separate::{level_sets, thresholds, two_digits};
+pub(crate) use verdict::suspected;
 pub use verdict::{Explanation, Verdict, explain};
 pub use workers::{Sequential, Workers};

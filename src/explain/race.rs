@@ -202,7 +202,7 @@ fn nests(entry: &Entry) -> bool {
 
 /// Twice the difference in log-likelihood below which two models are as likely: a likelihood
 /// of one in 150.
-pub(super) const ALIKE: f64 = 10.0;
+pub(crate) const ALIKE: f64 = 10.0;
 
 /// For each candidate the others under which the record is as likely, but for what noise
 /// does.

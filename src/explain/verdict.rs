@@ -63,6 +63,18 @@ pub fn explain(
     Explanation { base, verdict, ranking }
 }
 
+/// The candidates for what the model of `fit` lacks, best first; none where it lacks nothing.
+/// Whether any accounts for it is not asked.
+pub(crate) fn suspected(
+    record: &Record<'_>,
+    fit: Fit,
+    options: &Options,
+    workers: &impl Workers,
+) -> Vec<Candidate> {
+    let mut step = Step::new(record, Change::Start, fit);
+    if step.look(record, options, workers) { step.ranking } else { Vec::new() }
+}
+
 /// Whether the best candidate is to be named. An effect that further ones make useless
 /// gives way to the first that remains.
 fn accounts_for_it(

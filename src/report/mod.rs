@@ -5,6 +5,7 @@ mod against;
 mod compare;
 mod decisions;
 mod delays;
+mod design;
 mod equation;
 mod explain;
 mod finding;
@@ -35,6 +36,7 @@ pub use decisions::{
     write_decisions,
 };
 pub use delays::{delay_table, write_delays};
+pub use design::{DesignJson, DesignedJoint, Told, design_text, write_input, write_preview};
 pub use explain::{ExplainJson, explain_text};
 pub use finding::Finding;
 pub use folder::{FolderJson, FolderReport, LogResult};

@@ -1,120 +1,15 @@
-//! The experiment that would tell two effects apart.
-//!
-//! Two fitted models are simulated on a number of inputs that suit the record: levels about
-//! the fitted thresholds, below the smallest and up to the largest level, in ladders, pulses
-//! and reversals, with short and long holds, at several angles. The input is proposed that
-//! brings the most evidence per second of experiment.
+//! What experiments there can be on a joint, and which of them tells two models apart.
 
-use super::Workers;
-use super::candidate::Candidate;
-use super::race::ALIKE;
-use crate::effect::{Dimension, RecordRange};
+use super::Separation;
+use super::levels::{level_sets, thresholds, two_digits, two_digits_of};
+use super::proposal::{Proposal, Start};
+use crate::effect::RecordRange;
 use crate::experiment::Trial;
+use crate::explain::candidate::Candidate;
+use crate::explain::race::ALIKE;
 use crate::fit::Record;
 use crate::model::{JointModel, Restart, Simulated, Surroundings, arrivals, simulate};
 use crate::units::SamplePeriod;
-
-/// How the levels of an input follow one another.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pattern {
-    /// Rising and then falling, first in one direction and then in the other.
-    Ladder,
-    /// Each in both directions, with the input at zero behind each.
-    Pulses,
-    /// Each in both directions, one at once behind the other.
-    Reversals,
-}
-
-/// Where and when a run of an experiment starts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Start {
-    /// The angle, output units.
-    pub angle: f64,
-    /// Activity of the other joints meanwhile, 0 to 1.
-    pub others: f64,
-    /// Seconds for which the machine has worked before.
-    pub worked_s: f64,
-}
-
-/// An experiment: an input, and the runs that are made with it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Proposal {
-    /// How the levels follow one another.
-    pub pattern: Pattern,
-    /// Their magnitudes, ascending, input units.
-    pub levels: Vec<f64>,
-    /// How long each is held, seconds.
-    pub hold_s: f64,
-    /// Where each run starts.
-    pub starts: Vec<Start>,
-}
-
-/// What would tell two effects apart.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Separation {
-    /// Id of the other effect.
-    pub other: &'static str,
-    /// The best experiment of those that were tried.
-    pub proposal: Proposal,
-    /// The largest difference between the outputs of the two models in it, in times the
-    /// noise of the measurement.
-    pub times_noise: f64,
-    /// Seconds from the start of a run to that.
-    pub after_s: f64,
-    /// Whether a change of gain and of starts would leave so much of the difference that the
-    /// two are told apart.
-    pub is_clear: bool,
-}
-
-impl Proposal {
-    /// The levels of a run in their order, each held for [`hold_s`](Self::hold_s); the joint
-    /// rests as long before the first.
-    pub fn sequence(&self) -> Vec<f64> {
-        let mirrored = |level: &f64| [*level, -level];
-        match self.pattern {
-            Pattern::Ladder => {
-                let falling = self.levels.iter().rev().skip(1);
-                let up_and_down: Vec<f64> = self.levels.iter().chain(falling).copied().collect();
-                let back = up_and_down.iter().map(|level| -level);
-                std::iter::once(0.0).chain(up_and_down.iter().copied()).chain(back).collect()
-            }
-            Pattern::Pulses => {
-                let pulses = self.levels.iter().flat_map(mirrored);
-                std::iter::once(0.0).chain(pulses.flat_map(|level| [level, 0.0])).collect()
-            }
-            Pattern::Reversals => {
-                std::iter::once(0.0).chain(self.levels.iter().flat_map(mirrored)).collect()
-            }
-        }
-    }
-
-    /// Seconds that all runs take together.
-    pub fn duration_s(&self) -> f64 {
-        (self.sequence().len() * self.starts.len()) as f64 * self.hold_s
-    }
-}
-
-/// Tells each candidate that is worth a name by what it is told from those it cannot be
-/// told from.
-pub(super) fn separate(record: &Record<'_>, ranking: &mut [Candidate], workers: &impl Workers) {
-    let place = |id: &str| ranking.iter().position(|c| c.effects == [id]);
-    let of_one = |(one, candidate): (usize, &Candidate)| {
-        let worthy = candidate.is_significant();
-        let others = candidate.indistinguishable_from.iter().filter_map(|id| place(id));
-        others.filter(move |_| worthy).map(move |other| (one, other)).collect::<Vec<_>>()
-    };
-    let pairs: Vec<_> = ranking.iter().enumerate().flat_map(of_one).collect();
-    let setting = Setting::of(record);
-    let apart = |(one, other): &(usize, usize)| {
-        Some((*one, setting.apart(ranking.get(*one)?, ranking.get(*other)?)?))
-    };
-    let found = workers.map(&pairs, apart);
-    for (one, separation) in found.into_iter().flatten() {
-        if let Some(candidate) = ranking.get_mut(one) {
-            candidate.separated_by.push(separation);
-        }
-    }
-}
 
 /// A difference of less than so many times the noise tells nothing apart.
 const VISIBLE: f64 = 3.0;
@@ -124,7 +19,7 @@ const VISIBLE: f64 = 3.0;
 const CLEAR: f64 = 4.0 * ALIKE;
 
 /// What experiments there can be on the joint of a record.
-struct Setting {
+pub(super) struct Setting {
     period_s: f64,
     /// Seconds between steps of the input, on average.
     hold_s: f64,
@@ -145,7 +40,7 @@ struct Trialled {
 }
 
 impl Setting {
-    fn of(record: &Record<'_>) -> Self {
+    pub(super) fn of(record: &Record<'_>) -> Self {
         let levels = record.input_levels();
         let RecordRange {
             output_min,
@@ -171,7 +66,7 @@ impl Setting {
 
     /// The best experiment: within the levels of the record, and beyond them only where
     /// none within tells the two apart.
-    fn apart(&self, one: &Candidate, other: &Candidate) -> Option<Separation> {
+    pub(super) fn apart(&self, one: &Candidate, other: &Candidate) -> Option<Separation> {
         let &[id] = other.effects.as_slice() else { return None };
         let noise = one.noise_floor.or(one.training.map(|error| error.rmse));
         let noise = noise.filter(|noise| *noise > 0.0)?;
@@ -202,7 +97,8 @@ impl Setting {
     fn proposals(&self, pair: [&Candidate; 2]) -> (Vec<Proposal>, Vec<Proposal>) {
         /// What may be added to the largest level by rounding.
         const ROUNDED: f64 = 1.05;
-        let sets = self.level_sets(pair);
+        let suspects = pair.map(|c| (&c.fit.model, c.effects.as_slice()));
+        let sets = level_sets(self.levels, &thresholds(suspects, self.levels.1));
         let starts = self.start_sets(pair);
         let holds = [0.25, 1.0, 4.0].map(|part| self.hold(part * self.hold_s));
         let mut all = Vec::new();
@@ -222,27 +118,6 @@ impl Setting {
     }
 
     /// Levels that are worth a trial, and the patterns to try them in.
-    fn level_sets(&self, pair: [&Candidate; 2]) -> Vec<(Vec<f64>, &'static [Pattern])> {
-        const ALL: &[Pattern] = &[Pattern::Ladder, Pattern::Pulses, Pattern::Reversals];
-        const LADDER: &[Pattern] = &[Pattern::Ladder];
-        let (least, largest) = self.levels;
-        let about = |level: f64, parts: &[f64]| -> Vec<f64> {
-            let mut levels: Vec<f64> = parts.iter().map(|part| two_digits(part * level)).collect();
-            levels.dedup();
-            levels
-        };
-        let mut sets = vec![
-            (about(least, &[0.25, 0.5, 0.75, 1.0]), LADDER),
-            (about(largest, &[0.25, 0.5, 0.75, 1.0]), LADDER),
-            (about(largest, &[0.5, 1.0]), ALL),
-            (about(largest, &[1.25, 1.5]), ALL),
-        ];
-        let thresholds = thresholds(pair, largest);
-        sets.extend(thresholds.iter().map(|t| (about(*t, &[0.6, 0.8, 1.2, 1.4]), LADDER)));
-        sets
-    }
-
-    /// Sets of starts: in the middle, at several angles, and what else the effects depend on.
     fn start_sets(&self, pair: [&Candidate; 2]) -> Vec<Vec<Start>> {
         let (low, high) = self.range;
         let at = |part: f64| two_digits_of(low + part * (high - low), high - low);
@@ -318,34 +193,6 @@ impl Setting {
     }
 }
 
-/// The levels of the input at which the two switch or bend, different ones.
-fn thresholds(pair: [&Candidate; 2], largest: f64) -> Vec<f64> {
-    /// Thresholds that are tried.
-    const MOST: usize = 4;
-    /// What is nearer, in parts, is the same.
-    const SAME: f64 = 0.15;
-    /// A threshold of a smaller part of the largest level is none.
-    const LEAST: f64 = 0.02;
-    let mut found: Vec<f64> = Vec::new();
-    let components = pair.iter().flat_map(|candidate| {
-        let all = candidate.fit.model.components().iter();
-        all.filter(|c| candidate.effects.contains(&c.effect().spec().id))
-    });
-    for component in components {
-        let specs = component.effect().spec().parameters.iter();
-        let levels = specs.zip(component.parameters());
-        for (_, value) in levels.filter(|(spec, _)| spec.dimension == Dimension::Input) {
-            let level = value.value.abs();
-            let is_new = found.iter().all(|known| (level / known - 1.0).abs() > SAME);
-            if is_new && level > LEAST * largest && level < largest {
-                found.push(level);
-            }
-        }
-    }
-    found.truncate(MOST);
-    found
-}
-
 /// The sum of squares of `values` without what `shape` would explain.
 fn beside(values: &[f64], shape: &[f64]) -> f64 {
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -377,24 +224,9 @@ fn samples(seconds: f64, period_s: f64) -> usize {
     samples
 }
 
-/// `value` to two significant digits, so that what is said is what was tried.
-fn two_digits(value: f64) -> f64 {
-    two_digits_of(value, value)
-}
-
-/// `value` to the second significant digit of `size`.
-fn two_digits_of(value: f64, size: f64) -> f64 {
-    if size == 0.0 || !size.is_finite() {
-        return value;
-    }
-    #[expect(clippy::cast_possible_truncation, reason = "an exponent is small")]
-    let exponent = size.abs().log10().floor() as i32 - 1;
-    let unit = 10_f64.powi(exponent.abs());
-    if exponent < 0 { (value * unit).round() / unit } else { (value / unit).round() * unit }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::proposal::Pattern;
     use super::*;
     use crate::effect::{DeadBand, FlowCurve};
     use crate::model::Component;
@@ -418,14 +250,6 @@ mod tests {
     fn model(effect: &'static dyn crate::effect::Effect, values: &[f64]) -> JointModel {
         let values = values.iter().map(|value| (*value).into()).collect();
         JointModel::integrator(10.0, 0.0).with(Component::new(effect, values).unwrap())
-    }
-
-    #[test]
-    fn each_pattern_goes_both_ways() {
-        let levels = |pattern| proposal(pattern, &[1.0, 2.0], 0.0).sequence();
-        assert_eq!(levels(Pattern::Ladder), [0.0, 1.0, 2.0, 1.0, -1.0, -2.0, -1.0]);
-        assert_eq!(levels(Pattern::Pulses), [0.0, 1.0, 0.0, -1.0, 0.0, 2.0, 0.0, -2.0, 0.0]);
-        assert_eq!(levels(Pattern::Reversals), [0.0, 1.0, -1.0, 2.0, -2.0]);
     }
 
     #[test]
@@ -458,12 +282,5 @@ mod tests {
         };
         // It goes 40 deg up.
         assert!(run(-5.0) && !run(0.0));
-    }
-
-    #[test]
-    fn levels_are_said_in_two_digits() {
-        let shown = [0.123_4, 1.56, 0.0, 123.0].map(|value| two_digits(value).to_string());
-        assert_eq!(shown, ["0.12", "1.6", "0", "120"]);
-        assert!((two_digits_of(32.456, 80.0) - 32.0).abs() < 1e-12);
     }
 }

@@ -1,0 +1,136 @@
+//! What is known before an experiment is designed: logs, models, where it is played.
+
+use anyhow::{Context as _, anyhow, bail};
+use tauscope::batch::{Mode, Protocol, estimate_joints};
+use tauscope::delay::Settings;
+use tauscope::design::Stand;
+use tauscope::experiment::{Experiment, Joint, ReadOptions, Trial, expand_folders};
+use tauscope::fit::Horizon;
+use tauscope::model::{JointModel, ModelFile};
+use tauscope::units::SamplePeriod;
+
+use super::Args;
+use crate::cli::fitting::Estimates;
+
+/// Samples per second where nothing is known.
+const RATE_HZ: f64 = 100.0;
+
+/// The name of a joint where nothing names one.
+const NAME: &str = "joint";
+
+/// Logs, models and the joints that are driven.
+pub(super) struct Desk {
+    pub(super) file: ModelFile,
+    pub(super) experiment: Option<Experiment>,
+    pub(super) names: Vec<String>,
+    period: SamplePeriod,
+}
+
+/// How a log's model is fitted before anything is said of the next experiment.
+pub(super) const PROTOCOL: Protocol =
+    Protocol { mode: Mode::FitOrIntegrator, split: None, horizon: Horizon::Steps };
+
+impl Desk {
+    pub(super) fn new(args: &Args) -> anyhow::Result<Self> {
+        let file = args.model.as_deref().map(ModelFile::read).transpose()?.unwrap_or_default();
+        let experiment = read(args)?;
+        let first = experiment.iter().flat_map(|e| &e.joints).flat_map(|joint| &joint.trials);
+        let logged = first.map(Trial::period).next();
+        let given = args
+            .rate
+            .map(|rate| SamplePeriod::from_seconds(1.0 / rate).context("--rate: out of range"));
+        let usual = SamplePeriod::from_seconds(1.0 / RATE_HZ).context("a sample period")?;
+        let period = given.transpose()?.or(logged).unwrap_or(usual);
+        let names = names(args, &file, experiment.as_ref())?;
+        Ok(Self { file, experiment, names, period })
+    }
+
+    /// The joint `name` in the logs.
+    pub(super) fn joint(&self, name: &str) -> Option<&Joint> {
+        let mut joints = self.experiment.iter().flat_map(|experiment| &experiment.joints);
+        joints.find(|joint| joint.name == name)
+    }
+
+    /// The model of `name` in the file.
+    pub(super) fn model(&self, name: &str) -> Option<&JointModel> {
+        self.file.joint(name)
+    }
+
+    /// All joints of the logs and their delays, where there are logs.
+    pub(super) fn estimated(&self) -> Option<(&[Joint], Estimates)> {
+        let joints = self.experiment.as_ref()?.joints.as_slice();
+        Some((joints, estimate_joints(joints, &Settings::default(), || ())))
+    }
+
+    /// Where `name` is played, within `range`.
+    pub(super) fn stand(&self, args: &Args, name: &str, range: Option<(f64, f64)>) -> Stand {
+        let joint = self.joint(name);
+        let unit = |of: fn(&Joint) -> Option<&String>| joint.and_then(of).cloned();
+        let is_inside = |(low, high): (f64, f64)| low <= 0.0 && high >= 0.0;
+        let middle = range.filter(|range| !is_inside(*range)).map(|(low, high)| 0.5 * (low + high));
+        Stand {
+            name: name.to_owned(),
+            input_unit: unit(|joint| joint.input_unit.as_ref()),
+            output_unit: unit(|joint| joint.output_unit.as_ref()),
+            period: self.period,
+            start: args.start.or(middle).unwrap_or(0.0),
+            range,
+        }
+    }
+}
+
+/// The logs, where there are any.
+fn read(args: &Args) -> anyhow::Result<Option<Experiment>> {
+    if args.data.is_empty() {
+        return Ok(None);
+    }
+    let (files, unlisted) = expand_folders(&args.data);
+    let options = ReadOptions { joints: args.joint.clone(), ..ReadOptions::default() };
+    let mut experiment = Experiment::read(&files, &options);
+    experiment.failures.splice(0..0, unlisted);
+    if experiment.joints.is_empty() {
+        let first = experiment.failures.drain(..).next().context("no joint in the logs")?;
+        return Err(anyhow::Error::from(first.error).context("nothing could be read"));
+    }
+    Ok(Some(experiment))
+}
+
+/// The joints that are driven.
+fn names(
+    args: &Args,
+    file: &ModelFile,
+    experiment: Option<&Experiment>,
+) -> anyhow::Result<Vec<String>> {
+    if let Some(experiment) = experiment {
+        return Ok(experiment.joints.iter().map(|joint| joint.name.clone()).collect());
+    }
+    let known: Vec<String> = file.names().map(str::to_owned).collect();
+    if let Some(unknown) = args.joint.iter().find(|name| !known.is_empty() && !known.contains(name))
+    {
+        let known = known.join(", ");
+        return Err(anyhow!("joint `{unknown}`: not in the model file, which has {known}"));
+    }
+    for (index, name) in args.joint.iter().enumerate() {
+        if args.joint.iter().take(index).any(|other| other == name) {
+            bail!("--joint {name}: named twice");
+        }
+    }
+    match (args.joint.as_slice(), known.as_slice()) {
+        ([], []) => Ok(vec![NAME.to_owned()]),
+        ([], known) => Ok(known.to_vec()),
+        (named, _) => Ok(named.to_vec()),
+    }
+}
+
+/// The largest magnitude of the input in the log of `joint`.
+pub(super) fn largest(joint: &Joint) -> f64 {
+    let inputs = joint.trials.iter().flat_map(Trial::input);
+    inputs.fold(0.0, |largest: f64, input| largest.max(input.abs()))
+}
+
+/// Lowest and highest output in the log of `joint`.
+pub(super) fn extent(joint: &Joint) -> (f64, f64) {
+    let outputs = joint.trials.iter().flat_map(Trial::output);
+    let none = (f64::INFINITY, f64::NEG_INFINITY);
+    outputs.fold(none, |(low, high), y| (low.min(*y), high.max(*y)))
+}

@@ -1,0 +1,118 @@
+//! Random steps for each joint.
+
+use anyhow::{anyhow, bail};
+use tauscope::batch::{OfJoints, know_joints};
+use tauscope::design::{
+    Band, RandomSteps, Stand, Uncertain, default_hold_s, default_largest, default_levels,
+    random_steps, response_s, resting_band,
+};
+use tauscope::experiment::Joint;
+use tauscope::report::DesignedJoint;
+
+use super::Args;
+use super::desk::{Desk, PROTOCOL, largest};
+use super::values::BandChoice;
+use crate::cli::with_causes;
+
+/// Length of the input where none is given.
+const DURATION_S: f64 = 120.0;
+
+/// The input of each joint, or why it has none.
+pub(super) fn designed(args: &Args, desk: &Desk) -> Vec<anyhow::Result<DesignedJoint>> {
+    let known = known(args, desk);
+    let one = |(index, name): (usize, &String)| {
+        let uncertain = match known.get(index) {
+            Some(Some(Ok(known))) => Some(known.clone()),
+            Some(Some(Err(error))) => bail!("{}", with_causes(error)),
+            _ => {
+                let model = desk.model(name);
+                model.map(|model| Uncertain::by_share(model.clone(), args.uncertainty))
+            }
+        };
+        let stand = desk.stand(args, name, args.output_range);
+        steps_of(args, desk, stand, uncertain.as_ref(), index)
+    };
+    desk.names.iter().enumerate().map(one).collect()
+}
+
+/// What logs tell of the joints.
+fn known(args: &Args, desk: &Desk) -> OfJoints<Uncertain> {
+    let Some((joints, estimates)) = desk.estimated() else { return Vec::new() };
+    let models = |joint: &Joint| desk.model(&joint.name).cloned();
+    know_joints(joints, &estimates, models, PROTOCOL, args.uncertainty)
+}
+
+/// The input of one joint.
+fn steps_of(
+    args: &Args,
+    desk: &Desk,
+    stand: Stand,
+    uncertain: Option<&Uncertain>,
+    index: usize,
+) -> anyhow::Result<DesignedJoint> {
+    let model = uncertain.map(|uncertain| &uncertain.model);
+    if args.output_range.is_some() && model.is_none() {
+        bail!(
+            "--output-range: where the joint goes is known from a model only; give --model or a log"
+        );
+    }
+    let logged = desk.joint(&stand.name).map(largest).filter(|largest| *largest > 0.0);
+    let given = args.levels.as_ref().map(super::values::Levels::largest);
+    let largest = given.or(args.largest).or(logged);
+    let largest = largest.unwrap_or_else(|| default_largest(model, &stand));
+    let levels = match &args.levels {
+        Some(levels) => levels.0.clone(),
+        None => default_levels(model, &stand, largest),
+    };
+    let levels = match args.dead_band {
+        Some(choice) => band(choice, uncertain, &stand, largest)?.applied(&levels),
+        None => levels,
+    };
+    if levels.len() < 2 {
+        bail!("--levels: fewer than two are left; an input needs two different levels or more");
+    }
+    let hold_s = args.hold.unwrap_or_else(|| default_hold_s(model, &stand, largest));
+    let duration_s = args.duration.unwrap_or(DURATION_S);
+    if hold_s.0 > duration_s {
+        bail!("--hold {}: longer than the whole input of {duration_s} s", hold_s.0);
+    }
+    let steps = RandomSteps { levels, hold_s, duration_s, seed: args.seed };
+    let schedule = random_steps(&steps, &stand, uncertain, index);
+    let prediction = uncertain.map(|uncertain| stand.prediction(uncertain, &schedule));
+    let notes = model.and_then(|model| {
+        let response = response_s(model, &stand, largest);
+        (hold_s.0 < response).then(|| {
+            format!(
+                "Holds from {} s are shorter than the {response:.2} s in which the model responds: \
+                 a level may be over before it shows.",
+                hold_s.0
+            )
+        })
+    });
+    let notes = notes.into_iter().collect();
+    Ok(DesignedJoint { stand, schedule, prediction, told: None, notes })
+}
+
+/// What is to become of which dead band.
+fn band(
+    choice: BandChoice,
+    uncertain: Option<&Uncertain>,
+    stand: &Stand,
+    largest: f64,
+) -> anyhow::Result<Band> {
+    let of_model = || {
+        let model = uncertain.map(|uncertain| &uncertain.model);
+        let band = model.and_then(|model| resting_band(model, stand, largest));
+        band.ok_or_else(|| match model {
+            Some(_) => anyhow!("--dead-band: the model has none; give its ends, as in -0.4,0.4"),
+            None => {
+                anyhow!("--dead-band: no model tells it; give --model, or its ends, as in -0.4,0.4")
+            }
+        })
+    };
+    Ok(match choice {
+        BandChoice::Cross => of_model().map(|(lower, upper)| Band::Cross(lower, upper))?,
+        BandChoice::Avoid => of_model().map(|(lower, upper)| Band::Avoid(lower, upper))?,
+        BandChoice::Given(lower, upper) => Band::Avoid(lower, upper),
+    })
+}

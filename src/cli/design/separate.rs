@@ -1,0 +1,164 @@
+//! The shortest input that tells two effects apart, for each joint.
+
+use anyhow::{Context as _, anyhow, bail};
+use tauscope::batch::{design_separation, suspect_joints};
+use tauscope::design::{
+    Limits, RandomSteps, Stand, Suspects, default_hold_s, default_largest, default_levels,
+};
+use tauscope::effect::Effect;
+use tauscope::experiment::Joint;
+use tauscope::model::JointModel;
+use tauscope::report::{DesignedJoint, Told};
+
+use super::Args;
+use super::desk::{Desk, PROTOCOL, extent, largest};
+use crate::cli::fitting::find;
+use crate::cli::with_causes;
+
+/// Longest input that is tried where no other is given.
+const LONGEST_S: f64 = 60.0;
+
+/// Length of the log that a model stands for, where there is none.
+const LOG_S: f64 = 60.0;
+
+/// The input of each joint, or why it has none.
+pub(super) fn designed(
+    args: &Args,
+    desk: &Desk,
+) -> anyhow::Result<Vec<anyhow::Result<DesignedJoint>>> {
+    let effects = effects(args, desk)?;
+    let suspected = match desk.estimated() {
+        None => Vec::new(),
+        Some((joints, estimates)) => {
+            let base = |joint: &Joint| Some(without(desk.model(&joint.name)?, effects));
+            let known = (args.noise, args.uncertainty);
+            suspect_joints(joints, &estimates, base, PROTOCOL, effects, known)
+        }
+    };
+    let mut suspected = suspected.into_iter();
+    let one = |name: &String| {
+        let stand = desk.stand(args, name, range(args, desk, name));
+        let suspects = match suspected.next() {
+            Some(Some(Ok(suspects))) => suspects,
+            Some(Some(Err(error))) => bail!("{}", with_causes(&error)),
+            Some(None) => bail!("it has no model"),
+            None => of_model(args, desk, &stand, effects)?,
+        };
+        told(args, desk, stand, &suspects)
+    };
+    Ok(desk.names.iter().map(one).collect())
+}
+
+/// The two effects that are named.
+fn effects(args: &Args, desk: &Desk) -> anyhow::Result<[&'static dyn Effect; 2]> {
+    let [one, other] = args.separate.as_slice() else {
+        let count = args.separate.len();
+        bail!("--separate: expected two effects, as in dead_band,stiction; there are {count}");
+    };
+    let known = desk.file.candidates();
+    let named = |id: &str| find(id.trim(), known).context("--separate");
+    let (one, other) = (named(one)?, named(other)?);
+    if one.spec().id == other.spec().id {
+        bail!("--separate: `{}` is there twice; name two different effects", one.spec().id);
+    }
+    Ok([one, other])
+}
+
+fn without(model: &JointModel, effects: [&'static dyn Effect; 2]) -> JointModel {
+    effects.iter().fold(model.clone(), |model, effect| model.without(effect.spec().id))
+}
+
+/// Where the joint may go: a tenth beyond where its log has been, unless that is said.
+fn range(args: &Args, desk: &Desk, name: &str) -> Option<(f64, f64)> {
+    const BEYOND: f64 = 0.1;
+    let logged = desk.joint(name).map(|joint| {
+        let (low, high) = extent(joint);
+        (low - BEYOND * (high - low), high + BEYOND * (high - low))
+    });
+    args.output_range.or(logged)
+}
+
+/// The suspects where only a model is known.
+fn of_model(
+    args: &Args,
+    desk: &Desk,
+    stand: &Stand,
+    effects: [&'static dyn Effect; 2],
+) -> anyhow::Result<Suspects> {
+    let name = &stand.name;
+    let model = desk.model(name).ok_or_else(|| {
+        anyhow!("--separate: give a log, or --model with a file that has one of the two effects")
+    })?;
+    let has = |effect: &dyn Effect| {
+        let mut own = model.components().iter().map(|component| component.effect().spec().id);
+        own.any(|id| id == effect.spec().id)
+    };
+    let [one, other] = effects;
+    let ids = effects.map(|effect| effect.spec().id);
+    let effects = match (has(one), has(other)) {
+        (true, false) => [one, other],
+        (false, true) => [other, one],
+        (true, true) => bail!(
+            "the model has both {} and {}: take one of them out, or give a log",
+            ids[0],
+            ids[1]
+        ),
+        (false, false) => bail!(
+            "the model has neither {} nor {}, so it is not known how large they are: give a log, \
+             or a model that has one of them (`tauscope add {} LOG.csv --model FILE`)",
+            ids[0],
+            ids[1],
+            ids[0]
+        ),
+    };
+    let mut history = desk.file.history(name).iter().rev();
+    let noise = args.noise.or_else(|| history.find_map(|entry| entry.validation_rmse));
+    let noise = noise.filter(|noise| *noise > 0.0).context(
+        "--noise: the model file has no history with an error, so the noise is not known; give it",
+    )?;
+    let largest = args.largest.unwrap_or_else(|| default_largest(Some(model), stand));
+    let steps = RandomSteps {
+        levels: default_levels(Some(model), stand, largest),
+        hold_s: default_hold_s(Some(model), stand, largest),
+        duration_s: LOG_S,
+        seed: args.seed,
+    };
+    Ok(Suspects::of_model(model, effects, noise, args.uncertainty, (stand, &steps))?)
+}
+
+/// The input that tells the suspects apart, and what is expected of it.
+fn told(
+    args: &Args,
+    desk: &Desk,
+    stand: Stand,
+    suspects: &Suspects,
+) -> anyhow::Result<DesignedJoint> {
+    let [one, other] = &suspects.models;
+    let logged = desk.joint(&stand.name).map(largest).filter(|largest| *largest > 0.0);
+    let largest = args.largest.or(logged);
+    let limits = Limits {
+        largest: largest.unwrap_or_else(|| default_largest(Some(&one.model), &stand)),
+        hold_s: args.hold,
+        longest_s: args.duration.unwrap_or(LONGEST_S),
+        power: args.power,
+        rehearsals: args.rehearsals,
+    };
+    let design = design_separation(suspects, &stand, &limits)?;
+    let schedule = design.schedule.clone();
+    let prediction = Some(stand.prediction(one, &schedule));
+    let other = stand.output(&other.model, &schedule);
+    let (ids, noise, wanted) = (suspects.ids(), suspects.noise, args.power);
+    let next = format!(
+        "Play it, and ask: tauscope explain LOG.csv --effects {}; with --model, of a model that \
+         has neither.",
+        ids.join(",")
+    );
+    let doubt = (!design.passes(&limits)).then(|| {
+        "Fewer rehearsals went well than were wanted: what is known of the two leaves it open \
+         whether this input will do; a log that shows them better, or larger levels, may help."
+            .to_owned()
+    });
+    let notes = doubt.into_iter().chain([next]).collect();
+    let told = Some(Told { ids, design, wanted, noise, other });
+    Ok(DesignedJoint { stand, schedule, prediction, told, notes })
+}

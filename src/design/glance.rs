@@ -1,0 +1,132 @@
+//! A glance at an input: how far a rival stays at its known numbers, but for what small changes
+//! of them would mend.
+
+use super::predict::Stand;
+use super::schedule::Schedule;
+use super::suspects::Suspects;
+use crate::model::JointModel;
+
+/// Samples of a window between steps of the input, at most: as of a fit.
+const LONGEST_WINDOW: usize = 200;
+
+/// Differences of two models along an input, for several numbers of the first that are likely,
+/// and what each parameter of the second does.
+pub(super) struct Glance {
+    differences: Vec<Vec<f64>>,
+    slopes: Vec<Vec<f64>>,
+}
+
+impl Glance {
+    /// What suspect number `truth` does with `schedule`, seen by `rival`.
+    pub(super) fn at(
+        suspects: &Suspects,
+        truth: usize,
+        rival: &JointModel,
+        (stand, schedule): (&Stand, &Schedule),
+    ) -> Option<Self> {
+        /// Further numbers of the truth that are looked at.
+        const DRAWS: usize = 5;
+        let here = stand.output(rival, schedule);
+        let slopes = free(rival).map(|place| {
+            let moved = stand.output(&moved(rival, place), schedule);
+            moved.iter().zip(&here).map(|(a, b)| a - b).collect()
+        });
+        let slopes = slopes.collect();
+        let truth = suspects.models.get(truth)?;
+        let models = std::iter::once(&truth.model).chain(truth.draws.iter().take(DRAWS));
+        let differences = models.map(|model| {
+            let there = stand.output(model, schedule);
+            there.iter().zip(&here).map(|(a, b)| a - b).collect()
+        });
+        Some(Self { differences: differences.collect(), slopes })
+    }
+
+    /// The noncentralities of the first `count` holds: at the numbers of the truth that are
+    /// known best, and at others.
+    pub(super) fn noncentralities(
+        &self,
+        schedule: &Schedule,
+        count: usize,
+        noise: f64,
+    ) -> Vec<f64> {
+        let windows = windows(schedule, count);
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        for slope in &self.slopes {
+            let mut column = centred(slope, &windows);
+            let before = dot(&column, &column);
+            for known in &basis {
+                take_off(&mut column, known);
+            }
+            // What others do already is left out.
+            if dot(&column, &column) > 1e-8 * before {
+                basis.push(column);
+            }
+        }
+        let left = self.differences.iter().map(|difference| {
+            let mut rest = centred(difference, &windows);
+            for column in &basis {
+                take_off(&mut rest, column);
+            }
+            dot(&rest, &rest) / (noise * noise)
+        });
+        left.collect()
+    }
+}
+
+/// The parameters of a model that are fitted, in the order of its values.
+fn free(model: &JointModel) -> impl Iterator<Item = usize> {
+    let specs = model.components().iter().map(|component| component.effect().spec());
+    let effects = specs.flat_map(|spec| spec.parameters.iter().map(|p| p.fitted));
+    let fitted: Vec<bool> = [true, true].into_iter().chain(effects).collect();
+    let values = model.values();
+    (0..values.len()).filter(move |place| {
+        let fixed = values.get(*place).is_none_or(|value| value.fixed);
+        !fixed && fitted.get(*place).copied().unwrap_or_default()
+    })
+}
+
+/// `model` with the parameter at `place` moved a little.
+fn moved(model: &JointModel, place: usize) -> JointModel {
+    /// In parts of the value, or of one.
+    const PART: f64 = 1e-4;
+    let mut values: Vec<f64> = model.values().iter().map(|value| value.value).collect();
+    if let Some(value) = values.get_mut(place) {
+        *value += PART * value.abs().max(0.01);
+    }
+    model.with_values(&values)
+}
+
+/// Borders of the windows of the first `count` holds.
+fn windows(schedule: &Schedule, count: usize) -> Vec<(usize, usize)> {
+    let mut windows = Vec::new();
+    let mut start = 0;
+    for hold in schedule.holds().iter().take(count) {
+        let parts = hold.samples.div_ceil(LONGEST_WINDOW).max(1);
+        let border = |part: usize| start + hold.samples * part / parts;
+        windows.extend((0..parts).map(|part| (border(part), border(part + 1))));
+        start += hold.samples;
+    }
+    windows
+}
+
+/// `values` in windows, each without its mean: a fit starts anew there.
+fn centred(values: &[f64], windows: &[(usize, usize)]) -> Vec<f64> {
+    let window = |(start, end): &(usize, usize)| {
+        let part = values.get(*start..*end).unwrap_or_default();
+        let mean = part.iter().sum::<f64>() / part.len().max(1) as f64;
+        part.iter().map(|value| value - mean).collect::<Vec<_>>()
+    };
+    windows.iter().flat_map(window).collect()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Takes off `values` what `column` explains of them.
+fn take_off(values: &mut [f64], column: &[f64]) {
+    let share = dot(values, column) / dot(column, column).max(f64::MIN_POSITIVE);
+    for (value, column) in values.iter_mut().zip(column) {
+        *value -= share * column;
+    }
+}

@@ -1,0 +1,169 @@
+//! How well a record knows the numbers of a model.
+
+use rand::SeedableRng as _;
+use rand::seq::IndexedRandom as _;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution as _, StandardNormal};
+
+use super::predict::Uncertain;
+use crate::effect::UNLIMITED;
+use crate::fit::{Fit, Record, Status};
+use crate::model::JointModel;
+
+/// Standard deviations within which a number lies.
+const DEVIATIONS: f64 = 2.0;
+
+impl Uncertain {
+    /// A fitted model with its standard errors.
+    ///
+    /// A parameter that has none, such as a level between two levels of the input, is
+    /// somewhere in the range in which the record is as likely: it is put into the middle of
+    /// that, which is four standard deviations wide. Where there is no such range, it is off by
+    /// `share` of its value.
+    pub fn of_fit(record: &Record<'_>, fit: &Fit, noise: f64, share: f64) -> Self {
+        let mut known = Self::by_share(fit.model.clone(), share);
+        for (place, parameter) in fit.parameters.iter().enumerate() {
+            let is_free = matches!(parameter.status, Status::Undetermined | Status::AtBound);
+            let span = is_free.then(|| span(record, &known.model, place, noise)).flatten();
+            let deviation = match (span, parameter.std_error) {
+                (Some((low, high)), _) => {
+                    known.model = with(&known.model, place, 0.5 * (low + high));
+                    0.5 * (high - low) / DEVIATIONS
+                }
+                (None, Some(error)) => error,
+                (None, None) => continue,
+            };
+            if let Some(slot) = known.deviations.get_mut(place) {
+                *slot = deviation;
+            }
+        }
+        known.draws = likely(record, &known, noise);
+        known
+    }
+
+    /// The model with numbers that are drawn from what is known of them.
+    pub(super) fn drawn(&self, random: &mut ChaCha8Rng) -> JointModel {
+        let drawn = self.draws.choose(random).cloned();
+        drawn.unwrap_or_else(|| self.apart(1.0, random))
+    }
+
+    /// The model with each number drawn by itself, `scale` times as far as it may be off.
+    fn apart(&self, scale: f64, random: &mut ChaCha8Rng) -> JointModel {
+        let limits = limits(&self.model);
+        let values = self.model.values().into_iter().zip(&self.deviations).zip(limits);
+        let drawn = values.map(|((value, deviation), (low, high))| {
+            let by: f64 = StandardNormal.sample(random);
+            let by = by.clamp(-DEVIATIONS, DEVIATIONS);
+            (value.value + scale * by * deviation).clamp(low, high)
+        });
+        self.model.with_values(&drawn.collect::<Vec<_>>())
+    }
+}
+
+/// Models with numbers that are drawn each by itself, and kept where all together leave the
+/// record as likely; nearer ones where too few are.
+fn likely(record: &Record<'_>, known: &Uncertain, noise: f64) -> Vec<JointModel> {
+    const TRIED: usize = 48;
+    const ENOUGH: usize = 12;
+    let cost = |model: &JointModel| cost(record, model, noise);
+    let parameters = known.deviations.iter().filter(|deviation| **deviation > 0.0).count();
+    // Chi-square of so many parameters: mean, and two standard deviations.
+    let parameters = parameters as f64;
+    let allowed = parameters + DEVIATIONS * (2.0 * parameters).sqrt();
+    let limit = cost(&known.model) + allowed;
+    let mut random = ChaCha8Rng::seed_from_u64(0);
+    let mut kept = Vec::new();
+    for scale in [1.0, 0.5, 0.2, 0.05] {
+        let drawn = (0..TRIED).map(|_| known.apart(scale, &mut random));
+        kept.extend(drawn.filter(|model| cost(model) <= limit));
+        if kept.len() >= ENOUGH {
+            break;
+        }
+    }
+    kept
+}
+
+/// What `model` leaves of the record, in variances of the noise.
+fn cost(record: &Record<'_>, model: &JointModel, noise: f64) -> f64 {
+    let left = record.evaluate(model).residuals;
+    left.iter().flatten().map(|e| e * e).sum::<f64>() / (noise * noise)
+}
+
+/// Lowest and highest value of each parameter.
+fn limits(model: &JointModel) -> Vec<(f64, f64)> {
+    let specs = model.components().iter().map(|component| component.effect().spec());
+    let own = specs.flat_map(|spec| spec.parameters.iter().map(|p| (p.min, p.max)));
+    [(f64::MIN, f64::MAX), (0.0, f64::MAX)].into_iter().chain(own).collect()
+}
+
+/// The range of a parameter about its value in which the record is as likely, the others
+/// held.
+fn span(record: &Record<'_>, model: &JointModel, place: usize, noise: f64) -> Option<(f64, f64)> {
+    /// First step from the value, in parts of it, and the growth of further ones.
+    const FIRST: f64 = 0.01;
+    const GROWTH: f64 = 1.5;
+    const STEPS: i32 = 18;
+    /// Twice the log-likelihood ratio of two standard deviations.
+    const AS_LIKELY: f64 = DEVIATIONS * DEVIATIONS;
+    let value = model.values().get(place)?.value;
+    let (low, high) = limits(model).get(place).copied()?;
+    if value.abs() >= UNLIMITED || value.abs() <= f64::MIN_POSITIVE {
+        return None;
+    }
+    let cost = |value: f64| cost(record, &with(model, place, value), noise);
+    let least = cost(value);
+    let end = |sign: f64| {
+        let steps = (0..STEPS).map(|k| FIRST * GROWTH.powi(k) * value.abs());
+        let mut reached = value;
+        for step in steps {
+            let next = (value + sign * step).clamp(low, high);
+            if cost(next) > least + AS_LIKELY {
+                break;
+            }
+            reached = next;
+        }
+        reached
+    };
+    let span = (end(-1.0), end(1.0));
+    (span.1 > span.0).then_some(span)
+}
+
+/// `model` with another value of the parameter at `place`.
+fn with(model: &JointModel, place: usize, value: f64) -> JointModel {
+    let mut values: Vec<f64> = model.values().iter().map(|value| value.value).collect();
+    if let Some(slot) = values.get_mut(place) {
+        *slot = value;
+    }
+    model.with_values(&values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::predict::tests::stand;
+    use super::super::random::{RandomSteps, random_steps};
+    use super::*;
+    use crate::effect::Stiction;
+    use crate::fit::{Horizon, Split, assess};
+    use crate::model::Component;
+
+    #[test]
+    fn a_level_between_two_of_the_input_is_anywhere_between() {
+        let levels = vec![-2.0, -1.0, -0.5, 0.5, 1.0, 2.0];
+        let steps = RandomSteps { levels, hold_s: (0.5, 1.5), duration_s: 30.0, seed: 1 };
+        let stand = stand(None);
+        let schedule = random_steps(&steps, &stand, None, 0);
+        let effect = Component::new(&Stiction, vec![0.7.into(), 0.6.into()]).unwrap();
+        let model = JointModel::integrator(10.0, 0.1).with(effect);
+        let joint = stand.log(&schedule, stand.output(&model, &schedule)).unwrap();
+        let record = Record::new(&joint, Split::Time(0.7), Horizon::Steps);
+        let levels = record.input_levels();
+        let fit = assess(&record, &model, &record.range(&levels, 20.0)).unwrap();
+        let known = Uncertain::of_fit(&record, &fit, 0.05, 0.1);
+        // Steps of the search end a little before 1.0 V.
+        let start = (known.model.values()[2].value, known.deviations[2]);
+        assert!((start.0 - 0.77).abs() < 0.06 && (0.08..0.13).contains(&start.1), "{start:?}");
+        let drawn = known.drawn(&mut ChaCha8Rng::seed_from_u64(1));
+        assert!((0.45..1.05).contains(&drawn.values()[2].value));
+        assert!((drawn.gain.value - 10.0).abs() < 0.1);
+    }
+}

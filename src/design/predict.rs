@@ -1,0 +1,206 @@
+//! What a model says will happen, and how sure that is.
+
+use super::schedule::Schedule;
+use crate::effect::UNLIMITED;
+use crate::experiment::{Joint, Trial};
+use crate::fit::{Horizon, Record, Split};
+use crate::model::{JointModel, Restart, Surroundings, arrivals, simulate};
+use crate::units::SamplePeriod;
+
+/// The joint on which an input is to be played.
+#[derive(Clone, Debug)]
+pub struct Stand {
+    /// Its name.
+    pub name: String,
+    /// Unit of the input.
+    pub input_unit: Option<String>,
+    /// Unit of the output; degrees where it is not known.
+    pub output_unit: Option<String>,
+    /// Seconds between samples.
+    pub period: SamplePeriod,
+    /// The angle at which the input starts, output units.
+    pub start: f64,
+    /// Lowest and highest angle that it may come to, output units.
+    pub range: Option<(f64, f64)>,
+}
+
+/// A model and how far each of its parameters may be off.
+#[derive(Clone, Debug)]
+pub struct Uncertain {
+    /// The model.
+    pub model: JointModel,
+    /// Standard deviation of each parameter, in the order of [`JointModel::values`].
+    pub deviations: Vec<f64>,
+    /// Models that the record holds for as likely, where there is a record.
+    pub draws: Vec<JointModel>,
+}
+
+/// The angle at each sample.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prediction {
+    /// What the model says, output units.
+    pub output: Vec<f64>,
+    /// Two standard deviations of that, output units.
+    pub margin: Vec<f64>,
+}
+
+/// Standard deviations within which an angle is held to stay: 95 %.
+const DEVIATIONS: f64 = 2.0;
+
+impl Uncertain {
+    /// `model` with each parameter off by `share` of its value.
+    pub fn by_share(model: JointModel, share: f64) -> Self {
+        let off = |value: f64| if value.abs() < UNLIMITED { share * value.abs() } else { 0.0 };
+        let deviations = model.values().iter().map(|value| off(value.value)).collect();
+        Self { model, deviations, draws: Vec::new() }
+    }
+
+    /// The model with the parameter at `place` off by so many standard deviations.
+    fn with_off(&self, place: usize, by: f64) -> JointModel {
+        let mut values: Vec<f64> = self.model.values().iter().map(|value| value.value).collect();
+        if let (Some(value), Some(deviation)) = (values.get_mut(place), self.deviations.get(place))
+        {
+            *value += by * deviation;
+        }
+        self.model.with_values(&values)
+    }
+}
+
+impl Stand {
+    /// What `model` does with `schedule`, output units at each sample.
+    pub fn output(&self, model: &JointModel, schedule: &Schedule) -> Vec<f64> {
+        let input = schedule.input();
+        let samples = input.len();
+        let still = vec![0.0; samples];
+        let Ok(trial) = Trial::new("1", 0.0, self.period, input, still) else { return Vec::new() };
+        let surroundings =
+            Surroundings { radians_per_output_unit: self.radians(), ..Surroundings::default() };
+        let arriving = arrivals(model, &trial, 0.0, None);
+        let begin = [Restart { sample: 0, output: self.start, speed: None }];
+        let period_s = self.period.seconds();
+        simulate(model, &arriving, samples, period_s, &begin, &surroundings).output
+    }
+
+    /// The same with its margin: the deviations of all parameters, each by itself, added as
+    /// independent ones are.
+    pub fn prediction(&self, uncertain: &Uncertain, schedule: &Schedule) -> Prediction {
+        let output = self.output(&uncertain.model, schedule);
+        let mut variance = vec![0.0; output.len()];
+        let off = uncertain.deviations.iter().enumerate().filter(|(_, off)| **off > 0.0);
+        for (place, _) in off {
+            let moved = self.output(&uncertain.with_off(place, 1.0), schedule);
+            for (sum, (moved, output)) in variance.iter_mut().zip(moved.iter().zip(&output)) {
+                *sum += (moved - output).powi(2);
+            }
+        }
+        let margin = variance.iter().map(|variance| DEVIATIONS * variance.sqrt()).collect();
+        Prediction { output, margin }
+    }
+
+    /// The log of this joint, had it done `output`.
+    pub(super) fn log(&self, schedule: &Schedule, output: Vec<f64>) -> Option<Joint> {
+        let trial = Trial::new("1", 0.0, self.period, schedule.input(), output).ok()?;
+        Some(Joint {
+            name: self.name.clone(),
+            input_unit: self.input_unit.clone(),
+            output_unit: self.output_unit.clone(),
+            covariates: Vec::new(),
+            trials: vec![trial],
+        })
+    }
+
+    /// Radians in one unit of the output, as a fit takes them.
+    fn radians(&self) -> f64 {
+        let joint = Joint {
+            name: String::new(),
+            input_unit: None,
+            output_unit: self.output_unit.clone(),
+            covariates: Vec::new(),
+            trials: Vec::new(),
+        };
+        let record = Record::new(&joint, Split::Time(1.0), Horizon::FreeRun);
+        record.range(&[], 0.0).radians_per_output_unit
+    }
+}
+
+impl Prediction {
+    /// Lowest and highest angle with the margin.
+    pub fn extent(&self) -> (f64, f64) {
+        let both = self.output.iter().zip(&self.margin);
+        let ends = both.map(|(angle, margin)| (angle - margin, angle + margin));
+        let none = (f64::INFINITY, f64::NEG_INFINITY);
+        ends.fold(none, |(low, high), (l, h)| (low.min(l), high.max(h)))
+    }
+
+    /// The largest margin.
+    pub fn largest_margin(&self) -> f64 {
+        self.margin.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// How far the joint may go beyond `range` from sample `from` on.
+    pub(super) fn excess(&self, (low, high): (f64, f64), from: usize) -> f64 {
+        let both = self.output.iter().zip(&self.margin).skip(from);
+        let beyond = both.map(|(angle, margin)| (low - angle + margin).max(angle + margin - high));
+        beyond.fold(0.0, f64::max)
+    }
+
+    /// Samples until the joint may leave `range`; `None` where it does not.
+    pub fn kept_until(&self, (low, high): (f64, f64)) -> Option<usize> {
+        /// What rounding may add.
+        const ROUNDING: f64 = 1e-9;
+        let slack = ROUNDING * (high - low);
+        let mut both = self.output.iter().zip(&self.margin);
+        both.position(|(angle, margin)| {
+            angle - margin < low - slack || angle + margin > high + slack
+        })
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::super::schedule::Hold;
+    use super::*;
+    use crate::effect::DeadBand;
+    use crate::model::Component;
+
+    pub(crate) fn stand(range: Option<(f64, f64)>) -> Stand {
+        Stand {
+            name: "boom".to_owned(),
+            input_unit: Some("V".to_owned()),
+            output_unit: Some("deg".to_owned()),
+            period: SamplePeriod::from_seconds(0.01).unwrap(),
+            start: 0.0,
+            range,
+        }
+    }
+
+    #[test]
+    fn the_margin_is_what_each_parameter_adds() {
+        let holds = vec![Hold { level: 0.0, samples: 10 }, Hold { level: 2.0, samples: 101 }];
+        let schedule = Schedule::new(stand(None).period, holds);
+        let band = vec![(-0.5).into(), 0.5.into()];
+        let band = Component::new(&DeadBand, band).unwrap();
+        let model = JointModel::integrator(10.0, 0.0).with(band);
+        let uncertain = Uncertain::by_share(model, 0.1);
+        let found = stand(None).prediction(&uncertain, &schedule);
+        // After one second at 1.5 V beyond the band: 15 deg; a tenth of the gain is 1.5 deg,
+        // a tenth of the upper end 0.5 deg.
+        let last = found.output.len() - 1;
+        assert!((found.output[last] - 15.0).abs() < 1e-9);
+        let expected = 2.0 * 1.5_f64.hypot(0.5);
+        assert!((found.margin[last] - expected).abs() < 1e-9, "{}", found.margin[last]);
+        let (low, high) = found.extent();
+        assert!(low.abs() < 1e-9 && (high - 15.0 - expected).abs() < 1e-9);
+        assert_eq!(found.kept_until((-1.0, 20.0)), None);
+        assert!(found.kept_until((-1.0, 16.0)).is_some_and(|sample| sample > 70));
+        assert!((found.excess((-1.0, 16.0), 0) - (high - 16.0)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_limit_that_is_none_is_not_uncertain() {
+        let model = JointModel::integrator(10.0, 0.1);
+        let uncertain =
+            Uncertain::by_share(model.with(Component::neutral(&crate::effect::EndStop)), 0.1);
+        assert_eq!(&uncertain.deviations[2..], [0.0, 0.0]);
+    }
+}

@@ -1,0 +1,205 @@
+//! Random steps: a finite set of levels, repeated, each held for a random time.
+
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+
+use super::predict::{Stand, Uncertain};
+use super::schedule::{Hold, Schedule, samples_in};
+
+/// What is drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RandomSteps {
+    /// The levels, different ones, input units.
+    pub levels: Vec<f64>,
+    /// Shortest and longest hold, seconds; all between are alike.
+    pub hold_s: (f64, f64),
+    /// Length of the input, seconds.
+    pub duration_s: f64,
+    /// Where random numbers come from: the same seed, the same input.
+    pub seed: u64,
+}
+
+/// Draws an input for the joint number `index`, from 0, of an experiment.
+///
+/// It begins at rest. Each next level is one of those to which the input has gone least often
+/// from the level at hand, so that all transitions between two levels are about as frequent;
+/// of several the least frequent level, of those again any. With a `model` and a range, levels
+/// after which the joint may leave the range, with the margin of the model, are left out; where
+/// all of them are, the shortest hold at the level that leaves it least is taken.
+pub fn random_steps(
+    steps: &RandomSteps,
+    stand: &Stand,
+    model: Option<&Uncertain>,
+    index: usize,
+) -> Schedule {
+    let mut drawing = Drawing::new(steps, stand, model, index);
+    let (shortest, _) = steps.hold_s;
+    drawing.push(Hold { level: 0.0, samples: samples_in(shortest, stand.period) });
+    while drawing.left() > 0 {
+        let hold = drawing.next();
+        drawing.push(hold);
+    }
+    Schedule::new(stand.period, drawing.holds)
+}
+
+/// An input that is being drawn.
+struct Drawing<'a> {
+    steps: &'a RandomSteps,
+    stand: &'a Stand,
+    model: Option<&'a Uncertain>,
+    random: ChaCha8Rng,
+    samples: usize,
+    holds: Vec<Hold>,
+}
+
+impl<'a> Drawing<'a> {
+    fn new(
+        steps: &'a RandomSteps,
+        stand: &'a Stand,
+        model: Option<&'a Uncertain>,
+        index: usize,
+    ) -> Self {
+        let mut random = ChaCha8Rng::seed_from_u64(steps.seed);
+        random.set_stream(index as u64);
+        let samples = samples_in(steps.duration_s, stand.period);
+        Self { steps, stand, model, random, samples, holds: Vec::new() }
+    }
+
+    /// Samples that are not drawn yet.
+    fn left(&self) -> usize {
+        let drawn: usize = self.holds.iter().map(|hold| hold.samples).sum();
+        self.samples.saturating_sub(drawn)
+    }
+
+    fn push(&mut self, hold: Hold) {
+        let samples = hold.samples.min(self.left());
+        self.holds.push(Hold { samples, ..hold });
+    }
+
+    fn next(&mut self) -> Hold {
+        let (shortest, longest) = self.steps.hold_s;
+        let seconds = shortest + (longest - shortest) * self.random.random::<f64>();
+        let samples = samples_in(seconds, self.stand.period);
+        let levels = self.by_rarity();
+        let kept = levels.iter().find(|level| self.excess(**level, samples) <= 0.0);
+        if let Some(level) = kept {
+            return Hold { level: *level, samples };
+        }
+        let samples = samples_in(shortest, self.stand.period);
+        let excess = |level: &&f64| self.excess(**level, samples);
+        let least = levels.iter().min_by(|a, b| excess(a).total_cmp(&excess(b)));
+        Hold { level: least.copied().unwrap_or(0.0), samples }
+    }
+
+    /// The levels but the one at hand, rarest transition first.
+    fn by_rarity(&mut self) -> Vec<f64> {
+        let now = self.holds.last().map_or(0.0, |hold| hold.level);
+        let others = self.steps.levels.iter().filter(|level| differ(**level, now));
+        let mut ranked: Vec<(usize, usize, f64, f64)> = Vec::new();
+        for level in others {
+            let (transitions, visits) = self.counts(now, *level);
+            ranked.push((transitions, visits, self.random.random(), *level));
+        }
+        ranked.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
+        ranked.into_iter().map(|(_, _, _, level)| level).collect()
+    }
+
+    /// How often the input went from `before` to `after`, and to `after` at all.
+    fn counts(&self, before: f64, after: f64) -> (usize, usize) {
+        let pairs = self.holds.windows(2).filter_map(|pair| match pair {
+            [a, b] => Some((a.level, b.level)),
+            _ => None,
+        });
+        let into = pairs.filter(|(_, to)| !differ(*to, after));
+        into.fold((0, 0), |(transitions, visits), (from, _)| {
+            (transitions + usize::from(!differ(from, before)), visits + 1)
+        })
+    }
+
+    /// How far the joint may leave its range while `level` acts, if held for so long.
+    fn excess(&self, level: f64, samples: usize) -> f64 {
+        let (Some(range), Some(uncertain)) = (self.stand.range, self.model) else { return 0.0 };
+        let delay = samples_in(uncertain.model.delay.value, self.stand.period);
+        let mut holds = self.holds.clone();
+        let from = holds.iter().map(|hold| hold.samples).sum();
+        holds.push(Hold { level, samples: samples + delay });
+        let schedule = Schedule::new(self.stand.period, holds);
+        self.stand.prediction(uncertain, &schedule).excess(range, from)
+    }
+}
+
+/// Fewest and most times that the input of `schedule` goes from one of its levels to another.
+pub fn transitions(schedule: &Schedule) -> (usize, usize) {
+    let levels = schedule.levels();
+    let count = |from: f64, to: f64| {
+        let pairs = schedule.holds().windows(2);
+        let is_it = |pair: &&[Hold]| matches!(pair, [a, b] if !differ(a.level, from) && !differ(b.level, to));
+        pairs.filter(is_it).count()
+    };
+    let pairs = levels.iter().flat_map(|from| levels.iter().map(move |to| (*from, *to)));
+    let counts = pairs.filter(|(from, to)| differ(*from, *to)).map(|(from, to)| count(from, to));
+    let (least, most) = counts.fold((usize::MAX, 0), |(l, m), n| (l.min(n), m.max(n)));
+    (least.min(most), most)
+}
+
+/// Whether two levels are not the same.
+fn differ(a: f64, b: f64) -> bool {
+    #[expect(clippy::float_cmp, reason = "a step is any change")]
+    let differ = a != b;
+    differ
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::predict::tests::stand;
+    use super::*;
+    use crate::model::JointModel;
+
+    fn steps(duration_s: f64) -> RandomSteps {
+        let levels = vec![-2.0, -1.0, 0.0, 1.0, 2.0];
+        RandomSteps { levels, hold_s: (0.9, 2.0), duration_s, seed: 1 }
+    }
+
+    #[test]
+    fn levels_are_held_as_long_as_asked_and_change_every_time() {
+        let made = random_steps(&steps(120.0), &stand(None), None, 0);
+        assert_eq!(made.samples(), 12_000);
+        let (shortest, longest) = made.hold_range_s();
+        assert!(shortest >= 0.9 && longest <= 2.0 && longest - shortest > 0.8);
+        assert!(made.holds().windows(2).all(|pair| differ(pair[0].level, pair[1].level)));
+        assert_eq!(made.levels(), steps(1.0).levels);
+        assert!(!differ(made.holds()[0].level, 0.0));
+    }
+
+    #[test]
+    fn transitions_are_balanced() {
+        for seed in 0..5 {
+            let made = random_steps(&RandomSteps { seed, ..steps(200.0) }, &stand(None), None, 0);
+            let (least, most) = transitions(&made);
+            assert!(least >= 5 && most - least <= 2, "{least} to {most}");
+        }
+    }
+
+    #[test]
+    fn seeds_and_joints_are_drawn_apart() {
+        let draw = |seed, index| {
+            random_steps(&RandomSteps { seed, ..steps(20.0) }, &stand(None), None, index)
+        };
+        assert_eq!(draw(1, 0), draw(1, 0));
+        assert_ne!(draw(1, 0), draw(2, 0));
+        assert_ne!(draw(1, 0), draw(1, 1));
+    }
+
+    #[test]
+    fn the_range_is_kept_with_its_margin() {
+        let model = Uncertain::by_share(JointModel::integrator(10.0, 0.2), 0.1);
+        for seed in 0..5 {
+            let stand = stand(Some((-40.0, 40.0)));
+            let steps = RandomSteps { seed, ..steps(60.0) };
+            let free = random_steps(&steps, &stand, None, 0);
+            let made = random_steps(&steps, &stand, Some(&model), 0);
+            assert_eq!(stand.prediction(&model, &made).kept_until((-40.0, 40.0)), None);
+            assert!(stand.prediction(&model, &free).kept_until((-40.0, 40.0)).is_some());
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! An input that can be played: levels, each held for a number of samples.
+
+use crate::units::SamplePeriod;
+
+/// A level of the input, held.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hold {
+    /// The level, input units.
+    pub level: f64,
+    /// Samples for which it is held.
+    pub samples: usize,
+}
+
+/// An input, level by level.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Schedule {
+    period: SamplePeriod,
+    holds: Vec<Hold>,
+}
+
+impl Schedule {
+    /// `holds` one behind the other.
+    pub fn new(period: SamplePeriod, holds: Vec<Hold>) -> Self {
+        Self { period, holds }
+    }
+
+    /// Seconds between samples.
+    pub fn period(&self) -> SamplePeriod {
+        self.period
+    }
+
+    /// The levels in their order.
+    pub fn holds(&self) -> &[Hold] {
+        &self.holds
+    }
+
+    /// Samples of all holds.
+    pub fn samples(&self) -> usize {
+        self.holds.iter().map(|hold| hold.samples).sum()
+    }
+
+    /// Seconds that it takes.
+    pub fn duration_s(&self) -> f64 {
+        self.samples() as f64 * self.period.seconds()
+    }
+
+    /// The input at each sample, input units.
+    pub fn input(&self) -> Vec<f64> {
+        let hold = |hold: &Hold| std::iter::repeat_n(hold.level, hold.samples);
+        self.holds.iter().flat_map(hold).collect()
+    }
+
+    /// The distinct levels, ascending.
+    pub fn levels(&self) -> Vec<f64> {
+        let mut levels: Vec<f64> = self.holds.iter().map(|hold| hold.level).collect();
+        levels.sort_by(f64::total_cmp);
+        levels.dedup();
+        levels
+    }
+
+    /// Changes of the level.
+    pub fn steps(&self) -> usize {
+        self.holds.len().saturating_sub(1)
+    }
+
+    /// Shortest and longest hold in seconds, but for the first and the last.
+    pub fn hold_range_s(&self) -> (f64, f64) {
+        let inner = match self.holds.as_slice() {
+            [_, inner @ .., _] if !inner.is_empty() => inner,
+            all => all,
+        };
+        let seconds = |hold: &Hold| hold.samples as f64 * self.period.seconds();
+        let all = inner.iter().map(seconds);
+        all.fold((f64::INFINITY, 0.0), |(low, high), hold| (low.min(hold), high.max(hold)))
+    }
+
+    /// How many of its holds are over after so many seconds.
+    pub(super) fn fitting(&self, seconds: f64) -> usize {
+        let most = samples_in(seconds, self.period);
+        let ends = self.holds.iter().scan(0, |end, hold| {
+            *end += hold.samples;
+            Some(*end)
+        });
+        ends.take_while(|end| *end <= most).count()
+    }
+
+    /// The first `count` holds.
+    #[must_use]
+    pub(super) fn first(&self, count: usize) -> Self {
+        Self { period: self.period, holds: self.holds.iter().take(count).copied().collect() }
+    }
+}
+
+/// Whole samples in so many seconds, at least one.
+pub(super) fn samples_in(seconds: f64, period: SamplePeriod) -> usize {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1")]
+    let samples = (seconds / period.seconds()).round().max(1.0) as usize;
+    samples
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_schedule_is_what_is_played() {
+        let period = SamplePeriod::from_seconds(0.5).unwrap();
+        let hold = |level, samples| Hold { level, samples };
+        let made = Schedule::new(period, vec![hold(0.0, 1), hold(2.0, 3), hold(-1.0, 2)]);
+        assert_eq!(made.input(), [0.0, 2.0, 2.0, 2.0, -1.0, -1.0]);
+        assert_eq!((made.samples(), made.steps(), made.levels()), (6, 2, vec![-1.0, 0.0, 2.0]));
+        assert_eq!((made.duration_s(), made.hold_range_s()), (3.0, (1.5, 1.5)));
+        assert_eq!(made.first(2).input(), [0.0, 2.0, 2.0, 2.0]);
+        assert_eq!((made.fitting(2.0), made.fitting(1.9)), (2, 2));
+        assert_eq!((made.fitting(1.7), samples_in(0.1, period)), (1, 1));
+    }
+}

@@ -1,0 +1,106 @@
+//! Two effects, of which one is missing from a model.
+
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution as _, Normal};
+
+use super::predict::{Stand, Uncertain};
+use super::random::{RandomSteps, random_steps};
+use crate::diagnosis::floor_of;
+use crate::effect::Effect;
+use crate::fit::{Fit, FitError, Horizon, Record, Split, fit};
+use crate::model::{Component, JointModel};
+
+/// A model that lacks one of two effects.
+#[derive(Clone, Debug)]
+pub struct Suspects {
+    /// The effects.
+    pub effects: [&'static dyn Effect; 2],
+    /// The model with neither.
+    pub base: JointModel,
+    /// The model with each, at the numbers that are known.
+    pub models: [Uncertain; 2],
+    /// Standard deviation of the measurement noise, output units.
+    pub noise: f64,
+}
+
+/// Why there is nothing to tell apart.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SuspectsError {
+    /// A model cannot be fitted.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+    /// The noise of the record is not known.
+    #[error("no noise can be seen in the record: give it with --noise")]
+    NoNoise,
+}
+
+impl Suspects {
+    /// Both effects fitted to a record, each beside `base`. The noise is that of the record
+    /// where it is not given; what the record does not determine is off by `share` of its value.
+    ///
+    /// # Errors
+    /// [`SuspectsError`].
+    pub fn of_record(
+        record: &Record<'_>,
+        base: &JointModel,
+        effects: [&'static dyn Effect; 2],
+        noise: Option<f64>,
+        share: f64,
+    ) -> Result<Self, SuspectsError> {
+        let plain = fitted(record, base)?;
+        let [one, other] = effects.map(|effect| {
+            let starts = plain.model.with(Component::neutral(effect));
+            fitted(record, &starts)
+        });
+        let (one, other) = (one?, other?);
+        let better = if one.cost <= other.cost { &one } else { &other };
+        let noise = noise.or_else(|| floor_of(record, better)).filter(|noise| *noise > 0.0);
+        let noise = noise.ok_or(SuspectsError::NoNoise)?;
+        let models = [&one, &other].map(|fit| Uncertain::of_fit(record, fit, noise, share));
+        Ok(Self { effects, base: plain.model, models, noise })
+    }
+
+    /// `model`, which has the first of `effects`, and the same with the second in its place: as
+    /// a record of random `steps` of the first would show it.
+    ///
+    /// # Errors
+    /// [`SuspectsError`].
+    pub fn of_model(
+        model: &JointModel,
+        effects: [&'static dyn Effect; 2],
+        noise: f64,
+        share: f64,
+        (stand, steps): (&Stand, &RandomSteps),
+    ) -> Result<Self, SuspectsError> {
+        let known = Uncertain::by_share(model.clone(), share);
+        let schedule = random_steps(steps, stand, Some(&known), 0);
+        let mut random = ChaCha8Rng::seed_from_u64(steps.seed);
+        let output = noisy(stand.output(model, &schedule), noise, &mut random);
+        let Some(joint) = stand.log(&schedule, output) else { return Err(SuspectsError::NoNoise) };
+        let record = Record::new(&joint, Split::of(&joint), Horizon::Steps);
+        let base = model.without(effects[0].spec().id);
+        let of_record = Self::of_record(&record, &base, effects, Some(noise), share)?;
+        let [_, other] = of_record.models;
+        let models = [known, Uncertain::by_share(other.model, share)];
+        Ok(Self { models, ..of_record })
+    }
+
+    /// Ids of the effects.
+    pub fn ids(&self) -> [&'static str; 2] {
+        self.effects.map(|effect| effect.spec().id)
+    }
+}
+
+fn fitted(record: &Record<'_>, model: &JointModel) -> Result<Fit, FitError> {
+    let levels = record.input_levels();
+    let top = levels.last().copied().unwrap_or(1.0);
+    fit(record, model, &record.range(&levels, model.gain.value.abs() * top))
+}
+
+/// `output` with white noise.
+pub(super) fn noisy(output: Vec<f64>, noise: f64, random: &mut ChaCha8Rng) -> Vec<f64> {
+    let Ok(normal) = Normal::new(0.0, noise) else { return output };
+    output.into_iter().map(|angle| angle + normal.sample(random)).collect()
+}

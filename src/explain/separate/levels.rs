@@ -1,0 +1,86 @@
+//! Levels that are worth a trial.
+
+use super::proposal::Pattern;
+use crate::effect::Dimension;
+use crate::model::JointModel;
+
+/// Magnitudes of levels that are worth a trial between a least and a largest one, and the
+/// patterns to try them in: about both, about the `thresholds` of the effects, and beyond the
+/// largest.
+pub(crate) fn level_sets(
+    (least, largest): (f64, f64),
+    thresholds: &[f64],
+) -> Vec<(Vec<f64>, &'static [Pattern])> {
+    const ALL: &[Pattern] = &[Pattern::Ladder, Pattern::Pulses, Pattern::Reversals];
+    const LADDER: &[Pattern] = &[Pattern::Ladder];
+    let about = |level: f64, parts: &[f64]| -> Vec<f64> {
+        let mut levels: Vec<f64> = parts.iter().map(|part| two_digits(part * level)).collect();
+        levels.dedup();
+        levels
+    };
+    let mut sets = vec![
+        (about(least, &[0.25, 0.5, 0.75, 1.0]), LADDER),
+        (about(largest, &[0.25, 0.5, 0.75, 1.0]), LADDER),
+        (about(largest, &[0.5, 1.0]), ALL),
+        (about(largest, &[1.25, 1.5]), ALL),
+    ];
+    sets.extend(thresholds.iter().map(|t| (about(*t, &[0.6, 0.8, 1.2, 1.4]), LADDER)));
+    sets
+}
+
+/// The levels of the input at which the effects `ids` of their models switch or bend,
+/// different ones.
+pub(crate) fn thresholds(suspects: [(&JointModel, &[&'static str]); 2], largest: f64) -> Vec<f64> {
+    /// Thresholds that are tried.
+    const MOST: usize = 4;
+    /// What is nearer, in parts, is the same.
+    const SAME: f64 = 0.15;
+    /// A threshold of a smaller part of the largest level is none.
+    const LEAST: f64 = 0.02;
+    let mut found: Vec<f64> = Vec::new();
+    let components = suspects.into_iter().flat_map(|(model, ids)| {
+        let all = model.components().iter();
+        all.filter(move |c| ids.contains(&c.effect().spec().id))
+    });
+    for component in components {
+        let specs = component.effect().spec().parameters.iter();
+        let levels = specs.zip(component.parameters());
+        for (_, value) in levels.filter(|(spec, _)| spec.dimension == Dimension::Input) {
+            let level = value.value.abs();
+            let is_new = found.iter().all(|known| (level / known - 1.0).abs() > SAME);
+            if is_new && level > LEAST * largest && level < largest {
+                found.push(level);
+            }
+        }
+    }
+    found.truncate(MOST);
+    found
+}
+
+/// `value` to two significant digits, so that what is said is what was tried.
+pub(crate) fn two_digits(value: f64) -> f64 {
+    two_digits_of(value, value)
+}
+
+/// `value` to the second significant digit of `size`.
+pub(crate) fn two_digits_of(value: f64, size: f64) -> f64 {
+    if size == 0.0 || !size.is_finite() {
+        return value;
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "an exponent is small")]
+    let exponent = size.abs().log10().floor() as i32 - 1;
+    let unit = 10_f64.powi(exponent.abs());
+    if exponent < 0 { (value * unit).round() / unit } else { (value / unit).round() * unit }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_are_said_in_two_digits() {
+        let shown = [0.123_4, 1.56, 0.0, 123.0].map(|value| two_digits(value).to_string());
+        assert_eq!(shown, ["0.12", "1.6", "0", "120"]);
+        assert!((two_digits_of(32.456, 80.0) - 32.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,196 @@
+//! The next experiment, as a user asks for it, and what the plant does with it.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
+
+mod desk;
+
+use desk::{Desk, assert_fields, banded, joint, number};
+use tauscope::synthetic::{InputSpec, JointSpec, PlantSpec, simulate};
+
+const MODEL: &str = r#"
+schema = "tauscope/model/1"
+[joint.boom]
+structure = "integrator"
+parameters = { gain = 9.6, delay = 0.13 }
+[[joint.boom.effect]]
+kind = "dead_band"
+parameters = { lower = -0.31, upper = 0.29 }
+[[joint.boom.history]]
+revision = 1
+added = "dead_band"
+validation_rmse = 0.06
+"#;
+
+fn desk() -> Desk {
+    let desk = Desk::with(vec![banded("boom")]);
+    desk.write("boom.toml", MODEL);
+    desk
+}
+
+/// A column of a CSV file.
+fn column(text: &str, name: &str) -> Vec<f64> {
+    let mut lines = text.lines();
+    let place = lines.next().unwrap().split(',').position(|cell| cell == name).unwrap();
+    lines.map(|line| line.split(',').nth(place).unwrap().parse().unwrap()).collect()
+}
+
+/// What `spec` does with the input of a file, 100 samples a second.
+fn played(spec: JointSpec, input: &[f64], seed: u64) -> Vec<f64> {
+    let changes = (1..input.len()).filter(|k| (input[*k] - input[k - 1]).abs() > 0.0);
+    let steps = changes.map(|k| (k + 1, input[k])).collect();
+    let input_spec = InputSpec::Steps { steps, initial: input[0] };
+    let seconds = input.len() as f64 * 0.01;
+    let spec = JointSpec { input: input_spec, ..spec };
+    let made = simulate(&PlantSpec::new(seed, seconds, vec![spec])).unwrap();
+    made.joints[0].trials[0].output().to_vec()
+}
+
+#[test]
+fn random_steps_need_no_model() {
+    let desk = desk();
+    let json = desk.json("design --joint swing --levels=-1,0,1 --hold 0.5,1 --duration 30", 0);
+    assert_eq!((&json["schema"], &json["seed"]), (&"tauscope/design/1".into(), &1.into()));
+    let joint = &json["joints"][0];
+    assert_fields(joint, "joint levels hold_s duration_s steps transitions holds separates");
+    assert_eq!(joint["levels"], serde_json::json!([-1.0, 0.0, 1.0]));
+    assert!(number(&joint["hold_s"]["low"]) >= 0.5 && number(&joint["hold_s"]["high"]) <= 1.0);
+    let (least, most) = (number(&joint["transitions"][0]), number(&joint["transitions"][1]));
+    assert!(least >= 4.0 && most - least <= 2.0);
+    assert!(joint["predicted"].is_null() && joint["separates"].is_null());
+}
+
+#[test]
+fn the_same_seed_makes_the_same_file() {
+    let desk = desk();
+    for (name, threads) in [("a.csv", 1), ("b.csv", 2)] {
+        let options = "design --model boom.toml --output-range=-40,40 --duration 30 -q";
+        assert!(desk.run(&format!("{options} --threads {threads} -o {name}")).status.success());
+    }
+    assert_eq!(desk.read("a.csv"), desk.read("b.csv"));
+    let text = desk.read("a.csv");
+    assert!(text.starts_with("time_s,boom.input\n0,0\n0.01,0\n"), "{}", &text[..60]);
+    assert_eq!(text.lines().count(), 3001);
+}
+
+/// The model is not the plant: its gain and its dead band are a little off.
+#[test]
+fn a_joint_stays_in_the_range_that_was_promised() {
+    let desk = desk();
+    let mut farthest: f64 = 0.0;
+    for seed in 1..4 {
+        let options = "design --model boom.toml --output-range=-40,40 --duration 40";
+        let options = format!("{options} --seed {seed} -o in.csv --preview see.csv -q");
+        assert!(desk.run(&options).status.success());
+        let output = played(banded("boom"), &column(&desk.read("in.csv"), "boom.input"), seed);
+        farthest = output.iter().fold(farthest, |most, y| most.max(y.abs()));
+        let see = desk.read("see.csv");
+        let (low, high) = (column(&see, "boom.low"), column(&see, "boom.high"));
+        let inside = output.iter().zip(low.iter().zip(&high));
+        let inside = inside.filter(|(y, (low, high))| (*low - 0.2..=*high + 0.2).contains(y));
+        assert!(inside.count() * 100 >= 99 * output.len(), "seed {seed}");
+    }
+    assert!((15.0..40.0).contains(&farthest), "{farthest}");
+}
+
+#[test]
+fn levels_keep_out_of_the_dead_band_or_lie_in_it() {
+    let desk = desk();
+    let levels = |options: &str| {
+        let options = format!("design --model boom.toml --levels=-1..1:0.25 {options}");
+        let json = desk.json(&options, 0);
+        let levels = json["joints"][0]["levels"].as_array().unwrap().clone();
+        levels.iter().map(number).collect::<Vec<f64>>()
+    };
+    // The input begins at rest.
+    let avoided = levels("--dead-band avoid");
+    assert!(avoided.iter().all(|level| level.abs() < 1e-9 || level.abs() > 0.3), "{avoided:?}");
+    assert!(levels("--dead-band cross").contains(&0.25));
+    assert!(!levels("--dead-band=-0.6,0.6").contains(&0.5));
+}
+
+#[test]
+fn holds_are_longer_than_the_response_or_that_is_said() {
+    let desk = desk();
+    let joint = &desk.json("design --model boom.toml", 0)["joints"][0];
+    assert!(number(&joint["hold_s"]["low"]) >= 2.0 * 0.13);
+    let short = &desk.json("design --model boom.toml --hold 0.05,0.1 --duration 5", 0);
+    let note = short["joints"][0]["notes"][0].as_str().unwrap();
+    assert!(note.contains("shorter than the 0.13 s in which the model responds"), "{note}");
+}
+
+/// A progressive valve looks like a dead band at large levels.
+#[test]
+fn a_log_and_two_suspects_give_an_input_and_its_power() {
+    let desk = desk();
+    let options = "design log.csv --separate dead_band,flow_curve --rehearsals 8 --power 0.9";
+    let json = desk.json(&format!("{options} -o in.csv --preview see.csv -q"), 0);
+    let joint = &json["joints"][0];
+    let told = &joint["separates"];
+    assert_fields(told, "effects order noise power_wanted power if_there");
+    assert!(number(&told["power"]) >= 0.9 && (0.04..0.06).contains(&number(&told["noise"])));
+    for side in told["if_there"].as_array().unwrap() {
+        assert_eq!(side["rehearsed_told"], side["rehearsed"]);
+        assert!(number(&side["noncentrality"]) > 25.0);
+    }
+    let input = column(&desk.read("in.csv"), "boom.input");
+    assert!(input.iter().all(|level| level.abs() <= 1.5));
+    let see = desk.read("see.csv");
+    let apart = column(&see, "boom.dead_band").into_iter().zip(column(&see, "boom.flow_curve"));
+    assert!(apart.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) > 0.05);
+}
+
+#[test]
+fn a_suspect_that_contains_the_other_is_said() {
+    let desk = desk();
+    let options = "design --model boom.toml --separate dead_band,coulomb_friction --duration 8 \
+                   --rehearsals 0";
+    let said = desk.refusal(options);
+    assert!(said.contains("no input of 8 s or less tells them apart"), "{said}");
+}
+
+#[test]
+fn what_cannot_be_designed_is_refused_in_one_message_and_leaves_no_file() {
+    let desk = desk();
+    desk.write("plain.toml", MODEL.split("[[joint.boom.effect]]").next().unwrap());
+    let cases = [
+        ("--levels 1", "expected two levels or more"),
+        ("--hold 2,1", "expected two numbers, the lower one first"),
+        ("--output-range=-1,1", "give --model or a log"),
+        ("--dead-band avoid", "no model tells it"),
+        ("--model plain.toml --dead-band avoid", "the model has none"),
+        ("--levels=-1,1 --dead-band=-2,2", "fewer than two are left"),
+        ("--hold 5,6 --duration 3", "longer than the whole input"),
+        ("--model boom.toml --joint bucket", "not in the model file, which has boom"),
+        ("--separate dead_band --model boom.toml", "expected two effects"),
+        ("--separate dead_band,dead_band --model boom.toml", "there twice"),
+        ("--separate dead_band,stictoin --model boom.toml", "the nearest is `stiction`"),
+        ("--separate dead_band,stiction", "give a log, or --model"),
+        ("--separate dead_band,stiction --model plain.toml", "has neither dead_band nor stiction"),
+        ("--separate leakage,stiction --model boom.toml", "has neither leakage nor stiction"),
+        ("missing.csv", "missing.csv"),
+    ];
+    for (options, expected) in cases {
+        let output = desk.run(&format!("design {options} -o none.csv"));
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{options}: {said}");
+        assert!(said.contains(expected), "{options}: {said}");
+        assert!(!desk.has("none.csv") && !said.contains("panicked"));
+    }
+}
+
+#[test]
+fn a_joint_that_cannot_be_read_is_left_out_and_said() {
+    let desk = desk().with_broken_joint();
+    let json = desk.json("design log.csv --duration 10", 1);
+    assert_eq!(json["joints"].as_array().unwrap().len(), 1);
+    assert!(json["failures"][0].as_str().unwrap().contains("broken"));
+}
+
+#[test]
+fn joints_are_driven_together() {
+    let desk = Desk::with(vec![banded("boom"), joint("stick")]);
+    let options = "design log.csv --duration 20 --rate 50 -o in.csv -q";
+    assert!(desk.run(options).status.success());
+    let text = desk.read("in.csv");
+    assert!(text.starts_with("time_s,boom.input,stick.input\n0,0,0\n0.02,0,0\n"));
+    assert_ne!(column(&text, "boom.input"), column(&text, "stick.input"));
+}
