@@ -149,7 +149,7 @@ mod parquet {
             Field::Long(number) => number.to_string(),
             Field::Double(number) => number.to_string(),
             Field::Str(text) => text.clone(),
-            other => panic!("{other:?}"),
+            other => format!("{other:?}"),
         };
         let row =
             |row: ::parquet::record::Row| row.get_column_iter().map(|(_, f)| cell(f)).collect();
