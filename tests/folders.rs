@@ -177,6 +177,11 @@ fn a_log_that_fails_is_named_and_tried_again() {
     }
     desk.write_log("logs/run_01.csv", 1);
     desk.run("estimate logs --results kept").is_whole().says("2 of 3 logs are done already");
+    fs::write(desk.path("logs/run_01.csv"), "time_s,boom.input\n0,1\n").unwrap();
+    assert_eq!(desk.run("estimate logs --results kept").status, Some(1));
+    let merged = desk.run("merge kept");
+    assert_eq!(merged.status, Some(1));
+    merged.says("1 of 3 logs have no result yet");
 }
 
 #[test]

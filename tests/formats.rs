@@ -60,6 +60,26 @@ fn a_file_that_is_not_what_its_name_says_is_refused_with_the_remedy() {
 }
 
 #[test]
+#[cfg(unix)]
+fn a_log_may_come_through_a_pipe() {
+    use std::process::{Command, Stdio};
+    let mut cat =
+        Command::new("cat").arg(golden("log.csv")).stdout(Stdio::piped()).spawn().unwrap();
+    let estimate = |log: &str, input: Stdio| {
+        Command::new(env!("CARGO_BIN_EXE_tauscope"))
+            .args(["estimate", log])
+            .stdin(input)
+            .output()
+            .unwrap()
+    };
+    let piped = estimate("/dev/stdin", cat.stdout.take().unwrap().into());
+    cat.wait().unwrap();
+    let file = estimate(golden("log.csv").to_str().unwrap(), Stdio::null());
+    assert!(piped.status.success(), "{}", String::from_utf8_lossy(&piped.stderr));
+    assert_eq!(piped.stdout, file.stdout);
+}
+
+#[test]
 fn a_build_without_a_format_says_which_feature_reads_it() {
     for (name, feature, is_there) in [
         ("zstd.parquet", "parquet", cfg!(feature = "parquet")),
@@ -129,7 +149,7 @@ mod parquet {
             Field::Long(number) => number.to_string(),
             Field::Double(number) => number.to_string(),
             Field::Str(text) => text.clone(),
-            other => panic!("{other:?}"),
+            other => format!("{other:?}"),
         };
         let row =
             |row: ::parquet::record::Row| row.get_column_iter().map(|(_, f)| cell(f)).collect();

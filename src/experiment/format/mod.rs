@@ -92,6 +92,10 @@ fn left_out(
 /// Opens a log. Its first bytes tell the format, so that a name may be anything; but a name
 /// that promises a format is kept to it.
 pub(super) fn open(path: &Path) -> Result<OpenTable, ReadError> {
+    // A pipe gives its bytes once: it is taken for text.
+    if path.metadata().is_ok_and(|metadata| !metadata.is_file()) {
+        return csv::open(path);
+    }
     let start = start_of(path)?;
     if start.is_empty() {
         return Err(ReadError::Empty { path: path.to_owned() });

@@ -201,6 +201,9 @@ impl Array {
         }
         let (kind, dims) = data.element()?;
         let dims = data.inside(dims).numbers(kind)?;
+        if dims.iter().any(|length| *length < 0.0) {
+            return fault("an array has a negative length");
+        }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it saturates")]
         let dims: Vec<usize> = dims.into_iter().map(|length| length as usize).collect();
         let (_, name) = data.element()?;
