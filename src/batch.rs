@@ -285,7 +285,7 @@ pub fn know_joints(
     protocol: Protocol,
     share: f64,
 ) -> OfJoints<Uncertain> {
-    for_each_joint(joints, estimates, models, protocol, |_, record, fit| {
+    for_each_joint(joints, estimates, models, protocol.into(), |_, record, fit| {
         let noise = floor_of(record, &fit).unwrap_or_default().max(f64::MIN_POSITIVE);
         Uncertain::of_fit(record, &fit, noise, share)
     })
@@ -303,7 +303,7 @@ pub fn suspect_joints(
     let work = |_: usize, record: &Record<'_>, fit: Fit| {
         Suspects::of_record(record, &fit.model, effects, noise, share)
     };
-    let suspects = for_each_joint(joints, estimates, models, protocol, work);
+    let suspects = for_each_joint(joints, estimates, models, protocol.into(), work);
     let flat = |of: Result<Result<_, _>, FitError>| of.map_err(SuspectsError::from).flatten();
     suspects.into_iter().map(|result| result.map(flat)).collect()
 }
@@ -317,7 +317,7 @@ pub fn design_separation(
     stand: &Stand,
     limits: &Limits,
 ) -> Result<Design, DesignError> {
-    shortest(suspects, stand, limits, &Threads)
+    shortest(suspects, stand, limits, &Threads(&()))
 }
 
 /// Fits the model of each joint and does `work` with it.
