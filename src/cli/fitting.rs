@@ -225,7 +225,9 @@ impl<T> Study<T> {
         let (sources, reading) = (&experiment.sources, &experiment.options);
         let detail = Detail::Full;
         let joints = &joints;
-        let contents = Contents { joints, settings, sources, reading, models, revisions, detail };
+        let also = &[];
+        let contents =
+            Contents { joints, settings, also, sources, reading, models, revisions, detail };
         contents.record(path, verbosity)
     }
 }

@@ -23,8 +23,9 @@ pub(super) fn messages(
         let models = recording.models.iter().filter(|m| m.joint.name == joint.joint.name);
         let models: Vec<_> = models.map(|model| model.model).collect();
         let improved = recording.revisions_of(joint.joint);
+        let others = recording.others(joint.joint).len();
         let revisions = improved.map_or(0, |improved| improved.revisions.len());
-        tabs.push(joint::tab(&mut builder, *joint, &models, revisions)?);
+        tabs.push(joint::tab(&mut builder, *joint, &models, revisions, others)?);
     }
     tabs.push(builder.view(View::new("TextDocument", "About", &["/about"]))?);
     let root = builder.container(ContainerKind::Tabs, "Joints", &tabs, &[])?;
