@@ -37,6 +37,7 @@ fn main() -> anyhow::Result<()> {
         reading: &experiment.options,
         detail: Detail::Full,
         models: &[],
+        also: &[],
         revisions: &[],
     };
     log_recording(&recording, &stream)?;

@@ -22,7 +22,7 @@ use tauscope::experiment::{Experiment, Joint, ReadOptions};
 use tauscope::explain::{Change, Improvement, Options, Verdict};
 use tauscope::fit::Horizon;
 use tauscope::model::integrators;
-use tauscope::recording::{Detail, RecordError, Recording, write_recording};
+use tauscope::recording::{Beside, Detail, RecordError, Recording, write_recording};
 use tauscope::report::{
     ComparedJoint, DecisionRow, EstimatedJoint, Finding, ImprovedJoint, decision_rows, number,
 };
@@ -87,11 +87,31 @@ impl Recorded {
         detail: Detail,
         out: impl Write,
     ) -> Result<(), RecordError> {
+        self.write_beside(models, &[], revisions, detail, out)
+    }
+
+    fn write_beside(
+        &self,
+        models: &[ComparedJoint<'_>],
+        also: &[Beside<'_>],
+        revisions: &[ImprovedJoint<'_>],
+        detail: Detail,
+        out: impl Write,
+    ) -> Result<(), RecordError> {
         let joints = self.joints();
         let (settings, sources) = (&self.settings, self.experiment.sources.as_slice());
         let reading = &self.experiment.options;
         write_recording(
-            &Recording { joints: &joints, settings, sources, reading, detail, models, revisions },
+            &Recording {
+                joints: &joints,
+                settings,
+                sources,
+                reading,
+                detail,
+                models,
+                also,
+                revisions,
+            },
             out,
         )
     }
@@ -382,6 +402,43 @@ fn a_delay_between_samples_is_recorded_as_finely_as_it_was_found() {
     let paper = Recorded::with(Settings::default()).read_back(Detail::Full);
     assert!(paper.numbers("/boom/decision/table", "fine_delta").is_empty());
     assert!(!paper.chunks.contains_key("/boom/drawing/interval"));
+}
+
+#[test]
+fn what_another_method_decided_is_drawn_beside_the_first() {
+    let recorded = Recorded::with(Settings::of(Method::LagAware));
+    let settings = Settings { keep_first_last: true, ..Settings::default() };
+    let other = estimate_joints(&recorded.experiment.joints, &settings, || ());
+    let other: Vec<JointEstimate> = other.into_iter().map(Result::unwrap).collect();
+    let pairs = recorded.experiment.joints.iter().zip(&other);
+    let joints: Vec<_> =
+        pairs.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect();
+    let also = [Beside { settings: &settings, joints: &joints }];
+    let mut bytes = Vec::new();
+    recorded.write_beside(&[], &also, &[], Detail::Full, &mut bytes).unwrap();
+    let back = ReadBack::of(&bytes);
+    for (joint, first) in joints.iter().zip(recorded.joints()) {
+        let name = &joint.joint.name;
+        let firsts = first.estimate.estimated().flat_map(|trial| &trial.decisions);
+        let decisions: Vec<_> =
+            joint.estimate.estimated().flat_map(|trial| &trial.decisions).collect();
+        let drawn = back.rows(&format!("/{name}/drawing/other_0"), "LineStrips2D:strips", |_| ());
+        assert_eq!(drawn.len(), decisions.len());
+        let legend = back.texts(&format!("/{name}/drawing/other_0_name"), "Points2D:labels");
+        let pages = back.texts(&format!("/{name}/verdict"), "TextDocument:text");
+        assert_eq!((legend.len(), pages.len()), (drawn.len(), drawn.len()));
+        let shown = legend.iter().zip(&pages);
+        for ((first, decision), ((_, legend), (_, page))) in firsts.zip(decisions).zip(shown) {
+            let delay = number(decision.delay().unwrap());
+            assert!(legend.starts_with(&format!("two-line: δ = {delay} ")), "{legend}");
+            assert!(page.contains(&format!("| two-line | {delay} | ")), "{page}");
+            let delay = number(first.delay().unwrap());
+            assert!(page.contains(&format!("| lag-aware | {delay} (")), "{page}");
+        }
+    }
+    let alone = recorded.read_back(Detail::Full);
+    assert!(!alone.chunks.contains_key("/boom/drawing/other_0"));
+    assert!(!alone.texts("/boom/verdict", "TextDocument:text")[0].1.contains("| method |"));
 }
 
 #[test]

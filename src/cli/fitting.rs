@@ -276,7 +276,8 @@ impl Begun<'_> {
             pairs.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect();
         let (sources, reading) = (&self.experiment.sources, &self.experiment.options);
         let (joints, settings, detail) = (&joints, self.settings, Detail::Full);
-        take(&Contents { joints, settings, sources, reading, models, revisions, detail })
+        let also = &[];
+        take(&Contents { joints, settings, also, sources, reading, models, revisions, detail })
     }
 }
 

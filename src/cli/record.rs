@@ -24,6 +24,8 @@ pub(super) enum Detail {
 pub(super) struct Contents<'a> {
     pub(super) joints: &'a [EstimatedJoint<'a>],
     pub(super) settings: &'a Settings,
+    /// What other methods found.
+    pub(super) also: &'a [(&'a Settings, &'a [EstimatedJoint<'a>])],
     pub(super) sources: &'a [Source],
     pub(super) reading: &'a ReadOptions,
     pub(super) models: &'a [ComparedJoint<'a>],
@@ -47,19 +49,28 @@ impl Contents<'_> {
 
     #[cfg(feature = "rrd")]
     fn write(&self, file: &mut OutputFile) -> anyhow::Result<()> {
-        Ok(tauscope::recording::write_recording(&self.recording(), file)?)
+        self.with_recording(|recording| Ok(tauscope::recording::write_recording(recording, file)?))
     }
 
+    /// Does `work` with the recording.
     #[cfg(feature = "rrd")]
-    pub(super) fn recording(&self) -> tauscope::recording::Recording<'_> {
-        use tauscope::recording::{self, Recording};
+    pub(super) fn with_recording<T>(
+        &self,
+        work: impl FnOnce(&tauscope::recording::Recording<'_>) -> T,
+    ) -> T {
+        use tauscope::recording::{self, Beside, Recording};
 
-        let Self { joints, settings, sources, reading, models, revisions, detail } = *self;
+        let also = self.also.iter().map(|&(settings, joints)| Beside { settings, joints });
+        let also: Vec<Beside<'_>> = also.collect();
+        let Self { joints, settings, sources, reading, models, revisions, detail, .. } = *self;
         let detail = match detail {
             Detail::Full => recording::Detail::Full,
             Detail::Lean => recording::Detail::Lean,
         };
-        Recording { joints, settings, sources, reading, detail, models, revisions }
+        let also = also.as_slice();
+        let recording =
+            Recording { joints, settings, sources, reading, detail, models, also, revisions };
+        work(&recording)
     }
 
     #[cfg(not(feature = "rrd"))]

@@ -373,6 +373,7 @@ impl Study<'_> {
         let contents = Contents {
             joints,
             settings: self.settings,
+            also: &[],
             sources: &self.experiment.sources,
             reading: &self.experiment.options,
             models: &compared,

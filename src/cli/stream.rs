@@ -116,10 +116,10 @@ impl Stream {
     pub(super) fn send(&self, contents: &Contents<'_>, joint: Option<&str>) -> anyhow::Result<()> {
         let Some(live) = &self.0 else { return Ok(()) };
         let mut live = live.lock().map_err(|_poisoned| bug())?;
-        match joint {
-            Some(joint) => live.send_joint(&contents.recording(), joint)?,
-            None => live.send(&contents.recording())?,
-        }
+        contents.with_recording(|recording| match joint {
+            Some(joint) => live.send_joint(recording, joint),
+            None => live.send(recording),
+        })?;
         Ok(())
     }
 

@@ -361,15 +361,16 @@ impl Pieces {
         let places: Vec<usize> = starts.iter().chain(to).copied().collect();
         let marks = Mark::all(output, first, &places);
         let (low, high) = marks.split_at(starts.len());
-        let errors = |(start, low): (&usize, &Mark)| {
+        let errors = |((start, unfelt), low): ((&usize, &usize), &Mark)| {
             let felt = self.felt(output, *start, to).into_iter();
             let ends = felt.chain(std::iter::repeat(0.0)).zip(high).zip(to);
             let error = |((felt, high), end): ((f64, &Mark), &usize)| {
-                if start + APART <= *end { felt + low.line(high) } else { f64::INFINITY }
+                let rest = if unfelt < end { low.line(high) } else { 0.0 };
+                if start + APART <= *end { felt + rest } else { f64::INFINITY }
             };
             ends.map(error).collect()
         };
-        from.iter().zip(low).map(errors).collect()
+        from.iter().zip(&starts).zip(low).map(errors).collect()
     }
 
     /// The squared errors while earlier reactions are felt; none for lines.

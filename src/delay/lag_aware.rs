@@ -161,7 +161,9 @@ fn some(stretches: Vec<Stretch<'_>>, enough: usize) -> Vec<Stretch<'_>> {
     let every = samples.div_ceil(enough).max(1);
     let mut some: Vec<_> = stretches.into_iter().step_by(every).collect();
     if every > 1 {
-        some.iter_mut().for_each(|stretch| stretch.shared = (0, 0));
+        for stretch in &mut some {
+            stretch.shared = (0, 0);
+        }
     }
     some
 }
@@ -225,11 +227,13 @@ impl<'a> Reactions<'a> {
     fn settle(&mut self) -> Noise {
         /// Reactions that are enough to know the noise.
         const ENOUGH: usize = 100;
+        // Where holds are short a place that is not fine may be taken for a neighbour's.
+        let fine = if self.in_time { ROUGHLY } else { FINE };
         let doubtful = if self.in_time { DOUBTFUL } else { DOUBTFUL_IF_SHORT };
         let every = self.chain.links.len().div_ceil(ENOUGH).max(1);
         let mut leftovers = Vec::new();
         for index in 0..self.chain.links.len() {
-            let Some(found) = self.find(index, ROUGHLY) else { continue };
+            let Some(found) = self.find(index, fine) else { continue };
             if index % every == 0 {
                 leftovers.push(found.stretch.leftover(&self.shape));
             }

@@ -114,7 +114,9 @@ impl<'a> Stretch<'a> {
         let end = column.len().saturating_sub(last).max(first);
         for shared in [0..first, end..column.len()] {
             let shared = column.get_mut(shared).unwrap_or_default();
-            shared.iter_mut().for_each(|value| *value *= FRAC_1_SQRT_2);
+            for value in shared {
+                *value *= FRAC_1_SQRT_2;
+            }
         }
     }
 

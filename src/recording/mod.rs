@@ -7,12 +7,13 @@
 //!
 //! Inside, `layout` says where samples, trials and decisions lie on the timelines, `chunk`
 //! makes columns of rows with reproducible ids, `signals`, `decisions`, `verdict`,
-//! `segment_view`, `overview`, `delay_state`, `model`, `revision` and `about` are one part of
+//! `segment_view`, `beside`, `overview`, `delay_state`, `model`, `revision` and `about` are one part of
 //! the content each,
 //! `blueprint` says which view shows what, `write` brings it into a file or a stream, and
 //! `live` to a viewer while it grows.
 
 mod about;
+mod beside;
 mod blueprint;
 mod canvas;
 mod chunk;
@@ -41,6 +42,7 @@ use crate::delay::Settings;
 use crate::experiment::{Joint, ReadOptions, Source};
 use crate::report::{ComparedJoint, EstimatedJoint, ImprovedJoint};
 
+pub use beside::Beside;
 pub use error::RecordError;
 pub use layout::Detail;
 pub use live::Live;
@@ -61,6 +63,8 @@ pub struct Recording<'a> {
     pub detail: Detail,
     /// Models beside the measurement; those of a joint that is not recorded are left out.
     pub models: &'a [ComparedJoint<'a>],
+    /// What other methods found, drawn beside the first one's decisions.
+    pub also: &'a [Beside<'a>],
     /// Models as they grew, on a timeline of their own; at most one per joint.
     pub revisions: &'a [ImprovedJoint<'a>],
 }

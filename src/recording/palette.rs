@@ -50,6 +50,11 @@ pub(super) fn models() -> impl Iterator<Item = Rgb> {
     [rgb(230, 159, 0), rgb(0, 158, 115), rgb(204, 121, 167), rgb(213, 94, 0)].into_iter().cycle()
 }
 
+/// Methods beside the first one; from the third on they repeat.
+pub(super) fn others() -> impl Iterator<Item = Rgb> {
+    [rgb(180, 140, 255), rgb(255, 190, 150)].into_iter().cycle()
+}
+
 /// A darker shade of a colour.
 pub(super) fn dimmed((r, g, b): Rgb) -> Rgb {
     let half = |part: u8| part / 2;

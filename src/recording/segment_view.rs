@@ -9,14 +9,15 @@ use std::iter;
 use rerun::datatypes::Vec2D;
 use rerun::{EntityPath, LineStrips2D, Points2D};
 
-use super::canvas::{Labels, Plot, Span, simplified, thinned};
+use super::beside::{Other, in_short};
+use super::canvas::{Labels, Plot, SHEET, Span, simplified, thinned};
 use super::chunk::{Chunks, Index};
 use super::entity::below;
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::palette::{self, color};
 use super::rows::Rows;
-use crate::delay::{Candidate, Line, Verdict};
+use crate::delay::{Candidate, Decision, Line, Method, Verdict};
 use crate::experiment::Joint;
 use crate::report::number;
 use crate::units::signed;
@@ -27,6 +28,7 @@ pub(super) fn add(
     root: &EntityPath,
     joint: &Joint,
     layout: &JointLayout<'_>,
+    (method, others): (Method, &[Other<'_>]),
 ) -> Result<(), RecordError> {
     let drawings: Vec<_> =
         layout.segments().map(|(trial, segment)| Drawing::new(trial, segment)).collect();
@@ -47,7 +49,70 @@ pub(super) fn add(
     if layout.is_fine() {
         sheet.strips("interval", palette::BORDER, 1.6, rows().map(Drawing::interval))?;
     }
+    if !others.is_empty() {
+        add_others(&mut sheet, &drawings, method, others)?;
+    }
     add_candidates(chunks, &root, &drawings)
+}
+
+/// The legend of the first method where others are drawn: in the colour of its verdict.
+pub(super) const FIRST: [&str; 2] = ["first_accepted", "first_rejected"];
+
+/// The drawing of a further method, and its line of the legend.
+pub(super) fn other_names(index: usize) -> [String; 2] {
+    [format!("other_{index}"), format!("other_{index}_name")]
+}
+
+/// What other methods decided, with a legend of all.
+fn add_others(
+    sheet: &mut Rows<'_>,
+    drawings: &[Drawing<'_, '_>],
+    method: Method,
+    others: &[Other<'_>],
+) -> Result<(), RecordError> {
+    let legend = Legend { entries: others.len() + 1 };
+    let colors = [palette::ACCEPTED, palette::REJECTED];
+    for ((name, rgb), accepted) in FIRST.into_iter().zip(colors).zip([true, false]) {
+        let entry = |drawing: &Drawing<'_, '_>| {
+            let decision = drawing.segment.decision;
+            let is_it = (decision.verdict() == Verdict::Accepted) == accepted;
+            legend.entry(0, is_it.then(|| in_short(method, decision)))
+        };
+        sheet.texts(name, rgb, drawings.iter().map(entry))?;
+    }
+    for (index, other) in others.iter().enumerate() {
+        let decision = |drawing: &Drawing<'_, '_>| other.decision(drawing.trial, drawing.segment);
+        let strips = |drawing: &Drawing<'_, '_>| {
+            decision(drawing).map_or_else(Vec::new, |decision| drawing.other(decision, index))
+        };
+        let entry = |drawing: &Drawing<'_, '_>| {
+            let text = decision(drawing).map(|decision| in_short(other.method, decision));
+            legend.entry(index + 1, text)
+        };
+        let [lines, name] = other_names(index);
+        sheet.strips(&lines, other.rgb, 1.8, drawings.iter().map(strips))?;
+        sheet.texts(&name, other.rgb, drawings.iter().map(entry))?;
+    }
+    Ok(())
+}
+
+/// One line of texts side by side between the two plots.
+#[derive(Clone, Copy)]
+struct Legend {
+    entries: usize,
+}
+
+impl Legend {
+    fn entry(self, index: usize, text: Option<String>) -> Labels {
+        const ROW: f32 = 446.0;
+        let mut labels = Labels::default();
+        let width = (SHEET.0 - 200.0) / self.entries as f32;
+        let middle = 200.0 + width * (index as f32 + 0.5);
+        if let Some(text) = text {
+            labels.put_whole(Vec2D::new(middle, ROW), text);
+        }
+        labels
+    }
 }
 
 /// Whether the best pair of lines was accepted.
@@ -179,6 +244,33 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let [from, to] = [p, p + delay].map(|k| self.output.above(k, 8.0));
         strips.push(vec![from, to]);
         strips
+    }
+
+    /// The lines of another method's decision, and its delay or its interval as a bar.
+    fn other(&self, decision: &Decision, index: usize) -> Vec<Vec<Vec2D>> {
+        let Some((best, delay)) = decision.candidates.best().zip(decision.delay()) else {
+            return Vec::new();
+        };
+        let p = decision.input_step.sample as f64;
+        let Span { low: first, high: last } = self.output.x_span();
+        let within = |k: f64| k.clamp(first, last);
+        let q = within(p + delay);
+        let at = |line: &Line, k: f64| self.output.at(k, line.at(k));
+        let start = within(decision.segment.first as f64).min(q);
+        let end = within(decision.segment.last as f64).max(q);
+        let (low, high) = decision.fine.map_or((0.0, delay), |fine| (fine.low, fine.high));
+        // Below the edge, so that it is not taken for the first method's above.
+        let depth = -10.0 - 12.0 * index as f32;
+        let tick = |k: f64| [depth - 4.0, depth + 4.0].map(|up| self.output.above(k, up)).to_vec();
+        let [low, high] = [low, high].map(|by| within(p + by));
+        vec![
+            vec![at(&best.before, start), at(&best.before, q)],
+            vec![at(&best.after, q), at(&best.after, end)],
+            self.output.vertical(q).to_vec(),
+            tick(low),
+            [low, high].map(|k| self.output.above(k, depth)).to_vec(),
+            tick(high),
+        ]
     }
 
     /// Where the delay may end: a bar from one end of its interval to the other.

@@ -2,6 +2,7 @@
 
 use rerun::{Color, EntityPath, StateChange, StateConfiguration, TextDocument, TextLog};
 
+use super::beside::{Other, row};
 use super::chunk::{Chunks, Index};
 use super::entity::{below, plain};
 use super::error::RecordError;
@@ -18,11 +19,14 @@ pub(super) fn add(
     root: &EntityPath,
     joint: &Joint,
     layout: &JointLayout<'_>,
-    settings: &Settings,
+    (settings, others): (&Settings, &[Other<'_>]),
 ) -> Result<(), RecordError> {
     let segments: Vec<_> = layout.segments().collect();
     let opening: Index = segments.iter().map(|(trial, segment)| trial.opening(segment)).collect();
-    let text = |(trial, segment): &Placed<'_, '_>| document(joint, trial, segment, settings);
+    let text = |(trial, segment): &Placed<'_, '_>| {
+        let methods = methods(trial, segment, settings, others);
+        document(Facts { joint, trial, segment, settings }, &methods)
+    };
     let texts: Vec<String> = segments.iter().map(text).collect();
     let markdown = std::iter::repeat_n("text/markdown", texts.len());
     let documents =
@@ -123,12 +127,8 @@ fn add_lanes(
 }
 
 /// The page beside the drawing: verdict first, then what it was made of.
-fn document(
-    joint: &Joint,
-    trial: &TrialLayout<'_>,
-    segment: &SegmentLayout<'_>,
-    settings: &Settings,
-) -> String {
+fn document(facts: Facts<'_, '_>, methods: &str) -> String {
+    let Facts { joint, trial, segment, .. } = facts;
     let decision = segment.decision;
     let of = trial.segments.len();
     let in_trial = match joint.trials.len() {
@@ -137,10 +137,28 @@ fn document(
     };
     let name = plain(&joint.name);
     let title = format!("### {name}{in_trial}: step {} of {of}", decision.number);
-    let facts = Facts { joint, trial, segment, settings };
-    format!("{title}\n{}\n\n{}\n\n{}\n", facts.headline(), facts.quantities(), facts.conditions())
+    let headline = facts.headline();
+    format!("{title}\n{headline}\n{methods}\n{}\n\n{}\n", facts.quantities(), facts.conditions())
 }
 
+/// The table of all methods, where there are several.
+fn methods(
+    trial: &TrialLayout<'_>,
+    segment: &SegmentLayout<'_>,
+    settings: &Settings,
+    others: &[Other<'_>],
+) -> String {
+    let found = |other: &Other<'_>| Some(row(other.method, other.decision(trial, segment)?));
+    let others: Vec<String> = others.iter().filter_map(found).collect();
+    if others.is_empty() {
+        return String::new();
+    }
+    let first = row(settings.method, segment.decision);
+    let others = others.join("\n");
+    format!("\n| method | δ, samples | verdict |\n|---|---|---|\n{first}\n{others}\n")
+}
+
+#[derive(Clone, Copy)]
 struct Facts<'l, 'a> {
     joint: &'l Joint,
     trial: &'l TrialLayout<'a>,

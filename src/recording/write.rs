@@ -146,8 +146,9 @@ fn add_joint(
     let root = joint_root(&joint.name);
     signals::add(chunks, &root, joint, layout)?;
     decisions::add(chunks, &root, layout)?;
-    verdict::add(chunks, &root, joint, layout, &estimated.estimate.settings)?;
-    segment_view::add(chunks, &root, joint, layout)?;
+    let others = recording.others(joint);
+    verdict::add(chunks, &root, joint, layout, (&estimated.estimate.settings, &others))?;
+    segment_view::add(chunks, &root, joint, layout, (recording.settings.method, &others))?;
     overview::add(chunks, &root, layout)?;
     delay_state::add(chunks, &root, estimated, layout)?;
     let models = recording.models.iter().filter(|model| model.joint.name == joint.name);
@@ -191,6 +192,9 @@ fn recording_id(recording: &Recording<'_>) -> String {
         part(&format!("{} {changes:?}", improved.first_revision));
     }
     part(&format!("{:?} {:?}", recording.settings, recording.detail));
+    for beside in recording.also {
+        part(&format!("{:?}", beside.settings));
+    }
     for joint in recording.joints.iter().filter(|joint| joint.estimate.chosen.is_some()) {
         part(&format!("{:?}", joint.estimate.settings));
     }

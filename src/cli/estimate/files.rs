@@ -48,6 +48,7 @@ impl<'a> Files<'a> {
         let contents = Contents {
             joints: result.joints,
             settings: result.settings,
+            also: result.runs.get(1..).unwrap_or_default(),
             sources: &result.experiment.sources,
             reading: &result.experiment.options,
             models: &[],

@@ -181,6 +181,7 @@ impl Told {
             return Ok(());
         }
         let contents = Contents {
+            also: &[],
             joints: &joints,
             settings,
             sources: &experiment.sources,

@@ -19,7 +19,7 @@ use crate::recording::chunk::FINE;
 use crate::recording::entity::{below, joint_root};
 use crate::recording::error::RecordError;
 use crate::recording::overview::{MAP_HEIGHT, MAP_WIDTH};
-use crate::recording::{correlogram, delay_state, error_share, revision, scatter};
+use crate::recording::{correlogram, delay_state, error_share, revision, scatter, segment_view};
 use crate::report::{ComparedJoint, EstimatedJoint};
 
 /// What the lane of the worst segments is called.
@@ -32,10 +32,11 @@ pub(super) fn tab(
     EstimatedJoint { joint, estimate }: EstimatedJoint<'_>,
     models: &[&ComparedJoint<'_>],
     revisions: usize,
+    others: usize,
 ) -> Result<Node, RecordError> {
     let mut decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
     let fine = decisions.any(|decision| decision.fine.is_some());
-    let mut views = Views { builder, joint, fine };
+    let mut views = Views { builder, joint, fine, others };
     let mut pages = Vec::new();
     if revisions > 0 {
         pages.push(views.revisions()?);
@@ -54,6 +55,8 @@ struct Views<'b> {
     joint: &'b Joint,
     /// Whether some delay is known between samples.
     fine: bool,
+    /// Methods beside the first one.
+    others: usize,
 }
 
 /// Entities of the drawing, from back to front. A pattern would not do: `*` inside an
@@ -132,9 +135,12 @@ impl Views<'_> {
     }
 
     fn drawing(&self) -> View<'static> {
-        let interval = self.fine.then_some("interval");
-        let paths: Vec<_> = DRAWING
-            .into_iter()
+        let interval = self.fine.then(|| "interval".to_owned());
+        let others = (0..self.others).flat_map(segment_view::other_names);
+        let first = segment_view::FIRST.map(str::to_owned).into_iter();
+        let first = first.filter(|_| self.others > 0);
+        let names = DRAWING.map(str::to_owned).into_iter().chain(others).chain(first);
+        let paths: Vec<_> = names
             .chain(interval)
             .map(|name| {
                 let parts: Vec<_> = std::iter::once("drawing").chain(name.split('/')).collect();

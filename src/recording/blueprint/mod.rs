@@ -46,7 +46,8 @@ pub(super) fn messages(
         // The first one is on its way, at least.
         let expected = usize::from(ladder == Ladder::Growing);
         let revisions = improved.map_or(expected, |improved| improved.revisions.len());
-        tabs.push(joint::tab(&mut builder, *joint, &models, revisions)?);
+        let others = recording.others(joint.joint).len();
+        tabs.push(joint::tab(&mut builder, *joint, &models, revisions, others)?);
     }
     tabs.push(builder.view(View::new("TextDocument", "About", &["/about"]))?);
     let root = builder.container(ContainerKind::Tabs, "Joints", &tabs, &[])?;
