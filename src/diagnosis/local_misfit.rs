@@ -21,6 +21,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::residual_size::BEYOND_NOISE;
 use super::whitening::{autoregression, correlations};
 use crate::statistics::dot;
 
@@ -40,9 +41,7 @@ impl LocalMisfit {
         /// Far below what a test of one record needs: noise is not quite Gaussian, and a
         /// model that is right not quite the plant.
         const SIGNIFICANCE: f64 = 1e-6;
-        /// Times the noise that motion there is to be.
-        const MATTERS: f64 = 1.5;
-        self.p_value < SIGNIFICANCE && self.times_noise.is_none_or(|times| times > MATTERS)
+        self.p_value < SIGNIFICANCE && self.times_noise.is_none_or(|times| times > BEYOND_NOISE)
     }
 }
 
@@ -177,7 +176,7 @@ mod tests {
     fn a_few_seconds_of_motion_are_seen() {
         for rho in [0.0, 0.9] {
             let mut windows = windows(rho, 7);
-            let size = if rho > 0.0 { 8.0 } else { 3.0 };
+            let size = if rho > 0.0 { 8.0 } else { 6.0 };
             let window = &mut windows[20];
             let count = window.len() as f64;
             for (k, value) in window.iter_mut().enumerate() {
@@ -188,9 +187,9 @@ mod tests {
     }
 
     #[test]
-    fn what_is_below_the_noise_does_not_matter() {
+    fn what_is_near_the_noise_does_not_matter() {
         let shown = |times| LocalMisfit { p_value: 1e-30, times_noise: times }.is_shown();
-        assert!(shown(Some(2.0)) && shown(None) && !shown(Some(0.5)));
+        assert!(shown(Some(4.0)) && shown(None) && !shown(Some(2.0)));
         assert!(!LocalMisfit { p_value: 1e-3, times_noise: Some(9.0) }.is_shown());
     }
 

@@ -4,6 +4,12 @@ use super::separate::Separation;
 use crate::diagnosis::ErrorFigures;
 use crate::fit::Fit;
 
+/// Probability below which the best of a whole catalogue is no chance.
+const OF_A_CATALOGUE: f64 = 1e-3;
+
+/// The same of all pairs of a catalogue.
+const OF_ALL_PAIRS: f64 = 1e-6;
+
 /// A model with one effect more, or several, beside the measurement.
 #[derive(Clone, Debug)]
 pub struct Candidate {
@@ -52,9 +58,10 @@ impl Candidate {
 
     /// Whether it takes away so much of the error that it is worth a name.
     pub(super) fn is_significant(&self) -> bool {
-        /// Probability for the best of a whole catalogue.
-        const SIGNIFICANCE: f64 = 1e-3;
-        self.p_value < SIGNIFICANCE && self.takes_away(2.0)
+        match self.effects.as_slice() {
+            [_] => self.p_value < OF_A_CATALOGUE && self.takes_away(2.0),
+            _ => self.p_value < OF_ALL_PAIRS && self.takes_away(10.0),
+        }
     }
 
     /// Whether it is needed even where the model passes for adequate.

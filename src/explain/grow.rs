@@ -106,9 +106,15 @@ pub(super) fn grow(
         let Some(found) = found.filter(|_| goes_on) else {
             return if explained { Verdict::MissingEffect } else { Verdict::Unexplained };
         };
-        let newest = found.effects.first().copied().unwrap_or_default();
+        if let Some(alone) = first_of_several(record, &found) {
+            step = alone;
+            if !visit(&step) {
+                return Verdict::MissingEffect;
+            }
+        }
+        let newest = found.effects.last().copied().unwrap_or_default();
         step = Step::new(record, Change::Added(newest), found.fit);
-        let mut tidying = Tidying { given, settled: vec![newest], options };
+        let mut tidying = Tidying { given, settled: found.effects, options };
         while let Some((change, fit)) = tidying.better(record, &step.fit, workers) {
             if !visit(&step) {
                 return if step.is_adequate() { Verdict::Adequate } else { Verdict::MissingEffect };
@@ -116,6 +122,15 @@ pub(super) fn grow(
             step = Step::new(record, change, fit);
         }
     }
+}
+
+/// The model with the first effect of a pair alone: a step on the way, which need not be better.
+fn first_of_several(record: &Record<'_>, found: &Candidate) -> Option<Step> {
+    let [first, second] = found.effects.as_slice() else { return None };
+    let model = found.fit.model.without(second);
+    let levels = record.input_levels();
+    let fit = fit_to_compare(record, &model, &range(record, &model, &levels)).ok()?;
+    Some(Step::new(record, Change::Added(first), fit))
 }
 
 /// Moves the candidate at `place` to the front.

@@ -26,6 +26,7 @@ mod candidate;
 mod evidence;
 mod grow;
 mod improve;
+mod pairs;
 mod race;
 mod separate;
 mod verdict;

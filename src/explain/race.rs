@@ -3,6 +3,7 @@
 use super::Workers;
 use super::candidate::Candidate;
 use super::evidence::Noise;
+use super::pairs::pairs;
 use crate::diagnosis::{ErrorFigures, NEAR_NOISE, floor_of};
 use crate::effect::{Effect, REGISTRY, RecordRange};
 use crate::fit::{Fit, Part, Record, Status, Survey, fit_to_compare, survey};
@@ -25,9 +26,10 @@ impl Default for Options {
 }
 
 /// A model that took part.
-struct Entry {
-    effects: Vec<&'static str>,
-    fit: Fit,
+#[derive(Clone, Debug)]
+pub(super) struct Entry {
+    pub(super) effects: Vec<&'static str>,
+    pub(super) fit: Fit,
 }
 
 /// Effects that are fitted to the end, of those that were surveyed: at most, and at least.
@@ -51,8 +53,40 @@ pub(super) fn race(
     let of = |surveyed| race_on(record, surveyed, base, noise_floor, options, workers);
     let ranking = of(&thinned);
     let is_whole = thinned.windows().len() == training.windows().len();
-    let shows = ranking.iter().any(Candidate::is_significant);
-    if is_whole || shows { ranking } else { of(&training) }
+    let shows = |ranking: &[Candidate]| ranking.iter().any(Candidate::is_significant);
+    let ranking = if is_whole || shows(&ranking) { ranking } else { of(&training) };
+    if shows(&ranking) {
+        return ranking;
+    }
+    let paired = beside_pairs(record, base, noise_floor, options, workers, &ranking);
+    if shows(&paired) { paired } else { ranking }
+}
+
+/// The candidates of `ranking` among the best pairs of effects.
+fn beside_pairs(
+    record: &Record<'_>,
+    base: &Fit,
+    noise_floor: f64,
+    options: &Options,
+    workers: &impl Workers,
+    ranking: &[Candidate],
+) -> Vec<Candidate> {
+    let effects = able(record, base, options);
+    let levels = record.input_levels();
+    let range = range(record, &base.model, &levels);
+    let single = |candidate: &Candidate| Entry {
+        effects: candidate.effects.clone(),
+        fit: candidate.fit.clone(),
+    };
+    let mut entries = pairs(record, base, &effects, &range, workers);
+    entries.extend(ranking.iter().map(single));
+    ranked(record, base, noise_floor, entries)
+}
+
+/// The effects of `options` that could be missing from the model of `base`.
+fn able(record: &Record<'_>, base: &Fit, options: &Options) -> Vec<&'static dyn Effect> {
+    let able = |effect: &&&'static dyn Effect| takes_part(record, &base.model, effect.spec().id);
+    options.effects.iter().filter(able).copied().collect()
 }
 
 fn race_on(
@@ -63,8 +97,7 @@ fn race_on(
     options: &Options,
     workers: &impl Workers,
 ) -> Vec<Candidate> {
-    let able = |effect: &&&'static dyn Effect| takes_part(record, &base.model, effect.spec().id);
-    let effects: Vec<&'static dyn Effect> = options.effects.iter().filter(able).copied().collect();
+    let effects = able(record, base, options);
     let levels = record.input_levels();
     let range = range(record, &base.model, &levels);
     let glance = |effect: &&'static dyn Effect| {
