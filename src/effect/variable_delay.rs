@@ -71,6 +71,7 @@ static SPEC: Spec = Spec {
             .neutral(UNLIMITED),
         Parameter::new(PER_STEP, "1: the delay of each step as it was measured", Dimension::One)
             .between(0.0, 1.0)
+            .typical(0.0)
             .not_fitted(),
     ],
     memory: 0,
@@ -164,6 +165,25 @@ mod tests {
         assert!((extra(rising) - (-0.03 + 0.02 + 0.05)).abs() < 1e-11);
         let falling = InputChange { before: 2.0, after: -1.0, held_s: 0.0, time_s: 0.0 };
         assert!((extra(falling) - (-0.03 + 0.02)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_fit_of_the_law_takes_no_measured_delays() {
+        let levels = [1.0, 2.0];
+        let record = RecordRange {
+            input_abs_max: 2.0,
+            input_levels: &levels,
+            output_min: -10.0,
+            output_max: 10.0,
+            speed_abs_max: 20.0,
+            duration_s: 60.0,
+            sample_period_s: 0.01,
+            radians_per_output_unit: 1.0,
+        };
+        for start in VariableDelay.starts(&record) {
+            assert_eq!(start.last(), Some(&0.0));
+            assert_eq!(start[4..7], [4.0, 10.0, 120.0]);
+        }
     }
 
     #[test]

@@ -32,6 +32,10 @@ pub(super) struct Entry {
     pub(super) fit: Fit,
 }
 
+/// What measured delays must leave, in parts of what a law of the delay leaves, to take its
+/// place.
+pub(super) const MUCH_LESS: f64 = 0.8;
+
 /// Effects that are fitted to the end, of those that were surveyed: at most, and at least.
 const FINALISTS: (usize, usize) = (6, 3);
 
@@ -210,13 +214,7 @@ fn ranked(
     };
     let mut candidates: Vec<Candidate> = entries.into_iter().map(candidate).collect();
     candidates.sort_by(|a, b| a.behind.total_cmp(&b.behind));
-    // An effect has several forms; the best one counts.
-    let mut seen = Vec::new();
-    candidates.retain(|candidate| {
-        let is_new = !seen.contains(&candidate.effects);
-        seen.push(candidate.effects.clone());
-        is_new
-    });
+    keep_one_form(&mut candidates);
     let least = candidates.first().map_or(0.0, |best| best.behind);
     let alike = alike(&candidates);
     for (candidate, alike) in candidates.iter_mut().zip(alike) {
@@ -224,6 +222,25 @@ fn ranked(
         candidate.indistinguishable_from = alike;
     }
     candidates
+}
+
+/// Of an effect that is there by its law and by measured delays keeps one: the law, which says
+/// more, where measured delays do not leave much less.
+fn keep_one_form(candidates: &mut Vec<Candidate>) {
+    let is_measured = |candidate: &Candidate| candidate.fit.model.takes_measured_delays();
+    let forms: Vec<_> =
+        candidates.iter().map(|c| (c.effects.clone(), is_measured(c), c.rmse())).collect();
+    candidates.retain(|candidate| {
+        let measured = is_measured(candidate);
+        let mut twins = forms
+            .iter()
+            .filter(|(effects, of_twin, _)| *effects == candidate.effects && *of_twin != measured);
+        twins.all(|(_, _, of_twin)| {
+            let (law, delays) =
+                if measured { (*of_twin, candidate.rmse()) } else { (candidate.rmse(), *of_twin) };
+            measured == (delays < MUCH_LESS * law)
+        })
+    });
 }
 
 /// Whether the base is a special case of an entry.

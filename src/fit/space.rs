@@ -23,7 +23,9 @@ impl Space {
         /// No joint of this kind reacts later than this.
         const LONGEST_DELAY_S: f64 = 5.0;
         let delay = (0.0, LONGEST_DELAY_S.min(0.5 * range.duration_s));
-        let mut bounds = vec![(f64::MIN, f64::MAX, true), (delay.0, delay.1, true)];
+        // Beside measured delays it would only stand in for those that are not known.
+        let has_delay = !model.takes_measured_delays();
+        let mut bounds = vec![(f64::MIN, f64::MAX, true), (delay.0, delay.1, has_delay)];
         for component in model.components() {
             let effect = component.effect();
             let has_law = !component.takes_measured_delays();

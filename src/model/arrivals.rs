@@ -54,7 +54,6 @@ impl Commands {
         start_s: f64,
         per_step: Option<&[Option<f64>]>,
     ) -> Arrivals {
-        let per_step = per_step.filter(|_| model.takes_measured_delays());
         let mut arrivals = Arrivals { initial: self.initial, changes: Vec::new() };
         let (mut before, mut since) = (self.initial, 0.0);
         for (number, &(time_s, level)) in self.changes.iter().enumerate() {
@@ -71,9 +70,9 @@ impl Commands {
 
 /// The input of `trial` as it arrives at the joint: change `i` at `t_i + delay + extra_i`.
 ///
-/// `extra` comes from the effects of the transport stage. Where `model` takes measured
-/// delays, `per_step` has one in seconds for each change of the input (`None` where it is not
-/// known), and the model's own delay stands in only for those that are not known.
+/// `extra` comes from the effects of the transport stage. With `per_step`, delays in
+/// seconds for each change of the input (`None` where it is not known), the model's own
+/// delay stands in only for those that are not known.
 ///
 /// A change that would act before an earlier one takes its place: an earlier level never
 /// comes back. Delays are not below zero. `start_s` is the time of the record at the
