@@ -90,6 +90,7 @@ fn record(
             reading: &reading,
             detail,
             models: &[],
+            also: &[],
             revisions: &[],
         };
         group.bench_function(BenchmarkId::new("record", name), |bencher| {

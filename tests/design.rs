@@ -1,6 +1,7 @@
 //! The next experiment, as a user asks for it, and what the plant does with it.
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
+#[cfg_attr(feature = "rrd", expect(dead_code, reason = "no recording is made"))]
 mod desk;
 
 use desk::{Desk, assert_fields, banded, joint, number};

@@ -19,14 +19,14 @@ const PROTOCOL: Protocol =
 type Estimates = Vec<Result<JointEstimate, EstimateError>>;
 
 /// A joint with these delays and effects.
-fn made(seed: u64, delay: DelayLaw, effect: Effects) -> (Vec<Joint>, Estimates) {
+fn made(seed: u64, delay: DelayLaw, effect: &Effects) -> (Vec<Joint>, Estimates) {
     let levels = vec![-3.0, -2.0, -1.0, -0.4, 0.0, 0.4, 1.0, 2.0, 3.0];
     let input = InputSpec::Levels { levels, hold_s: [0.6, 2.0] };
     let joint = JointSpec {
         gain: 8.0,
         range: Some([-50.0, 50.0]),
         noise: NOISE,
-        effect,
+        effect: *effect,
         ..JointSpec::new("boom", input, delay)
     };
     let joints = simulate(&PlantSpec::new(seed, 90.0, vec![joint])).unwrap().joints;
@@ -43,7 +43,7 @@ fn ids(model: &tauscope::model::JointModel) -> Vec<&'static str> {
 
 #[test]
 fn random_delays_are_told_and_taken_from_the_record() {
-    let (joints, estimates) = made(11, RANDOM, Effects::default());
+    let (joints, estimates) = made(11, RANDOM, &Effects::default());
     let options = Options::default();
     let found = explain_joints(&joints, &estimates, |_| None, PROTOCOL, &options);
     let found = found.into_iter().next().unwrap().unwrap().unwrap();
@@ -61,7 +61,7 @@ fn random_delays_are_told_and_taken_from_the_record() {
 #[test]
 fn what_random_delays_hide_is_found_behind_them() {
     let banded = toml::from_str("[dead_band]\nlower = -0.6\nupper = 0.5").unwrap();
-    let (joints, estimates) = made(13, RANDOM, banded);
+    let (joints, estimates) = made(13, RANDOM, &banded);
     let goes_on = |_: usize, _: &_| true;
     let options = Options::default();
     let found = improve_joints(&joints, &estimates, |_| None, PROTOCOL, &options, goes_on);
@@ -76,7 +76,7 @@ fn what_random_delays_hide_is_found_behind_them() {
 #[test]
 fn a_law_is_preferred_to_measured_delays_where_it_does_as_well() {
     let law = toml::from_str("[variable_delay]\nfalling_s = 0.1").unwrap();
-    let (joints, estimates) = made(12, DelayLaw::Constant { seconds: 0.1 }, law);
+    let (joints, estimates) = made(12, DelayLaw::Constant { seconds: 0.1 }, &law);
     let found = explain_joints(&joints, &estimates, |_| None, PROTOCOL, &Options::default());
     let found = found.into_iter().next().unwrap().unwrap().unwrap();
     assert_eq!(found.ranking[0].name(), "variable_delay");

@@ -102,7 +102,9 @@ fn shapes(count: usize) -> Shapes {
     let mean_square = places().map(|x| x * x).sum::<f64>() / count as f64;
     let of_length_one = |mut shape: Vec<f64>| {
         let length = dot(&shape, &shape).sqrt();
-        shape.iter_mut().for_each(|value| *value /= length);
+        for value in &mut shape {
+            *value /= length;
+        }
         shape
     };
     let [line, parabola] =

@@ -131,7 +131,9 @@ impl Search {
         let sum: f64 = shares.iter().sum();
         let is_known = sum > 0.0 && sum.is_finite();
         is_known.then(|| {
-            shares.iter_mut().for_each(|share| *share /= sum);
+            for share in &mut shares {
+                *share /= sum;
+            }
             let grid = Grid::beside_motion(record);
             Self { grid, block_of: self.block_of.clone(), shares }
         })
