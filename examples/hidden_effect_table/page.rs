@@ -311,13 +311,21 @@ fn says(outcome: &Outcome, verdict: Verdict) -> bool {
     outcome.named.as_ref().is_some_and(|named| named.verdict == verdict)
 }
 
+/// What of an error in times the noise is not noise.
+fn beyond_noise(error: f64) -> f64 {
+    (error * error - 1.0).max(0.0).sqrt()
+}
+
 fn cylinder(pairs: &[Pair<'_>]) -> String {
     let pairs = of_group(pairs, Group::Cylinder);
     if pairs.is_empty() {
         return String::new();
     }
     let mut text = "\n## The cylinder\n".to_owned();
-    text += &header(&["seed", "integrator", "after improve", "taken away", "effects"]);
+    text += "\nErrors in times the noise, less than which no model can leave. *Beyond noise*: of the \
+             error whose square is that of the error less that of the noise.\n";
+    let columns = ["seed", "integrator", "after improve", "taken away", "beyond noise", "effects"];
+    text += &header(&columns);
     for (case, outcome) in pairs {
         let [before, after] = outcome.errors;
         text += &row(&[
@@ -325,6 +333,7 @@ fn cylinder(pairs: &[Pair<'_>]) -> String {
             format!("{before:.2}"),
             format!("{after:.2}"),
             format!("{:.1} %", 100.0 * (1.0 - after / before)),
+            format!("{:.1} %", 100.0 * (1.0 - beyond_noise(after) / beyond_noise(before))),
             outcome.found.join(", "),
         ]);
     }
