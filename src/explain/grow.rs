@@ -69,7 +69,8 @@ impl Step {
         }
         if self.ranking.is_empty() {
             let floor = floor_of(record, &self.fit).unwrap_or(0.0);
-            self.ranking = race(record, &self.fit, floor, options, workers);
+            let lacks = !self.is_adequate();
+            self.ranking = race(record, &self.fit, floor, options, lacks, workers);
         }
         let lacks = !self.is_adequate() || self.ranking.iter().any(Candidate::is_beyond_doubt);
         match self.ranking.iter().position(Candidate::is_significant) {

@@ -45,21 +45,23 @@ const HOPELESS: f64 = 3.0;
 /// Surveys `base` with each effect of `options` that it has not, fits the best few to the
 /// end and ranks them, best first.
 ///
-/// A long record is surveyed in part first, and as a whole where that shows nothing.
+/// A long record is surveyed in part first, and as a whole where that shows nothing. Where
+/// `base` lacks something for sure, measured delays and pairs take part, too.
 pub(super) fn race(
     record: &Record<'_>,
     base: &Fit,
     noise_floor: f64,
     options: &Options,
+    lacks: bool,
     workers: &impl Workers,
 ) -> Vec<Candidate> {
     let [thinned, training] = [record.thinned(), record.for_training()];
-    let of = |surveyed| race_on(record, surveyed, base, noise_floor, options, workers);
+    let of = |surveyed| race_on(record, surveyed, base, noise_floor, options, lacks, workers);
     let ranking = of(&thinned);
     let is_whole = thinned.windows().len() == training.windows().len();
     let shows = |ranking: &[Candidate]| ranking.iter().any(Candidate::is_significant);
     let ranking = if is_whole || shows(&ranking) { ranking } else { of(&training) };
-    if shows(&ranking) {
+    if !lacks || shows(&ranking) {
         return ranking;
     }
     let paired = beside_pairs(record, base, noise_floor, options, workers, &ranking);
@@ -99,6 +101,7 @@ fn race_on(
     base: &Fit,
     noise_floor: f64,
     options: &Options,
+    lacks: bool,
     workers: &impl Workers,
 ) -> Vec<Candidate> {
     let effects = able(record, base, options);
@@ -120,7 +123,9 @@ fn race_on(
         Some(Entry { effects: vec![*id], fit })
     };
     let mut entries: Vec<Entry> = workers.map(&glances, to_the_end).into_iter().flatten().collect();
-    entries.extend(with_measured_delays(record, base, noise_floor, &effects, &range, &entries));
+    if lacks {
+        entries.extend(with_measured_delays(record, base, noise_floor, &effects, &range, &entries));
+    }
     ranked(record, base, noise_floor, entries)
 }
 
