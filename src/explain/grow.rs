@@ -3,7 +3,7 @@
 use super::Workers;
 use super::candidate::Candidate;
 use super::evidence::Noise;
-use super::race::{Options, parameters, race, range, takes_part};
+use super::race::{Field, Options, parameters, race, range, takes_part};
 use super::verdict::Verdict;
 use crate::diagnosis::{LackOfFit, floor_of, lack_of};
 use crate::effect::{Effect, by_id};
@@ -69,8 +69,8 @@ impl Step {
         }
         if self.ranking.is_empty() {
             let floor = floor_of(record, &self.fit).unwrap_or(0.0);
-            let lacks = !self.is_adequate();
-            self.ranking = race(record, &self.fit, floor, options, lacks, workers);
+            let field = if self.is_adequate() { Field::OneByOne } else { Field::All };
+            self.ranking = race(record, &self.fit, floor, options, field, workers);
         }
         let lacks = !self.is_adequate() || self.ranking.iter().any(Candidate::is_beyond_doubt);
         match self.ranking.iter().position(Candidate::is_significant) {

@@ -25,6 +25,16 @@ impl Default for Options {
     }
 }
 
+/// What takes part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Field {
+    /// Each effect by itself.
+    OneByOne,
+    /// Measured delays, too, and pairs where no single effect shows: for a model that lacks
+    /// something for sure.
+    All,
+}
+
 /// A model that took part.
 #[derive(Clone, Debug)]
 pub(super) struct Entry {
@@ -45,23 +55,22 @@ const HOPELESS: f64 = 3.0;
 /// Surveys `base` with each effect of `options` that it has not, fits the best few to the
 /// end and ranks them, best first.
 ///
-/// A long record is surveyed in part first, and as a whole where that shows nothing. Where
-/// `base` lacks something for sure, measured delays and pairs take part, too.
+/// A long record is surveyed in part first, and as a whole where that shows nothing.
 pub(super) fn race(
     record: &Record<'_>,
     base: &Fit,
     noise_floor: f64,
     options: &Options,
-    lacks: bool,
+    field: Field,
     workers: &impl Workers,
 ) -> Vec<Candidate> {
     let [thinned, training] = [record.thinned(), record.for_training()];
-    let of = |surveyed| race_on(record, surveyed, base, noise_floor, options, lacks, workers);
+    let of = |surveyed| race_on(record, surveyed, base, noise_floor, options, field, workers);
     let ranking = of(&thinned);
     let is_whole = thinned.windows().len() == training.windows().len();
     let shows = |ranking: &[Candidate]| ranking.iter().any(Candidate::is_significant);
     let ranking = if is_whole || shows(&ranking) { ranking } else { of(&training) };
-    if !lacks || shows(&ranking) {
+    if field == Field::OneByOne || shows(&ranking) {
         return ranking;
     }
     let paired = beside_pairs(record, base, noise_floor, options, workers, &ranking);
@@ -101,7 +110,7 @@ fn race_on(
     base: &Fit,
     noise_floor: f64,
     options: &Options,
-    lacks: bool,
+    field: Field,
     workers: &impl Workers,
 ) -> Vec<Candidate> {
     let effects = able(record, base, options);
@@ -123,7 +132,7 @@ fn race_on(
         Some(Entry { effects: vec![*id], fit })
     };
     let mut entries: Vec<Entry> = workers.map(&glances, to_the_end).into_iter().flatten().collect();
-    if lacks {
+    if field == Field::All {
         entries.extend(with_measured_delays(record, base, noise_floor, &effects, &range, &entries));
     }
     ranked(record, base, noise_floor, entries)
