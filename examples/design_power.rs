@@ -9,17 +9,18 @@
 
 #[path = "design_power/case.rs"]
 mod case;
+#[path = "hidden_effect_table/in_order.rs"]
+mod in_order;
 #[path = "design_power/page.rs"]
 mod page;
 
-use std::panic::resume_unwind;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread::{self, ScopedJoinHandle};
+use std::thread;
 
 use clap::Parser;
 use tauscope::batch::with_threads;
 
 use case::{Case, Judged, examine};
+use in_order::in_order;
 use page::page;
 
 /// Effects that are taken for each other.
@@ -81,28 +82,11 @@ fn cases(
 
 /// What becomes of `cases`, `threads` at a time, in their order.
 fn judged(cases: &[Case], threads: usize) -> anyhow::Result<Vec<Judged>> {
-    let next = AtomicUsize::new(0);
-    let one = |(index, case): (usize, &Case)| {
+    in_order(cases, threads, |index, case| {
         // One thread for each joint: there are enough of them.
         let outcome = with_threads(Some(1), || examine(case))?;
         let judged = Judged { case: *case, outcome };
         eprintln!("{} of {}: {judged}", index + 1, cases.len());
-        Ok((index, judged))
-    };
-    let take = || {
-        let index = next.fetch_add(1, Ordering::Relaxed);
-        cases.get(index).map(|case| (index, case))
-    };
-    let work = || std::iter::from_fn(take).map(one).collect();
-    let parts: Vec<anyhow::Result<Vec<_>>> = thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        let ended = workers.into_iter().map(ScopedJoinHandle::join);
-        ended.map(|part| part.unwrap_or_else(|panic| resume_unwind(panic))).collect()
-    });
-    let mut done = Vec::new();
-    for part in parts {
-        done.extend(part?);
-    }
-    done.sort_by_key(|(index, _)| *index);
-    Ok(done.into_iter().map(|(_, judged)| judged).collect())
+        Ok(judged)
+    })
 }

@@ -8,20 +8,21 @@
 
 #[path = "hidden_effect_table/cases.rs"]
 mod cases;
+#[path = "hidden_effect_table/in_order.rs"]
+mod in_order;
 #[path = "hidden_effect_table/outcome.rs"]
 mod outcome;
 #[path = "hidden_effect_table/page.rs"]
 mod page;
 
-use std::panic::resume_unwind;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread::{self, ScopedJoinHandle};
+use std::thread;
 
 use clap::Parser;
 use tauscope::batch::with_threads;
 use tauscope::explain::Options;
 
 use cases::{Case, Counts, cases};
+use in_order::in_order;
 use outcome::{Outcome, examine};
 use page::page;
 
@@ -53,32 +54,13 @@ fn main() -> anyhow::Result<()> {
 
 /// What becomes of `cases`, `threads` at a time, in their order.
 fn judged(cases: Vec<Case>, options: &Options, threads: usize) -> anyhow::Result<Vec<Judged>> {
-    let next = AtomicUsize::new(0);
-    let one = |(index, case): (usize, &Case)| {
+    let outcomes = in_order(&cases, threads, |index, case| {
         // One thread for each record: there are enough of them.
         let outcome = with_threads(Some(1), || examine(case, options))?;
         tell(&cases, index, &outcome);
-        Ok((index, outcome))
-    };
-    let work = || std::iter::from_fn(|| next_of(&cases, &next)).map(one).collect();
-    let parts: Vec<anyhow::Result<Vec<_>>> = thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        let ended = workers.into_iter().map(ScopedJoinHandle::join);
-        ended.map(|part| part.unwrap_or_else(|panic| resume_unwind(panic))).collect()
-    });
-    let mut done = Vec::new();
-    for part in parts {
-        done.extend(part?);
-    }
-    done.sort_by_key(|(index, _)| *index);
-    let outcomes = done.into_iter().map(|(_, outcome)| outcome);
+        Ok(outcome)
+    })?;
     Ok(cases.into_iter().zip(outcomes).map(|(case, outcome)| Judged { case, outcome }).collect())
-}
-
-/// The next of `cases` that nobody has taken.
-fn next_of<'c>(cases: &'c [Case], next: &AtomicUsize) -> Option<(usize, &'c Case)> {
-    let index = next.fetch_add(1, Ordering::Relaxed);
-    cases.get(index).map(|case| (index, case))
 }
 
 fn tell(cases: &[Case], index: usize, outcome: &anyhow::Result<Outcome>) {
