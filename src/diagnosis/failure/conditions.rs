@@ -219,9 +219,9 @@ fn beside_motion(record: &Record, search: &Search, moving: &FailsWhere) -> Optio
     is_new.then(|| report(record, search, clauses, samples, p_value))
 }
 
-/// The clauses of `choice` with bounds of three digits, or more where that would be another
-/// condition, and the samples for which these hold; as they are, with the samples `exact`,
-/// where six do not do.
+/// The clauses of `choice` with bounds of three digits, or up to six where fewer would be
+/// another condition, and the samples for which these hold. Where even six do not do, as
+/// within values that are all but equal, those of them that gain most.
 fn in_few_digits(
     record: &Record,
     search: &Search,
@@ -233,14 +233,19 @@ fn in_few_digits(
         let selections = choice.selections.iter();
         selections.flat_map(|one| clauses(record, &grid.axes[one.axis], *one, digits)).collect()
     };
-    let rounded = (3..=6).map(|digits| {
-        let clauses = said(&|cut| to_digits(cut, digits));
-        let samples = holding(record, &clauses);
-        (clauses, samples)
-    });
-    let apart = |samples: &[usize]| (search.gain(samples) - search.gain(exact)).abs();
-    let mut near = rounded.filter(|(_, samples)| apart(samples) < DIGITS_COST);
-    near.next().unwrap_or_else(|| (said(&|cut| cut), exact.to_vec()))
+    let rounded: Vec<_> = (3..=6)
+        .map(|digits| {
+            let clauses = said(&|cut| to_digits(cut, digits));
+            let samples = holding(record, &clauses);
+            let gain = search.gain(&samples);
+            (clauses, samples, gain)
+        })
+        .collect();
+    let wanted = search.gain(exact);
+    let near = rounded.iter().find(|(_, _, gain)| (gain - wanted).abs() < DIGITS_COST);
+    let most = || rounded.iter().max_by(|a, b| a.2.total_cmp(&b.2));
+    let (clauses, samples, _) = near.or_else(most).cloned().unwrap_or_default();
+    (clauses, samples)
 }
 
 fn report(

@@ -120,13 +120,16 @@ impl Search {
 
     /// The search for where the error over the speed is large, among the samples `rows`, by
     /// what does not say how fast the joint is driven.
+    ///
+    /// The squared error is over `v² + 0.2 mean v²`: what noise adds does not depend on the
+    /// speed, and over that of the slowest samples it would be most of all.
     pub(super) fn relative(&self, record: &Record, rows: &[usize]) -> Option<Self> {
-        let speed = &record.samples().speed;
-        let slowest = rows.iter().filter_map(|row| speed.get(*row)).map(|v| v.abs());
-        let slowest = slowest.fold(f64::INFINITY, f64::min);
+        const FLOOR: f64 = 0.2;
+        let square = |row: &usize| record.samples().speed.get(*row).map(|v| v * v);
+        let floor = FLOOR * rows.iter().filter_map(square).sum::<f64>() / rows.len().max(1) as f64;
         let mut shares = vec![0.0; self.shares.len()];
-        for row in rows.iter().filter(|_| slowest > 0.0) {
-            shares[*row] = self.shares[*row] / speed[*row].powi(2);
+        for row in rows {
+            shares[*row] = self.shares[*row] / (square(row)? + floor);
         }
         let sum: f64 = shares.iter().sum();
         let is_known = sum > 0.0 && sum.is_finite();
