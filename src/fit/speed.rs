@@ -6,34 +6,34 @@ use crate::experiment::Trial;
 /// Samples on either side from which a speed is taken.
 const SIDE: usize = 10;
 
-/// A speed and its standard error, output units per second.
+/// A speed, output units per second, and an estimate of its squared error: below zero where
+/// chance has it, but not in the mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Speed {
     value: f64,
-    std_error: f64,
+    squared_error: f64,
 }
 
 /// Whether the speeds at the start of `windows` are better taken from the measurement than
 /// from a simulation.
 ///
 /// A simulation carries its own errors on, and at the start of a trial knows nothing: its
-/// joint is steady there. A measured speed has the error of the noise. It is preferred
-/// where that is a hundredth of the speeds in the record, which a model of a real joint
-/// hardly reaches.
+/// joint is steady there. A measured speed has the error of the noise, and of a motion that
+/// bends faster than it can tell. It is preferred where that is a hundredth of the speeds in
+/// the record, which a model of a real joint hardly reaches.
 pub(super) fn are_measured(trials: &[Trial], windows: &[Window]) -> bool {
-    /// Largest standard error of speeds, in parts of their root mean square.
-    const NOISE: f64 = 0.01;
+    /// Largest error of speeds, in parts of their root mean square.
+    const ERROR: f64 = 0.01;
     let speeds = windows.iter().filter_map(|w| Speed::at(trials.get(w.trial)?, w.start));
     let whole = trials.iter().flat_map(|trial| {
         (SIDE..trial.len()).step_by(SIDE).filter_map(|sample| Speed::at(trial, sample))
     });
-    let mean_square = |values: &mut dyn Iterator<Item = f64>| {
-        let (sum, count) =
-            values.fold((0.0, 0.0), |(sum, n), value| (sum + value * value, n + 1.0));
+    let mean = |values: &mut dyn Iterator<Item = f64>| {
+        let (sum, count) = values.fold((0.0, 0.0), |(sum, n), value| (sum + value, n + 1.0));
         sum / f64::max(count, 1.0)
     };
-    let noise = mean_square(&mut speeds.map(|speed| speed.std_error));
-    noise < NOISE * NOISE * mean_square(&mut whole.map(|speed| speed.value))
+    let error = mean(&mut speeds.map(|speed| speed.squared_error));
+    error < ERROR * ERROR * mean(&mut whole.map(|speed| speed.value * speed.value))
 }
 
 /// The measured speed at a sample; `None` in a trial that is too short.
@@ -46,6 +46,9 @@ impl Speed {
     ///
     /// With `x` from the middle, and polynomials that are orthogonal on the grid, it is
     /// `a + b x + c (x² − mean x²)`, with the slope `b + 2 c x`.
+    ///
+    /// Its error is what white noise does, and what a cubic would change beyond that: noise
+    /// with a memory, and jerk, leave little beside a short parabola and still turn it.
     fn at(trial: &Trial, sample: usize) -> Option<Self> {
         let from = sample.saturating_sub(SIDE).min(trial.len().saturating_sub(2 * SIDE + 1));
         let values = trial.output().get(from..=from + 2 * SIDE)?;
@@ -53,7 +56,7 @@ impl Speed {
         let place = (place <= 2 * SIDE).then_some(place as f64 - SIDE as f64)?;
         let n = values.len() as f64;
         let x = |k: usize| k as f64 - SIDE as f64;
-        let square = (n * n - 1.0) / 12.0;
+        let (square, odd) = ((n * n - 1.0) / 12.0, (3.0 * n * n - 7.0) / 20.0);
         let project = |shape: &dyn Fn(f64) -> f64| {
             let (mut with, mut own) = (0.0, 0.0);
             for (k, y) in values.iter().enumerate() {
@@ -71,16 +74,23 @@ impl Speed {
         });
         let variance = rest.sum::<f64>() / (n - 3.0);
         let of_slope = variance * (1.0 / linear + 4.0 * place * place / quadratic);
+        let (twist, cubic) = project(&|x| x * x * x - odd * x);
+        let turn = 3.0 * place * place - odd;
+        let beyond = turn * turn * (twist * twist - variance / cubic);
         let period = trial.period().seconds();
         Some(Self {
             value: (slope + 2.0 * bend * place) / period,
-            std_error: of_slope.sqrt() / period,
+            squared_error: (of_slope + beyond) / (period * period),
         })
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use rand::SeedableRng as _;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution as _, StandardNormal};
+
     use super::*;
     use crate::units::SamplePeriod;
 
@@ -96,7 +106,7 @@ mod tests {
         for sample in [0, 5, 10, 30, 49] {
             let speed = Speed::at(&trial, sample).unwrap();
             let expected = 3.0 - 4.0 * 0.1 * sample as f64;
-            assert!((speed.value - expected).abs() < 1e-9 && speed.std_error < 1e-9);
+            assert!((speed.value - expected).abs() < 1e-9 && speed.squared_error < 1e-18);
         }
         assert_eq!(measured(&trial, 50), None);
     }
@@ -107,5 +117,28 @@ mod tests {
         let noisy = |size: f64| trial(|t| 3.0 * t + size * (97.0 * t).sin());
         assert!(are_measured(&[noisy(0.001)], &[window]));
         assert!(!are_measured(&[noisy(0.3)], &[window]));
+    }
+
+    #[test]
+    fn the_squared_error_is_right_in_the_mean_for_white_noise_and_not_too_small_for_jerk() {
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        let noise: Vec<f64> = (0..21 * 2000).map(|_| StandardNormal.sample(&mut random)).collect();
+        let errors = |size: f64, jerk: f64| {
+            let output = (0..).zip(&noise).map(|(k, noise)| {
+                let x = f64::from(k % 21) - 10.0;
+                size * noise + jerk * x * x * x
+            });
+            let period = SamplePeriod::from_seconds(1.0).unwrap();
+            let output: Vec<f64> = output.collect();
+            let trial = Trial::new("a", 0.0, period, vec![0.0; output.len()], output).unwrap();
+            let found = (0..2000).map(|i| Speed::at(&trial, 21 * i + 10).unwrap());
+            let (told, is) = found.fold((0.0, 0.0), |(told, is), speed| {
+                (told + speed.squared_error, is + speed.value * speed.value)
+            });
+            told / is
+        };
+        let white = errors(1.0, 0.0);
+        assert!((white - 1.0).abs() < 0.15, "{white}");
+        assert!(errors(1e-9, 1.0) > 0.9);
     }
 }
