@@ -254,6 +254,18 @@ fn a_log_that_is_followed_is_seen_as_it_is_in_the_end() {
 }
 
 #[test]
+fn a_viewer_is_sent_the_sweep_that_is_in_the_file() {
+    let Some(viewer) = Viewer::start(None) else { return };
+    let desk = Desk::with(vec![joint("boom")]);
+    let options = "sweep log.csv --method two-line --beta 1,5 -o file.rrd";
+    let output = desk.run(&format!("{options} --connect {}", viewer.address));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let file = rows(&chunks_of(&desk.folder.path().join("file.rrd")));
+    assert!(file.keys().any(|name| name.starts_with("/boom/sweep/setting")), "{file:?}");
+    viewer.seen_when(|seen| rows(seen) == file);
+}
+
+#[test]
 fn viewers_that_come_later_are_served_until_ctrl_c() {
     let desk = Desk::with(vec![joint("boom")]);
     let address = free_address();
@@ -282,7 +294,7 @@ fn viewers_that_come_later_are_served_until_ctrl_c() {
 fn without_a_viewer_there_is_one_message_and_no_waiting() {
     let desk = Desk::with(vec![joint("boom")]);
     let start = Instant::now();
-    for command in ["estimate", "compare", "explain", "improve", "add dead_band"] {
+    for command in ["estimate", "compare", "explain", "improve", "add dead_band", "sweep"] {
         let stderr = desk.refusal(&format!("{command} log.csv --connect {}", free_address()));
         assert!(stderr.contains("no viewer at") && stderr.lines().count() == 1, "{stderr}");
         assert!(stderr.contains("start one with `rerun`"), "{stderr}");

@@ -586,6 +586,19 @@ fn of_a_folder_the_logs_are_read_in_order_and_the_truth_is_left_out() {
     assert_eq!(labels(&joints[0]), ["log", "a", "b", "c", "d"]);
 }
 
+/// A shell's `*.csv` names the truth, too.
+#[test]
+fn beside_a_log_the_truth_is_left_out_and_alone_it_is_not() {
+    let reading = Reading::of(PLAIN);
+    let truth = reading.file("log.truth.csv", "joint,trial,i,p\n");
+    let log = reading.paths[0].clone();
+    let (found, failures) = expand_folders(&[log.clone(), truth.clone()]);
+    assert!(failures.is_empty());
+    assert_eq!(found, [log], "as if it had not been named");
+    let (found, _) = expand_folders(std::slice::from_ref(&truth));
+    assert_eq!(found, [truth], "a message tells what it is");
+}
+
 fn plant() -> impl Strategy<Value = PlantSpec> {
     let unit = prop::sample::select(vec!["V", "%", "deg", "m/s²", "N·m, static", "\"\""]);
     let joint = (unit.clone(), unit, -1e3..1e3f64, 0.0..10.0f64, any::<bool>()).prop_map(

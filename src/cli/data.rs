@@ -158,7 +158,8 @@ impl DataArgs {
         self.data.iter().map(path).chain(options).collect()
     }
 
-    fn options(&self) -> anyhow::Result<ReadOptions> {
+    /// How logs are read.
+    pub(super) fn options(&self) -> anyhow::Result<ReadOptions> {
         let mut columns = match &self.columns {
             Some(path) => ColumnMap::read(path)?,
             None => ColumnMap::default(),

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use tauscope::delay::Settings;
+use tauscope::delay::sweep::Grid;
 use tauscope::experiment::{ReadOptions, Source};
-use tauscope::report::{ComparedJoint, EstimatedJoint, ImprovedJoint};
+use tauscope::report::{ComparedJoint, EstimatedJoint, ImprovedJoint, ReportedSweep};
 
 use super::message;
 use super::output::{OutputFile, write_file};
@@ -36,15 +37,7 @@ pub(super) struct Contents<'a> {
 impl Contents<'_> {
     /// Writes the recording to `path` and says how to look at it.
     pub(super) fn record(&self, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
-        {
-            let _bar = Bar::spinner(verbosity, "recording");
-            write_file(path, |file| self.write(file))?;
-        }
-        if verbosity == Verbosity::Normal {
-            let path = path.display();
-            message("recording", &format!("{path}; look at it with: rerun {path}"));
-        }
-        Ok(())
+        record(path, verbosity, |file| self.write(file))
     }
 
     #[cfg(feature = "rrd")]
@@ -76,6 +69,63 @@ impl Contents<'_> {
     #[cfg(not(feature = "rrd"))]
     #[expect(clippy::unused_self, reason = "with recordings it is used")]
     fn write(&self, _: &mut OutputFile) -> anyhow::Result<()> {
-        anyhow::bail!("this program was built without recordings: build it with feature `rrd`")
+        Err(left_out())
     }
+}
+
+/// Delays over all settings, to be recorded.
+#[derive(Clone, Copy)]
+#[cfg_attr(not(feature = "rrd"), expect(dead_code, reason = "there is no recording then"))]
+pub(super) struct SweepContents<'a> {
+    pub(super) joints: &'a [ReportedSweep<'a>],
+    pub(super) grid: &'a Grid,
+    pub(super) tolerance: f64,
+    pub(super) sources: &'a [Source],
+    pub(super) reading: &'a ReadOptions,
+}
+
+impl SweepContents<'_> {
+    /// Writes the recording to `path` and says how to look at it.
+    pub(super) fn record(&self, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
+        record(path, verbosity, |file| self.write(file))
+    }
+
+    #[cfg(feature = "rrd")]
+    fn write(&self, file: &mut OutputFile) -> anyhow::Result<()> {
+        Ok(tauscope::recording::write_sweep(&self.recording(), file)?)
+    }
+
+    #[cfg(feature = "rrd")]
+    pub(super) fn recording(&self) -> tauscope::recording::SweepRecording<'_> {
+        let Self { joints, grid, tolerance, sources, reading } = *self;
+        tauscope::recording::SweepRecording { joints, grid, tolerance, sources, reading }
+    }
+
+    #[cfg(not(feature = "rrd"))]
+    #[expect(clippy::unused_self, reason = "with recordings it is used")]
+    fn write(&self, _: &mut OutputFile) -> anyhow::Result<()> {
+        Err(left_out())
+    }
+}
+
+/// Writes a recording to `path` and says how to look at it.
+fn record(
+    path: &Path,
+    verbosity: Verbosity,
+    write: impl FnOnce(&mut OutputFile) -> anyhow::Result<()>,
+) -> anyhow::Result<()> {
+    {
+        let _bar = Bar::spinner(verbosity, "recording");
+        write_file(path, write)?;
+    }
+    if verbosity == Verbosity::Normal {
+        let path = path.display();
+        message("recording", &format!("{path}; look at it with: rerun {path}"));
+    }
+    Ok(())
+}
+
+#[cfg(not(feature = "rrd"))]
+pub(super) fn left_out() -> anyhow::Error {
+    anyhow::anyhow!("this program was built without recordings: build it with feature `rrd`")
 }

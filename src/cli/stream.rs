@@ -7,7 +7,7 @@ use clap::Args;
 use super::Completion;
 use super::doctor::viewer::PORT;
 use super::progress::Verbosity;
-use super::record::Contents;
+use super::record::{Contents, SweepContents};
 
 /// Which viewer shows the recording while it is made.
 #[derive(Args, Debug)]
@@ -78,7 +78,7 @@ impl StreamArgs {
     #[cfg(not(feature = "rrd"))]
     pub(super) fn open(&self, _: Verbosity) -> anyhow::Result<Stream> {
         if self.is_asked() {
-            anyhow::bail!("this program was built without recordings: build it with feature `rrd`");
+            return Err(super::record::left_out());
         }
         Ok(Stream(()))
     }
@@ -121,6 +121,13 @@ impl Stream {
             None => live.send(recording),
         })?;
         Ok(())
+    }
+
+    /// Shows delays over all settings.
+    pub(super) fn send_sweep(&self, contents: &SweepContents<'_>) -> anyhow::Result<()> {
+        let Some(live) = &self.0 else { return Ok(()) };
+        let mut live = live.lock().map_err(|_poisoned| bug())?;
+        Ok(live.send_sweep(&contents.recording())?)
     }
 
     /// Waits until the viewer has everything; where viewers are served, until Ctrl-C.
@@ -168,6 +175,10 @@ impl Stream {
     }
 
     pub(super) fn send(&self, _: &Contents<'_>, _: Option<&str>) -> anyhow::Result<()> {
+        Ok(())
+    }
+
+    pub(super) fn send_sweep(&self, _: &SweepContents<'_>) -> anyhow::Result<()> {
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::error::nearest_name;
-use super::table::{Header, OpenTable};
+use super::table::{Head, Header};
 use super::{ColumnMap, JointColumns, ReadError, Signal};
 use crate::units::SamplePeriod;
 
@@ -66,25 +66,25 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// Finds the columns of `map`, and those with native names, in `table`.
+    /// Finds the columns of `map`, and those with native names, in `head`.
     ///
     /// `period` stands in for a time column.
     pub(super) fn find(
-        table: &OpenTable,
+        head: &Head,
         map: &ColumnMap,
         period: Option<SamplePeriod>,
     ) -> Result<Self, ReadError> {
         let trial = match map.trial.as_deref() {
             Some(NO_TRIAL) => None,
-            Some(name) => Some(find(table, name)?),
-            None => find_any(table, &TRIAL_NAMES),
+            Some(name) => Some(find(head, name)?),
+            None => find_any(head, &TRIAL_NAMES),
         };
-        let time = find_time(table, map, period)?;
+        let time = find_time(head, map, period)?;
         let mut layout = Self { time, trial, joints: Vec::new(), incomplete: Vec::new() };
         if map.joints.is_empty() {
-            layout.add_native_joints(table)?;
+            layout.add_native_joints(head)?;
         } else {
-            layout.add_mapped_joints(table, &map.joints)?;
+            layout.add_mapped_joints(head, &map.joints)?;
         }
         Ok(layout)
     }
@@ -111,19 +111,15 @@ impl Layout {
         clocks.into_iter().map(of).collect()
     }
 
-    fn add_mapped_joints(
-        &mut self,
-        table: &OpenTable,
-        joints: &[JointColumns],
-    ) -> Result<(), ReadError> {
+    fn add_mapped_joints(&mut self, head: &Head, joints: &[JointColumns]) -> Result<(), ReadError> {
         let mut names: Vec<_> = joints.iter().map(|joint| &joint.name).collect();
         names.sort();
         if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
-            let (path, joint) = (table.path.clone(), pair[0].clone());
+            let (path, joint) = (head.path.clone(), pair[0].clone());
             return Err(ReadError::DuplicateJoint { path, joint });
         }
         for joint in joints {
-            match mapped_joint(table, joint) {
+            match mapped_joint(head, joint) {
                 Ok(layout) => self.joints.push(layout),
                 Err(error) => self.incomplete.push((joint.name.clone(), error)),
             }
@@ -131,19 +127,19 @@ impl Layout {
         Ok(())
     }
 
-    fn add_native_joints(&mut self, table: &OpenTable) -> Result<(), ReadError> {
+    fn add_native_joints(&mut self, head: &Head) -> Result<(), ReadError> {
         let mut names: Vec<&str> = Vec::new();
-        for (name, signal) in table.headers.iter().filter_map(native_name) {
+        for (name, signal) in head.headers.iter().filter_map(native_name) {
             if ["input", "output"].contains(&signal) && !names.contains(&name) {
                 names.push(name);
             }
         }
         if names.is_empty() {
-            let (path, row) = (table.path.clone(), table.header_row);
-            return Err(ReadError::NoJoints { path, row, available: table.names() });
+            let (path, row) = (head.path.clone(), head.header_row);
+            return Err(ReadError::NoJoints { path, row, available: head.names() });
         }
         for name in names {
-            match native_joint(table, name) {
+            match native_joint(head, name) {
                 Ok(layout) => self.joints.push(layout),
                 Err(error) => self.incomplete.push((name.to_owned(), error)),
             }
@@ -157,14 +153,14 @@ fn native_name(header: &Header) -> Option<(&str, &str)> {
     header.name.rsplit_once('.').filter(|(joint, signal)| !joint.is_empty() && !signal.is_empty())
 }
 
-fn native_joint(table: &OpenTable, name: &str) -> Result<JointLayout, ReadError> {
-    let signal = |kind: &str| signal_column(table, &format!("{name}.{kind}"), kind, None);
+fn native_joint(head: &Head, name: &str) -> Result<JointLayout, ReadError> {
+    let signal = |kind: &str| signal_column(head, &format!("{name}.{kind}"), kind, None);
     let is_covariate = |header: &Header| {
         native_name(header)
             .filter(|(joint, kind)| *joint == name && !["input", "output"].contains(kind))
             .map(|(_, kind)| kind.to_owned())
     };
-    let covariates = table.headers.iter().filter_map(is_covariate).map(|kind| signal(&kind));
+    let covariates = head.headers.iter().filter_map(is_covariate).map(|kind| signal(&kind));
     Ok(JointLayout {
         name: name.to_owned(),
         input: signal("input")?,
@@ -173,52 +169,50 @@ fn native_joint(table: &OpenTable, name: &str) -> Result<JointLayout, ReadError>
     })
 }
 
-fn mapped_joint(table: &OpenTable, joint: &JointColumns) -> Result<JointLayout, ReadError> {
-    let covariate = |(name, column): &(String, String)| signal_column(table, column, name, None);
+fn mapped_joint(head: &Head, joint: &JointColumns) -> Result<JointLayout, ReadError> {
+    let covariate = |(name, column): &(String, String)| signal_column(head, column, name, None);
     Ok(JointLayout {
         name: joint.name.clone(),
-        input: signal_column(table, &joint.input, "input", joint.input_unit.as_ref())?,
-        output: signal_column(table, &joint.output, "output", joint.output_unit.as_ref())?,
+        input: signal_column(head, &joint.input, "input", joint.input_unit.as_ref())?,
+        output: signal_column(head, &joint.output, "output", joint.output_unit.as_ref())?,
         covariates: joint.covariates.iter().map(covariate).collect::<Result<_, _>>()?,
     })
 }
 
 fn signal_column(
-    table: &OpenTable,
+    head: &Head,
     column: &str,
     name: &str,
     unit: Option<&String>,
 ) -> Result<SignalColumn, ReadError> {
-    let column = find(table, column)?;
-    let stated = table.headers.get(column).and_then(|header| header.unit.as_ref());
+    let column = find(head, column)?;
+    let stated = head.headers.get(column).and_then(|header| header.unit.as_ref());
     let signal = Signal { name: name.to_owned(), unit: unit.or(stated).cloned() };
-    let clock = table.headers.get(column).map_or(0, |header| header.clock);
+    let clock = head.headers.get(column).map_or(0, |header| header.clock);
     Ok(SignalColumn { signal, column, clock })
 }
 
 fn find_time(
-    table: &OpenTable,
+    head: &Head,
     map: &ColumnMap,
     period: Option<SamplePeriod>,
 ) -> Result<TimeSource, ReadError> {
     if let Some(name) = &map.time {
-        return find(table, name).and_then(|column| times(table, column));
+        return find(head, name).and_then(|column| times(head, column));
     }
-    let numbers = find_any(table, &[SAMPLE_NAME]);
-    match (period, numbers, find_any(table, &TIME_NAMES)) {
+    let numbers = find_any(head, &[SAMPLE_NAME]);
+    match (period, numbers, find_any(head, &TIME_NAMES)) {
         // A period that was asked for stands above a time column: the user knows why.
         (Some(period), Some(column), _) => Ok(TimeSource::SampleNumbers(column, period)),
         (Some(period), None, _) => Ok(TimeSource::Rows(period)),
-        (None, _, Some(column)) => times(table, column),
-        (None, _, None) => {
-            Err(ReadError::NoTime { path: table.path.clone(), row: table.header_row })
-        }
+        (None, _, Some(column)) => times(head, column),
+        (None, _, None) => Err(ReadError::NoTime { path: head.path.clone(), row: head.header_row }),
     }
 }
 
 /// A column of times in the unit that its header states; seconds without one.
-fn times(table: &OpenTable, column: usize) -> Result<TimeSource, ReadError> {
-    let header = table.headers.get(column);
+fn times(head: &Head, column: usize) -> Result<TimeSource, ReadError> {
+    let header = head.headers.get(column);
     let unit = header.and_then(|header| header.unit.as_deref()).unwrap_or("s");
     let scale = match unit {
         "s" | "sec" | "second" | "seconds" => 1.0,
@@ -228,8 +222,8 @@ fn times(table: &OpenTable, column: usize) -> Result<TimeSource, ReadError> {
         "min" => 60.0,
         _ => {
             return Err(ReadError::TimeUnit {
-                path: table.path.clone(),
-                row: table.header_row,
+                path: head.path.clone(),
+                row: head.header_row,
                 column: header.map_or_else(String::new, |header| header.name.clone()),
                 unit: unit.to_owned(),
             });
@@ -239,27 +233,27 @@ fn times(table: &OpenTable, column: usize) -> Result<TimeSource, ReadError> {
 }
 
 /// The column whose whole header is `wanted`, else the one whose name it is.
-fn find(table: &OpenTable, wanted: &str) -> Result<usize, ReadError> {
+fn find(head: &Head, wanted: &str) -> Result<usize, ReadError> {
     let matching = |is_match: fn(&Header) -> &str| {
-        let headers = table.headers.iter().enumerate();
+        let headers = head.headers.iter().enumerate();
         headers.filter(|(_, header)| is_match(header) == wanted).map(|(index, _)| index).collect()
     };
     let whole: Vec<usize> = matching(|header| &header.text);
     let found = if whole.is_empty() { matching(|header| &header.name) } else { whole };
-    let (path, row, column) = (table.path.clone(), table.header_row, wanted.to_owned());
+    let (path, row, column) = (head.path.clone(), head.header_row, wanted.to_owned());
     match found.as_slice() {
         [index] => Ok(*index),
         [_, ..] => Err(ReadError::DuplicateColumn { path, row, column }),
         [] => {
-            let names = table.headers.iter().map(|header| header.name.as_str());
-            let (nearest, available) = (nearest_name(wanted, names), table.names());
+            let names = head.headers.iter().map(|header| header.name.as_str());
+            let (nearest, available) = (nearest_name(wanted, names), head.names());
             Err(ReadError::MissingColumn { path, row, column, nearest, available })
         }
     }
 }
 
-fn find_any(table: &OpenTable, wanted: &[&str]) -> Option<usize> {
+fn find_any(head: &Head, wanted: &[&str]) -> Option<usize> {
     wanted.iter().find_map(|wanted| {
-        table.headers.iter().position(|header| header.name.eq_ignore_ascii_case(wanted))
+        head.headers.iter().position(|header| header.name.eq_ignore_ascii_case(wanted))
     })
 }

@@ -8,6 +8,7 @@ mod activity;
 mod columns;
 mod error;
 mod format;
+mod growing;
 mod layout;
 mod read;
 mod sampling;
@@ -20,6 +21,7 @@ use crate::units::SamplePeriod;
 pub use activity::activity;
 pub use columns::{ColumnMap, ColumnMapError, JointColumns};
 pub use error::ReadError;
+pub use growing::GrowingLog;
 pub use read::{Experiment, Failure, ReadOptions, expand_folders};
 pub use sampling::Repair;
 

@@ -8,7 +8,7 @@ use super::error::{listed, nearest_name};
 use super::format::{self, is_named_like_a_log};
 use super::layout::{JointLayout, Layout, TimeSource};
 use super::sampling::{Fault, Grid, Repair, Signals};
-use super::table::{BadCell, Column, Header, OpenTable, Table, TrialRows, source_of};
+use super::table::{BadCell, Column, Head, OpenTable, Table, TrialRows, source_of};
 use super::{ColumnMap, Joint, ReadError, Signal, Source, Trial};
 use crate::units::SamplePeriod;
 
@@ -66,7 +66,7 @@ impl Experiment {
         experiment
     }
 
-    fn add(&mut self, log: Self, path: &Path) {
+    pub(super) fn add(&mut self, log: Self, path: &Path) {
         self.sources.extend(log.sources);
         self.failures.extend(log.failures);
         self.notes.extend(log.notes);
@@ -120,7 +120,8 @@ fn unique_stem(path: &Path, taken: &[String]) -> String {
 /// Files as they are; of a folder its logs (`.csv`, `.tsv`, `.txt`, `.parquet`, `.mat`,
 /// `.mcap`), sorted by name.
 ///
-/// Truth files (`*.truth.csv`) are no logs and are left out.
+/// Truth files (`*.truth.csv`) are no logs and are left out: of a folder, and beside logs, as
+/// a shell's pattern `*.csv` names both.
 ///
 /// Beside the files, the folders that cannot be listed ([`ReadError::Io`]) or hold no log
 /// ([`ReadError::EmptyFolder`]).
@@ -131,6 +132,9 @@ pub fn expand_folders(paths: &[PathBuf]) -> (Vec<PathBuf>, Vec<Failure>) {
             Ok(logs) => files.extend(logs),
             Err(error) => failures.push(Failure { joint: None, error }),
         }
+    }
+    if !files.iter().all(|file| is_truth(file)) {
+        files.retain(|file| !is_truth(file));
     }
     (files, failures)
 }
@@ -166,8 +170,15 @@ fn part_labels(label: &str, parts: usize, trials: &[TrialRows]) -> Vec<String> {
 }
 
 fn is_log(path: &Path) -> bool {
-    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    is_named_like_a_log(&name) && !name.ends_with(".truth.csv") && path.is_file()
+    is_named_like_a_log(&lower_name(path)) && !is_truth(path) && path.is_file()
+}
+
+fn is_truth(path: &Path) -> bool {
+    lower_name(path).ends_with(".truth.csv")
+}
+
+fn lower_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
 fn read_log(
@@ -176,12 +187,7 @@ fn read_log(
     options: &ReadOptions,
 ) -> Result<Experiment, ReadError> {
     let table = format::open(path)?;
-    let period = sample_period(path, &options.columns)?;
-    let mut layout = Layout::find(&table, &options.columns, period)?;
-    let unknown = layout.keep(path, &options.joints);
-    let incomplete = std::mem::take(&mut layout.incomplete);
-    let mut found = Experiment::default();
-    found.failures.extend(incomplete.into_iter().chain(unknown).map(failed));
+    let (layout, mut found) = laid_out(&table.head, options)?;
     let mut next = Some(table);
     for layout in layout.by_clock() {
         // Each clock has rows of its own, and is read in a pass of its own.
@@ -189,6 +195,20 @@ fn read_log(
         found.read_clock(table, &layout, stem, options.repair)?;
     }
     Ok(found)
+}
+
+/// What every column means, and the joints that are not to be had.
+pub(super) fn laid_out(
+    head: &Head,
+    options: &ReadOptions,
+) -> Result<(Layout, Experiment), ReadError> {
+    let period = sample_period(&head.path, &options.columns)?;
+    let mut layout = Layout::find(head, &options.columns, period)?;
+    let unknown = layout.keep(&head.path, &options.joints);
+    let incomplete = std::mem::take(&mut layout.incomplete);
+    let mut found = Experiment::default();
+    found.failures.extend(incomplete.into_iter().chain(unknown).map(failed));
+    Ok((layout, found))
 }
 
 fn failed((joint, error): (String, ReadError)) -> Failure {
@@ -204,14 +224,25 @@ impl Experiment {
         stem: Option<&str>,
         repair: Repair,
     ) -> Result<(), ReadError> {
-        let (path, headers) = (table.path.clone(), table.headers.clone());
+        let head = table.head.clone();
         if layout.joints.is_empty() {
-            self.sources.push(source_of(&path)?);
+            self.sources.push(source_of(&head.path)?);
             return Ok(());
         }
         let numeric = layout.numeric_columns();
         let table = table.read(&numeric, layout.trial, layout.clock())?;
-        let log = Log { path: &path, headers: &headers, numeric: &numeric, table: &table };
+        let log = Log { head: &head, numeric: &numeric, table: &table };
+        self.add_log(&log, layout, stem, repair)
+    }
+
+    /// Adds the joints of `layout` with the numbers of `log`.
+    pub(super) fn add_log(
+        &mut self,
+        log: &Log<'_>,
+        layout: &Layout,
+        stem: Option<&str>,
+        repair: Repair,
+    ) -> Result<(), ReadError> {
         let trials = log.trials(stem);
         let grids = log.grids(layout.time, &trials, repair)?;
         for joint in &layout.joints {
@@ -223,9 +254,9 @@ impl Experiment {
                 Err(error) => self.failures.push(failed((joint.name.clone(), error))),
             }
         }
-        self.notes.extend(table.notes);
+        self.notes.extend(log.table.notes.iter().cloned());
         if self.sources.is_empty() {
-            self.sources.push(table.source);
+            self.sources.push(log.table.source.clone());
         }
         Ok(())
     }
@@ -278,7 +309,7 @@ impl Layout {
     }
 
     /// Indices of all columns that hold numbers, each once.
-    fn numeric_columns(&self) -> Vec<usize> {
+    pub(super) fn numeric_columns(&self) -> Vec<usize> {
         let mut columns: Vec<usize> = self.time.column().into_iter().collect();
         for joint in &self.joints {
             columns.extend([joint.input.column, joint.output.column]);
@@ -291,11 +322,10 @@ impl Layout {
 }
 
 /// A table that was read, with what is needed to speak of its cells.
-struct Log<'a> {
-    path: &'a Path,
-    headers: &'a [Header],
-    numeric: &'a [usize],
-    table: &'a Table,
+pub(super) struct Log<'a> {
+    pub(super) head: &'a Head,
+    pub(super) numeric: &'a [usize],
+    pub(super) table: &'a Table,
 }
 
 impl Log<'_> {
@@ -346,7 +376,7 @@ impl Log<'_> {
         }
         match times.iter().position(|time| time.is_nan()) {
             Some(index) => Err(ReadError::NoTimeInRow {
-                path: self.path.to_owned(),
+                path: self.head.path.clone(),
                 row: self.row(index),
                 column: self.header(column),
             }),
@@ -355,7 +385,7 @@ impl Log<'_> {
     }
 
     fn time_error(&self, fault: Fault, trial: &TrialRows, times: &[f64]) -> ReadError {
-        let path = self.path.to_owned();
+        let path = self.head.path.clone();
         let at = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
         match fault {
             Fault::NotIncreasing { row } => ReadError::TimeNotIncreasing {
@@ -402,14 +432,14 @@ impl Log<'_> {
                 let trial = Trial::new(label, piece.start_s, grid.period(), input, output)
                     .and_then(|trial| trial.with_covariates(covariates));
                 joint.trials.push(trial.map_err(|source| ReadError::Trial {
-                    path: self.path.to_owned(),
+                    path: self.head.path.clone(),
                     joint: layout.name.clone(),
                     source,
                 })?);
             }
         }
         if joint.trials.is_empty() {
-            let (path, joint) = (self.path.to_owned(), layout.name.clone());
+            let (path, joint) = (self.head.path.clone(), layout.name.clone());
             return Err(ReadError::NoSamples { path, joint });
         }
         Ok(joint)
@@ -426,7 +456,7 @@ impl Log<'_> {
             self.column(*column).is_some_and(|c| c.values.iter().all(|value| value.is_nan()))
         };
         if let Some(column) = needed.into_iter().find(empty) {
-            let (path, column) = (self.path.to_owned(), self.header(column));
+            let (path, column) = (self.head.path.clone(), self.header(column));
             return Err(ReadError::NeverMeasured { path, column });
         }
         if repair.fill_s.is_some() {
@@ -438,7 +468,7 @@ impl Log<'_> {
         };
         match needed.into_iter().filter_map(first_missing).min() {
             Some((index, column)) => Err(ReadError::Missing {
-                path: self.path.to_owned(),
+                path: self.head.path.clone(),
                 row: self.row(index),
                 column: self.header(column),
             }),
@@ -464,7 +494,7 @@ impl Log<'_> {
     }
 
     fn header(&self, column: usize) -> String {
-        self.headers.get(column).map(|header| header.name.clone()).unwrap_or_default()
+        self.head.headers.get(column).map(|header| header.name.clone()).unwrap_or_default()
     }
 
     fn row(&self, index: usize) -> u64 {
@@ -474,7 +504,7 @@ impl Log<'_> {
     /// The first bad cell of a column.
     fn bad_cell(&self, column: usize) -> Option<ReadError> {
         let (row, bad) = self.column(column)?.error.clone()?;
-        let (path, column) = (self.path.to_owned(), self.header(column));
+        let (path, column) = (self.head.path.clone(), self.header(column));
         Some(match bad {
             BadCell::Kind(found) => ReadError::NotNumbers { path, column, found },
             BadCell::Text(text) => ReadError::NotANumber { path, row, column, text },

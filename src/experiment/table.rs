@@ -37,12 +37,25 @@ impl Header {
     }
 }
 
-/// The columns of a log, and what is in them still unread.
-pub(super) struct OpenTable {
+/// What columns a log has.
+#[derive(Clone, Debug)]
+pub(super) struct Head {
     pub(super) path: PathBuf,
     pub(super) headers: Vec<Header>,
     /// Line of the header in the file; 0 where the file has no lines.
     pub(super) header_row: u64,
+}
+
+impl Head {
+    /// The names of all columns, for messages.
+    pub(super) fn names(&self) -> String {
+        listed(self.headers.iter().map(|header| header.text.as_str()))
+    }
+}
+
+/// The columns of a log, and what is in them still unread.
+pub(super) struct OpenTable {
+    pub(super) head: Head,
     pub(super) rows: Box<dyn Rows>,
 }
 
@@ -58,8 +71,7 @@ pub(super) trait Rows {
 
 /// What is to be read of a file.
 pub(super) struct Wanted<'a> {
-    pub(super) path: &'a Path,
-    pub(super) headers: &'a [Header],
+    pub(super) head: &'a Head,
     /// Columns of numbers, by their places among the headers.
     pub(super) numeric: &'a [usize],
     /// The column that names the trials.
@@ -69,12 +81,14 @@ pub(super) struct Wanted<'a> {
     pub(super) clock: usize,
 }
 
-impl OpenTable {
-    /// The names of all columns, for messages.
-    pub(super) fn names(&self) -> String {
-        listed(self.headers.iter().map(|header| header.text.as_str()))
+impl Wanted<'_> {
+    /// The file.
+    pub(super) fn path(&self) -> &Path {
+        &self.head.path
     }
+}
 
+impl OpenTable {
     /// Reads the columns `numeric` as numbers and `label` as text, in the rows of `clock`.
     pub(super) fn read(
         self,
@@ -82,10 +96,10 @@ impl OpenTable {
         label: Option<usize>,
         clock: usize,
     ) -> Result<Table, ReadError> {
-        let wanted = Wanted { path: &self.path, headers: &self.headers, numeric, label, clock };
+        let wanted = Wanted { head: &self.head, numeric, label, clock };
         let table = self.rows.read(&wanted)?;
         if table.rows.is_empty() {
-            return Err(ReadError::HeaderOnly { path: self.path });
+            return Err(ReadError::HeaderOnly { path: self.head.path });
         }
         Ok(table)
     }
@@ -101,6 +115,25 @@ pub(super) struct Table {
     pub(super) trials: Vec<TrialRows>,
     /// What the reader of the log should know.
     pub(super) notes: Vec<String>,
+}
+
+impl Table {
+    /// The rows of a file that has no lines, counted from 1.
+    #[cfg(any(feature = "mat", feature = "parquet"))]
+    pub(super) fn counted(
+        path: &Path,
+        rows: usize,
+        columns: Vec<Column>,
+        labels: &Labels,
+    ) -> Result<Self, ReadError> {
+        Ok(Self {
+            source: source_of(path)?,
+            rows: RowNumbers::counted(rows),
+            columns,
+            trials: labels.runs(),
+            notes: Vec::new(),
+        })
+    }
 }
 
 /// The number of each row: its line, or its place from 1 where a file has no lines. Lines
@@ -228,8 +261,8 @@ impl Labels {
     }
 
     /// The runs of equal labels.
-    pub(super) fn runs(self) -> Vec<TrialRows> {
-        self.runs
+    pub(super) fn runs(&self) -> Vec<TrialRows> {
+        self.runs.clone()
     }
 }
 
@@ -238,6 +271,12 @@ pub(super) fn source_of(path: &Path) -> Result<Source, ReadError> {
     let io_error = |source| ReadError::Io { path: path.to_owned(), source };
     let file = File::open(path).map_err(io_error)?;
     Hashing::new(BufReader::new(file)).finish(path)
+}
+
+/// A file of which `hasher` has seen all `bytes`.
+pub(super) fn hashed(path: &Path, hasher: Sha256, bytes: u64) -> Source {
+    let sha256 = base16ct::lower::encode_string(&hasher.finalize());
+    Source { path: path.to_owned(), sha256, bytes }
 }
 
 /// Passes bytes on and hashes them on the way, so that a log is read once.
@@ -256,8 +295,7 @@ impl<R: Read> Hashing<R> {
     pub(super) fn finish(mut self, path: &Path) -> Result<Source, ReadError> {
         io::copy(&mut self, &mut io::sink())
             .map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
-        let sha256 = base16ct::lower::encode_string(&self.hasher.finalize());
-        Ok(Source { path: path.to_owned(), sha256, bytes: self.bytes })
+        Ok(hashed(path, self.hasher, self.bytes))
     }
 }
 

@@ -9,7 +9,7 @@ use super::chunk::Chunks;
 use super::entity::plain;
 use super::error::RecordError;
 use super::layout::{Detail, JointLayout};
-use crate::experiment::ReadOptions;
+use crate::experiment::{ReadOptions, Source};
 use crate::report::{JointSummary, SUMMARY_HEADER, chosen_line, settings_rows, summary_cells};
 
 /// Adds the page at `/about`.
@@ -52,13 +52,7 @@ fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String
         let (trials, periods) = (joint.trials.len(), periods.join(", "));
         writeln!(page, "| {name} | {input} | {output} | {trials} | {periods} |")?;
     }
-    writeln!(page, "\n## Made from\n")?;
-    for source in recording.sources {
-        let path = source.path.display();
-        writeln!(page, "- `{path}`, {} bytes, SHA-256 `{}`", source.bytes, source.sha256)?;
-    }
-    writeln!(page, "\n{}", reading(recording))?;
-    writeln!(page, "\nMade by tauscope {}.\n", env!("CARGO_PKG_VERSION"))?;
+    made_from(&mut page, recording.sources, recording.reading)?;
     writeln!(page, "{HOW_TO_READ}")?;
     Ok(page)
 }
@@ -74,9 +68,24 @@ accepted segment, red that of a rejected one.
 - Sample numbers count from 1 within the trial, as in the paper: p is the input step, r the \
 first sample of the segment, q the breakpoint, δ = q − p the delay.";
 
+/// The files, how they were read, and the program.
+pub(super) fn made_from(
+    page: &mut String,
+    sources: &[Source],
+    reading: &ReadOptions,
+) -> std::fmt::Result {
+    writeln!(page, "\n## Made from\n")?;
+    for source in sources {
+        let path = source.path.display();
+        writeln!(page, "- `{path}`, {} bytes, SHA-256 `{}`", source.bytes, source.sha256)?;
+    }
+    writeln!(page, "\n{}", read_with(reading))?;
+    writeln!(page, "\nMade by tauscope {}.\n", env!("CARGO_PKG_VERSION"))
+}
+
 /// How the files were read, where it was not as they are.
-fn reading(recording: &Recording<'_>) -> String {
-    let ReadOptions { columns, repair, .. } = recording.reading;
+fn read_with(reading: &ReadOptions) -> String {
+    let ReadOptions { columns, repair, .. } = reading;
     let mut parts = Vec::new();
     parts.extend(repair.resample.map(|period| format!("resampled to {period}")));
     parts.extend(

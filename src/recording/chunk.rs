@@ -29,6 +29,8 @@ pub(super) struct Index {
     pub(super) time_ns: Vec<i64>,
     /// Revisions of a model; empty where rows are of none.
     revision: Vec<i64>,
+    /// Settings of a sweep; likewise.
+    pub(super) setting: Vec<i64>,
 }
 
 /// Where one row lies on the timelines.
@@ -61,7 +63,12 @@ impl FromIterator<Moment> for Index {
 
 impl Index {
     pub(super) fn len(&self) -> usize {
-        self.sample.len()
+        self.sample.len().max(self.setting.len())
+    }
+
+    /// A row per setting of a sweep, on the timeline of settings alone.
+    pub(super) fn of_settings(count: usize) -> Self {
+        Self { setting: (1..).take(count).collect(), ..Self::default() }
     }
 
     /// A row per revision, all of them at `moment`: on the other timelines the last one
@@ -72,14 +79,18 @@ impl Index {
     }
 
     fn columns(self) -> Vec<TimeColumn> {
-        let mut columns = vec![
-            TimeColumn::new_sequence("decision", self.decision),
-            TimeColumn::new_sequence("segment", self.segment),
-            TimeColumn::new_sequence("sample", self.sample),
-            TimeColumn::new_duration_nanos("time", self.time_ns),
+        let sequences = [
+            ("decision", self.decision),
+            ("segment", self.segment),
+            ("sample", self.sample),
+            ("revision", self.revision),
+            ("setting", self.setting),
         ];
-        if !self.revision.is_empty() {
-            columns.push(TimeColumn::new_sequence("revision", self.revision));
+        let filled = sequences.into_iter().filter(|(_, values)| !values.is_empty());
+        let mut columns: Vec<_> =
+            filled.map(|(name, values)| TimeColumn::new_sequence(name, values)).collect();
+        if !self.time_ns.is_empty() {
+            columns.push(TimeColumn::new_duration_nanos("time", self.time_ns));
         }
         columns
     }
@@ -205,11 +216,26 @@ pub(super) fn texts(name: &'static str, values: &[Option<String>]) -> Serialized
     list_column(name, Arc::new(items), values.iter().map(Option::is_some))
 }
 
+/// A column of lists of numbers named `name`; `None` is null.
+pub(super) fn optional_lists(
+    name: &'static str,
+    rows: &[Vec<Option<f64>>],
+) -> SerializedComponentColumn {
+    lists_of(name, rows.iter().flatten().copied().collect(), rows.iter().map(Vec::len))
+}
+
 /// A column of lists of numbers named `name`.
 pub(super) fn lists(name: &'static str, rows: &[Vec<f64>]) -> SerializedComponentColumn {
-    let items: Float64Array = rows.concat().into();
+    lists_of(name, rows.concat().into(), rows.iter().map(Vec::len))
+}
+
+fn lists_of(
+    name: &'static str,
+    items: Float64Array,
+    lengths: impl Iterator<Item = usize>,
+) -> SerializedComponentColumn {
     let field = Field::new_list_field(items.data_type().clone(), true);
-    let offsets = OffsetBuffer::from_lengths(rows.iter().map(Vec::len));
+    let offsets = OffsetBuffer::from_lengths(lengths);
     let list = ListArray::new(Arc::new(field), offsets, Arc::new(items), None);
     SerializedComponentColumn::new(list, ComponentDescriptor::partial(name))
 }

@@ -15,7 +15,7 @@ use std::collections::HashMap;
 
 use super::chunk::Moment;
 use crate::delay::{Decision, TrialEstimate, Verdict};
-use crate::experiment::Trial;
+use crate::experiment::{Joint, Trial};
 use crate::report::EstimatedJoint;
 use crate::units::signed;
 
@@ -40,16 +40,31 @@ pub(super) struct TrialStarts {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Start {
+pub(super) struct Start {
     samples_before: i64,
     seconds_before: f64,
 }
 
+impl Start {
+    /// Sample `k` of `trial`, which starts here, on the timeline of samples.
+    pub(super) fn sample(self, k: usize) -> i64 {
+        self.samples_before + signed(k)
+    }
+
+    /// The same on the timeline of time.
+    pub(super) fn time_ns(self, trial: &Trial, k: usize) -> i64 {
+        let seconds = self.seconds_before + (k as f64 - 1.0) * trial.period().seconds();
+        #[expect(clippy::cast_possible_truncation, reason = "292 years fit")]
+        let nanoseconds = (seconds * 1e9).round() as i64;
+        nanoseconds
+    }
+}
+
 impl TrialStarts {
-    pub(super) fn of(joints: &[EstimatedJoint<'_>]) -> Self {
+    pub(super) fn of<'a>(joints: impl Iterator<Item = &'a Joint>) -> Self {
         let mut longest: Vec<&Trial> = Vec::new();
         let mut place: HashMap<&str, usize> = HashMap::new();
-        for trial in joints.iter().flat_map(|joint| &joint.joint.trials) {
+        for trial in joints.flat_map(|joint| &joint.trials) {
             match place.get(trial.label()).and_then(|&index| longest.get_mut(index)) {
                 Some(known) if known.len() < trial.len() => *known = trial,
                 Some(_) => {}
@@ -69,7 +84,7 @@ impl TrialStarts {
         Self { starts }
     }
 
-    fn of_trial(&self, trial: &Trial) -> Start {
+    pub(super) fn of_trial(&self, trial: &Trial) -> Start {
         let first = Start { samples_before: 0, seconds_before: 0.0 };
         self.starts.get(trial.label()).copied().unwrap_or(first)
     }
@@ -189,15 +204,11 @@ impl<'a> TrialLayout<'a> {
     }
 
     pub(super) fn sample(&self, k: usize) -> i64 {
-        self.start.samples_before + signed(k)
+        self.start.sample(k)
     }
 
     pub(super) fn time_ns(&self, k: usize) -> i64 {
-        let period = self.trial.period().seconds();
-        let seconds = self.start.seconds_before + (k as f64 - 1.0) * period;
-        #[expect(clippy::cast_possible_truncation, reason = "292 years fit")]
-        let nanoseconds = (seconds * 1e9).round() as i64;
-        nanoseconds
+        self.start.time_ns(self.trial, k)
     }
 
     /// The moment of the samples `1 …  last`, in order.

@@ -3,20 +3,22 @@
 //! What a reader of the file may rely on is told in `docs/recording.md`. In short: each
 //! joint has its signals, its decisions and a drawing of every segment; four timelines
 //! (`decision`, `segment`, `sample`, `time`) move through all of them together. A fifth one,
-//! `revision`, runs along a model that grows.
+//! `revision`, runs along a model that grows. In a recording of a sweep `setting` goes through
+//! the settings.
 //!
 //! Inside, `layout` says where samples, trials and decisions lie on the timelines, `chunk`
 //! makes columns of rows with reproducible ids, `signals`, `decisions`, `verdict`,
 //! `segment_view`, `beside`, `overview`, `delay_state`, `model`, `revision` and `about` are one part of
-//! the content each,
-//! `blueprint` says which view shows what, `write` brings it into a file or a stream, and
-//! `live` to a viewer while it grows.
+//! the content each, `sweep` is a recording of another kind, `content` what both are to
+//! `write`, which brings them into a file or a stream, and to `live`, which shows them to a
+//! viewer while they grow; `blueprint` says which view shows what.
 
 mod about;
 mod beside;
 mod blueprint;
 mod canvas;
 mod chunk;
+mod content;
 mod correlogram;
 mod decisions;
 mod delay_state;
@@ -35,6 +37,7 @@ mod scatter;
 mod segment_view;
 mod sheet;
 mod signals;
+mod sweep;
 mod verdict;
 mod write;
 
@@ -46,7 +49,8 @@ pub use beside::Beside;
 pub use error::RecordError;
 pub use layout::Detail;
 pub use live::Live;
-pub use write::{log_recording, write_recording};
+pub use sweep::SweepRecording;
+pub use write::{log_recording, write_recording, write_sweep};
 
 /// Everything that a recording holds.
 #[derive(Clone, Copy, Debug)]

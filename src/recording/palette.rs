@@ -64,3 +64,23 @@ pub(super) fn dimmed((r, g, b): Rgb) -> Rgb {
 pub(super) fn color((r, g, b): Rgb) -> Color {
     Color::from_rgb(r, g, b)
 }
+
+/// A setting that tells what most do.
+pub(super) const SAME: Rgb = rgb(105, 112, 120);
+/// The same in a picture of all settings, where it is the ground.
+pub(super) const SAME_GROUND: Rgb = rgb(58, 64, 71);
+/// A setting that tells a longer delay.
+pub(super) const LONGER: Rgb = rgb(240, 140, 30);
+/// A setting that tells a shorter delay.
+pub(super) const SHORTER: Rgb = rgb(70, 170, 240);
+/// A setting that does not accept a step.
+pub(super) const SILENT: Rgb = rgb(0, 0, 0);
+/// The setting or the step under the cursor.
+pub(super) const HERE: Rgb = rgb(255, 255, 255);
+
+/// So much of the way from one colour to another.
+pub(super) fn between(from: Rgb, to: Rgb, part: f64) -> Rgb {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a byte")]
+    let mix = |a: u8, b: u8| (f64::from(a) + part * (f64::from(b) - f64::from(a))).round() as u8;
+    (mix(from.0, to.0), mix(from.1, to.1), mix(from.2, to.2))
+}

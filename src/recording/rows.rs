@@ -10,7 +10,7 @@ use super::error::RecordError;
 use super::palette::{Rgb, color};
 
 /// Radius of a text's own point: too small to be seen.
-const HIDDEN: f32 = 0.01;
+pub(super) const HIDDEN: f32 = 0.01;
 
 /// Rows of the entities below one root, all at the same moments.
 pub(super) struct Rows<'c> {

@@ -1,13 +1,14 @@
 //! Grid, ticks and words of a drawing that has several plots.
 
 use rerun::datatypes::Vec2D;
-use rerun::{EntityPath, LineStrips2D, Points2D};
+use rerun::{Color, EntityPath, LineStrips2D, Points2D};
 
 use super::canvas::{Labels, Plot, Span};
 use super::chunk::Chunks;
 use super::entity::below;
 use super::error::RecordError;
 use super::palette::{self, Rgb, color};
+use super::rows::HIDDEN;
 use crate::report::number;
 
 /// What all plots of a drawing have behind and around their data.
@@ -35,8 +36,13 @@ impl Sheet {
         y_ticks: &[(f64, String)],
         title: &str,
     ) {
-        self.grid.extend(plot.grid(x_ticks, y_ticks, &mut self.labels));
+        self.outline(plot, x_ticks, y_ticks);
         self.put(plot.above(middle(plot.x_span()), 26.0), title);
+    }
+
+    /// Frame and grid of `plot`, with the ticks that are given.
+    pub(super) fn outline(&mut self, plot: &Plot, x_ticks: &[f64], y_ticks: &[(f64, String)]) {
+        self.grid.extend(plot.grid(x_ticks, y_ticks, &mut self.labels));
     }
 
     /// A text at a place.
@@ -52,10 +58,7 @@ impl Sheet {
     /// Adds `grid` and `texts` below `root`.
     pub(super) fn push(self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
         strips(chunks, below(root, &["grid"]), palette::GRID, 0.7, self.grid)?;
-        let Labels { places, texts } = self.labels;
-        let texts = Points2D::new(places).with_labels(texts).with_show_labels(true);
-        let texts = texts.with_radii([0.01]).with_colors([color(palette::BORDER)]);
-        chunks.push_static(below(root, &["texts"]), &texts)
+        put_texts(chunks, below(root, &["texts"]), self.labels, &[color(palette::BORDER)])
     }
 }
 
@@ -77,4 +80,16 @@ pub(super) fn strips(
 ) -> Result<(), RecordError> {
     let strips = LineStrips2D::new(strips).with_colors([color(rgb)]).with_radii([radius]);
     chunks.push_static(entity, &strips)
+}
+
+/// Texts of one colour, or of one each.
+pub(super) fn put_texts(
+    chunks: &mut Chunks,
+    entity: EntityPath,
+    labels: Labels,
+    colors: &[Color],
+) -> Result<(), RecordError> {
+    let texts = Points2D::new(labels.places).with_labels(labels.texts).with_radii([HIDDEN]);
+    let texts = texts.with_colors(colors.iter().copied()).with_show_labels(true);
+    chunks.push_static(entity, &texts)
 }

@@ -5,20 +5,20 @@ use std::io::Write;
 use rerun::external::re_build_info::CrateVersion;
 use rerun::external::re_log_encoding::{Encoder, EncodingOptions};
 use rerun::external::re_log_types::BlueprintActivationCommand;
-use rerun::log::{Chunk, LogMsg};
-use rerun::{EntityPath, RecordingInfo, RecordingStream, StoreId, StoreKind};
+use rerun::log::LogMsg;
+use rerun::{ApplicationId, EntityPath, RecordingInfo, RecordingStream, StoreId, StoreKind};
 
 use super::blueprint::Ladder;
 use super::chunk::Chunks;
+use super::content::{Content, Part, Take, hashed, name_of};
 use super::entity::joint_root;
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialStarts};
 use super::message::{chunk_message, store_message};
 use super::{
-    Recording, about, blueprint, decisions, delay_state, model, overview, revision, segment_view,
-    signals, verdict,
+    Recording, SweepRecording, about, blueprint, decisions, delay_state, model, overview, revision,
+    segment_view, signals, verdict,
 };
-use crate::experiment::Joint;
 use crate::report::EstimatedJoint;
 
 /// The application's name in the viewer; blueprints are kept per application.
@@ -32,22 +32,34 @@ pub(super) const APPLICATION: &str = "tauscope";
 /// [`RecordError::Encode`] when `out` cannot be written; what was written then is of no
 /// use.
 pub fn write_recording(recording: &Recording<'_>, out: impl Write) -> Result<(), RecordError> {
-    let id = recording_id(recording);
+    write(recording, out)
+}
+
+/// The same with delays over all settings.
+///
+/// # Errors
+/// As [`write_recording`].
+pub fn write_sweep(sweep: &SweepRecording<'_>, out: impl Write) -> Result<(), RecordError> {
+    write(sweep, out)
+}
+
+fn write(content: &dyn Content, out: impl Write) -> Result<(), RecordError> {
+    let id = content.id();
     let store = StoreId::new(StoreKind::Recording, APPLICATION, id.clone());
     let options = EncodingOptions::PROTOBUF_COMPRESSED;
     let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, options, out)?;
     encoder.append(&store_message(&store))?;
     let mut chunks = Chunks::new(1);
-    let info = RecordingInfo::new().with_name(recording_name(recording));
+    let info = RecordingInfo::new().with_name(content.name());
     chunks.push_static(EntityPath::properties(), &info)?;
     for chunk in chunks.into_chunks() {
         encoder.append(&chunk_message(&store, &chunk)?)?;
     }
-    for_each_chunk(recording, Part::default(), |chunk| {
+    content.for_each_chunk(Part::default(), &mut |chunk| {
         encoder.append(&chunk_message(&store, chunk)?)?;
         Ok(())
     })?;
-    for message in blueprint_messages(recording, &id)? {
+    for message in blueprint_messages(content, &id)? {
         encoder.append(&message)?;
     }
     encoder.finish()?;
@@ -66,7 +78,7 @@ pub fn log_recording(
     recording: &Recording<'_>,
     stream: &RecordingStream,
 ) -> Result<(), RecordError> {
-    for_each_chunk(recording, Part::default(), |chunk| {
+    recording.for_each_chunk(Part::default(), &mut |chunk| {
         stream.send_chunk(chunk.clone());
         Ok(())
     })?;
@@ -74,8 +86,7 @@ pub fn log_recording(
         return Ok(());
     };
     let application = info.store_id.application_id().clone();
-    let id = recording_id(recording);
-    let messages = blueprint::messages(recording, Ladder::Finished, &application, &id)?;
+    let messages = recording.views(Ladder::Finished, &application, &recording.id())?;
     if let Some(blueprint_id) = messages.first().map(|message| message.store_id().clone()) {
         let activation = activation(blueprint_id);
         stream.send_blueprint(messages, activation);
@@ -83,8 +94,8 @@ pub fn log_recording(
     Ok(())
 }
 
-fn blueprint_messages(recording: &Recording<'_>, id: &str) -> Result<Vec<LogMsg>, RecordError> {
-    let mut messages = blueprint::messages(recording, Ladder::Finished, &APPLICATION.into(), id)?;
+fn blueprint_messages(content: &dyn Content, id: &str) -> Result<Vec<LogMsg>, RecordError> {
+    let mut messages = content.views(Ladder::Finished, &APPLICATION.into(), id)?;
     let blueprint_id = messages.first().map(|message| message.store_id().clone());
     messages.extend(blueprint_id.map(|id| LogMsg::from(activation(id))));
     Ok(messages)
@@ -94,46 +105,49 @@ pub(super) fn activation(blueprint_id: StoreId) -> BlueprintActivationCommand {
     BlueprintActivationCommand { blueprint_id, make_active: true, make_default: true }
 }
 
-/// Which of a recording's chunks are made, and which ids they have.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Part<'n> {
-    /// Namespaces that are taken, beside the first one.
-    pub(super) used: u64,
-    /// All joints and what is about them all, or one joint.
-    pub(super) joint: Option<&'n str>,
-}
-
-impl Part<'_> {
-    /// Namespaces that the chunks of `recording` need.
-    pub(super) fn uses(recording: &Recording<'_>) -> u64 {
-        recording.joints.len() as u64 + 1
+impl Content for Recording<'_> {
+    fn name(&self) -> String {
+        name_of(self.sources)
     }
 
-    fn has(self, joint: &Joint) -> bool {
-        self.joint.is_none_or(|name| joint.name == name)
+    fn id(&self) -> String {
+        recording_id(self)
     }
-}
 
-/// Makes the chunks joint by joint, so that only one joint's are in memory.
-pub(super) fn for_each_chunk(
-    recording: &Recording<'_>,
-    part: Part<'_>,
-    mut take: impl FnMut(&Chunk) -> Result<(), RecordError>,
-) -> Result<(), RecordError> {
-    let starts = TrialStarts::of(recording.joints);
-    let layout = |joint| JointLayout::of(joint, &starts, recording.detail);
-    let layouts: Vec<_> = recording.joints.iter().copied().map(layout).collect();
-    let mut chunks = Chunks::new(part.used + 2);
-    if part.joint.is_none() {
-        about::add(&mut chunks, recording, &layouts)?;
+    fn namespaces(&self) -> u64 {
+        self.joints.len() as u64 + 1
     }
-    let numbered = (part.used + 3..).zip(recording.joints.iter().zip(&layouts));
-    for (namespace, (joint, layout)) in numbered.filter(|(_, (joint, _))| part.has(joint.joint)) {
-        chunks.into_chunks().iter().try_for_each(&mut take)?;
-        chunks = Chunks::new(namespace);
-        add_joint(&mut chunks, recording, *joint, layout)?;
+
+    fn for_each_chunk(&self, part: Part<'_>, take: Take<'_>) -> Result<(), RecordError> {
+        let starts = TrialStarts::of(self.joints.iter().map(|joint| joint.joint));
+        let layout = |joint| JointLayout::of(joint, &starts, self.detail);
+        let layouts: Vec<_> = self.joints.iter().copied().map(layout).collect();
+        let mut chunks = Chunks::new(part.used + 2);
+        if part.joint.is_none() {
+            about::add(&mut chunks, self, &layouts)?;
+        }
+        let numbered = (part.used + 3..).zip(self.joints.iter().zip(&layouts));
+        for (namespace, (joint, layout)) in numbered.filter(|(_, (joint, _))| part.has(joint.joint))
+        {
+            chunks.into_chunks().iter().try_for_each(&mut *take)?;
+            chunks = Chunks::new(namespace);
+            add_joint(&mut chunks, self, *joint, layout)?;
+        }
+        chunks.into_chunks().iter().try_for_each(take)
     }
-    chunks.into_chunks().iter().try_for_each(&mut take)
+
+    fn views(
+        &self,
+        ladder: Ladder,
+        application: &ApplicationId,
+        id: &str,
+    ) -> Result<Vec<LogMsg>, RecordError> {
+        blueprint::messages(self, ladder, application, id)
+    }
+
+    fn views_in_words(&self, ladder: Ladder) -> String {
+        blueprint::in_words(self, ladder)
+    }
 }
 
 fn add_joint(
@@ -159,46 +173,25 @@ fn add_joint(
     }
 }
 
-pub(super) fn recording_name(recording: &Recording<'_>) -> String {
-    let names = recording.sources.iter().filter_map(|source| source.path.file_stem());
-    names.map(|name| name.to_string_lossy()).collect::<Vec<_>>().join(", ")
-}
-
 /// The same for the same logs, read in the same way, the same settings and version, so
 /// that two recordings of one experiment stand side by side when any of it differs.
 fn recording_id(recording: &Recording<'_>) -> String {
-    use sha2::{Digest as _, Sha256};
-    let mut hash = Sha256::new();
-    let mut part = |text: &str| {
-        hash.update(text);
-        hash.update([0]);
-    };
-    for source in recording.sources {
-        part(&source.sha256);
-    }
-    for joint in recording.joints.iter().map(|joint| joint.joint) {
-        part(&joint.name);
-        for trial in &joint.trials {
-            let (start, period) = (trial.time_s(1), trial.period());
-            part(&format!("{} {} {start} {period}", trial.label(), trial.len()));
+    hashed(recording.sources, recording.joints.iter().map(|joint| joint.joint), |part| {
+        for model in recording.models {
+            let values: Vec<_> = model.comparison.fit.model.values();
+            part(&format!("{} {:?} {values:?}", model.model, model.comparison.fit.model.names()));
         }
-    }
-    for model in recording.models {
-        let values: Vec<_> = model.comparison.fit.model.values();
-        part(&format!("{} {:?} {values:?}", model.model, model.comparison.fit.model.names()));
-    }
-    for improved in recording.revisions {
-        let changes: Vec<_> = improved.revisions.iter().map(|revision| revision.change).collect();
-        part(&format!("{} {changes:?}", improved.first_revision));
-    }
-    part(&format!("{:?} {:?}", recording.settings, recording.detail));
-    for beside in recording.also {
-        part(&format!("{:?}", beside.settings));
-    }
-    for joint in recording.joints.iter().filter(|joint| joint.estimate.chosen.is_some()) {
-        part(&format!("{:?}", joint.estimate.settings));
-    }
-    part(env!("CARGO_PKG_VERSION"));
-    let digest = base16ct::lower::encode_string(&hash.finalize());
-    digest.chars().take(32).collect()
+        for improved in recording.revisions {
+            let changes: Vec<_> =
+                improved.revisions.iter().map(|revision| revision.change).collect();
+            part(&format!("{} {changes:?}", improved.first_revision));
+        }
+        part(&format!("{:?} {:?}", recording.settings, recording.detail));
+        for beside in recording.also {
+            part(&format!("{:?}", beside.settings));
+        }
+        for joint in recording.joints.iter().filter(|joint| joint.estimate.chosen.is_some()) {
+            part(&format!("{:?}", joint.estimate.settings));
+        }
+    })
 }

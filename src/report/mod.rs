@@ -51,6 +51,10 @@ pub(crate) use span::{Span, thinned_to};
 pub use steps::{step_line, steps_table};
 pub use summary::{DelayRange, JointSummary};
 pub use sweep::{ReportedSweep, StepsShown, SweepJson, sweep_text};
+#[cfg(feature = "rrd")]
+pub(crate) use sweep::{
+    hangs_on, level_cell, level_text, run_text, settings_in_words, sweep_sentences,
+};
 pub use table::{DataTable, Kind};
 pub(crate) use text::chosen_line;
 pub use text::estimate_table;

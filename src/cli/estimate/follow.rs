@@ -10,7 +10,7 @@ use anyhow::{Context as _, anyhow, bail};
 use serde::Serialize;
 use tauscope::batch::{JointEstimate, estimate_joints, with_threads};
 use tauscope::delay::{Settings, check_growing, settled};
-use tauscope::experiment::{Experiment, Joint};
+use tauscope::experiment::{Experiment, GrowingLog, Joint};
 use tauscope::report::{DecisionRow, EstimatedJoint, decision_rows, step_line};
 
 use super::args::{Args, FollowArgs};
@@ -37,7 +37,7 @@ pub(super) fn follow(args: &Args, runs: &[Settings], stream: &Stream) -> anyhow:
         bail!("--follow: `auto` looks at the whole record; give a number");
     }
     let path = args.data.only_file().context("--follow")?;
-    let mut log = GrowingLog::of(&path)?;
+    let mut log = Followed::of(&path, args);
     let interrupt = Interrupt::watch("at the log's end; Ctrl-C again ends at once");
     let mut told = Told::default();
     let work = || watch(args, settings, stream, &mut log, interrupt, &mut told);
@@ -50,7 +50,7 @@ fn watch(
     args: &Args,
     settings: &Settings,
     stream: &Stream,
-    log: &mut GrowingLog,
+    log: &mut Followed<'_>,
     interrupt: Interrupt,
     told: &mut Told,
 ) -> anyhow::Result<()> {
@@ -70,35 +70,85 @@ fn watch(
     }
 }
 
-/// The whole lines of a log that somebody else still writes.
-struct GrowingLog {
+/// A log that somebody else still writes.
+struct Followed<'a> {
+    args: &'a Args,
     path: PathBuf,
     /// Bytes of the log that were read.
     read: u64,
+    kept: Kept,
+}
+
+/// What is kept of what was read.
+enum Kept {
+    /// Nothing was read yet.
+    Nothing,
+    /// What the text says.
+    Text(Box<GrowingLog>),
+    /// A copy, which is read whole at each look.
+    Copy(Copied),
+}
+
+/// The whole lines of a log that is no text.
+struct Copied {
     /// What was read behind the last whole line.
     rest: Vec<u8>,
     /// Holds the whole lines, in a file with the log's name.
-    folder: tempfile::TempDir,
+    _folder: tempfile::TempDir,
+    file: PathBuf,
 }
 
-impl GrowingLog {
+impl Copied {
     fn of(path: &Path) -> anyhow::Result<Self> {
         let folder = tempfile::tempdir().context("no temporary folder can be made")?;
-        Ok(Self { path: path.to_owned(), read: 0, rest: Vec::new(), folder })
+        let file = folder.path().join(path.file_name().unwrap_or_default());
+        Ok(Self { rest: Vec::new(), _folder: folder, file })
     }
 
-    /// The file with the whole lines.
-    fn lines(&self) -> PathBuf {
-        self.folder.path().join(self.path.file_name().unwrap_or_default())
+    /// Takes in what has come; whether that made a line whole.
+    fn push(&mut self, bytes: &[u8]) -> anyhow::Result<bool> {
+        self.rest.extend_from_slice(bytes);
+        let whole = self.rest.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
+        if whole == 0 {
+            return Ok(false);
+        }
+        let mut lines = File::options().create(true).append(true).open(&self.file)?;
+        lines.write_all(self.rest.get(..whole).unwrap_or_default())?;
+        self.rest.drain(..whole);
+        Ok(true)
+    }
+}
+
+impl<'a> Followed<'a> {
+    fn of(path: &Path, args: &'a Args) -> Self {
+        Self { args, path: path.to_owned(), read: 0, kept: Kept::Nothing }
     }
 
     /// Takes in what has come since; whether that made a line whole. A log that is not there
     /// yet may come.
     fn catch_up(&mut self) -> anyhow::Result<bool> {
+        let Some(bytes) = self.news()? else { return Ok(false) };
+        if let Kept::Nothing = self.kept {
+            self.kept = if GrowingLog::is_text(&self.path, &bytes) {
+                let options = self.args.data.options()?;
+                Kept::Text(Box::new(GrowingLog::new(&self.path, options)))
+            } else {
+                Kept::Copy(Copied::of(&self.path)?)
+            };
+        }
+        match &mut self.kept {
+            Kept::Nothing => Ok(false),
+            Kept::Text(log) => Ok(log.push(&bytes)),
+            Kept::Copy(copy) => copy.push(&bytes),
+        }
+    }
+
+    /// What was appended since the last look; nothing else is read.
+    fn news(&mut self) -> anyhow::Result<Option<Vec<u8>>> {
         let name = self.path.display();
         let mut file = match File::open(&self.path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound && self.read == 0 => {
-                return Ok(false);
+                return Ok(None);
             }
             opened => opened.with_context(|| format!("{name}: cannot be read"))?,
         };
@@ -106,33 +156,33 @@ impl GrowingLog {
         if length < self.read {
             bail!("{name}: it became shorter while it was followed; run the command again");
         }
-        let before = self.rest.len();
+        let mut bytes = Vec::new();
         file.seek(SeekFrom::Start(self.read))
-            .and_then(|_| file.take(length - self.read).read_to_end(&mut self.rest))
+            .and_then(|_| file.take(length - self.read).read_to_end(&mut bytes))
             .with_context(|| format!("{name}: cannot be read"))?;
-        self.read += (self.rest.len() - before) as u64;
-        let whole = self.rest.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
-        if whole == 0 {
-            return Ok(false);
-        }
-        let mut lines = File::options().create(true).append(true).open(self.lines())?;
-        lines.write_all(self.rest.get(..whole).unwrap_or_default())?;
-        self.rest.drain(..whole);
-        Ok(true)
+        self.read += bytes.len() as u64;
+        Ok((!bytes.is_empty()).then_some(bytes))
     }
 
     /// What its whole lines say; joints that say nothing yet are left out.
-    fn experiment(&self, args: &Args) -> anyhow::Result<Experiment> {
-        let mut experiment = args.data.read_only(&self.lines())?;
-        for source in &mut experiment.sources {
-            source.path.clone_from(&self.path);
+    fn experiment(&mut self) -> anyhow::Result<Experiment> {
+        match &mut self.kept {
+            Kept::Nothing => Ok(Experiment::default()),
+            Kept::Text(log) => Ok(log.experiment()),
+            Kept::Copy(copy) => {
+                let mut experiment = self.args.data.read_only(&copy.file)?;
+                for source in &mut experiment.sources {
+                    source.path.clone_from(&self.path);
+                }
+                Ok(experiment)
+            }
         }
-        Ok(experiment)
     }
 
-    /// An error on its lines, as one on the log.
+    /// An error on a copy, as one on the log.
     fn named(&self, error: &str) -> String {
-        error.replace(&self.lines().display().to_string(), &self.path.display().to_string())
+        let Kept::Copy(copy) = &self.kept else { return error.to_owned() };
+        error.replace(&copy.file.display().to_string(), &self.path.display().to_string())
     }
 }
 
@@ -162,9 +212,9 @@ impl Told {
         args: &Args,
         settings: &Settings,
         stream: &Stream,
-        log: &GrowingLog,
+        log: &mut Followed<'_>,
     ) -> anyhow::Result<()> {
-        let experiment = log.experiment(args)?;
+        let experiment = log.experiment()?;
         self.tell_failures(args, &experiment, log);
         let estimates = estimate_joints(&experiment.joints, settings, || ());
         let pairs = experiment.joints.iter().zip(&estimates);
@@ -217,7 +267,7 @@ impl Told {
     }
 
     /// Says what cannot be read, when that has changed: more of the log may mend it.
-    fn tell_failures(&mut self, args: &Args, experiment: &Experiment, log: &GrowingLog) {
+    fn tell_failures(&mut self, args: &Args, experiment: &Experiment, log: &Followed<'_>) {
         let failures = experiment.failures.iter();
         let failures: Vec<_> = failures.map(|f| log.named(&with_causes(&f.error))).collect();
         if args.output.verbosity() == Verbosity::Normal && failures != self.failures {
@@ -271,22 +321,67 @@ fn settled_joint(
 mod tests {
     use super::*;
 
-    #[test]
-    fn only_whole_lines_are_taken_from_a_log() {
+    /// What `estimate` is asked with this log.
+    fn asked(log: &Path) -> Args {
+        #[derive(clap::Parser)]
+        struct Line {
+            #[command(flatten)]
+            args: Args,
+        }
+        let line: Line = clap::Parser::parse_from(["estimate".as_ref(), log.as_os_str()]);
+        line.args
+    }
+
+    /// A log with its header alone, and who follows it.
+    fn begun(name: &str, start: &str) -> (tempfile::TempDir, File, Args, PathBuf) {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("log.csv");
-        let mut log = GrowingLog::of(&path).unwrap();
-        assert!(!log.catch_up().unwrap(), "there is no log yet");
+        let path = folder.path().join(name);
+        let args = asked(&path);
+        assert!(!Followed::of(&path, &args).catch_up().unwrap(), "there is no log yet");
         let mut file = File::create(&path).unwrap();
-        let mut written = |text: &str| {
-            file.write_all(text.as_bytes()).unwrap();
-            (log.catch_up().unwrap(), std::fs::read_to_string(log.lines()).unwrap_or_default())
-        };
-        assert_eq!(written("a,b"), (false, String::new()));
-        assert_eq!(written("\n1,2\n3,"), (true, "a,b\n1,2\n".to_owned()));
-        assert_eq!(written("4"), (false, "a,b\n1,2\n".to_owned()));
-        assert_eq!(written("5\n"), (true, "a,b\n1,2\n3,45\n".to_owned()));
+        file.write_all(start.as_bytes()).unwrap();
+        (folder, file, args, path)
+    }
+
+    #[test]
+    fn a_look_reads_what_was_appended_and_no_more() {
+        let (_folder, mut file, args, path) = begun("log.csv", "t,a.input,a.output\n");
+        let mut log = Followed::of(&path, &args);
+        assert!(log.catch_up().unwrap());
+        let mut samples = 0_u32;
+        for rows in [20_000, 1, 0, 3] {
+            let before = log.read;
+            let rows_of = samples..samples + rows;
+            let lines: Vec<_> = rows_of.map(|k| format!("{k},{},{k}.5\n", k / 50)).collect();
+            let text = lines.concat();
+            // The last line is not whole yet.
+            let (whole, rest) = text.split_at(text.len().saturating_sub(3));
+            file.write_all(whole.as_bytes()).unwrap();
+            assert_eq!(log.catch_up().unwrap(), rows > 1);
+            assert_eq!(log.read - before, whole.len() as u64);
+            file.write_all(rest.as_bytes()).unwrap();
+            assert_eq!(log.catch_up().unwrap(), rows > 0);
+            assert_eq!(log.read - before, text.len() as u64);
+            samples += rows;
+            assert_eq!(log.experiment().unwrap().joints[0].trials[0].len(), samples as usize);
+            let Kept::Text(text) = &log.kept else { panic!("a text") };
+            assert_eq!(text.waiting(), 0, "none of it is parsed again");
+        }
         std::fs::write(&path, "a").unwrap();
         assert!(log.catch_up().unwrap_err().to_string().contains("became shorter"));
+    }
+
+    #[test]
+    fn what_is_no_text_is_read_from_a_copy() {
+        let (_folder, mut file, args, path) = begun("log.mcap", "a");
+        let mut log = Followed::of(&path, &args);
+        assert!(!log.catch_up().unwrap());
+        file.write_all(b"b\nc").unwrap();
+        assert!(log.catch_up().unwrap());
+        let Kept::Copy(copy) = &log.kept else { panic!("no text") };
+        assert_eq!(std::fs::read(&copy.file).unwrap(), b"ab\n");
+        let failures = log.experiment().unwrap().failures;
+        let told = log.named(&failures[0].error.to_string());
+        assert!(told.starts_with(&path.display().to_string()), "{told}");
     }
 }

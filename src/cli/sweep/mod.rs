@@ -2,6 +2,8 @@
 
 mod values;
 
+use std::path::{Path, PathBuf};
+
 use anyhow::{anyhow, bail};
 use clap::Args as ClapArgs;
 use tauscope::batch::{SweptJoint, sweep_joints, with_threads};
@@ -12,8 +14,11 @@ use tauscope::report::{ReportedSweep, StepsShown, SweepJson, sweep_text};
 
 use super::data::{DataArgs, threads};
 use super::fitting::{Format, read};
+use super::output::check_outputs;
 use super::progress::{Bar, Verbosity};
+use super::record::SweepContents;
 use super::settings::{ConditionArgs, Passband, threshold};
+use super::stream::StreamArgs;
 use super::terminal::{self, message};
 use super::{Completion, read_failures};
 use values::{Values, methods, passbands, whole};
@@ -55,10 +60,17 @@ pub(super) struct Args {
     output: OutputArgs,
 }
 
-/// What is printed.
+/// What is printed and recorded.
 #[derive(ClapArgs, Debug)]
 #[command(next_help_heading = "Output")]
 struct OutputArgs {
+    /// Record how every delay moves with the settings, for the Rerun viewer
+    #[arg(short = 'o', long = "output", value_name = "FILE.rrd")]
+    recording: Option<PathBuf>,
+
+    #[command(flatten)]
+    stream: StreamArgs,
+
     /// Show all steps that hang on a setting, not only those that most do
     #[arg(long)]
     steps: bool,
@@ -81,6 +93,9 @@ type JointResult = Result<SweptJoint, EstimateError>;
 pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let verbosity = if args.output.quiet { Verbosity::Quiet } else { Verbosity::Normal };
     let grid = args.grid()?;
+    let recording = args.output.recording.as_deref();
+    check_outputs(&recording.into_iter().collect::<Vec<&Path>>(), &args.data.files())?;
+    let stream = args.output.stream.open(verbosity)?;
     let experiment = read(&args.data, verbosity)?;
     let joints = &experiment.joints;
     let runs = (joints.len() * grid.runs().len()) as u64;
@@ -106,8 +121,20 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
             message("note", note);
         }
     }
+    let contents = SweepContents {
+        joints: &swept,
+        grid: &grid,
+        tolerance: args.tolerance,
+        sources: &experiment.sources,
+        reading: &experiment.options,
+    };
+    if let Some(path) = recording {
+        contents.record(path, verbosity)?;
+    }
+    stream.send_sweep(&contents)?;
     args.print(&grid, &swept, &experiment.notes, &failures)?;
-    Ok(if failures.is_empty() { Completion::Whole } else { Completion::Partial })
+    let completion = if failures.is_empty() { Completion::Whole } else { Completion::Partial };
+    stream.close(completion, verbosity)
 }
 
 /// A message on each file, joint and setting that failed.

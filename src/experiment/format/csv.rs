@@ -3,20 +3,24 @@
 use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{self, Cursor, Read};
+use std::ops::ControlFlow;
 use std::path::Path;
 
-use super::super::ReadError;
 use super::super::table::{
-    BadCell, Column, Hashing, Header, Labels, OpenTable, RowNumbers, Rows, Table, Wanted,
+    BadCell, Column, Hashing, Head, Header, Labels, OpenTable, RowNumbers, Rows, Table, Wanted,
 };
+use super::super::{ReadError, Source};
 
-/// A file whose first bytes were looked at, and a line ending behind its last line,
-/// so that every line has one and lines can be counted.
-type Bytes = io::Chain<LineEnds<Hashing<io::Chain<Cursor<Vec<u8>>, File>>>, &'static [u8]>;
+/// Bytes, and a line ending behind the last line, so that every line has one and lines can
+/// be counted.
+type Lines<R> = io::Chain<LineEnds<R>, &'static [u8]>;
+
+/// A file whose first bytes were looked at.
+type Bytes = Hashing<io::Chain<Cursor<Vec<u8>>, File>>;
 
 /// What follows the header, still unread.
 struct Unread {
-    reader: csv::Reader<Bytes>,
+    reader: csv::Reader<Lines<Bytes>>,
 }
 
 /// Opens the log and reads its header.
@@ -24,72 +28,195 @@ pub(super) fn open(path: &Path) -> Result<OpenTable, ReadError> {
     let io_error = |source| ReadError::Io { path: path.to_owned(), source };
     let mut file = File::open(path).map_err(io_error)?;
     let mut start = Vec::new();
-    file.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start).map_err(io_error)?;
-    let mut reader = csv::ReaderBuilder::new()
-        .delimiter(sniff_delimiter(&start))
+    file.by_ref().take(SNIFFED_BYTES as u64).read_to_end(&mut start).map_err(io_error)?;
+    let delimiter = sniff_delimiter(&start);
+    let bytes = Hashing::new(Cursor::new(start).chain(file));
+    let mut reader = reader(delimiter, LineEnds::new(bytes));
+    let mut record = csv::ByteRecord::new();
+    if !next(&mut reader, &mut record, path)? {
+        return Err(ReadError::Empty { path: path.to_owned() });
+    }
+    let head = head(path, &record, place_just_read(&mut reader, &record).row)?;
+    Ok(OpenTable { head, rows: Box::new(Unread { reader }) })
+}
+
+fn reader<R: Read>(delimiter: u8, lines: LineEnds<R>) -> csv::Reader<Lines<R>> {
+    csv::ReaderBuilder::new()
+        .delimiter(delimiter)
         .comment(Some(b'#'))
         .flexible(true)
         .has_headers(false)
-        .from_reader(LineEnds::new(Hashing::new(Cursor::new(start).chain(file))).chain(&b"\n"[..]));
-    let mut record = csv::ByteRecord::new();
-    let csv_error = |source| ReadError::Csv { path: path.to_owned(), source };
-    if !reader.read_byte_record(&mut record).map_err(csv_error)? {
-        return Err(ReadError::Empty { path: path.to_owned() });
-    }
-    let header_row = place_just_read(&mut reader, &record).row;
+        .from_reader(lines.chain(&b"\n"[..]))
+}
+
+/// What the header says, which stands on the line `header_row`.
+fn head(path: &Path, record: &csv::ByteRecord, header_row: u64) -> Result<Head, ReadError> {
     let text = |(cell, column): (&[u8], usize)| {
         let not_utf8 = |_| ReadError::NotUtf8 { path: path.to_owned(), row: header_row, column };
         std::str::from_utf8(cell).map(Header::parse).map_err(not_utf8)
     };
     let headers = record.iter().zip(1..).map(text).collect::<Result<_, _>>()?;
-    let rows = Box::new(Unread { reader });
-    Ok(OpenTable { path: path.to_owned(), headers, header_row, rows })
+    Ok(Head { path: path.to_owned(), headers, header_row })
+}
+
+/// Whether there is one more row, which is then in `record`.
+fn next<R: Read>(
+    reader: &mut csv::Reader<R>,
+    record: &mut csv::ByteRecord,
+    path: &Path,
+) -> Result<bool, ReadError> {
+    let more = reader.read_byte_record(record);
+    more.map_err(|source| ReadError::Csv { path: path.to_owned(), source })
 }
 
 impl Rows for Unread {
     fn read(mut self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let mut columns = vec![Column::default(); wanted.numeric.len()];
-        let mut labels = wanted.label.map(|_| Labels::default());
-        let mut rows = RowNumbers::default();
+        let mut gathered = Gathered::new(wanted);
         let mut record = csv::ByteRecord::new();
-        while self.next(&mut record, wanted.path)? {
+        while next(&mut self.reader, &mut record, wanted.path())? {
             let place = place_just_read(&mut self.reader, &record);
-            check_width(wanted, &place, record.len())?;
-            let row = place.row;
-            rows.push(row);
-            let cell = |index: usize| record.get(index).unwrap_or_default().trim_ascii();
-            for (column, index) in columns.iter_mut().zip(wanted.numeric) {
-                column.push(parse_cell(cell(*index)), row);
-            }
-            if let (Some(labels), Some(index)) = (&mut labels, wanted.label) {
-                labels.push(&String::from_utf8_lossy(cell(index)), row, wanted.path)?;
-            }
+            gathered.take(&record, &place, wanted)?;
         }
-        let source = self.reader.into_inner().into_inner().0.inner.finish(wanted.path)?;
-        let trials = labels.map_or_else(Vec::new, Labels::runs);
-        Ok(Table { source, rows, columns, trials, notes: Vec::new() })
+        let source = self.reader.into_inner().into_inner().0.inner.finish(wanted.path())?;
+        gathered.table_of(source);
+        Ok(gathered.table)
     }
 }
 
-impl Unread {
-    /// Whether there is one more row, which is then in `record`.
-    fn next(&mut self, record: &mut csv::ByteRecord, path: &Path) -> Result<bool, ReadError> {
-        let more = self.reader.read_byte_record(record);
-        more.map_err(|source| ReadError::Csv { path: path.to_owned(), source })
+/// Rows as they come.
+struct Gathered {
+    table: Table,
+    labels: Option<Labels>,
+}
+
+impl Gathered {
+    fn new(wanted: &Wanted<'_>) -> Self {
+        let path = wanted.path().to_owned();
+        let table = Table {
+            source: Source { path, sha256: String::new(), bytes: 0 },
+            rows: RowNumbers::default(),
+            columns: vec![Column::default(); wanted.numeric.len()],
+            trials: Vec::new(),
+            notes: Vec::new(),
+        };
+        Self { table, labels: wanted.label.map(|_| Labels::default()) }
+    }
+
+    fn take(
+        &mut self,
+        record: &csv::ByteRecord,
+        place: &Place,
+        wanted: &Wanted<'_>,
+    ) -> Result<(), ReadError> {
+        check_width(wanted, place, record.len())?;
+        let row = place.row;
+        self.table.rows.push(row);
+        let cell = |index: usize| record.get(index).unwrap_or_default().trim_ascii();
+        for (column, index) in self.table.columns.iter_mut().zip(wanted.numeric) {
+            column.push(parse_cell(cell(*index)), row);
+        }
+        if let (Some(labels), Some(index)) = (&mut self.labels, wanted.label) {
+            labels.push(&String::from_utf8_lossy(cell(index)), row, wanted.path())?;
+        }
+        Ok(())
+    }
+
+    /// What came so far, of this much of the file.
+    fn table_of(&mut self, source: Source) -> &Table {
+        self.table.source = source;
+        self.table.trials = self.labels.as_ref().map_or_else(Vec::new, Labels::runs);
+        &self.table
+    }
+}
+
+/// The rows of a text that still grows: each is parsed once, when it has come whole.
+#[derive(Default)]
+pub(in crate::experiment) struct GrowingRows {
+    delimiter: u8,
+    /// What was not parsed yet.
+    text: Vec<u8>,
+    /// Lines before it.
+    lines: u64,
+    gathered: Option<Gathered>,
+}
+
+impl GrowingRows {
+    /// Adds whole lines.
+    pub(in crate::experiment) fn push(&mut self, lines: &[u8]) {
+        self.text.extend_from_slice(lines);
+    }
+
+    /// Bytes that were not parsed yet: of a row that is not whole, or that is wrong.
+    pub(in crate::experiment) fn waiting(&self) -> usize {
+        self.text.len()
+    }
+
+    /// The header, which is taken off the text; `None` as long as it has not come.
+    pub(in crate::experiment) fn head(&mut self, path: &Path) -> Result<Option<Head>, ReadError> {
+        self.delimiter = sniff_delimiter(self.text.get(..SNIFFED_BYTES).unwrap_or(&self.text));
+        let mut found = None;
+        self.each(path, |record, place| {
+            found = Some(head(path, record, place.row)?);
+            Ok(ControlFlow::Break(()))
+        })?;
+        Ok(found)
+    }
+
+    /// All rows that have come whole, of this much of the file.
+    pub(in crate::experiment) fn read(
+        &mut self,
+        wanted: &Wanted<'_>,
+        source: Source,
+    ) -> Result<&Table, ReadError> {
+        let mut gathered = self.gathered.take().unwrap_or_else(|| Gathered::new(wanted));
+        let result = self.each(wanted.path(), |record, place| {
+            gathered.take(record, place, wanted).map(ControlFlow::Continue)
+        });
+        let gathered = self.gathered.insert(gathered);
+        result.map(|()| gathered.table_of(source))
+    }
+
+    /// Hands on the records that are whole, and takes them off the text. One that is wrong
+    /// stays, and is as wrong the next time.
+    fn each(
+        &mut self,
+        path: &Path,
+        mut take: impl FnMut(&csv::ByteRecord, &Place) -> Result<ControlFlow<()>, ReadError>,
+    ) -> Result<(), ReadError> {
+        let mut reader = reader(self.delimiter, LineEnds::after(self.text.as_slice(), self.lines));
+        let mut record = csv::ByteRecord::new();
+        let (mut taken, mut result) = (0, Ok(ControlFlow::Continue(())));
+        while let Ok(ControlFlow::Continue(())) = result {
+            if !next(&mut reader, &mut record, path)? {
+                taken = self.text.len();
+                break;
+            }
+            let end = usize::try_from(reader.position().byte()).unwrap_or(usize::MAX);
+            // The line end behind the text is part of a quotation that still goes on.
+            if end > self.text.len() {
+                break;
+            }
+            let place = place_just_read(&mut reader, &record);
+            result = take(&record, &place);
+            taken = if result.is_ok() { end } else { taken };
+        }
+        let lines = self.text.drain(..taken).filter(|byte| *byte == b'\n');
+        self.lines += lines.fold(0, |count, _| count + 1);
+        result.map(drop)
     }
 }
 
 fn check_width(wanted: &Wanted<'_>, place: &Place, found: usize) -> Result<(), ReadError> {
-    let expected = wanted.headers.len();
+    let expected = wanted.head.headers.len();
     if found == expected {
         return Ok(());
     }
-    let (path, row, lines) = (wanted.path.to_owned(), place.row, place.lines);
+    let (path, row, lines) = (wanted.path().to_owned(), place.row, place.lines);
     Err(ReadError::UnequalRow { path, row, found, expected, lines })
 }
 
 /// Bytes that are looked at to tell the delimiter.
-const SNIFFED_BYTES: u64 = 64 * 1024;
+const SNIFFED_BYTES: usize = 64 * 1024;
 
 /// The delimiter that is most frequent in the first line that is no comment, units and
 /// quoted cells left out.
@@ -128,7 +255,7 @@ struct Place {
 ///
 /// The parser's own count is that of the comment lines before it, and takes "\r\n" in
 /// two halves; so the lines before the end of the record are counted here.
-fn place_just_read(reader: &mut csv::Reader<Bytes>, record: &csv::ByteRecord) -> Place {
+fn place_just_read<R: Read>(reader: &mut csv::Reader<Lines<R>>, record: &csv::ByteRecord) -> Place {
     let end = reader.position().byte().saturating_sub(1);
     let file = reader.get_mut().get_mut().0;
     let before_end = file.lines_before(end);
@@ -163,7 +290,12 @@ struct LineEnds<R> {
 
 impl<R: Read> LineEnds<R> {
     fn new(inner: R) -> Self {
-        Self { inner, bytes: 0, ends: VecDeque::new(), passed: 0 }
+        Self::after(inner, 0)
+    }
+
+    /// Bytes that come after so many `lines`.
+    fn after(inner: R, lines: u64) -> Self {
+        Self { inner, bytes: 0, ends: VecDeque::new(), passed: lines }
     }
 
     /// Number of line ends before the byte `place`, which never goes back.
@@ -218,7 +350,7 @@ mod tests {
         for text in [text.to_owned(), format!("{text}\n"), text.replace('\n', "\r\n"), mixed] {
             std::fs::write(&path, &text).unwrap();
             let open = open(&path).unwrap();
-            assert_eq!(open.header_row, 2, "{text:?}");
+            assert_eq!(open.head.header_row, 2, "{text:?}");
             let table = open.read(&[0, 1], None, 0).unwrap();
             let rows = [0, 1, 2].map(|index| table.rows.number(index));
             assert_eq!((table.rows.len(), rows), (3, [3, 6, 7]), "{text:?}");

@@ -15,6 +15,8 @@ use std::path::Path;
 use super::ReadError;
 use super::table::OpenTable;
 
+pub(super) use csv::GrowingRows;
+
 /// A format of logs.
 struct Format {
     /// What it is called.
@@ -109,6 +111,14 @@ pub(super) fn open(path: &Path) -> Result<OpenTable, ReadError> {
         },
         None => csv::open(path),
     }
+}
+
+/// Whether a log that begins like this, or will be called so, is text.
+pub(super) fn is_text(path: &Path, start: &[u8]) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    let is_text = |format: &Format| (format.starts)(b"");
+    let other = |format: &&Format| format.ends(&name) || (format.starts)(start);
+    FORMATS.iter().filter(other).all(is_text)
 }
 
 impl Format {

@@ -14,9 +14,7 @@ use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
 use super::super::ReadError;
-use super::super::table::{
-    Column, Header, Labels, OpenTable, RowNumbers, Rows, Table, Wanted, source_of,
-};
+use super::super::table::{Column, Head, Header, Labels, OpenTable, Rows, Table, Wanted};
 
 /// A file whose footer was read.
 struct Unread {
@@ -35,12 +33,8 @@ pub(super) fn open(path: &Path) -> Result<OpenTable, ReadError> {
     }
     let columns = reader.metadata().file_metadata().schema_descr().columns();
     let headers = columns.iter().map(|column| header(column)).collect();
-    Ok(OpenTable {
-        path: path.to_owned(),
-        headers,
-        header_row: 0,
-        rows: Box::new(Unread { reader }),
-    })
+    let head = Head { path: path.to_owned(), headers, header_row: 0 };
+    Ok(OpenTable { head, rows: Box::new(Unread { reader }) })
 }
 
 /// Whether the columns of a group of rows lie in a file of `size` bytes, as they are said to.
@@ -93,7 +87,7 @@ impl Rows for Unread {
         let mut rows = 0;
         for group in 0..self.reader.num_row_groups() {
             let read = |index, cells: &mut dyn FnMut(Cell)| {
-                self.group(group, index, cells).map_err(|error| damaged(wanted.path, &error))
+                self.group(group, index, cells).map_err(|error| damaged(wanted.path(), &error))
             };
             for ((column, index), kind) in columns.iter_mut().zip(wanted.numeric).zip(&kinds) {
                 match kind {
@@ -105,19 +99,13 @@ impl Rows for Unread {
                 let mut texts = Vec::new();
                 read(index, &mut |cell| texts.push(cell.label()))?;
                 for (text, row) in texts.iter().zip(rows + 1..) {
-                    labels.push(text, row as u64, wanted.path)?;
+                    labels.push(text, row as u64, wanted.path())?;
                 }
             }
             let count = self.reader.metadata().row_group(group).num_rows();
             rows += usize::try_from(count).unwrap_or_default();
         }
-        Ok(Table {
-            source: source_of(wanted.path)?,
-            rows: RowNumbers::counted(rows),
-            columns,
-            trials: labels.runs(),
-            notes: Vec::new(),
-        })
+        Table::counted(wanted.path(), rows, columns, &labels)
     }
 }
 

@@ -3,13 +3,16 @@
 //! A blueprint is a recording of its own: `view/<id>` and `container/<id>` hold what the
 //! viewer shows, `viewport` the root.
 
-use rerun::datatypes::{TimeRange, TimeRangeBoundary};
+use rerun::datatypes::{Range2D, TimeRange, TimeRangeBoundary, Utf8};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
-    ContainerBlueprint, PanelBlueprint, TimeAxis, TimePanelBlueprint, ViewBlueprint, ViewContents,
-    ViewportBlueprint,
+    ContainerBlueprint, PanelBlueprint, TextLogColumns, TimeAxis, TimePanelBlueprint,
+    ViewBlueprint, ViewContents, ViewportBlueprint, VisualBounds2D,
 };
 use rerun::external::re_sdk_types::blueprint::components::{
     ContainerKind, IncludedContent, PanelState, PlayState, QueryExpression, RootContainer,
+};
+use rerun::external::re_sdk_types::blueprint::datatypes::{
+    TextLogColumn, TextLogColumnKind, TimelineColumn,
 };
 use rerun::external::uuid::Uuid;
 use rerun::log::LogMsg;
@@ -139,4 +142,17 @@ impl Builder {
         let messages = chunks.iter().map(|chunk| chunk_message(&store, chunk));
         std::iter::once(Ok(store_message(&store))).chain(messages).collect()
     }
+}
+
+/// All of a sheet in view.
+pub(super) fn bounds(width: f32, height: f32) -> VisualBounds2D {
+    let (width, height) = (f64::from(width), f64::from(height));
+    VisualBounds2D::new(Range2D { x_range: [0.0, width].into(), y_range: [0.0, height].into() })
+}
+
+/// Lines that lead to their places on `timeline`.
+pub(super) fn clickable(timeline: &str) -> TextLogColumns {
+    let timeline = TimelineColumn { visible: true.into(), timeline: Utf8::from(timeline) };
+    let body = TextLogColumn { visible: true.into(), kind: TextLogColumnKind::Body };
+    TextLogColumns::new().with_timeline_columns([timeline]).with_text_log_columns([body])
 }

@@ -1,18 +1,18 @@
 //! The views of one joint: its decisions, its record, its table.
 
 use rerun::components::Visible;
-use rerun::datatypes::{Range2D, TimeInt, TimeRange, TimeRangeBoundary, Utf8, VisibleTimeRange};
+use rerun::datatypes::{TimeInt, TimeRange, TimeRangeBoundary, Utf8, VisibleTimeRange};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
-    DataframeQuery, PlotLegend, TextLogColumns, TimeAxis, VisibleTimeRanges, VisualBounds2D,
+    DataframeQuery, PlotLegend, TimeAxis, VisibleTimeRanges,
 };
 use rerun::external::re_sdk_types::blueprint::components::{
     ContainerKind, Corner2D, FilterIsNotNull, LinkAxis,
 };
 use rerun::external::re_sdk_types::blueprint::datatypes::{
-    ComponentColumnSelector, SelectedColumns, TextLogColumn, TextLogColumnKind, TimelineColumn,
+    ComponentColumnSelector, SelectedColumns,
 };
 
-use super::builder::{Builder, Node, View};
+use super::builder::{Builder, Node, View, bounds, clickable};
 use crate::experiment::Joint;
 use crate::recording::canvas::SHEET;
 use crate::recording::chunk::FINE;
@@ -193,16 +193,8 @@ impl Views<'_> {
 
     fn list(&self) -> View<'static> {
         let paths = [self.path(&["verdict", "log"])];
-        let shown = |timeline: &str| TimelineColumn {
-            visible: true.into(),
-            timeline: Utf8::from(timeline),
-        };
-        let columns =
-            TextLogColumns::new().with_timeline_columns([shown("decision")]).with_text_log_columns(
-                [TextLogColumn { visible: true.into(), kind: TextLogColumnKind::Body }],
-            );
         View::new("TextLog", "All decisions: click a number on the left to go there", &paths)
-            .with("TextLogColumns", columns)
+            .with("TextLogColumns", clickable("decision"))
     }
 
     /// The whole record on the time axis.
@@ -376,9 +368,4 @@ impl Views<'_> {
         let rows = [decisions, candidates];
         self.builder.container(ContainerKind::Horizontal, "Table", &rows, &[1.1, 0.9])
     }
-}
-
-fn bounds(width: f32, height: f32) -> VisualBounds2D {
-    let (width, height) = (f64::from(width), f64::from(height));
-    VisualBounds2D::new(Range2D { x_range: [0.0, width].into(), y_range: [0.0, height].into() })
 }

@@ -2,12 +2,14 @@
 
 mod builder;
 mod joint;
+mod sweep;
 
 use rerun::ApplicationId;
 use rerun::external::re_sdk_types::blueprint::components::{ContainerKind, PlayState};
 use rerun::log::LogMsg;
 
 use self::builder::{Builder, View};
+pub(super) use self::sweep::messages as sweep_messages;
 use super::Recording;
 use super::error::RecordError;
 

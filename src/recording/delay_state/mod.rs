@@ -19,6 +19,8 @@ use super::entity::below;
 use super::error::RecordError;
 use super::layout::JointLayout;
 use super::palette::{self, Rgb, color};
+use super::rows::HIDDEN;
+use super::sheet::put_texts;
 use crate::delay::{AgainstState, StepState};
 use crate::experiment::{Joint, Trial};
 use crate::report::{EstimatedJoint, number};
@@ -272,9 +274,6 @@ impl<'f> Page<'f> {
     }
 }
 
-/// Radius of a text's own point: too small to be seen.
-const HIDDEN: f32 = 0.01;
-
 /// Row of the legend on the sheet.
 const LEGEND: f32 = 24.0;
 
@@ -307,15 +306,4 @@ fn plot(place: usize, (columns, rows): (usize, usize), x: Span, y: Span) -> Plot
     let (across, down) = (place % columns, place / columns);
     let rows = row(down) + 48.0..=row(down + 1) - 30.0;
     Plot::within((column(across), column(across + 1) - 30.0), rows, x, y)
-}
-
-fn put_texts(
-    chunks: &mut Chunks,
-    entity: EntityPath,
-    labels: Labels,
-    colors: &[Color],
-) -> Result<(), RecordError> {
-    let texts = Points2D::new(labels.places).with_labels(labels.texts).with_radii([HIDDEN]);
-    let texts = texts.with_colors(colors.iter().copied()).with_show_labels(true);
-    chunks.push_static(entity, &texts)
 }

@@ -13,12 +13,13 @@ use rerun::sink::{GrpcSink, GrpcSinkConnectionState, LogSink as _};
 use rerun::{EntityPath, MemoryLimit, RecordingInfo, ServerOptions, StoreId, StoreKind};
 
 use self::sent::Sent;
-use super::Recording;
-use super::blueprint::{self, Ladder};
+use super::blueprint::Ladder;
 use super::chunk::Chunks;
+use super::content::{Content, Part};
 use super::error::RecordError;
 use super::message::{chunk_message, store_message};
-use super::write::{APPLICATION, Part, activation, for_each_chunk, recording_name};
+use super::write::{APPLICATION, activation};
+use super::{Recording, SweepRecording};
 
 /// Longest time that a viewer may take to answer.
 const ANSWER: Duration = Duration::from_secs(5);
@@ -138,29 +139,33 @@ impl Live {
         self.send_part(recording, Some(joint))
     }
 
-    fn send_part(
-        &mut self,
-        recording: &Recording<'_>,
-        joint: Option<&str>,
-    ) -> Result<(), RecordError> {
+    /// Sends delays over all settings.
+    ///
+    /// # Errors
+    /// As [`send`](Self::send).
+    pub fn send_sweep(&mut self, sweep: &SweepRecording<'_>) -> Result<(), RecordError> {
+        self.send_part(sweep, None)
+    }
+
+    fn send_part(&mut self, content: &dyn Content, joint: Option<&str>) -> Result<(), RecordError> {
         if self.used == 0 {
-            self.open(recording)?;
+            self.open(content)?;
         }
         let part = Part { used: self.used, joint };
-        self.used += Part::uses(recording);
+        self.used += content.namespaces();
         self.sent.begin();
-        for_each_chunk(recording, part, |chunk: &Chunk| match self.sent.news_of(chunk) {
+        content.for_each_chunk(part, &mut |chunk: &Chunk| match self.sent.news_of(chunk) {
             Some(news) => self.send_chunk(&news),
             None => Ok(()),
         })?;
-        self.send_views(recording)
+        self.send_views(content)
     }
 
     /// What the recording is.
-    fn open(&self, recording: &Recording<'_>) -> Result<(), RecordError> {
+    fn open(&self, content: &dyn Content) -> Result<(), RecordError> {
         self.post(store_message(&self.store));
         let mut chunks = Chunks::new(1);
-        let info = RecordingInfo::new().with_name(recording_name(recording));
+        let info = RecordingInfo::new().with_name(content.name());
         chunks.push_static(EntityPath::properties(), &info)?;
         chunks.into_chunks().iter().try_for_each(|chunk| self.send_chunk(chunk))
     }
@@ -180,13 +185,13 @@ impl Live {
 
     /// Which view shows what, unless the viewer knows: being told again, it forgets where
     /// its user is.
-    fn send_views(&mut self, recording: &Recording<'_>) -> Result<(), RecordError> {
-        let views = blueprint::in_words(recording, self.ladder);
+    fn send_views(&mut self, content: &dyn Content) -> Result<(), RecordError> {
+        let views = content.views_in_words(self.ladder);
         if self.views.as_ref() == Some(&views) {
             return Ok(());
         }
         let id = format!("{}-{}", self.store.recording_id().as_str(), self.used);
-        let messages = blueprint::messages(recording, self.ladder, &APPLICATION.into(), &id)?;
+        let messages = content.views(self.ladder, &APPLICATION.into(), &id)?;
         let blueprint = messages.first().map(|message| message.store_id().clone());
         for message in messages {
             self.post(message);

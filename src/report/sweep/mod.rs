@@ -6,7 +6,11 @@ mod text;
 
 pub use json::SweepJson;
 pub use text::{StepsShown, sweep_text};
+#[cfg(feature = "rrd")]
+pub(crate) use text::{hangs_on, level_cell, settings_in_words, sweep_sentences};
 
+#[cfg(feature = "rrd")]
+use crate::delay::Settings;
 use crate::delay::sweep::{Factor, Grid, JointSweep};
 use crate::experiment::Joint;
 
@@ -25,10 +29,20 @@ pub struct ReportedSweep<'a> {
 
 impl ReportedSweep<'_> {
     /// For each run whether it agrees with most of the others on nine steps of ten.
-    fn agreeing(&self) -> Vec<bool> {
+    pub(crate) fn agreeing(&self) -> Vec<bool> {
         let runs = self.sweep.runs.iter();
         runs.map(|run| run.as_ref().and_then(|run| run.agrees) >= Some(AGREES)).collect()
     }
+}
+
+/// A run in words: the values of all settings that its method knows.
+#[cfg(feature = "rrd")]
+pub(crate) fn run_text(settings: &Settings) -> String {
+    let low_pass = settings.low_pass;
+    let low_pass = low_pass.map_or("no low-pass".to_owned(), |l| format!("{} Hz", l.cutoff_hz));
+    let mut words = vec![settings.method.to_string(), low_pass, format!("α {}", settings.alpha)];
+    words.extend(settings.method.has_rows().then(|| format!("β {}", settings.beta)));
+    words.join(", ")
 }
 
 /// A value of a setting as an option takes it.
@@ -45,7 +59,7 @@ fn value(grid: &Grid, factor: Factor, level: usize) -> String {
 }
 
 /// A value of a setting in words.
-fn level_text(grid: &Grid, factor: Factor, level: usize) -> String {
+pub(crate) fn level_text(grid: &Grid, factor: Factor, level: usize) -> String {
     let value = value(grid, factor, level);
     match (factor, value.as_str()) {
         (Factor::Method, _) => value,

@@ -3,7 +3,7 @@
 
 use comfy_table::{Cell, CellAlignment, ContentArrangement, Table, presets};
 
-use super::sets::clauses;
+use super::sets::{Clause, clauses};
 use super::{ReportedSweep, level_text};
 use crate::delay::sweep::{Factor, Grid, Hanging, LevelSummary, SweptStep};
 use crate::report::number::{percent, rounded};
@@ -49,16 +49,20 @@ pub fn sweep_text(
 
 /// A joint in sentences.
 fn paragraph(grid: &Grid, reported: &ReportedSweep<'_>) -> String {
-    let name = &reported.joint.name;
+    filled(&format!("{}: {}", reported.joint.name, sweep_sentences(grid, reported).join(" ")))
+}
+
+/// How many delays are the same, what the others hang on, and which settings agree.
+pub(crate) fn sweep_sentences(grid: &Grid, reported: &ReportedSweep<'_>) -> Vec<String> {
     let judged = reported.sweep.judged().count();
     if judged == 0 {
-        return filled(&format!("{name}: no step is accepted with any of the settings."));
+        return vec!["no step is accepted with any of the settings.".to_owned()];
     }
     let settled = reported.sweep.judged().filter(|step| step.is_settled()).count();
     let mut sentences = vec![match judged - settled {
-        0 => format!("{name}: all {judged} delays are the same whatever the settings."),
+        0 => format!("all {judged} delays are the same whatever the settings."),
         _ => format!(
-            "{name}: {settled} of {judged} delays are the same whatever the settings. {}.",
+            "{settled} of {judged} delays are the same whatever the settings. {}.",
             on_what(reported)
         ),
     }];
@@ -66,7 +70,18 @@ fn paragraph(grid: &Grid, reported: &ReportedSweep<'_>) -> String {
         sentences.push(who_agrees(grid, reported));
     }
     sentences.extend(lag_sentence(grid, reported));
-    filled(&sentences.join(" "))
+    sentences
+}
+
+/// The settings of the runs that are `chosen`, in few words.
+#[cfg(feature = "rrd")]
+pub(crate) fn settings_in_words(grid: &Grid, chosen: &[bool]) -> String {
+    let found = clauses(grid, chosen);
+    let total: usize = found.iter().map(|clause| clause.combinations).sum();
+    if total == grid.combinations().len() {
+        return "all settings".to_owned();
+    }
+    said(&found)
 }
 
 /// On which settings how many delays hang.
@@ -114,13 +129,19 @@ fn who_agrees(grid: &Grid, reported: &ReportedSweep<'_>) -> String {
     if total == grid.combinations().len() {
         return "All settings agree on nine steps of ten.".to_owned();
     }
-    let said: Vec<_> = found.iter().take(CLAUSES).collect();
-    let left = total - said.iter().map(|clause| clause.combinations).sum::<usize>();
+    format!("On nine steps of ten these agree: {}.", said(&found))
+}
+
+/// The first clauses, and how many combinations the others are.
+fn said(found: &[Clause]) -> String {
+    let (said, others) = found.split_at(found.len().min(CLAUSES));
     let mut said: Vec<String> = said.iter().map(|clause| clause.words.join(", ")).collect();
-    if left > 0 {
-        said.push(format!("{left} more combinations"));
+    match others.iter().map(|clause| clause.combinations).sum() {
+        0 => {}
+        1 => said.push("1 more combination".to_owned()),
+        left => said.push(format!("{left} more combinations")),
     }
-    format!("On nine steps of ten these agree: {}.", said.join("; "))
+    said.join("; ")
 }
 
 /// Where a lag was found that other methods take for delay.
@@ -169,7 +190,7 @@ fn levels_table(grid: &Grid, joints: &[ReportedSweep<'_>]) -> String {
 }
 
 /// The median delay, and the part of delays that are not what most say.
-fn level_cell(summary: &LevelSummary) -> String {
+pub(crate) fn level_cell(summary: &LevelSummary) -> String {
     match (summary.median_s, summary.disagrees) {
         (Some(seconds), Some(part)) => format!("{seconds:.3} s {:>5}", percent(part)),
         _ => "-".to_owned(),
@@ -232,7 +253,7 @@ fn step_cells(grid: &Grid, name: &str, step: &SweptStep) -> [String; 8] {
 }
 
 /// On what a step hangs, and what the odd values of that setting say.
-fn hangs_on(grid: &Grid, step: &SweptStep) -> String {
+pub(crate) fn hangs_on(grid: &Grid, step: &SweptStep) -> String {
     let delay = step.delay_hangs_on.as_ref().map(|found| odd_levels(grid, found, step.period_s));
     let accepted = percent(step.accepted as f64 / step.tried.max(1) as f64);
     let verdict = step.verdict_hangs_on.map(|factor| format!("{factor}, {accepted} accept it"));

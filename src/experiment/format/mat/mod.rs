@@ -15,9 +15,7 @@ mod v73;
 use std::path::Path;
 
 use super::super::ReadError;
-use super::super::table::{
-    Column, Header, Labels, OpenTable, RowNumbers, Rows, Table, Wanted, source_of,
-};
+use super::super::table::{Column, Head, Header, Labels, OpenTable, Rows, Table, Wanted};
 
 /// A variable, or a field of one.
 struct Variable {
@@ -70,7 +68,8 @@ pub(super) fn open(path: &Path) -> Result<OpenTable, ReadError> {
         }
     }
     let rows = Box::new(Unread { variables, places });
-    Ok(OpenTable { path: path.to_owned(), headers, header_row: 0, rows })
+    let head = Head { path: path.to_owned(), headers, header_row: 0 };
+    Ok(OpenTable { head, rows })
 }
 
 fn damaged(path: &Path, reason: &impl ToString) -> ReadError {
@@ -109,27 +108,22 @@ impl Variable {
 impl Rows for Unread {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
         let rows = self.rows(wanted)?;
-        let column = |index: &usize| self.column(*index, wanted.path);
+        let column = |index: &usize| self.column(*index, wanted.path());
         let columns = wanted.numeric.iter().map(column).collect::<Result<_, _>>()?;
         let mut labels = Labels::default();
-        let texts = wanted.label.map_or_else(|| Ok(Vec::new()), |l| self.labels(l, wanted.path))?;
+        let texts =
+            wanted.label.map_or_else(|| Ok(Vec::new()), |l| self.labels(l, wanted.path()))?;
         for (text, row) in texts.iter().zip(1..) {
-            labels.push(text, row, wanted.path)?;
+            labels.push(text, row, wanted.path())?;
         }
-        Ok(Table {
-            source: source_of(wanted.path)?,
-            rows: RowNumbers::counted(rows),
-            columns,
-            trials: labels.runs(),
-            notes: Vec::new(),
-        })
+        Table::counted(wanted.path(), rows, columns, &labels)
     }
 }
 
 impl Unread {
     /// The rows of the columns that are wanted, which must be as many in each.
     fn rows(&self, wanted: &Wanted<'_>) -> Result<usize, ReadError> {
-        let name = |index: usize| wanted.headers.get(index).map_or("", |header| &header.name);
+        let name = |index: usize| wanted.head.headers.get(index).map_or("", |header| &header.name);
         let mut first: Option<(usize, usize)> = None;
         for index in wanted.numeric.iter().chain(&wanted.label).copied() {
             let Some((variable, place)) = self.place(index) else { continue };
@@ -139,7 +133,7 @@ impl Unread {
             let (other, expected) = *first.get_or_insert((index, place.rows));
             if place.rows != expected {
                 return Err(ReadError::UnequalColumns {
-                    path: wanted.path.to_owned(),
+                    path: wanted.path().to_owned(),
                     column: name(index).to_owned(),
                     found: place.rows,
                     other: name(other).to_owned(),

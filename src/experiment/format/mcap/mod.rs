@@ -25,7 +25,9 @@ use self::message::{Decoder, Field, stamp};
 use self::series::Series;
 use self::stream::Summary;
 use super::super::ReadError;
-use super::super::table::{Hashing, Header, Labels, OpenTable, RowNumbers, Rows, Table, Wanted};
+use super::super::table::{
+    Hashing, Head, Header, Labels, OpenTable, RowNumbers, Rows, Table, Wanted,
+};
 
 /// What is wrong with a file, and what to do about it.
 #[derive(Debug)]
@@ -124,7 +126,8 @@ pub(super) fn open(path: &Path) -> Result<OpenTable, ReadError> {
     let places = contents.places();
     let headers = places.iter().map(|place| contents.header(place)).collect();
     let rows = Box::new(Unread { contents, places });
-    Ok(OpenTable { path: path.to_owned(), headers, header_row: 0, rows })
+    let head = Head { path: path.to_owned(), headers, header_row: 0 };
+    Ok(OpenTable { head, rows })
 }
 
 impl Contents {
@@ -270,9 +273,9 @@ fn broken(topic: &str, header: &MessageHeader, reason: &str) -> Fault {
 
 impl Rows for Unread {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let refuse = |fault: Fault| fault.refuse(wanted.path);
-        let file = File::open(wanted.path)
-            .map_err(|source| ReadError::Io { path: wanted.path.to_owned(), source })?;
+        let refuse = |fault: Fault| fault.refuse(wanted.path());
+        let file = File::open(wanted.path())
+            .map_err(|source| ReadError::Io { path: wanted.path().to_owned(), source })?;
         let clock = self.clock(wanted);
         let mut series = self.series(wanted);
         let mut file = Hashing::new(BufReader::new(file));
@@ -283,18 +286,18 @@ impl Rows for Unread {
             Ok(ControlFlow::Continue(()))
         })
         .map_err(refuse)?;
-        let source = file.finish(wanted.path)?;
+        let source = file.finish(wanted.path())?;
         let mut aligned = series::align(series, wanted.clock, |topic| self.contents.name(topic))
             .map_err(refuse)?;
         let zero = self.contents.zero(clock);
         let mut notes = vec![format!(
             "{}: times are {} from {:.9} s on",
-            wanted.path.display(),
+            wanted.path().display(),
             clock.name(),
             zero as f64 * 1e-9
         )];
         let held = aligned.note.take();
-        notes.extend(held.map(|note| format!("{}: {note}", wanted.path.display())));
+        notes.extend(held.map(|note| format!("{}: {note}", wanted.path().display())));
         let mut column = |index: &usize| match self.places.get(*index) {
             Some(Place::Time(other)) => aligned.times(*other, clock, zero),
             _ => aligned.column(*index),
@@ -304,7 +307,7 @@ impl Rows for Unread {
         for (value, row) in
             wanted.label.map(|label| column(&label).values).iter().flatten().zip(1..)
         {
-            labels.push(&value.to_string(), row, wanted.path)?;
+            labels.push(&value.to_string(), row, wanted.path())?;
         }
         let rows = RowNumbers::counted(aligned.rows());
         Ok(Table { source, rows, columns, trials: labels.runs(), notes })

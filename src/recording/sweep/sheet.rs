@@ -1,0 +1,445 @@
+//! All steps of a joint at all settings: their delays, what they hang on, and which settings
+//! tell the same.
+
+use std::collections::BTreeMap;
+
+use rerun::components::{Color, DrawOrder};
+use rerun::datatypes::Vec2D;
+use rerun::{EntityPath, LineStrips2D, Points2D};
+
+use super::map::{Block, beside, blocks, named, picture, rows_of};
+use super::step::TITLE;
+use super::{Cell, Swept};
+use crate::delay::sweep::{Factor, SweptStep};
+use crate::recording::canvas::{Labels, Plot, SHEET, Span};
+use crate::recording::chunk::Chunks;
+use crate::recording::entity::below;
+use crate::recording::error::RecordError;
+use crate::recording::palette::{self, Rgb, color};
+use crate::recording::rows::Rows;
+use crate::recording::sheet::{Sheet, put_texts, strips};
+use crate::report::{number, settings_in_words};
+use crate::statistics::quantile;
+
+/// Width and height of the sheet.
+pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1090.0);
+
+/// Entities of the page, from back to front.
+pub(in crate::recording) const PARTS: [&str; 18] = [
+    "map",
+    "grid",
+    "range",
+    "agreed",
+    "same",
+    "longer",
+    "shorter",
+    "hanging",
+    "blocks",
+    "texts",
+    "counts",
+    "rows",
+    "legend",
+    "setting/delays",
+    "setting/frame",
+    "setting/name",
+    "step/frame",
+    "step/name",
+];
+
+/// Left and right ends of the plots: names stand on the left, counts on the right.
+const SIDES: (f32, f32) = (150.0, SHEET.0 - 70.0);
+
+/// Points times combinations up to which the pointer tells settings in words, which takes
+/// time; with more it tells how many they are.
+const NAMED: usize = 20_000_000;
+
+/// Draws the page below `root`.
+pub(super) fn add(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    swept: &Swept<'_>,
+) -> Result<(), RecordError> {
+    let root = below(root, &["sheet"]);
+    let page = Page::of(swept);
+    page.add_grid(chunks, &root)?;
+    page.add_delays(chunks, &root)?;
+    page.add_hanging(chunks, &root)?;
+    page.add_map(chunks, &root)?;
+    put_legend(chunks, &root, swept)?;
+    page.add_setting(chunks, &root)?;
+    page.add_step(chunks, &root)
+}
+
+/// The three plots on their sheet, which share the axis of steps.
+struct Page<'s> {
+    swept: &'s Swept<'s>,
+    delays: Plot,
+    hanging: Plot,
+    map: Plot,
+    /// What delays may hang on.
+    causes: Vec<(String, Cause)>,
+}
+
+/// What it is that a step hangs on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cause {
+    /// Its delay moves with this setting.
+    Delay(Factor),
+    /// Its delay moves with no setting alone.
+    Several,
+    /// Some settings accept it, others do not.
+    Verdict,
+}
+
+impl Cause {
+    /// Those that there can be, and their names.
+    fn all(swept: &Swept<'_>) -> Vec<(String, Self)> {
+        let varied = Factor::ALL.into_iter().filter(|factor| swept.grid.levels(*factor) > 1);
+        let mut causes: Vec<_> =
+            varied.map(|factor| (factor.to_string(), Self::Delay(factor))).collect();
+        causes.push(("several at once".to_owned(), Self::Several));
+        causes.push(("accepted or not".to_owned(), Self::Verdict));
+        causes
+    }
+
+    fn moves(self, step: &SweptStep) -> bool {
+        let on = step.delay_hangs_on.as_ref().map(|hanging| hanging.factor);
+        match self {
+            Self::Delay(factor) => on == Some(factor),
+            Self::Several => on.is_none() && step.disagreeing() > 0,
+            Self::Verdict => step.accepted > 0 && step.accepted < step.tried,
+        }
+    }
+
+    fn rgb(self) -> Rgb {
+        match self {
+            Self::Delay(_) | Self::Several => palette::INPUT,
+            Self::Verdict => palette::REJECTED,
+        }
+    }
+}
+
+impl<'s> Page<'s> {
+    fn of(swept: &'s Swept<'s>) -> Self {
+        let x = Span::new(0.5, swept.steps.len().max(1) as f64 + 0.5);
+        let causes = Cause::all(swept);
+        let rows = Span::new(0.0, causes.len() as f64);
+        let combinations = Span::new(0.0, swept.grid.combinations().len().max(1) as f64);
+        Self {
+            swept,
+            delays: Plot::within(SIDES, 100.0..=424.0, x, delay_span(swept)),
+            hanging: Plot::within(SIDES, 494.0..=674.0, x, rows),
+            map: Plot::within(SIDES, 744.0..=1030.0, x, combinations),
+            causes,
+        }
+    }
+
+    /// Where the title of a plot stands.
+    fn title(&self, plot: &Plot) -> Vec2D {
+        plot.above(middle(self.map.x_span()), TITLE)
+    }
+
+    /// Each step with its place on the axis.
+    fn steps(&self) -> impl Iterator<Item = (f64, &'s SweptStep)> {
+        (1_u32..).map(f64::from).zip(self.swept.steps.iter().map(|(step, _)| *step))
+    }
+
+    /// Frames, ticks and titles.
+    fn add_grid(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+        /// Ticks of the delay, about.
+        const TICKS: f64 = 6.0;
+        let mut sheet = Sheet::default();
+        let ticks: Vec<f64> = self.delays.x_span().ticks(12.0);
+        let seconds = self.delays.y_span().ticks(TICKS).into_iter();
+        let seconds: Vec<_> = seconds.map(|y| (y, format!("{} s", number(y)))).collect();
+        sheet.outline(&self.delays, &ticks, &seconds);
+        sheet.outline(&self.hanging, &ticks, &[]);
+        sheet.outline(&self.map, &[], &[]);
+        sheet.put(self.title(&self.delays), "delay of each step, with every setting");
+        sheet.put(self.title(&self.hanging), "steps that hang on");
+        for x in ticks {
+            sheet.put(self.map.below(x, 2.0), number(x));
+        }
+        let end = Vec2D::new(SIDES.1 + 34.0, self.map.below(1.0, 2.0).y());
+        sheet.put(end, "step");
+        for ((name, _), row) in self.causes.iter().zip(0_u32..) {
+            let y = self.hanging.y_span().high - f64::from(row) - 0.5;
+            sheet.put(self.hanging.left_of(y, 74.0), name);
+        }
+        sheet.push(chunks, root)
+    }
+
+    /// Every delay that is told, and what is agreed on.
+    fn add_delays(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+        let (mut ranges, mut agreed) = (Vec::new(), Vec::new());
+        for (x, step) in self.steps() {
+            let y = |samples: f64| samples * step.period_s;
+            if let Some(spread) = step.spread {
+                let ends = [y(spread.min), y(spread.max)];
+                ranges.push(ends.map(|y| self.delays.at(x, y)).to_vec());
+            }
+            if let Some(agreement) = step.agreement {
+                let y = y(agreement.delay);
+                agreed.push([x - 0.4, x + 0.4].map(|x| self.delays.at(x, y)).to_vec());
+            }
+        }
+        strips(chunks, below(root, &["range"]), palette::GRID, 1.0, ranges)?;
+        let dashes = LineStrips2D::new(agreed).with_colors([color(palette::ACCEPTED)]);
+        let dashes = dashes.with_radii([1.8]).with_draw_order(DrawOrder::from(45.0));
+        chunks.push_static(below(root, &["agreed"]), &dashes)?;
+        let dots = self.dots();
+        for (name, cell, order) in [
+            ("same", Cell::Same, 30.0),
+            ("longer", Cell::Longer(0.0), 40.0),
+            ("shorter", Cell::Shorter(0.0), 40.0),
+        ] {
+            let own: Vec<&Dot> = dots.iter().filter(|dot| dot.rgb == cell.rgb()).collect();
+            let points = Points2D::new(own.iter().map(|dot| dot.place));
+            let points = points.with_radii(own.iter().map(|dot| dot.radius));
+            let points = points.with_labels(own.iter().map(|dot| dot.name.as_str()));
+            let points = points.with_colors([color(cell.rgb())]).with_show_labels(false);
+            let points = points.with_draw_order(DrawOrder::from(order));
+            chunks.push_static(below(root, &[name]), &points)?;
+        }
+        Ok(())
+    }
+
+    /// A point for all settings that tell the same delay of a step.
+    fn dots(&self) -> Vec<Dot> {
+        let mut groups: Vec<(f64, &SweptStep, Group)> = Vec::new();
+        for (x, step) in self.steps() {
+            groups.extend(Group::all(self.swept, step).into_iter().map(|group| (x, step, group)));
+        }
+        let named = groups.len().saturating_mul(self.swept.grid.combinations().len()) <= NAMED;
+        let dot = |(x, step, group): &(f64, &SweptStep, Group)| {
+            let seconds = group.delay * step.period_s;
+            let mut name = group.name(step);
+            if named {
+                name = format!("{name}: {}", group.in_words(self.swept));
+            }
+            Dot {
+                place: self.delays.at(*x, seconds),
+                rgb: group.rgb,
+                radius: group.radius(step),
+                name,
+            }
+        };
+        groups.iter().map(dot).collect()
+    }
+
+    /// A mark for each step below what it hangs on, and how many they are.
+    fn add_hanging(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+        let (mut counts, mut marks, mut colors) = (Labels::default(), Vec::new(), Vec::new());
+        let slot = self.hanging.x(2.0) - self.hanging.x(1.0);
+        for ((_, cause), row) in self.causes.iter().zip(0_u32..) {
+            let y = self.hanging.y_span().high - f64::from(row) - 0.5;
+            let hanging = self.steps().filter(|(_, step)| cause.moves(step));
+            let places: Vec<_> = hanging.map(|(x, _)| self.hanging.at(x, y)).collect();
+            counts.put(self.hanging.right_of(y, 30.0), places.len().to_string());
+            colors.extend(std::iter::repeat_n(color(cause.rgb()), places.len()));
+            marks.extend(places);
+        }
+        let points = Points2D::new(marks).with_colors(colors).with_radii([(0.5 * slot).min(7.0)]);
+        chunks.push_static(below(root, &["hanging"]), &points)?;
+        put_texts(chunks, below(root, &["counts"]), counts, &[color(palette::BORDER)])
+    }
+
+    /// The picture of all settings and steps, and what its rows are.
+    fn add_map(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+        let entity = below(root, &["map"]);
+        if let Some((image, place)) = picture(self.swept, &self.map) {
+            chunks.push_static(entity.clone(), &image)?;
+            chunks.push_static(entity, &place)?;
+        }
+        let (methods, low_passes) = blocks(self.swept.grid);
+        let border = |block: &Block| self.map.level(self.row(block.first)).to_vec();
+        let thin = low_passes.iter().map(|block| (border(block), palette::GRID));
+        let thick = methods.iter().map(|block| (border(block), palette::BORDER));
+        let (lines, colors): (Vec<_>, Vec<_>) =
+            thin.chain(thick).map(|(line, rgb)| (line, color(rgb))).unzip();
+        let lines = LineStrips2D::new(lines).with_colors(colors).with_radii([0.8]);
+        chunks.push_static(below(root, &["blocks"]), &lines)?;
+        let mut texts = Labels::default();
+        for block in named(self.swept.grid) {
+            texts.put(beside(&self.map, &block), block.label);
+        }
+        put_texts(chunks, below(root, &["rows"]), texts, &[color(palette::BORDER)])
+    }
+
+    /// The upper edge of a row.
+    fn row(&self, row: usize) -> f64 {
+        self.map.y_span().high - row as f64
+    }
+
+    /// The setting under the cursor: its delays, its rows, its name.
+    fn add_setting(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+        let runs = || 0..self.swept.names.len();
+        let mut rows = Rows::new(chunks, below(root, &["setting"]), self.swept.settings());
+        let delays = |run: usize| {
+            let place = |(x, step): (f64, &SweptStep)| {
+                Some(self.delays.at(x, Swept::delay(step, run)? * step.period_s))
+            };
+            self.steps().filter_map(place).collect()
+        };
+        rows.points("delays", palette::HERE, 4.0, runs().map(delays))?;
+        let frame = |run: usize| {
+            let frame = |(first, last): (usize, usize)| {
+                let (top, bottom) = (self.map.y(self.row(first)), self.map.y(self.row(last + 1)));
+                rectangle(SIDES, (top, bottom))
+            };
+            rows_of(self.swept.grid, run).into_iter().map(frame).collect()
+        };
+        rows.strips("frame", palette::HERE, 1.3, runs().map(frame))?;
+        let all = self.swept.names.len();
+        let name = |run: usize| {
+            let mut labels = Labels::default();
+            let name = self.swept.names.get(run).map_or("", String::as_str);
+            let text =
+                format!("which settings tell the same; framed: {name} ({} of {all})", run + 1);
+            labels.put(self.title(&self.map), text);
+            labels
+        };
+        rows.texts("name", palette::HERE, runs().map(name))
+    }
+
+    /// The step under the cursor: a frame through all plots.
+    fn add_step(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+        let index = self.swept.index.clone();
+        let mut rows = Rows::new(chunks, below(root, &["step"]), index);
+        let frame = |(x, _): (f64, &SweptStep)| {
+            let (left, right) = (self.map.x(x - 0.5), self.map.x(x + 0.5));
+            let side = |plot: &Plot| {
+                let Span { low, high } = plot.y_span();
+                rectangle((left, right), (plot.y(high), plot.y(low)))
+            };
+            [&self.delays, &self.hanging, &self.map].map(side).to_vec()
+        };
+        rows.strips("frame", palette::HERE, 1.3, self.steps().map(frame))?;
+        let name = |(x, step): (f64, &SweptStep)| {
+            let mut labels = Labels::default();
+            let text = format!("step {} at {:.2} s", step.number, step.time_s);
+            labels.put_whole(self.map.above(x, TITLE), text);
+            labels
+        };
+        rows.texts("name", palette::HERE, self.steps().map(name))
+    }
+}
+
+/// Settings that tell the same of a step.
+struct Group {
+    delay: f64,
+    rgb: Rgb,
+    runs: Vec<usize>,
+    votes: usize,
+}
+
+impl Group {
+    fn all(swept: &Swept<'_>, step: &SweptStep) -> Vec<Self> {
+        let mut groups: BTreeMap<(u64, Rgb), Self> = BTreeMap::new();
+        for run in 0..step.told.len() {
+            let Some(delay) = Swept::delay(step, run) else { continue };
+            let rgb = Swept::cell(step, run).rgb();
+            let empty = Self { delay, rgb, runs: Vec::new(), votes: 0 };
+            let group = groups.entry((delay.to_bits(), rgb)).or_insert(empty);
+            group.runs.push(run);
+            group.votes += swept.votes.get(run).copied().unwrap_or(0);
+        }
+        groups.into_values().collect()
+    }
+
+    /// The more settings tell it, the larger it is; what disagrees is never small.
+    fn radius(&self, step: &SweptStep) -> f32 {
+        let share = self.votes as f32 / step.tried.max(1) as f32;
+        let least = if self.rgb == palette::SAME { 1.4 } else { 2.4 };
+        least + 3.0 * share.sqrt()
+    }
+
+    /// What the pointer tells of it.
+    fn name(&self, step: &SweptStep) -> String {
+        let (seconds, votes) = (self.delay * step.period_s, self.votes);
+        format!("step {}: {seconds:.3} s with {votes} of {} settings", step.number, step.tried)
+    }
+
+    /// Its settings.
+    fn in_words(&self, swept: &Swept<'_>) -> String {
+        let mut chosen = vec![false; swept.names.len()];
+        for run in &self.runs {
+            chosen.get_mut(*run).into_iter().for_each(|chosen| *chosen = true);
+        }
+        settings_in_words(swept.grid, &chosen)
+    }
+}
+
+/// A point of the plot of delays.
+struct Dot {
+    place: Vec2D,
+    rgb: Rgb,
+    radius: f32,
+    name: String,
+}
+
+/// The range of the delays in seconds: all that are agreed on, and all others but for a few
+/// that would flatten the plot. Those are drawn on its edge.
+fn delay_span(swept: &Swept<'_>) -> Span {
+    /// Part of the delays that may lie beyond each end.
+    const BEYOND: f64 = 0.005;
+    let steps = || swept.steps.iter().map(|(step, _)| *step);
+    let of_step = |step: &SweptStep| {
+        let told = step.told.iter().flatten();
+        told.map(|told| told.delay * step.period_s).collect::<Vec<_>>()
+    };
+    let told: Vec<f64> = steps().flat_map(of_step).collect();
+    let ends = [BEYOND, 1.0 - BEYOND].into_iter().filter_map(|part| quantile(&told, part));
+    let agreed = steps().filter_map(|step| Some(step.agreement?.delay * step.period_s));
+    Span::around(ends.chain(agreed), 0.06)
+}
+
+fn rectangle((left, right): (f32, f32), (top, bottom): (f32, f32)) -> Vec<Vec2D> {
+    let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
+    corners.map(|(x, y)| Vec2D::new(x, y)).to_vec()
+}
+
+fn middle(span: Span) -> f64 {
+    f64::midpoint(span.low, span.high)
+}
+
+/// The answer in a line, and what the colours mean.
+fn put_legend(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    swept: &Swept<'_>,
+) -> Result<(), RecordError> {
+    /// Row of the legend on the sheet.
+    const LEGEND: f32 = 1062.0;
+    let entries: [(f32, f32, String, Rgb); 6] = [
+        (SHEET.0 / 2.0, 4.0, headline(swept), palette::BORDER),
+        (330.0, LEGEND, "● as most settings say".to_owned(), palette::SAME),
+        (570.0, LEGEND, "● longer".to_owned(), palette::LONGER),
+        (720.0, LEGEND, "● shorter".to_owned(), palette::SHORTER),
+        (930.0, LEGEND, "black: step not accepted".to_owned(), palette::BORDER),
+        (1240.0, LEGEND, "– the delay that most agree on".to_owned(), palette::ACCEPTED),
+    ];
+    let mut labels = Labels::default();
+    let mut colors: Vec<Color> = Vec::new();
+    for (x, y, text, rgb) in entries {
+        labels.put(Vec2D::new(x, y), text);
+        colors.push(color(rgb));
+    }
+    put_texts(chunks, below(root, &["legend"]), labels, &colors)
+}
+
+fn headline(swept: &Swept<'_>) -> String {
+    let name = &swept.reported.joint.name;
+    let judged = swept.reported.sweep.judged().count();
+    let settled = swept.reported.sweep.judged().filter(|step| step.is_settled()).count();
+    match (judged, judged - settled) {
+        (0, _) => format!("{name}: no step is accepted with any of the settings"),
+        (_, 0) => format!("{name}: all {judged} delays are the same whatever the settings"),
+        (_, 1) => {
+            format!("{name}: {settled} of {judged} delays are the same, 1 hangs on a setting")
+        }
+        (_, hanging) => format!(
+            "{name}: {settled} of {judged} delays are the same, {hanging} hang on a setting"
+        ),
+    }
+}

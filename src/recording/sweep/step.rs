@@ -1,0 +1,238 @@
+//! The output around one step, and what each setting makes of it.
+
+use rerun::EntityPath;
+use rerun::datatypes::Vec2D;
+
+use super::map::{Block, beside, blocks, named};
+use super::{Cell, Swept};
+use crate::delay::sweep::SweptStep;
+use crate::experiment::{Joint, Trial};
+use crate::recording::canvas::{Labels, Plot, SHEET, Span, simplified, thinned};
+use crate::recording::chunk::{Chunks, Index};
+use crate::recording::entity::below;
+use crate::recording::error::RecordError;
+use crate::recording::palette::{self, Rgb, color, dimmed};
+use crate::recording::rows::Rows;
+use crate::recording::sheet::{Sheet, put_texts, strips};
+use crate::report::number as shown;
+
+/// Width and height of the sheet.
+pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1090.0);
+
+/// Entities of the page, from back to front.
+pub(in crate::recording) const PARTS: [&str; 11] = [
+    "grid",
+    "blocks",
+    "allowed",
+    "agreed",
+    "output",
+    "input_step",
+    "same",
+    "longer",
+    "shorter",
+    "texts",
+    "rows",
+];
+
+/// Left and right ends of the plots: names of settings stand on the left.
+const SIDES: (f32, f32) = (150.0, SHEET.0 - 40.0);
+
+/// Draws each step below `root`. On the timeline of settings, where one step is all that can
+/// be seen, it is the one that hangs on a setting most.
+pub(super) fn add(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    swept: &Swept<'_>,
+) -> Result<(), RecordError> {
+    let root = below(root, &["one"]);
+    let (index, order) = worst_last(swept);
+    let drawn = order.iter().filter_map(|place| swept.steps.get(*place));
+    let drawings: Vec<_> = drawn.map(|(step, trial)| Drawing::of(swept, step, trial)).collect();
+    add_row_names(chunks, &root, swept)?;
+    let mut rows = Rows::new(chunks, root, index).back_to_front();
+    let sheets: Vec<_> =
+        drawings.iter().map(|drawing| drawing.sheet(swept.reported.joint).into_parts()).collect();
+    rows.strips("grid", palette::GRID, 0.7, sheets.iter().map(|(grid, _)| grid.clone()))?;
+    let green = dimmed(palette::ACCEPTED);
+    rows.strips("allowed", green, 1.0, drawings.iter().map(Drawing::allowed))?;
+    rows.strips("agreed", palette::ACCEPTED, 1.3, drawings.iter().map(Drawing::agreed))?;
+    rows.strips("output", palette::RAW, 1.6, drawings.iter().map(Drawing::output))?;
+    rows.strips("input_step", palette::INPUT, 1.3, drawings.iter().map(Drawing::input_step))?;
+    for (name, rgb) in
+        [("same", palette::SAME), ("longer", palette::LONGER), ("shorter", palette::SHORTER)]
+    {
+        let told = drawings.iter().map(|drawing| drawing.told(rgb));
+        rows.points(name, rgb, radius(swept), told)?;
+    }
+    rows.texts("texts", palette::BORDER, sheets.into_iter().map(|(_, labels)| labels))
+}
+
+/// The steps in their order but for the one that hangs most, which is last; where they lie,
+/// at the first tick of the settings, too.
+fn worst_last(swept: &Swept<'_>) -> (Index, Vec<usize>) {
+    let mut order: Vec<usize> = (0..swept.steps.len()).collect();
+    let hanging = swept.reported.sweep.hanging();
+    let worst = hanging
+        .first()
+        .and_then(|worst| swept.steps.iter().position(|(step, _)| std::ptr::eq(*step, *worst)));
+    if let Some(worst) = worst {
+        order.remove(worst);
+        order.push(worst);
+    }
+    let sorted = |values: &[i64]| -> Vec<i64> {
+        order.iter().filter_map(|place| values.get(*place).copied()).collect()
+    };
+    let mut index = Index::default();
+    index.segment = sorted(&swept.index.segment);
+    index.sample = sorted(&swept.index.sample);
+    index.time_ns = sorted(&swept.index.time_ns);
+    index.setting = vec![1; order.len()];
+    (index, order)
+}
+
+/// How high above its plot a title stands.
+pub(super) const TITLE: f32 = 44.0;
+
+/// Rows of the lower plot.
+fn rows_span(swept: &Swept<'_>) -> Span {
+    Span::new(0.0, swept.grid.combinations().len().max(1) as f64)
+}
+
+/// Upper and lower end of the lower plot.
+const TOLD: (f32, f32) = (620.0, 1030.0);
+
+fn radius(swept: &Swept<'_>) -> f32 {
+    let row = (TOLD.1 - TOLD.0) / swept.grid.combinations().len().max(1) as f32;
+    (0.7 * row).clamp(3.0, 6.0)
+}
+
+/// The names of methods and low-passes beside their rows.
+fn add_row_names(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    swept: &Swept<'_>,
+) -> Result<(), RecordError> {
+    let plot = Plot::within(SIDES, TOLD.0..=TOLD.1, Span::new(0.0, 1.0), rows_span(swept));
+    let mut texts = Labels::default();
+    for block in named(swept.grid) {
+        texts.put(beside(&plot, &block), block.label);
+    }
+    let border = |block: &Block| plot.level(plot.y_span().high - block.first as f64).to_vec();
+    let borders = blocks(swept.grid).0.iter().map(border).collect();
+    strips(chunks, below(root, &["blocks"]), palette::BORDER, 0.7, borders)?;
+    put_texts(chunks, below(root, &["rows"]), texts, &[color(palette::BORDER)])
+}
+
+/// One step on its sheet.
+struct Drawing<'s> {
+    swept: &'s Swept<'s>,
+    step: &'s SweptStep,
+    trial: &'s Trial,
+    /// The samples that are shown, 1-based.
+    window: (usize, usize),
+    output: Plot,
+    told: Plot,
+}
+
+impl<'s> Drawing<'s> {
+    fn of(swept: &'s Swept<'s>, step: &'s SweptStep, trial: &'s Trial) -> Self {
+        let window = window(step, trial);
+        let from = |k: usize| k as f64 - step.sample as f64;
+        let x = Span::new(from(window.0), from(window.1));
+        let values = trial.output().get(window.0 - 1..window.1).unwrap_or_default();
+        let y = Span::around(values.iter().copied(), 0.06);
+        let output = Plot::within(SIDES, 100.0..=520.0, x, y);
+        let told = Plot::within(SIDES, TOLD.0..=TOLD.1, x, rows_span(swept));
+        Self { swept, step, trial, window, output, told }
+    }
+
+    /// Grid, ticks and titles.
+    fn sheet(&self, joint: &Joint) -> Sheet {
+        let mut sheet = Sheet::default();
+        let unit = joint.output_unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}]"));
+        let title = format!("{}; the output{unit} as measured", self.in_words(joint));
+        let y_ticks = self.output.y_span().ticks(4.0).into_iter();
+        let y_ticks: Vec<_> = y_ticks.map(|y| (y, shown(y))).collect();
+        let x_ticks = self.told.x_span().ticks(12.0);
+        sheet.outline(&self.output, &x_ticks, &y_ticks);
+        sheet.outline(&self.told, &x_ticks, &[]);
+        for plot in [&self.output, &self.told] {
+            for x in &x_ticks {
+                sheet.put(plot.below(*x, 2.0), shown(*x));
+            }
+        }
+        let Span { low, high } = self.told.x_span();
+        let middle = f64::midpoint(low, high);
+        sheet.put(self.output.above(middle, TITLE), title);
+        sheet.put(self.told.above(middle, TITLE), "its delay in samples, with every setting");
+        sheet
+    }
+
+    fn in_words(&self, joint: &Joint) -> String {
+        let SweptStep { number, time_s, sample, .. } = self.step;
+        let input = self.trial.input();
+        let level = |k: usize| input.get(k).copied().unwrap_or_default();
+        let (before, after) = (level(sample.saturating_sub(2)), level(sample - 1));
+        let (before, after) = (shown(before), shown(after));
+        let unit = joint.input_unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
+        let trial = match joint.trials.len() {
+            1 => String::new(),
+            _ => format!(" of trial {}", self.step.trial),
+        };
+        format!("step {number}{trial} at {time_s:.2} s, {before} to {after}{unit}")
+    }
+
+    /// The output, sample by sample.
+    fn output(&self) -> Vec<Vec<Vec2D>> {
+        let (first, last) = self.window;
+        let values = self.trial.output().get(first - 1..last).unwrap_or_default();
+        let place = |index: usize| {
+            let value = values.get(index).copied().unwrap_or_default();
+            self.output.at((first + index) as f64 - self.step.sample as f64, value)
+        };
+        vec![simplified(thinned(values).into_iter().map(place).collect())]
+    }
+
+    fn input_step(&self) -> Vec<Vec<Vec2D>> {
+        vec![self.output.through(&self.told, 0.0).to_vec()]
+    }
+
+    /// The delay that most agree on, through both plots.
+    fn agreed(&self) -> Vec<Vec<Vec2D>> {
+        let agreed = self.step.agreement.iter();
+        agreed.map(|agreed| self.output.through(&self.told, agreed.delay).to_vec()).collect()
+    }
+
+    /// The ends of what all of them allow.
+    fn allowed(&self) -> Vec<Vec<Vec2D>> {
+        let ends = self.step.agreement.iter().flat_map(|agreed| [agreed.low, agreed.high]);
+        ends.map(|end| self.told.vertical(end).to_vec()).collect()
+    }
+
+    /// A point in the row of each combination whose delay is drawn in `rgb`.
+    fn told(&self, rgb: Rgb) -> Vec<Vec2D> {
+        let rows = self.swept.grid.combinations().iter().enumerate();
+        let own = rows.filter(|(_, one)| self.cell(one.run).rgb() == rgb);
+        let place = |(row, one): (usize, &crate::delay::sweep::Combination)| {
+            let delay = Swept::delay(self.step, one.run)?;
+            Some(self.told.at(delay, self.told.y_span().high - row as f64 - 0.5))
+        };
+        own.filter_map(place).collect()
+    }
+
+    fn cell(&self, run: usize) -> Cell {
+        Swept::cell(self.step, run)
+    }
+}
+
+/// The samples around a step: a little before it, and so far behind it that all delays are
+/// seen.
+fn window(step: &SweptStep, trial: &Trial) -> (usize, usize) {
+    /// Least samples that are shown behind a step, and how many where no delay is told.
+    const REACH: (usize, usize) = (20, 100);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "samples")]
+    let longest = step.spread.map(|spread| (1.4 * spread.max.max(0.0)) as usize);
+    let reach = longest.map_or(REACH.1, |longest| longest.max(REACH.0));
+    let first = step.sample.saturating_sub(reach / 2).max(1);
+    (first, (step.sample + reach).min(trial.len()))
+}

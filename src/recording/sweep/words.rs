@@ -1,0 +1,171 @@
+//! A joint in words; the setting and the step under the cursor; the steps to look at.
+
+use std::fmt::Write as _;
+
+use rerun::{EntityPath, TextDocument, TextLog};
+
+use super::Swept;
+use crate::delay::sweep::{Factor, SweptStep};
+use crate::recording::chunk::{Chunks, Index};
+use crate::recording::entity::{below, plain};
+use crate::recording::error::RecordError;
+use crate::report::{hangs_on, level_cell, level_text, number, sweep_sentences};
+
+/// Adds all words below `root`.
+pub(super) fn add(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    swept: &Swept<'_>,
+) -> Result<(), RecordError> {
+    let found = TextDocument::from_markdown(found(swept).unwrap_or_default());
+    chunks.push_static(below(root, &["found"]), &found)?;
+    let here = below(root, &["here"]);
+    let settings = (0..swept.names.len()).map(|run| setting(swept, run).unwrap_or_default());
+    add_pages(chunks, &here, swept.settings(), settings.collect())?;
+    let steps = swept.steps.iter().map(|(step, _)| one_step(swept, step).unwrap_or_default());
+    add_pages(chunks, &here, swept.index.clone(), steps.collect())?;
+    add_list(chunks, below(root, &["hanging", "log"]), swept)
+}
+
+fn add_pages(
+    chunks: &mut Chunks,
+    entity: &EntityPath,
+    index: Index,
+    pages: Vec<String>,
+) -> Result<(), RecordError> {
+    let media = std::iter::repeat_n("text/markdown", pages.len());
+    let pages = TextDocument::update_fields().with_many_text(pages).with_many_media_type(media);
+    chunks.push(entity.clone(), index, pages.columns_of_unit_batches()?)
+}
+
+type Written = Result<String, std::fmt::Error>;
+
+/// What the settings make of the joint.
+fn found(swept: &Swept<'_>) -> Written {
+    let mut page = String::new();
+    writeln!(page, "## {}\n", plain(&swept.reported.joint.name))?;
+    for (place, sentence) in sweep_sentences(swept.grid, &swept.reported).iter().enumerate() {
+        let mark = if place == 0 { "**" } else { "" };
+        writeln!(page, "{mark}{}{mark}\n", plain(&capitalised(sentence)))?;
+    }
+    writeln!(page, "| setting | median delay, part that differs from most |\n|---|---|")?;
+    for (factor, levels) in Factor::ALL.into_iter().zip(&swept.reported.sweep.levels) {
+        for (level, summary) in levels.iter().enumerate().filter(|_| levels.len() > 1) {
+            let name = level_text(swept.grid, factor, level);
+            writeln!(page, "| {} | {} |", plain(&name), level_cell(summary))?;
+        }
+    }
+    writeln!(page, "\n{HOW_TO_READ}")?;
+    Ok(page)
+}
+
+const HOW_TO_READ: &str = "\
+*Each column of the lowest picture is a step, each row a combination of settings, by method, \
+low-pass, α and β from top to bottom. A row with much orange or blue is a setting that differs; \
+such a column is a delay that hangs on a setting. Right and left arrow go from setting to setting; \
+on the timeline `segment` from step to step, and the page* One step *has its output.*";
+
+fn capitalised(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// A run in numbers.
+fn setting(swept: &Swept<'_>, run: usize) -> Written {
+    let mut page = String::new();
+    let name = swept.names.get(run).map_or("", String::as_str);
+    writeln!(page, "## {name}\n")?;
+    writeln!(page, "| setting {} of {} | |\n|---|---|", run + 1, swept.names.len())?;
+    let votes = swept.votes.get(run).copied().unwrap_or(0);
+    writeln!(page, "| combinations that it stands for | {votes} |")?;
+    let Some(summary) = swept.reported.sweep.runs.get(run).and_then(Option::as_ref) else {
+        writeln!(page, "| | **it cannot be used on this record** |")?;
+        return Ok(page);
+    };
+    let steps = swept.steps.len();
+    writeln!(page, "| steps accepted | {} of {steps} |", summary.accepted)?;
+    let median = summary.median_s.map_or("-".to_owned(), |s| format!("{} s", number(s)));
+    writeln!(page, "| median delay | {median} |")?;
+    writeln!(page, "| delays that differ from most | {} |", summary.disagreements)?;
+    if let Some(lag) = summary.lag.as_ref().filter(|lag| lag.order() > 0) {
+        writeln!(page, "| lag, apart from the delays | {} s |", number(lag.mean_s().value))?;
+    }
+    let differs: Vec<String> =
+        swept.steps.iter().filter_map(|(step, _)| differing(step, run)).collect();
+    if !differs.is_empty() {
+        writeln!(page, "\nIt differs on step {}.", listed(&differs))?;
+    }
+    Ok(page)
+}
+
+/// A step on which a run differs, and what it says.
+fn differing(step: &SweptStep, run: usize) -> Option<String> {
+    let delay = Swept::delay(step, run)? * step.period_s;
+    match Swept::cell(step, run) {
+        super::Cell::Longer(_) | super::Cell::Shorter(_) => {
+            Some(format!("{} ({delay:.3} s)", step.number))
+        }
+        super::Cell::Same | super::Cell::Silent => None,
+    }
+}
+
+/// The first of `texts`, and how many more there are.
+fn listed(texts: &[String]) -> String {
+    /// Texts that are said.
+    const SAID: usize = 12;
+    let said = texts.get(..SAID).unwrap_or(texts).join(", ");
+    match texts.len().saturating_sub(SAID) {
+        0 => said,
+        more => format!("{said} and {more} more"),
+    }
+}
+
+/// A step in numbers.
+fn one_step(swept: &Swept<'_>, step: &SweptStep) -> Written {
+    let mut page = String::new();
+    let seconds = |samples: f64| format!("{:.3} s", samples * step.period_s);
+    let (number, trial) = (step.number, plain(&step.trial));
+    writeln!(page, "## Step {number} of trial {trial}, at {:.2} s\n", step.time_s)?;
+    writeln!(page, "| p = {} | |\n|---|---|", step.sample)?;
+    writeln!(page, "| settings that accept it | {} of {} |", step.accepted, step.tried)?;
+    if let (Some(agreed), Some(spread)) = (step.agreement, step.spread) {
+        let votes = agreed.combinations;
+        writeln!(page, "| most say | **{}**, {votes} of them |", seconds(agreed.delay))?;
+        writeln!(page, "| range of all | {} to {} |", seconds(spread.min), seconds(spread.max))?;
+    }
+    let on = hangs_on(swept.grid, step);
+    let on = if on.is_empty() { "no setting".to_owned() } else { on };
+    writeln!(page, "| hangs on | {} |", plain(&on))?;
+    let Some(hanging) = &step.delay_hangs_on else { return Ok(page) };
+    writeln!(page, "\n| {} | median delay | agree with most |\n|---|---|---|", hanging.factor)?;
+    for (level, told) in hanging.levels.iter().enumerate() {
+        let name = level_text(swept.grid, hanging.factor, level);
+        let (delay, agree) = told.map_or(("-".to_owned(), "-".to_owned()), |(delay, agree)| {
+            (seconds(delay), format!("{:.0} %", 100.0 * agree))
+        });
+        writeln!(page, "| {} | {delay} | {agree} |", plain(&name))?;
+    }
+    Ok(page)
+}
+
+/// A line for each step that hangs on a setting, in the order of the record.
+fn add_list(chunks: &mut Chunks, entity: EntityPath, swept: &Swept<'_>) -> Result<(), RecordError> {
+    let (mut index, mut lines) = (Index::default(), Vec::new());
+    let places = &swept.index;
+    let places = places.segment.iter().zip(&places.sample).zip(&places.time_ns);
+    for ((step, _), ((segment, sample), time_ns)) in swept.steps.iter().zip(places) {
+        if step.accepted == 0 || step.is_settled() {
+            continue;
+        }
+        index.segment.push(*segment);
+        index.sample.push(*sample);
+        index.time_ns.push(*time_ns);
+        // All of them are there from the first setting on.
+        index.setting.push(1);
+        let agreed = step.agreement.map_or(0.0, |agreed| agreed.delay * step.period_s);
+        let (number, on) = (step.number, hangs_on(swept.grid, step));
+        lines.push(format!("step {number} at {:.2} s: {on}; most say {agreed:.3} s", step.time_s));
+    }
+    let lines = TextLog::update_fields().with_many_text(lines);
+    chunks.push(entity, index, lines.columns_of_unit_batches()?)
+}
