@@ -202,7 +202,9 @@ impl Field<'_> {
             hard.iter().map(output).collect::<Vec<_>>()
         });
         for (entry, outputs) in queue.iter_mut().zip(outputs) {
-            outputs.iter().for_each(|output| entry.glances.add(truth, output));
+            for output in outputs {
+                entry.glances.add(truth, &output);
+            }
         }
     }
 
