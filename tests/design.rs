@@ -5,7 +5,7 @@
 mod desk;
 
 use desk::{Desk, assert_fields, banded, joint, number};
-use tauscope::synthetic::{InputSpec, JointSpec, PlantSpec, simulate};
+use tauscope::synthetic::{InputSpec, JointSpec, PlantSpec, simulate, write_log};
 
 const MODEL: &str = r#"
 schema = "tauscope/model/1"
@@ -137,6 +137,38 @@ fn a_log_and_two_suspects_give_an_input_and_its_power() {
     let see = desk.read("see.csv");
     let apart = column(&see, "boom.dead_band").into_iter().zip(column(&see, "boom.flow_curve"));
     assert!(apart.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) > 0.05);
+}
+
+/// What `spec` does with the input of a file, 50 samples a second, as a log.
+fn logged(desk: &Desk, spec: JointSpec, input: &[f64], seed: u64) {
+    let changes = (1..input.len()).filter(|k| (input[*k] - input[k - 1]).abs() > 0.0);
+    let steps = changes.map(|k| (k + 1, input[k])).collect();
+    let spec = JointSpec { input: InputSpec::Steps { steps, initial: input[0] }, ..spec };
+    let plant = PlantSpec::new(seed, input.len() as f64 * 0.02, vec![spec]);
+    let made = simulate(&PlantSpec { sample_period_s: 0.02, ..plant }).unwrap();
+    let file = std::fs::File::create(desk.folder.path().join("next.csv")).unwrap();
+    write_log(&made, file).unwrap();
+}
+
+/// The plant shares no equation with the models. `examples/design_power.rs` is the long form.
+#[test]
+fn what_is_there_is_told_by_the_designed_input_on_the_plant() {
+    let desk = desk();
+    let options = "design log.csv --separate dead_band,stiction --rehearsals 20 --power 0.9";
+    let joint = &desk.json(&format!("{options} -o in.csv -q"), 0)["joints"][0];
+    assert!(number(&joint["duration_s"]) < 10.0, "{}", joint["duration_s"]);
+    let there = joint["separates"]["if_there"].as_array().unwrap();
+    assert_eq!((&there[0]["told"], &there[0]["excluded"]), (&true.into(), &false.into()));
+    let input = column(&desk.read("in.csv"), "boom.input");
+    for seed in 1..=5 {
+        logged(&desk, banded("boom"), &input, seed);
+        let found = desk.json("explain next.csv --effects dead_band,stiction -q", 0);
+        let found = &found["joints"][0];
+        assert_eq!(found["verdict"], "missing_effect", "seed {seed}");
+        let best = &found["ranking"][0];
+        assert_eq!(best["effects"][0], "dead_band", "seed {seed}");
+        assert_eq!(best["indistinguishable_from"].as_array().unwrap().len(), 0, "seed {seed}");
+    }
 }
 
 #[test]

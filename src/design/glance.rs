@@ -12,6 +12,7 @@ const LONGEST_WINDOW: usize = 200;
 /// Differences of two models along an input, for several numbers of the first that are likely,
 /// and what each parameter of the second does.
 pub(super) struct Glance {
+    here: Vec<f64>,
     differences: Vec<Vec<f64>>,
     slopes: Vec<Vec<f64>>,
 }
@@ -38,7 +39,14 @@ impl Glance {
             let there = stand.output(model, schedule);
             there.iter().zip(&here).map(|(a, b)| a - b).collect()
         });
-        Some(Self { differences: differences.collect(), slopes })
+        let differences = differences.collect();
+        Some(Self { here, differences, slopes })
+    }
+
+    /// Looks at one more output of the truth, too.
+    pub(super) fn add(&mut self, there: &[f64]) {
+        let difference = there.iter().zip(&self.here).map(|(a, b)| a - b);
+        self.differences.push(difference.collect());
     }
 
     /// The noncentralities of the first `count` holds: at the numbers of the truth that are

@@ -1,12 +1,17 @@
 //! How well a record knows the numbers of a model.
+//!
+//! # References
+//! J. Goodman and J. Weare, "Ensemble samplers with affine invariance", Communications in
+//! Applied Mathematics and Computational Science 5 (2010), 65-80.
 
-use rand::SeedableRng as _;
 use rand::seq::IndexedRandom as _;
+use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, StandardNormal};
 
 use super::predict::Uncertain;
 use crate::effect::UNLIMITED;
+use crate::experiment::Trial;
 use crate::fit::{Fit, Record, Status};
 use crate::model::JointModel;
 
@@ -37,8 +42,10 @@ impl Uncertain {
                 *slot = deviation;
             }
         }
-        known.draws = likely(record, &known, noise);
-        known
+        let (draws, best) = likely(record, &known, noise);
+        known.draws = draws;
+        // A descent may have ended in a corner that a walk finds the way out of.
+        Self { model: best.unwrap_or(known.model), ..known }
     }
 
     /// The model with numbers that are drawn from what is known of them.
@@ -60,27 +67,103 @@ impl Uncertain {
     }
 }
 
-/// Models with numbers that are drawn each by itself, and kept where all together leave the
-/// record as likely; nearer ones where too few are.
-fn likely(record: &Record<'_>, known: &Uncertain, noise: f64) -> Vec<JointModel> {
-    const TRIED: usize = 48;
-    const ENOUGH: usize = 12;
-    let cost = |model: &JointModel| cost(record, model, noise);
-    let parameters = known.deviations.iter().filter(|deviation| **deviation > 0.0).count();
-    // Chi-square of so many parameters: mean, and two standard deviations.
-    let parameters = parameters as f64;
-    let allowed = parameters + DEVIATIONS * (2.0 * parameters).sqrt();
-    let limit = cost(&known.model) + allowed;
+/// Models with numbers that the record holds for likely, all parameters drawn together.
+///
+/// An ensemble of models moves along the lines between them (Goodman and Weare 2010), which
+/// needs no scale: it follows what only a combination of parameters determines, and crosses
+/// ranges in which nothing changes. Where the model cannot follow the record, what it leaves
+/// takes the place of the noise. The second is the best of all, where it is clearly better
+/// than the one that is known.
+fn likely(
+    record: &Record<'_>,
+    known: &Uncertain,
+    noise: f64,
+) -> (Vec<JointModel>, Option<JointModel>) {
+    /// Models of the ensemble.
+    const WALKERS: usize = 24;
+    /// The first models lie near the best one: so far, in parts of what is known by itself.
+    const NEAR: f64 = 0.3;
     let mut random = ChaCha8Rng::seed_from_u64(0);
-    let mut kept = Vec::new();
-    for scale in [1.0, 0.5, 0.2, 0.05] {
-        let drawn = (0..TRIED).map(|_| known.apart(scale, &mut random));
-        kept.extend(drawn.filter(|model| cost(model) <= limit));
-        if kept.len() >= ENOUGH {
-            break;
+    let samples: usize = record.joint().trials.iter().map(Trial::len).sum();
+    let least = cost(record, &known.model, noise);
+    // Variances are of the noise, or of what is left where that is more.
+    let scale = (least / samples.max(1) as f64).max(1.0);
+    let cost = |model: &JointModel| cost(record, model, noise) / scale;
+    let walker = |_| {
+        let model = known.apart(NEAR, &mut random);
+        Walker { cost: cost(&model), values: values(&model) }
+    };
+    let mut walkers: Vec<Walker> = (0..WALKERS).map(walker).collect();
+    let free = known.deviations.iter().filter(|deviation| **deviation > 0.0).count();
+    let limits = limits(&known.model);
+    let mut best = Walker { cost: least / scale - DEVIATIONS * DEVIATIONS, values: Vec::new() };
+    for _ in 0..sweeps(samples, WALKERS) {
+        for place in 0..WALKERS {
+            let other = (place + random.random_range(1..WALKERS)) % WALKERS;
+            let stretch = stretch(random.random());
+            let Some((old, new)) = stretched(&walkers, place, other, stretch, &limits) else {
+                continue;
+            };
+            let new = Walker { cost: cost(&known.model.with_values(&new)), values: new };
+            if new.cost < best.cost {
+                best = new.clone();
+            }
+            let gain = 0.5 * (old - new.cost) + (free.max(1) - 1) as f64 * stretch.ln();
+            if gain >= random.random::<f64>().ln()
+                && let Some(walker) = walkers.get_mut(place)
+            {
+                *walker = new;
+            }
         }
     }
-    kept
+    let model = |walker: &Walker| known.model.with_values(&walker.values);
+    let better = (!best.values.is_empty()).then(|| model(&best));
+    (walkers.iter().map(model).collect(), better)
+}
+
+/// A model of an ensemble.
+#[derive(Clone)]
+struct Walker {
+    values: Vec<f64>,
+    /// Twice its negative log-likelihood.
+    cost: f64,
+}
+
+/// How often each model of an ensemble is moved: fewer times on a long record, which is long
+/// in coming and determines more.
+fn sweeps(samples: usize, walkers: usize) -> usize {
+    const SAMPLES: usize = 60_000_000;
+    (SAMPLES / (samples * walkers).max(1)).clamp(10, 80)
+}
+
+/// How far a model moves on the line from another, of a random number from 0 to 1: from half
+/// the distance to twice, with a density of one over the root.
+fn stretch(random: f64) -> f64 {
+    const MOST: f64 = 2.0;
+    ((MOST - 1.0) * random + 1.0).powi(2) / MOST
+}
+
+/// The cost of the model at `place`, and where it comes to on the line from the `other`;
+/// `None` where that is not allowed.
+fn stretched(
+    walkers: &[Walker],
+    place: usize,
+    other: usize,
+    stretch: f64,
+    limits: &[(f64, f64)],
+) -> Option<(f64, Vec<f64>)> {
+    let (here, from) = (walkers.get(place)?, walkers.get(other)?);
+    let moved = from.values.iter().zip(&here.values).map(|(from, here)| {
+        // What is fixed stays as it is, digit for digit.
+        from + stretch * (here - from)
+    });
+    let moved: Vec<f64> = moved.collect();
+    let is_allowed = |(value, (low, high)): (&f64, &(f64, f64))| value >= low && value <= high;
+    moved.iter().zip(limits).all(is_allowed).then_some((here.cost, moved))
+}
+
+fn values(model: &JointModel) -> Vec<f64> {
+    model.values().iter().map(|value| value.value).collect()
 }
 
 /// What `model` leaves of the record, in variances of the noise.

@@ -12,6 +12,7 @@
 mod distance;
 mod family;
 mod glance;
+mod glances;
 mod known;
 mod levels;
 mod power;

@@ -81,17 +81,27 @@ impl Stand {
         simulate(model, &arriving, samples, period_s, &begin, &surroundings).output
     }
 
-    /// The same with its margin: the deviations of all parameters, each by itself, added as
+    /// The same with its margin: what the models do that a record holds for as likely. Where
+    /// there is no record, the deviations of all parameters, each by itself, added as
     /// independent ones are.
     pub fn prediction(&self, uncertain: &Uncertain, schedule: &Schedule) -> Prediction {
+        /// Models that are looked at.
+        const LIKELY: usize = 12;
         let output = self.output(&uncertain.model, schedule);
         let mut variance = vec![0.0; output.len()];
-        let off = uncertain.deviations.iter().enumerate().filter(|(_, off)| **off > 0.0);
-        for (place, _) in off {
-            let moved = self.output(&uncertain.with_off(place, 1.0), schedule);
+        let likely = uncertain.draws.len().min(LIKELY);
+        let mut add = |model: &JointModel, weight: f64| {
+            let moved = self.output(model, schedule);
             for (sum, (moved, output)) in variance.iter_mut().zip(moved.iter().zip(&output)) {
-                *sum += (moved - output).powi(2);
+                *sum += weight * (moved - output).powi(2);
             }
+        };
+        for model in uncertain.draws.iter().take(likely) {
+            add(model, 1.0 / likely as f64);
+        }
+        let off = uncertain.deviations.iter().enumerate();
+        for (place, _) in off.filter(|(_, off)| **off > 0.0 && likely == 0) {
+            add(&uncertain.with_off(place, 1.0), 1.0);
         }
         let margin = variance.iter().map(|variance| DEVIATIONS * variance.sqrt()).collect();
         Prediction { output, margin }

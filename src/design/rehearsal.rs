@@ -6,9 +6,11 @@ use rand_chacha::ChaCha8Rng;
 use super::predict::Stand;
 use super::schedule::Schedule;
 use super::suspects::{Suspects, noisy};
-use crate::explain::{Options, Sequential, Workers, suspected};
-use crate::fit::{Horizon, Record, Split, fit};
-use crate::model::JointModel;
+use crate::delay::{Settings, estimate_joint};
+use crate::experiment::Joint;
+use crate::explain::{Options, Sequential, Workers, named};
+use crate::fit::{Fit, Horizon, Record, Split, fit};
+use crate::model::{JointModel, integrators};
 
 /// How often a rehearsed experiment told two suspects apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,27 +24,57 @@ pub struct Rehearsal {
 /// Rehearsals after which it is seen whether more are worth it.
 const FEW: usize = 4;
 
-/// Rehearses `schedule` so many times with suspect number `truth`: each time with numbers
-/// drawn from what is known of them, and other noise. Given up early when more than `failures`
-/// fail.
+/// Rehearsals of both suspects, and what was there where one failed.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rehearsed {
+    pub(super) sides: [Option<Rehearsal>; 2],
+    pub(super) failed: [Vec<JointModel>; 2],
+}
+
+/// Rehearses `schedule` `count` times with each suspect of `aims`, a few of each in turn: each
+/// time with numbers drawn from what is known of it, and other noise. Given up early when more
+/// than `failures` fail of one. No two of the `attempts` share their noise.
 pub(super) fn rehearse(
     suspects: &Suspects,
-    truth: usize,
-    (stand, schedule): (&Stand, &Schedule),
-    (count, failures): (usize, usize),
+    aims: [bool; 2],
+    at: (&Stand, &Schedule),
+    (count, failures, attempt): (usize, usize, usize),
     workers: &impl Workers,
-) -> Rehearsal {
-    let seeds: Vec<u64> = (1..).take(count).collect();
-    let mut found = Rehearsal::default();
+) -> Rehearsed {
+    let first = (attempt * count) as u64;
+    let seeds: Vec<u64> = (first + 1..).take(count).collect();
+    let mut found = Rehearsed::default();
+    for (side, _) in found.sides.iter_mut().zip(aims).filter(|(_, aim)| *aim) {
+        *side = Some(Rehearsal::default());
+    }
     for some in seeds.chunks(FEW) {
-        let one = |seed: &u64| is_told(suspects, truth, (stand, schedule), *seed);
-        let told = workers.map(some, one).into_iter().filter(|told| *told == Some(true)).count();
-        found = Rehearsal { told: found.told + told, of: found.of + some.len() };
-        if found.of - found.told > failures {
+        let sides = found.sides.iter_mut().zip(&mut found.failed).enumerate();
+        for (truth, (side, failed)) in sides {
+            let Some(side) = side else { continue };
+            let told = workers.map(some, |seed| rehearsed(suspects, truth, at, *seed));
+            side.of += some.len();
+            side.told += told.iter().filter(|(_, told)| *told).count();
+            failed.extend(told.into_iter().filter(|(_, told)| !told).map(|(model, _)| model));
+        }
+        if found.sides.iter().flatten().any(|side| side.of - side.told > failures) {
             break;
         }
     }
     found
+}
+
+/// What is there in a rehearsal, and whether it is told.
+fn rehearsed(
+    suspects: &Suspects,
+    truth: usize,
+    at: (&Stand, &Schedule),
+    seed: u64,
+) -> (JointModel, bool) {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let known = suspects.models.get(truth);
+    let model = known.map_or_else(|| suspects.base.clone(), |known| known.drawn(&mut random));
+    let told = is_told(suspects, truth, at, (&model, &mut random));
+    (model, told == Some(true))
 }
 
 /// Whether the race of `explain` ranks the suspect that is there first, and excludes the other;
@@ -51,20 +83,32 @@ fn is_told(
     suspects: &Suspects,
     truth: usize,
     (stand, schedule): (&Stand, &Schedule),
-    seed: u64,
+    (model, random): (&JointModel, &mut ChaCha8Rng),
 ) -> Option<bool> {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let model: JointModel = suspects.models.get(truth)?.drawn(&mut random);
-    let output = noisy(stand.output(&model, schedule), suspects.noise, &mut random);
+    let output = noisy(stand.output(model, schedule), suspects.noise, random);
     let joint = stand.log(schedule, output)?;
     let record = Record::new(&joint, Split::of(&joint), Horizon::Steps);
-    let levels = record.input_levels();
-    let top = levels.last().copied().unwrap_or(1.0);
-    let range = record.range(&levels, suspects.base.gain.value.abs() * top);
-    let base = fit(&record, &suspects.base, &range).ok()?;
+    let base = asked(&record, &joint, &suspects.base)?;
     let options = Options { effects: suspects.effects.to_vec(), ..Options::default() };
-    let ranking = suspected(&record, base, &options, &Sequential);
+    let ranking = named(&record, base, &options, &Sequential);
     let best = ranking.first()?;
     let id = suspects.effects.get(truth)?.spec().id;
     Some(best.effects == [id] && best.indistinguishable_from.is_empty())
+}
+
+/// The model of which `explain` is asked: `base`, fitted. Where that is a plain integrator none
+/// is given, and `explain` starts from the delays that it finds in the record; it does not
+/// know what was known before.
+fn asked(record: &Record<'_>, joint: &Joint, base: &JointModel) -> Option<Fit> {
+    let starts = if base.components().is_empty() {
+        let estimates = estimate_joint(&joint.trials, &Settings::default());
+        integrators(joint, &estimates.iter().flatten().collect::<Vec<_>>())
+    } else {
+        vec![base.clone()]
+    };
+    let levels = record.input_levels();
+    let top = levels.last().copied().unwrap_or(1.0);
+    let range = record.range(&levels, starts.first()?.gain.value.abs() * top);
+    let fits = starts.iter().filter_map(|start| fit(record, start, &range).ok());
+    fits.min_by(|a, b| a.cost.total_cmp(&b.cost))
 }

@@ -2,8 +2,8 @@
 
 use super::distance::expected;
 use super::family::{Family, Order, families};
-use super::glance::Glance;
-use super::power::{Distance, Expected};
+use super::glances::Glances;
+use super::power::Expected;
 use super::predict::Stand;
 use super::rehearsal::{Rehearsal, rehearse};
 use super::schedule::Schedule;
@@ -33,6 +33,8 @@ pub struct Side {
     pub expected: Expected,
     /// Whether the input is to tell it from the other; not where the other can do the same.
     pub is_told: bool,
+    /// Whether what is known speaks against it already, so that the input is not made for it.
+    pub is_excluded: bool,
     /// How often the rehearsed experiment told it.
     pub rehearsal: Option<Rehearsal>,
 }
@@ -80,8 +82,9 @@ pub enum DesignError {
 ///
 /// A glance tells how long an input must be at least. From there on the best of each length
 /// are judged with every model at its best fit, and the best of these is rehearsed, until one
-/// passes. A suspect that the other can imitate in whatever input, as one that it contains, is
-/// left out of it.
+/// passes. Whatever a glance took for better than it is comes later in the queue, and numbers
+/// at which a rehearsal failed are looked at from then on. A suspect that the other can
+/// imitate in whatever input, as one that it contains, is left out of it.
 ///
 /// # Errors
 /// [`DesignError`] where no input will do.
@@ -91,34 +94,36 @@ pub fn shortest(
     limits: &Limits,
     workers: &impl Workers,
 ) -> Result<Design, DesignError> {
-    let (mut best, mut second) = (0.0, None);
+    let mut lessons = Lessons::default();
+    let field = |part: f64| {
+        let longest_s = part * limits.longest_s;
+        Field { suspects, stand, limits: Limits { longest_s, ..*limits } }
+    };
+    let aims = suspects.excluded.map(|excluded| !excluded);
+    let mut queue = Vec::new();
+    let mut from_s = 0.0;
     // Short inputs are soon looked through, and mostly there is one.
     for part in [0.125, 0.25, 0.5, 1.0] {
-        let longest_s = part * limits.longest_s;
-        let field = Field { suspects, stand, limits: Limits { longest_s, ..*limits } };
-        let families = families(suspects, stand, &field.limits);
-        if families.is_empty() && part >= 1.0 {
+        let field = field(part);
+        queue = field.queue(&lessons, workers);
+        if queue.is_empty() && part >= 1.0 {
             return Err(DesignError::OutOfRange { largest: limits.largest });
         }
-        let seen = workers.map(&families, |family| Glances::at(suspects, stand, family));
-        let seen = families.iter().zip(seen).filter_map(|(family, seen)| Some((family, seen?)));
-        let seen: Vec<(&Family, Glances)> = seen.collect();
-        let can = |truth: usize| {
-            let is_enough = |(family, seen): &(&Family, Glances)| {
-                let whole = family.schedule.holds().len();
-                seen.best_known(truth, family, whole) >= limits.power
-            };
-            seen.iter().any(is_enough)
-        };
-        // One of them alone is told only where all the time there is does not show the other.
-        let aims = if part < 1.0 { [true; 2] } else { [can(0), can(1)] };
-        let found = field.first_to_pass(&seen, aims, workers);
-        if let Some(design) = found.passed {
+        let found = field.first_to_pass(&mut queue, aims, from_s, &mut lessons, workers);
+        if let Some(design) = found {
             return Ok(design);
         }
-        best = f64::max(best, found.power);
-        second = better(second, found.second);
+        from_s = field.limits.longest_s;
     }
+    // One of them alone is told only where all the time there is does not show the other.
+    let alone = lessons.powers.map(|power| power >= limits.power);
+    if lessons.second.is_none() && aims == [true; 2] && alone[0] != alone[1] {
+        let found = field(1.0).first_to_pass(&mut queue, alone, 0.0, &mut lessons, workers);
+        if let Some(design) = found {
+            return Ok(design);
+        }
+    }
+    let Lessons { second, power: best, .. } = lessons;
     // Its power will do, and how its rehearsals went is told.
     second.ok_or(DesignError::NotApart { wanted: limits.power, best, longest_s: limits.longest_s })
 }
@@ -131,15 +136,34 @@ fn better(one: Option<Design>, other: Option<Design>) -> Option<Design> {
     }
 }
 
-/// What came of inputs up to some length.
+/// What inputs that did not pass have taught.
 #[derive(Default)]
-struct Found {
-    /// The shortest that passes.
-    passed: Option<Design>,
-    /// Where none does, the one whose rehearsals went best.
+struct Lessons {
+    /// Numbers of each suspect at which a rehearsal failed.
+    hard: [Vec<JointModel>; 2],
+    /// Inputs that were rehearsed.
+    attempts: usize,
+    /// The one whose rehearsals went best.
     second: Option<Design>,
     /// The best power.
     power: f64,
+    /// The best power of each suspect by itself.
+    powers: [f64; 2],
+}
+
+/// An input that may be judged.
+struct Entry {
+    family: Family,
+    glances: Glances,
+    /// By how much it was worse than at a glance when it was tried last; 0 or less.
+    offset: f64,
+}
+
+impl Entry {
+    /// By how many standard deviations the suspects of `aims` are told, as far as is known.
+    fn margin(&self, aims: [bool; 2], count: usize) -> f64 {
+        self.glances.margin(&self.family, aims, count) + self.offset
+    }
 }
 
 /// What is to be told apart, where, and with what.
@@ -150,99 +174,198 @@ struct Field<'a> {
 }
 
 impl Field<'_> {
-    /// The shortest input of `seen` that passes; where none does, the best power, and the input
-    /// whose rehearsals went best.
+    /// All inputs that may do, at a glance.
+    fn queue(&self, lessons: &Lessons, workers: &impl Workers) -> Vec<Entry> {
+        let families = families(self.suspects, self.stand, &self.limits);
+        let seen = workers.map(&families, |family| Glances::at(self.suspects, self.stand, family));
+        let entry = |(family, glances): (Family, Option<Glances>)| {
+            Some(Entry { family, glances: glances?, offset: 0.0 })
+        };
+        let mut queue: Vec<Entry> = families.into_iter().zip(seen).filter_map(entry).collect();
+        for (truth, hard) in lessons.hard.iter().enumerate() {
+            self.look_at(&mut queue, truth, hard, workers);
+        }
+        queue
+    }
+
+    /// Looks at the numbers `hard` of one suspect, too.
+    fn look_at(
+        &self,
+        queue: &mut [Entry],
+        truth: usize,
+        hard: &[JointModel],
+        workers: &impl Workers,
+    ) {
+        let families: Vec<&Family> = queue.iter().map(|entry| &entry.family).collect();
+        let outputs = workers.map(&families, |family| {
+            let output = |model: &JointModel| self.stand.output(model, &family.schedule);
+            hard.iter().map(output).collect::<Vec<_>>()
+        });
+        for (entry, outputs) in queue.iter_mut().zip(outputs) {
+            for output in outputs {
+                entry.glances.add(truth, &output);
+            }
+        }
+    }
+
+    /// The shortest input of `queue` that passes, no shorter than `from_s`.
     ///
     /// From the shortest length that may do the inputs become longer by a small part at a
-    /// time; of each length those are judged that a glance finds best.
+    /// time; of each length those are judged that are best as far as is known.
     fn first_to_pass(
         &self,
-        seen: &[(&Family, Glances)],
+        queue: &mut [Entry],
         aims: [bool; 2],
+        from_s: f64,
+        lessons: &mut Lessons,
         workers: &impl Workers,
-    ) -> Found {
+    ) -> Option<Design> {
         /// A length and the next.
-        const LONGER: f64 = 1.1;
-        let least = |(family, seen): &(&Family, Glances)| {
-            let count = seen.fewest(family, aims, self.limits.power)?;
+        const LONGER: f64 = 1.15;
+        /// Inputs of one length that are rehearsed.
+        const TRIALS: usize = 2;
+        let least = |Entry { family, glances, .. }: &Entry| {
+            let count = glances.fewest(family, aims, self.limits.power)?;
             Some(family.schedule.first(count).duration_s())
         };
-        let mut found = Found::default();
-        let Some(mut length_s) = seen.iter().filter_map(least).min_by(f64::total_cmp) else {
-            return found;
-        };
+        let mut length_s = queue.iter().filter_map(least).min_by(f64::total_cmp)?.max(from_s);
         while length_s <= self.limits.longest_s * LONGER {
-            let design = self.best_of_length(seen, aims, length_s, workers);
-            let power = design.as_ref().map_or(0.0, Design::power);
-            found.power = found.power.max(power);
-            if let Some(design) = design.filter(|design| design.power() >= self.limits.power) {
-                let design = self.rehearsed(design, workers);
-                if design.passes(&self.limits) {
-                    return Found { passed: Some(design), ..found };
+            for _ in 0..TRIALS {
+                let Some((place, design)) =
+                    self.best_of_length(queue, aims, length_s, lessons, workers)
+                else {
+                    break;
+                };
+                lessons.power = lessons.power.max(design.power());
+                if design.power() < self.limits.power {
+                    break;
                 }
-                found.second = better(found.second, Some(design));
+                let design = self.rehearsed(design, queue, place, lessons, workers);
+                if design.passes(&self.limits) {
+                    return Some(design);
+                }
+                lessons.second = better(lessons.second.take(), Some(design));
             }
             length_s *= LONGER;
         }
-        found
+        None
     }
 
-    /// The best input that is not longer.
+    /// The best input that is not longer, and its place in `queue`.
     fn best_of_length(
         &self,
-        seen: &[(&Family, Glances)],
+        queue: &mut [Entry],
         aims: [bool; 2],
         length_s: f64,
+        lessons: &mut Lessons,
         workers: &impl Workers,
-    ) -> Option<Design> {
+    ) -> Option<(usize, Design)> {
         /// Inputs of one length that are judged in full.
         const JUDGED: usize = 3;
-        let glanced = seen.iter().filter_map(|(family, seen)| {
-            let count = family.schedule.fitting(length_s);
-            (count > 1).then(|| (seen.margin(family, aims, count), *family, count))
-        });
-        let mut glanced: Vec<(f64, &Family, usize)> = glanced.collect();
+        let mut glanced = Vec::new();
+        for (place, entry) in queue.iter().enumerate() {
+            let count = entry.family.schedule.fitting(length_s);
+            if count > 1 {
+                glanced.push((entry.margin(aims, count), place, count));
+            }
+        }
         glanced.sort_by(|a, b| b.0.total_cmp(&a.0));
         glanced.truncate(JUDGED);
-        let judged = glanced.into_iter().filter_map(|(_, family, count)| {
-            self.judged(aims, family.order, family.schedule.first(count), workers)
-        });
-        judged.max_by(|a, b| a.margin().total_cmp(&b.margin()))
+        let mut best: Option<(f64, usize, Design)> = None;
+        for (_, place, count) in glanced {
+            let entry = queue.get_mut(place)?;
+            let Family { order, schedule } = &entry.family;
+            let found = self.judged(aims, *order, schedule.first(count), lessons, workers);
+            let margin = found.as_ref().map_or(f64::NEG_INFINITY, |(margin, _)| *margin);
+            entry.take_as(margin, aims, count);
+            let Some((margin, design)) = found else { continue };
+            for (most, side) in lessons.powers.iter_mut().zip(&design.sides) {
+                *most = most.max(side.expected.power());
+            }
+            if best.as_ref().is_none_or(|(most, _, _)| margin > *most) {
+                best = Some((margin, place, design));
+            }
+        }
+        best.map(|(_, place, design)| (place, design))
     }
 
-    /// What is expected of `schedule`, which is to tell the suspects `aims`; `None` where it is
-    /// too short for a fit.
+    /// What is expected of `schedule`, which is to tell the suspects `aims`, and the margin
+    /// that it leaves at the numbers that are known best and at the last that were hard;
+    /// `None` where it is too short for a fit.
     fn judged(
         &self,
         aims: [bool; 2],
         order: Order,
         schedule: Schedule,
+        lessons: &Lessons,
         workers: &impl Workers,
-    ) -> Option<Design> {
-        let of = |truth: &usize| {
-            let model = &self.suspects.models.get(*truth)?.model;
+    ) -> Option<(f64, Design)> {
+        let known = self.suspects.models.iter().map(|known| &known.model);
+        let known = known.enumerate();
+        let hard = lessons.hard.iter().enumerate();
+        let hard = hard.filter_map(|(truth, hard)| Some((truth, hard.last()?)));
+        let hard = hard.filter(|(truth, _)| aims.get(*truth).copied().unwrap_or_default());
+        let all: Vec<(usize, &JointModel)> = known.chain(hard).collect();
+        let of = |(truth, model): &(usize, &JointModel)| {
             expected(self.suspects, *truth, model, (self.stand, &schedule))
         };
-        let found = workers.map(&[0, 1], of);
-        let [Some(one), Some(other)] = found.as_slice() else { return None };
-        let side = |expected: Expected, is_told| Side { expected, is_told, rehearsal: None };
-        let sides = [side(*one, aims[0]), side(*other, aims[1])];
-        Some(Design { order, schedule, sides })
+        let found: Option<Vec<Expected>> = workers.map(&all, of).into_iter().collect();
+        let found = found?;
+        let [one, other, hard @ ..] = found.as_slice() else { return None };
+        let side = |expected: Expected, truth: usize| Side {
+            expected,
+            is_told: aims.get(truth).copied().unwrap_or_default(),
+            is_excluded: self.suspects.excluded.get(truth).copied().unwrap_or_default(),
+            rehearsal: None,
+        };
+        let sides = [side(*one, 0), side(*other, 1)];
+        let design = Design { order, schedule, sides };
+        let hard = hard.iter().map(Expected::margin).fold(f64::INFINITY, f64::min);
+        Some((design.margin().min(hard), design))
     }
 
-    /// `design` with its rehearsals, as long as they go well.
-    fn rehearsed(&self, mut design: Design, workers: &impl Workers) -> Design {
-        let failures = self.limits.failures();
-        let count = (self.limits.rehearsals, failures);
+    /// `design`, which is that at `place`, with its rehearsals, as long as they go well.
+    fn rehearsed(
+        &self,
+        mut design: Design,
+        queue: &mut [Entry],
+        place: usize,
+        lessons: &mut Lessons,
+        workers: &impl Workers,
+    ) -> Design {
+        /// Numbers of a suspect that are looked at, at most.
+        const HARD: usize = 6;
+        let aims = [0, 1].map(|truth| design.sides.get(truth).is_some_and(|side| side.is_told));
+        let count = (self.limits.rehearsals, self.limits.failures(), lessons.attempts);
         let at = (self.stand, &design.schedule);
-        for (truth, side) in design.sides.iter_mut().enumerate().filter(|(_, s)| s.is_told) {
-            let found = rehearse(self.suspects, truth, at, count, workers);
-            side.rehearsal = Some(found);
-            if found.of - found.told > failures {
-                break;
-            }
+        let found = rehearse(self.suspects, aims, at, count, workers);
+        lessons.attempts += 1;
+        for (side, rehearsal) in design.sides.iter_mut().zip(found.sides) {
+            side.rehearsal = rehearsal;
+        }
+        if design.passes(&self.limits) {
+            return design;
+        }
+        for (truth, (hard, failed)) in lessons.hard.iter_mut().zip(found.failed).enumerate() {
+            let room = HARD.saturating_sub(hard.len());
+            let new: Vec<JointModel> = failed.into_iter().take(room).collect();
+            self.look_at(queue, truth, &new, workers);
+            hard.extend(new);
+        }
+        if let Some(entry) = queue.get_mut(place) {
+            // It comes again when it has become clearly better.
+            let count = design.schedule.holds().len();
+            entry.take_as(entry.margin(aims, count).min(0.0), aims, count);
         }
         design
+    }
+}
+
+impl Entry {
+    /// Takes `margin` for that of its first `count` holds, where it looked better.
+    fn take_as(&mut self, margin: f64, aims: [bool; 2], count: usize) {
+        let seen = self.glances.margin(&self.family, aims, count);
+        self.offset = (margin - seen).min(0.0);
     }
 }
 
@@ -286,75 +409,5 @@ impl Limits {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small")]
         let allowed = (allowed + 1e-9) as usize;
         allowed
-    }
-}
-
-/// What a glance shows of both suspects: the other, and the model with neither.
-struct Glances {
-    rivals: [Glance; 2],
-    plain: [Glance; 2],
-    noise: f64,
-}
-
-impl Glances {
-    fn at(suspects: &Suspects, stand: &Stand, family: &Family) -> Option<Self> {
-        let glance = |truth: usize, rival: &JointModel| {
-            Glance::at(suspects, truth, rival, (stand, &family.schedule))
-        };
-        let [one, other] = &suspects.models;
-        let rivals = [glance(0, &other.model)?, glance(1, &one.model)?];
-        let plain = [glance(0, &suspects.base)?, glance(1, &suspects.base)?];
-        Some(Self { rivals, plain, noise: suspects.noise })
-    }
-
-    /// The power for one suspect of the first `count` holds, at the numbers that are known best.
-    fn best_known(&self, truth: usize, family: &Family, count: usize) -> f64 {
-        self.expected(truth, family, count).first().map_or(0.0, Expected::power)
-    }
-
-    /// What is expected for one suspect of the first `count` holds: at the numbers that are
-    /// known best, and at others.
-    fn expected(&self, truth: usize, family: &Family, count: usize) -> Vec<Expected> {
-        let far = |glances: &[Glance; 2]| {
-            let glance = glances.get(truth);
-            glance.map(|glance| glance.noncentralities(&family.schedule, count, self.noise))
-        };
-        let samples = (family.schedule.first(count).samples(), 0);
-        let distance = |training| Distance { training, ..Distance::default() };
-        let pairs =
-            far(&self.rivals).into_iter().flatten().zip(far(&self.plain).into_iter().flatten());
-        let expected = pairs.map(|(rival, neither)| Expected {
-            samples,
-            rival: distance(rival),
-            own: Distance::default(),
-            neither: distance(neither),
-        });
-        expected.collect()
-    }
-
-    /// By how many standard deviations the suspects of `aims` are told at least.
-    fn margin(&self, family: &Family, aims: [bool; 2], count: usize) -> f64 {
-        let told = aims.iter().enumerate().filter(|(_, aim)| **aim);
-        let expected = told.flat_map(|(truth, _)| self.expected(truth, family, count));
-        let margins = expected.map(|expected| expected.margin());
-        margins.fold(f64::INFINITY, f64::min)
-    }
-
-    /// The fewest holds that may tell the suspects of `aims`; `None` where all of them do not.
-    fn fewest(&self, family: &Family, aims: [bool; 2], power: f64) -> Option<usize> {
-        let enough = |count: usize| {
-            let mut told = aims.iter().enumerate().filter(|(_, aim)| **aim);
-            told.all(|(truth, _)| self.best_known(truth, family, count) >= power)
-        };
-        let all = family.schedule.holds().len();
-        if aims == [false; 2] || !enough(all) {
-            return None;
-        }
-        let (mut below, mut above) = (1, all);
-        while above - below > 1 {
-            let middle = usize::midpoint(below, above);
-            if enough(middle) { above = middle } else { below = middle }
-        }
-        Some(above)
     }
 }

@@ -8,6 +8,7 @@ use super::predict::{Stand, Uncertain};
 use super::random::{RandomSteps, random_steps};
 use crate::diagnosis::floor_of;
 use crate::effect::Effect;
+use crate::explain::ALIKE;
 use crate::fit::{Fit, FitError, Horizon, Record, Split, fit};
 use crate::model::{Component, JointModel};
 
@@ -22,6 +23,8 @@ pub struct Suspects {
     pub models: [Uncertain; 2],
     /// Standard deviation of the measurement noise, output units.
     pub noise: f64,
+    /// Whether a record speaks against each, clearly: an experiment need not be made for it.
+    pub excluded: [bool; 2],
 }
 
 /// Why there is nothing to tell apart.
@@ -59,7 +62,9 @@ impl Suspects {
         let noise = noise.or_else(|| floor_of(record, better)).filter(|noise| *noise > 0.0);
         let noise = noise.ok_or(SuspectsError::NoNoise)?;
         let models = [&one, &other].map(|fit| Uncertain::of_fit(record, fit, noise, share));
-        Ok(Self { effects, base: plain.model, models, noise })
+        let ahead = behind(&other) - behind(&one);
+        let excluded = [-ahead > CLEAR, ahead > CLEAR];
+        Ok(Self { effects, base: plain.model, models, noise, excluded })
     }
 
     /// `model`, which has the first of `effects`, and the same with the second in its place: as
@@ -84,13 +89,25 @@ impl Suspects {
         let of_record = Self::of_record(&record, &base, effects, Some(noise), share)?;
         let [_, other] = of_record.models;
         let models = [known, Uncertain::by_share(other.model, share)];
-        Ok(Self { models, ..of_record })
+        // What the model would do is no evidence against the other.
+        Ok(Self { models, excluded: [false; 2], ..of_record })
     }
 
     /// Ids of the effects.
     pub fn ids(&self) -> [&'static str; 2] {
         self.effects.map(|effect| effect.spec().id)
     }
+}
+
+/// Twice the difference in log-likelihood at which a record speaks against a suspect: well
+/// beyond that at which two are told apart, as neither model is the joint.
+const CLEAR: f64 = 10.0 * ALIKE;
+
+/// Twice the negative log-likelihood of `fit`, but for what all fits of a record share.
+fn behind(fit: &Fit) -> f64 {
+    let residuals = fit.evaluation.residuals.iter().flatten();
+    let (samples, sum) = residuals.fold((0, 0.0), |(n, sum), e| (n + 1, sum + e * e));
+    f64::from(samples) * (sum / f64::from(samples.max(1))).max(f64::MIN_POSITIVE).ln()
 }
 
 fn fitted(record: &Record<'_>, model: &JointModel) -> Result<Fit, FitError> {

@@ -41,6 +41,6 @@ pub(crate) use race::ALIKE;
 pub use race::Options;
 pub use separate::{Pattern, Proposal, Separation, Start};
 pub(crate) use separate::{level_sets, thresholds, two_digits};
-pub(crate) use verdict::suspected;
+pub(crate) use verdict::named;
 pub use verdict::{Explanation, Verdict, explain};
 pub use workers::{Sequential, Workers};

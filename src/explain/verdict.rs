@@ -63,16 +63,18 @@ pub fn explain(
     Explanation { base, verdict, ranking }
 }
 
-/// The candidates for what the model of `fit` lacks, best first; none where it lacks nothing.
-/// Whether any accounts for it is not asked.
-pub(crate) fn suspected(
+/// The candidates for what the model of `fit` lacks, best first, where the first is to be
+/// named; else none.
+pub(crate) fn named(
     record: &Record<'_>,
     fit: Fit,
     options: &Options,
     workers: &impl Workers,
 ) -> Vec<Candidate> {
     let mut step = Step::new(record, Change::Start, fit);
-    if step.look(record, options, workers) { step.ranking } else { Vec::new() }
+    let lacks = step.look(record, options, workers);
+    let is_named = lacks && accounts_for_it(record, &mut step.ranking, options, workers);
+    if is_named { step.ranking } else { Vec::new() }
 }
 
 /// Whether the best candidate is to be named. An effect that further ones make useless

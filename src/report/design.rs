@@ -107,6 +107,7 @@ struct ToldJson {
 struct SideJson {
     effect: &'static str,
     told: bool,
+    excluded: bool,
     power: f64,
     noncentrality: f64,
     noncentrality_training: f64,
@@ -193,6 +194,7 @@ impl SideJson {
         Self {
             effect,
             told: side.is_told,
+            excluded: side.is_excluded,
             power: side.expected.power(),
             noncentrality: rival.noncentrality(),
             noncentrality_training: rival.training,
@@ -311,7 +313,12 @@ fn explanation(joint: &DesignedJoint, told: &Told) -> String {
     )];
     for (place, side) in design.sides.iter().enumerate().filter(|(_, side)| !side.is_told) {
         let (is, other) = (ids.get(place), ids.get(1 - place));
-        if let (Some(is), Some(other)) = (is, other) {
+        if let (Some(is), Some(other), true) = (is, other, side.is_excluded) {
+            sentences.push(format!(
+                "The log speaks against {is} already: the input is made for the case that it is \
+                 {other}."
+            ));
+        } else if let (Some(is), Some(other)) = (is, other) {
             let lambda = rounded(side.expected.rival.noncentrality());
             sentences.push(format!(
                 "If it is {is}, {other} can do the same (λ = {lambda}), and stays possible \

@@ -5,7 +5,7 @@ use tauscope::batch::{Mode, Protocol, estimate_joints};
 use tauscope::delay::Settings;
 use tauscope::design::Stand;
 use tauscope::experiment::{Experiment, Joint, ReadOptions, Trial, expand_folders};
-use tauscope::fit::Horizon;
+use tauscope::fit::{Horizon, Split};
 use tauscope::model::{JointModel, ModelFile};
 use tauscope::units::SamplePeriod;
 
@@ -26,9 +26,13 @@ pub(super) struct Desk {
     period: SamplePeriod,
 }
 
-/// How a log's model is fitted before anything is said of the next experiment.
-pub(super) const PROTOCOL: Protocol =
-    Protocol { mode: Mode::FitOrIntegrator, split: None, horizon: Horizon::Steps };
+/// How a log's model is fitted before anything is said of the next experiment: to all of it, as
+/// nothing is to be judged by a part that was kept.
+pub(super) const PROTOCOL: Protocol = Protocol {
+    mode: Mode::FitOrIntegrator,
+    split: Some(Split::Time(1.0)),
+    horizon: Horizon::Steps,
+};
 
 impl Desk {
     pub(super) fn new(args: &Args) -> anyhow::Result<Self> {
