@@ -194,3 +194,9 @@ fn sales_follow_their_leading_indicator_after_three_months() {
     let Some(log) = log("bj_sales_seriesM.csv") else { return };
     assert_eq!(scanned(&log, 1, 2), 3);
 }
+
+#[test]
+fn carbon_dioxide_follows_the_gas_after_three_samples() {
+    let Some(log) = log("gas_furnace_seriesJ.csv") else { return };
+    assert_eq!(scanned(&log, 1, 2), 3);
+}

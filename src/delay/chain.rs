@@ -12,6 +12,7 @@ use super::estimate::Settings;
 use super::free_motion::FreeMotion;
 use super::response::{Response, Shape};
 use super::steps::InputStep;
+use crate::statistics::moments;
 
 /// Places of each reaction that are tried at a time.
 const TRIED: usize = 10;
@@ -88,6 +89,14 @@ impl Chain {
     pub(super) fn in_time(&self) -> bool {
         let in_time = self.links.iter().filter(|link| link.in_time()).count();
         10 * in_time >= 9 * self.links.len()
+    }
+
+    /// Whether most places are known so well that neighbours need not be searched again.
+    pub(super) fn is_fine(&self) -> bool {
+        /// Samples.
+        const FINE: f64 = 0.5;
+        let fine = self.links.iter().filter(|link| link.error <= FINE).count();
+        2 * fine >= self.links.len()
     }
 
     /// The nearest link before `index` that counts.
@@ -301,33 +310,33 @@ struct Mark {
 }
 
 impl Mark {
-    /// The marks at all of the `places`, in their order; those before the first of them all,
+    /// The marks at the places of `from` and of `to`, both of which ascend; those before `first`,
     /// or behind the end, are left empty.
-    fn all(output: &[f64], first: usize, places: &[usize]) -> Vec<Self> {
-        let mut sorted = places.to_vec();
-        sorted.retain(|place| (first..=output.len()).contains(place));
-        sorted.sort_unstable();
+    fn all(output: &[f64], first: usize, from: &[usize], to: &[usize]) -> [Vec<Self>; 2] {
         let offset = output.get(first).copied().unwrap_or_default();
         let mut now = Self { place: first, ..Self::default() };
-        let up_to = |place: usize| {
-            let [mut y_sum, mut moment, mut square] = now.sums;
-            let mut k = now.count;
-            for y in output.get(now.place..place).unwrap_or_default() {
-                let y = y - offset;
-                y_sum += y;
-                moment += k * y;
-                square += y * y;
-                k += 1.0;
+        let mut up_to = |place: usize| {
+            if place < first || place > output.len() {
+                return Self::default();
             }
-            now = Self { place, count: k, sums: [y_sum, moment, square] };
+            let values = output.get(now.place..place).unwrap_or_default();
+            let (y, ky, yy) = moments(values, offset);
+            let [y_sum, moment, square] = now.sums;
+            let sums = [y_sum + y, moment + now.count * y + ky, square + yy];
+            now = Self { place, count: now.count + values.len() as f64, sums };
             now
         };
-        let marks: Vec<Self> = sorted.into_iter().map(up_to).collect();
-        let of = |place: &usize| {
-            let index = marks.binary_search_by_key(place, |mark| mark.place).ok();
-            index.and_then(|index| marks.get(index)).copied().unwrap_or_default()
-        };
-        places.iter().map(of).collect()
+        let mut marks = [Vec::with_capacity(from.len()), Vec::with_capacity(to.len())];
+        let [starts, ends] = &mut marks;
+        let mut later = to.iter().copied().peekable();
+        for start in from.iter().copied() {
+            while let Some(end) = later.next_if(|end| *end < start) {
+                ends.push(up_to(end));
+            }
+            starts.push(up_to(start));
+        }
+        ends.extend(later.map(up_to));
+        marks
     }
 
     /// The squared error of the line from here up to `end`.
@@ -343,34 +352,40 @@ impl Mark {
         let (y, ky, yy) = (part(0), part(1), part(2));
         let middle = self.count + (n - 1.0) / 2.0;
         let moment = ky - middle * y;
-        (yy - y * y / n - 12.0 * moment * moment / (n * (n * n - 1.0))).max(0.0)
+        let spread = n * n - 1.0;
+        (yy - (y * y * spread + 12.0 * moment * moment) / (n * spread)).max(0.0)
     }
 }
 
 impl Pieces {
     /// The squared errors of the pieces from each place of `from` to each of `to`, both of
-    /// which ascend; infinite where the two are too close.
-    fn errors(&self, output: &[f64], from: &[usize], to: &[usize]) -> Vec<Vec<f64>> {
+    /// which ascend; infinite where the two are too close. All of one start stand together.
+    fn errors(&self, output: &[f64], from: &[usize], to: &[usize]) -> Vec<f64> {
         /// Samples between two reactions, at least.
         const APART: usize = 2;
         let first = from.first().copied().unwrap_or(0);
-        let starts = match self {
+        let starts: Vec<usize> = match self {
             Self::Lines => from.to_vec(),
             Self::Motions(_) => from.iter().map(|start| start + LONGEST_MOTION).collect(),
         };
-        let places: Vec<usize> = starts.iter().chain(to).copied().collect();
-        let marks = Mark::all(output, first, &places);
-        let (low, high) = marks.split_at(starts.len());
-        let errors = |((start, unfelt), low): ((&usize, &usize), &Mark)| {
+        let [low, high] = Mark::all(output, first, &starts, to);
+        let mut errors = Vec::with_capacity(from.len() * to.len());
+        for ((start, unfelt), low) in from.iter().zip(&starts).zip(&low) {
+            let far = |end: &usize| start + APART <= *end;
+            if matches!(self, Self::Lines) {
+                let ends = high.iter().zip(to);
+                let error = |(high, end)| if far(end) { low.line(high) } else { f64::INFINITY };
+                errors.extend(ends.map(error));
+                continue;
+            }
             let felt = self.felt(output, *start, to).into_iter();
-            let ends = felt.chain(std::iter::repeat(0.0)).zip(high).zip(to);
-            let error = |((felt, high), end): ((f64, &Mark), &usize)| {
+            let ends = felt.chain(std::iter::repeat(0.0)).zip(&high).zip(to);
+            errors.extend(ends.map(|((felt, high), end)| {
                 let rest = if unfelt < end { low.line(high) } else { 0.0 };
-                if start + APART <= *end { felt + rest } else { f64::INFINITY }
-            };
-            ends.map(error).collect()
-        };
-        from.iter().zip(&starts).zip(low).map(errors).collect()
+                if far(end) { felt + rest } else { f64::INFINITY }
+            }));
+        }
+        errors
     }
 
     /// The squared errors while earlier reactions are felt; none for lines.
@@ -399,7 +414,8 @@ fn cheapest(
         let (from, costs) = (before.0, &before.1);
         let mut best = vec![(f64::INFINITY, 0); places.len()];
         let errors = pieces.errors(output, from, places);
-        for (way, (errors, cost)) in errors.into_iter().zip(costs).enumerate() {
+        let errors = errors.chunks_exact(places.len().max(1));
+        for (way, (errors, cost)) in errors.zip(costs).enumerate() {
             for (best, error) in best.iter_mut().zip(errors) {
                 if cost + error < best.0 {
                     *best = (cost + error, way);

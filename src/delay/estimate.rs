@@ -202,7 +202,7 @@ pub struct TrialEstimate {
 /// A delay finer than a sample, and how well it is known; all in samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FineDelay {
-    /// The most likely delay.
+    /// The delay that the true one is as likely below as above.
     pub delay: f64,
     /// Lower end of its interval.
     pub low: f64,

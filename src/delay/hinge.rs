@@ -56,8 +56,10 @@ pub(super) fn located(
     let mut chain = Chain::of(output, steps, settings);
     let every = output.len().div_ceil(ENOUGH).max(1);
     let mut noise = Noise::white();
-    let passes = if chain.in_time() { 1 } else { passes };
     for pass in 0..passes {
+        if pass > 0 && chain.in_time() && chain.is_fine() {
+            break;
+        }
         let mut residuals = Vec::new();
         for index in 0..chain.links.len() {
             let range = if pass == 0 { chain.cautious_window(index) } else { chain.window(index) };
@@ -107,7 +109,8 @@ fn search(
 ) -> Option<Found> {
     let Range { start, end } = chain.window(index);
     let (window, places) = window(chain, index, output.get(start..end)?, start, noise)?;
-    let (line, evidence) = window.fit(places, interval)?;
+    // Lines stand over the sample numbers of the trial, counted from 1.
+    let (line, evidence) = window.fit(places, interval, (start + 1) as f64)?;
     Some(Found { start, line, evidence })
 }
 
@@ -164,8 +167,8 @@ impl Place<'_> {
 /// The delay from the step's own place on. A joint cannot move before it is told to.
 fn fine(found: &Found, link: &Link, settings: &Settings) -> FineDelay {
     let delay = |place: f64| found.start as f64 + place - link.origin as f64;
-    let BrokenLine { place, low, high, .. } = found.line;
-    FineDelay::from_zero(delay(place), delay(low), delay(high), settings.interval)
+    let BrokenLine { middle, low, high, .. } = found.line;
+    FineDelay::from_zero(delay(middle), delay(low), delay(high), settings.interval)
 }
 
 impl FineDelay {
@@ -181,16 +184,12 @@ impl FineDelay {
 /// Every place that was tried, over the sample numbers of the trial.
 fn candidates(found: Found) -> Candidates {
     let Found { start, line, evidence, .. } = found;
-    let Evidence { first, mut sse, mut before, mut after } = evidence;
-    let number = (start + 1) as f64;
-    let shift = |line: &mut Line| line.intercept -= line.slope * number;
-    before.iter_mut().chain(&mut after).for_each(shift);
+    let Evidence { first, mut sse, bends } = evidence;
     let best = ceil(line.place).saturating_sub(first).min(sse.len().saturating_sub(1));
-    let slots = (sse.get_mut(best), before.get_mut(best), after.get_mut(best));
-    if let (Some(sse), Some(before), Some(after)) = slots {
-        (*sse, *before, *after) = (line.sse, line.before, line.after);
-        shift(before);
-        shift(after);
-    }
-    Candidates::fitted(start + first, sse, (before, after), best)
+    sse.iter_mut().skip(best).take(1).for_each(|slot| *slot = line.sse);
+    let number = (start + 1) as f64;
+    let over_numbers =
+        |line: Line| Line { intercept: line.intercept - line.slope * number, ..line };
+    let lines = (over_numbers(line.before), over_numbers(line.after));
+    Candidates::broken(start + first, sse, bends, (best, lines))
 }

@@ -6,6 +6,7 @@
 
 use std::ops::Range;
 
+use super::basis::Basis;
 use super::broken_line;
 use super::chain::{Chain, Link, ceil};
 use super::estimate::{Decision, FineDelay, Prepared, Settings};
@@ -13,7 +14,7 @@ use super::hinge::{self, Place};
 use super::lag_search::Joint;
 use super::line::Line;
 use super::noise::Noise;
-use super::response::{Lag, Response, Shape};
+use super::response::{Lag, Shape};
 use super::search::Candidates;
 use super::steps::InputStep;
 use super::stretch::{FINE, Linearised, Stretch};
@@ -190,8 +191,7 @@ pub(super) fn decide_all(
 struct Reactions<'a> {
     output: &'a [f64],
     chain: Chain,
-    shape: Shape,
-    response: Response,
+    basis: Basis,
     noise: Noise,
     /// Whether holds are long beside delays.
     in_time: bool,
@@ -209,7 +209,8 @@ impl<'a> Reactions<'a> {
     /// The reactions behind this lag, from about where they are.
     fn of(output: &'a [f64], chain: Chain, shape: Shape, noise: Noise) -> Self {
         let in_time = chain.in_time();
-        Self { output, chain, shape, response: Response::of(&shape), noise, in_time }
+        let basis = Basis::of(&shape, output.len());
+        Self { output, chain, basis, noise, in_time }
     }
 
     /// The same after all reactions were searched between neighbours of the time before,
@@ -235,7 +236,7 @@ impl<'a> Reactions<'a> {
         for index in 0..self.chain.links.len() {
             let Some(found) = self.find(index, fine) else { continue };
             if index % every == 0 {
-                leftovers.push(found.stretch.leftover(&self.shape));
+                leftovers.push(found.stretch.leftover(&self.basis.shape));
             }
             let p_value = self.chance(index, &found);
             if let Some(link) = self.chain.links.get_mut(index) {
@@ -253,7 +254,7 @@ impl<'a> Reactions<'a> {
         /// Samples behind a transient that a line needs.
         const LINE: f64 = 20.0;
         let link = self.chain.links.get(index)?;
-        let room = self.response.settling() + LINE;
+        let room = self.basis.response.settling() + LINE;
         let near = |other: &usize| {
             let other = self.chain.links.get(*other);
             other.is_some_and(|other| (other.place - link.place).abs() < room)
@@ -270,11 +271,12 @@ impl<'a> Reactions<'a> {
         let places: Vec<f64> = places.collect();
         let limits = members.iter().map(|member| self.limits(*member, &range));
         let limits: Vec<_> = limits.collect();
-        if values.len() < 2 * (self.response.modes() + 2 * places.len()) + broken_line::FEWEST {
+        if values.len() < 2 * (self.basis.response.modes() + 2 * places.len()) + broken_line::FEWEST
+        {
             return None;
         }
         let mut stretch = Stretch::alone(values, places);
-        let mut fit = stretch.settle(&self.shape, &self.noise, &limits, fine);
+        let mut fit = stretch.settle(&self.basis, &self.noise, &limits, fine);
         if members.len() > 1 || Self::is_vague(&fit, values.len()) {
             self.look_around(&mut stretch, &mut fit, &limits, fine);
         }
@@ -316,12 +318,12 @@ impl<'a> Reactions<'a> {
             if let Some(last) = there.places.last_mut() {
                 *last = place;
             }
-            let sse = there.at(&self.shape, &self.noise).sse;
+            let sse = there.at(&self.basis, &self.noise).sse;
             (sse, there)
         };
         let best = tried.map(at).min_by(|a, b| a.0.total_cmp(&b.0));
         let Some((_, mut there)) = best else { return };
-        let found = there.settle(&self.shape, &self.noise, limits, fine);
+        let found = there.settle(&self.basis, &self.noise, limits, fine);
         if found.sse < fit.sse {
             (*stretch, *fit) = (there, found);
         }
@@ -333,7 +335,7 @@ impl<'a> Reactions<'a> {
         let others = found.fit.parameters() - 2;
         let rows = found.range.len().saturating_sub(self.noise.order()) as f64;
         let (dimensions, samples) = (rows - others as f64, found.range.len() as f64);
-        broken_line::chance(found.fit.share, dimensions, samples, ends)
+        broken_line::chance(found.fit.share(), dimensions, samples, ends)
     }
 
     fn decision(&self, place: &Place<'_>, lag: &Lag) -> Decision {
@@ -351,7 +353,7 @@ impl<'a> Reactions<'a> {
 
     /// The dead time and its interval, in which the uncertainty of the lag has its part.
     fn fine(&self, found: &Found<'_>, origin: f64, lag: &Lag, confidence: f64) -> FineDelay {
-        let with_shape = found.stretch.with_shape(&self.shape, &self.noise, &found.fit.parts);
+        let with_shape = found.stretch.with_shape(&self.basis.shape, &self.noise, &found.fit.parts);
         let rows = found.range.len() - self.noise.order();
         let freedom = (rows as f64 - found.fit.parameters() as f64).max(1.0);
         let noise = found.fit.sse / freedom;
@@ -359,13 +361,15 @@ impl<'a> Reactions<'a> {
         let own = t * (noise * found.fit.place_variance()).sqrt();
         let shared = t * lag.variance_along(&with_shape.place_slopes()).sqrt();
         let side = |sign: f64| {
-            let reach = found.reach(sign * own, noise * t * t, &self.shape, &self.noise);
+            let reach = found.reach(sign * own, noise * t * t, &self.basis, &self.noise);
             sign * reach.hypot(shared)
         };
         let delay = found.place() - origin;
         let clear = own < 1e6;
         let (low, high) = if clear { (side(-1.0), side(1.0)) } else { (-own, own) };
-        FineDelay::from_zero(delay, delay + low, delay + high, confidence)
+        let ends = (delay + low, delay + high);
+        let middle = broken_line::middle(delay, ends, t);
+        FineDelay::from_zero(middle, ends.0, ends.1, confidence)
     }
 
     /// The reaction where it was found, and a sample to each side.
@@ -373,7 +377,7 @@ impl<'a> Reactions<'a> {
         let there = |by: f64| {
             let mut there = found.stretch.clone();
             there.places.iter_mut().rev().take(1).for_each(|place| *place += by);
-            let fit = there.at(&self.shape, &self.noise);
+            let fit = there.at(&self.basis, &self.noise);
             (fit.sse, self.lines(&there, &fit, found.range.start))
         };
         let best = (found.fit.sse, self.lines(&found.stretch, &found.fit, found.range.start));
@@ -392,7 +396,7 @@ impl<'a> Reactions<'a> {
         let offset = stretch.values.first().copied().unwrap_or_default();
         let before = Line { slope, intercept: value + offset - slope * first };
         let change = fit.change();
-        let at = first + place + self.response.mean;
+        let at = first + place + self.basis.response.mean;
         (before, Line { slope: slope + change, intercept: before.intercept - change * at })
     }
 }
@@ -410,7 +414,7 @@ impl Found<'_> {
 
     /// How far the place may move, about as far as `guess`, until the squared error has
     /// grown by `growth`.
-    fn reach(&self, guess: f64, growth: f64, shape: &Shape, noise: &Noise) -> f64 {
+    fn reach(&self, guess: f64, growth: f64, basis: &Basis, noise: &Noise) -> f64 {
         /// Half-widths in samples below which the error is a parabola.
         const PARABOLIC: f64 = 0.3;
         if guess.abs() < PARABOLIC || self.stretch.places.len() > 1 {
@@ -418,7 +422,7 @@ impl Found<'_> {
         }
         let mut there = self.stretch.clone();
         there.places.iter_mut().for_each(|place| *place += guess);
-        let grown = there.at(shape, noise).sse - self.fit.sse;
+        let grown = there.at(basis, noise).sse - self.fit.sse;
         let ratio = (growth / grown.max(f64::MIN_POSITIVE)).sqrt();
         guess.abs() * ratio.clamp(0.5, 3.0)
     }

@@ -7,6 +7,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::basis::Basis;
 use super::noise::Noise;
 use super::response::{MOST, Poles, Response, Shape};
 use super::stretch::{FINE, Linearised, Stretch};
@@ -53,10 +54,11 @@ impl<'a> Joint<'a> {
 
     /// The same until a step is no longer than `fine` samples.
     fn regress_until(&mut self, fine: f64) {
-        let (shape, noise) = (&self.shape, &self.noise);
+        let longest = self.stretches.iter().map(|stretch| stretch.values.len()).max();
+        let (basis, noise) = (Basis::of(&self.shape, longest.unwrap_or(0)), &self.noise);
         let one = |stretch: &mut Stretch<'_>| {
             let limits = stretch.halfway();
-            stretch.settle(shape, noise, &limits, fine)
+            stretch.settle(&basis, noise, &limits, fine)
         };
         self.found = self.stretches.iter_mut().map(one).collect();
     }

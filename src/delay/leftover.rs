@@ -12,7 +12,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::statistics::dot;
+use crate::statistics::{dot, dots};
 
 /// What a regression left of the output of a window.
 #[derive(Clone, Debug)]
@@ -72,18 +72,25 @@ impl Leftover {
         let shifted: Vec<Vec<Vec<f64>>> = columns.iter().map(shifted).collect();
         let products: Vec<DMatrix<f64>> = (0..lags)
             .map(|lag| {
-                DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
-                    let there = shifted.get(j).and_then(|all| all.get(lag));
+                let mut products = DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
+                    let there = shifted.get(j).filter(|_| i >= j).and_then(|all| all.get(lag));
                     let here = columns.get(i).copied().unwrap_or_default();
                     there.map_or(0.0, |there| dot(here, there))
-                })
+                });
+                products.fill_upper_triangle_with_lower_triangle();
+                products
             })
             .collect();
+        // What two shifts have in common hangs on no order.
         for (h, a) in products.iter().enumerate() {
-            for (l, b) in products.iter().enumerate() {
-                let once: f64 =
-                    shifted.iter().filter_map(|all| Some(dot(all.get(h)?, all.get(l)?))).sum();
-                kept[(h, l)] += whole(l) * (a.dot(b) - 2.0 * once);
+            let once = products_of_shifts(&shifted, h);
+            for (l, b) in products.iter().enumerate().skip(h) {
+                let once = once.get(l - h).copied().unwrap_or_default();
+                let taken = a.dot(b) - 2.0 * once;
+                kept[(h, l)] += whole(l) * taken;
+                if h < l {
+                    kept[(l, h)] += whole(h) * taken;
+                }
             }
         }
         kept
@@ -108,6 +115,25 @@ pub(super) fn autocovariances(leftovers: &[&Leftover], longest: usize) -> Vec<f6
     let measured =
         DVector::from_fn(longest + 1, |lag, _| product(lag) * samples as f64 / all.max(1) as f64);
     kept.lu().solve(&measured).map_or_else(Vec::new, |found| found.iter().copied().collect())
+}
+
+/// The products of every column shifted by `lag` samples with itself shifted by so many and by
+/// more, summed over the columns.
+fn products_of_shifts(shifted: &[Vec<Vec<f64>>], lag: usize) -> Vec<f64> {
+    let mut sums = vec![0.0; shifted.first().map_or(0, |all| all.len() - lag)];
+    for all in shifted {
+        let Some([one, ..]) = all.get(lag..) else { continue };
+        let others = all.get(lag..).unwrap_or_default().chunks(4);
+        for (others, sums) in others.zip(sums.chunks_mut(4)) {
+            if let [a, b, c, d] = others {
+                let products = dots(one, [a, b, c, d]);
+                sums.iter_mut().zip(products).for_each(|(sum, product)| *sum += product);
+            } else {
+                sums.iter_mut().zip(others).for_each(|(sum, other)| *sum += dot(one, other));
+            }
+        }
+    }
+    sums
 }
 
 /// Takes off what the orthonormal `basis` explains.

@@ -27,10 +27,12 @@
 
 mod against;
 mod auto;
+mod basis;
 mod broken_line;
 mod chain;
 mod condition;
 mod estimate;
+mod frame;
 mod free_motion;
 mod growing;
 mod hinge;

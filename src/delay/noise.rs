@@ -48,8 +48,8 @@ impl Noise {
         /// Times that `S` is estimated from what it corrects.
         const ROUNDS: usize = 3;
         let power = |values: &Vec<f64>| dot(values, values) / values.len().max(1) as f64;
-        let residuals: Vec<_> = usual_ones(residuals, power).into_iter().cloned().collect();
-        let samples: usize = residuals.iter().map(Vec::len).sum();
+        let residuals = usual_ones(residuals, power);
+        let samples: usize = residuals.iter().map(|values| values.len()).sum();
         let length = samples as f64 / residuals.len().max(1) as f64;
         let measured = autocovariances(&residuals, LONGEST_MEMORY.min(samples / 10));
         let mut found = Autoregression::default();

@@ -57,8 +57,12 @@ impl NormalEquations {
                 groups.for_each(|(others, slots)| first.multiply(others, slots));
             }
         }
-        let squares = (0..size).map(|i| products.get(i * size + i).copied().unwrap_or(0.0));
-        let squares = squares.collect();
+        Self::from_products(size, products)
+    }
+
+    /// Of the rows of the upper triangle of their `products`, in a square.
+    pub(super) fn from_products(size: usize, products: Vec<f64>) -> Self {
+        let squares = products.iter().step_by(size + 1).copied().collect();
         Self { size, products, squares }
     }
 

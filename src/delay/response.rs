@@ -18,6 +18,7 @@
 
 use serde::Serialize;
 
+use super::basis::Motion;
 use super::broken_line::floor;
 use crate::units::SamplePeriod;
 
@@ -347,6 +348,48 @@ impl Response {
         rates.into_iter().flatten().map(|rate| 3.0 / rate).fold(0.0, f64::max)
     }
 
+    /// Samples until nothing is left of a transient.
+    pub(super) fn over(&self) -> f64 {
+        OVER * self.settling()
+    }
+
+    /// The coefficients of level, ramp and modes that make up `G(t + k)` and `−dG/dt` there,
+    /// for `k = 0, 1, …` and a `t` that is not negative.
+    pub(super) fn motions(&self, t: f64) -> (Motion, Motion) {
+        let Running { real: [real, _], rate, pair, now: (c, s), .. } = Running::at(self, t);
+        let Pair { sigma, q, cosine, sine } = pair;
+        let ahead = |a: f64, b: f64| [a * c + b * s, b * c - q * a * s];
+        let position = self.in_order(real, ahead(cosine, sine));
+        let slope =
+            self.in_order(-rate * real, ahead(sine - sigma * cosine, -sigma * sine - q * cosine));
+        let [a, b, c] = position;
+        let backward = slope.map(|part| -part);
+        ([t - self.mean, 1.0, a, b, c], [-1.0, 0.0, backward[0], backward[1], backward[2]])
+    }
+
+    /// The parts of a real pole and of a pair in the order of the modes.
+    fn in_order(&self, real: f64, [cosine, sine]: [f64; 2]) -> [f64; MOST] {
+        if self.real.is_some() { [real, cosine, sine] } else { [cosine, sine, 0.0] }
+    }
+
+    /// What the coefficients `of` modes become after so many samples as make the modes
+    /// `decayed` from 1 or 0 at the first one.
+    pub(super) fn later(&self, of: [f64; MOST], decayed: [f64; MOST]) -> [f64; MOST] {
+        let turned =
+            |q: f64, [a, b]: [f64; 2], [c, s]: [f64; 2]| [a * c + b * s, b * c - q * a * s];
+        match (self.real, self.pair) {
+            (real, Some(Pair { q, .. })) if real.is_some() => {
+                let [a, b] = turned(q, [of[1], of[2]], [decayed[1], decayed[2]]);
+                [of[0] * decayed[0], a, b]
+            }
+            (_, Some(Pair { q, .. })) => {
+                let [a, b] = turned(q, [of[0], of[1]], [decayed[0], decayed[1]]);
+                [a, b, 0.0]
+            }
+            _ => [of[0] * decayed[0], 0.0, 0.0],
+        }
+    }
+
     /// Puts `G(k − place)` into `position`, for `k = 0, 1, …`, and its derivative to the
     /// place, `−dG/dt`, into `backward`; 0 before the place.
     pub(super) fn fill(&self, place: f64, position: &mut [f64], backward: &mut [f64]) {
@@ -357,7 +400,7 @@ impl Response {
         still.fill(0.0);
         let mut t = from as f64 - place;
         let mut modes = Running::at(self, t);
-        let over = floor(OVER * self.settling()).min(active.len());
+        let over = floor(self.over()).min(active.len());
         let (moving, steady) = active.split_at_mut(over);
         for (slot, k) in steady.iter_mut().zip(0_u32..) {
             *slot = t + over as f64 + f64::from(k) - self.mean;

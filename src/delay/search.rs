@@ -1,5 +1,6 @@
 //! Every candidate breakpoint of a segment: both lines and their squared error.
 
+use super::frame::Bends;
 use super::line::{Line, RunningLine};
 
 /// Difference of two squared errors, as a part of the segment's total sum of squares,
@@ -15,9 +16,33 @@ pub struct Candidates {
     first_sample: usize,
     beta: usize,
     sse: Vec<f64>,
-    before: Vec<Line>,
-    after: Vec<Line>,
+    lines: Lines,
     best: Option<usize>,
+}
+
+/// Both lines of every candidate.
+#[derive(Clone, Debug, PartialEq)]
+enum Lines {
+    /// Fitted apart: before and after.
+    Apart(Vec<Line>, Vec<Line>),
+    /// Meeting at every sample, and those of one that meet between two.
+    Meeting(Bends, (usize, (Line, Line))),
+}
+
+impl Default for Lines {
+    fn default() -> Self {
+        Self::Apart(Vec::new(), Vec::new())
+    }
+}
+
+impl Lines {
+    fn get(&self, index: usize) -> Option<(Line, Line)> {
+        match self {
+            Self::Apart(before, after) => Some((*before.get(index)?, *after.get(index)?)),
+            Self::Meeting(_, (best, lines)) if *best == index => Some(*lines),
+            Self::Meeting(bends, _) => bends.get(index),
+        }
+    }
 }
 
 /// One pair of lines.
@@ -65,8 +90,8 @@ impl Candidates {
             return found;
         }
         let scale = Scale::of(values, offset);
-        found.fit_before(values, scale);
-        found.fit_after(values, scale);
+        let before = found.fit_before(values, scale);
+        found.lines = Lines::Apart(before, found.fit_after(values, scale));
         found.best = found.lowest(TIE * sum_of_squares(values, scale), latest);
         for sse in &mut found.sse {
             *sse *= scale.unit * scale.unit;
@@ -82,16 +107,27 @@ impl Candidates {
         lines: (Vec<Line>, Vec<Line>),
         best: usize,
     ) -> Self {
-        let (before, after) = lines;
         let best = (best < sse.len()).then_some(best);
-        Self { first_sample, beta: 1, sse, before, after, best }
+        Self { first_sample, beta: 1, sse, lines: Lines::Apart(lines.0, lines.1), best }
+    }
+
+    /// The same for lines that meet; the best ones meet between two samples.
+    pub(super) fn broken(
+        first_sample: usize,
+        sse: Vec<f64>,
+        bends: Bends,
+        best: (usize, (Line, Line)),
+    ) -> Self {
+        let chosen = (best.0 < sse.len()).then_some(best.0);
+        let lines = Lines::Meeting(bends, best);
+        Self { first_sample, beta: 1, sse, lines, best: chosen }
     }
 
     /// Fits the lines before each breakpoint, from the front.
-    fn fit_before(&mut self, values: &[f64], scale: Scale) {
+    fn fit_before(&mut self, values: &[f64], scale: Scale) -> Vec<Line> {
         let count = values.len() / self.beta - 1;
         self.sse.reserve_exact(count);
-        self.before.reserve_exact(count);
+        let mut lines = Vec::with_capacity(count);
         let mut line = RunningLine::default();
         for (row, f) in values.chunks_exact(self.beta).take(count).zip(1..) {
             for y in row {
@@ -99,17 +135,18 @@ impl Candidates {
             }
             let middle = self.first_sample as f64 + ((f * self.beta) as f64 - 1.0) / 2.0;
             self.sse.push(line.sse());
-            self.before.push(scale.line(middle, line.mean(), line.slope()));
+            lines.push(scale.line(middle, line.mean(), line.slope()));
         }
+        lines
     }
 
     /// Fits the lines after each breakpoint, from the back.
-    fn fit_after(&mut self, values: &[f64], scale: Scale) {
+    fn fit_after(&mut self, values: &[f64], scale: Scale) -> Vec<Line> {
         let rows = values.len() / self.beta;
-        self.after = vec![Line::default(); rows - 1];
+        let mut lines = vec![Line::default(); rows - 1];
         let last = self.first_sample as f64 + values.len() as f64 - 1.0;
         let mut line = RunningLine::default();
-        let slots = self.after.iter_mut().rev().zip(self.sse.iter_mut().rev());
+        let slots = lines.iter_mut().rev().zip(self.sse.iter_mut().rev());
         for ((row, (after, sse)), count) in values.rchunks_exact(self.beta).zip(slots).zip(1..) {
             for y in row.iter().rev() {
                 line.push(scale.apply(*y));
@@ -118,6 +155,7 @@ impl Candidates {
             *after = scale.line(middle, line.mean(), -line.slope());
             *sse += line.sse();
         }
+        lines
     }
 
     /// The first candidate within `tie` of the lowest squared error up to `latest`.
@@ -140,20 +178,18 @@ impl Candidates {
 
     /// The candidate at `index`, which is `f − 1`.
     pub fn get(&self, index: usize) -> Option<Candidate> {
-        let (before, after) = (*self.before.get(index)?, *self.after.get(index)?);
-        Some(self.candidate(index, *self.sse.get(index)?, before, after))
+        Some(self.candidate(index, *self.sse.get(index)?))
     }
 
-    fn candidate(&self, index: usize, sse: f64, before: Line, after: Line) -> Candidate {
+    fn candidate(&self, index: usize, sse: f64) -> Candidate {
         let f = index + 1;
+        let (before, after) = self.lines.get(index).unwrap_or_default();
         Candidate { f, breakpoint: self.first_sample + f * self.beta, sse, before, after }
     }
 
     /// All candidates, in the order of their breakpoints.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = Candidate> + '_ {
-        let lines = self.before.iter().zip(&self.after);
-        let all = self.sse.iter().zip(lines).enumerate();
-        all.map(|(index, (&sse, (&before, &after)))| self.candidate(index, sse, before, after))
+        self.sse.iter().enumerate().map(|(index, sse)| self.candidate(index, *sse))
     }
 
     /// The candidate with the lowest squared error, the first of those that tie.

@@ -12,6 +12,7 @@
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
+use super::basis::{Basis, LINE, Motion, common};
 use super::chain::ceil;
 use super::leftover::Leftover;
 use super::noise::Noise;
@@ -21,9 +22,6 @@ use super::response::{MOST, Response, Shape};
 /// Samples: after a step as small as this the next one does not matter, since each is about
 /// the square of the one before.
 pub(super) const FINE: f64 = 0.02;
-
-/// Columns of the line.
-const LINE: usize = 2;
 
 /// Output of a window, and where in it the joint reacts (indices of the window); the last
 /// place is the one in question.
@@ -41,14 +39,19 @@ pub(super) struct Stretch<'a> {
 pub(super) struct Linearised {
     /// Squared error.
     pub(super) sse: f64,
-    /// The part of the squared error that the last reaction takes away, when the others
-    /// may move in its stead.
-    pub(super) share: f64,
     /// Coefficients of line, modes and reactions.
     pub(super) parts: Vec<f64>,
     equations: NormalEquations,
+    /// Before any column was eliminated.
+    whole: NormalEquations,
     modes: usize,
     reactions: usize,
+}
+
+/// A column of the regression since its beginning; 0 before.
+struct Column {
+    start: usize,
+    motion: Motion,
 }
 
 impl<'a> Stretch<'a> {
@@ -63,8 +66,84 @@ impl<'a> Stretch<'a> {
     }
 
     /// The regression with the lag as it is.
-    pub(super) fn at(&self, shape: &Shape, noise: &Noise) -> Linearised {
-        self.linearised(shape, noise, None)
+    pub(super) fn at(&self, basis: &Basis, noise: &Noise) -> Linearised {
+        if noise.order() > 0 {
+            return self.linearised(&basis.shape, noise, None);
+        }
+        let modes = basis.response.modes();
+        Linearised::of(self.equations(basis), modes, self.places.len())
+    }
+
+    /// The products of all columns and the output, piece by piece between their beginnings.
+    /// The noise is white.
+    fn equations(&self, basis: &Basis) -> NormalEquations {
+        let mut columns = self.columns(basis);
+        let size = columns.len() + 1;
+        let mut products = vec![0.0; size * size];
+        let offset = self.values.first().copied().unwrap_or_default();
+        let cuts = self.cuts(&columns);
+        for (from, to) in cuts.iter().zip(cuts.iter().skip(1)) {
+            let piece = basis.products(self.values.get(*from..*to).unwrap_or_default(), offset);
+            let weight = self.weight_at(*from);
+            for (i, row) in products.chunks_exact_mut(size).enumerate() {
+                let Some(columns @ [column, ..]) = columns.get(i..) else { continue };
+                if column.start > *from {
+                    continue;
+                }
+                let along = piece.along(&column.motion);
+                for (slot, other) in row.iter_mut().skip(i).zip(columns) {
+                    let begun = if other.start <= *from { weight } else { 0.0 };
+                    *slot += begun * common(&along, &other.motion);
+                }
+                row.iter_mut().rev().take(1).for_each(|slot| {
+                    *slot += weight * piece.with_output(&column.motion);
+                });
+            }
+            products.iter_mut().rev().take(1).for_each(|slot| *slot += weight * piece.square);
+            for column in columns.iter_mut().filter(|column| column.start <= *from) {
+                column.motion = basis.later(&column.motion, to - from);
+            }
+        }
+        NormalEquations::from_products(size, products)
+    }
+
+    /// Line, modes, reactions, and the derivatives of the reactions to their places.
+    fn columns(&self, basis: &Basis) -> Vec<Column> {
+        let free = (0..LINE + basis.response.modes()).map(|index| {
+            let mut motion = Motion::default();
+            motion.iter_mut().skip(index).take(1).for_each(|slot| *slot = 1.0);
+            Column { start: 0, motion }
+        });
+        let reaction = |place: &f64| {
+            let start = ceil(*place);
+            (start, basis.response.motions(start as f64 - place))
+        };
+        let reactions: Vec<_> = self.places.iter().map(reaction).collect();
+        let positions = reactions.iter().map(|(start, (motion, _))| (*start, *motion));
+        let moves = reactions.iter().map(|(start, (_, motion))| (*start, *motion));
+        let begun = positions.chain(moves).map(|(start, motion)| Column { start, motion });
+        free.chain(begun).collect()
+    }
+
+    /// Where a column begins, or what is shared begins or ends; both ends.
+    fn cuts(&self, columns: &[Column]) -> Vec<usize> {
+        let end = self.values.len();
+        let starts = columns.iter().map(|column| column.start);
+        let mut cuts: Vec<usize> =
+            starts.chain([0, self.shared.0, self.own_end(), end]).map(|cut| cut.min(end)).collect();
+        cuts.sort_unstable();
+        cuts.dedup();
+        cuts
+    }
+
+    /// Behind the last sample before those that are shared at the end.
+    fn own_end(&self) -> usize {
+        self.values.len().saturating_sub(self.shared.1).max(self.shared.0)
+    }
+
+    /// How much a square counts at an index.
+    fn weight_at(&self, index: usize) -> f64 {
+        if (self.shared.0..self.own_end()).contains(&index) { 1.0 } else { 0.5 }
     }
 
     /// The regression with columns for changes of the lag as well; `parts` are the
@@ -110,9 +189,7 @@ impl<'a> Stretch<'a> {
 
     /// Makes what is shared count half in a sum of squares.
     fn weigh(&self, column: &mut [f64]) {
-        let (first, last) = self.shared;
-        let end = column.len().saturating_sub(last).max(first);
-        for shared in [0..first, end..column.len()] {
+        for shared in [0..self.shared.0, self.own_end()..column.len()] {
             let shared = column.get_mut(shared).unwrap_or_default();
             for value in shared {
                 *value *= FRAC_1_SQRT_2;
@@ -182,7 +259,7 @@ impl<'a> Stretch<'a> {
     /// a step is no longer than `fine`.
     pub(super) fn settle(
         &mut self,
-        shape: &Shape,
+        basis: &Basis,
         noise: &Noise,
         limits: &[(f64, f64)],
         fine: f64,
@@ -191,7 +268,7 @@ impl<'a> Stretch<'a> {
         const STEPS: usize = 10;
         /// Samples that no interval shows.
         const THERE: f64 = 0.001;
-        let mut best = self.at(shape, noise);
+        let mut best = self.at(basis, noise);
         let mut factor = 1.0;
         let mut moves = best.moves(&[0.0; MOST]);
         for _ in 0..STEPS {
@@ -205,7 +282,7 @@ impl<'a> Stretch<'a> {
                 break;
             }
             let there = Self { places, ..*self };
-            let found = there.at(shape, noise);
+            let found = there.at(basis, noise);
             if found.sse > best.sse {
                 factor /= 3.0;
                 if largest < fine {
@@ -227,29 +304,30 @@ fn bounded(value: f64, low: f64, high: f64) -> f64 {
     value.max(low).min(high.max(low))
 }
 
-/// The part of the squared error that the last reaction takes away, after all `linear`
-/// columns but its own and the moves of the others.
-fn share_of_last(equations: &NormalEquations, linear: usize, reactions: usize) -> f64 {
-    let last = linear - 1;
-    let others = (0..last).chain(linear..linear + reactions - 1);
-    let order: Vec<usize> = others.chain([last, equations.size() - 1]).collect();
-    let mut equations = equations.reordered(&order);
-    let count = order.len() - 2;
-    (0..count).for_each(|column| equations.eliminate(column));
-    let without = equations.error();
-    equations.eliminate(count);
-    1.0 - equations.error() / without.max(f64::MIN_POSITIVE)
-}
-
 impl Linearised {
     fn of(mut equations: NormalEquations, modes: usize, reactions: usize) -> Self {
         let linear = LINE + modes + reactions;
-        let share = share_of_last(&equations, linear, reactions);
+        let whole = equations.clone();
         (0..linear).for_each(|column| equations.eliminate(column));
         let sse = equations.error();
         let parts = equations.coefficients(linear, &[]);
         (linear..linear + reactions).for_each(|column| equations.eliminate(column));
-        Self { sse, share, parts, equations, modes, reactions }
+        Self { sse, parts, equations, whole, modes, reactions }
+    }
+
+    /// The part of the squared error that the last reaction takes away, when the others may
+    /// move in its stead.
+    pub(super) fn share(&self) -> f64 {
+        let linear = self.first_reaction() + self.reactions;
+        let last = linear - 1;
+        let others = (0..last).chain(linear..linear + self.reactions - 1);
+        let order: Vec<usize> = others.chain([last, self.whole.size() - 1]).collect();
+        let mut equations = self.whole.reordered(&order);
+        let count = order.len() - 2;
+        (0..count).for_each(|column| equations.eliminate(column));
+        let without = equations.error();
+        equations.eliminate(count);
+        1.0 - equations.error() / without.max(f64::MIN_POSITIVE)
     }
 
     fn first_reaction(&self) -> usize {
@@ -354,10 +432,38 @@ mod tests {
         for shape in [Shape::real(6.0), Shape::pair_of(0.157, 0.25)] {
             let values = made(&shape, 47.37);
             let mut stretch = Stretch::alone(&values, vec![52.0]);
-            let found = stretch.settle(&shape, &Noise::white(), &[(0.0, 120.0)], FINE);
+            let basis = Basis::of(&shape, values.len());
+            let found = stretch.settle(&basis, &Noise::white(), &[(0.0, 120.0)], FINE);
             assert!((stretch.places[0] - 47.37).abs() < 1e-3, "{:?}", stretch.places);
             assert!((found.change() - 0.7).abs() < 1e-3, "{}", found.change());
             assert!(stretch.leftover(&shape).power() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn products_over_pieces_are_those_of_whole_columns() {
+        let pairs = [(0.157, 0.25), (0.1, 1.0), (0.2, 1.8)];
+        let pairs = pairs.map(|(omega, zeta)| Shape::pair_of(omega, zeta));
+        let others = [Shape::NONE, Shape::real(0.3), Shape::real(6.0)];
+        let both = Shape::pair_of(0.2, 0.3).behind(6.0);
+        for shape in pairs.into_iter().chain(others).chain([both]) {
+            let values = made(&shape, 47.37);
+            for (places, shared) in [
+                (vec![47.37], (0, 0)),
+                (vec![-3.2, 20.0, 20.7, 118.5], (9, 30)),
+                (vec![80.1, 30.9], (90, 70)),
+            ] {
+                let stretch = Stretch { values: &values, places, shared };
+                let noise = Noise::white();
+                let dense = stretch.linearised(&shape, &noise, None).whole;
+                let sums = stretch.at(&Basis::of(&shape, 120), &noise).whole;
+                let size = dense.size();
+                for (i, j) in (0..size).flat_map(|i| (i..size).map(move |j| (i, j))) {
+                    let scale = (dense.at(i, i) * dense.at(j, j)).sqrt();
+                    let apart = (dense.at(i, j) - sums.at(i, j)).abs();
+                    assert!(apart <= 1e-10 * scale, "{shape:?} {i} {j}: {apart} {scale}");
+                }
+            }
         }
     }
 
@@ -367,7 +473,7 @@ mod tests {
         let values = made(&shape.nudged(1), 47.37);
         let noise = Noise::white();
         let stretch = Stretch::alone(&values, vec![47.37]);
-        let parts = stretch.at(&shape, &noise).parts;
+        let parts = stretch.at(&Basis::of(&shape, 120), &noise).parts;
         let found = stretch.with_shape(&shape, &noise, &parts);
         let (mut products, mut with) = ([[0.0; MOST]; MOST], [0.0; MOST]);
         found.add_shape(&mut products, &mut with);

@@ -9,7 +9,9 @@ mod quantile;
 mod rank;
 mod student;
 
-pub(crate) use autoregression::{Autoregression, autocovariances, dot, dots};
+pub(crate) use autoregression::{
+    Autoregression, autocovariances, dot, dots, moments, take_off_line,
+};
 pub use chi_square::chi_square_tail;
 pub use fisher::fisher_tail;
 pub use normal::normal_below;

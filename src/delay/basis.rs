@@ -1,0 +1,135 @@
+//! What a joint behind a lag does between two reactions, and products of it over any piece.
+//!
+//! Level, ramp and modes, counted from the beginning of a piece, make up every column of a
+//! regression: what an earlier reaction did since is another sum of the same motions. With
+//! white noise the products of whole columns so follow from a few sums over each piece,
+//! which hang on its length alone; only the output is gone through sample by sample.
+
+use super::broken_line::floor;
+use super::response::{MOST, Response, Shape};
+use crate::statistics::moments;
+
+/// Columns of the line.
+pub(super) const LINE: usize = 2;
+
+/// Level, ramp, and the modes of three poles.
+pub(super) const COLUMNS: usize = LINE + MOST;
+
+/// Coefficients of level, ramp and modes at the beginning of a piece.
+pub(super) type Motion = [f64; COLUMNS];
+
+/// The motions behind a lag, as far as its modes are felt.
+#[derive(Clone, Debug)]
+pub(super) struct Basis {
+    pub(super) shape: Shape,
+    pub(super) response: Response,
+    /// The modes of each sample; 0 for those that the lag has not.
+    modes: Vec<[f64; MOST]>,
+    /// Sums over as many samples.
+    sums: Vec<Sums>,
+}
+
+/// Sums of the modes, of their products with the sample's number, and with each other.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    ones: [f64; MOST],
+    ramps: [f64; MOST],
+    products: [[f64; MOST]; MOST],
+}
+
+/// Products over a piece: of the motions with each other, with the output, and of the output
+/// with itself.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Products {
+    motions: [Motion; COLUMNS],
+    with: Motion,
+    pub(super) square: f64,
+}
+
+impl Basis {
+    /// For pieces of `longest` samples at most.
+    pub(super) fn of(shape: &Shape, longest: usize) -> Self {
+        let response = Response::of(shape);
+        let felt = if response.modes() > 0 { floor(response.over()).min(longest) + 1 } else { 0 };
+        let mut columns = vec![0.0; response.modes() * felt];
+        response.fill_modes(&mut columns, felt);
+        let mut modes = vec![[0.0; MOST]; felt];
+        for (index, column) in columns.chunks_exact(felt.max(1)).enumerate() {
+            for (row, value) in modes.iter_mut().zip(column) {
+                row.iter_mut().skip(index).take(1).for_each(|slot| *slot = *value);
+            }
+        }
+        let mut sums = vec![Sums::default()];
+        let mut now = Sums::default();
+        for (k, row) in modes.iter().enumerate() {
+            now.add(k as f64, row);
+            sums.push(now);
+        }
+        Self { shape: *shape, response, modes, sums }
+    }
+
+    /// The products over `values`, less `offset`.
+    pub(super) fn products(&self, values: &[f64], offset: f64) -> Products {
+        let (sum, moment, square) = moments(values, offset);
+        let mut with = [sum, moment, 0.0, 0.0, 0.0];
+        let mut felt = [0.0; MOST];
+        for (y, row) in values.iter().zip(&self.modes) {
+            felt.iter_mut().zip(row).for_each(|(sum, mode)| *sum += (y - offset) * mode);
+        }
+        with.iter_mut().skip(LINE).zip(felt).for_each(|(slot, sum)| *slot = sum);
+        Products { motions: self.motions(values.len()), with, square }
+    }
+
+    /// The products of the motions over `length` samples.
+    fn motions(&self, length: usize) -> [Motion; COLUMNS] {
+        let n = length as f64;
+        let ramp = n * (n - 1.0) / 2.0;
+        let mut motions = [[0.0; COLUMNS]; COLUMNS];
+        let sums = self.sums.get(length).or(self.sums.last()).copied().unwrap_or_default();
+        let [r, s, t] = sums.ones;
+        let [kr, ks, kt] = sums.ramps;
+        motions[0] = [n, ramp, r, s, t];
+        motions[1] = [ramp, ramp * (2.0 * n - 1.0) / 3.0, kr, ks, kt];
+        let modes = sums.ones.iter().zip(sums.ramps).zip(sums.products);
+        for (row, ((one, ramp), [r, s, t])) in motions.iter_mut().skip(LINE).zip(modes) {
+            *row = [*one, ramp, r, s, t];
+        }
+        motions
+    }
+
+    /// The same motion seen `by` samples later.
+    pub(super) fn later(&self, motion: &Motion, by: usize) -> Motion {
+        let [level, ramp, modes @ ..] = *motion;
+        let decayed = self.modes.get(by).copied().unwrap_or_default();
+        let [a, b, c] = self.response.later(modes, decayed);
+        [level + ramp * by as f64, ramp, a, b, c]
+    }
+}
+
+impl Sums {
+    fn add(&mut self, k: f64, row: &[f64; MOST]) {
+        let slots = self.ones.iter_mut().zip(&mut self.ramps).zip(&mut self.products);
+        for (((one, ramp), products), mode) in slots.zip(row) {
+            *one += mode;
+            *ramp += k * mode;
+            products.iter_mut().zip(row).for_each(|(slot, other)| *slot += mode * other);
+        }
+    }
+}
+
+impl Products {
+    /// What `motion` has in common with each of the motions.
+    pub(super) fn along(&self, motion: &Motion) -> Motion {
+        self.motions.map(|row| common(&row, motion))
+    }
+
+    /// What `motion` has in common with the output.
+    pub(super) fn with_output(&self, motion: &Motion) -> f64 {
+        common(&self.with, motion)
+    }
+}
+
+/// The sum of products.
+pub(super) fn common(a: &Motion, b: &Motion) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,202 @@
+//! What a line through a window can do of levels and ramps that begin within it, all whitened
+//! with the window's noise.
+//!
+//! A line stays a line when it is whitened, and a level or a ramp changes only in the first
+//! samples behind its beginning, so that sums over any of them are known in closed form.
+
+use super::broken_line::Piece;
+use super::line::Line;
+use super::noise::Noise;
+
+/// The line of a window, and what its levels and ramps are made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Frame {
+    order: f64,
+    /// Index of the last sample, and of the middle of the whitened ones.
+    last: f64,
+    middle: f64,
+    /// What whitening makes of 1 and of a ramp.
+    level: f64,
+    shift: f64,
+    onset: Onset,
+    /// One over the length of a constant, and of a slope.
+    per_level: f64,
+    per_slope: f64,
+    /// One over what whitening makes of 1.
+    per_noise_level: f64,
+    /// The line's value in the middle, and its slope.
+    value: f64,
+    slope: f64,
+}
+
+/// A ramp without what a line can do.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ramp {
+    /// What is left of its square.
+    pub(super) square: f64,
+    /// Its parts along a constant, and along a slope.
+    line: [f64; 2],
+}
+
+/// The lines of breaks at each sample from one on.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Bends {
+    frame: Frame,
+    first: usize,
+    changes: Vec<f64>,
+    /// The number that lines stand over at the first sample.
+    number: f64,
+}
+
+impl Bends {
+    /// Breaks at `first` and behind, with these changes of slope.
+    pub(super) fn of(frame: Frame, first: usize, changes: Vec<f64>, number: f64) -> Self {
+        Self { frame, first, changes, number }
+    }
+
+    /// The lines before and behind the break of an index.
+    pub(super) fn get(&self, index: usize) -> Option<(Line, Line)> {
+        let change = *self.changes.get(index)?;
+        let place = (self.first + index) as f64;
+        let ramp = self.frame.ramp(self.frame.last - place);
+        let along = ramp.line.map(|part| change * part);
+        Some(self.frame.lines_of(along, place, change, self.number))
+    }
+}
+
+impl Frame {
+    /// For so many whitened `rows`, through which a line goes with its value in the middle and
+    /// its slope.
+    pub(super) fn of(noise: &Noise, rows: f64, (value, slope): (f64, f64)) -> Self {
+        let order = noise.order() as f64;
+        let spread = rows * (rows * rows - 1.0) / 12.0;
+        Self {
+            order,
+            last: rows + order - 1.0,
+            middle: order + (rows - 1.0) / 2.0,
+            level: noise.level,
+            shift: noise.shift,
+            onset: Onset::of(noise),
+            per_level: rows.sqrt().recip(),
+            per_slope: spread.sqrt().recip(),
+            per_noise_level: noise.level.recip(),
+            value,
+            slope,
+        }
+    }
+
+    /// Samples behind each one from `first` on.
+    pub(super) fn reaches(&self, first: usize) -> impl Iterator<Item = f64> + use<> {
+        let reach = self.behind(first);
+        (0_i32..).map(move |index| reach - f64::from(index))
+    }
+
+    /// Samples behind one.
+    fn behind(&self, place: usize) -> f64 {
+        self.last - place as f64
+    }
+
+    /// The ramp behind the sample that has `reach` samples behind it.
+    #[inline]
+    pub(super) fn ramp(&self, reach: f64) -> Ramp {
+        let Self { order, level, shift, onset, .. } = *self;
+        let count = reach - order;
+        let sum = (reach * (reach + 1.0) - order * (order + 1.0)) * 0.5;
+        let cubes = |d: f64| d * (d + 1.0) * (2.0 * d + 1.0) * (1.0 / 6.0);
+        let squares = cubes(reach) - cubes(order);
+        let ramps = onset.ramp + level * sum + shift * count;
+        let ramp_d = onset.ramp_d + level * squares + shift * sum;
+        let square =
+            onset.ramp_ramp + level * (level * squares + 2.0 * shift * sum) + shift * shift * count;
+        let line @ [a, b] = self.along(reach, ramps, ramp_d);
+        Ramp { square: square - a * a - b * b, line }
+    }
+
+    /// Parts along a constant and along a slope of what begins before `reach` samples, given its
+    /// sum and its moment.
+    #[inline]
+    fn along(&self, reach: f64, sum: f64, moment: f64) -> [f64; 2] {
+        let x = self.last - reach - self.middle;
+        [sum * self.per_level, (x * sum + moment) * self.per_slope]
+    }
+
+    /// The piece behind sample `j`, given what its level and its ramp have in common with the
+    /// output.
+    pub(super) fn piece(&self, j: usize, level_y: f64, ramp_y: f64) -> Piece {
+        let Self { order, level, shift, onset, .. } = *self;
+        let reach = self.behind(j);
+        let count = reach - order;
+        let sum = (reach * (reach + 1.0) - order * (order + 1.0)) * 0.5;
+        let (with_count, with_sum) = (level * count, level * sum);
+        let level_line @ [a, b] =
+            self.along(reach, onset.level + with_count, onset.level_d + with_sum);
+        let level_level = onset.level_level + level * with_count;
+        let level_ramp = onset.level_ramp + level * (with_sum + shift * count);
+        let Ramp { square, line } = self.ramp(reach);
+        Piece {
+            level_y,
+            ramp_y,
+            level_level: level_level - a * a - b * b,
+            level_ramp: level_ramp - a * line[0] - b * line[1],
+            ramp_ramp: square,
+            level_line,
+            ramp_line: line,
+        }
+    }
+
+    /// No level that begins before `reach` samples has more left in common with itself.
+    #[inline]
+    pub(super) fn most_level(&self, reach: f64) -> f64 {
+        let count = (reach - self.order).min(self.last - reach + 1.0);
+        self.onset.level_level + self.level * self.level * count
+    }
+
+    /// The lines of a break at `j + s`, over numbers that are `number` at the first sample.
+    pub(super) fn lines(&self, piece: &Piece, j: f64, s: f64, number: f64) -> (Line, Line) {
+        let change = piece.change(s);
+        let [[ramp, ramp_slope], [level, level_slope]] = [piece.ramp_line, piece.level_line];
+        let along = [change * (ramp - s * level), change * (ramp_slope - s * level_slope)];
+        self.lines_of(along, j + s, change, number)
+    }
+
+    /// The same given the change of slope at a `place`, and what it takes along a constant and
+    /// along a slope.
+    fn lines_of(&self, along: [f64; 2], place: f64, change: f64, number: f64) -> (Line, Line) {
+        let [along_level, along_slope] = along.map(|part| part * self.per_noise_level);
+        let slope = self.slope - along_slope * self.per_slope;
+        let value = self.value - along_level * self.per_level;
+        let at = number + self.middle + self.shift * self.per_noise_level;
+        let before = Line { slope, intercept: value - slope * at };
+        let intercept = before.intercept - change * (place + number);
+        (before, Line { slope: slope + change, intercept })
+    }
+}
+
+/// Sums of a whitened level and ramp over the samples in which they begin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Onset {
+    level: f64,
+    ramp: f64,
+    level_d: f64,
+    ramp_d: f64,
+    level_level: f64,
+    level_ramp: f64,
+    ramp_ramp: f64,
+}
+
+impl Onset {
+    fn of(noise: &Noise) -> Self {
+        let mut sums = Self::default();
+        for ((w, h), d) in noise.onset().into_iter().zip(1_u32..) {
+            let d = f64::from(d);
+            sums.level += w;
+            sums.ramp += h;
+            sums.level_d += w * d;
+            sums.ramp_d += h * d;
+            sums.level_level += w * w;
+            sums.level_ramp += w * h;
+            sums.ramp_ramp += h * h;
+        }
+        sums
+    }
+}
