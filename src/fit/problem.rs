@@ -109,6 +109,40 @@ impl Problem<'_, '_> {
         true
     }
 
+    /// The same for two of the variables at `places`, where neither gains by itself: a valve
+    /// that stops at a higher level than it starts at stops where it starts, whatever the one
+    /// that is lower.
+    pub(super) fn cross_two_flats(&mut self, places: &[usize]) -> bool {
+        let pairs = places.iter().enumerate();
+        let pairs = pairs.flat_map(|(n, one)| places.iter().skip(n + 1).map(|two| [*one, *two]));
+        let (cost, start) = (self.cost(), self.variables.clone());
+        let best = pairs.filter_map(|pair| self.best_of_two(pair)).collect::<Vec<_>>();
+        let best = best.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        self.set_params(&start);
+        let Some((_, values)) = best.filter(|(least, _)| *least < cost) else { return false };
+        for (place, value) in values {
+            self.set_value(place, value);
+        }
+        true
+    }
+
+    /// The least error with some of the values of two variables, and these.
+    fn best_of_two(&mut self, [one, two]: [usize; 2]) -> Option<(f64, [(usize, f64); 2])> {
+        /// Values of each that are tried: all levels of most experiments.
+        const COARSE: usize = 12;
+        let space = self.space;
+        let (firsts, seconds) = (space.flats.get(one)?, space.flats.get(two)?);
+        let some = |values: &[f64]| (0..values.len()).step_by(values.len().div_ceil(COARSE).max(1));
+        let of_first = |index: usize| {
+            let first = *firsts.get(index)?;
+            self.set_value(one, first);
+            let (cost, second) = self.best_of(two, seconds, some(seconds))?;
+            Some((cost, [(one, first), (two, *seconds.get(second)?)]))
+        };
+        let all = some(firsts).filter_map(of_first).collect::<Vec<_>>();
+        all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
     /// The least error with one of `values` for a variable, and its index: some of them are
     /// tried, then those about the best of these, ever closer.
     fn best_within(&mut self, place: usize, values: &[f64]) -> Option<(f64, usize)> {

@@ -108,16 +108,21 @@ impl<'p, 'r> Search<'p, 'r> {
         /// One may have to wait for another.
         const PASSES: usize = 3;
         for _ in 0..PASSES {
-            let Some(jacobian) = self.problem.jacobian() else { break };
-            let is_flat = |(_, column): &(usize, DVectorView<'_, f64>)| column.amax() <= 0.0;
-            let flat = jacobian.column_iter().enumerate().filter(is_flat);
-            let places: Vec<usize> = flat.map(|(place, _)| place).collect();
-            if places.into_iter().filter(|place| self.problem.cross_flat(*place)).count() == 0 {
+            let places = self.flat_places();
+            let crossed = places.iter().filter(|place| self.problem.cross_flat(**place)).count();
+            if crossed == 0 && !self.problem.cross_two_flats(&places) {
                 break;
             }
             self = self.descended(Depth::ROUGH);
         }
         self
+    }
+
+    /// The variables on which nothing depends but in jumps.
+    fn flat_places(&self) -> Vec<usize> {
+        let Some(jacobian) = self.problem.jacobian() else { return Vec::new() };
+        let is_flat = |(_, column): &(usize, DVectorView<'_, f64>)| column.amax() <= 0.0;
+        jacobian.column_iter().enumerate().filter(is_flat).map(|(place, _)| place).collect()
     }
 
     pub(super) fn simulations(&self) -> usize {
