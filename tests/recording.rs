@@ -12,8 +12,8 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use read_back::{ReadBack, batches};
-use recorded::Recorded;
+use read_back::{ReadBack, batches, whole};
+use recorded::{Recorded, samples};
 use rerun::external::arrow::array::AsArray as _;
 use tauscope::batch::{JointEstimate, estimate_joints};
 use tauscope::delay::{Decision, FineDelay, Method, Settings};
@@ -21,15 +21,6 @@ use tauscope::experiment::{Experiment, ReadOptions};
 use tauscope::recording::{Beside, Detail, RecordError};
 use tauscope::report::{DecisionRow, EstimatedJoint, decision_rows, number};
 
-fn whole(number: usize) -> i64 {
-    i64::try_from(number).unwrap()
-}
-
-/// Samples of the paper's method, which are whole.
-#[expect(clippy::cast_possible_truncation, reason = "they are whole")]
-fn samples(number: f64) -> i64 {
-    number as i64
-}
 #[test]
 fn signals_are_those_of_the_log_sample_by_sample() {
     let recorded = Recorded::with(Settings::default());

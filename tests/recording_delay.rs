@@ -7,23 +7,14 @@ mod read_back;
 #[expect(dead_code, reason = "other recordings have more in them")]
 mod recorded;
 
-use read_back::places;
-use recorded::Recorded;
+use read_back::{places, whole};
+use recorded::{Recorded, samples};
 use rerun::log::Chunk;
 use tauscope::delay::Settings;
 use tauscope::recording::Detail;
 use tauscope::report::decision_rows;
 use tauscope::synthetic::DelayLaw;
 
-fn whole(number: usize) -> i64 {
-    i64::try_from(number).unwrap()
-}
-
-/// Samples of the paper's method, which are whole.
-#[expect(clippy::cast_possible_truncation, reason = "they are whole")]
-fn samples(number: f64) -> i64 {
-    number as i64
-}
 #[test]
 fn the_state_at_each_accepted_step_is_that_of_the_report() {
     let recorded = Recorded::with(Settings::default());

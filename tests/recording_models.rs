@@ -7,7 +7,7 @@ mod read_back;
 #[expect(dead_code, reason = "other recordings have more in them")]
 mod recorded;
 
-use read_back::ReadBack;
+use read_back::{ReadBack, whole};
 use recorded::Recorded;
 use rerun::external::arrow::array::{AsArray as _, Float64Array};
 use tauscope::delay::Settings;
@@ -16,10 +16,6 @@ use tauscope::explain::{Change, Verdict};
 use tauscope::recording::Detail;
 use tauscope::report::ComparedJoint;
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec};
-
-fn whole(number: usize) -> i64 {
-    i64::try_from(number).unwrap()
-}
 
 #[test]
 fn figures_of_a_model_are_those_of_its_comparison() {

@@ -8,7 +8,7 @@ mod read_back;
 
 use std::process::Command;
 
-use read_back::{ReadBack, batches, places};
+use read_back::{ReadBack, batches, places, whole};
 use rerun::Loggable as _;
 use rerun::components::ImageBuffer;
 use rerun::external::arrow::array::{Array, AsArray as _};
@@ -86,10 +86,6 @@ impl Swept {
 /// A cell with a number per run or step, or none.
 fn optional(cell: &dyn Array) -> Vec<Option<f64>> {
     cell.as_primitive::<Float64Type>().iter().collect()
-}
-
-fn whole(number: usize) -> i64 {
-    i64::try_from(number).unwrap()
 }
 
 #[test]

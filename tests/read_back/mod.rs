@@ -9,6 +9,11 @@ use rerun::external::arrow::array::{
 use rerun::external::re_log_encoding::DecoderApp;
 use rerun::log::{Chunk, LogMsg};
 
+/// A number as recordings hold it.
+pub(crate) fn whole(number: usize) -> i64 {
+    i64::try_from(number).unwrap()
+}
+
 /// The chunks of a recording, by entity; the blueprint apart.
 pub(crate) struct ReadBack {
     pub(crate) chunks: BTreeMap<String, Vec<Chunk>>,

@@ -18,6 +18,12 @@ use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate, w
 
 use crate::read_back::ReadBack;
 
+/// Samples of the paper's method, which are whole.
+#[expect(clippy::cast_possible_truncation, reason = "they are whole")]
+pub(crate) fn samples(number: f64) -> i64 {
+    number as i64
+}
+
 /// Two joints, half a minute, with the estimate of their delays.
 pub(crate) struct Recorded {
     pub(crate) experiment: Experiment,
