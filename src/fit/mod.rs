@@ -11,6 +11,7 @@ mod least_squares;
 mod problem;
 mod record;
 mod run;
+mod score;
 mod search;
 mod space;
 mod speed;
@@ -21,3 +22,4 @@ pub use least_squares::{
     Fit, FitError, Parameter, Status, Survey, Termination, assess, fit, fit_to_compare, survey,
 };
 pub use record::{Evaluation, Horizon, Part, Record, Split, Window};
+pub use score::{Directions, Score};

@@ -1,0 +1,197 @@
+//! How far effects would go at a glance: the residual in the directions of their starts.
+//!
+//! With `r` the residual of a model, `J` its slopes to the free parameters, and `d` the change
+//! of the residual from where an effect is neutral to where it would start, all projected off
+//! `J`, the effect's share of the sum of squares is, to first order,
+//!
+//! ```text
+//! max(0, −r·d)² / (d·d r·r)
+//! ```
+//!
+//! as in a score test (Rao 1948), but with the whole way to the start in the place of a slope:
+//! a threshold has none where it is neutral. Only ways towards the start count: an effect
+//! undone is no effect.
+//!
+//! # References
+//! C. R. Rao, "Large sample tests of statistical hypotheses concerning several parameters with
+//! applications to problems of estimation", Proceedings of the Cambridge Philosophical Society
+//! 44 (1948), 50-57.
+
+use levenberg_marquardt::LeastSquaresProblem as _;
+use nalgebra::DVector;
+
+use super::record::Record;
+use super::search::Search;
+use super::space::Space;
+use super::starts::starts;
+use crate::effect::RecordRange;
+use crate::model::JointModel;
+
+/// A model's residual, and what its own parameters cannot do about it.
+#[derive(Debug)]
+pub struct Score<'r> {
+    /// Training windows that are short enough for an error to count where it is made.
+    record: Record<'r>,
+    /// The residual as it is.
+    raw: DVector<f64>,
+    /// An orthonormal basis of the slopes to the free parameters.
+    slopes: Vec<DVector<f64>>,
+    /// The residual without them, of length one.
+    unit: DVector<f64>,
+}
+
+/// Where an effect would go from where it is neutral: for each of its starts the change of the
+/// residual with its sign turned, of length one, and the part of the residual that it takes.
+#[derive(Clone, Debug)]
+pub struct Directions {
+    units: Vec<(DVector<f64>, f64)>,
+}
+
+impl<'r> Score<'r> {
+    /// The residual of `model` on the training windows of `record`; `None` where there is none
+    /// to speak of.
+    pub fn of(record: &Record<'r>, model: &JointModel, range: &RecordRange<'_>) -> Option<Self> {
+        let record = record.shortened();
+        let space = Space::of(model, range);
+        let start = model.values().iter().map(|value| value.value).collect();
+        let search = Search::new(&record, model, &space, start);
+        let jacobian = search.problem.jacobian()?;
+        let raw = record.training(&record.evaluate(model).residuals);
+        let mut slopes: Vec<DVector<f64>> = Vec::new();
+        for column in jacobian.column_iter() {
+            let own = unit(off(&slopes, column.into_owned()), column.norm());
+            slopes.extend(own);
+        }
+        let unit = unit(off(&slopes, raw.clone()), raw.norm())?;
+        Some(Self { record, raw, slopes, unit })
+    }
+
+    /// The directions of the effects of `model` that are neutral; the model of the score has
+    /// none of them.
+    #[must_use]
+    pub fn directions(&self, model: &JointModel, range: &RecordRange<'_>) -> Directions {
+        let direction = |start: Vec<f64>| {
+            let residuals = self.record.evaluate(&model.with_values(&start)).residuals;
+            let change = &self.raw - self.record.training(&residuals);
+            let size = change.norm();
+            let direction = unit(off(&self.slopes, change), size)?;
+            let share = direction.dot(&self.unit);
+            (share > 0.0).then_some((direction, share))
+        };
+        Directions { units: starts(model, range).into_iter().filter_map(direction).collect() }
+    }
+}
+
+impl Directions {
+    /// The share of the sum of squares that the best of these and the best of `others` take
+    /// together, 0 to 1.
+    #[must_use]
+    pub fn share_with(&self, others: &Self) -> f64 {
+        let alone = |directions: &Self| directions.units.iter().fold(0.0, |m: f64, u| m.max(u.1));
+        let alone = alone(self).max(alone(others)).powi(2);
+        let pairs = self.units.iter().flat_map(|a| others.units.iter().map(move |b| (a, b)));
+        let shares = pairs.map(|((a, of_a), (b, of_b))| of_two(*of_a, *of_b, a.dot(b)));
+        shares.fold(alone, f64::max)
+    }
+}
+
+/// The share that two directions take together, each forwards, of what they take alone and the
+/// cosine between them; 0 where one alone is as good.
+fn of_two(one: f64, two: f64, cosine: f64) -> f64 {
+    /// Directions nearer than this are one.
+    const ALIKE: f64 = 0.999;
+    let forwards = one > cosine * two && two > cosine * one;
+    if !forwards || cosine.abs() > ALIKE {
+        return 0.0;
+    }
+    (one * one + two * two - 2.0 * cosine * one * two) / (1.0 - cosine * cosine)
+}
+
+/// `vector` without its parts along `basis`.
+fn off(basis: &[DVector<f64>], mut vector: DVector<f64>) -> DVector<f64> {
+    for axis in basis {
+        let along = axis.dot(&vector);
+        vector.axpy(-along, axis, 1.0);
+    }
+    vector
+}
+
+/// `vector` with length one; `None` where little is left of its `size`.
+fn unit(vector: DVector<f64>, size: f64) -> Option<DVector<f64>> {
+    /// What rounding leaves of a vector that lies in the others.
+    const NOTHING: f64 = 1e-6;
+    let length = vector.norm();
+    (length.is_finite() && length > NOTHING * size).then(|| vector / length)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::effect::{DeadBand, Effect, GravityLoad, InputOffset};
+    use crate::experiment::{Joint, Trial};
+    use crate::fit::{Horizon, Split, fit};
+    use crate::model::Component;
+    use crate::units::SamplePeriod;
+
+    #[test]
+    fn the_share_of_two_directions_is_that_of_least_squares() {
+        let vector = |phase: f64| {
+            let values = (0..40).map(|k| (f64::from(k) * 0.3 + phase).sin() + phase);
+            unit(DVector::from_iterator(40, values), 1.0).unwrap()
+        };
+        let (target, one, two) = (vector(0.4), vector(0.9), vector(0.1));
+        let columns = DMatrix::from_columns(&[one.clone(), two.clone()]);
+        let best = columns.clone().svd(true, true).solve(&target, 1e-12).unwrap();
+        assert!(best.min() > 0.0, "both go forwards: {best}");
+        let share = 1.0 - (&target - columns * best).norm_squared();
+        let found = of_two(one.dot(&target), two.dot(&target), one.dot(&two));
+        assert!((found - share).abs() < 1e-9, "{found} is not {share}");
+    }
+
+    #[test]
+    fn one_that_would_go_backwards_does_not_count() {
+        assert!(of_two(0.9, 0.1, 0.5) <= 0.0);
+        assert!((of_two(0.6, 0.6, 0.0) - 0.72).abs() < 1e-12);
+    }
+
+    /// A joint with a dead band and an offset of the input, which hide each other in part.
+    fn joint() -> Joint {
+        let input: Vec<f64> =
+            (0..3000).map(|k| [-2.0, 0.5, 1.0, -0.5, 2.0, -1.0][(k / 100) % 6]).collect();
+        let mut angle = 0.0;
+        let output = input.iter().enumerate().map(|(k, u)| {
+            let driven = *u + 0.15;
+            let beyond = driven - driven.clamp(-0.3, 0.3);
+            angle += 0.01 * 10.0 * beyond;
+            angle + 0.02 * (k as f64 * 12.9898).sin()
+        });
+        let output: Vec<f64> = output.collect();
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        Joint {
+            name: "boom".to_owned(),
+            input_unit: None,
+            output_unit: None,
+            covariates: Vec::new(),
+            trials: vec![Trial::new("1", 0.0, period, input, output).unwrap()],
+        }
+    }
+
+    #[test]
+    fn what_is_there_scores_best() {
+        let joint = joint();
+        let record = Record::new(&joint, Split::Time(0.7), Horizon::Steps);
+        let levels = record.input_levels();
+        let range = record.range(&levels, 20.0);
+        let base = fit(&record, &JointModel::integrator(8.0, 0.05), &range).unwrap().model;
+        let score = Score::of(&record, &base, &range).unwrap();
+        let of = |effect: &'static dyn Effect| {
+            score.directions(&base.with(Component::neutral(effect)), &range)
+        };
+        let (band, offset, load) = (of(&DeadBand), of(&InputOffset), of(&GravityLoad));
+        let both = band.share_with(&offset);
+        assert!(both > 0.8 && both <= 1.0, "{both}");
+        assert!(both > band.share_with(&load) && both > offset.share_with(&load));
+    }
+}
