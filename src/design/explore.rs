@@ -108,7 +108,8 @@ fn holds(
     const BEYOND: f64 = 1.1;
     let (low, high) = (low / BEYOND, (BEYOND * high).min(limits.largest));
     let ratio = (high / low).powf(1.0 / f64::from(count - 1));
-    let levels: Vec<f64> = (0..count).map(|k| two_digits(low * ratio.powf(k.into()))).collect();
+    let level = |k: u32| two_digits(low * ratio.powf(k.into())).min(limits.largest);
+    let levels: Vec<f64> = (0..count).map(level).collect();
     let top = levels.last().copied().unwrap_or(high);
     // Every other level on either side: an effect that is the same in both directions is found
     // twice as finely.
