@@ -165,7 +165,7 @@ mod tests {
             let side = levels.iter().map(|level| sign * level).filter(|level| *level > 0.0);
             let side: Vec<f64> = side.collect();
             let inside = side.iter().filter(|level| (0.2..0.8).contains(*level)).count();
-            assert!(inside >= 2 && side.iter().any(|level| *level > 0.8), "{side:?}");
+            assert!(inside >= 1 && side.iter().any(|level| *level > 0.8), "{side:?}");
         }
         // The joint moves at every level that lies above where it starts, and comes back.
         let output = stand.output(&suspects.models[1].model, &schedule);
