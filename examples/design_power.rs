@@ -48,6 +48,10 @@ struct Args {
     #[arg(long)]
     only: Option<String>,
 
+    /// Only joints that hide this effect
+    #[arg(long)]
+    hidden: Option<String>,
+
     /// How often each design is rehearsed
     #[arg(long, default_value_t = 40)]
     rehearsals: usize,
@@ -62,7 +66,10 @@ fn main() -> anyhow::Result<()> {
     let processors = thread::available_parallelism().map_or(1, usize::from);
     let seeds = args.first_seed..args.first_seed + args.joints;
     let only = args.only.as_deref();
-    let cases = cases(|pair| only.is_none_or(|only| pair.contains(&only)), seeds, args.rehearsals);
+    let hidden = args.hidden.as_deref();
+    let mut cases =
+        cases(|pair| only.is_none_or(|only| pair.contains(&only)), seeds, args.rehearsals);
+    cases.retain(|case| hidden.is_none_or(|hidden| case.hidden() == hidden));
     let judged = judged(&cases, args.threads.unwrap_or(processors).max(1))?;
     print!("{}", page(&judged));
     Ok(())

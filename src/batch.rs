@@ -308,7 +308,8 @@ pub fn suspect_joints(
     suspects.into_iter().map(|result| result.map(flat)).collect()
 }
 
-/// The shortest input that tells two suspects apart: see [`shortest`].
+/// The shortest input that tells two suspects apart: see [`shortest`]. `tried` is told the
+/// length of the inputs that come next, in seconds.
 ///
 /// # Errors
 /// [`DesignError`] where no input will do.
@@ -316,8 +317,9 @@ pub fn design_separation(
     suspects: &Suspects,
     stand: &Stand,
     limits: &Limits,
+    tried: impl Fn(f64) + Sync,
 ) -> Result<Design, DesignError> {
-    shortest(suspects, stand, limits, &Threads(&()))
+    shortest(suspects, stand, limits, &Threads(&()), &tried)
 }
 
 /// Fits the model of each joint and does `work` with it.

@@ -41,6 +41,11 @@ const RANGE: (f64, f64) = (-60.0, 60.0);
 /// Standard deviation of the measurement noise, in degrees.
 const NOISE: f64 = 0.05;
 
+/// The log shows no lack of fit, so that there is nothing to tell apart.
+#[derive(Debug, thiserror::Error)]
+#[error("nothing is suspected")]
+pub(crate) struct Unsuspected;
+
 /// What became of a joint.
 #[derive(Clone, Debug)]
 pub(crate) struct Outcome {
@@ -48,8 +53,10 @@ pub(crate) struct Outcome {
     pub(crate) known: bool,
     /// Whether the input is to tell what is hidden; not where the other effect can do the same.
     pub(crate) aimed: bool,
-    /// Length of the designed input.
+    /// Length of the designed input, and of those before that explore.
     pub(crate) duration_s: f64,
+    /// Lengths of the inputs that explore.
+    pub(crate) explored_s: Vec<f64>,
     /// The power that was expected.
     pub(crate) power: f64,
     /// Whether the designed input told them apart.
@@ -80,12 +87,14 @@ impl fmt::Display for Judged {
         write!(f, "{} of {one} and {other}, seed {seed}: ", self.case.hidden())?;
         match &self.outcome {
             Err(error) => write!(f, "{error:#}"),
-            Ok(Outcome { duration_s, power, designed, random, said, aimed, .. }) => {
+            Ok(outcome) => {
+                let Outcome { duration_s, explored_s, power, designed, .. } = outcome;
+                let Outcome { random, said, aimed, .. } = outcome;
                 let random = random.map(|told| told.map_or("-", |t| if t { "yes" } else { "no" }));
                 write!(
                     f,
-                    "{duration_s:.1} s, power {power:.3} (aimed {aimed}): told {designed}, random \
-                     {}; {said}",
+                    "{duration_s:.1} s ({explored_s:.1?} of it exploring), power {power:.3} (aimed \
+                     {aimed}): told {designed}, random {}; {said}",
                     random.join(" ")
                 )
             }
@@ -93,26 +102,38 @@ impl fmt::Display for Judged {
     }
 }
 
+/// Inputs that explore before one that is to tell, at most.
+const EXPLORATIONS: usize = 2;
+
 /// What becomes of `case`.
 pub(crate) fn examine(case: &Case) -> anyhow::Result<Outcome> {
     let hidden = [case.hidden()];
     let mut plant = Scenario::new(&hidden, Strength::Clear, Noise::white(NOISE), case.seed)?.plant;
     plant.joints.truncate(1);
     let levels = shorten(&mut plant)?;
-    let log = simulate(&plant)?.joints.remove(0);
+    let mut log = simulate(&plant)?.joints.remove(0);
     let first = explained(&log, case)?;
     if first.verdict == Verdict::Adequate {
-        bail!("nothing is suspected");
+        return Err(Unsuspected.into());
     }
     let stand = stand(&log)?;
     let suspects = suspects(&log, case)?;
     let largest = levels.iter().fold(0.0, |most: f64, level| most.max(level.abs()));
     let rehearsals = case.rehearsals;
     let limits = Limits { largest, hold_s: None, longest_s: 60.0, power: 0.95, rehearsals };
-    let design = design_separation(&suspects, &stand, &limits)?;
+    let mut design = design_separation(&suspects, &stand, &limits, |_| ())?;
+    let mut explored_s = Vec::new();
+    while !design.explores.is_empty() && explored_s.len() < EXPLORATIONS {
+        explored_s.push(design.schedule.duration_s());
+        // What is found out is known of the next one.
+        let seed = 3000 + explored_s.len() as u64;
+        log.trials.extend(played(&plant, &design.schedule, seed)?.trials);
+        design = design_separation(&self::suspects(&log, case)?, &stand, &limits, |_| ())?;
+    }
     let after = explained(&played(&plant, &design.schedule, 1000)?, case)?;
+    let duration_s = design.schedule.duration_s() + explored_s.iter().sum::<f64>();
     let random = TIMES.map(|times| {
-        let duration_s = f64::from(times) * design.schedule.duration_s();
+        let duration_s = f64::from(times) * duration_s;
         let steps =
             RandomSteps { levels: levels.clone(), hold_s: (0.5, 3.0), duration_s, seed: case.seed };
         (duration_s <= LONGEST_S).then(|| by_chance(case, &plant, &steps, (&stand, &suspects)))
@@ -121,16 +142,10 @@ pub(crate) fn examine(case: &Case) -> anyhow::Result<Outcome> {
     for (told, random) in told.iter_mut().zip(random) {
         *told = random.transpose()?;
     }
-    Ok(outcome(case, &first, &design, &after, told))
+    Ok(Outcome { random: told, duration_s, explored_s, ..outcome(case, &first, &design, &after) })
 }
 
-fn outcome(
-    case: &Case,
-    first: &Explanation,
-    design: &Design,
-    after: &Explanation,
-    random: [Option<bool>; TIMES.len()],
-) -> Outcome {
+fn outcome(case: &Case, first: &Explanation, design: &Design, after: &Explanation) -> Outcome {
     // What the log excludes wrongly counts: it will not be told.
     let aimed = design.sides.get(case.truth).is_some_and(|side| side.is_told || side.is_excluded);
     let ranking = after
@@ -143,7 +158,8 @@ fn outcome(
         duration_s: design.schedule.duration_s(),
         power: design.power(),
         designed: is_told(after, case),
-        random,
+        explored_s: Vec::new(),
+        random: [None; TIMES.len()],
         said: format!(
             "{:?} rehearsed, {:?} {:?} {:?}, {:?} {}",
             design.sides.map(|side| side.rehearsal.map(|found| (found.told, found.of))),

@@ -50,6 +50,11 @@ impl Bar {
         Self::new(verbosity, what, "", 0)
     }
 
+    /// Says what is being done.
+    pub(super) fn say(&self, what: String) {
+        self.0.set_message(what);
+    }
+
     /// One step is done.
     pub(super) fn step(&self) {
         self.0.inc(1);

@@ -5,7 +5,9 @@ use std::path::Path;
 use tauscope::delay::Settings;
 use tauscope::delay::sweep::Grid;
 use tauscope::experiment::{ReadOptions, Source};
-use tauscope::report::{ComparedJoint, EstimatedJoint, ImprovedJoint, ReportedSweep};
+use tauscope::report::{
+    ComparedJoint, DesignedJoint, EstimatedJoint, ImprovedJoint, ReportedSweep,
+};
 
 use super::message;
 use super::output::{OutputFile, write_file};
@@ -108,6 +110,36 @@ impl SweepContents<'_> {
     }
 }
 
+/// What is to be played, to be recorded before it is.
+#[derive(Clone, Copy)]
+#[cfg_attr(not(feature = "rrd"), expect(dead_code, reason = "there is no recording then"))]
+pub(super) struct PreviewContents<'a> {
+    pub(super) joints: &'a [DesignedJoint],
+    pub(super) sources: &'a [Source],
+    pub(super) reading: &'a ReadOptions,
+    pub(super) model: Option<&'a Path>,
+}
+
+impl PreviewContents<'_> {
+    /// Writes the recording to `path` and says how to look at it.
+    pub(super) fn record(&self, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
+        record(path, verbosity, |file| self.write(file))
+    }
+
+    #[cfg(feature = "rrd")]
+    fn write(&self, file: &mut OutputFile) -> anyhow::Result<()> {
+        let Self { joints, sources, reading, model } = *self;
+        let preview = tauscope::recording::PreviewRecording { joints, sources, reading, model };
+        Ok(tauscope::recording::write_preview(&preview, file)?)
+    }
+
+    #[cfg(not(feature = "rrd"))]
+    #[expect(clippy::unused_self, reason = "with recordings it is used")]
+    fn write(&self, _: &mut OutputFile) -> anyhow::Result<()> {
+        Err(left_out())
+    }
+}
+
 /// Writes a recording to `path` and says how to look at it.
 fn record(
     path: &Path,
@@ -123,6 +155,18 @@ fn record(
         message("recording", &format!("{path}; look at it with: rerun {path}"));
     }
     Ok(())
+}
+
+/// Says before the work is done whether its recording can be written.
+#[cfg(feature = "rrd")]
+#[expect(clippy::unnecessary_wraps, reason = "without recordings it fails")]
+pub(super) fn recordings_are_there() -> anyhow::Result<()> {
+    Ok(())
+}
+
+#[cfg(not(feature = "rrd"))]
+pub(super) fn recordings_are_there() -> anyhow::Result<()> {
+    Err(left_out())
 }
 
 #[cfg(not(feature = "rrd"))]

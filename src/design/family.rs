@@ -16,6 +16,8 @@ pub enum Order {
     Pattern(Pattern),
     /// Random levels with random holds.
     Random,
+    /// All levels at which an effect may switch: see [`Design::explores`](super::Design).
+    Exploring,
 }
 
 /// An input that is tried, as long as it may become.
@@ -53,7 +55,7 @@ pub(super) fn families(suspects: &Suspects, stand: &Stand, limits: &Limits) -> V
 
 /// Holds that are worth a trial: from the time in which the joint responds to that in which a
 /// fit starts anew.
-fn holds_s(suspects: &Suspects, stand: &Stand, limits: &Limits) -> Vec<f64> {
+pub(super) fn holds_s(suspects: &Suspects, stand: &Stand, limits: &Limits) -> Vec<f64> {
     const WINDOW: f64 = 200.0;
     const COUNT: i32 = 5;
     let period_s = stand.period.seconds();
@@ -143,7 +145,7 @@ fn random(
 }
 
 /// Holds of `schedule` until the joint may leave its range, whichever suspect is there.
-fn kept(schedule: &Schedule, suspects: &Suspects, stand: &Stand) -> usize {
+pub(super) fn kept(schedule: &Schedule, suspects: &Suspects, stand: &Stand) -> usize {
     let Some(range) = stand.range else { return schedule.holds().len() };
     let until = suspects.models.iter().filter_map(|uncertain| {
         let predicted = stand.prediction(uncertain, schedule);

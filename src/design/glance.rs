@@ -105,7 +105,7 @@ fn moved(model: &JointModel, place: usize) -> JointModel {
 }
 
 /// Borders of the windows of the first `count` holds.
-fn windows(schedule: &Schedule, count: usize) -> Vec<(usize, usize)> {
+pub(super) fn windows(schedule: &Schedule, count: usize) -> Vec<(usize, usize)> {
     let mut windows = Vec::new();
     let mut start = 0;
     for hold in schedule.holds().iter().take(count) {
@@ -118,7 +118,7 @@ fn windows(schedule: &Schedule, count: usize) -> Vec<(usize, usize)> {
 }
 
 /// `values` in windows, each without its mean: a fit starts anew there.
-fn centred(values: &[f64], windows: &[(usize, usize)]) -> Vec<f64> {
+pub(super) fn centred(values: &[f64], windows: &[(usize, usize)]) -> Vec<f64> {
     let window = |(start, end): &(usize, usize)| {
         let part = values.get(*start..*end).unwrap_or_default();
         let mean = part.iter().sum::<f64>() / part.len().max(1) as f64;

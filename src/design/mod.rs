@@ -9,7 +9,9 @@
 //! An input is good where the best fit of the wrong model is far from what the right one does
 //! (T-optimality; Atkinson and Fedorov 1975): see [`Expected`].
 
+mod difference;
 mod distance;
+mod explore;
 mod family;
 mod glance;
 mod glances;
@@ -24,6 +26,8 @@ mod schedule;
 mod search;
 mod suspects;
 
+pub use difference::{Apart, HoldApart, apart};
+pub use explore::Open;
 pub use family::Order;
 pub use levels::{Band, default_hold_s, default_largest, default_levels};
 pub use power::{Distance, Expected};

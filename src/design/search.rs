@@ -1,11 +1,12 @@
 //! The shortest input that tells two suspects apart.
 
 use super::distance::expected;
+use super::explore::{Open, exploring, open};
 use super::family::{Family, Order, families};
 use super::glances::Glances;
 use super::power::Expected;
 use super::predict::Stand;
-use super::rehearsal::{Rehearsal, rehearse};
+use super::rehearsal::{Rehearsal, Rehearsed, rehearse};
 use super::schedule::Schedule;
 use super::suspects::Suspects;
 use crate::explain::Workers;
@@ -48,6 +49,10 @@ pub struct Design {
     pub schedule: Schedule,
     /// What it tells where the first suspect is there, and where the second.
     pub sides: [Side; 2],
+    /// The levels that it is to find, where it explores: no input passed, and what is known
+    /// leaves these open. The input that tells the two is designed from what it shows. Empty
+    /// where it is itself to tell them.
+    pub explores: Vec<Open>,
 }
 
 /// Why there is no such input.
@@ -84,7 +89,10 @@ pub enum DesignError {
 /// are judged with every model at its best fit, and the best of these is rehearsed, until one
 /// passes. Whatever a glance took for better than it is comes later in the queue, and numbers
 /// at which a rehearsal failed are looked at from then on. A suspect that the other can
-/// imitate in whatever input, as one that it contains, is left out of it.
+/// imitate in whatever input, as one that it contains, is left out of it. Where none passes and
+/// it is open at which levels the effects switch, the input is one that explores.
+///
+/// `tried` is told the length of the inputs that come next, in seconds.
 ///
 /// # Errors
 /// [`DesignError`] where no input will do.
@@ -93,11 +101,12 @@ pub fn shortest(
     stand: &Stand,
     limits: &Limits,
     workers: &impl Workers,
+    tried: &(dyn Fn(f64) + Sync),
 ) -> Result<Design, DesignError> {
     let mut lessons = Lessons::default();
     let field = |part: f64| {
         let longest_s = part * limits.longest_s;
-        Field { suspects, stand, limits: Limits { longest_s, ..*limits } }
+        Field { suspects, stand, limits: Limits { longest_s, ..*limits }, tried }
     };
     let aims = suspects.excluded.map(|excluded| !excluded);
     let mut queue = Vec::new();
@@ -122,6 +131,9 @@ pub fn shortest(
         if let Some(design) = found {
             return Ok(design);
         }
+    }
+    if let Some(design) = field(1.0).exploring(aims, &lessons, workers) {
+        return Ok(design);
     }
     let Lessons { second, power: best, .. } = lessons;
     // Its power will do, and how its rehearsals went is told.
@@ -171,6 +183,7 @@ struct Field<'a> {
     suspects: &'a Suspects,
     stand: &'a Stand,
     limits: Limits,
+    tried: &'a (dyn Fn(f64) + Sync),
 }
 
 impl Field<'_> {
@@ -230,6 +243,7 @@ impl Field<'_> {
         };
         let mut length_s = queue.iter().filter_map(least).min_by(f64::total_cmp)?.max(from_s);
         while length_s <= self.limits.longest_s * LONGER {
+            (self.tried)(length_s.min(self.limits.longest_s));
             for _ in 0..TRIALS {
                 let Some((place, design)) =
                     self.best_of_length(queue, aims, length_s, lessons, workers)
@@ -319,12 +333,13 @@ impl Field<'_> {
             rehearsal: None,
         };
         let sides = [side(*one, 0), side(*other, 1)];
-        let design = Design { order, schedule, sides };
+        let design = Design { order, schedule, sides, explores: Vec::new() };
         let hard = hard.iter().map(Expected::margin).fold(f64::INFINITY, f64::min);
         Some((design.margin().min(hard), design))
     }
 
-    /// `design`, which is that at `place`, with its rehearsals, as long as they go well.
+    /// `design`, which is that at `place`, with its rehearsals, as long as they go well: once to
+    /// see whether it may do, and once more to be sure.
     fn rehearsed(
         &self,
         mut design: Design,
@@ -336,12 +351,13 @@ impl Field<'_> {
         /// Numbers of a suspect that are looked at, at most.
         const HARD: usize = 6;
         let aims = [0, 1].map(|truth| design.sides.get(truth).is_some_and(|side| side.is_told));
-        let count = (self.limits.rehearsals, self.limits.failures(), lessons.attempts);
-        let at = (self.stand, &design.schedule);
-        let found = rehearse(self.suspects, aims, at, count, workers);
-        lessons.attempts += 1;
-        for (side, rehearsal) in design.sides.iter_mut().zip(found.sides) {
-            side.rehearsal = rehearsal;
+        let mut found = self.rehearsal(&design, aims, lessons, workers);
+        design.take(found.sides);
+        if design.passes(&self.limits) {
+            // Of many inputs that are rehearsed the first to pass may have been lucky: it is
+            // judged by rehearsals that had no part in its choice.
+            found = self.rehearsal(&design, aims, lessons, workers);
+            design.take(found.sides);
         }
         if design.passes(&self.limits) {
             return design;
@@ -361,6 +377,34 @@ impl Field<'_> {
     }
 }
 
+impl Field<'_> {
+    /// An input that explores, where there is something to find.
+    fn exploring(
+        &self,
+        aims: [bool; 2],
+        lessons: &Lessons,
+        workers: &impl Workers,
+    ) -> Option<Design> {
+        let explores = open(self.suspects, aims, self.limits.largest);
+        let schedule = exploring(self.suspects, self.stand, &self.limits, &explores)?;
+        let (_, design) = self.judged(aims, Order::Exploring, schedule, lessons, workers)?;
+        Some(Design { explores, ..design })
+    }
+
+    /// Rehearsals of `design` that no other input had.
+    fn rehearsal(
+        &self,
+        design: &Design,
+        aims: [bool; 2],
+        lessons: &mut Lessons,
+        workers: &impl Workers,
+    ) -> Rehearsed {
+        let count = (self.limits.rehearsals, self.limits.failures(), lessons.attempts);
+        lessons.attempts += 1;
+        rehearse(self.suspects, aims, (self.stand, &design.schedule), count, workers)
+    }
+}
+
 impl Entry {
     /// Takes `margin` for that of its first `count` holds, where it looked better.
     fn take_as(&mut self, margin: f64, aims: [bool; 2], count: usize) {
@@ -374,6 +418,13 @@ impl Design {
     pub fn power(&self) -> f64 {
         let told = self.sides.iter().filter(|side| side.is_told);
         told.map(|side| side.expected.power()).fold(1.0, f64::min)
+    }
+
+    /// Takes what became of its rehearsals.
+    fn take(&mut self, found: [Option<Rehearsal>; 2]) {
+        for (side, rehearsal) in self.sides.iter_mut().zip(found) {
+            side.rehearsal = rehearsal;
+        }
     }
 
     /// By how many standard deviations it is on the safe side with all of them.

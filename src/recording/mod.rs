@@ -9,7 +9,7 @@
 //! Inside, `layout` says where samples, trials and decisions lie on the timelines, `chunk`
 //! makes columns of rows with reproducible ids, `signals`, `decisions`, `verdict`,
 //! `segment_view`, `beside`, `overview`, `delay_state`, `model`, `revision` and `about` are one part of
-//! the content each, `sweep` is a recording of another kind, `content` what both are to
+//! the content each, `sweep` and `preview` are recordings of other kinds, `content` what all are to
 //! `write`, which brings them into a file or a stream, and to `live`, which shows them to a
 //! viewer while they grow; `blueprint` says which view shows what.
 
@@ -31,6 +31,7 @@ mod message;
 mod model;
 mod overview;
 mod palette;
+mod preview;
 mod revision;
 mod rows;
 mod scatter;
@@ -49,8 +50,9 @@ pub use beside::Beside;
 pub use error::RecordError;
 pub use layout::Detail;
 pub use live::Live;
+pub use preview::PreviewRecording;
 pub use sweep::SweepRecording;
-pub use write::{log_recording, write_recording, write_sweep};
+pub use write::{log_recording, write_preview, write_recording, write_sweep};
 
 /// Everything that a recording holds.
 #[derive(Clone, Copy, Debug)]

@@ -16,8 +16,8 @@ use super::error::RecordError;
 use super::layout::{JointLayout, TrialStarts};
 use super::message::{chunk_message, store_message};
 use super::{
-    Recording, SweepRecording, about, blueprint, decisions, delay_state, model, overview, revision,
-    segment_view, signals, verdict,
+    PreviewRecording, Recording, SweepRecording, about, blueprint, decisions, delay_state, model,
+    overview, revision, segment_view, signals, verdict,
 };
 use crate::report::EstimatedJoint;
 
@@ -41,6 +41,14 @@ pub fn write_recording(recording: &Recording<'_>, out: impl Write) -> Result<(),
 /// As [`write_recording`].
 pub fn write_sweep(sweep: &SweepRecording<'_>, out: impl Write) -> Result<(), RecordError> {
     write(sweep, out)
+}
+
+/// The same with what is to be played, before it is.
+///
+/// # Errors
+/// As [`write_recording`].
+pub fn write_preview(preview: &PreviewRecording<'_>, out: impl Write) -> Result<(), RecordError> {
+    write(preview, out)
 }
 
 fn write(content: &dyn Content, out: impl Write) -> Result<(), RecordError> {

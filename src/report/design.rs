@@ -1,15 +1,12 @@
-//! The next experiment: what is to be played, what is expected of it, and as JSON and CSV.
+//! The next experiment: what is to be played and what is expected of it, as JSON and CSV.
 
 use std::io::Write;
 
-use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use serde::Serialize;
 
 use super::decisions::tidy_seconds;
-use super::number::{measure, rounded};
-use super::words::filled;
 use crate::design::{
-    Design, Expected, Hold, Order, Prediction, Rehearsal, Schedule, Side, Stand, transitions,
+    Design, Expected, Hold, Open, Order, Prediction, Rehearsal, Schedule, Side, Stand, transitions,
 };
 use crate::explain::Pattern;
 
@@ -39,8 +36,22 @@ pub struct Told {
     pub wanted: f64,
     /// Standard deviation of the noise, output units.
     pub noise: f64,
-    /// What the joint will do where the second suspect is there, output units.
-    pub other: Vec<f64>,
+    /// What the joint will do where the second suspect is there.
+    pub other: Prediction,
+}
+
+impl DesignedJoint {
+    /// What the joint is expected to do, by name: that of each suspect, or `model`; nothing
+    /// where no model says so.
+    pub fn expected(&self) -> Vec<(&str, &Prediction)> {
+        let Some(prediction) = &self.prediction else { return Vec::new() };
+        match &self.told {
+            Some(Told { ids: [one, other], other: second, .. }) => {
+                vec![(one, prediction), (other, second)]
+            }
+            None => vec![("model", prediction)],
+        }
+    }
 }
 
 /// The document of `design --format json`, schema `tauscope/design/1`.
@@ -87,10 +98,10 @@ struct PredictedJson {
 }
 
 #[derive(Debug, Serialize)]
-struct HoldJson {
+pub(super) struct HoldJson {
     start_s: f64,
-    level: f64,
-    hold_s: f64,
+    pub(super) level: f64,
+    pub(super) hold_s: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -100,7 +111,17 @@ struct ToldJson {
     noise: f64,
     power_wanted: f64,
     power: f64,
+    explores: Vec<OpenJson>,
     if_there: Vec<SideJson>,
+}
+
+/// What an input that explores is to find.
+#[derive(Debug, Serialize)]
+struct OpenJson {
+    effect: &'static str,
+    parameter: &'static str,
+    low: f64,
+    high: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -156,12 +177,12 @@ fn predicted(joint: &DesignedJoint, prediction: &Prediction) -> PredictedJson {
     PredictedJson { low, high, largest_margin, kept_until_s: kept_until_s(joint, prediction) }
 }
 
-fn kept_until_s(joint: &DesignedJoint, prediction: &Prediction) -> Option<f64> {
+pub(super) fn kept_until_s(joint: &DesignedJoint, prediction: &Prediction) -> Option<f64> {
     let sample = prediction.kept_until(joint.stand.range?)?;
     Some(sample as f64 * joint.schedule.period().seconds())
 }
 
-fn holds(schedule: &Schedule) -> Vec<HoldJson> {
+pub(super) fn holds(schedule: &Schedule) -> Vec<HoldJson> {
     let period_s = schedule.period().seconds();
     let hold = |start: &mut usize, hold: &Hold| {
         let start_s = tidy_seconds(*start as f64 * period_s);
@@ -182,8 +203,15 @@ impl ToldJson {
             noise: *noise,
             power_wanted: *wanted,
             power: design.power(),
+            explores: design.explores.iter().map(OpenJson::new).collect(),
             if_there: sides.map(|(effect, side)| SideJson::new(effect, side)).collect(),
         }
+    }
+}
+
+impl OpenJson {
+    fn new(Open { effect, parameter, low, high }: &Open) -> Self {
+        Self { effect, parameter, low: *low, high: *high }
     }
 }
 
@@ -206,162 +234,14 @@ impl SideJson {
     }
 }
 
-fn order(order: Order) -> &'static str {
+pub(super) fn order(order: Order) -> &'static str {
     match order {
         Order::Pattern(Pattern::Ladder) => "ladder",
         Order::Pattern(Pattern::Pulses) => "pulses",
         Order::Pattern(Pattern::Reversals) => "reversals",
         Order::Random => "random",
+        Order::Exploring => "exploring",
     }
-}
-
-/// What is to be played on each joint, and what is expected of it.
-pub fn design_text(joints: &[DesignedJoint]) -> String {
-    joints.iter().map(joint_text).collect::<Vec<_>>().join("\n\n") + "\n"
-}
-
-fn joint_text(joint: &DesignedJoint) -> String {
-    let mut parts = vec![filled(&headline(joint))];
-    parts.extend(joint.told.as_ref().map(|told| side_table(told).to_string()));
-    let mut sentences = Vec::new();
-    sentences.extend(joint.told.as_ref().map(|told| explanation(joint, told)));
-    sentences.extend(joint.prediction.as_ref().map(|prediction| foreseen(joint, prediction)));
-    sentences.extend(joint.notes.iter().cloned());
-    if !sentences.is_empty() {
-        parts.push(filled(&sentences.join(" ")));
-    }
-    parts.push(filled(&level_by_level(joint)));
-    parts.join("\n\n")
-}
-
-/// What is played, in a sentence.
-fn headline(joint: &DesignedJoint) -> String {
-    let DesignedJoint { stand, schedule, .. } = joint;
-    let unit = stand.input_unit.as_deref();
-    let levels = listed(&schedule.levels(), unit);
-    let (hold, steps) = (hold_text(schedule), schedule.steps());
-    let duration = measure(schedule.duration_s(), Some("s"));
-    let name = &stand.name;
-    if let Some(Told { ids: [one, other], design, .. }) = &joint.told {
-        let order = order(design.order);
-        return format!(
-            "{name}: {duration} tell {one} from {other}: {order} of {levels}, each held for \
-             {hold}, {steps} steps."
-        );
-    }
-    let (least, most) = transitions(schedule);
-    format!(
-        "{name}: random steps of {levels}, each held for {hold}: {steps} steps in {duration}, from \
-         each level to each other {least} to {most} times."
-    )
-}
-
-fn hold_text(schedule: &Schedule) -> String {
-    let (shortest, longest) = schedule.hold_range_s();
-    let (shortest, longest) = (rounded(shortest), measure(longest, Some("s")));
-    if longest.trim_end_matches(" s") == shortest {
-        return longest;
-    }
-    format!("{shortest} to {longest}")
-}
-
-fn listed(levels: &[f64], unit: Option<&str>) -> String {
-    let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
-    let all: Vec<String> = levels.iter().map(|level| rounded(*level)).collect();
-    match all.as_slice() {
-        [before @ .., last] if !before.is_empty() => {
-            format!("{} and {last}{unit}", before.join(", "))
-        }
-        _ => format!("{}{unit}", all.concat()),
-    }
-}
-
-/// A row for each suspect.
-fn side_table(told: &Told) -> Table {
-    let mut table = Table::new();
-    table
-        .load_style(presets::UTF8_BORDERS_ONLY)
-        .set_content_arrangement(ContentArrangement::Disabled)
-        .set_header(["if it is", "expected power", "rehearsed", "other", "neither"]);
-    for (id, side) in told.ids.iter().zip(&told.design.sides) {
-        let Expected { rival, neither, .. } = side.expected;
-        let power = if side.is_told { format!("{:.3}", side.expected.power()) } else { "-".into() };
-        let rehearsed = side.rehearsal.map_or_else(
-            || "-".to_owned(),
-            |Rehearsal { told, of }| format!("{told} of {of} told"),
-        );
-        let far = |noncentrality: f64| format!("λ = {}", rounded(noncentrality));
-        let (rival, neither) = (far(rival.noncentrality()), far(neither.noncentrality()));
-        table.add_row([(*id).to_owned(), power, rehearsed, rival, neither]);
-    }
-    for right in 1..5 {
-        if let Some(column) = table.column_mut(right) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-    table
-}
-
-/// What the figures are about.
-fn explanation(joint: &DesignedJoint, told: &Told) -> String {
-    let Told { ids, design, wanted, noise, .. } = told;
-    let noise = measure(*noise, joint.stand.output_unit.as_deref());
-    let mut sentences = vec![format!(
-        "Power: the probability that explain names the effect that is there and excludes the \
-         other, with noise of {noise}; {wanted} was wanted. λ: squared distance to the best fit \
-         with the other effect and with neither, in variances of the noise."
-    )];
-    for (place, side) in design.sides.iter().enumerate().filter(|(_, side)| !side.is_told) {
-        let (is, other) = (ids.get(place), ids.get(1 - place));
-        if let (Some(is), Some(other), true) = (is, other, side.is_excluded) {
-            sentences.push(format!(
-                "The log speaks against {is} already: the input is made for the case that it is \
-                 {other}."
-            ));
-        } else if let (Some(is), Some(other)) = (is, other) {
-            let lambda = rounded(side.expected.rival.noncentrality());
-            sentences.push(format!(
-                "If it is {is}, {other} can do the same (λ = {lambda}), and stays possible \
-                 whatever is played."
-            ));
-        }
-    }
-    sentences.join(" ")
-}
-
-/// Where the joint will be.
-fn foreseen(joint: &DesignedJoint, prediction: &Prediction) -> String {
-    let unit = joint.stand.output_unit.as_deref();
-    let (low, high) = prediction.extent();
-    let margin = measure(prediction.largest_margin(), unit);
-    let start = measure(joint.stand.start, unit);
-    let from = format!(
-        "From {start} the joint is expected within {} to {}, a margin of up to {margin} \
-         (two standard deviations) included.",
-        rounded(low),
-        measure(high, unit)
-    );
-    match (joint.stand.range, kept_until_s(joint, prediction)) {
-        (Some(_), Some(until)) => format!(
-            "{from} After {} the model cannot promise that it stays in its range.",
-            measure(until, Some("s"))
-        ),
-        _ => from,
-    }
-}
-
-/// `0 V for 0.55 s, 1 V for 1 s, …`, as far as anybody reads it.
-fn level_by_level(joint: &DesignedJoint) -> String {
-    const SHOWN: usize = 24;
-    let holds = holds(&joint.schedule);
-    let unit = joint.stand.input_unit.as_deref();
-    let shown = holds.iter().take(SHOWN);
-    let shown = shown.map(|h| format!("{} for {} s", measure(h.level, unit), rounded(h.hold_s)));
-    let more = match holds.len().saturating_sub(SHOWN) {
-        0 => String::new(),
-        more => format!(", and {more} more"),
-    };
-    format!("Input: {}{more}.", shown.collect::<Vec<_>>().join(", "))
 }
 
 /// Writes `time_s,<joint>.input…` as CSV, to be played. A joint whose input ends before that of
@@ -396,7 +276,7 @@ pub fn write_preview(joints: &[DesignedJoint], out: impl Write) -> csv::Result<(
         add("high", with(1.0), f64::NAN);
         if let Some(Told { ids: [one, other], other: outputs, .. }) = &joint.told {
             add(one, output.clone(), f64::NAN);
-            add(other, outputs.clone(), f64::NAN);
+            add(other, outputs.output.clone(), f64::NAN);
         }
     }
     write_columns(joints, &columns, out)

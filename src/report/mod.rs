@@ -6,6 +6,7 @@ mod compare;
 mod decisions;
 mod delays;
 mod design;
+mod design_words;
 mod equation;
 mod explain;
 mod finding;
@@ -36,13 +37,14 @@ pub use decisions::{
     write_decisions,
 };
 pub use delays::{delay_table, write_delays};
-pub use design::{DesignJson, DesignedJoint, Told, design_text, write_input, write_preview};
+pub use design::{DesignJson, DesignedJoint, Told, write_input, write_preview};
+pub use design_words::{SIDE_HEADER, design_sentences, design_text, side_rows};
 pub use explain::{ExplainJson, explain_text};
 pub use finding::Finding;
 pub use folder::{FolderJson, FolderReport, LogResult};
 pub use improve::{ImproveJson, ImprovedJoint, change_in_words, improve_text, revision_line};
 pub use json::EstimateJson;
-pub use number::number;
+pub use number::{measure, number};
 pub use page::{Document, Markdown, PlotError, RecordingFile, Report, ReportJson, report_text};
 #[cfg(feature = "rrd")]
 pub(crate) use settings::settings_rows;

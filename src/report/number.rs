@@ -42,8 +42,8 @@ pub(super) fn with_unit(value: f64, unit: Option<&str>) -> String {
     format!("{}{unit}", number(value))
 }
 
-/// The same to three digits.
-pub(super) fn measure(value: f64, unit: Option<&str>) -> String {
+/// A number to three digits, with its unit where there is one.
+pub fn measure(value: f64, unit: Option<&str>) -> String {
     let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
     format!("{}{unit}", rounded(value))
 }

@@ -10,11 +10,13 @@ use std::path::{Path, PathBuf};
 use anyhow::anyhow;
 use clap::Args as ClapArgs;
 use tauscope::batch::with_threads;
+use tauscope::experiment::ReadOptions;
 use tauscope::report::{DesignJson, DesignedJoint, design_text, write_input, write_preview};
 
 use super::fitting::{Format, print};
 use super::output::{check_outputs, write_file};
 use super::progress::{Bar, Verbosity};
+use super::record::{PreviewContents, recordings_are_there};
 use super::terminal::message;
 use super::{Completion, read_failures};
 
@@ -143,8 +145,9 @@ pub(super) struct Args {
     #[arg(short, long, value_name = "INPUT.csv", help_heading = "Output")]
     output: Option<PathBuf>,
 
-    /// Where the input goes with what the model expects
-    #[arg(long, value_name = "FILE.csv", help_heading = "Output")]
+    /// Where the input goes with what is expected of it: a table (.csv), or a recording for the
+    /// Rerun viewer (.rrd)
+    #[arg(long, value_name = "FILE.csv|FILE.rrd", help_heading = "Output")]
     preview: Option<PathBuf>,
 
     /// How results are printed
@@ -165,6 +168,19 @@ impl Args {
         if self.quiet { Verbosity::Quiet } else { Verbosity::Normal }
     }
 
+    /// Writes the preview recording to `path`.
+    fn record(&self, desk: &Desk, joints: &[DesignedJoint], path: &Path) -> anyhow::Result<()> {
+        let usual = ReadOptions::default();
+        let read = desk.experiment.as_ref();
+        let contents = PreviewContents {
+            joints,
+            sources: read.map_or(&[][..], |experiment| &experiment.sources),
+            reading: read.map_or(&usual, |experiment| &experiment.options),
+            model: self.model.as_deref(),
+        };
+        contents.record(path, self.verbosity())
+    }
+
     /// Says which file was written.
     fn tell(&self, kind: &str, path: &Path) {
         if !self.quiet {
@@ -177,16 +193,27 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     let outputs: Vec<_> = args.output.iter().chain(&args.preview).map(PathBuf::as_path).collect();
     let inputs = args.data.iter().chain(&args.model).filter_map(|path| path.canonicalize().ok());
     check_outputs(&outputs, &inputs.collect::<Vec<_>>())?;
-    let designed = with_threads(args.threads, || designed(args));
-    let (joints, failures) =
+    if args.preview.as_deref().is_some_and(is_recording) {
+        recordings_are_there()?;
+    }
+    let designed = with_threads(args.threads, || {
+        let desk = Desk::new(args)?;
+        let (joints, failures) = designed(args, &desk)?;
+        anyhow::Ok((desk, joints, failures))
+    });
+    let (desk, joints, failures) =
         designed.map_err(|error| anyhow!("threads cannot be started: {error}"))??;
     if let Some(path) = &args.output {
         write_file(path, |file| Ok(write_input(&joints, file)?))?;
         args.tell("input", path);
     }
-    if let Some(path) = &args.preview {
-        write_file(path, |file| Ok(write_preview(&joints, file)?))?;
-        args.tell("preview", path);
+    match args.preview.as_deref() {
+        Some(path) if is_recording(path) => args.record(&desk, &joints, path)?,
+        Some(path) => {
+            write_file(path, |file| Ok(write_preview(&joints, file)?))?;
+            args.tell("preview", path);
+        }
+        None => {}
     }
     print(
         args.format,
@@ -196,14 +223,18 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     )
 }
 
+/// Whether a preview of this name is a recording.
+fn is_recording(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("rrd"))
+}
+
 /// The inputs of all joints, and messages on those that have none.
-fn designed(args: &Args) -> anyhow::Result<(Vec<DesignedJoint>, Vec<String>)> {
-    let desk = Desk::new(args)?;
-    let _bar = Bar::spinner(args.verbosity(), "designing");
+fn designed(args: &Args, desk: &Desk) -> anyhow::Result<(Vec<DesignedJoint>, Vec<String>)> {
+    let bar = Bar::spinner(args.verbosity(), "designing");
     let results = if args.separate.is_empty() {
-        random::designed(args, &desk)
+        random::designed(args, desk)
     } else {
-        separate::designed(args, &desk)?
+        separate::designed(args, desk, &bar)?
     };
     let mut failures = desk.experiment.as_ref().map(read_failures).unwrap_or_default();
     let mut joints = Vec::new();

@@ -13,6 +13,7 @@ use tauscope::report::{DesignedJoint, Told};
 use super::Args;
 use super::desk::{Desk, PROTOCOL, extent, largest};
 use crate::cli::fitting::find;
+use crate::cli::progress::Bar;
 use crate::cli::with_causes;
 
 /// Longest input that is tried where no other is given.
@@ -25,6 +26,7 @@ const LOG_S: f64 = 60.0;
 pub(super) fn designed(
     args: &Args,
     desk: &Desk,
+    bar: &Bar,
 ) -> anyhow::Result<Vec<anyhow::Result<DesignedJoint>>> {
     let effects = effects(args, desk)?;
     let suspected = match desk.estimated() {
@@ -44,7 +46,7 @@ pub(super) fn designed(
             Some(None) => bail!("it has no model"),
             None => of_model(args, desk, &stand, effects)?,
         };
-        told(args, desk, stand, &suspects)
+        told(args, desk, stand, &suspects, bar)
     };
     Ok(desk.names.iter().map(one).collect())
 }
@@ -132,6 +134,7 @@ fn told(
     desk: &Desk,
     stand: Stand,
     suspects: &Suspects,
+    bar: &Bar,
 ) -> anyhow::Result<DesignedJoint> {
     let [one, other] = &suspects.models;
     let logged = desk.joint(&stand.name).map(largest).filter(|largest| *largest > 0.0);
@@ -143,21 +146,36 @@ fn told(
         power: args.power,
         rehearsals: args.rehearsals,
     };
-    let design = design_separation(suspects, &stand, &limits)?;
+    let (name, longest_s) = (&stand.name, limits.longest_s);
+    let tried = |seconds: f64| {
+        bar.say(format!(
+            "designing for {name}: inputs of {seconds:.1} s, of {longest_s} s at most"
+        ));
+    };
+    let design = design_separation(suspects, &stand, &limits, tried)?;
     let schedule = design.schedule.clone();
     let prediction = Some(stand.prediction(one, &schedule));
-    let other = stand.output(&other.model, &schedule);
+    let other = stand.prediction(other, &schedule);
     let (ids, noise, wanted) = (suspects.ids(), suspects.noise, args.power);
-    let next = format!(
-        "Play it, and ask: tauscope explain LOG.csv --effects {}; with --model, of a model that \
-         has neither.",
-        ids.join(",")
-    );
-    let doubt = (!design.passes(&limits)).then(|| {
-        "Fewer rehearsals went well than were wanted: what is known of the two leaves it open \
-         whether this input will do; a log that shows them better, or larger levels, may help."
-            .to_owned()
-    });
+    let effects = ids.join(",");
+    let (doubt, next) = if design.explores.is_empty() {
+        let doubt = (!design.passes(&limits)).then(|| {
+            "Fewer rehearsals went well than were wanted: what is known of the two leaves it open \
+             whether this input will do; a log that shows them better, or larger levels, may help."
+                .to_owned()
+        });
+        let next = format!(
+            "Play it, and ask: tauscope explain LOG.csv --effects {effects}; with --model, of a \
+             model that has neither."
+        );
+        (doubt, next)
+    } else {
+        let next = format!(
+            "Play it, and design again from both logs: tauscope design LOG.csv PLAYED.csv \
+             --separate {effects}."
+        );
+        (None, next)
+    };
     let notes = doubt.into_iter().chain([next]).collect();
     let told = Some(Told { ids, design, wanted, noise, other });
     Ok(DesignedJoint { stand, schedule, prediction, told, notes })

@@ -2,6 +2,7 @@
 
 mod builder;
 mod joint;
+mod preview;
 mod sweep;
 
 use rerun::ApplicationId;
@@ -9,6 +10,7 @@ use rerun::external::re_sdk_types::blueprint::components::{ContainerKind, PlaySt
 use rerun::log::LogMsg;
 
 use self::builder::{Builder, View};
+pub(super) use self::preview::messages as preview_messages;
 pub(super) use self::sweep::messages as sweep_messages;
 use super::Recording;
 use super::error::RecordError;

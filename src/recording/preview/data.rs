@@ -1,0 +1,78 @@
+//! What a program reads: input, expected outputs and their difference, sample by sample.
+
+use rerun::components::InterpolationMode;
+use rerun::{EntityPath, Scalars, SeriesLines};
+
+use super::{Preview, unit_of};
+use crate::recording::chunk::Chunks;
+use crate::recording::entity::below;
+use crate::recording::error::RecordError;
+use crate::recording::palette::{self, Rgb, color, dimmed};
+
+/// How a signal is drawn in a plot over time.
+struct Style {
+    name: String,
+    rgb: Rgb,
+    width: f32,
+    mode: InterpolationMode,
+}
+
+impl Style {
+    fn line(name: String, rgb: Rgb) -> Self {
+        Self { name, rgb, width: 1.5, mode: InterpolationMode::Linear }
+    }
+}
+
+/// Adds all signals below `root`.
+pub(super) fn add(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    preview: &Preview<'_>,
+) -> Result<(), RecordError> {
+    let stand = &preview.joint.stand;
+    let input = format!("input{}", unit_of(stand.input_unit.as_deref()));
+    let held = Style { mode: InterpolationMode::StepAfter, ..Style::line(input, palette::INPUT) };
+    let entity = |parts: &[&str]| below(root, parts);
+    signal(chunks, preview, entity(&["input"]), held, &preview.joint.schedule.input())?;
+    let unit = unit_of(stand.output_unit.as_deref());
+    for expected in &preview.expected {
+        let name = expected.name;
+        let prediction = expected.prediction;
+        let with = |sign: f64| -> Vec<f64> {
+            let both = prediction.output.iter().zip(&prediction.margin);
+            both.map(|(output, margin)| output + sign * margin).collect()
+        };
+        for (part, sign) in [("low", -1.0), ("high", 1.0)] {
+            let edge = Style::line(format!("{name}, {part}{unit}"), dimmed(expected.rgb));
+            let edge = Style { width: 1.0, ..edge };
+            signal(chunks, preview, entity(&["expected", name, part]), edge, &with(sign))?;
+        }
+        let line = Style::line(format!("{name}{unit}"), expected.rgb);
+        let output = entity(&["expected", name, "output"]);
+        signal(chunks, preview, output, line, &prediction.output)?;
+    }
+    if let Some((low, high)) = stand.range {
+        for (part, value) in [("low", low), ("high", high)] {
+            let limit = Style::line(format!("range, {part}{unit}"), palette::REJECTED);
+            let all = vec![value; preview.joint.schedule.samples()];
+            signal(chunks, preview, entity(&["range", part]), limit, &all)?;
+        }
+    }
+    let Some(apart) = &preview.apart else { return Ok(()) };
+    let line = Style::line("difference over noise".to_owned(), palette::ERROR);
+    signal(chunks, preview, entity(&["apart"]), line, &apart.over_noise)
+}
+
+fn signal(
+    chunks: &mut Chunks,
+    preview: &Preview<'_>,
+    entity: EntityPath,
+    Style { name, rgb, width, mode }: Style,
+    values: &[f64],
+) -> Result<(), RecordError> {
+    let style = SeriesLines::new().with_names([name]).with_colors([color(rgb)]);
+    let style = style.with_widths([width]).with_interpolation_mode(mode);
+    chunks.push_static(entity.clone(), &style)?;
+    let scalars = Scalars::new(values.iter().copied());
+    chunks.push(entity, preview.samples(values.len()), scalars.columns_of_unit_batches()?)
+}

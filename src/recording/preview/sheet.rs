@@ -1,0 +1,265 @@
+//! The page of a joint: input, expected outputs with their margin, and their difference.
+
+use rerun::components::DrawOrder;
+use rerun::datatypes::Vec2D;
+use rerun::{Color, EntityPath, LineStrips2D};
+
+use super::{Expectation, Preview, unit_of};
+use crate::design::HoldApart;
+use crate::recording::canvas::{Labels, Plot, SHEET, Span, simplified, thinned};
+use crate::recording::chunk::Chunks;
+use crate::recording::entity::below;
+use crate::recording::error::RecordError;
+use crate::recording::palette::{self, Rgb, between, color};
+use crate::recording::rows::Rows;
+use crate::recording::sheet::{Sheet, put_texts, strips};
+use crate::report::{measure, number};
+
+/// Width and height of the sheet.
+pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1090.0);
+
+/// Entities of the page, from back to front.
+pub(in crate::recording) const PARTS: [&str; 11] = [
+    "band",
+    "grid",
+    "range",
+    "input",
+    "expected",
+    "apart",
+    "texts",
+    "legend",
+    "shares",
+    "here/frame",
+    "here/name",
+];
+
+/// Left and right ends of the plots: numbers stand on the left.
+const SIDES: (f32, f32) = (120.0, SHEET.0 - 30.0);
+
+/// How high above its plot a title stands.
+const TITLE: f32 = 34.0;
+
+/// What the viewer's ground is drawn in, behind the shade of a band.
+const GROUND: Rgb = (13, 16, 17);
+
+/// The plots of a page.
+struct Page<'p> {
+    preview: &'p Preview<'p>,
+    input: Plot,
+    output: Option<Plot>,
+    apart: Option<Plot>,
+}
+
+/// Draws the page below `root`.
+pub(super) fn add(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    preview: &Preview<'_>,
+) -> Result<(), RecordError> {
+    let root = below(root, &["sheet"]);
+    let page = Page::of(preview);
+    page.add_bands(chunks, &root)?;
+    page.sheet().push(chunks, &root)?;
+    page.add_lines(chunks, &root)?;
+    page.add_legend(chunks, &root)?;
+    page.add_shares(chunks, &root)?;
+    page.add_here(chunks, &root)
+}
+
+impl<'p> Page<'p> {
+    fn of(preview: &'p Preview<'p>) -> Self {
+        const MARGIN: f64 = 0.06;
+        /// The lowest row of the lowest plot.
+        const BOTTOM: f32 = 1010.0;
+        let schedule = &preview.joint.schedule;
+        let time = Span::new(0.0, schedule.duration_s());
+        let plot = |top: f32, bottom: f32, y: Span| Plot::within(SIDES, top..=bottom, time, y);
+        let levels = Span::around(schedule.levels().into_iter(), MARGIN);
+        if preview.expected.is_empty() {
+            return Self { preview, input: plot(90.0, BOTTOM, levels), output: None, apart: None };
+        }
+        let extents = preview.expected.iter().map(|expected| expected.prediction.extent());
+        let own = Span::around(extents.flat_map(|(low, high)| [low, high]), MARGIN);
+        // A limit that is far off would flatten the curves.
+        let height = own.high - own.low;
+        let is_near = |limit: &f64| (own.low - height..own.high + height).contains(limit);
+        let range = preview.joint.stand.range.into_iter();
+        let limits = range.flat_map(|(low, high)| [low, high]).filter(is_near);
+        let angles = Span::around([own.low, own.high].into_iter().chain(limits), MARGIN);
+        let input = plot(90.0, 260.0, levels);
+        let Some(apart) = &preview.apart else {
+            return Self { preview, input, output: Some(plot(330.0, BOTTOM, angles)), apart: None };
+        };
+        let over_noise = Span::around(apart.over_noise.iter().copied().chain([0.0]), MARGIN);
+        let output = Some(plot(330.0, 730.0, angles));
+        Self { preview, input, output, apart: Some(plot(800.0, BOTTOM, over_noise)) }
+    }
+
+    fn plots(&self) -> impl Iterator<Item = &Plot> {
+        std::iter::once(&self.input).chain(&self.output).chain(&self.apart)
+    }
+
+    /// Frames, ticks and titles.
+    fn sheet(&self) -> Sheet {
+        let stand = &self.preview.joint.stand;
+        let mut sheet = Sheet::default();
+        let mut draw = |plot: &Plot, title: String| {
+            let y_ticks = plot.y_span().ticks(4.0).into_iter().map(|y| (y, number(y)));
+            let x_ticks = plot.x_span().ticks(12.0);
+            sheet.outline(plot, &x_ticks, &y_ticks.collect::<Vec<_>>());
+            let middle = f64::midpoint(plot.x_span().low, plot.x_span().high);
+            sheet.put(plot.above(middle, TITLE), title);
+        };
+        draw(&self.input, format!("input{}", unit_of(stand.input_unit.as_deref())));
+        if let Some(plot) = &self.output {
+            let unit = unit_of(stand.output_unit.as_deref());
+            draw(plot, format!("expected output{unit}, with its margin"));
+        }
+        if let Some(plot) = &self.apart {
+            let title = "difference over noise, each hold by itself; part of all of it";
+            draw(plot, title.to_owned());
+        }
+        if let Some(lowest) = self.plots().last() {
+            for x in lowest.x_span().ticks(12.0) {
+                sheet.put(lowest.below(x, 2.0), format!("{} s", number(x)));
+            }
+        }
+        sheet
+    }
+
+    /// The margin of each expected output: lines from its lower to its upper end, side by side.
+    fn add_bands(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+        /// Lines that fill the width of a plot.
+        const LINES: usize = 720;
+        /// Of the way from the ground to the colour of the line.
+        const SHADE: f64 = 0.38;
+        let Some(plot) = &self.output else { return Ok(()) };
+        let (mut lines, mut colors): (Vec<Vec<Vec2D>>, Vec<Color>) = Default::default();
+        for Expectation { prediction, rgb, .. } in &self.preview.expected {
+            let both: Vec<(f64, f64)> =
+                prediction.output.iter().zip(&prediction.margin).map(|(y, m)| (*y, *m)).collect();
+            let stride = both.len().div_ceil(LINES).max(1);
+            for (place, some) in both.chunks(stride).enumerate() {
+                let none = (f64::INFINITY, f64::NEG_INFINITY);
+                let wider = |(low, high): (f64, f64), (y, m): &(f64, f64)| {
+                    (low.min(y - m), high.max(y + m))
+                };
+                let (low, high) = some.iter().fold(none, wider);
+                let x = self.preview.seconds(place * stride);
+                lines.push(vec![plot.at(x, low), plot.at(x, high)]);
+                colors.push(color(between(GROUND, *rgb, SHADE)));
+            }
+        }
+        let count = (lines.len() / self.preview.expected.len().max(1)).max(1);
+        let radius = 0.5 * (SIDES.1 - SIDES.0) / count as f32 + 0.2;
+        let bands = LineStrips2D::new(lines).with_colors(colors).with_radii([radius]);
+        let bands = bands.with_draw_order(DrawOrder::from(-10.0));
+        chunks.push_static(below(root, &["band"]), &bands)
+    }
+
+    /// Input, range, expected outputs and their difference.
+    fn add_lines(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+        let schedule = &self.preview.joint.schedule;
+        let holds = schedule.holds().iter().zip(self.preview.holds());
+        let corner = |sample: usize, level: f64| self.input.at(self.preview.seconds(sample), level);
+        let input = holds
+            .flat_map(|(hold, (start, end))| [corner(start, hold.level), corner(end, hold.level)]);
+        let input = vec![input.collect()];
+        strips(chunks, below(root, &["input"]), palette::INPUT, 1.4, input)?;
+        let curve = |plot: &Plot, values: &[f64]| {
+            let place = |k: usize| {
+                plot.at(self.preview.seconds(k), values.get(k).copied().unwrap_or_default())
+            };
+            simplified(thinned(values).into_iter().map(place).collect())
+        };
+        if let Some(plot) = &self.output {
+            let range = self.preview.joint.stand.range.into_iter();
+            let Span { low, high } = plot.y_span();
+            let limits = range.flat_map(|(low, high)| [low, high]);
+            let limits = limits
+                .filter(|limit| (low..high).contains(limit))
+                .map(|limit| plot.level(limit).to_vec())
+                .collect();
+            strips(chunks, below(root, &["range"]), palette::REJECTED, 1.0, limits)?;
+            let outputs = self.preview.expected.iter();
+            let (lines, colors): (Vec<_>, Vec<_>) =
+                outputs.map(|e| (curve(plot, &e.prediction.output), color(e.rgb))).unzip();
+            let lines = LineStrips2D::new(lines).with_colors(colors).with_radii([1.5]);
+            let lines = lines.with_draw_order(DrawOrder::from(40.0));
+            chunks.push_static(below(root, &["expected"]), &lines)?;
+        }
+        let (Some(plot), Some(apart)) = (&self.apart, &self.preview.apart) else { return Ok(()) };
+        let line = vec![curve(plot, &apart.over_noise)];
+        strips(chunks, below(root, &["apart"]), palette::ERROR, 1.4, line)
+    }
+
+    /// What the colours mean.
+    fn add_legend(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+        /// Row of the legend on the sheet, and the distance of its entries.
+        const ROW: f32 = 1055.0;
+        const DISTANCE: f32 = 320.0;
+        let mut entries: Vec<(String, Rgb)> = vec![("– input".to_owned(), palette::INPUT)];
+        let expected = self.preview.expected.iter();
+        entries.extend(expected.map(|e| match self.preview.joint.told {
+            Some(_) => (format!("– if it is {}", e.name), e.rgb),
+            None => (format!("– {}", e.name), e.rgb),
+        }));
+        if let (Some(_), Some((low, high))) = (&self.output, self.preview.joint.stand.range) {
+            let unit = self.preview.joint.stand.output_unit.as_deref();
+            let text = format!("– range: {} to {}", measure(low, None), measure(high, unit));
+            entries.push((text, palette::REJECTED));
+        }
+        let (mut labels, mut colors) = (Labels::default(), Vec::new());
+        let first = 0.5 * (SHEET.0 - DISTANCE * (entries.len() - 1) as f32);
+        for (place, (text, rgb)) in entries.into_iter().enumerate() {
+            labels.put(Vec2D::new(first + DISTANCE * place as f32, ROW), text);
+            colors.push(color(rgb));
+        }
+        put_texts(chunks, below(root, &["legend"]), labels, &colors)
+    }
+
+    /// The part of all squared differences that lies in each hold, where there is much of it.
+    fn add_shares(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+        /// Holds that are told.
+        const TOLD: usize = 6;
+        /// Smaller parts are not told.
+        const LEAST: f64 = 0.02;
+        let (Some(plot), Some(apart)) = (&self.apart, &self.preview.apart) else { return Ok(()) };
+        let mut holds: Vec<&HoldApart> = apart.holds.iter().filter(|h| h.share >= LEAST).collect();
+        holds.sort_by(|a, b| b.share.total_cmp(&a.share));
+        let mut labels = Labels::default();
+        for HoldApart { start, hold, share, .. } in holds.into_iter().take(TOLD) {
+            let middle = self.preview.seconds(start + hold.samples / 2);
+            labels.put(plot.above(middle, 0.0), format!("{:.0} %", 100.0 * share));
+        }
+        put_texts(chunks, below(root, &["shares"]), labels, &[color(palette::ERROR)])
+    }
+
+    /// The hold under the cursor: a frame through all plots, and its level.
+    fn add_here(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+        let mut rows = Rows::new(chunks, below(root, &["here"]), self.preview.hold_rows());
+        let holds = self.preview.holds();
+        let frame = |(start, end): &(usize, usize)| {
+            let [from, to] = [*start, *end].map(|sample| self.preview.seconds(sample));
+            let frame = |plot: &Plot| {
+                let [a, b] = plot.vertical(from);
+                let [c, d] = plot.vertical(to);
+                vec![a, b, d, c, a]
+            };
+            self.plots().map(frame).collect()
+        };
+        rows.strips("frame", palette::HERE, 1.2, holds.iter().map(frame))?;
+        let unit = self.preview.joint.stand.input_unit.as_deref();
+        let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+        let names = holds.iter().zip(self.preview.joint.schedule.holds()).zip(1..);
+        let name =
+            |(((start, end), hold), place): ((&(usize, usize), &crate::design::Hold), i32)| {
+                let mut labels = Labels::default();
+                let (level, seconds) = (number(hold.level), self.preview.seconds(end - start));
+                let text = format!("hold {place}: {level}{unit} for {} s", number(seconds));
+                labels.put_whole(self.input.above(self.preview.seconds(*start), 2.0 * TITLE), text);
+                labels
+            };
+        rows.texts("name", palette::HERE, names.map(name))
+    }
+}

@@ -1,0 +1,196 @@
+//! The next experiment in words.
+
+use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+
+use super::design::{DesignedJoint, Told, holds, kept_until_s, order};
+use super::number::{measure, rounded};
+use super::words::filled;
+use crate::design::{Expected, Open, Prediction, Rehearsal, Schedule, transitions};
+
+/// What is to be played on each joint, and what is expected of it.
+pub fn design_text(joints: &[DesignedJoint]) -> String {
+    joints.iter().map(joint_text).collect::<Vec<_>>().join("\n\n") + "\n"
+}
+
+fn joint_text(joint: &DesignedJoint) -> String {
+    let mut sentences = design_sentences(joint);
+    let mut parts = vec![filled(&sentences.remove(0))];
+    parts.extend(joint.told.as_ref().map(|told| side_table(told).to_string()));
+    if !sentences.is_empty() {
+        parts.push(filled(&sentences.join(" ")));
+    }
+    parts.push(filled(&level_by_level(joint)));
+    parts.join("\n\n")
+}
+
+/// What is played, in the first sentence; what it tells, where the joint will be, and what
+/// whoever plays it should know.
+pub fn design_sentences(joint: &DesignedJoint) -> Vec<String> {
+    let mut sentences = vec![headline(joint)];
+    sentences.extend(joint.told.iter().flat_map(|told| explanation(joint, told)));
+    sentences.extend(joint.prediction.as_ref().map(|prediction| foreseen(joint, prediction)));
+    sentences.extend(joint.notes.iter().cloned());
+    sentences
+}
+
+/// What is played, in a sentence.
+fn headline(joint: &DesignedJoint) -> String {
+    let DesignedJoint { stand, schedule, .. } = joint;
+    let unit = stand.input_unit.as_deref();
+    let levels = listed(&schedule.levels(), unit);
+    let (hold, steps) = (hold_text(schedule), schedule.steps());
+    let duration = measure(schedule.duration_s(), Some("s"));
+    let name = &stand.name;
+    if let Some(Told { ids: [one, other], design, .. }) = &joint.told {
+        if !design.explores.is_empty() {
+            return format!(
+                "{name}: {duration} that explore, before an input tells {one} from {other}: \
+                 {levels}, each held for {hold}, {steps} steps."
+            );
+        }
+        let order = order(design.order);
+        return format!(
+            "{name}: {duration} tell {one} from {other}: {order} of {levels}, each held for \
+             {hold}, {steps} steps."
+        );
+    }
+    let (least, most) = transitions(schedule);
+    format!(
+        "{name}: random steps of {levels}, each held for {hold}: {steps} steps in {duration}, from \
+         each level to each other {least} to {most} times."
+    )
+}
+
+fn hold_text(schedule: &Schedule) -> String {
+    let (shortest, longest) = schedule.hold_range_s();
+    let (shortest, longest) = (rounded(shortest), measure(longest, Some("s")));
+    if longest.trim_end_matches(" s") == shortest {
+        return longest;
+    }
+    format!("{shortest} to {longest}")
+}
+
+fn listed(levels: &[f64], unit: Option<&str>) -> String {
+    let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+    let all: Vec<String> = levels.iter().map(|level| rounded(*level)).collect();
+    match all.as_slice() {
+        [before @ .., last] if !before.is_empty() => {
+            format!("{} and {last}{unit}", before.join(", "))
+        }
+        _ => format!("{}{unit}", all.concat()),
+    }
+}
+
+/// What [`side_rows`] tell.
+pub const SIDE_HEADER: [&str; 5] = ["if it is", "expected power", "rehearsed", "other", "neither"];
+
+/// A row for each suspect: how surely it is told where it is there.
+pub fn side_rows(told: &Told) -> [[String; 5]; 2] {
+    let [one, other] = &told.design.sides;
+    let [first, second] = told.ids;
+    [(first, one), (second, other)].map(|(id, side)| {
+        let Expected { rival, neither, .. } = side.expected;
+        let power = if side.is_told { format!("{:.3}", side.expected.power()) } else { "-".into() };
+        let rehearsed = side.rehearsal.map_or_else(
+            || "-".to_owned(),
+            |Rehearsal { told, of }| format!("{told} of {of} told"),
+        );
+        let far = |noncentrality: f64| format!("λ = {}", rounded(noncentrality));
+        let (rival, neither) = (far(rival.noncentrality()), far(neither.noncentrality()));
+        [id.to_owned(), power, rehearsed, rival, neither]
+    })
+}
+
+fn side_table(told: &Told) -> Table {
+    let mut table = Table::new();
+    table
+        .load_style(presets::UTF8_BORDERS_ONLY)
+        .set_content_arrangement(ContentArrangement::Disabled)
+        .set_header(SIDE_HEADER);
+    for row in side_rows(told) {
+        table.add_row(row);
+    }
+    for right in 1..5 {
+        if let Some(column) = table.column_mut(right) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
+}
+
+/// What the figures are about.
+fn explanation(joint: &DesignedJoint, told: &Told) -> Vec<String> {
+    let Told { ids, design, wanted, noise, .. } = told;
+    let noise = measure(*noise, joint.stand.output_unit.as_deref());
+    let mut sentences = vec![format!(
+        "Power: the probability that explain names the effect that is there and excludes the \
+         other, with noise of {noise}; {wanted} was wanted. λ: squared distance to the best fit \
+         with the other effect and with neither, in variances of the noise."
+    )];
+    for (place, side) in design.sides.iter().enumerate().filter(|(_, side)| !side.is_told) {
+        let (is, other) = (ids.get(place), ids.get(1 - place));
+        if let (Some(is), Some(other), true) = (is, other, side.is_excluded) {
+            sentences.push(format!(
+                "The log speaks against {is} already: the input is made for the case that it is \
+                 {other}."
+            ));
+        } else if let (Some(is), Some(other)) = (is, other) {
+            let lambda = rounded(side.expected.rival.noncentrality());
+            sentences.push(format!(
+                "If it is {is}, {other} can do the same (λ = {lambda}), and stays possible \
+                 whatever is played."
+            ));
+        }
+    }
+    if !design.explores.is_empty() {
+        let unit = joint.stand.input_unit.as_deref();
+        let open = design.explores.iter().map(|Open { effect, parameter, low, high }| {
+            format!("{effect}.{parameter} from {} to {}", rounded(*low), measure(*high, unit))
+        });
+        sentences.push(format!(
+            "No input passed its rehearsals, since it is open where the levels lie at which the \
+             joint starts or stops: {}. This input finds them.",
+            open.collect::<Vec<_>>().join(", ")
+        ));
+    }
+    sentences
+}
+
+/// Where the joint will be, whichever suspect is there.
+fn foreseen(joint: &DesignedJoint, prediction: &Prediction) -> String {
+    let unit = joint.stand.output_unit.as_deref();
+    let expected = joint.expected();
+    let ends = expected.iter().map(|(_, prediction)| prediction.extent());
+    let none = (f64::INFINITY, f64::NEG_INFINITY);
+    let (low, high) = ends.fold(none, |(low, high), (l, h)| (low.min(l), high.max(h)));
+    let margins = expected.iter().map(|(_, prediction)| prediction.largest_margin());
+    let margin = measure(margins.fold(0.0, f64::max), unit);
+    let start = measure(joint.stand.start, unit);
+    let from = format!(
+        "From {start} the joint is expected within {} to {}, a margin of up to {margin} \
+         (two standard deviations) included.",
+        rounded(low),
+        measure(high, unit)
+    );
+    match (joint.stand.range, kept_until_s(joint, prediction)) {
+        (Some(_), Some(until)) => format!(
+            "{from} After {} the model cannot promise that it stays in its range.",
+            measure(until, Some("s"))
+        ),
+        _ => from,
+    }
+}
+
+/// `0 V for 0.55 s, 1 V for 1 s, …`, as far as anybody reads it.
+fn level_by_level(joint: &DesignedJoint) -> String {
+    const SHOWN: usize = 24;
+    let holds = holds(&joint.schedule);
+    let unit = joint.stand.input_unit.as_deref();
+    let shown = holds.iter().take(SHOWN);
+    let shown = shown.map(|h| format!("{} for {} s", measure(h.level, unit), rounded(h.hold_s)));
+    let more = match holds.len().saturating_sub(SHOWN) {
+        0 => String::new(),
+        more => format!(", and {more} more"),
+    };
+    format!("Input: {}{more}.", shown.collect::<Vec<_>>().join(", "))
+}
