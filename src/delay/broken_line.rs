@@ -28,6 +28,8 @@ use std::ops::RangeInclusive;
 use super::frame::{Bends, Frame};
 use super::line::Line;
 use super::noise::Noise;
+use super::piece::Piece;
+use super::places::Places;
 use crate::statistics::{fisher_tail, moments, student_quantile, take_off_line};
 
 /// Fewest samples beside those that the noise remembers.
@@ -114,116 +116,6 @@ pub(super) struct Window<'a> {
     rows: f64,
 }
 
-/// Level and ramp behind a sample, without what a line can do.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Piece {
-    pub(super) level_y: f64,
-    pub(super) ramp_y: f64,
-    pub(super) level_level: f64,
-    pub(super) level_ramp: f64,
-    pub(super) ramp_ramp: f64,
-    /// Parts of level and ramp along a constant, and along a slope.
-    pub(super) level_line: [f64; 2],
-    pub(super) ramp_line: [f64; 2],
-}
-
-/// Ramps behind each place of a range, and what a break there takes away.
-#[derive(Clone, Debug, Default)]
-struct Places {
-    first: usize,
-    /// What each ramp has in common with the output; one more, behind the last.
-    ramp_y: Vec<f64>,
-    /// What is left of each ramp's own square; 0 behind the last.
-    size: Vec<f64>,
-    gain: Vec<f64>,
-}
-
-impl Places {
-    /// Squared errors of breaks there, given that of one line, and their changes of slope.
-    fn into_errors(self, power: f64) -> (Vec<f64>, Vec<f64>) {
-        let Self { ramp_y: mut changes, size, gain: mut errors, .. } = self;
-        for error in &mut errors {
-            *error = (power - *error).max(0.0);
-        }
-        changes.truncate(errors.len());
-        for (change, size) in changes.iter_mut().zip(size) {
-            *change = if size > 0.0 { *change / size } else { 0.0 };
-        }
-        (errors, changes)
-    }
-
-    /// The places behind which a break between two samples may take away the most, from the
-    /// back: what it has in common with the output is linear between them, and its own square
-    /// at most by a quarter of the level's below both ends.
-    fn promising(&self, frame: &Frame) -> impl Iterator<Item = usize> + use<> {
-        /// More than rounding.
-        const SLACK: f64 = 1.0 - 1e-9;
-        let most = SLACK * self.gain.iter().copied().fold(0.0, f64::max);
-        let mut good = Vec::new();
-        let ends = self.ramp_y.windows(2).zip(self.size.windows(2));
-        for ((index, ends), reach) in ends.enumerate().zip(frame.reaches(self.first)) {
-            let (&[a, b], &[size, next]) = ends else { continue };
-            let with = (a * a).max(b * b);
-            if with >= most * (size.min(next) - 0.25 * frame.most_level(reach)) {
-                good.push(index);
-            }
-        }
-        good.into_iter().rev()
-    }
-
-    /// The piece behind the place of an index.
-    fn piece(&self, index: usize, frame: &Frame) -> Piece {
-        let of = |index: usize| self.ramp_y.get(index).copied().unwrap_or_default();
-        let (here, next) = (of(index), of(index + 1));
-        frame.piece(self.first + index, here - next, here)
-    }
-}
-
-impl Piece {
-    /// How much of the squared error a break at `s` takes away.
-    #[inline]
-    fn gain(&self, s: f64) -> f64 {
-        let with = self.ramp_y - s * self.level_y;
-        let size = self.size(s);
-        if size > 0.0 { with * with / size } else { 0.0 }
-    }
-
-    /// The change of slope at a break at `s`.
-    #[inline]
-    pub(super) fn change(&self, s: f64) -> f64 {
-        let size = self.size(s);
-        if size > 0.0 { (self.ramp_y - s * self.level_y) / size } else { 0.0 }
-    }
-
-    #[inline]
-    fn size(&self, s: f64) -> f64 {
-        self.ramp_ramp - 2.0 * s * self.level_ramp + s * s * self.level_level
-    }
-
-    /// The best break within the piece, 0 to 1, and what it takes away.
-    #[inline]
-    pub(super) fn best(&self) -> (f64, f64) {
-        let below = self.level_y * self.level_ramp - self.ramp_y * self.level_level;
-        let above = self.level_y * self.ramp_ramp - self.ramp_y * self.level_ramp;
-        // Most pieces have nothing inside: they cost no division.
-        let within = above * below >= 0.0 && above.abs() <= below.abs() && below != 0.0;
-        let inside = if within { above / below } else { 0.0 };
-        (inside, self.gain(inside))
-    }
-
-    /// Where the gain crosses `limit` between 0 and 1: the first time, and the last.
-    fn crossings(&self, limit: f64) -> Option<(f64, f64)> {
-        let a = self.level_y * self.level_y - limit * self.level_level;
-        let b = self.ramp_y * self.level_y - limit * self.level_ramp;
-        let c = self.ramp_y * self.ramp_y - limit * self.ramp_ramp;
-        let root = (b * b - a * c).max(0.0).sqrt();
-        let roots = [(b - root) / a, (b + root) / a].into_iter();
-        let mut inside: Vec<f64> = roots.filter(|s| (0.0..=1.0).contains(s)).collect();
-        inside.sort_by(f64::total_cmp);
-        inside.first().copied().zip(inside.last().copied())
-    }
-}
-
 impl<'a> Window<'a> {
     /// `None` with too few samples for two lines.
     pub(super) fn of(values: &[f64], noise: &'a Noise) -> Option<Self> {
@@ -250,36 +142,12 @@ impl<'a> Window<'a> {
         order.max(1)..=self.pulled.len().saturating_sub(3 + order)
     }
 
-    /// What breaks at the `places` take away.
-    fn at(&self, places: &RangeInclusive<usize>) -> Places {
-        let (first, count) = (*places.start(), (places.end() + 1).saturating_sub(*places.start()));
-        let (searched, rest) = self.pulled.split_at((first + 1 + count).min(self.pulled.len()));
-        let (mut level_sum, moment, _) = moments(rest, 0.0);
-        let mut ramp_sum = level_sum + moment;
-        let mut ramp_y = vec![ramp_sum; count + 1];
-        let searched = searched.get(first + 1..).unwrap_or_default();
-        for (ramp, y) in ramp_y.iter_mut().take(count).rev().zip(searched.iter().rev()) {
-            level_sum += y;
-            ramp_sum += level_sum;
-            *ramp = ramp_sum;
-        }
-        let mut size = vec![0.0; count + 1];
-        let mut gain = vec![0.0; count];
-        let slots = size.iter_mut().zip(&mut gain).zip(&ramp_y);
-        for (((size, gain), ramp_y), reach) in slots.zip(self.frame.reaches(first)) {
-            *size = self.frame.ramp(reach).square;
-            let taken = ramp_y * ramp_y / *size;
-            *gain = if *size > 0.0 { taken } else { 0.0 };
-        }
-        Places { first, ramp_y, size, gain }
-    }
-
     /// The best broken line with its break in `places`.
     pub(super) fn best(&self, places: RangeInclusive<usize>) -> Option<BrokenLine> {
         if places.is_empty() {
             return None;
         }
-        Some(self.search(&self.at(&places)))
+        Some(self.search(&Places::of(&self.frame, &self.pulled, &places)))
     }
 
     /// The best broken line with its break in `places`, with an interval that holds the
@@ -294,7 +162,7 @@ impl<'a> Window<'a> {
         if places.is_empty() {
             return None;
         }
-        let at = self.at(&places);
+        let at = Places::of(&self.frame, &self.pulled, &places);
         let mut line = self.search(&at);
         let freedom = (self.rows - PARAMETERS as f64).max(1.0);
         let ends = |confidence: f64| {

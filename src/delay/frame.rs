@@ -4,9 +4,9 @@
 //! A line stays a line when it is whitened, and a level or a ramp changes only in the first
 //! samples behind its beginning, so that sums over any of them are known in closed form.
 
-use super::broken_line::Piece;
 use super::line::Line;
 use super::noise::Noise;
+use super::piece::Piece;
 
 /// The line of a window, and what its levels and ramps are made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +19,9 @@ pub(super) struct Frame {
     level: f64,
     shift: f64,
     onset: Onset,
+    /// What a ramp has in common with itself, along a constant and along a slope: cubics in the
+    /// samples behind its beginning.
+    ramps: [[f64; 4]; 3],
     /// One over the length of a constant, and of a slope.
     per_level: f64,
     per_slope: f64,
@@ -70,16 +73,20 @@ impl Frame {
     pub(super) fn of(noise: &Noise, rows: f64, (value, slope): (f64, f64)) -> Self {
         let order = noise.order() as f64;
         let spread = rows * (rows * rows - 1.0) / 12.0;
+        let (last, middle) = (rows + order - 1.0, order + (rows - 1.0) / 2.0);
+        let (per_level, per_slope) = (rows.sqrt().recip(), spread.sqrt().recip());
+        let (level, shift, onset) = (noise.level, noise.shift, Onset::of(noise));
         Self {
             order,
-            last: rows + order - 1.0,
-            middle: order + (rows - 1.0) / 2.0,
-            level: noise.level,
-            shift: noise.shift,
-            onset: Onset::of(noise),
-            per_level: rows.sqrt().recip(),
-            per_slope: spread.sqrt().recip(),
-            per_noise_level: noise.level.recip(),
+            last,
+            middle,
+            level,
+            shift,
+            onset,
+            ramps: onset.ramps(noise, last - middle, [per_level, per_slope]),
+            per_level,
+            per_slope,
+            per_noise_level: level.recip(),
             value,
             slope,
         }
@@ -91,6 +98,17 @@ impl Frame {
         (0_i32..).map(move |index| reach - f64::from(index))
     }
 
+    /// Samples behind each of so many from `first` on.
+    #[inline]
+    pub(super) fn reaches_of<const COUNT: usize>(&self, first: usize) -> [f64; COUNT] {
+        let reach = self.behind(first);
+        let mut reaches = [reach; COUNT];
+        for (slot, index) in reaches.iter_mut().zip(0_i32..) {
+            *slot -= f64::from(index);
+        }
+        reaches
+    }
+
     /// Samples behind one.
     fn behind(&self, place: usize) -> f64 {
         self.last - place as f64
@@ -99,17 +117,9 @@ impl Frame {
     /// The ramp behind the sample that has `reach` samples behind it.
     #[inline]
     pub(super) fn ramp(&self, reach: f64) -> Ramp {
-        let Self { order, level, shift, onset, .. } = *self;
-        let count = reach - order;
-        let sum = (reach * (reach + 1.0) - order * (order + 1.0)) * 0.5;
-        let cubes = |d: f64| d * (d + 1.0) * (2.0 * d + 1.0) * (1.0 / 6.0);
-        let squares = cubes(reach) - cubes(order);
-        let ramps = onset.ramp + level * sum + shift * count;
-        let ramp_d = onset.ramp_d + level * squares + shift * sum;
-        let square =
-            onset.ramp_ramp + level * (level * squares + 2.0 * shift * sum) + shift * shift * count;
-        let line @ [a, b] = self.along(reach, ramps, ramp_d);
-        Ramp { square: square - a * a - b * b, line }
+        let [square, a, b] =
+            self.ramps.map(|[p, q, r, s]| p + reach * (q + reach * (r + reach * s)));
+        Ramp { square: square - a * a - b * b, line: [a, b] }
     }
 
     /// Parts along a constant and along a slope of what begins before `reach` samples, given its
@@ -147,7 +157,8 @@ impl Frame {
     /// No level that begins before `reach` samples has more left in common with itself.
     #[inline]
     pub(super) fn most_level(&self, reach: f64) -> f64 {
-        let count = (reach - self.order).min(self.last - reach + 1.0);
+        let (behind, before) = (reach - self.order, self.last - reach + 1.0);
+        let count = if behind < before { behind } else { before };
         self.onset.level_level + self.level * self.level * count
     }
 
@@ -185,6 +196,36 @@ struct Onset {
 }
 
 impl Onset {
+    /// The cubics of [`Frame::ramps`], for a last sample so far behind the `middle` one.
+    ///
+    /// Behind the `order` samples of its onset a whitened ramp is `level·d + shift`, `d` samples
+    /// after its beginning: sums of `1`, `d` and `d²` over `d = order + 1 … reach`.
+    fn ramps(&self, noise: &Noise, last: f64, [per_level, per_slope]: [f64; 2]) -> [[f64; 4]; 3] {
+        let order = noise.order() as f64;
+        let (level, shift) = (noise.level, noise.shift);
+        let ones = [-order, 1.0, 0.0, 0.0];
+        let numbers = [-order * (order + 1.0) / 2.0, 0.5, 0.5, 0.0];
+        let before = order * (order + 1.0) * (2.0 * order + 1.0) / 6.0;
+        let squares = [-before, 1.0 / 6.0, 0.5, 1.0 / 3.0];
+        let cubic = |onset: f64, parts: [f64; 3]| -> [f64; 4] {
+            let mut found = [onset, 0.0, 0.0, 0.0];
+            for (sum, part) in [ones, numbers, squares].iter().zip(parts) {
+                found.iter_mut().zip(sum).for_each(|(slot, power)| *slot += part * power);
+            }
+            found
+        };
+        let with_itself =
+            cubic(self.ramp_ramp, [shift * shift, 2.0 * level * shift, level * level]);
+        let with_level = cubic(self.ramp, [shift, level, 0.0]);
+        let mut with_slope = cubic(self.ramp_d, [0.0, shift, level]);
+        // The ramp begins `last − reach` behind the middle.
+        let later = [0.0].into_iter().chain(with_level);
+        for ((slot, here), before) in with_slope.iter_mut().zip(with_level).zip(later) {
+            *slot += last * here - before;
+        }
+        [with_itself, with_level.map(|part| part * per_level), with_slope.map(|p| p * per_slope)]
+    }
+
     fn of(noise: &Noise) -> Self {
         let mut sums = Self::default();
         for ((w, h), d) in noise.onset().into_iter().zip(1_u32..) {

@@ -65,28 +65,12 @@ impl Leftover {
             if h == l { length.saturating_sub(h) as f64 } else { 0.0 }
         });
         let columns: Vec<&[f64]> = self.basis.chunks_exact(length).collect();
-        let shifted = |column: &&[f64]| {
-            let by = |lag| shifted(column, lag);
-            (0..lags).map(by).collect::<Vec<_>>()
-        };
-        let shifted: Vec<Vec<Vec<f64>>> = columns.iter().map(shifted).collect();
-        let products: Vec<DMatrix<f64>> = (0..lags)
-            .map(|lag| {
-                let mut products = DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
-                    let there = shifted.get(j).filter(|_| i >= j).and_then(|all| all.get(lag));
-                    let here = columns.get(i).copied().unwrap_or_default();
-                    there.map_or(0.0, |there| dot(here, there))
-                });
-                products.fill_upper_triangle_with_lower_triangle();
-                products
-            })
-            .collect();
-        // What two shifts have in common hangs on no order.
+        let products: Vec<DMatrix<f64>> =
+            (0..lags).map(|lag| products_with_shifted(&columns, lag)).collect();
+        let twice = products_of_shifts(&columns, lags);
         for (h, a) in products.iter().enumerate() {
-            let once = products_of_shifts(&shifted, h);
             for (l, b) in products.iter().enumerate().skip(h) {
-                let once = once.get(l - h).copied().unwrap_or_default();
-                let taken = a.dot(b) - 2.0 * once;
+                let taken = a.dot(b) - 2.0 * twice[(h, l)];
                 kept[(h, l)] += whole(l) * taken;
                 if h < l {
                     kept[(l, h)] += whole(h) * taken;
@@ -117,19 +101,41 @@ pub(super) fn autocovariances(leftovers: &[&Leftover], longest: usize) -> Vec<f6
     kept.lu().solve(&measured).map_or_else(Vec::new, |found| found.iter().copied().collect())
 }
 
-/// The products of every column shifted by `lag` samples with itself shifted by so many and by
-/// more, summed over the columns.
-fn products_of_shifts(shifted: &[Vec<Vec<f64>>], lag: usize) -> Vec<f64> {
-    let mut sums = vec![0.0; shifted.first().map_or(0, |all| all.len() - lag)];
-    for all in shifted {
-        let Some([one, ..]) = all.get(lag..) else { continue };
-        let others = all.get(lag..).unwrap_or_default().chunks(4);
-        for (others, sums) in others.zip(sums.chunks_mut(4)) {
-            if let [a, b, c, d] = others {
-                let products = dots(one, [a, b, c, d]);
-                sums.iter_mut().zip(products).for_each(|(sum, product)| *sum += product);
-            } else {
-                sums.iter_mut().zip(others).for_each(|(sum, other)| *sum += dot(one, other));
+/// The products of every column with every other one shifted by `lag` samples to either side.
+fn products_with_shifted(columns: &[&[f64]], lag: usize) -> DMatrix<f64> {
+    let mut products = DMatrix::zeros(columns.len(), columns.len());
+    let mut shifted = vec![0.0; columns.first().map_or(0, |column| column.len())];
+    for (j, (column, mut slots)) in columns.iter().zip(products.column_iter_mut()).enumerate() {
+        shift(column, lag, &mut shifted);
+        let others = columns.get(j..).unwrap_or_default();
+        let found = others.chunks(4).flat_map(|others| with_each(&shifted, others));
+        slots.iter_mut().skip(j).zip(found).for_each(|(slot, product)| *slot = product);
+    }
+    products.fill_upper_triangle_with_lower_triangle();
+    products
+}
+
+/// The products of every column shifted by one lag to either side with itself shifted by another,
+/// summed over the columns, for fewer than so many `lags` and the first of two no larger.
+///
+/// Were there no ends, two shifts by `h` and `l` would be half of one by `l − h` and half of one by
+/// `l + h`; what they would move past an end, and back, is taken off.
+fn products_of_shifts(columns: &[&[f64]], lags: usize) -> DMatrix<f64> {
+    let mut sums = DMatrix::zeros(lags, lags);
+    for column in columns {
+        let with_itself = |lag: usize| dot(column, column.get(lag..).unwrap_or_default());
+        let with_itself: Vec<f64> = (0..2 * lags).map(with_itself).collect();
+        let at = |lag: usize| with_itself.get(lag).copied().unwrap_or_default();
+        for apart in 0..lags {
+            let later = column.get(apart..).unwrap_or_default();
+            let pairs = column.iter().zip(later);
+            let last = column.iter().rev().skip(apart).zip(column.iter().rev());
+            let ends = pairs.zip(last).map(|((a, b), (c, d))| a * b + c * d);
+            let mut past = 0.0;
+            let mut ends = ends.chain(std::iter::repeat(0.0));
+            for h in 0..lags - apart {
+                sums[(h, h + apart)] += 0.5 * (at(apart) + at(2 * h + apart)) - 0.25 * past;
+                past += ends.next().unwrap_or_default();
             }
         }
     }
@@ -138,20 +144,41 @@ fn products_of_shifts(shifted: &[Vec<Vec<f64>>], lag: usize) -> Vec<f64> {
 
 /// Takes off what the orthonormal `basis` explains.
 fn take_off(basis: &[f64], values: &mut [f64]) {
-    for column in basis.chunks_exact(values.len().max(1)) {
-        let part = dot(column, values);
-        values.iter_mut().zip(column).for_each(|(value, by)| *value -= part * by);
+    let columns: Vec<&[f64]> = basis.chunks_exact(values.len().max(1)).collect();
+    for columns in columns.chunks(4) {
+        let parts = with_each(values, columns);
+        if let ([a, b, c, d], [p, q, r, s]) = (columns, parts) {
+            let pairs = a.iter().zip(*b).zip(c.iter().zip(*d));
+            for (value, ((a, b), (c, d))) in values.iter_mut().zip(pairs) {
+                *value -= p * a + q * b + r * c + s * d;
+            }
+            continue;
+        }
+        for (column, part) in columns.iter().zip(parts) {
+            values.iter_mut().zip(*column).for_each(|(value, by)| *value -= part * by);
+        }
     }
 }
 
-/// The mean of `column` shifted by `lag` samples to either side.
-fn shifted(column: &[f64], lag: usize) -> Vec<f64> {
-    let mut sum = vec![0.0; column.len()];
-    let later = sum.iter_mut().skip(lag).zip(column);
-    later.for_each(|(slot, value)| *slot += 0.5 * value);
-    let earlier = sum.iter_mut().zip(column.iter().skip(lag));
+/// The products of a column with each of four others; 0 where there are fewer.
+fn with_each(column: &[f64], others: &[&[f64]]) -> [f64; 4] {
+    if let &[a, b, c, d] = others {
+        return dots(column, [a, b, c, d]);
+    }
+    let mut products = [0.0; 4];
+    let slots = products.iter_mut().zip(others);
+    slots.for_each(|(slot, other)| *slot = dot(column, other));
+    products
+}
+
+/// Puts the mean of `column` shifted by `lag` samples to either side into `shifted`.
+fn shift(column: &[f64], lag: usize, shifted: &mut [f64]) {
+    let quiet = lag.min(shifted.len());
+    let (first, later) = shifted.split_at_mut(quiet);
+    first.fill(0.0);
+    later.iter_mut().zip(column).for_each(|(slot, value)| *slot = 0.5 * value);
+    let earlier = shifted.iter_mut().zip(column.get(quiet..).unwrap_or_default());
     earlier.for_each(|(slot, value)| *slot += 0.5 * value);
-    sum
 }
 
 #[cfg(test)]
@@ -179,6 +206,24 @@ mod tests {
         let kept = Leftover::of(&columns, &vec![1.0; n]).kept(longest);
         for (lag, sum) in sums.iter().enumerate() {
             assert!((sum - kept[(lag, 0)]).abs() < 1e-9, "{lag}: {sum} {}", kept[(lag, 0)]);
+        }
+    }
+
+    #[test]
+    fn what_is_kept_is_the_trace_of_projected_shifts() {
+        let (n, longest) = (11_usize, 3);
+        let leftover = Leftover::of(&columns(11), &[1.0; 11]);
+        let basis = DMatrix::from_column_slice(n, leftover.basis.len() / n, &leftover.basis);
+        let left = DMatrix::identity(n, n) - &basis * basis.transpose();
+        let shift = |lag: usize| {
+            DMatrix::from_fn(n, n, |i, j| if i.abs_diff(j) == lag { 0.5 } else { 0.0 })
+        };
+        let kept = leftover.kept(longest);
+        for (h, l) in (0..=longest).flat_map(|h| (0..=longest).map(move |l| (h, l))) {
+            let half = if h == 0 { DMatrix::identity(n, n) } else { shift(h) };
+            let whole = if l == 0 { DMatrix::identity(n, n) } else { shift(l) * 2.0 };
+            let trace = (&left * half * &left * whole).trace();
+            assert!((kept[(h, l)] - trace).abs() < 1e-9, "{h} {l}: {} {trace}", kept[(h, l)]);
         }
     }
 

@@ -44,6 +44,8 @@ mod margin;
 mod method;
 mod noise;
 mod normal_equations;
+mod piece;
+mod places;
 mod profile;
 mod reaction;
 mod response;

@@ -15,7 +15,7 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-use super::broken_line::Piece;
+use super::piece::Piece;
 use super::response::LagPart;
 
 /// Fewest points, for a variance beside four parameters.

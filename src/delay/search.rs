@@ -26,7 +26,7 @@ enum Lines {
     /// Fitted apart: before and after.
     Apart(Vec<Line>, Vec<Line>),
     /// Meeting at every sample, and those of one that meet between two.
-    Meeting(Bends, (usize, (Line, Line))),
+    Meeting(Box<Bends>, (usize, (Line, Line))),
 }
 
 impl Default for Lines {
@@ -119,7 +119,7 @@ impl Candidates {
         best: (usize, (Line, Line)),
     ) -> Self {
         let chosen = (best.0 < sse.len()).then_some(best.0);
-        let lines = Lines::Meeting(bends, best);
+        let lines = Lines::Meeting(Box::new(bends), best);
         Self { first_sample, beta: 1, sse, lines, best: chosen }
     }
 
