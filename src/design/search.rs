@@ -68,6 +68,15 @@ pub enum DesignError {
         /// Largest magnitude of the input.
         largest: f64,
     },
+    /// What is likely cannot be told from the other, whatever the input.
+    #[error(
+        "no input tells them apart: as far as is known the other effect can do all that {effects} \
+         does"
+    )]
+    Imitated {
+        /// The suspects that were to be told.
+        effects: String,
+    },
     /// None of the inputs that were tried is good enough.
     #[error(
         "no input of {longest_s} s or less tells them apart with power {wanted}; the best that was \
@@ -135,10 +144,22 @@ pub fn shortest(
     if let Some(design) = field(1.0).exploring(aims, &lessons, workers) {
         return Ok(design);
     }
-    let Lessons { second, power: best, .. } = lessons;
+    let Lessons { second, power: judged, .. } = lessons;
     // Its power will do, and how its rehearsals went is told.
-    second.ok_or(DesignError::NotApart { wanted: limits.power, best, longest_s: limits.longest_s })
+    second.ok_or_else(|| {
+        let glanced = queue.iter().map(|entry| entry.best_power(aims));
+        let best = glanced.fold(judged, f64::max);
+        if best < IMITATED {
+            let told = suspects.ids().into_iter().zip(aims).filter(|(_, aim)| *aim);
+            let effects = told.map(|(id, _)| id).collect::<Vec<_>>().join(" or ");
+            return DesignError::Imitated { effects };
+        }
+        DesignError::NotApart { wanted: limits.power, best, longest_s: limits.longest_s }
+    })
 }
+
+/// The best power of all inputs below which they show nothing of the difference.
+const IMITATED: f64 = 0.01;
 
 /// The design of which more rehearsals went well; of two as good, the first.
 fn better(one: Option<Design>, other: Option<Design>) -> Option<Design> {
@@ -172,6 +193,13 @@ struct Entry {
 }
 
 impl Entry {
+    /// The power of the whole input for the suspects of `aims` at a glance.
+    fn best_power(&self, aims: [bool; 2]) -> f64 {
+        let all = self.family.schedule.holds().len();
+        let told = aims.into_iter().enumerate().filter(|(_, aim)| *aim);
+        told.map(|(truth, _)| self.glances.best_known(truth, &self.family, all)).fold(1.0, f64::min)
+    }
+
     /// By how many standard deviations the suspects of `aims` are told, as far as is known.
     fn margin(&self, aims: [bool; 2], count: usize) -> f64 {
         self.glances.margin(&self.family, aims, count) + self.offset
@@ -375,9 +403,7 @@ impl Field<'_> {
         }
         design
     }
-}
 
-impl Field<'_> {
     /// An input that explores, where there is something to find.
     fn exploring(
         &self,
