@@ -27,8 +27,8 @@ const TOGETHER: usize = 4;
 /// Samples that are enough to tell what kind of lag it is, and to know it well.
 const ENOUGH: [usize; 2] = [6_000, 20_000];
 
-/// Times that the lag is looked for where holds are short.
-const ROUNDS: usize = 4;
+/// Times that the lag is looked for where holds are short, at most.
+const ROUNDS: usize = 12;
 
 /// The first of them, in which a simpler lag is taken although its squared error is larger by
 /// this part.
@@ -78,8 +78,11 @@ pub(super) fn lag_of(trials: &[Prepared<'_>], settings: &Settings) -> Lag {
         let again = again.under(found.shape, found.noise.clone());
         // Places suit the lag behind which they were found: at first only what is plain counts.
         let caution = if round < CAUTIOUS { CAUTION } else { 0.0 };
+        let before = found.shape;
         found = if clear { again.settled_again() } else { again.reconsidered(caution) };
-        if found.shape.order() == 0 {
+        // A pole too many makes places that speak for it, which it takes some rounds to undo.
+        let has_settled = round > CAUTIOUS && found.shape.is_near(&before);
+        if found.shape.order() == 0 || has_settled {
             break;
         }
     }

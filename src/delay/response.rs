@@ -204,6 +204,14 @@ impl Shape {
         }
     }
 
+    /// Whether it has the same poles as `other`, at about the same places.
+    pub(super) fn is_near(&self, other: &Self) -> bool {
+        /// Difference of a logarithm.
+        const NEAR: f64 = 0.01;
+        let pairs = self.logs.iter().zip(&other.logs);
+        self.poles == other.poles && pairs.take(self.order()).all(|(a, b)| (a - b).abs() < NEAR)
+    }
+
     /// The same lag with all times `factor` as long.
     fn stretched(mut self, factor: f64) -> Self {
         let shift = factor.ln();
