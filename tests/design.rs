@@ -178,6 +178,7 @@ fn a_suspect_that_contains_the_other_is_said() {
                    --rehearsals 0";
     let said = desk.refusal(options);
     assert!(said.contains("no input of 8 s or less tells them apart"), "{said}");
+    assert!(said.contains("one of them can do all that the other does"), "{said}");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::fs;
+use std::path::Path;
 use std::process::Command;
 
 /// The blocks of `text` that are fenced as `language`.
@@ -65,12 +66,24 @@ fn every_link_of_the_documents_leads_somewhere() {
             for (start, _) in text.match_indices("](") {
                 let link = text[start + 2..].split(')').next().unwrap();
                 if !link.starts_with("http") {
-                    let target = path.parent().unwrap().join(link);
-                    assert!(target.exists(), "{} links to {link}", path.display());
+                    assert!(leads_somewhere(&path, link), "{} links to {link}", path.display());
                 }
             }
         }
     }
+}
+
+/// Whether a page has what it links to: a file, or a heading in one.
+fn leads_somewhere(page: &Path, link: &str) -> bool {
+    let (file, heading) = link.split_once('#').map_or((link, None), |(f, h)| (f, Some(h)));
+    let target = if file.is_empty() { page.to_owned() } else { page.parent().unwrap().join(file) };
+    let Some(heading) = heading else { return target.exists() };
+    let anchor = |line: &str| {
+        let title = line.trim_start_matches('#').trim().to_lowercase().replace(' ', "-");
+        title.chars().filter(|c| c.is_alphanumeric() || "-_".contains(*c)).collect::<String>()
+    };
+    let text = fs::read_to_string(&target).unwrap_or_default();
+    text.lines().filter(|line| line.starts_with('#')).any(|line| anchor(line) == heading)
 }
 
 #[test]

@@ -68,14 +68,14 @@ pub enum DesignError {
         /// Largest magnitude of the input.
         largest: f64,
     },
-    /// What is likely cannot be told from the other, whatever the input.
+    /// One suspect can do what the other does, whatever the input.
     #[error(
-        "no input tells them apart: as far as is known the other effect can do all that {effects} \
-         does"
+        "no input of {longest_s} s or less tells them apart: as far as is known, one of them can \
+         do all that the other does"
     )]
     Imitated {
-        /// The suspects that were to be told.
-        effects: String,
+        /// Longest input that was tried, seconds.
+        longest_s: f64,
     },
     /// None of the inputs that were tried is good enough.
     #[error(
@@ -149,12 +149,11 @@ pub fn shortest(
     second.ok_or_else(|| {
         let glanced = queue.iter().map(|entry| entry.best_power(aims));
         let best = glanced.fold(judged, f64::max);
+        let longest_s = limits.longest_s;
         if best < IMITATED {
-            let told = suspects.ids().into_iter().zip(aims).filter(|(_, aim)| *aim);
-            let effects = told.map(|(id, _)| id).collect::<Vec<_>>().join(" or ");
-            return DesignError::Imitated { effects };
+            return DesignError::Imitated { longest_s };
         }
-        DesignError::NotApart { wanted: limits.power, best, longest_s: limits.longest_s }
+        DesignError::NotApart { wanted: limits.power, best, longest_s }
     })
 }
 
