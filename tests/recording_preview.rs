@@ -55,9 +55,7 @@ fn every_number_is_that_of_the_table() {
     let range = &json["joints"][0]["output_range"];
     for end in ["low", "high"] {
         let recorded = values(&back, &format!("/boom/range/{end}"));
-        assert!(
-            recorded.len() == input.len() && recorded.iter().all(|x| *x == number(&range[end]))
-        );
+        assert_eq!(recorded, vec![number(&range[end]); input.len()]);
     }
 }
 

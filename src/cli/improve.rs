@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use clap::Args as ClapArgs;
 use tauscope::batch::{Mode, improve_joints};
 use tauscope::experiment::Joint;
-use tauscope::explain::{Change, Improvement, Options, Revision as Step, Verdict};
+use tauscope::explain::{Change, Improvement, MAX_EFFECTS, Options, Revision as Step, Verdict};
 use tauscope::fit::Horizon;
 use tauscope::model::{ModelFile, Revision};
 use tauscope::report::{
@@ -40,7 +40,7 @@ pub(super) struct Args {
     effects: EffectArgs,
 
     /// How many effects are added at most
-    #[arg(long, value_name = "N", default_value_t = 6, help_heading = "Model")]
+    #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS, help_heading = "Model")]
     max_effects: usize,
 
     #[command(flatten)]

@@ -13,7 +13,7 @@ use tauscope::batch::{
 use tauscope::delay::Settings;
 use tauscope::effect::Effect;
 use tauscope::experiment::{Experiment, Joint};
-use tauscope::explain::{Change, Explanation, Improvement, Options, Revision};
+use tauscope::explain::{Change, Explanation, Improvement, MAX_EFFECTS, Options, Revision};
 use tauscope::fit::Horizon;
 use tauscope::model::ModelFile;
 use tauscope::report::{
@@ -70,7 +70,7 @@ struct ModelArgs {
     effects: EffectArgs,
 
     /// How many effects `--improve` adds at most
-    #[arg(long, value_name = "N", default_value_t = 6, help_heading = "Model")]
+    #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS, help_heading = "Model")]
     max_effects: usize,
 
     #[command(flatten)]

@@ -183,9 +183,9 @@ mod tests {
         let noise = Noise::new(vec![0.5, -0.2]);
         let mut line: Vec<f64> = (0..30).map(f64::from).collect();
         noise.whiten(&mut line);
-        for k in 2..30 {
+        for (k, value) in line.iter().enumerate().skip(2) {
             let expected = noise.level * k as f64 + noise.shift;
-            assert!((line[k] - expected).abs() < 1e-12, "{k}: {} {expected}", line[k]);
+            assert!((value - expected).abs() < 1e-12, "{k}: {value} {expected}");
         }
         let mut ramp: Vec<f64> = (0..9).map(|k| f64::from((k - 4).max(0))).collect();
         noise.whiten(&mut ramp);

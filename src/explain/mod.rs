@@ -38,7 +38,7 @@ pub(crate) use candidate::{BEYOND_DOUBT, BEYOND_DOUBT_PERCENT};
 pub use grow::Change;
 pub use improve::{Improvement, Revision, improve};
 pub(crate) use race::ALIKE;
-pub use race::Options;
+pub use race::{MAX_EFFECTS, Options};
 pub use separate::{Pattern, Proposal, Separation, Start};
 pub(crate) use separate::{level_sets, thresholds, two_digits};
 pub(crate) use verdict::named;

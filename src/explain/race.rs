@@ -18,10 +18,14 @@ pub struct Options {
     pub max_effects: usize,
 }
 
-/// The whole catalogue, up to six effects.
+/// Effects that are added one after the other where nothing else is said: a cylinder has so
+/// many.
+pub const MAX_EFFECTS: usize = 8;
+
+/// The whole catalogue, up to [`MAX_EFFECTS`].
 impl Default for Options {
     fn default() -> Self {
-        Self { effects: REGISTRY.to_vec(), max_effects: 6 }
+        Self { effects: REGISTRY.to_vec(), max_effects: MAX_EFFECTS }
     }
 }
 

@@ -9,6 +9,7 @@ mod data;
 mod sheet;
 mod words;
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use rerun::ApplicationId;
@@ -44,7 +45,7 @@ impl Content for PreviewRecording<'_> {
         let from = name_of(self.sources);
         let model = self.model.and_then(Path::file_stem).map(|stem| stem.to_string_lossy());
         let parts = Some(from).filter(|from| !from.is_empty()).into_iter();
-        let parts = parts.chain(model.map(|model| model.into_owned()));
+        let parts = parts.chain(model.map(Cow::into_owned));
         parts.chain(["next experiment".to_owned()]).collect::<Vec<_>>().join(", ")
     }
 
