@@ -18,7 +18,7 @@
 //!    the first where the residual is too large for noise.
 //! 4. Size: the test holds all that changes slowly for noise, and finds every trace in a long
 //!    record. Up to 1.15 times the noise of the measurement nothing is left that is worth an
-//!    effect; beyond three times it is no noise. Nor is it where it is larger on the part that
+//!    effect, unless the shapes leave less than half of that noise; beyond three times it is no noise. Nor is it where it is larger on the part that
 //!    was not fitted.
 //! 5. Evenness: nor is it where it stands out in a few windows ([`LocalMisfit`]).
 //!
@@ -97,10 +97,11 @@ pub fn lack_of_fit(columns: &TestColumns) -> Option<LackOfFit> {
     }
     let (statistic, p_value) = judged.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let by_shapes = p_value < SIGNIFICANCE && misfit_share >= NEGLIGIBLE;
+    let noise_is_known = is_noise(columns.size.times_noise, misfit_share);
     let as_a_whole = match columns.size.verdict() {
         Some(Says::Misfit(shown_by)) => Some(shown_by),
-        Some(Says::Noise) => None,
-        None => by_shapes.then_some(ShownBy::Shapes),
+        Some(Says::Noise) if noise_is_known => None,
+        Some(Says::Noise) | None => by_shapes.then_some(ShownBy::Shapes),
     };
     let is_uneven = columns.local.is_some_and(|local| local.is_shown());
     let shown_by = as_a_whole.or_else(|| is_uneven.then_some(ShownBy::FewWindows));
@@ -115,6 +116,14 @@ pub fn lack_of_fit(columns: &TestColumns) -> Option<LackOfFit> {
         shown_by,
         adequate: shown_by.is_none(),
     })
+}
+
+/// Whether what is held for the noise can be it: noise is no larger than what is left when all
+/// shapes are taken off. Where a joint rings through its holds, the noise found there is motion.
+fn is_noise(times_noise: Option<f64>, misfit_share: f64) -> bool {
+    /// Part of the noise that is left at least: shapes take some of a slow one with them.
+    const LEFT: f64 = 0.5;
+    times_noise.is_none_or(|times| times * (1.0 - misfit_share).max(0.0).sqrt() > LEFT)
 }
 
 impl LackOfFit {
@@ -190,6 +199,26 @@ mod tests {
                 let p = p_value(residuals);
                 assert!(p < 0.01, "{rho}: {p}");
             }
+        }
+    }
+
+    /// Where a joint rings through its holds, a parabola leaves of it what passes for noise.
+    #[test]
+    #[expect(clippy::field_reassign_with_default, reason = "the other fields are private")]
+    fn motion_that_was_taken_for_noise_is_no_noise() {
+        let verdict = |residuals: Vec<f64>| {
+            let mut size = ResidualSize::default();
+            size.times_noise = Some(0.98);
+            let (shapes, residuals) = (shapes(residuals.len()), vec![residuals]);
+            lack_of_fit(&TestColumns { residuals, shapes, size, ..TestColumns::default() }).unwrap()
+        };
+        let rung = |(k, r): (usize, f64)| {
+            20.0 * (k as f64 * 2.1 / 4000.0 * std::f64::consts::TAU).sin() + r
+        };
+        let rings = noise(1, 0.0, 4000).into_iter().enumerate().map(rung).collect();
+        assert_eq!(verdict(rings).shown_by, Some(ShownBy::Shapes));
+        for rho in [0.0, 0.9, 0.95] {
+            assert!((0..20).all(|seed| verdict(noise(seed, rho, 4000)).adequate), "{rho}");
         }
     }
 
