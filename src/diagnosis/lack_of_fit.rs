@@ -204,7 +204,6 @@ mod tests {
 
     /// Where a joint rings through its holds, a parabola leaves of it what passes for noise.
     #[test]
-    #[expect(clippy::field_reassign_with_default, reason = "the other fields are private")]
     fn motion_that_was_taken_for_noise_is_no_noise() {
         let verdict = |residuals: Vec<f64>| {
             let mut size = ResidualSize::default();
