@@ -36,6 +36,7 @@ static ACCUMULATOR: Spec = Spec {
     memory: 1,
     confused_with: &["supply_droop"],
     absorbs: &[],
+    refines: None,
     acts_on_state: false,
 };
 

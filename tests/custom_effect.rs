@@ -18,6 +18,7 @@ static HOSE: Spec = Spec {
     memory: 0,
     confused_with: &["input_saturation"],
     absorbs: &[],
+    refines: None,
     acts_on_state: false,
 };
 

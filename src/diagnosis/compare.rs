@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::failure::{self, Diagnosis, Region, Samples, diagnose, regions};
 use super::local_misfit::local_misfit;
+use super::noise::part_left;
 use super::residual_size::{ResidualSize, clipped};
 use super::shapes::shapes;
 use super::speed_error::speed_error;
@@ -71,12 +72,14 @@ pub(crate) fn compare_knowing(
     }
 }
 
-/// The noise of the measurement, with the delay of `fit`.
+/// The noise of the measurement, with the delay of `fit`, without what `fit` follows of it.
 pub(crate) fn floor_of(record: &Record<'_>, fit: &Fit) -> Option<f64> {
     let trials = &record.joint().trials;
     let arriving = (0..trials.len()).map(|index| record.arrivals(&fit.model, index));
     let arriving: Vec<_> = arriving.collect();
-    noise_floor(trials.iter().zip(&arriving))
+    let arrived = || trials.iter().zip(&arriving);
+    let shown = noise_floor(arrived())?;
+    Some(shown * part_left(arrived(), &fit.evaluation.residuals, record.windows()))
 }
 
 /// Whether `fit` leaves more than noise on the training part of `record`.

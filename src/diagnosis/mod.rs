@@ -20,7 +20,7 @@ mod shapes;
 mod shown_by;
 mod speed_error;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 pub(crate) mod whitening;
 
 pub use compare::{Comparison, compare};

@@ -1,7 +1,11 @@
-//! The noise of the measurement, from the measurement alone.
+//! The noise of the measurement, from the measurement and what a model follows of it.
+
+use std::ops::Range;
 
 use crate::experiment::Trial;
+use crate::fit::Window;
 use crate::model::Arrivals;
+use crate::statistics::median;
 
 /// Seconds after a change of the input in which a joint may still settle.
 const SETTLING_S: f64 = 0.3;
@@ -15,26 +19,61 @@ const SHORTEST: usize = 20;
 /// Where the input has been constant for a while, a joint moves along a line that bends
 /// slowly. Each such stretch is fitted by a parabola; the median over the stretches of
 /// the residual variance `Σ r² / (n − 3)` is the noise. Noise that is correlated over more
-/// than about a third of a stretch is taken for motion, and is missing in the result.
+/// than about a third of a stretch is taken for motion, and is missing in the result; a
+/// joint that still swings there has its swing in it.
 pub fn noise_floor<'a>(trials: impl Iterator<Item = (&'a Trial, &'a Arrivals)>) -> Option<f64> {
-    let mut variances: Vec<f64> =
-        trials.flat_map(|(trial, arrivals)| of_trial(trial, arrivals)).collect();
-    let middle = variances.len() / 2;
-    (!variances.is_empty())
-        .then(|| variances.select_nth_unstable_by(middle, f64::total_cmp).1.max(0.0).sqrt())
+    let values = |(trial, arrivals): (&'a Trial, &'a Arrivals)| {
+        let steady = steady(trial, arrivals).into_iter();
+        steady.filter_map(|stretch| trial.output().get(stretch)).collect::<Vec<_>>()
+    };
+    of_stretches(trials.flat_map(values))
 }
 
-fn of_trial(trial: &Trial, arrivals: &Arrivals) -> Vec<f64> {
+/// The part of that noise which is none, because a model follows it: `residuals` per trial and
+/// sample, about parabolas in the steady stretches of `windows`, over the output there. At
+/// most 1; 1 where there is too little.
+///
+/// A swing in the output is not in what a model leaves that swings alike. Noise is in both,
+/// and with the same memory, so that what the parabolas take of it is the same.
+pub(crate) fn part_left<'a>(
+    trials: impl Iterator<Item = (&'a Trial, &'a Arrivals)>,
+    residuals: &'a [Vec<f64>],
+    windows: &'a [Window],
+) -> f64 {
+    let pieces = |(index, (trial, arrivals)): (usize, (&'a Trial, &'a Arrivals))| {
+        let residuals = residuals.get(index).map_or(&[][..], Vec::as_slice);
+        let of_trial: Vec<_> = windows.iter().filter(|window| window.trial == index).collect();
+        let places = steady(trial, arrivals).into_iter().flat_map(|stretch| {
+            let first = of_trial.partition_point(|window| window.end <= stretch.start);
+            let met = of_trial.iter().skip(first).take_while(|window| window.start < stretch.end);
+            met.map(|w| w.start.max(stretch.start)..w.end.min(stretch.end)).collect::<Vec<_>>()
+        });
+        let both =
+            |place: Range<usize>| Some((trial.output().get(place.clone())?, residuals.get(place)?));
+        places.filter_map(both).collect::<Vec<_>>()
+    };
+    let pieces: Vec<(&[f64], &[f64])> = trials.enumerate().flat_map(pieces).collect();
+    let shown = of_stretches(pieces.iter().map(|piece| piece.0));
+    let left = of_stretches(pieces.iter().map(|piece| piece.1));
+    let part = shown.zip(left).map(|(shown, left)| left / shown);
+    part.filter(|part| part.is_finite()).map_or(1.0, |part| part.min(1.0))
+}
+
+fn of_stretches<'a>(stretches: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
+    let long = stretches.filter(|values| values.len() >= SHORTEST);
+    let variances = long.map(about_parabola).filter(|variance| variance.is_finite());
+    median(&variances.collect::<Vec<_>>()).map(f64::sqrt)
+}
+
+/// Samples between the changes of the input, each from where the joint has settled.
+fn steady(trial: &Trial, arrivals: &Arrivals) -> Vec<Range<usize>> {
     let period = trial.period().seconds();
     let starts = std::iter::once(-SETTLING_S).chain(arrivals.changes.iter().map(|c| c.time_s));
     let length_s = trial.len() as f64 * period;
     let ends = arrivals.changes.iter().map(|change| change.time_s).chain([length_s]);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "inside")]
     let index = |time_s: f64| (time_s / period).ceil().clamp(0.0, trial.len() as f64) as usize;
-    let stretch =
-        |(start, end): (f64, f64)| trial.output().get(index(start + SETTLING_S)..index(end));
-    let stretches = starts.zip(ends).filter_map(stretch);
-    stretches.filter(|values| values.len() >= SHORTEST).map(about_parabola).collect()
+    starts.zip(ends).map(|(start, end)| index(start + SETTLING_S)..index(end)).collect()
 }
 
 /// Residual variance of `values` about the best parabola.

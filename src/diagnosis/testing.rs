@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, StandardNormal};
 
 /// Normal noise of first order with variance 1.
-pub(super) fn noise(seed: u64, rho: f64, count: usize) -> Vec<f64> {
+pub(crate) fn noise(seed: u64, rho: f64, count: usize) -> Vec<f64> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut value = 0.0;
     let mut next = || {

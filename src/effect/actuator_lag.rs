@@ -39,6 +39,7 @@ static SPEC: Spec = Spec {
     memory: 1 + DECAY_MEMORY,
     confused_with: &["resonance", "variable_delay", "rate_limit"],
     absorbs: &[],
+    refines: None,
     acts_on_state: false,
 };
 

@@ -36,6 +36,7 @@ static SPEC: Spec = Spec {
     memory: 1,
     confused_with: &["dead_band", "variable_delay"],
     absorbs: &[],
+    refines: None,
     acts_on_state: false,
 };
 

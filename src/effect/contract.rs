@@ -178,7 +178,7 @@ fn check_spec(spec: &Spec) -> Result<(), Fault> {
     if let Some(name) = names.chain([spec.id]).find(|name| !is_snake_case(name)) {
         return Err(Fault::Name { name });
     }
-    let mut others = spec.confused_with.iter().chain(spec.absorbs).copied();
+    let mut others = spec.confused_with.iter().chain(spec.absorbs).copied().chain(spec.refines);
     if let Some(id) = others.find(|id| by_id(id).is_none() || *id == spec.id) {
         return Err(Fault::Unknown { id });
     }
@@ -395,6 +395,7 @@ mod tests {
         memory: 0,
         confused_with: &[],
         absorbs: &[],
+        refines: None,
         acts_on_state: false,
     };
 

@@ -66,6 +66,7 @@ static SPEC: Spec = Spec {
     memory: 1 + DECAY_MEMORY,
     confused_with: &["dead_band", "stiction", "input_offset"],
     absorbs: &["actuator_lag"],
+    refines: None,
     acts_on_state: false,
 };
 

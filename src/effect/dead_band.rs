@@ -39,6 +39,7 @@ static SPEC: Spec = Spec {
     memory: 0,
     confused_with: &["stiction", "flow_curve", "coulomb_friction"],
     absorbs: &[],
+    refines: None,
     acts_on_state: false,
 };
 

@@ -41,6 +41,7 @@ static SPEC: Spec = Spec {
     memory: 0,
     confused_with: &["input_offset", "gravity_load"],
     absorbs: &[],
+    refines: None,
     acts_on_state: false,
 };
 

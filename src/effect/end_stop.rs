@@ -36,6 +36,7 @@ static SPEC: Spec = Spec {
     memory: 0,
     confused_with: &["input_saturation"],
     absorbs: &[],
+    refines: None,
     acts_on_state: true,
 };
 

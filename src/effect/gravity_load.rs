@@ -42,6 +42,7 @@ static SPEC: Spec = Spec {
     memory: 0,
     confused_with: &["leakage", "direction_gain", "position_gain"],
     absorbs: &[],
+    refines: None,
     acts_on_state: false,
 };
 

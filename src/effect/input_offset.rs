@@ -29,6 +29,7 @@ static SPEC: Spec = Spec {
     memory: 0,
     confused_with: &["direction_gain", "leakage", "coulomb_friction"],
     absorbs: &[],
+    refines: None,
     acts_on_state: false,
 };
 

@@ -45,6 +45,7 @@ static SPEC: Spec = Spec {
     memory: 0,
     confused_with: &["flow_curve", "rate_limit"],
     absorbs: &[],
+    refines: None,
     acts_on_state: false,
 };
 

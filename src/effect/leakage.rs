@@ -32,6 +32,7 @@ static SPEC: Spec = Spec {
     memory: 0,
     confused_with: &["gravity_load", "input_offset"],
     absorbs: &[],
+    refines: None,
     acts_on_state: false,
 };
 

@@ -30,6 +30,7 @@ pub mod input_offset;
 pub mod input_saturation;
 pub mod leakage;
 mod listing;
+pub mod oil_column;
 pub mod placebo;
 pub mod position_gain;
 pub mod rate_limit;
@@ -38,6 +39,7 @@ pub mod resonance;
 mod spec;
 pub mod stiction;
 pub mod supply_droop;
+mod swing;
 #[cfg(test)]
 mod testing;
 pub mod thermal_drift;
@@ -57,6 +59,7 @@ pub use input_offset::InputOffset;
 pub use input_saturation::InputSaturation;
 pub use leakage::Leakage;
 pub use listing::{EffectsJson, listing, sheet};
+pub use oil_column::OilColumn;
 pub use placebo::Placebo;
 pub use position_gain::PositionGain;
 pub use rate_limit::RateLimit;
@@ -80,6 +83,7 @@ pub const REGISTRY: &[&dyn Effect] = &[
     &VariableDelay,
     &ActuatorLag,
     &Resonance,
+    &OilColumn,
     &CoulombFriction,
     &GravityLoad,
     &PositionGain,
@@ -273,6 +277,7 @@ mod tests {
             "variable_delay",
             "actuator_lag",
             "resonance",
+            "oil_column",
             "coulomb_friction",
             "gravity_load",
             "position_gain",

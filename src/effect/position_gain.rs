@@ -44,6 +44,7 @@ static SPEC: Spec = Spec {
     memory: 0,
     confused_with: &["gravity_load"],
     absorbs: &[],
+    refines: None,
     acts_on_state: false,
 };
 

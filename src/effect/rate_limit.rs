@@ -39,6 +39,7 @@ static SPEC: Spec = Spec {
     memory: 1,
     confused_with: &["actuator_lag", "variable_delay"],
     absorbs: &[],
+    refines: None,
     acts_on_state: false,
 };
 

@@ -65,7 +65,7 @@ impl RecordRange<'_> {
         match dimension {
             Dimension::One | Dimension::Seconds | Dimension::PerSecond => 1.0,
             Dimension::Input => positive(self.input_abs_max),
-            Dimension::SecondsPerInput => 1.0 / positive(self.input_abs_max),
+            Dimension::PerInput | Dimension::SecondsPerInput => 1.0 / positive(self.input_abs_max),
             Dimension::Output => self.output_span(),
             Dimension::OutputPerSecond => positive(self.speed_abs_max),
             Dimension::PerOutput => 1.0 / self.output_span(),
@@ -84,9 +84,10 @@ impl RecordRange<'_> {
                 let longest = positive(self.duration_s);
                 (-longest, longest)
             }
-            Dimension::SecondsPerInput | Dimension::PerOutput | Dimension::PerOutputSquared => {
-                (-REACH * size, REACH * size)
-            }
+            Dimension::PerInput
+            | Dimension::SecondsPerInput
+            | Dimension::PerOutput
+            | Dimension::PerOutputSquared => (-REACH * size, REACH * size),
         }
     }
 

@@ -32,6 +32,9 @@ pub struct Spec {
     /// Ids of effects that it contains: to add it to a model is to put it in their
     /// place, with their values for the parameters of the same name.
     pub absorbs: &'static [&'static str],
+    /// Id of an effect of which it is a finer form: it is looked for only in models that have
+    /// that one.
+    pub refines: Option<&'static str>,
     /// Whether an effect on the output changes where the joint is, and not only what
     /// is measured of it.
     pub acts_on_state: bool,
@@ -87,6 +90,8 @@ pub enum Dimension {
     PerSecond,
     /// Input units.
     Input,
+    /// 1 / input unit.
+    PerInput,
     /// Seconds per input unit.
     SecondsPerInput,
     /// Output units.
@@ -107,6 +112,7 @@ impl Dimension {
             Self::Seconds => "seconds",
             Self::PerSecond => "per_second",
             Self::Input => "input",
+            Self::PerInput => "per_input",
             Self::SecondsPerInput => "seconds_per_input",
             Self::Output => "output",
             Self::OutputPerSecond => "output_per_second",
@@ -126,6 +132,7 @@ impl Dimension {
             Self::Seconds => "s".to_owned(),
             Self::PerSecond => "1/s".to_owned(),
             Self::Input => input.to_owned(),
+            Self::PerInput => format!("1/{input}"),
             Self::SecondsPerInput => format!("s/{input}"),
             Self::Output => output.to_owned(),
             Self::OutputPerSecond => format!("{output}/s"),

@@ -44,6 +44,7 @@ static SPEC: Spec = Spec {
     memory: 1,
     confused_with: &["dead_band", "coulomb_friction"],
     absorbs: &[],
+    refines: None,
     acts_on_state: false,
 };
 

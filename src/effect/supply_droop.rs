@@ -34,6 +34,7 @@ static SPEC: Spec = Spec {
     memory: 0,
     confused_with: &["thermal_drift"],
     absorbs: &[],
+    refines: None,
     acts_on_state: false,
 };
 

@@ -77,6 +77,7 @@ static SPEC: Spec = Spec {
     memory: 0,
     confused_with: &["actuator_lag", "rate_limit"],
     absorbs: &[],
+    refines: None,
     acts_on_state: false,
 };
 

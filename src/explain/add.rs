@@ -1,7 +1,7 @@
 //! One effect more in a model, because a user says so.
 
 use super::evidence::Noise;
-use super::race::{MUCH_LESS, parameters, range};
+use super::race::{MUCH_LESS, range};
 use crate::diagnosis::{Comparison, ErrorFigures, NEAR_NOISE, compare, floor_of};
 use crate::effect::Effect;
 use crate::fit::{Fit, FitError, Part, Record, fit};
@@ -60,7 +60,7 @@ pub fn add(
     let measured = measured.and_then(|model| fit(record, &model, &range).ok());
     let costs_less = |other: &&Fit| other.cost < by_law.cost;
     let noise = Noise::of(record, measured.as_ref().filter(costs_less).unwrap_or(&by_law));
-    let evidence = |fit: &Fit| noise.evidence(record, &fit.evaluation, parameters(record, fit));
+    let evidence = |fit: &Fit| noise.evidence(record, fit);
     let law = evidence(&by_law).criterion();
     let better = measured.filter(|measured| {
         evidence(measured).criterion() < law && measured.cost < MUCH_LESS * MUCH_LESS * by_law.cost

@@ -11,10 +11,31 @@
 //!
 //! which is twice its negative log-likelihood with Schwarz's penalty on the part that was
 //! fitted.
+//!
+//! Whether a model is better than a simpler one is tested twice. Fisher's test compares the
+//! `R_t`. While much is still missing from both models, though, the memory of what the best
+//! one leaves is no noise's, and the filter can hide what is plain to see. So the residuals
+//! `e` of the simpler one in all windows, fitted or not, are also regressed, as they are, on
+//! what the other does otherwise, `d`, with an error that allows for any memory within a
+//! window (Liang and Zeger; each window in its turn left out, as Bell and McCaffrey have it):
+//!
+//! ```text
+//! β = Σ e·d / D,   D = Σ D_w,   D_w = |d_w|²,   h_w = D_w / D
+//! var β = Σ_w ((e − β d)_w · d_w / (1 − h_w))² / D²
+//! ```
+//!
+//! `β² / (var β · q)` is compared with Fisher's distribution for `q` parameters that were
+//! added and as many windows as `d` is spread over, `D² / Σ D_w²`. An effect that acts in a
+//! few windows only is beyond this test, and left to the first.
+//!
+//! # References
+//! Liang, K.-Y., and Zeger, S. L., 1986, Longitudinal data analysis using generalized linear
+//! models, Biometrika 73; Bell, R. M., and McCaffrey, D. F., 2002, Bias reduction in standard
+//! errors for linear regression with multi-stage samples, Survey Methodology 28.
 
 use crate::diagnosis::whitening::{autoregression, whitened};
 use crate::diagnosis::{BEYOND_NOISE, ErrorFigures, floor_of};
-use crate::fit::{Evaluation, Fit, Part, Record};
+use crate::fit::{Fit, Part, Record, Status};
 use crate::statistics::fisher_tail;
 
 /// The noise of a record, as the best model leaves it.
@@ -23,11 +44,13 @@ pub(super) struct Noise {
     memory: Vec<f64>,
 }
 
-/// Whitened squares of one model's residuals.
-#[derive(Clone, Copy, Debug)]
+/// One model's residuals.
+#[derive(Clone, Debug)]
 pub(super) struct Evidence {
     training: Squares,
     validation: Squares,
+    /// The residuals of each window of both parts, as they are.
+    windows: Vec<Vec<f64>>,
     /// Parameters that were fitted.
     parameters: usize,
 }
@@ -53,20 +76,18 @@ impl Noise {
         Self { memory: if is_misfit { Vec::new() } else { autoregression(&windows) } }
     }
 
-    /// The evidence of a model with so many fitted parameters.
-    pub(super) fn evidence(
-        &self,
-        record: &Record<'_>,
-        evaluation: &Evaluation,
-        parameters: usize,
-    ) -> Evidence {
+    /// The evidence of the model of `fit`.
+    pub(super) fn evidence(&self, record: &Record<'_>, fit: &Fit) -> Evidence {
+        let evaluation = &fit.evaluation;
         let squares = |part| {
             let windows = whitened(&record.cut(&evaluation.residuals, part), &self.memory);
             let sum: f64 = windows.iter().flatten().map(|e| e * e).sum();
             Squares { sum, samples: windows.iter().map(Vec::len).sum() }
         };
         let (training, validation) = (squares(Part::Training), squares(Part::Validation));
-        Evidence { training, validation, parameters }
+        let both = [Part::Training, Part::Validation].into_iter();
+        let windows = both.flat_map(|part| record.cut(&evaluation.residuals, part)).collect();
+        Evidence { training, validation, windows, parameters: parameters(record, fit) }
     }
 }
 
@@ -89,13 +110,52 @@ impl Evidence {
         Self { parameters: self.parameters + 1, ..self }
     }
 
-    /// Fisher's test of this model against one with fewer parameters, on the training part.
+    /// The probability of so much more than a simpler model explains, were it no better: the
+    /// smaller of two tests', times two.
     pub(super) fn p_value_against(&self, simpler: &Self) -> f64 {
+        const TESTS: f64 = 2.0;
+        (TESTS * self.by_likelihood(simpler).min(self.over_windows(simpler))).min(1.0)
+    }
+
+    /// Fisher's test of this model against one with fewer parameters, on the training part.
+    fn by_likelihood(&self, simpler: &Self) -> f64 {
         let added = self.parameters.saturating_sub(simpler.parameters).max(1);
         let freedom = self.training.samples.saturating_sub(self.parameters).max(1);
         let gained = (simpler.training.sum - self.training.sum).max(0.0) / added as f64;
         let left = (self.training.sum / freedom as f64).max(f64::MIN_POSITIVE);
         fisher_tail(gained / left, added, freedom).unwrap_or(1.0)
+    }
+
+    /// Whether this model is better than another in many windows: see the [module](self).
+    pub(super) fn over_windows(&self, other: &Self) -> f64 {
+        /// What a window does to the sum: `e·d` and `d·d`.
+        struct Pull {
+            with_residual: f64,
+            own: f64,
+        }
+        let pull = |(before, after): (&Vec<f64>, &Vec<f64>)| {
+            let pairs = || before.iter().zip(after).map(|(before, after)| (before, before - after));
+            let with_residual = pairs().map(|(e, d)| e * d).sum();
+            Pull { with_residual, own: pairs().map(|(_, d)| d * d).sum() }
+        };
+        let pulls: Vec<Pull> = other.windows.iter().zip(&self.windows).map(pull).collect();
+        let sum = |of: &dyn Fn(&Pull) -> f64| pulls.iter().map(of).sum::<f64>();
+        let whole = sum(&|pull| pull.own);
+        let factor = sum(&|pull| pull.with_residual) / whole;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
+        let spread = (whole * whole / sum(&|pull| pull.own * pull.own)) as usize;
+        let added = self.parameters.saturating_sub(other.parameters).max(1);
+        let error = |pull: &Pull| {
+            let left = pull.with_residual - factor * pull.own;
+            (left / (1.0 - pull.own / whole)).powi(2)
+        };
+        let variance = (sum(&error) / (whole * whole)).max(f64::MIN_POSITIVE);
+        let statistic = factor * factor / (variance * added as f64);
+        if factor > 0.0 {
+            fisher_tail(statistic, added, spread.saturating_sub(added)).unwrap_or(1.0)
+        } else {
+            1.0
+        }
     }
 }
 
@@ -108,13 +168,21 @@ impl Squares {
     }
 }
 
+/// Parameters that were fitted, and delays that were measured.
+fn parameters(record: &Record<'_>, fit: &Fit) -> usize {
+    let fitted = fit.parameters.iter().filter(|parameter| parameter.status != Status::Fixed);
+    fitted.count() + record.measured_delays(&fit.model)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnosis::testing::noise;
 
     fn evidence(sum: f64, parameters: usize) -> Evidence {
         let training = Squares { sum, samples: 1000 };
-        Evidence { training, validation: Squares { sum: 400.0, samples: 400 }, parameters }
+        let validation = Squares { sum: 400.0, samples: 400 };
+        Evidence { training, validation, windows: Vec::new(), parameters }
     }
 
     #[test]
@@ -129,7 +197,7 @@ mod tests {
     fn fisher_judges_what_a_parameter_gains() {
         let plain = evidence(1000.0, 2);
         // F(1, 997) of 2.7 is exceeded with probability 0.10, of 10 with 0.0016.
-        let by = |gain: f64| evidence(1000.0 - gain, 3).p_value_against(&plain);
+        let by = |gain: f64| evidence(1000.0 - gain, 3).by_likelihood(&plain);
         assert!((by(2.7) - 0.1).abs() < 0.01 && (by(10.0) - 0.0015).abs() < 0.0003);
     }
 
@@ -139,11 +207,51 @@ mod tests {
         // directions, whose square is beyond 9.21 with probability 0.01.
         let plain = evidence(1000.0, 2);
         let found = |parameters| evidence(1000.0 - 9.21, parameters);
-        let nested = found(3).p_value_against(&plain);
-        let apart = found(3).apart().p_value_against(&plain);
+        let nested = found(3).by_likelihood(&plain);
+        let apart = found(3).apart().by_likelihood(&plain);
         assert!((apart - 0.01).abs() < 0.001 && nested < 0.003);
         // Without a parameter of its own there is only the way.
-        assert!((found(2).apart().p_value_against(&plain) / nested - 1.0).abs() < 1e-9);
+        assert!((found(2).apart().by_likelihood(&plain) / nested - 1.0).abs() < 1e-9);
+    }
+
+    /// Windows of 50 samples of noise with a memory, with `effect` in each window.
+    fn windows(seed: u64, effect: impl Fn(usize) -> f64) -> Vec<Vec<f64>> {
+        let values = noise(seed, 0.95, 50 * 60);
+        let window = |(index, values): (usize, &[f64])| {
+            let with = |(k, e): (usize, &f64)| e + effect(index) * k as f64;
+            values.iter().enumerate().map(with).collect()
+        };
+        values.chunks(50).enumerate().map(window).collect()
+    }
+
+    /// The test of a model that takes `slope` times a ramp off each window, fitted.
+    fn of_ramp(seed: u64, effect: impl Fn(usize) -> f64, parameters: usize) -> f64 {
+        let before = windows(seed, effect);
+        let places = || before.iter().flat_map(|w| (0..w.len()).map(|k| k as f64));
+        let with: f64 = places().zip(before.iter().flatten()).map(|(x, e)| x * e).sum();
+        let slope = with / places().map(|x| x * x).sum::<f64>();
+        let less = |w: &Vec<f64>| w.iter().enumerate().map(|(k, e)| e - slope * k as f64).collect();
+        let after =
+            Evidence { windows: before.iter().map(less).collect(), ..evidence(1.0, parameters) };
+        after.over_windows(&Evidence { windows: before, ..evidence(1.0, 2) })
+    }
+
+    #[test]
+    fn noise_with_a_memory_is_no_effect_whatever_the_windows_show() {
+        let of_noise: Vec<f64> = (0..400).map(|seed| of_ramp(seed, |_| 0.0, 3)).collect();
+        let below = |limit: f64| of_noise.iter().filter(|p| **p < limit).count();
+        assert!((20..=60).contains(&below(0.1)), "{} of 400", below(0.1));
+        assert!(below(0.001) <= 3, "{} of 400", below(0.001));
+    }
+
+    #[test]
+    fn an_effect_in_many_windows_shows_and_one_in_a_single_window_does_not() {
+        assert!(of_ramp(7, |_| 0.1, 3) < 1e-6);
+        assert!(of_ramp(7, |index| if index % 3 == 0 { 0.3 } else { 0.0 }, 3) < 1e-3);
+        let once = Evidence { windows: vec![vec![0.0, 0.0], vec![0.0, 0.0]], ..evidence(1.0, 3) };
+        let before = vec![vec![1.0, 5.0], vec![0.0, 0.0]];
+        let before = Evidence { windows: before, ..evidence(1.0, 2) };
+        assert!((once.over_windows(&before) - 1.0).abs() < 1e-12);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::Workers;
 use super::candidate::Candidate;
 use super::evidence::Noise;
-use super::race::{Field, Options, parameters, race, range, takes_part};
+use super::race::{Field, Options, race, range, takes_part};
 use super::verdict::Verdict;
 use crate::diagnosis::{LackOfFit, floor_of, lack_of};
 use crate::effect::{Effect, by_id};
@@ -159,13 +159,19 @@ impl Tidying<'_> {
         whole: &Fit,
         workers: &impl Workers,
     ) -> Option<(Change, Fit)> {
+        /// Probability below which windows show that a change does harm, whatever the criterion
+        /// says.
+        const HARM: f64 = 0.01;
         let tried = promising(record, whole, &self.changes(record, &whole.model), workers);
         let noise = Noise::of(record, whole);
-        let criterion = |fit: &Fit| {
-            noise.evidence(record, &fit.evaluation, parameters(record, fit)).criterion()
-        };
-        let best = tried.into_iter().min_by(|a, b| criterion(&a.1).total_cmp(&criterion(&b.1)))?;
-        let better = (criterion(&best.1) < criterion(whole)).then_some(best)?;
+        let of_whole = noise.evidence(record, whole);
+        let judged = tried.into_iter().filter_map(|(change, fit)| {
+            let evidence = noise.evidence(record, &fit);
+            let does_harm = of_whole.over_windows(&evidence) < HARM;
+            let behind = evidence.criterion() - of_whole.criterion();
+            (behind < 0.0 && !does_harm).then_some((behind, (change, fit)))
+        });
+        let (_, better) = judged.min_by(|a, b| a.0.total_cmp(&b.0))?;
         if let Change::Replaced { new, .. } = better.0 {
             self.settled.push(new);
         }
@@ -178,7 +184,7 @@ impl Tidying<'_> {
         let others = |old: &'static str| {
             let effects = self.options.effects.iter().map(|effect| effect.spec());
             let alike = effects.filter(move |spec| looks_like(old, spec.id));
-            let able = alike.filter(|spec| takes_part(record, &model.without(old), spec.id));
+            let able = alike.filter(|spec| takes_part(record, &model.without(old), spec));
             able.map(move |spec| Change::Replaced { old, new: spec.id }).collect::<Vec<_>>()
         };
         let old: Vec<&'static str> = ids(model).into_iter().filter(may_go).collect();

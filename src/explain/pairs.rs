@@ -85,7 +85,7 @@ fn with_both(
 ) -> Option<JointModel> {
     let first = model.with(Component::neutral(one));
     let has_place =
-        takes_part(record, &first, two.spec().id) && !two.spec().absorbs.contains(&one.spec().id);
+        takes_part(record, &first, two.spec()) && !two.spec().absorbs.contains(&one.spec().id);
     has_place.then(|| first.with(Component::neutral(two)))
 }
 

@@ -5,8 +5,8 @@ use super::candidate::Candidate;
 use super::evidence::Noise;
 use super::pairs::pairs;
 use crate::diagnosis::{ErrorFigures, NEAR_NOISE, floor_of};
-use crate::effect::{Effect, REGISTRY, RecordRange};
-use crate::fit::{Fit, Part, Record, Status, Survey, fit_to_compare, survey};
+use crate::effect::{Effect, REGISTRY, RecordRange, Spec};
+use crate::fit::{Fit, Part, Record, Survey, fit_to_compare, survey};
 use crate::model::{Component, JointModel};
 
 /// What a race is about.
@@ -104,7 +104,7 @@ fn beside_pairs(
 
 /// The effects of `options` that could be missing from the model of `base`.
 fn able(record: &Record<'_>, base: &Fit, options: &Options) -> Vec<&'static dyn Effect> {
-    let able = |effect: &&&'static dyn Effect| takes_part(record, &base.model, effect.spec().id);
+    let able = |effect: &&&'static dyn Effect| takes_part(record, &base.model, effect.spec());
     options.effects.iter().filter(able).copied().collect()
 }
 
@@ -178,14 +178,13 @@ pub(super) fn range<'l>(
     record.range(levels, model.gain.value.abs() * levels.last().copied().unwrap_or(1.0))
 }
 
-/// Whether the effect `id` could be missing: it is not there already, nor contained in one
-/// that is, and the record could show it.
-pub(super) fn takes_part(record: &Record<'_>, model: &JointModel, id: &'static str) -> bool {
-    let has = |component: &Component| {
-        let spec = component.effect().spec();
-        spec.id == id || spec.absorbs.contains(&id)
-    };
-    !model.components().iter().any(has) && (id != "supply_droop" || record.has_others())
+/// Whether `effect` could be missing: it is not there already, nor contained in one that is,
+/// what it refines is there, and the record could show it.
+pub(super) fn takes_part(record: &Record<'_>, model: &JointModel, effect: &Spec) -> bool {
+    let specs = || model.components().iter().map(|component| component.effect().spec());
+    let is_there = specs().any(|spec| spec.id == effect.id || spec.absorbs.contains(&effect.id));
+    let has_its_like = effect.refines.is_none_or(|id| specs().any(|spec| spec.id == id));
+    !is_there && has_its_like && (effect.id != "supply_droop" || record.has_others())
 }
 
 fn ranked(
@@ -199,7 +198,7 @@ fn ranked(
         return Vec::new();
     };
     let noise = Noise::of(record, &best.fit);
-    let evidence = |fit: &Fit| noise.evidence(record, &fit.evaluation, parameters(record, fit));
+    let evidence = |fit: &Fit| noise.evidence(record, fit);
     let of_base = evidence(base);
     let (trained, validated) = (error(base, Part::Training), error(base, Part::Validation));
     let square = |e: Option<ErrorFigures>| e.map_or(f64::NAN, |e| e.rmse * e.rmse);
@@ -211,6 +210,7 @@ fn ranked(
             (Some(before), Some(after)) => (before.rmse, after.rmse),
             _ => (square(trained).sqrt(), square(training).sqrt()),
         };
+        let (behind, deviance) = (evidence.criterion(), evidence.deviance());
         let tested = if nests(&entry) { evidence } else { evidence.apart() };
         let p_value = tested.p_value_against(&of_base);
         let misfit = (square(trained) - noise_floor * noise_floor).max(f64::MIN_POSITIVE);
@@ -222,8 +222,8 @@ fn ranked(
             training_reduction_percent: 100.0 * (1.0 - (square(training) / square(trained)).sqrt()),
             p_value,
             share_of_misfit: (square(trained) - square(training)) / misfit,
-            behind: evidence.criterion(),
-            deviance: evidence.deviance(),
+            behind,
+            deviance,
             indistinguishable_from: Vec::new(),
             separated_by: Vec::new(),
             noise_floor: floor_of(record, &entry.fit),
@@ -281,10 +281,4 @@ fn alike(candidates: &[Candidate]) -> Vec<Vec<&'static str>> {
         others.flat_map(|other| other.effects.iter().copied()).collect()
     };
     candidates.iter().map(of).collect()
-}
-
-/// Parameters that were fitted, and delays that were measured.
-pub(super) fn parameters(record: &Record<'_>, fit: &Fit) -> usize {
-    let fitted = fit.parameters.iter().filter(|parameter| parameter.status != Status::Fixed);
-    fitted.count() + record.measured_delays(&fit.model)
 }

@@ -240,6 +240,7 @@ fn specified(definition: &Definition) -> Spec {
         memory: 0,
         confused_with: &[],
         absorbs: &[],
+        refines: None,
         acts_on_state: false,
     }
 }
