@@ -1,8 +1,8 @@
 //! How often explain and improve find what is hidden in a record.
 //!
 //! Joints of the synthetic plant, which shares no equation with the models, hide nothing,
-//! each effect of the catalogue in turn, two or three of them, or something that the
-//! catalogue does not have; one is moved by a cylinder. What explain names and improve adds
+//! each effect of the catalogue in turn, the finer form of one, two or three of them, or
+//! something that the catalogue does not have; some are moved by a cylinder. What explain names and improve adds
 //! is held against the truth. The page goes to standard output, progress to standard error.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "an example prints")]
 
@@ -75,8 +75,16 @@ fn tell(cases: &[Case], index: usize, outcome: &anyhow::Result<Outcome>) {
 /// A record that hides one effect and one that hides none, and few effects to choose from.
 #[test]
 fn what_is_hidden_is_found_and_nothing_is_not() -> anyhow::Result<()> {
-    let counts =
-        Counts { one: 1, nothing: 1, two: 0, three: 0, outside: 0, cylinder: 0, first_seed: 1 };
+    let counts = Counts {
+        one: 1,
+        nothing: 1,
+        two: 0,
+        three: 0,
+        outside: 0,
+        finer: 0,
+        cylinder: 0,
+        first_seed: 1,
+    };
     let known = ["dead_band", "actuator_lag", "thermal_drift"];
     let effects = known.into_iter().filter_map(tauscope::effect::by_id).collect();
     let wanted = ["clear dead_band, white", "nothing, AR(1) 0.9, "];

@@ -3,7 +3,9 @@
 use std::f64::consts::TAU;
 
 use proptest::prelude::*;
-use tauscope::effect::{ActuatorLag, CoulombFriction, Effect, Moment, RateLimit, Resonance};
+use tauscope::effect::{
+    ActuatorLag, CoulombFriction, Effect, Moment, OilColumn, RateLimit, Resonance,
+};
 
 /// Small steps in an interval.
 const STEPS: u32 = 2000;
@@ -85,6 +87,25 @@ proptest! {
             midpoint_rule(x, h, |x| [x[1], force(x)])
         });
         agree(&means(&Resonance, &[TAU / omega, damping], &holds), &expected, 1e-6)?;
+    }
+
+    #[test]
+    fn oil_column(
+        holds in holds(),
+        omega in 0.01..1.0,
+        damping in 0.0..0.3,
+        valve_damping in 0.0..2.0,
+        (slope, away) in (-0.02..0.02, -20.0..20.0),
+    ) {
+        // All the time at the angle 0.
+        let there = omega / (1.0 - slope * away);
+        let expected = integrated(&holds, |x, input, h| {
+            let braked = 2.0 * (damping + valve_damping * input.abs());
+            let force = |[x, v]: [f64; 2]| there * (there * (input - x) - braked * v);
+            midpoint_rule(x, h, |x| [x[1], force(x)])
+        });
+        let parameters = [TAU / omega, damping, valve_damping, slope, 0.0, away];
+        agree(&means(&OilColumn, &parameters, &holds), &expected, 1e-6)?;
     }
 
     #[test]

@@ -7,7 +7,7 @@
 use std::f64::consts::{PI, TAU};
 
 use tauscope::effect::REGISTRY;
-use tauscope::synthetic::effects::{CATALOGUE, OUTSIDE};
+use tauscope::synthetic::effects::{CATALOGUE, FINER, OUTSIDE};
 use tauscope::synthetic::{
     DelayLaw, InputSpec, JointSpec, PlantError, PlantSpec, Spikes, Synthetic, simulate,
 };
@@ -301,7 +301,7 @@ fn spikes_are_as_many_and_as_large_as_wanted_and_leave_the_noise_alone() {
 
 /// Each effect at its neutral numbers, and how far it may lead: what takes time takes four
 /// time steps at least, 2 ms at up to 20 deg/s.
-const NEUTRAL: [(&str, f64); 23] = [
+const NEUTRAL: [(&str, f64); 24] = [
     ("input_offset:offset=0", 1e-9),
     ("dead_band:lower=0,upper=0", 1e-9),
     ("stiction:start=0,stop=0", 0.1),
@@ -312,6 +312,7 @@ const NEUTRAL: [(&str, f64); 23] = [
     ("rate_limit:seconds_per_input=1e-9", 0.1),
     ("actuator_lag:time_constant=0.002", 0.1),
     ("resonance:period=0.02,damping=0.9", 0.2),
+    ("oil_column:period=0.02,damping=0.9,valve_damping=0,slope=0,reference=0", 0.2),
     ("coulomb_friction:positive=0,negative=0,time_constant=0.002", 0.1),
     ("position_gain:ratio=0.3,mount=60,leverage=0,reference=0", 1e-9),
     ("thermal_drift:change=0,time_constant=10", 1e-9),
@@ -472,11 +473,11 @@ fn the_names_are_those_of_the_catalogue_and_all_are_documented() {
         names
     };
     let fitted = sorted(&mut REGISTRY.iter().map(|effect| effect.spec().id));
-    assert_eq!(sorted(&mut CATALOGUE.into_iter()), fitted);
+    assert_eq!(sorted(&mut CATALOGUE.into_iter().chain(FINER)), fitted);
     assert!(OUTSIDE.iter().all(|name| !fitted.contains(name)));
     let text = std::fs::read_to_string("docs/simulating.md").unwrap();
     let names = NEUTRAL.map(|(text, _)| text.split_once(':').unwrap());
-    assert_eq!(names.len(), CATALOGUE.len() + OUTSIDE.len());
+    assert_eq!(names.len(), CATALOGUE.len() + OUTSIDE.len() + FINER.len());
     for (name, numbers) in names {
         let row = text.lines().find(|line| line.starts_with(&format!("| `{name}` |"))).unwrap();
         for number in numbers.split(',') {

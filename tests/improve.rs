@@ -6,7 +6,8 @@ mod desk;
 use desk::{Desk, assert_fields, banded, fields, joint, number};
 use serde_json::{Value, json};
 use tauscope::model::ModelFile;
-use tauscope::synthetic::JointSpec;
+use tauscope::synthetic::effects::OilColumn;
+use tauscope::synthetic::{CylinderSpec, DelayLaw, InputSpec, JointSpec};
 
 /// No flow between −0.3 V and 0.3 V, and a slow spool.
 fn slow(name: &str) -> JointSpec {
@@ -202,4 +203,55 @@ fn every_revision_is_recorded_as_a_model() {
     let models = desk.recorded_models(&format!("improve log.csv {FEW}"));
     assert_eq!(models, ["revision 0", "revision 1"]);
     assert_eq!(desk.recorded_revisions(), 2);
+}
+
+#[test]
+fn a_swing_is_a_resonance_before_it_is_an_oil_column() {
+    let numbers =
+        OilColumn { period: 0.5, damping: 0.05, valve_damping: 0.1, slope: 0.01, reference: 0.0 };
+    let mut boom = joint("boom");
+    boom.range = Some([-30.0, 30.0]);
+    boom.effect.oil_column = Some(numbers);
+    let desk = Desk::for_seconds(90.0, vec![boom]);
+    let few = "--effects resonance,oil_column,actuator_lag,dead_band";
+    let json = desk.json(&format!("improve log.csv --write m.toml {few}"), 0);
+    let boom = &json["joints"][0];
+    let added: Vec<_> =
+        boom["revisions"].as_array().unwrap().iter().map(|r| r["added"].as_str()).collect();
+    assert_eq!(added, [None, Some("resonance"), Some("oil_column")]);
+    assert_eq!(boom["verdict"], "adequate");
+    assert_eq!(boom["effects"], json!(["oil_column"]));
+    for (name, truth) in [
+        ("period", numbers.period),
+        ("damping", numbers.damping),
+        ("valve_damping", numbers.valve_damping),
+    ] {
+        // The plant has another formula.
+        let found = number(&boom["parameters"][format!("oil_column.{name}")]["value"]);
+        assert!((found / truth - 1.0).abs() < 0.2, "{name} is {found}");
+    }
+}
+
+#[test]
+fn most_of_the_error_of_a_cylinder_is_taken_away() {
+    let levels = vec![-6.0, -4.5, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.5, 6.0];
+    let input = InputSpec::Levels { levels, hold_s: [0.5, 3.0] };
+    let noise = 0.02;
+    let boom = JointSpec {
+        start: 20.0,
+        range: Some([-10.0, 50.0]),
+        cylinder: Some(CylinderSpec::default()),
+        noise,
+        ..JointSpec::new("boom", input, DelayLaw::Constant { seconds: 0.08 })
+    };
+    let desk = Desk::for_seconds(90.0, vec![boom]);
+    let few = "--effects dead_band,position_gain,gravity_load,flow_curve,resonance,oil_column";
+    // A little is left, which the verdict may hold for something or not.
+    let json = desk.json(&format!("improve log.csv --write m.toml {few}"), 0);
+    let boom = &json["joints"][0];
+    let revisions = boom["revisions"].as_array().unwrap();
+    let error = |revision: &Value| number(&revision["error"]["validation"]["rmse"]);
+    let (before, after) = (error(&revisions[0]), error(revisions.last().unwrap()));
+    assert!(after < 0.2 * before, "{after} is left of {before}");
+    assert!(boom["effects"].as_array().unwrap().contains(&json!("oil_column")));
 }

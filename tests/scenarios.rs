@@ -5,7 +5,7 @@
 use tauscope::diagnosis::compare;
 use tauscope::fit::{Horizon, Record, Split, fit};
 use tauscope::model::JointModel;
-use tauscope::synthetic::effects::{CATALOGUE, OUTSIDE};
+use tauscope::synthetic::effects::{CATALOGUE, FINER, OUTSIDE};
 use tauscope::synthetic::scenario::{Noise, Scenario, Strength, draw};
 use tauscope::synthetic::{PlantSpec, simulate};
 
@@ -41,7 +41,7 @@ fn a_fitted_integrator_is_as_wrong_as_was_promised() {
 
 #[test]
 fn each_effect_can_be_hidden() {
-    for (index, name) in CATALOGUE.into_iter().chain(OUTSIDE).enumerate() {
+    for (index, name) in CATALOGUE.into_iter().chain(OUTSIDE).chain(FINER).enumerate() {
         let strength = if index % 2 == 0 { Strength::Weak } else { Strength::Clear };
         let scenario = Scenario::new(&[name], strength, Noise::white(NOISE), 5).unwrap();
         let allowed = if index % 2 == 0 { 1.5..=5.0 } else { 8.0..=f64::INFINITY };

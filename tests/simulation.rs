@@ -196,6 +196,11 @@ impl<'a> Fine<'a> {
                     state[0] = (before * (1.0 - part) + 2.0 * part * signal) / (1.0 + part);
                 }
                 "resonance" => swing(state, signal, std::f64::consts::TAU / p[0], p[1], h),
+                "oil_column" => {
+                    let (away, braked) = (self.angle - p[5], p[1] + p[2] * signal.abs());
+                    let period = p[0] * (1.0 + p[3] * away + p[4] * away * away);
+                    swing(state, signal, std::f64::consts::TAU / period, braked, h);
+                }
                 "coulomb_friction" => state[0] = braked(before, signal, p, h),
                 _ => continue,
             }
@@ -325,6 +330,8 @@ fn effects_of_the_dynamics_are_exact() {
     assert_within(&[("actuator_lag", &[0.12])], 1e-8);
     assert_within(&[("resonance", &[0.25, 0.15])], 1e-6);
     assert_within(&[("resonance", &[0.3, 1.7])], 1e-6);
+    // The middle of an interval is ahead by half of what the joint moved in the one before.
+    assert_within(&[("oil_column", &[0.25, 0.05, 0.03, 0.004, 1e-5, 5.0])], 1e-5);
     assert_within(&[("rate_limit", &[0.031])], 1e-7);
     assert_within(&[("coulomb_friction", &[0.6, 0.4, 0.15])], 1e-6);
 }

@@ -1,11 +1,14 @@
 //! The records of the table: what each hides, and in which noise.
 
-use tauscope::synthetic::effects::{CATALOGUE, OUTSIDE};
+use tauscope::synthetic::effects::{CATALOGUE, FINER, OUTSIDE};
 use tauscope::synthetic::scenario::{self, Noise, Scenario, Strength, ideal};
 use tauscope::synthetic::{CylinderSpec, DelayLaw, InputSpec, JointSpec, PlantSpec, Spikes};
 
 /// Standard deviation of the noise, degrees.
 pub(crate) const NOISE: f64 = 0.05;
+
+/// Those of the records of the cylinder, whose noise a good encoder has, too.
+const NOISES_OF_CYLINDER: [f64; 2] = [NOISE, 0.015];
 
 /// Correlations of neighbouring samples of the noise where something is hidden.
 const CORRELATIONS: [f64; 2] = [0.0, 0.9];
@@ -25,6 +28,8 @@ pub(crate) enum Group {
     One,
     /// Nothing is.
     Nothing,
+    /// The finer form of one is.
+    Finer,
     /// Two effects of the catalogue are.
     Two,
     /// Three are.
@@ -44,6 +49,9 @@ pub(crate) struct Counts {
     /// Nothing hidden: records per noise
     #[arg(long, default_value_t = 20)]
     pub(crate) nothing: u64,
+    /// A finer form hidden: records per strength and noise
+    #[arg(long, default_value_t = 3)]
+    pub(crate) finer: u64,
     /// Two effects hidden: records per strength and noise
     #[arg(long, default_value_t = 10)]
     pub(crate) two: u64,
@@ -53,7 +61,7 @@ pub(crate) struct Counts {
     /// Outside the catalogue: records per effect and strength
     #[arg(long, default_value_t = 3)]
     pub(crate) outside: u64,
-    /// Records of the cylinder
+    /// The cylinder: records per noise
     #[arg(long, default_value_t = 5)]
     pub(crate) cylinder: u64,
     /// Seed of the first record; each has its own
@@ -67,6 +75,8 @@ pub(crate) struct Case {
     pub(crate) group: Group,
     pub(crate) hidden: Vec<&'static str>,
     pub(crate) strength: Strength,
+    /// Standard deviation of the noise, degrees.
+    pub(crate) deviation: f64,
     /// Correlation of neighbouring samples of the noise.
     pub(crate) correlation: f64,
     /// Whether 0.2 % of the samples are far off.
@@ -76,15 +86,22 @@ pub(crate) struct Case {
 
 impl Case {
     fn new(group: Group, hidden: &[&'static str]) -> Self {
-        let (hidden, strength) = (hidden.to_vec(), Strength::Clear);
-        Self { group, hidden, strength, correlation: 0.0, spikes: false, seed: 0 }
+        Self {
+            group,
+            hidden: hidden.to_vec(),
+            strength: Strength::Clear,
+            deviation: NOISE,
+            correlation: 0.0,
+            spikes: false,
+            seed: 0,
+        }
     }
 
     /// The plant that makes the record.
     pub(crate) fn plant(&self) -> anyhow::Result<PlantSpec> {
-        let noise = Noise::correlated(NOISE, self.correlation);
+        let noise = Noise::correlated(self.deviation, self.correlation);
         let mut plant = match self.group {
-            Group::Cylinder => cylinder(self.seed),
+            Group::Cylinder => cylinder(self.deviation, self.seed),
             Group::Nothing => with_noise(ideal(self.seed), noise),
             _ => Scenario::new(&self.hidden, self.strength, noise, self.seed)?.plant,
         };
@@ -117,7 +134,7 @@ impl Case {
     pub(crate) fn title(&self) -> String {
         let what = match self.group {
             Group::Nothing => "nothing".to_owned(),
-            Group::Cylinder => "cylinder".to_owned(),
+            Group::Cylinder => format!("cylinder with noise of {} deg", self.deviation),
             _ => format!("{} {}", self.strength(), self.hidden.join(" + ")),
         };
         format!("{what}, {}, seed {}", self.noise(), self.seed)
@@ -125,7 +142,7 @@ impl Case {
 }
 
 /// A joint that a cylinder moves, its valve driven to both ends.
-fn cylinder(seed: u64) -> PlantSpec {
+fn cylinder(noise: f64, seed: u64) -> PlantSpec {
     let levels = vec![-6.0, -4.5, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.5, 6.0];
     let input = InputSpec::Levels { levels, hold_s: [0.5, 3.0] };
     let delay = DelayLaw::Constant { seconds: 0.08 };
@@ -133,7 +150,7 @@ fn cylinder(seed: u64) -> PlantSpec {
         start: 20.0,
         range: Some([-10.0, 50.0]),
         cylinder: Some(CylinderSpec::default()),
-        noise: NOISE,
+        noise,
         ..JointSpec::new("joint", input, delay)
     };
     PlantSpec::new(seed, CYLINDER_S, vec![joint])
@@ -148,12 +165,13 @@ fn with_noise(mut plant: PlantSpec, noise: Noise) -> PlantSpec {
 
 /// All records, each with a seed of its own.
 pub(crate) fn cases(counts: Counts) -> Vec<Case> {
-    let mut cases = one(counts.one);
+    let mut cases = each_of(&CATALOGUE, Group::One, counts.one);
     cases.extend(nothing(counts.nothing));
-    cases.extend(several(Group::Two, counts.two));
-    cases.extend(several(Group::Three, counts.three));
+    cases.extend(in_all_noises(&Case::new(Group::Two, &[]), counts.two));
+    cases.extend(in_all_noises(&Case::new(Group::Three, &[]), counts.three));
     cases.extend(outside(counts.outside));
-    cases.extend((0..counts.cylinder).map(|_| Case::new(Group::Cylinder, &[])));
+    cases.extend(each_of(&FINER, Group::Finer, counts.finer));
+    cases.extend(of_cylinder(counts.cylinder));
     for (case, seed) in cases.iter_mut().zip(counts.first_seed..) {
         case.seed = seed;
         match case.group {
@@ -177,15 +195,20 @@ fn repeated(case: Case, count: u64) -> impl Iterator<Item = Case> {
     (0..count).map(move |_| case.clone())
 }
 
-fn one(count: u64) -> Vec<Case> {
-    let each = CATALOGUE.into_iter().map(|name| Case::new(Group::One, &[name]));
-    let varied = each.flat_map(|case| varied(&case).collect::<Vec<_>>());
-    varied.flat_map(|case| repeated(case, count)).collect()
+/// One of `names` hidden in each.
+fn each_of(names: &[&'static str], group: Group, count: u64) -> Vec<Case> {
+    names.iter().flat_map(|name| in_all_noises(&Case::new(group, &[name]), count)).collect()
 }
 
-fn several(group: Group, count: u64) -> Vec<Case> {
-    let case = Case::new(group, &[]);
-    varied(&case).flat_map(|case| repeated(case, count)).collect()
+/// `case` with each strength and noise, so many times.
+fn in_all_noises(case: &Case, count: u64) -> Vec<Case> {
+    varied(case).flat_map(|case| repeated(case, count)).collect()
+}
+
+fn of_cylinder(count: u64) -> Vec<Case> {
+    let plain = Case::new(Group::Cylinder, &[]);
+    let each = NOISES_OF_CYLINDER.map(|deviation| Case { deviation, ..plain.clone() });
+    each.into_iter().flat_map(|case| repeated(case, count)).collect()
 }
 
 fn nothing(count: u64) -> Vec<Case> {

@@ -11,7 +11,7 @@ use tauscope::explain::{Change, Improvement, Options, Revision, Verdict};
 use tauscope::fit::{Horizon, Parameter};
 use tauscope::synthetic::{DelayLaw, JointSpec, simulate};
 
-use super::cases::{Case, Group, NOISE};
+use super::cases::{Case, Group};
 
 /// What explain says of a plain integrator.
 #[derive(Clone, Debug)]
@@ -102,10 +102,11 @@ pub(crate) fn examine(case: &Case, options: &Options) -> anyhow::Result<Outcome>
     let is_asked = matches!(case.group, Group::One | Group::Outside | Group::Nothing);
     let named = is_asked.then(|| log.named(options)).transpose()?;
     let spec = plant.joints.first().context("no joint")?;
-    outcome(spec, &improvement, named, other_adequate)
+    outcome(case, spec, &improvement, named, other_adequate)
 }
 
 fn outcome(
+    case: &Case,
     plant: &JointSpec,
     improvement: &Improvement,
     named: Option<Named>,
@@ -120,17 +121,17 @@ fn outcome(
         named,
         found: effects.map(|component| component.effect().spec().id).collect(),
         verdict: *verdict,
-        errors: [first, last].map(|revision| error(&revision.comparison)),
+        errors: [first, last].map(|revision| error(case, &revision.comparison)),
         estimates: estimates.filter_map(|parameter| estimate(plant, parameter)).collect(),
         fails: fails(&first.comparison),
-        chain: chain(revisions, *verdict),
+        chain: chain(case, revisions, *verdict),
         other_adequate,
     })
 }
 
 /// Validation error over the noise.
-fn error(comparison: &Comparison) -> f64 {
-    comparison.validation.map_or(f64::NAN, |validation| validation.rmse / NOISE)
+fn error(case: &Case, comparison: &Comparison) -> f64 {
+    comparison.validation.map_or(f64::NAN, |validation| validation.rmse / case.deviation)
 }
 
 fn fails(comparison: &Comparison) -> Vec<Fails> {
@@ -143,7 +144,7 @@ fn fails(comparison: &Comparison) -> Vec<Fails> {
 }
 
 /// `integrator 12.1, + dead_band 1.01: adequate (p = 0.31)`
-fn chain(revisions: &[Revision], verdict: Verdict) -> String {
+fn chain(case: &Case, revisions: &[Revision], verdict: Verdict) -> String {
     let told = revisions.iter().map(|revision| {
         let change = match revision.change {
             Change::Start => "integrator".to_owned(),
@@ -151,7 +152,7 @@ fn chain(revisions: &[Revision], verdict: Verdict) -> String {
             Change::Removed(id) => format!("- {id}"),
             Change::Replaced { old, new } => format!("- {old} + {new}"),
         };
-        format!("{change} {:.3}", error(&revision.comparison))
+        format!("{change} {:.3}", error(case, &revision.comparison))
     });
     let told: Vec<String> = told.collect();
     let test = revisions.last().and_then(|last| last.comparison.lack_of_fit);

@@ -41,7 +41,7 @@ pub(crate) fn page(counts: Counts, judged: &[Judged]) -> String {
 }
 
 fn head(counts: Counts, records: usize) -> String {
-    let Counts { one, nothing, two, three, outside, cylinder, first_seed } = counts;
+    let Counts { one, nothing, two, three, outside, finer, cylinder, first_seed } = counts;
     format!(
         "# What is found of what is hidden
 
@@ -49,12 +49,12 @@ Made by
 
 ```sh
 cargo run --release --no-default-features --example hidden_effect_table -- --one {one} \\
-    --nothing {nothing} --two {two} --three {three} --outside {outside} --cylinder {cylinder} \\
-    --first-seed {first_seed} > docs/hidden_effect_table.md
+    --nothing {nothing} --two {two} --three {three} --outside {outside} --finer {finer} \\
+    --cylinder {cylinder} --first-seed {first_seed} > docs/hidden_effect_table.md
 ```
 
-{records} records of two minutes at 100 Hz, white or coloured noise of {NOISE} deg, each from a
-seed of its own. The plant that makes them shares no equation with the models
+{records} records of two minutes at 100 Hz, white or coloured noise of {NOISE} deg where nothing
+else is said, each from a seed of its own. The plant that makes them shares no equation with the models
 ([simulating.md](simulating.md)). *Clear* is what makes the nearest integrator wrong by some
 12 times the noise, *weak* by some 3 times. `explain` and `improve` start with a plain
 integrator and have the whole catalogue; both restart at every step of the input.
@@ -227,12 +227,17 @@ fn nothing_hidden(pairs: &[Pair<'_>]) -> String {
 
 fn several_hidden(pairs: &[Pair<'_>]) -> String {
     let mut text = String::new();
-    for (group, title) in [(Group::Two, "Two"), (Group::Three, "Three")] {
+    let groups = [
+        (Group::Finer, "The finer form of an effect"),
+        (Group::Two, "Two effects"),
+        (Group::Three, "Three effects"),
+    ];
+    for (group, title) in groups {
         let pairs = of_group(pairs, group);
         if pairs.is_empty() {
             continue;
         }
-        let _ = writeln!(text, "\n## {title} effects hidden");
+        let _ = writeln!(text, "\n## {title} hidden");
         text += &header(&[
             "strength",
             "noise",
@@ -322,17 +327,29 @@ fn cylinder(pairs: &[Pair<'_>]) -> String {
         return String::new();
     }
     let mut text = "\n## The cylinder\n".to_owned();
-    text += "\nErrors in times the noise, less than which no model can leave. *Beyond noise*: of the \
-             error whose square is that of the error less that of the noise.\n";
-    let columns = ["seed", "integrator", "after improve", "taken away", "beyond noise", "effects"];
+    text += "\nErrors in times the noise, less than which no model can leave: that takes *at most* \
+             away. *Beyond noise*: of the error whose square is that of the error less that of the \
+             noise.\n";
+    let columns = [
+        "noise, deg",
+        "seed",
+        "integrator",
+        "after improve",
+        "taken away",
+        "at most",
+        "beyond noise",
+        "effects",
+    ];
     text += &header(&columns);
     for (case, outcome) in pairs {
         let [before, after] = outcome.errors;
         text += &row(&[
+            case.deviation.to_string(),
             case.seed.to_string(),
             format!("{before:.2}"),
             format!("{after:.2}"),
             format!("{:.1} %", 100.0 * (1.0 - after / before)),
+            format!("{:.1} %", 100.0 * (1.0 - 1.0 / before)),
             format!("{:.1} %", 100.0 * (1.0 - beyond_noise(after) / beyond_noise(before))),
             outcome.found.join(", "),
         ]);
@@ -426,7 +443,8 @@ mod tests {
 
     fn case(group: Group, hidden: &[&'static str]) -> Case {
         let (hidden, strength) = (hidden.to_vec(), Strength::Weak);
-        Case { group, hidden, strength, correlation: 0.0, spikes: false, seed: 7 }
+        let (deviation, correlation) = (NOISE, 0.0);
+        Case { group, hidden, strength, deviation, correlation, spikes: false, seed: 7 }
     }
 
     fn named(first: &str, equals: &[&'static str]) -> Named {
@@ -476,8 +494,16 @@ mod tests {
         let wrong = Ok(outcome(named("stiction", &[]), &["stiction"], 2.5));
         let not_made = Err(anyhow!("out of reach"));
         let judged = [wrong, not_made].map(|outcome| Judged { case: case.clone(), outcome });
-        let counts =
-            Counts { one: 2, nothing: 0, two: 0, three: 0, outside: 0, cylinder: 0, first_seed: 7 };
+        let counts = Counts {
+            one: 2,
+            nothing: 0,
+            two: 0,
+            three: 0,
+            outside: 0,
+            finer: 0,
+            cylinder: 0,
+            first_seed: 7,
+        };
         let page = page(counts, &judged);
         for part in [
             "| weak | white | 0 of 1 (0.0 %) | 0 of 1 (0.0 %) | 2.500 | 2.500 | 0 of 1 (0.0 %) |",

@@ -79,7 +79,7 @@ pub(crate) fn floor_of(record: &Record<'_>, fit: &Fit) -> Option<f64> {
     let arriving: Vec<_> = arriving.collect();
     let arrived = || trials.iter().zip(&arriving);
     let shown = noise_floor(arrived())?;
-    Some(shown * part_left(arrived(), &fit.evaluation.residuals, record.windows()))
+    Some(shown * part_left(arrived(), &fit.evaluation.simulated))
 }
 
 /// Whether `fit` leaves more than noise on the training part of `record`.

@@ -10,12 +10,14 @@
 //!    transients behind each change of the input.
 //! 2. Noise: an autoregression is fitted to what the residual keeps after all shapes are
 //!    taken off, so that a misfit is not mistaken for noise, and another to the residual as
-//!    it is, since the shapes also take some slow noise with them. Orders are Schwarz's.
+//!    it is, since the shapes also take some slow noise with them, though only so much. Orders
+//!    are Schwarz's.
 //! 3. Test: residual, shapes and the sensitivities of the model's own parameters are
 //!    filtered by that autoregression. The shapes together explain `F = ((R₀ − R₁)/q) /
 //!    (R₁/(n − k))` of the rest, which is Fisher's with `q` and `n − k` degrees of freedom
 //!    when nothing is missing. Of the two noises, the one that makes less of it counts; only
-//!    the first where the residual is too large for noise.
+//!    the first where the residual is too large for noise, or the shapes take more of it than
+//!    of any noise.
 //! 4. Size: the test holds all that changes slowly for noise, and finds every trace in a long
 //!    record. Up to 1.15 times the noise of the measurement nothing is left that is worth an
 //!    effect, unless the shapes leave less than half of that noise; beyond three times it is no noise. Nor is it where it is larger on the part that
@@ -30,7 +32,7 @@ use serde::Serialize;
 
 use super::local_misfit::LocalMisfit;
 use super::regression::{Regression, residuals_of};
-use super::residual_size::{BEYOND_NOISE, ResidualSize, Says, is_near_noise};
+use super::residual_size::{BEYOND_NOISE, ResidualSize, Says, independent, is_near_noise};
 use super::shown_by::ShownBy;
 use super::whitening::{autoregression, whitened};
 use crate::statistics::fisher_tail;
@@ -92,7 +94,8 @@ pub fn lack_of_fit(columns: &TestColumns) -> Option<LackOfFit> {
     let [whole, rest] = [&before_shapes, &after_shapes].map(|r| square(r));
     let misfit_share = if whole > 0.0 { (1.0 - rest / whole).max(0.0) } else { 0.0 };
     let mut judged = vec![test(columns, &autoregression(&after_shapes))?];
-    if columns.size.times_noise.is_none_or(|times| times <= BEYOND_NOISE) {
+    let is_small = columns.size.times_noise.is_none_or(|times| times <= BEYOND_NOISE);
+    if is_small && misfit_share <= most_by_chance(columns) {
         judged.push(test(columns, &autoregression(&before_shapes))?);
     }
     let (statistic, p_value) = judged.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -116,6 +119,18 @@ pub fn lack_of_fit(columns: &TestColumns) -> Option<LackOfFit> {
         shown_by,
         adequate: shown_by.is_none(),
     })
+}
+
+/// The part of the square of noise that the shapes may take, however long its memory.
+///
+/// So many parameters take `q` of as many independent values as there are: of `n` samples with
+/// the correlation `ρ` that is `n (1 − ρ²) / (1 + ρ²)`.
+fn most_by_chance(columns: &TestColumns) -> f64 {
+    /// Times what is expected: four in ten of a record of two minutes with noise of `ρ` = 0.95,
+    /// where the most of a hundred such records was two in ten.
+    const TIMES: f64 = 3.0;
+    let samples: usize = columns.residuals.iter().map(Vec::len).sum();
+    TIMES * columns.shapes.len() as f64 / independent(samples)
 }
 
 /// Whether what is held for the noise can be it: noise is no larger than what is left when all

@@ -3,8 +3,7 @@
 use std::ops::Range;
 
 use crate::experiment::Trial;
-use crate::fit::Window;
-use crate::model::Arrivals;
+use crate::model::{Arrivals, Simulated};
 use crate::statistics::median;
 
 /// Seconds after a change of the input in which a joint may still settle.
@@ -29,34 +28,39 @@ pub fn noise_floor<'a>(trials: impl Iterator<Item = (&'a Trial, &'a Arrivals)>) 
     of_stretches(trials.flat_map(values))
 }
 
-/// The part of that noise which is none, because a model follows it: `residuals` per trial and
-/// sample, about parabolas in the steady stretches of `windows`, over the output there. At
-/// most 1; 1 where there is too little.
+/// The part of that noise which a model does not follow: the same of the output less the
+/// motion that was simulated, over that of the output. At most 1; 1 where there is too little.
 ///
-/// A swing in the output is not in what a model leaves that swings alike. Noise is in both,
-/// and with the same memory, so that what the parabolas take of it is the same.
+/// A swing in the output is not in what is left by a model that swings alike. Noise is in
+/// both, with the same memory, so that parabolas take the same of it.
 pub(crate) fn part_left<'a>(
     trials: impl Iterator<Item = (&'a Trial, &'a Arrivals)>,
-    residuals: &'a [Vec<f64>],
-    windows: &'a [Window],
+    simulated: &[Simulated],
 ) -> f64 {
-    let pieces = |(index, (trial, arrivals)): (usize, (&'a Trial, &'a Arrivals))| {
-        let residuals = residuals.get(index).map_or(&[][..], Vec::as_slice);
-        let of_trial: Vec<_> = windows.iter().filter(|window| window.trial == index).collect();
-        let places = steady(trial, arrivals).into_iter().flat_map(|stretch| {
-            let first = of_trial.partition_point(|window| window.end <= stretch.start);
-            let met = of_trial.iter().skip(first).take_while(|window| window.start < stretch.end);
-            met.map(|w| w.start.max(stretch.start)..w.end.min(stretch.end)).collect::<Vec<_>>()
-        });
-        let both =
-            |place: Range<usize>| Some((trial.output().get(place.clone())?, residuals.get(place)?));
-        places.filter_map(both).collect::<Vec<_>>()
-    };
-    let pieces: Vec<(&[f64], &[f64])> = trials.enumerate().flat_map(pieces).collect();
-    let shown = of_stretches(pieces.iter().map(|piece| piece.0));
-    let left = of_stretches(pieces.iter().map(|piece| piece.1));
+    let pairs = trials.zip(simulated).flat_map(|((trial, arrivals), simulated)| {
+        let pair = |stretch: Range<usize>| {
+            let output = trial.output().get(stretch.clone())?;
+            let left = without(output, simulated.velocity.get(stretch)?, trial.period().seconds());
+            Some((output, left))
+        };
+        steady(trial, arrivals).into_iter().filter_map(pair).collect::<Vec<_>>()
+    });
+    let pairs: Vec<(&[f64], Vec<f64>)> =
+        pairs.filter(|(_, left)| left.iter().all(|value| value.is_finite())).collect();
+    let shown = of_stretches(pairs.iter().map(|pair| pair.0));
+    let left = of_stretches(pairs.iter().map(|pair| pair.1.as_slice()));
     let part = shown.zip(left).map(|(shown, left)| left / shown);
     part.filter(|part| part.is_finite()).map_or(1.0, |part| part.min(1.0))
+}
+
+/// `output` less the way gone at `velocity`, from its first value on.
+fn without(output: &[f64], velocity: &[f64], period_s: f64) -> Vec<f64> {
+    let ways = velocity.iter().scan(0.0, |way, velocity| {
+        let now = *way;
+        *way += velocity * period_s;
+        Some(now)
+    });
+    output.iter().zip(ways).map(|(y, way)| y - way).collect()
 }
 
 fn of_stretches<'a>(stretches: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
@@ -96,6 +100,7 @@ fn about_parabola(values: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::testing::noise;
     use super::*;
     use crate::model::Arrival;
     use crate::units::SamplePeriod;
@@ -123,6 +128,28 @@ mod tests {
         let arrivals = Arrivals { initial: 0.0, changes: changes.collect() };
         let found = noise_floor(std::iter::once((&trial, &arrivals))).unwrap();
         assert!((found - 0.05).abs() < 0.003, "{found}");
+    }
+
+    #[test]
+    fn a_swing_that_the_model_follows_is_no_noise() {
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let noise = noise(3, 0.9, 2000);
+        let swing = |k: usize| (k as f64 / 8.0).sin();
+        let output = (0..2000).map(|k| swing(k) + 0.1 * noise[k]).collect();
+        let trial = Trial::new("1", 0.0, period, vec![0.0; 2000], output).unwrap();
+        let changes = (1..10).map(|i| Arrival { time_s: 2.0 * f64::from(i), level: 0.0 });
+        let arrivals = Arrivals { initial: 0.0, changes: changes.collect() };
+        let trials = || std::iter::once((&trial, &arrivals));
+        let part = |share: f64| {
+            let velocity = (0..2000).map(|k| share * (swing(k + 1) - swing(k)) / 0.01);
+            let simulated = Simulated { velocity: velocity.collect(), ..Simulated::default() };
+            part_left(trials(), &[simulated]) * noise_floor(trials()).unwrap()
+        };
+        assert!(part(0.0) > 0.6 && (part(0.5) / part(0.0) - 0.5).abs() < 0.02);
+        // Parabolas take some of a noise with a memory of 10 samples.
+        assert!((0.08..0.1).contains(&part(1.0)), "{}", part(1.0));
+        // What makes it worse is no reason for more noise.
+        assert!((part(-1.0) - part(0.0)).abs() < 1e-12);
     }
 
     #[test]

@@ -68,20 +68,25 @@ impl ResidualSize {
     /// Noise is as large on both. A variance is Fisher's, of fewer samples than there are
     /// where noise has a memory: of `n (1 − ρ²) / (1 + ρ²)` at first order.
     fn is_larger_unseen(&self) -> bool {
-        /// The longest memory that noise is held to have.
-        const RHO: f64 = 0.95;
         /// Probability of calling noise a misfit.
         const SIGNIFICANCE: f64 = 0.001;
         let Some((noise, training)) = self.times_noise.zip(self.times_training) else {
             return false;
         };
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
-        let independent =
-            |samples: usize| (samples as f64 * (1.0 - RHO * RHO) / (1.0 + RHO * RHO)) as usize;
-        let (fitted, unseen) = (independent(self.samples.0), independent(self.samples.1));
+        let freedom = |samples: usize| independent(samples) as usize;
+        let (fitted, unseen) = (freedom(self.samples.0), freedom(self.samples.1));
         let p_value = fisher_tail(training * training, unseen, fitted);
         noise * training > NEAR_NOISE && p_value.is_some_and(|p| p < SIGNIFICANCE)
     }
+}
+
+/// As many independent values as there are in `samples` of a noise with the longest memory:
+/// `n (1 − ρ²) / (1 + ρ²)` for a variance, at first order.
+pub(super) fn independent(samples: usize) -> f64 {
+    /// The longest memory that noise is held to have.
+    const RHO: f64 = 0.95;
+    samples as f64 * (1.0 - RHO * RHO) / (1.0 + RHO * RHO)
 }
 
 /// Whether a residual of `times_noise` is hardly more than the noise.

@@ -2,21 +2,21 @@
 //!
 //! ```text
 //! x'' + 2 (damping + valve_damping |in|) ω x' + ω² x = ω² in
-//! 2π / ω = period · max(1 + slope · (y − reference), 0.05)
+//! 2π / ω = period · max(1 + slope · (y − reference) + curvature · (y − reference)², 0.05)
 //! ```
 //!
 //! The spring of a cylinder is the oil on both sides of its piston, softest near the middle
 //! of the stroke, and it acts on the joint by a lever arm: both change with the angle `y`. A
 //! closed valve leaves the swing to friction. An open one damps it, because oil flows out of
 //! a chamber the faster the higher its pressure is; that flow goes with the opening, which is
-//! the effective input. The straight line stands for the period within the angles of the
-//! record. `reference` is a choice and not fitted: the middle of the record, so that the
-//! period is known best.
+//! the effective input. The parabola stands for the period within the angles of the record.
+//! `reference` is a choice and not fitted: the middle of the record, so that the period is
+//! known best.
 //!
 //! It contains [`Resonance`](super::Resonance), as the case in which neither matters, and is
 //! looked for only where that is found: by itself a swing says that the oil is a spring, and
-//! only what is left of it how the spring changes. Opening and angle are those at the start
-//! of an interval, over which the [`Swing`] is exact.
+//! only what is left of it how the spring changes. Over an interval the [`Swing`] is exact for
+//! the angle in its middle.
 //!
 //! # References
 //! Merritt, H. E., 1967, Hydraulic Control Systems (hydraulic natural frequency over the
@@ -36,7 +36,7 @@ static SPEC: Spec = Spec {
     id: "oil_column",
     summary: "a resonance whose period follows the angle, damped by the open valve",
     equation: "d2 out/dt2 + 2 (damping + valve_damping abs(in)) w d out/dt + w^2 out = w^2 in, w = \
-               2 pi / (period (1 + slope (y - reference)))",
+               2 pi / (period (1 + slope (y - reference) + curvature (y - reference)^2))",
     source: "Merritt, 1967, Hydraulic Control Systems",
     stage: Stage::Dynamics,
     drawing: None,
@@ -56,6 +56,11 @@ static SPEC: Spec = Spec {
             "slope",
             "relative change of the period with the angle",
             Dimension::PerOutput,
+        ),
+        Parameter::new(
+            "curvature",
+            "relative change of the period with its square",
+            Dimension::PerOutputSquared,
         ),
         Parameter::new("reference", "angle at which the period is `period`", Dimension::Output)
             .not_fitted(),
@@ -80,12 +85,14 @@ impl Effect for OilColumn {
 
     /// The memory is `x`, `x'` in input units per second.
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
-        let (&[period, damping, valve_damping, slope, reference], [state, rate]) =
+        let (&[period, damping, valve_damping, slope, curvature, reference], [state, rate]) =
             (parameters, memory)
         else {
             return at.signal;
         };
-        let factor = 1.0 + slope * (at.position - reference);
+        let middle = at.position + 0.5 * at.dt_s * at.velocity;
+        let away = middle - reference;
+        let factor = 1.0 + away * (slope + curvature * away);
         let period = period * factor.clamp(FACTORS.0, FACTORS.1);
         if period < SHORTEST_S {
             [*state, *rate] = [at.signal, 0.0];
@@ -117,8 +124,9 @@ impl Effect for OilColumn {
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
         let shortest = 4.0 * record.sample_period_s;
         let by_valve = 0.2 * record.size(Dimension::PerInput);
-        let guess =
-            |period: f64| vec![period.max(shortest), 0.1, by_valve, 0.0, record.output_middle()];
+        let guess = |period: f64| {
+            vec![period.max(shortest), 0.1, by_valve, 0.0, 0.0, record.output_middle()]
+        };
         PERIODS_S.map(guess).to_vec()
     }
 }
@@ -132,7 +140,7 @@ mod tests {
     const DT_S: f64 = 0.02;
 
     /// The output, and the state after it.
-    fn step_response(parameters: &[f64; 5], signal: f64, position: f64) -> [f64; 3] {
+    fn step_response(parameters: &[f64; 6], signal: f64, position: f64) -> [f64; 3] {
         let mut memory = [0.0; 2];
         let at = Moment { dt_s: DT_S, position, ..moment(signal) };
         let mean = OilColumn.step(parameters, &mut memory, &at);
@@ -149,12 +157,12 @@ mod tests {
     #[test]
     fn without_valve_and_angle_it_is_a_resonance() {
         let expected = of_resonance(&[0.2, 0.1], -3.0);
-        assert_close(&step_response(&[0.2, 0.1, 0.0, 0.0, 5.0], -3.0, 40.0), &expected);
+        assert_close(&step_response(&[0.2, 0.1, 0.0, 0.0, 0.0, 5.0], -3.0, 40.0), &expected);
     }
 
     #[test]
     fn the_valve_damps_by_its_opening_either_way() {
-        let parameters = [0.2, 0.1, 0.05, 0.0, 5.0];
+        let parameters = [0.2, 0.1, 0.05, 0.0, 0.0, 5.0];
         for signal in [4.0, -4.0] {
             let expected = of_resonance(&[0.2, 0.3], signal);
             assert_close(&step_response(&parameters, signal, 40.0), &expected);
@@ -162,9 +170,9 @@ mod tests {
     }
 
     #[test]
-    fn the_period_is_a_line_over_the_angle_with_a_floor() {
-        let parameters = [0.2, 0.1, 0.0, 0.01, 5.0];
-        for (position, period) in [(5.0, 0.2), (30.0, 0.25), (-200.0, 0.01)] {
+    fn the_period_is_a_parabola_over_the_angle_with_a_floor() {
+        let parameters = [0.2, 0.1, 0.0, 0.01, -0.0001, 5.0];
+        for (position, period) in [(5.0, 0.2), (25.0, 0.232), (-200.0, 0.01)] {
             let expected = of_resonance(&[period, 0.1], 2.0);
             assert_close(&step_response(&parameters, 2.0, position), &expected);
         }

@@ -45,8 +45,12 @@ const DEMAND: usize = 15;
 const ANGLE: usize = 16;
 /// Angle on the other side of the play.
 const MEASURED: usize = 17;
+/// Pressure in an oil column.
+const COLUMN_PRESSURE: usize = 18;
+/// Flow out of it.
+const COLUMN_FLOW: usize = 19;
 /// Number of states.
-const STATES: usize = 18;
+const STATES: usize = 20;
 
 /// Time steps in which a joint that sticks comes loose.
 const STEPS_TO_LOOSEN: f64 = 2.0;
@@ -140,6 +144,10 @@ impl<'a> Motion<'a> {
         if let Some(resonance) = effect.resonance {
             [self.state[PRESSURE], self.state[FLOW]] = resonance.steady(signal);
         }
+        if let Some(column) = effect.oil_column {
+            let steady = column.steady(signal);
+            [self.state[COLUMN_PRESSURE], self.state[COLUMN_FLOW]] = steady;
+        }
         if let Some(friction) = effect.coulomb_friction {
             [self.state[MASS], self.state[FRICTION]] = friction.steady(signal);
             signal = self.state[MASS];
@@ -204,6 +212,12 @@ impl<'a> Motion<'a> {
             let now = [state[PRESSURE], state[FLOW]];
             [rate[PRESSURE], rate[FLOW]] = resonance.rate(signal, now);
             signal = state[FLOW];
+        }
+        if let Some(column) = effect.oil_column {
+            let now = [state[COLUMN_PRESSURE], state[COLUMN_FLOW]];
+            let moved = column.rate(signal, now, state[ANGLE]);
+            [rate[COLUMN_PRESSURE], rate[COLUMN_FLOW]] = moved;
+            signal = state[COLUMN_FLOW];
         }
         if let Some(friction) = effect.coulomb_friction {
             let now = [state[MASS], state[FRICTION]];

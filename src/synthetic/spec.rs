@@ -301,7 +301,7 @@ impl JointSpec {
     /// ```
     pub fn hide(&mut self, name: &str, numbers: &[(String, f64)]) -> Result<(), PlantError> {
         let name = effects::name(name)?;
-        if effects::CATALOGUE.contains(&name) {
+        if effects::CATALOGUE.contains(&name) || effects::FINER.contains(&name) {
             self.effect = effects::with_part(&self.effect, name, numbers)?;
         } else {
             self.outside = effects::with_part(&self.outside, name, numbers)?;

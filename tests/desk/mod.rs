@@ -27,7 +27,12 @@ pub(crate) fn banded(name: &str) -> JointSpec {
 
 impl Desk {
     pub(crate) fn with(joints: Vec<JointSpec>) -> Self {
-        let plant = PlantSpec { sample_period_s: 0.02, ..PlantSpec::new(11, 30.0, joints) };
+        Self::for_seconds(30.0, joints)
+    }
+
+    /// The same with a log of `duration_s` seconds.
+    pub(crate) fn for_seconds(duration_s: f64, joints: Vec<JointSpec>) -> Self {
+        let plant = PlantSpec { sample_period_s: 0.02, ..PlantSpec::new(11, duration_s, joints) };
         let made = simulate(&plant).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let log = std::fs::File::create(folder.path().join("log.csv")).unwrap();

@@ -45,6 +45,30 @@ pub struct Resonance {
     pub damping: f64,
 }
 
+/// Oil as a spring that is stiffer at other angles, and that the open valve lets escape.
+///
+/// ```text
+/// p' = ω (in - x - 2 valve_damping o a),   x' = ω a,   a = p - 2 damping x
+/// ω = 2π / (period exp(slope (angle - reference))),   o = √(in² + 0.1²) - 0.1
+/// ```
+///
+/// with the pressure `a` that is left for the load; taken about the steady state, as in a
+/// [`Resonance`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OilColumn {
+    /// Period without damping at `reference`, in seconds.
+    pub period: f64,
+    /// Damping ratio with the valve closed, below 1.
+    pub damping: f64,
+    /// What one input unit of opening adds to it.
+    pub valve_damping: f64,
+    /// Relative change of the period per output unit.
+    pub slope: f64,
+    /// Angle at which the period is `period`, in output units.
+    pub reference: f64,
+}
+
 /// A mass that slides on bristles, which bend before they slip (Dahl).
 ///
 /// ```text
@@ -106,6 +130,28 @@ impl Resonance {
     pub(in super::super) fn rate(&self, input: f64, [pressure, flow]: [f64; 2]) -> [f64; 2] {
         let omega = TAU / self.period;
         [omega * (input - flow), omega * (pressure - 2.0 * self.damping * flow)]
+    }
+
+    /// Pressure and flow after `input` has long been held.
+    pub(in super::super) fn steady(&self, input: f64) -> [f64; 2] {
+        [2.0 * self.damping * input, input]
+    }
+}
+
+impl OilColumn {
+    /// Of pressure and flow, with the joint at `angle`.
+    pub(in super::super) fn rate(
+        &self,
+        input: f64,
+        [pressure, flow]: [f64; 2],
+        angle: f64,
+    ) -> [f64; 2] {
+        /// Opening below which the valve is rather closed, in input units.
+        const EDGE: f64 = 0.1;
+        let opening = input.hypot(EDGE) - EDGE;
+        let omega = TAU / (self.period * (self.slope * (angle - self.reference)).exp());
+        let load = pressure - 2.0 * self.damping * flow;
+        [omega * (input - flow - 2.0 * self.valve_damping * opening * load), omega * load]
     }
 
     /// Pressure and flow after `input` has long been held.
@@ -180,6 +226,18 @@ impl Part for Resonance {
         let shortest_s = MIN_STEPS_PER_PERIOD * clock.substep_s();
         lasts(place, "effect.resonance.period", self.period, shortest_s)?;
         place.number("effect.resonance.damping", self.damping, Allowed::BelowOne)
+    }
+}
+
+impl Part for OilColumn {
+    fn check(&self, place: &Place, clock: &Clock) -> Result<(), PlantError> {
+        let shortest_s = MIN_STEPS_PER_PERIOD * clock.substep_s();
+        lasts(place, "effect.oil_column.period", self.period, shortest_s)?;
+        place.number("effect.oil_column.damping", self.damping, Allowed::BelowOne)?;
+        let key = "effect.oil_column.valve_damping";
+        place.number(key, self.valve_damping, Allowed::NotNegative)?;
+        place.number("effect.oil_column.slope", self.slope, Allowed::Finite)?;
+        place.number("effect.oil_column.reference", self.reference, Allowed::Finite)
     }
 }
 

@@ -17,7 +17,7 @@ use super::clock::Clock;
 use super::error::{Place, PlantError};
 
 pub(super) use actuator::MEMORIES;
-pub use actuator::{ActuatorLag, CoulombFriction, CreepMemory, RateLimit, Resonance};
+pub use actuator::{ActuatorLag, CoulombFriction, CreepMemory, OilColumn, RateLimit, Resonance};
 pub use load::{
     Disturbance, GravityLoad, Leakage, PositionGain, StickySpot, SupplyDroop, ThermalDrift,
 };
@@ -55,6 +55,8 @@ pub struct Effects {
     pub actuator_lag: Option<ActuatorLag>,
     /// The oil is a spring.
     pub resonance: Option<Resonance>,
+    /// A spring that follows the angle, and that the valve damps.
+    pub oil_column: Option<OilColumn>,
     /// A mass with friction.
     pub coulomb_friction: Option<CoulombFriction>,
     /// A linkage between cylinder and joint.
@@ -91,7 +93,7 @@ pub struct Outside {
     pub sensor_nonlinearity: Option<SensorNonlinearity>,
 }
 
-/// Names of the effects of the catalogue.
+/// Names of the effects of the catalogue, but for [`FINER`].
 pub const CATALOGUE: [&str; 18] = [
     "input_offset",
     "dead_band",
@@ -113,6 +115,9 @@ pub const CATALOGUE: [&str; 18] = [
     "backlash",
 ];
 
+/// Names of its effects that are finer forms of others.
+pub const FINER: [&str; 1] = ["oil_column"];
+
 /// Names of the effects outside it.
 pub const OUTSIDE: [&str; 5] =
     ["input_notch", "creep_memory", "sticky_spot", "disturbance", "sensor_nonlinearity"];
@@ -122,7 +127,7 @@ pub const OUTSIDE: [&str; 5] =
 /// # Errors
 /// [`PlantError::Unknown`].
 pub fn name(text: &str) -> Result<&'static str, PlantError> {
-    let known = || CATALOGUE.into_iter().chain(OUTSIDE);
+    let known = || CATALOGUE.into_iter().chain(OUTSIDE).chain(FINER);
     known().find(|name| *name == text).ok_or_else(|| {
         let likeness = |name: &&str| strsim::jaro_winkler(name, text);
         let nearest = known().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
@@ -174,7 +179,7 @@ impl Effects {
 
     /// Names of those that are there.
     pub fn names(&self) -> Vec<&'static str> {
-        names_in(self, &CATALOGUE)
+        names_in(self, &[&CATALOGUE[..], &FINER].concat())
     }
 
     /// Whether there is none but on the delay.
@@ -194,6 +199,7 @@ impl Effects {
             part(self.rate_limit.as_ref()),
             part(self.actuator_lag.as_ref()),
             part(self.resonance.as_ref()),
+            part(self.oil_column.as_ref()),
             part(self.coulomb_friction.as_ref()),
             part(self.position_gain.as_ref()),
             part(self.thermal_drift.as_ref()),

@@ -12,7 +12,7 @@ use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 
 use super::delay_law::DelayLaw;
-use super::effects::{self, CATALOGUE, OUTSIDE};
+use super::effects::{self, CATALOGUE, FINER, OUTSIDE};
 use super::error::PlantError;
 use super::input::InputSpec;
 use super::random::{Purpose, stream};
@@ -162,7 +162,7 @@ impl Secret {
     /// The effect `name`, its particulars drawn by `seed`.
     fn new(name: &str, seed: u64) -> Result<Self, PlantError> {
         let name = effects::name(name)?;
-        let index = CATALOGUE.iter().chain(&OUTSIDE).position(|known| *known == name);
+        let index = CATALOGUE.iter().chain(&OUTSIDE).chain(&FINER).position(|known| *known == name);
         let mut random = stream(seed, index.unwrap_or_default(), Purpose::Scenario);
         Ok(Self { name, chances: Chances(random.random()), amount: FIRST_AMOUNT, random })
     }

@@ -2,7 +2,7 @@
 
 use super::super::effects::{
     ActuatorLag, Backlash, CoulombFriction, CreepMemory, DeadBand, DirectionGain, Disturbance,
-    EndStop, FlowCurve, GravityLoad, InputNotch, InputOffset, InputSaturation, Leakage,
+    EndStop, FlowCurve, GravityLoad, InputNotch, InputOffset, InputSaturation, Leakage, OilColumn,
     PositionGain, RateLimit, Resonance, SensorNonlinearity, StickySpot, Stiction, SupplyDroop,
     ThermalDrift, VariableDelay,
 };
@@ -37,6 +37,7 @@ pub(super) fn hide(name: &str, joint: &mut JointSpec, strength: f64, chances: Ch
         "variable_delay" => variable_delay(joint, strength, chances),
         "actuator_lag" => actuator_lag(joint, strength, chances),
         "resonance" => resonance(joint, strength, chances),
+        "oil_column" => oil_column(joint, strength, chances),
         "coulomb_friction" => coulomb_friction(joint, strength, chances),
         "gravity_load" => gravity_load(joint, strength, chances),
         "position_gain" => position_gain(joint, strength, chances),
@@ -113,6 +114,17 @@ fn actuator_lag(joint: &mut JointSpec, strength: f64, _chances: Chances) {
 fn resonance(joint: &mut JointSpec, strength: f64, chances: Chances) {
     let damping = chances.between(0, 0.08, 0.25);
     joint.effect.resonance = Some(Resonance { period: 0.08 + 1.5 * strength, damping });
+}
+
+/// With the valve wide open as much damping again, and a period that differs by a third
+/// between the angles at which the joint is.
+fn oil_column(joint: &mut JointSpec, strength: f64, chances: Chances) {
+    let period = 0.1 + 1.5 * strength;
+    let damping = chances.between(0, 0.05, 0.12);
+    let valve_damping = chances.between(1, 0.05, 0.15);
+    let slope = chances.sign(2) * 0.005;
+    let of_joint = OilColumn { period, damping, valve_damping, slope, reference: joint.start };
+    joint.effect.oil_column = Some(of_joint);
 }
 
 fn coulomb_friction(joint: &mut JointSpec, strength: f64, chances: Chances) {
