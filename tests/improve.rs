@@ -230,6 +230,9 @@ fn a_swing_is_a_resonance_before_it_is_an_oil_column() {
         let found = number(&boom["parameters"][format!("oil_column.{name}")]["value"]);
         assert!((found / truth - 1.0).abs() < 0.2, "{name} is {found}");
     }
+    // Alone it need not wait for the other.
+    let json = desk.json("improve log.csv --write n.toml --effects oil_column", 0);
+    assert_eq!(json["joints"][0]["revisions"][1]["added"], "oil_column");
 }
 
 #[test]

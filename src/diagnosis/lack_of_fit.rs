@@ -20,8 +20,8 @@
 //!    of any noise.
 //! 4. Size: the test holds all that changes slowly for noise, and finds every trace in a long
 //!    record. Up to 1.15 times the noise of the measurement nothing is left that is worth an
-//!    effect, unless the shapes leave less than half of that noise; beyond three times it is no noise. Nor is it where it is larger on the part that
-//!    was not fitted.
+//!    effect, unless the shapes leave less than half of that noise; beyond three times it is
+//!    no noise. Nor is it where it is larger on the part that was not fitted.
 //! 5. Evenness: nor is it where it stands out in a few windows ([`LocalMisfit`]).
 //!
 //! # References

@@ -66,6 +66,9 @@ fn lines_of(spec: &Spec, width: usize) -> Vec<String> {
     if !spec.confused_with.is_empty() {
         texts.push(format!("confused with: {}", spec.confused_with.join(", ")));
     }
+    if let Some(coarser) = spec.refines {
+        texts.push(format!("a finer form of {coarser}: looked for where that was found"));
+    }
     let head = format!("{} ({})", spec.id, spec.stage.id());
     let below = texts.iter().flat_map(|text| wrapped(text, width));
     std::iter::once(head).chain(below).collect()
@@ -122,7 +125,7 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{InputSaturation, PositionGain};
+    use super::super::{InputSaturation, OilColumn, PositionGain};
     use super::*;
 
     #[test]
@@ -156,6 +159,14 @@ input_saturation (input)
         assert!(text.contains("slope [1/output unit]: change of the gain with the angle, neutral"));
         assert!(text.contains("reference [output unit]: angle at which"));
         assert!(text.contains(", not fitted\n"));
+    }
+
+    #[test]
+    fn a_finer_form_says_of_what() {
+        let text = sheet(&OilColumn, 200);
+        assert!(
+            text.contains("\n    a finer form of resonance: looked for where that was found\n")
+        );
     }
 
     #[test]

@@ -32,8 +32,8 @@ pub struct Spec {
     /// Ids of effects that it contains: to add it to a model is to put it in their
     /// place, with their values for the parameters of the same name.
     pub absorbs: &'static [&'static str],
-    /// Id of an effect of which it is a finer form: it is looked for only in models that have
-    /// that one.
+    /// Id of an effect of which it is a finer form: where that is looked for, too, this one is
+    /// only in models that have that.
     pub refines: Option<&'static str>,
     /// Whether an effect on the output changes where the joint is, and not only what
     /// is measured of it.

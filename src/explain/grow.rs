@@ -3,7 +3,7 @@
 use super::Workers;
 use super::candidate::Candidate;
 use super::evidence::Noise;
-use super::race::{Field, Options, race, range, takes_part};
+use super::race::{Field, Options, is_due, race, range, takes_part};
 use super::verdict::Verdict;
 use crate::diagnosis::{LackOfFit, floor_of, lack_of};
 use crate::effect::{Effect, by_id};
@@ -184,7 +184,10 @@ impl Tidying<'_> {
         let others = |old: &'static str| {
             let effects = self.options.effects.iter().map(|effect| effect.spec());
             let alike = effects.filter(move |spec| looks_like(old, spec.id));
-            let able = alike.filter(|spec| takes_part(record, &model.without(old), spec));
+            let rest = model.without(old);
+            let able = alike.filter(|spec| {
+                takes_part(record, &rest, spec) && is_due(&rest, spec, self.options)
+            });
             able.map(move |spec| Change::Replaced { old, new: spec.id }).collect::<Vec<_>>()
         };
         let old: Vec<&'static str> = ids(model).into_iter().filter(may_go).collect();

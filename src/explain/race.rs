@@ -104,7 +104,10 @@ fn beside_pairs(
 
 /// The effects of `options` that could be missing from the model of `base`.
 fn able(record: &Record<'_>, base: &Fit, options: &Options) -> Vec<&'static dyn Effect> {
-    let able = |effect: &&&'static dyn Effect| takes_part(record, &base.model, effect.spec());
+    let able = |effect: &&&'static dyn Effect| {
+        let spec = effect.spec();
+        takes_part(record, &base.model, spec) && is_due(&base.model, spec, options)
+    };
     options.effects.iter().filter(able).copied().collect()
 }
 
@@ -179,12 +182,21 @@ pub(super) fn range<'l>(
 }
 
 /// Whether `effect` could be missing: it is not there already, nor contained in one that is,
-/// what it refines is there, and the record could show it.
+/// and the record could show it.
 pub(super) fn takes_part(record: &Record<'_>, model: &JointModel, effect: &Spec) -> bool {
-    let specs = || model.components().iter().map(|component| component.effect().spec());
-    let is_there = specs().any(|spec| spec.id == effect.id || spec.absorbs.contains(&effect.id));
-    let has_its_like = effect.refines.is_none_or(|id| specs().any(|spec| spec.id == id));
-    !is_there && has_its_like && (effect.id != "supply_droop" || record.has_others())
+    let is_it = |spec: &Spec| spec.id == effect.id || spec.absorbs.contains(&effect.id);
+    !has(model, is_it) && (effect.id != "supply_droop" || record.has_others())
+}
+
+/// Whether it is time to look for `effect`: what it refines is in the model, or is not to be
+/// looked for.
+pub(super) fn is_due(model: &JointModel, effect: &Spec, options: &Options) -> bool {
+    let is_sought = |id| options.effects.iter().any(|effect| effect.spec().id == id);
+    effect.refines.is_none_or(|id| has(model, |spec| spec.id == id) || !is_sought(id))
+}
+
+fn has(model: &JointModel, is_it: impl Fn(&Spec) -> bool) -> bool {
+    model.components().iter().any(|component| is_it(component.effect().spec()))
 }
 
 fn ranked(
