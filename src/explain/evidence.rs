@@ -17,7 +17,7 @@
 //! one leaves is no noise's, and the filter can hide what is plain to see. So the residuals
 //! `e` of the simpler one in all windows, fitted or not, are also regressed, as they are, on
 //! what the other does otherwise, `d`, with an error that allows for any memory within a
-//! window (Liang and Zeger; each window in its turn left out, as Bell and McCaffrey have it):
+//! window (Liang and Zeger; each window in its turn left out, as Bell and `McCaffrey` have it):
 //!
 //! ```text
 //! β = Σ e·d / D,   D = Σ D_w,   D_w = |d_w|²,   h_w = D_w / D
@@ -30,7 +30,7 @@
 //!
 //! # References
 //! Liang, K.-Y., and Zeger, S. L., 1986, Longitudinal data analysis using generalized linear
-//! models, Biometrika 73; Bell, R. M., and McCaffrey, D. F., 2002, Bias reduction in standard
+//! models, Biometrika 73; Bell, R. M., and `McCaffrey`, D. F., 2002, Bias reduction in standard
 //! errors for linear regression with multi-stage samples, Survey Methodology 28.
 
 use crate::diagnosis::whitening::{autoregression, whitened};
