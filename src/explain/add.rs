@@ -14,8 +14,8 @@ pub struct Addition {
     pub before: Comparison,
     /// The model with the effect, fitted.
     pub after: Comparison,
-    /// Probability of so much or more when the effect is not there, on the training part;
-    /// `None` where the two models do not nest.
+    /// Probability of so much or more when the effect is not there, as for a
+    /// [`Candidate`](super::Candidate); `None` where the two models do not nest.
     pub p_value: Option<f64>,
 }
 

@@ -26,7 +26,8 @@ pub struct Candidate {
     pub error_reduction_percent: f64,
     /// The same on the training part.
     pub training_reduction_percent: f64,
-    /// Probability of so much or more when the effect is not there, on the training part.
+    /// Probability of so much or more when the effect is not there: the smaller of two tests',
+    /// times two (see `evidence`).
     pub p_value: f64,
     /// Share of the misfit that it takes away: of the mean square error of the training part
     /// beyond the noise of the measurement.

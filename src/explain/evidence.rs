@@ -126,7 +126,8 @@ impl Evidence {
         fisher_tail(gained / left, added, freedom).unwrap_or(1.0)
     }
 
-    /// Whether this model is better than another in many windows: see the [module](self).
+    /// The probability of so much more than another model explains in many windows, were this
+    /// one no better: see the [module](self). 1 where it is spread over too few.
     pub(super) fn over_windows(&self, other: &Self) -> f64 {
         /// What a window does to the sum: `e·d` and `d·d`.
         struct Pull {
