@@ -78,15 +78,15 @@ impl Noise {
 
     /// The evidence of the model of `fit`.
     pub(super) fn evidence(&self, record: &Record<'_>, fit: &Fit) -> Evidence {
-        let evaluation = &fit.evaluation;
-        let squares = |part| {
-            let windows = whitened(&record.cut(&evaluation.residuals, part), &self.memory);
+        let cut = |part| record.cut(&fit.evaluation.residuals, part);
+        let squares = |windows: &[Vec<f64>]| {
+            let windows = whitened(windows, &self.memory);
             let sum: f64 = windows.iter().flatten().map(|e| e * e).sum();
             Squares { sum, samples: windows.iter().map(Vec::len).sum() }
         };
-        let (training, validation) = (squares(Part::Training), squares(Part::Validation));
-        let both = [Part::Training, Part::Validation].into_iter();
-        let windows = both.flat_map(|part| record.cut(&evaluation.residuals, part)).collect();
+        let (mut windows, unseen) = (cut(Part::Training), cut(Part::Validation));
+        let (training, validation) = (squares(&windows), squares(&unseen));
+        windows.extend(unseen);
         Evidence { training, validation, windows, parameters: parameters(record, fit) }
     }
 }
