@@ -1,11 +1,18 @@
-//! Modules import downward only: the order is part of the design.
-#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
+//! Modules import downward only, and no files import in a circle: the order is part of the
+//! design.
+#![expect(clippy::unwrap_used, clippy::panic, reason = "a test may fail loudly")]
 
+#[path = "layering/imports.rs"]
+mod imports;
+
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The library's modules; each may use those before it.
-const ORDER: [&str; 15] = [
+use imports::{House, Import, Module};
+
+/// The modules; each may use those before it.
+const ORDER: [&str; 16] = [
     "units",
     "statistics",
     "effect",
@@ -21,6 +28,7 @@ const ORDER: [&str; 15] = [
     "batch",
     "report",
     "recording",
+    "cli",
 ];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
@@ -37,41 +45,146 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// The library module that a file belongs to.
-fn module(path: &Path) -> Option<usize> {
-    let inside = path.strip_prefix("src").unwrap();
-    let first = inside.components().next()?.as_os_str().to_string_lossy().into_owned();
-    ORDER.iter().position(|module| *module == first.trim_end_matches(".rs"))
+/// This project's files.
+fn project() -> House {
+    let read = |path: &PathBuf| {
+        let inside = path.strip_prefix("src").unwrap().to_str().unwrap().to_owned();
+        (inside, fs::read_to_string(path).unwrap())
+    };
+    let files: Vec<_> = sources(Path::new("src")).iter().map(read).collect();
+    House::of(files.iter().map(|(path, text)| (path.as_str(), text.clone())))
 }
 
-/// The library modules that a file's `use crate::…` lines name.
-fn imports(text: &str) -> Vec<usize> {
-    let paths = text.match_indices("crate::").map(|(start, found)| &text[start + found.len()..]);
-    let names = paths.map(|path| path.split(|c: char| !c.is_alphanumeric() && c != '_').next());
-    names.filter_map(|name| ORDER.iter().position(|module| Some(*module) == name)).collect()
+/// Imports of a module from one behind it in [`ORDER`], as sentences.
+fn upward(house: &House) -> Vec<String> {
+    let place = |module: &Module| ORDER.iter().position(|name| module.first().is_some_and(|m| m == name));
+    let wrong = |import: &Import| match (place(&import.from), place(&import.to)) {
+        (Some(from), Some(to)) => to > from,
+        // What stands in no order is the root: it uses all, and nothing uses it.
+        (Some(_), None) => true,
+        (None, _) => false,
+    };
+    house.imports().iter().filter(|import| wrong(import)).map(told).collect()
 }
 
-/// Imports that go upward, as sentences.
-fn upward(path: &Path, text: &str) -> Vec<String> {
-    let Some(own) = module(path) else { return Vec::new() };
-    let wrong = imports(text).into_iter().filter(|import| *import > own);
-    wrong.map(|import| format!("{} imports {}", path.display(), ORDER[import])).collect()
+fn told(import: &Import) -> String {
+    format!("{} uses {}", import.from.join("/"), import.what)
+}
+
+/// Circles among files and folders: in each folder, what stands beside each other must have
+/// an order. A folder's own `mod.rs` stands beside its parts.
+fn circles(house: &House) -> Vec<String> {
+    let mut folders: BTreeMap<Module, BTreeMap<(String, String), String>> = BTreeMap::new();
+    for import in house.imports() {
+        let shared = import.from.iter().zip(&import.to).take_while(|(a, b)| a == b).count();
+        let part = |module: &Module| module.get(shared).map_or("mod.rs", String::as_str).to_owned();
+        let pair = (part(&import.from), part(&import.to));
+        let folder = folders.entry(import.from[..shared].to_vec()).or_default();
+        folder.entry(pair).or_insert_with(|| told(&import));
+    }
+    folders.iter().flat_map(|(folder, pairs)| circle(folder, pairs)).collect()
+}
+
+/// What of a folder's imports is part of a circle: whatever remains when everything that
+/// imports nothing, or is imported by nothing, is taken away again and again.
+fn circle(folder: &Module, pairs: &BTreeMap<(String, String), String>) -> Vec<String> {
+    let mut left: BTreeSet<&(String, String)> = pairs.keys().collect();
+    loop {
+        let tied = |(from, to): &(String, String)| {
+            left.iter().any(|pair| pair.1 == *from) && left.iter().any(|pair| pair.0 == *to)
+        };
+        let next: BTreeSet<_> = left.iter().copied().filter(|pair| tied(pair)).collect();
+        if next.len() == left.len() {
+            break;
+        }
+        left = next;
+    }
+    let folder = folder.join("/");
+    left.iter().map(|pair| format!("{folder}: {} → {} ({})", pair.0, pair.1, pairs[pair])).collect()
 }
 
 #[test]
 fn no_module_imports_upward() {
-    let files = sources(Path::new("src"));
-    assert!(files.len() > 30);
-    let wrong: Vec<_> =
-        files.iter().flat_map(|path| upward(path, &fs::read_to_string(path).unwrap())).collect();
+    let house = project();
+    assert!(house.len() > 100);
+    let wrong = upward(&house);
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 #[test]
-fn an_upward_import_would_be_seen() {
-    let fault = "use crate::delay::Settings;";
-    assert_eq!(upward(Path::new("src/experiment/read.rs"), fault).len(), 1);
-    assert_eq!(upward(Path::new("src/batch.rs"), fault).len(), 0);
+fn no_files_import_in_a_circle() {
+    let wrong = circles(&project());
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// The files of `sources`, as `path: text`.
+fn house(sources: &[(&str, &str)]) -> House {
+    House::of(sources.iter().map(|(path, text)| (*path, (*text).to_owned())))
+}
+
+#[test]
+fn an_upward_import_is_seen_in_each_way_to_write_it() {
+    for fault in [
+        "use crate::delay::Settings;",
+        "use crate::{units::Hz, delay::Settings};",
+        "use crate::{delay::{estimate, Settings as Other}};",
+        "use crate::delay;\nfn f() { delay::estimate() }",
+        "fn f() -> crate::delay::Settings { loop {} }",
+        "fn f() { use crate::delay::Settings; }",
+        "fn f() { println!(\"{}\", crate::delay::estimate()) }",
+    ] {
+        let delay = ("delay/mod.rs", "pub struct Settings; pub fn estimate() {}");
+        let units = ("units.rs", "pub struct Hz;");
+        let low = house(&[units, delay, ("experiment/read.rs", fault)]);
+        assert_eq!(upward(&low).len(), 1, "{fault}");
+        let high = house(&[units, delay, ("batch.rs", fault)]);
+        assert_eq!(upward(&high), [""; 0], "{fault}");
+        let test = format!("#[cfg(test)] mod tests {{ {fault} }}");
+        assert_eq!(upward(&house(&[units, delay, ("experiment/read.rs", &test)])), [""; 0]);
+    }
+}
+
+#[test]
+fn a_circle_is_seen_wherever_it_runs() {
+    for (kind, files) in [
+        ("two files", [
+            ("delay/mod.rs", "mod a; mod b;"),
+            ("delay/a.rs", "use super::b::B; pub struct A;"),
+            ("delay/b.rs", "use super::a::A; pub struct B;"),
+        ]),
+        ("through a re-export", [
+            ("delay/mod.rs", "mod a; mod b; pub use a::A; pub use b::B as Other;"),
+            ("delay/a.rs", "use super::Other; pub struct A;"),
+            ("delay/b.rs", "use crate::delay::A; pub struct B;"),
+        ]),
+        ("through a glob", [
+            ("delay/mod.rs", "mod a; mod b; pub use a::*;"),
+            ("delay/a.rs", "use super::b; pub struct A; fn f() { b::g() }"),
+            ("delay/b.rs", "use super::A; pub fn g() {}"),
+        ]),
+        ("a file and its folder's own", [
+            ("delay/mod.rs", "mod a; mod b; use a::A; pub struct Limits; fn f() -> A { A }"),
+            ("delay/a.rs", "use super::Limits; pub struct A;"),
+            ("delay/b.rs", ""),
+        ]),
+        ("two folders by way of different files", [
+            ("delay/lag/one.rs", "use crate::delay::method::x::X; pub struct One;"),
+            ("delay/lag/two.rs", "pub struct Two;"),
+            ("delay/method/x.rs", "use super::super::lag::two::Two; pub struct X;"),
+        ]),
+    ] {
+        let files: Vec<_> = [("delay/lag/mod.rs", ""), ("delay/method/mod.rs", "")]
+            .into_iter()
+            .chain(files)
+            .collect();
+        assert!(!circles(&house(&files)).is_empty(), "{kind}");
+    }
+    let facade = house(&[
+        ("delay/mod.rs", "mod a; mod b; pub use a::A; pub use b::B;"),
+        ("delay/a.rs", "pub struct A;"),
+        ("delay/b.rs", "use super::A; pub struct B;"),
+    ]);
+    assert_eq!(circles(&facade), [""; 0]);
 }
 
 #[test]
