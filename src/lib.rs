@@ -21,6 +21,8 @@
 //! - `recording`: results as a Rerun recording (feature `rrd`)
 
 pub mod batch;
+#[doc(hidden)]
+pub mod cli;
 pub mod delay;
 pub mod design;
 pub mod diagnosis;

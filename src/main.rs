@@ -1,9 +1,7 @@
 //! The command line: see `tauscope --help`.
 
-mod cli;
-
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    cli::run()
+    tauscope::cli::run()
 }

@@ -1,14 +1,14 @@
 //! `tauscope add`: one effect more in a model.
 
 use clap::Args as ClapArgs;
-use tauscope::batch::{Mode, add_to_joints};
-use tauscope::diagnosis::Comparison;
-use tauscope::experiment::Joint;
-use tauscope::explain::{Addition, Change, Revision as Step, Verdict};
-use tauscope::fit::Horizon;
-use tauscope::model::{ModelFile, Revision};
-use tauscope::report::{AddJson, AddedJoint, ComparedJoint, Finding, ImprovedJoint};
-use tauscope::report::{add_text, gone};
+use crate::batch::{Mode, add_to_joints};
+use crate::diagnosis::Comparison;
+use crate::experiment::Joint;
+use crate::explain::{Addition, Change, Revision as Step, Verdict};
+use crate::fit::Horizon;
+use crate::model::{ModelFile, Revision};
+use crate::report::{AddJson, AddedJoint, ComparedJoint, Finding, ImprovedJoint};
+use crate::report::{add_text, gone};
 
 use super::Completion;
 use super::data::DataArgs;

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use anyhow::anyhow;
 use clap::Args as ClapArgs;
-use tauscope::batch::{Mode, compare_joints};
-use tauscope::diagnosis::Comparison;
-use tauscope::experiment::Joint;
-use tauscope::fit::{FitError, Horizon};
-use tauscope::model::{JointModel, ModelFile};
-use tauscope::report::{CompareJson, ComparedJoint, compare_table};
+use crate::batch::{Mode, compare_joints};
+use crate::diagnosis::Comparison;
+use crate::experiment::Joint;
+use crate::fit::{FitError, Horizon};
+use crate::model::{JointModel, ModelFile};
+use crate::report::{CompareJson, ComparedJoint, compare_table};
 
 use super::Completion;
 use super::data::DataArgs;

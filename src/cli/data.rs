@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use tauscope::experiment::{
+use crate::experiment::{
     ColumnMap, Experiment, JointColumns, ReadOptions, Repair, expand_folders,
 };
-use tauscope::units::SamplePeriod;
+use crate::units::SamplePeriod;
 
 /// Where the logs are and how they are read.
 #[derive(Args, Debug)]

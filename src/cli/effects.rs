@@ -1,7 +1,7 @@
 //! `tauscope effects`
 
 use clap::Args as ClapArgs;
-use tauscope::effect::{EffectsJson, REGISTRY, find, listing, sheet};
+use crate::effect::{EffectsJson, REGISTRY, find, listing, sheet};
 
 use super::Completion;
 use super::fitting::Format;

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
-use tauscope::batch::{Mode, OfJoints, compare_joints, explain_joints};
-use tauscope::diagnosis::Comparison;
-use tauscope::experiment::Joint;
-use tauscope::explain::{Change, Explanation, Options, Revision};
-use tauscope::fit::Horizon;
-use tauscope::model::ModelFile;
-use tauscope::report::{ComparedJoint, ExplainJson, Finding, ImprovedJoint, explain_text};
+use crate::batch::{Mode, OfJoints, compare_joints, explain_joints};
+use crate::diagnosis::Comparison;
+use crate::experiment::Joint;
+use crate::explain::{Change, Explanation, Options, Revision};
+use crate::fit::Horizon;
+use crate::model::ModelFile;
+use crate::report::{ComparedJoint, ExplainJson, Finding, ImprovedJoint, explain_text};
 
 use super::Completion;
 use super::data::DataArgs;

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow};
 use clap::{Args, ValueEnum};
-use tauscope::batch::{JointEstimate, Mode, Protocol, estimate_joints, with_threads};
-use tauscope::delay::{EstimateError, Settings};
-use tauscope::effect::{Effect, REGISTRY, find_among};
-use tauscope::experiment::{Experiment, Joint};
-use tauscope::fit::{Horizon, Split};
-use tauscope::report::{ComparedJoint, EstimatedJoint, ImprovedJoint};
+use crate::batch::{JointEstimate, Mode, Protocol, estimate_joints, with_threads};
+use crate::delay::{EstimateError, Settings};
+use crate::effect::{Effect, REGISTRY, find_among};
+use crate::experiment::{Experiment, Joint};
+use crate::fit::{Horizon, Split};
+use crate::report::{ComparedJoint, EstimatedJoint, ImprovedJoint};
 
 use super::data::DataArgs;
 use super::progress::{Bar, Verbosity};

@@ -4,12 +4,12 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use clap::Args as ClapArgs;
-use tauscope::batch::{Mode, improve_joints};
-use tauscope::experiment::Joint;
-use tauscope::explain::{Change, Improvement, MAX_EFFECTS, Options, Revision as Step, Verdict};
-use tauscope::fit::Horizon;
-use tauscope::model::{ModelFile, Revision};
-use tauscope::report::{
+use crate::batch::{Mode, improve_joints};
+use crate::experiment::Joint;
+use crate::explain::{Change, Improvement, MAX_EFFECTS, Options, Revision as Step, Verdict};
+use crate::fit::Horizon;
+use crate::model::{ModelFile, Revision};
+use crate::report::{
     ComparedJoint, Finding, ImproveJson, ImprovedJoint, gone, improve_text, revision_line,
 };
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
-use tauscope::report::FolderReport;
+use crate::report::FolderReport;
 
 use super::Completion;
 use super::fitting::Format;

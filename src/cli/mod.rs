@@ -33,7 +33,7 @@ use std::io;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use tauscope::experiment::{Experiment, Failure};
+use crate::experiment::{Experiment, Failure};
 
 use terminal::message;
 
@@ -75,7 +75,7 @@ enum Completion {
 /// Runs the command that the arguments name.
 ///
 /// Exit status: 0 all done; 1 some joints or files failed; 2 nothing usable.
-pub(crate) fn run() -> ExitCode {
+pub fn run() -> ExitCode {
     let outcome = perform(Cli::parse().command);
     match outcome {
         Ok(Completion::Whole) => ExitCode::SUCCESS,

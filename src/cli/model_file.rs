@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use tauscope::model::ModelFile;
+use crate::model::ModelFile;
 
 use super::nearest::nearest;
 use super::output::{target_of, write_file};
 use super::progress::Verbosity;
 use super::terminal::message;
-use tauscope::experiment::Joint;
+use crate::experiment::Joint;
 
 /// The name of a model file where none is given.
 const DEFAULT: &str = "model.toml";

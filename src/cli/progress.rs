@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 use std::time::Duration;
 
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
-use tauscope::batch::Watch;
+use crate::batch::Watch;
 
 /// Whether progress and notices are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

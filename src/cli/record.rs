@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use tauscope::delay::Settings;
-use tauscope::delay::sweep::Grid;
-use tauscope::experiment::{ReadOptions, Source};
-use tauscope::report::{
+use crate::delay::Settings;
+use crate::delay::sweep::Grid;
+use crate::experiment::{ReadOptions, Source};
+use crate::report::{
     ComparedJoint, DesignedJoint, EstimatedJoint, ImprovedJoint, ReportedSweep,
 };
 
@@ -44,16 +44,16 @@ impl Contents<'_> {
 
     #[cfg(feature = "rrd")]
     fn write(&self, file: &mut OutputFile) -> anyhow::Result<()> {
-        self.with_recording(|recording| Ok(tauscope::recording::write_recording(recording, file)?))
+        self.with_recording(|recording| Ok(crate::recording::write_recording(recording, file)?))
     }
 
     /// Does `work` with the recording.
     #[cfg(feature = "rrd")]
     pub(super) fn with_recording<T>(
         &self,
-        work: impl FnOnce(&tauscope::recording::Recording<'_>) -> T,
+        work: impl FnOnce(&crate::recording::Recording<'_>) -> T,
     ) -> T {
-        use tauscope::recording::{self, Beside, Recording};
+        use crate::recording::{self, Beside, Recording};
 
         let also = self.also.iter().map(|&(settings, joints)| Beside { settings, joints });
         let also: Vec<Beside<'_>> = also.collect();
@@ -94,13 +94,13 @@ impl SweepContents<'_> {
 
     #[cfg(feature = "rrd")]
     fn write(&self, file: &mut OutputFile) -> anyhow::Result<()> {
-        Ok(tauscope::recording::write_sweep(&self.recording(), file)?)
+        Ok(crate::recording::write_sweep(&self.recording(), file)?)
     }
 
     #[cfg(feature = "rrd")]
-    pub(super) fn recording(&self) -> tauscope::recording::SweepRecording<'_> {
+    pub(super) fn recording(&self) -> crate::recording::SweepRecording<'_> {
         let Self { joints, grid, tolerance, sources, reading } = *self;
-        tauscope::recording::SweepRecording { joints, grid, tolerance, sources, reading }
+        crate::recording::SweepRecording { joints, grid, tolerance, sources, reading }
     }
 
     #[cfg(not(feature = "rrd"))]
@@ -129,8 +129,8 @@ impl PreviewContents<'_> {
     #[cfg(feature = "rrd")]
     fn write(&self, file: &mut OutputFile) -> anyhow::Result<()> {
         let Self { joints, sources, reading, model } = *self;
-        let preview = tauscope::recording::PreviewRecording { joints, sources, reading, model };
-        Ok(tauscope::recording::write_preview(&preview, file)?)
+        let preview = crate::recording::PreviewRecording { joints, sources, reading, model };
+        Ok(crate::recording::write_preview(&preview, file)?)
     }
 
     #[cfg(not(feature = "rrd"))]

@@ -7,16 +7,16 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow, bail};
 use clap::Args as ClapArgs;
-use tauscope::batch::{
+use crate::batch::{
     Mode, OfJoints, estimate_joints, explain_joints, improve_joints, with_threads,
 };
-use tauscope::delay::Settings;
-use tauscope::effect::Effect;
-use tauscope::experiment::{Experiment, Joint};
-use tauscope::explain::{Change, Explanation, Improvement, MAX_EFFECTS, Options, Revision};
-use tauscope::fit::Horizon;
-use tauscope::model::ModelFile;
-use tauscope::report::{
+use crate::delay::Settings;
+use crate::effect::Effect;
+use crate::experiment::{Experiment, Joint};
+use crate::explain::{Change, Explanation, Improvement, MAX_EFFECTS, Options, Revision};
+use crate::fit::Horizon;
+use crate::model::ModelFile;
+use crate::report::{
     Document, EstimatedJoint, ImprovedJoint, RecordingFile, Report, ReportJson, report_text,
 };
 

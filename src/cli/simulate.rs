@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use clap::{Args as ClapArgs, ValueEnum};
-use tauscope::synthetic::scenario::{self, Noise, Scenario};
-use tauscope::synthetic::{PlantSpec, Synthetic, simulate, write_log, write_truth};
+use crate::synthetic::scenario::{self, Noise, Scenario};
+use crate::synthetic::{PlantSpec, Synthetic, simulate, write_log, write_truth};
 
 use super::output::{OutputFile, check_outputs};
 use super::progress::{Bar, Verbosity};

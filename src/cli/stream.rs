@@ -60,7 +60,7 @@ impl StreamArgs {
     /// Reaches the viewer, before any work is done.
     #[cfg(feature = "rrd")]
     pub(super) fn open(&self, verbosity: Verbosity) -> anyhow::Result<Stream> {
-        use tauscope::recording::Live;
+        use crate::recording::Live;
 
         let live = match (&self.connect, self.serve) {
             (Some(address), _) => Some(Live::connect(address)?),
@@ -93,7 +93,7 @@ fn note(verbosity: Verbosity, kind: &str, text: &str) {
 
 /// The way to a viewer, where one was asked for.
 #[cfg(feature = "rrd")]
-pub(super) struct Stream(Option<std::sync::Mutex<tauscope::recording::Live>>);
+pub(super) struct Stream(Option<std::sync::Mutex<crate::recording::Live>>);
 
 /// None: there are no recordings.
 #[cfg(not(feature = "rrd"))]

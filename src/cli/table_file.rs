@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use tauscope::report::DataTable;
+use crate::report::DataTable;
 
 use super::output::{OutputFile, write_file};
 

@@ -1,13 +1,13 @@
 //! What is known before an experiment is designed: logs, models, where it is played.
 
 use anyhow::{Context as _, anyhow, bail};
-use tauscope::batch::{Mode, Protocol, estimate_joints};
-use tauscope::delay::Settings;
-use tauscope::design::Stand;
-use tauscope::experiment::{Experiment, Joint, ReadOptions, Trial, expand_folders};
-use tauscope::fit::{Horizon, Split};
-use tauscope::model::{JointModel, ModelFile};
-use tauscope::units::SamplePeriod;
+use crate::batch::{Mode, Protocol, estimate_joints};
+use crate::delay::Settings;
+use crate::design::Stand;
+use crate::experiment::{Experiment, Joint, ReadOptions, Trial, expand_folders};
+use crate::fit::{Horizon, Split};
+use crate::model::{JointModel, ModelFile};
+use crate::units::SamplePeriod;
 
 use super::Args;
 use crate::cli::fitting::Estimates;

@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use clap::Args as ClapArgs;
-use tauscope::batch::with_threads;
-use tauscope::experiment::ReadOptions;
-use tauscope::report::{DesignJson, DesignedJoint, design_text, write_input, write_preview};
+use crate::batch::with_threads;
+use crate::experiment::ReadOptions;
+use crate::report::{DesignJson, DesignedJoint, design_text, write_input, write_preview};
 
 use super::fitting::{Format, print};
 use super::output::{check_outputs, write_file};

@@ -1,13 +1,13 @@
 //! Random steps for each joint.
 
 use anyhow::{anyhow, bail};
-use tauscope::batch::{OfJoints, know_joints};
-use tauscope::design::{
+use crate::batch::{OfJoints, know_joints};
+use crate::design::{
     Band, RandomSteps, Stand, Uncertain, default_hold_s, default_largest, default_levels,
     random_steps, response_s, resting_band,
 };
-use tauscope::experiment::Joint;
-use tauscope::report::DesignedJoint;
+use crate::experiment::Joint;
+use crate::report::DesignedJoint;
 
 use super::Args;
 use super::desk::{Desk, PROTOCOL, largest};

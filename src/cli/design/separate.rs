@@ -1,14 +1,14 @@
 //! The shortest input that tells two effects apart, for each joint.
 
 use anyhow::{Context as _, anyhow, bail};
-use tauscope::batch::{design_separation, suspect_joints};
-use tauscope::design::{
+use crate::batch::{design_separation, suspect_joints};
+use crate::design::{
     Limits, RandomSteps, Stand, Suspects, default_hold_s, default_largest, default_levels,
 };
-use tauscope::effect::Effect;
-use tauscope::experiment::Joint;
-use tauscope::model::JointModel;
-use tauscope::report::{DesignedJoint, Told};
+use crate::effect::Effect;
+use crate::experiment::Joint;
+use crate::model::JointModel;
+use crate::report::{DesignedJoint, Told};
 
 use super::Args;
 use super::desk::{Desk, PROTOCOL, extent, largest};

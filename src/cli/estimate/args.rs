@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, ValueEnum};
-use tauscope::delay::{self, Automatic, Interpolation, Settings};
+use crate::delay::{self, Automatic, Interpolation, Settings};
 
 use crate::cli::data::{DataArgs, threads};
 use crate::cli::fitting::Format;

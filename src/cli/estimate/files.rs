@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use tauscope::report::{decision_table, delay_table, write_decisions, write_delays};
+use crate::report::{decision_table, delay_table, write_decisions, write_delays};
 
 use super::Estimated;
 use super::args::OutputArgs;

@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, anyhow, bail};
 use serde::Serialize;
-use tauscope::batch::{JointEstimate, estimate_joints, with_threads};
-use tauscope::delay::{Settings, check_growing, settled};
-use tauscope::experiment::{Experiment, GrowingLog, Joint};
-use tauscope::report::{DecisionRow, EstimatedJoint, decision_rows, step_line};
+use crate::batch::{JointEstimate, estimate_joints, with_threads};
+use crate::delay::{Settings, check_growing, settled};
+use crate::experiment::{Experiment, GrowingLog, Joint};
+use crate::report::{DecisionRow, EstimatedJoint, decision_rows, step_line};
 
 use super::args::{Args, FollowArgs};
 use crate::cli::fitting::Format;

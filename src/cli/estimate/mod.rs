@@ -5,10 +5,10 @@ mod files;
 mod follow;
 
 use anyhow::anyhow;
-use tauscope::batch::{JointEstimate, estimate_joints_with, with_threads};
-use tauscope::delay::{Condition, EstimateError, Settings};
-use tauscope::experiment::Experiment;
-use tauscope::report::{
+use crate::batch::{JointEstimate, estimate_joints_with, with_threads};
+use crate::delay::{Condition, EstimateError, Settings};
+use crate::experiment::Experiment;
+use crate::report::{
     EstimateJson, EstimatedJoint, JointSummary, against_table, estimate_table, steps_table,
 };
 
@@ -142,7 +142,7 @@ pub(super) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
     for EstimatedJoint { joint, estimate } in joints {
         let name = &joint.name;
         let steps: usize = estimate.estimated().map(|trial| trial.decisions.len()).sum();
-        let samples: usize = joint.trials.iter().map(tauscope::experiment::Trial::len).sum();
+        let samples: usize = joint.trials.iter().map(crate::experiment::Trial::len).sum();
         let summary = JointSummary::of(EstimatedJoint { joint, estimate });
         if steps > 0 && summary.rejected == [(Condition::FirstOrLast, steps)] {
             notes.push(format!(

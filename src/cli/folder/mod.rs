@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use tauscope::report::{FolderJson, FolderReport};
+use crate::report::{FolderJson, FolderReport};
 
 use super::Completion;
 use super::data::DataArgs;

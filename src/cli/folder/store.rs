@@ -7,7 +7,7 @@ use anyhow::{Context as _, bail};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
-use tauscope::report::LogResult;
+use crate::report::LogResult;
 
 use crate::cli::output::write_file;
 

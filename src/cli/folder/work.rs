@@ -10,7 +10,7 @@ use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Context as _, anyhow};
 use sha2::{Digest as _, Sha256};
-use tauscope::report::LogResult;
+use crate::report::LogResult;
 
 use super::store::{Kept, name_of};
 use super::typed::Typed;

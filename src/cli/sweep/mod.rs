@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, bail};
 use clap::Args as ClapArgs;
-use tauscope::batch::{SweptJoint, sweep_joints, with_threads};
-use tauscope::delay::sweep::{Base, Grid};
-use tauscope::delay::{EstimateError, Method};
-use tauscope::experiment::Experiment;
-use tauscope::report::{ReportedSweep, StepsShown, SweepJson, sweep_text};
+use crate::batch::{SweptJoint, sweep_joints, with_threads};
+use crate::delay::sweep::{Base, Grid};
+use crate::delay::{EstimateError, Method};
+use crate::experiment::Experiment;
+use crate::report::{ReportedSweep, StepsShown, SweepJson, sweep_text};
 
 use super::data::{DataArgs, threads};
 use super::fitting::{Format, read};
@@ -139,7 +139,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
 
 /// A message on each file, joint and setting that failed.
 fn failures(experiment: &Experiment, grid: &Grid, results: &[JointResult]) -> Vec<String> {
-    let of_joint = |(joint, result): (&tauscope::experiment::Joint, &JointResult)| {
+    let of_joint = |(joint, result): (&crate::experiment::Joint, &JointResult)| {
         let name = &joint.name;
         match result {
             Err(error) => vec![format!("joint `{name}` is left out: {error}")],

@@ -1,6 +1,6 @@
 //! Several values of a setting in one argument: `1,2,5`, `1..10`, `2..20:2`.
 
-use tauscope::delay::Method;
+use crate::delay::Method;
 
 use crate::cli::nearest::did_you_mean;
 use crate::cli::settings::{self, Passband, at_least_one};
