@@ -12,20 +12,24 @@ use std::path::{Path, PathBuf};
 use imports::{House, Import, Module};
 
 /// The modules; each may use those before it.
-const ORDER: [&str; 16] = [
+const ORDER: [&str; 20] = [
     "units",
+    "numerics",
     "statistics",
-    "effect",
     "filter",
     "experiment",
+    "synthetic",
+    "effect",
     "delay",
     "model",
-    "synthetic",
     "fit",
     "diagnosis",
     "explain",
     "design",
+    "study",
     "batch",
+    "wording",
+    "figure",
     "report",
     "recording",
     "cli",
@@ -57,7 +61,8 @@ fn project() -> House {
 
 /// Imports of a module from one behind it in [`ORDER`], as sentences.
 fn upward(house: &House) -> Vec<String> {
-    let place = |module: &Module| ORDER.iter().position(|name| module.first().is_some_and(|m| m == name));
+    let place =
+        |module: &Module| ORDER.iter().position(|name| module.first().is_some_and(|m| m == name));
     let wrong = |import: &Import| match (place(&import.from), place(&import.to)) {
         (Some(from), Some(to)) => to > from,
         // What stands in no order is the root: it uses all, and nothing uses it.
@@ -147,31 +152,46 @@ fn an_upward_import_is_seen_in_each_way_to_write_it() {
 #[test]
 fn a_circle_is_seen_wherever_it_runs() {
     for (kind, files) in [
-        ("two files", [
-            ("delay/mod.rs", "mod a; mod b;"),
-            ("delay/a.rs", "use super::b::B; pub struct A;"),
-            ("delay/b.rs", "use super::a::A; pub struct B;"),
-        ]),
-        ("through a re-export", [
-            ("delay/mod.rs", "mod a; mod b; pub use a::A; pub use b::B as Other;"),
-            ("delay/a.rs", "use super::Other; pub struct A;"),
-            ("delay/b.rs", "use crate::delay::A; pub struct B;"),
-        ]),
-        ("through a glob", [
-            ("delay/mod.rs", "mod a; mod b; pub use a::*;"),
-            ("delay/a.rs", "use super::b; pub struct A; fn f() { b::g() }"),
-            ("delay/b.rs", "use super::A; pub fn g() {}"),
-        ]),
-        ("a file and its folder's own", [
-            ("delay/mod.rs", "mod a; mod b; use a::A; pub struct Limits; fn f() -> A { A }"),
-            ("delay/a.rs", "use super::Limits; pub struct A;"),
-            ("delay/b.rs", ""),
-        ]),
-        ("two folders by way of different files", [
-            ("delay/lag/one.rs", "use crate::delay::method::x::X; pub struct One;"),
-            ("delay/lag/two.rs", "pub struct Two;"),
-            ("delay/method/x.rs", "use super::super::lag::two::Two; pub struct X;"),
-        ]),
+        (
+            "two files",
+            [
+                ("delay/mod.rs", "mod a; mod b;"),
+                ("delay/a.rs", "use super::b::B; pub struct A;"),
+                ("delay/b.rs", "use super::a::A; pub struct B;"),
+            ],
+        ),
+        (
+            "through a re-export",
+            [
+                ("delay/mod.rs", "mod a; mod b; pub use a::A; pub use b::B as Other;"),
+                ("delay/a.rs", "use super::Other; pub struct A;"),
+                ("delay/b.rs", "use crate::delay::A; pub struct B;"),
+            ],
+        ),
+        (
+            "through a glob",
+            [
+                ("delay/mod.rs", "mod a; mod b; pub use a::*;"),
+                ("delay/a.rs", "use super::b; pub struct A; fn f() { b::g() }"),
+                ("delay/b.rs", "use super::A; pub fn g() {}"),
+            ],
+        ),
+        (
+            "a file and its folder's own",
+            [
+                ("delay/mod.rs", "mod a; mod b; use a::A; pub struct Limits; fn f() -> A { A }"),
+                ("delay/a.rs", "use super::Limits; pub struct A;"),
+                ("delay/b.rs", ""),
+            ],
+        ),
+        (
+            "two folders by way of different files",
+            [
+                ("delay/lag/one.rs", "use crate::delay::method::x::X; pub struct One;"),
+                ("delay/lag/two.rs", "pub struct Two;"),
+                ("delay/method/x.rs", "use super::super::lag::two::Two; pub struct X;"),
+            ],
+        ),
     ] {
         let files: Vec<_> = [("delay/lag/mod.rs", ""), ("delay/method/mod.rs", "")]
             .into_iter()

@@ -1,6 +1,5 @@
 //! `tauscope add`: one effect more in a model.
 
-use clap::Args as ClapArgs;
 use crate::batch::{Mode, add_to_joints};
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
@@ -9,6 +8,7 @@ use crate::fit::Horizon;
 use crate::model::{ModelFile, Revision};
 use crate::report::{AddJson, AddedJoint, ComparedJoint, Finding, ImprovedJoint};
 use crate::report::{add_text, gone};
+use clap::Args as ClapArgs;
 
 use super::Completion;
 use super::data::DataArgs;

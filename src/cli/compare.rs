@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use anyhow::anyhow;
-use clap::Args as ClapArgs;
 use crate::batch::{Mode, compare_joints};
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::fit::{FitError, Horizon};
 use crate::model::{JointModel, ModelFile};
 use crate::report::{CompareJson, ComparedJoint, compare_table};
+use anyhow::anyhow;
+use clap::Args as ClapArgs;
 
 use super::Completion;
 use super::data::DataArgs;

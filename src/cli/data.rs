@@ -2,12 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::experiment::{ColumnMap, Experiment, JointColumns, ReadOptions, Repair, expand_folders};
+use crate::units::SamplePeriod;
 use anyhow::{Context as _, bail};
 use clap::Args;
-use crate::experiment::{
-    ColumnMap, Experiment, JointColumns, ReadOptions, Repair, expand_folders,
-};
-use crate::units::SamplePeriod;
 
 /// Where the logs are and how they are read.
 #[derive(Args, Debug)]

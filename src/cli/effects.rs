@@ -1,7 +1,7 @@
 //! `tauscope effects`
 
-use clap::Args as ClapArgs;
 use crate::effect::{EffectsJson, REGISTRY, find, listing, sheet};
+use clap::Args as ClapArgs;
 
 use super::Completion;
 use super::fitting::Format;

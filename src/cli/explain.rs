@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use clap::Args as ClapArgs;
 use crate::batch::{Mode, OfJoints, compare_joints, explain_joints};
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
@@ -10,6 +9,7 @@ use crate::explain::{Change, Explanation, Options, Revision};
 use crate::fit::Horizon;
 use crate::model::ModelFile;
 use crate::report::{ComparedJoint, ExplainJson, Finding, ImprovedJoint, explain_text};
+use clap::Args as ClapArgs;
 
 use super::Completion;
 use super::data::DataArgs;

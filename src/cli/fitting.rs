@@ -3,14 +3,14 @@
 use std::io::{StdoutLock, Write as _};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, anyhow};
-use clap::{Args, ValueEnum};
 use crate::batch::{JointEstimate, Mode, Protocol, estimate_joints, with_threads};
 use crate::delay::{EstimateError, Settings};
 use crate::effect::{Effect, REGISTRY, find_among};
 use crate::experiment::{Experiment, Joint};
 use crate::fit::{Horizon, Split};
 use crate::report::{ComparedJoint, EstimatedJoint, ImprovedJoint};
+use anyhow::{Context as _, anyhow};
+use clap::{Args, ValueEnum};
 
 use super::data::DataArgs;
 use super::progress::{Bar, Verbosity};

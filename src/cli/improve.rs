@@ -3,7 +3,6 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
-use clap::Args as ClapArgs;
 use crate::batch::{Mode, improve_joints};
 use crate::experiment::Joint;
 use crate::explain::{Change, Improvement, MAX_EFFECTS, Options, Revision as Step, Verdict};
@@ -12,6 +11,7 @@ use crate::model::{ModelFile, Revision};
 use crate::report::{
     ComparedJoint, Finding, ImproveJson, ImprovedJoint, gone, improve_text, revision_line,
 };
+use clap::Args as ClapArgs;
 
 use super::data::DataArgs;
 use super::fitting::{Begun, EffectArgs, ProtocolArgs, ResultArgs};

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::Args as ClapArgs;
 use crate::report::FolderReport;
+use clap::Args as ClapArgs;
 
 use super::Completion;
 use super::fitting::Format;

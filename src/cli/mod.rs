@@ -32,8 +32,8 @@ mod terminal;
 use std::io;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
 use crate::experiment::{Experiment, Failure};
+use clap::{Parser, Subcommand};
 
 use terminal::message;
 

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::model::ModelFile;
 use anyhow::{Context as _, bail};
 use clap::Args;
-use crate::model::ModelFile;
 
 use super::nearest::nearest;
 use super::output::{target_of, write_file};

@@ -5,9 +5,7 @@ use std::path::Path;
 use crate::delay::Settings;
 use crate::delay::sweep::Grid;
 use crate::experiment::{ReadOptions, Source};
-use crate::report::{
-    ComparedJoint, DesignedJoint, EstimatedJoint, ImprovedJoint, ReportedSweep,
-};
+use crate::report::{ComparedJoint, DesignedJoint, EstimatedJoint, ImprovedJoint, ReportedSweep};
 
 use super::message;
 use super::output::{OutputFile, write_file};

@@ -5,11 +5,7 @@ use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, anyhow, bail};
-use clap::Args as ClapArgs;
-use crate::batch::{
-    Mode, OfJoints, estimate_joints, explain_joints, improve_joints, with_threads,
-};
+use crate::batch::{Mode, OfJoints, estimate_joints, explain_joints, improve_joints, with_threads};
 use crate::delay::Settings;
 use crate::effect::Effect;
 use crate::experiment::{Experiment, Joint};
@@ -19,6 +15,8 @@ use crate::model::ModelFile;
 use crate::report::{
     Document, EstimatedJoint, ImprovedJoint, RecordingFile, Report, ReportJson, report_text,
 };
+use anyhow::{Context as _, anyhow, bail};
+use clap::Args as ClapArgs;
 
 use super::data::DataArgs;
 use super::estimate::{self, AlgorithmArgs};

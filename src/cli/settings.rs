@@ -1,8 +1,8 @@
 //! The settings that every command takes whose delays are asked for.
 
-use clap::{Args, ValueEnum};
 use crate::delay::{self, Settings};
 use crate::filter::LowPass;
+use clap::{Args, ValueEnum};
 
 /// The settings that are no part of how a breakpoint is searched.
 #[derive(Args, Debug)]

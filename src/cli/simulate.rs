@@ -3,10 +3,10 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, bail};
-use clap::{Args as ClapArgs, ValueEnum};
 use crate::synthetic::scenario::{self, Noise, Scenario};
 use crate::synthetic::{PlantSpec, Synthetic, simulate, write_log, write_truth};
+use anyhow::{Context as _, bail};
+use clap::{Args as ClapArgs, ValueEnum};
 
 use super::output::{OutputFile, check_outputs};
 use super::progress::{Bar, Verbosity};

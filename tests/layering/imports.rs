@@ -164,12 +164,8 @@ fn leaves(tree: &UseTree) -> Vec<Leaf> {
         UseTree::Group(group) => group.items.iter().flat_map(leaves).collect(),
         UseTree::Glob(_) => leaf(Vec::new(), None),
         UseTree::Name(name) if name.ident == "self" => leaf(Vec::new(), Some("self".to_owned())),
-        UseTree::Name(name) => {
-            leaf(vec![name.ident.to_string()], Some(name.ident.to_string()))
-        }
-        UseTree::Rename(name) => {
-            leaf(vec![name.ident.to_string()], Some(name.rename.to_string()))
-        }
+        UseTree::Name(name) => leaf(vec![name.ident.to_string()], Some(name.ident.to_string())),
+        UseTree::Rename(name) => leaf(vec![name.ident.to_string()], Some(name.rename.to_string())),
     }
 }
 

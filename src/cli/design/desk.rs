@@ -1,6 +1,5 @@
 //! What is known before an experiment is designed: logs, models, where it is played.
 
-use anyhow::{Context as _, anyhow, bail};
 use crate::batch::{Mode, Protocol, estimate_joints};
 use crate::delay::Settings;
 use crate::design::Stand;
@@ -8,6 +7,7 @@ use crate::experiment::{Experiment, Joint, ReadOptions, Trial, expand_folders};
 use crate::fit::{Horizon, Split};
 use crate::model::{JointModel, ModelFile};
 use crate::units::SamplePeriod;
+use anyhow::{Context as _, anyhow, bail};
 
 use super::Args;
 use crate::cli::fitting::Estimates;

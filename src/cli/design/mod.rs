@@ -7,11 +7,11 @@ mod values;
 
 use std::path::{Path, PathBuf};
 
-use anyhow::anyhow;
-use clap::Args as ClapArgs;
 use crate::batch::with_threads;
 use crate::experiment::ReadOptions;
 use crate::report::{DesignJson, DesignedJoint, design_text, write_input, write_preview};
+use anyhow::anyhow;
+use clap::Args as ClapArgs;
 
 use super::fitting::{Format, print};
 use super::output::{check_outputs, write_file};

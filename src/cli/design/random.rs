@@ -1,6 +1,5 @@
 //! Random steps for each joint.
 
-use anyhow::{anyhow, bail};
 use crate::batch::{OfJoints, know_joints};
 use crate::design::{
     Band, RandomSteps, Stand, Uncertain, default_hold_s, default_largest, default_levels,
@@ -8,6 +7,7 @@ use crate::design::{
 };
 use crate::experiment::Joint;
 use crate::report::DesignedJoint;
+use anyhow::{anyhow, bail};
 
 use super::Args;
 use super::desk::{Desk, PROTOCOL, largest};

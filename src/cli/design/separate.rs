@@ -1,6 +1,5 @@
 //! The shortest input that tells two effects apart, for each joint.
 
-use anyhow::{Context as _, anyhow, bail};
 use crate::batch::{design_separation, suspect_joints};
 use crate::design::{
     Limits, RandomSteps, Stand, Suspects, default_hold_s, default_largest, default_levels,
@@ -9,6 +8,7 @@ use crate::effect::Effect;
 use crate::experiment::Joint;
 use crate::model::JointModel;
 use crate::report::{DesignedJoint, Told};
+use anyhow::{Context as _, anyhow, bail};
 
 use super::Args;
 use super::desk::{Desk, PROTOCOL, extent, largest};

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::{Args as ClapArgs, ValueEnum};
 use crate::delay::{self, Automatic, Interpolation, Settings};
+use clap::{Args as ClapArgs, ValueEnum};
 
 use crate::cli::data::{DataArgs, threads};
 use crate::cli::fitting::Format;

@@ -6,12 +6,12 @@ use std::io::{self, Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use anyhow::{Context as _, anyhow, bail};
-use serde::Serialize;
 use crate::batch::{JointEstimate, estimate_joints, with_threads};
 use crate::delay::{Settings, check_growing, settled};
 use crate::experiment::{Experiment, GrowingLog, Joint};
 use crate::report::{DecisionRow, EstimatedJoint, decision_rows, step_line};
+use anyhow::{Context as _, anyhow, bail};
+use serde::Serialize;
 
 use super::args::{Args, FollowArgs};
 use crate::cli::fitting::Format;

@@ -4,13 +4,13 @@ mod args;
 mod files;
 mod follow;
 
-use anyhow::anyhow;
 use crate::batch::{JointEstimate, estimate_joints_with, with_threads};
 use crate::delay::{Condition, EstimateError, Settings};
 use crate::experiment::Experiment;
 use crate::report::{
     EstimateJson, EstimatedJoint, JointSummary, against_table, estimate_table, steps_table,
 };
+use anyhow::anyhow;
 
 use super::fitting::{Format, estimating, read};
 use super::folder::Each;

@@ -9,9 +9,9 @@ mod work;
 
 use std::path::{Path, PathBuf};
 
+use crate::report::{FolderJson, FolderReport};
 use anyhow::{Context as _, bail};
 use clap::Args;
-use crate::report::{FolderJson, FolderReport};
 
 use super::Completion;
 use super::data::DataArgs;

@@ -8,9 +8,9 @@ use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
+use crate::report::LogResult;
 use anyhow::{Context as _, anyhow};
 use sha2::{Digest as _, Sha256};
-use crate::report::LogResult;
 
 use super::store::{Kept, name_of};
 use super::typed::Typed;

@@ -4,13 +4,13 @@ mod values;
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{anyhow, bail};
-use clap::Args as ClapArgs;
 use crate::batch::{SweptJoint, sweep_joints, with_threads};
 use crate::delay::sweep::{Base, Grid};
 use crate::delay::{EstimateError, Method};
 use crate::experiment::Experiment;
 use crate::report::{ReportedSweep, StepsShown, SweepJson, sweep_text};
+use anyhow::{anyhow, bail};
+use clap::Args as ClapArgs;
 
 use super::data::{DataArgs, threads};
 use super::fitting::{Format, read};
