@@ -19,7 +19,7 @@ use crate::explain::{AddError, Addition, add};
 use crate::explain::{Explanation, Improvement, Options, Revision, Workers, explain, improve};
 use crate::fit::{Fit, FitError, Horizon, Record, Split, assess, fit};
 use crate::model::{JointModel, integrators};
-use crate::statistics::median;
+use crate::numerics::median;
 
 /// The delays of one joint in all its trials.
 #[derive(Clone, Debug, PartialEq)]

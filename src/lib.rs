@@ -5,9 +5,8 @@
 //! Each module uses only those above it.
 //!
 //! - [`units`]: scalars that are valid once they exist
-//! - [`statistics`]: quantiles, rank tests and tails of distributions
+//! - [`numerics`]: statistics, filters and least squares
 //! - [`effect`]: the catalogue of physical effects
-//! - [`filter`]: the zero-phase low-pass
 //! - [`experiment`]: logs, joints, trials
 //! - [`delay`]: the delay of every step of one joint
 //! - [`model`]: the grey-box model of a joint, and its simulation
@@ -29,12 +28,11 @@ pub mod diagnosis;
 pub mod effect;
 pub mod experiment;
 pub mod explain;
-pub mod filter;
 pub mod fit;
 pub mod model;
+pub mod numerics;
 #[cfg(feature = "rrd")]
 pub mod recording;
 pub mod report;
-pub mod statistics;
 pub mod synthetic;
 pub mod units;

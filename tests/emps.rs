@@ -8,9 +8,9 @@ mod real;
 use tauscope::effect::find;
 use tauscope::experiment::{Joint, Trial};
 use tauscope::explain::{Options, Sequential, improve};
-use tauscope::filter::LowPass;
 use tauscope::fit::{Fit, Horizon, Record, Split, fit};
 use tauscope::model::{Component, JointModel};
+use tauscope::numerics::LowPass;
 use tauscope::units::SamplePeriod;
 
 /// The record, or `None` after saying that the test is skipped.

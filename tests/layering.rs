@@ -12,11 +12,9 @@ use std::path::{Path, PathBuf};
 use imports::{House, Import, Module};
 
 /// The modules; each may use those before it.
-const ORDER: [&str; 20] = [
+const ORDER: [&str; 18] = [
     "units",
     "numerics",
-    "statistics",
-    "filter",
     "experiment",
     "synthetic",
     "effect",
@@ -212,8 +210,8 @@ fn each_library_is_named_in_its_own_place_only() {
     for (library, place) in [
         ("rayon", "src/batch.rs"),
         ("rerun", "src/recording"),
-        ("sci_rs", "src/filter.rs"),
-        ("statrs", "src/statistics"),
+        ("sci_rs", "src/numerics/filter.rs"),
+        ("statrs", "src/numerics/statistics"),
         ("levenberg_marquardt", "src/fit"),
         ("winnow", "src/effect/expression"),
         ("toml_edit", "src/model/file"),

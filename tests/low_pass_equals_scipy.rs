@@ -1,6 +1,6 @@
 //! The low-pass against SciPy's numbers; `golden/low_pass.py` made them.
 
-use tauscope::filter::LowPass;
+use tauscope::numerics::LowPass;
 use tauscope::units::SamplePeriod;
 
 #[test]

@@ -17,7 +17,7 @@ use tauscope::batch::{SweptJoint, sweep_joints};
 use tauscope::delay::sweep::{Base, Factor, Grid, SweptStep};
 use tauscope::delay::{Method, Settings};
 use tauscope::experiment::{Experiment, ReadOptions};
-use tauscope::filter::LowPass;
+use tauscope::numerics::LowPass;
 use tauscope::recording::{SweepRecording, write_sweep};
 use tauscope::report::ReportedSweep;
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate, write_log};

@@ -8,7 +8,7 @@ use serde_json::Value;
 use tauscope::batch::sweep_joints;
 use tauscope::delay::sweep::{Base, Factor, Grid, JointSweep};
 use tauscope::delay::{Method, Settings};
-use tauscope::filter::LowPass;
+use tauscope::numerics::LowPass;
 use tauscope::synthetic::{
     DelayLaw, InputSpec, JointSpec, PlantSpec, Synthetic, simulate, write_log,
 };

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use tauscope::diagnosis::failure::Feature;
 use tauscope::explain::Verdict;
-use tauscope::statistics::{median, quantile};
+use tauscope::numerics::{median, quantile};
 use tauscope::synthetic::effects::{CATALOGUE, OUTSIDE};
 
 use super::Judged;

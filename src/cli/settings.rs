@@ -1,7 +1,7 @@
 //! The settings that every command takes whose delays are asked for.
 
 use crate::delay::{self, Settings};
-use crate::filter::LowPass;
+use crate::numerics::LowPass;
 use clap::{Args, ValueEnum};
 
 /// The settings that are no part of how a breakpoint is searched.

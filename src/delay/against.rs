@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::estimate::{Breakpoint, Decision, TrialEstimate};
 use crate::experiment::{Joint, Trial};
-use crate::statistics::{RankTest, holm, mann_whitney, median, spearman};
+use crate::numerics::{RankTest, holm, mann_whitney, median, spearman};
 
 /// Samples before an input step over which a further signal is averaged.
 const COVARIATE_SAMPLES: usize = 5;

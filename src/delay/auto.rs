@@ -44,13 +44,13 @@ use serde::Serialize;
 use super::chain::ceil;
 use super::estimate::{Decision, FineDelay, Settings, Verdict};
 use super::hinge;
-use super::line::RunningLine;
 use super::method::Method;
-use super::noise::Noise;
 use super::steps::input_steps;
 use crate::experiment::Trial;
-use crate::filter::LowPass;
-use crate::statistics::{autocovariances, median, quantile};
+use crate::numerics::LowPass;
+use crate::numerics::NoiseModel;
+use crate::numerics::RunningLine;
+use crate::numerics::{autocovariances, median, quantile};
 
 /// Which settings are chosen from the record.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -142,7 +142,7 @@ struct Record<'a> {
     quiet: Vec<Vec<f64>>,
     /// Changes of slope at reactions.
     bends: Vec<f64>,
-    noise: Noise,
+    noise: NoiseModel,
     /// `s²`: power of the innovations.
     innovations: f64,
 }
@@ -167,7 +167,7 @@ impl<'a> Record<'a> {
             holds: Vec::new(),
             quiet: Vec::new(),
             bends: Vec::new(),
-            noise: Noise::white(),
+            noise: NoiseModel::white(),
             innovations: 0.0,
         };
         for trial in alike {
@@ -177,7 +177,7 @@ impl<'a> Record<'a> {
             }
             record.add(trial.output(), &hinge::decide_all(trial.output(), &steps, &hinge));
         }
-        record.noise = Noise::of(&record.quiet, LINE);
+        record.noise = NoiseModel::of(&record.quiet, LINE);
         record.innovations = record.innovations();
         record
     }
@@ -292,7 +292,7 @@ impl<'a> Record<'a> {
 }
 
 /// The spectrum of the second difference of `noise`, for innovations of power 1.
-fn gain(noise: &Noise, omega: f64) -> f64 {
+fn gain(noise: &NoiseModel, omega: f64) -> f64 {
     (2.0 * (0.5 * omega).sin()).powi(4) / noise.memory_gain(omega)
 }
 
@@ -423,7 +423,7 @@ mod tests {
         let spectrum = Spectrum::of(&[&noise]).unwrap();
         for bin in [40, 100, 200, 250] {
             let about = spectrum.power.get(bin - 5..bin + 5).unwrap().iter().sum::<f64>() / 10.0;
-            let expected = gain(&Noise::white(), spectrum.omega(bin)) / 12.0;
+            let expected = gain(&NoiseModel::white(), spectrum.omega(bin)) / 12.0;
             assert!((about / expected - 1.0).abs() < 0.3, "{bin}: {about} {expected}");
         }
     }

@@ -7,7 +7,7 @@
 
 use super::broken_line::floor;
 use super::response::{MOST, Response, Shape};
-use crate::statistics::moments;
+use crate::numerics::moments;
 
 /// Columns of the line.
 pub(super) const LINE: usize = 2;

@@ -26,11 +26,11 @@ use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
 use super::frame::{Bends, Frame};
-use super::line::Line;
-use super::noise::Noise;
 use super::piece::Piece;
 use super::places::Places;
-use crate::statistics::{fisher_tail, moments, student_quantile, take_off_line};
+use crate::numerics::Line;
+use crate::numerics::NoiseModel;
+use crate::numerics::{fisher_tail, moments, student_quantile, take_off_line};
 
 /// Fewest samples beside those that the noise remembers.
 pub(super) const FEWEST: usize = 8;
@@ -76,7 +76,7 @@ pub struct BrokenLine {
 /// assert!((found.after.slope - 0.2).abs() < 1e-9);
 /// ```
 pub fn broken_line(values: &[f64], confidence: f64) -> Option<BrokenLine> {
-    let noise = Noise::white();
+    let noise = NoiseModel::white();
     let window = Window::of(values, &noise)?;
     Some(window.fit(window.places(), confidence, 0.0)?.0)
 }
@@ -106,7 +106,7 @@ pub(super) struct Evidence {
 /// A window's output, whitened, and what one line leaves of it.
 #[derive(Clone, Debug)]
 pub(super) struct Window<'a> {
-    noise: &'a Noise,
+    noise: &'a NoiseModel,
     frame: Frame,
     /// What one line leaves, whitened once more backwards: sums of it behind a sample are what
     /// a whitened level has in common with what is left.
@@ -118,7 +118,7 @@ pub(super) struct Window<'a> {
 
 impl<'a> Window<'a> {
     /// `None` with too few samples for two lines.
-    pub(super) fn of(values: &[f64], noise: &'a Noise) -> Option<Self> {
+    pub(super) fn of(values: &[f64], noise: &'a NoiseModel) -> Option<Self> {
         let order = noise.order();
         let rows = values.len().checked_sub(order).filter(|rows| *rows >= FEWEST)?;
         let offset = *values.first()?;
@@ -286,7 +286,7 @@ mod tests {
         (0..samples).map(|k| y(f64::from(k)) + noise * white()).collect()
     }
 
-    fn fit(values: &[f64], noise: &Noise) -> (BrokenLine, Evidence) {
+    fn fit(values: &[f64], noise: &NoiseModel) -> (BrokenLine, Evidence) {
         let window = Window::of(values, noise).unwrap();
         window.fit(window.places(), 0.95, 0.0).unwrap()
     }
@@ -294,7 +294,7 @@ mod tests {
     #[test]
     fn a_break_between_samples_is_found_where_it_is() {
         for place in [20.25, 33.5, 47.99] {
-            let (found, _) = fit(&noisy(80, place, 0.7, 0.0), &Noise::white());
+            let (found, _) = fit(&noisy(80, place, 0.7, 0.0), &NoiseModel::white());
             assert!((found.place - place).abs() < 1e-9, "{found:?}");
             assert!((found.before.slope + 0.2).abs() < 1e-9, "{found:?}");
             assert!((found.after.slope - 0.5).abs() < 1e-9, "{found:?}");
@@ -305,7 +305,7 @@ mod tests {
 
     #[test]
     fn no_place_on_a_fine_grid_is_better() {
-        for noise in [Noise::white(), Noise::of(&[coloured()], 0)] {
+        for noise in [NoiseModel::white(), NoiseModel::of(&[coloured()], 0)] {
             let values = noisy(60, 31.3, 0.05, 0.5);
             let (found, evidence) = fit(&values, &noise);
             let window = Window::of(&values, &noise).unwrap();
@@ -336,7 +336,7 @@ mod tests {
     }
 
     /// The squared error of the whitened regression on constant, slope and ramp.
-    fn brute_force(values: &[f64], place: f64, noise: &Noise) -> f64 {
+    fn brute_force(values: &[f64], place: f64, noise: &NoiseModel) -> f64 {
         let samples = i32::try_from(values.len()).unwrap();
         let columns = |shape: &dyn Fn(f64) -> f64| {
             let mut column: Vec<f64> = (0..samples).map(|k| shape(f64::from(k))).collect();
@@ -356,7 +356,7 @@ mod tests {
     #[test]
     fn the_interval_ends_where_the_error_has_grown_enough() {
         let values = noisy(60, 31.3, 0.05, 0.5);
-        let noise = Noise::white();
+        let noise = NoiseModel::white();
         let (found, _) = fit(&values, &noise);
         let freedom = 56.0;
         let t = student_quantile(0.975, freedom);
@@ -375,7 +375,7 @@ mod tests {
         // Half of two unit normals' halves, one 1.6 times as wide: Φ(z) = ½ + 0.6/1.6/4.
         let (narrow, wide) = (t, 1.6 * t);
         let found = middle(0.0, (-narrow, wide), t);
-        let right = crate::statistics::normal_below(found / 1.6) - 0.5;
+        let right = crate::numerics::normal_below(found / 1.6) - 0.5;
         assert!((2.0 * right * 1.6 / 2.6 - (0.5 - 1.0 / 2.6)).abs() < 1e-3, "{found}");
         assert!((middle(0.0, (-wide, narrow), t) + found).abs() < 1e-12);
         // Another valley counts no more than a side twice as wide.
@@ -385,9 +385,9 @@ mod tests {
 
     #[test]
     fn a_line_has_no_break() {
-        let (found, _) = fit(&noisy(100, 50.0, 0.0, 1.0), &Noise::white());
+        let (found, _) = fit(&noisy(100, 50.0, 0.0, 1.0), &NoiseModel::white());
         assert!(found.p_value > 0.02, "{found:?}");
-        let (found, _) = fit(&noisy(100, 50.0, 0.3, 1.0), &Noise::white());
+        let (found, _) = fit(&noisy(100, 50.0, 0.3, 1.0), &NoiseModel::white());
         assert!(found.p_value < 1e-9, "{found:?}");
     }
 }

@@ -12,7 +12,7 @@ use super::estimate::Settings;
 use super::free_motion::FreeMotion;
 use super::response::{Response, Shape};
 use super::steps::InputStep;
-use crate::statistics::moments;
+use crate::numerics::moments;
 
 /// Places of each reaction that are tried at a time.
 const TRIED: usize = 10;

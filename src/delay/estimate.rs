@@ -12,7 +12,7 @@ use super::search::{Candidate, Candidates};
 use super::segment::Segment;
 use super::steps::{InputStep, input_steps};
 use crate::experiment::Trial;
-use crate::filter::{FilterError, LowPass};
+use crate::numerics::{FilterError, LowPass};
 use crate::units::{SamplePeriod, signed};
 
 /// Settings of a method; the default is the paper's way.

@@ -4,9 +4,9 @@
 //! A line stays a line when it is whitened, and a level or a ramp changes only in the first
 //! samples behind its beginning, so that sums over any of them are known in closed form.
 
-use super::line::Line;
-use super::noise::Noise;
 use super::piece::Piece;
+use crate::numerics::Line;
+use crate::numerics::NoiseModel;
 
 /// The line of a window, and what its levels and ramps are made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,7 +70,7 @@ impl Bends {
 impl Frame {
     /// For so many whitened `rows`, through which a line goes with its value in the middle and
     /// its slope.
-    pub(super) fn of(noise: &Noise, rows: f64, (value, slope): (f64, f64)) -> Self {
+    pub(super) fn of(noise: &NoiseModel, rows: f64, (value, slope): (f64, f64)) -> Self {
         let order = noise.order() as f64;
         let spread = rows * (rows * rows - 1.0) / 12.0;
         let (last, middle) = (rows + order - 1.0, order + (rows - 1.0) / 2.0);
@@ -200,7 +200,12 @@ impl Onset {
     ///
     /// Behind the `order` samples of its onset a whitened ramp is `level·d + shift`, `d` samples
     /// after its beginning: sums of `1`, `d` and `d²` over `d = order + 1 … reach`.
-    fn ramps(&self, noise: &Noise, last: f64, [per_level, per_slope]: [f64; 2]) -> [[f64; 4]; 3] {
+    fn ramps(
+        &self,
+        noise: &NoiseModel,
+        last: f64,
+        [per_level, per_slope]: [f64; 2],
+    ) -> [[f64; 4]; 3] {
         let order = noise.order() as f64;
         let (level, shift) = (noise.level, noise.shift);
         let ones = [-order, 1.0, 0.0, 0.0];
@@ -226,7 +231,7 @@ impl Onset {
         [with_itself, with_level.map(|part| part * per_level), with_slope.map(|p| p * per_slope)]
     }
 
-    fn of(noise: &Noise) -> Self {
+    fn of(noise: &NoiseModel) -> Self {
         let mut sums = Self::default();
         for ((w, h), d) in noise.onset().into_iter().zip(1_u32..) {
             let d = f64::from(d);

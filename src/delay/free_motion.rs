@@ -4,8 +4,8 @@
 //! What the columns have in common depends on the length alone, so that it is worked out
 //! once; a piece costs a product per column and sample.
 
-use super::normal_equations::DEPENDENT;
 use super::response::{Response, Shape};
+use crate::numerics::DEPENDENT;
 
 /// Most columns: the line, and the modes of three poles.
 const MOST: usize = 5;

@@ -6,7 +6,7 @@
 use super::estimate::{EstimateError, Settings, TrialEstimate};
 use super::profile::DelayProfile;
 use crate::experiment::Trial;
-use crate::filter::FilterError;
+use crate::numerics::FilterError;
 
 /// Why decisions cannot be told while a record grows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

@@ -10,11 +10,11 @@ use super::broken_line::{BrokenLine, Evidence, PARAMETERS, Window};
 use super::chain::{Chain, Link, ceil};
 use super::condition::{Facts, nothing_happened};
 use super::estimate::{Decision, FineDelay, Settings};
-use super::line::Line;
-use super::noise::Noise;
 use super::search::Candidates;
 use super::segment::Segment;
 use super::steps::InputStep;
+use crate::numerics::Line;
+use crate::numerics::NoiseModel;
 
 /// Times that all reactions are searched between neighbours of the time before.
 const PASSES: usize = 2;
@@ -50,12 +50,12 @@ pub(super) fn located(
     steps: &[InputStep],
     settings: &Settings,
     passes: usize,
-) -> (Chain, Noise) {
+) -> (Chain, NoiseModel) {
     /// Samples that are enough to know the noise.
     const ENOUGH: usize = 50_000;
     let mut chain = Chain::of(output, steps, settings);
     let every = output.len().div_ceil(ENOUGH).max(1);
-    let mut noise = Noise::white();
+    let mut noise = NoiseModel::white();
     for pass in 0..passes {
         if pass > 0 && chain.in_time() && chain.is_fine() {
             break;
@@ -78,7 +78,7 @@ pub(super) fn located(
                 link.error = line.place_error(values.len());
             }
         }
-        noise = Noise::of(&residuals, PARAMETERS);
+        noise = NoiseModel::of(&residuals, PARAMETERS);
     }
     (chain, noise)
 }
@@ -89,7 +89,7 @@ fn window<'a>(
     index: usize,
     values: &[f64],
     start: usize,
-    noise: &'a Noise,
+    noise: &'a NoiseModel,
 ) -> Option<(Window<'a>, RangeInclusive<usize>)> {
     let link = chain.links.get(index)?;
     let window = Window::of(values, noise)?;
@@ -104,7 +104,7 @@ fn search(
     chain: &Chain,
     index: usize,
     output: &[f64],
-    noise: &Noise,
+    noise: &NoiseModel,
     interval: f64,
 ) -> Option<Found> {
     let Range { start, end } = chain.window(index);

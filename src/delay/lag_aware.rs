@@ -12,13 +12,13 @@ use super::chain::{Chain, Link, ceil};
 use super::estimate::{Decision, FineDelay, Prepared, Settings};
 use super::hinge::{self, Place};
 use super::lag_search::Joint;
-use super::line::Line;
-use super::noise::Noise;
 use super::response::{Lag, Shape};
 use super::search::Candidates;
 use super::steps::InputStep;
 use super::stretch::{FINE, Linearised, Stretch};
-use crate::statistics::student_quantile;
+use crate::numerics::Line;
+use crate::numerics::NoiseModel;
+use crate::numerics::student_quantile;
 use crate::units::SamplePeriod;
 
 /// Reactions in a stretch that helps to find the lag.
@@ -182,7 +182,7 @@ pub(super) fn decide_all(
 ) -> Vec<Decision> {
     let shape = lag.shape_at(period);
     let chain = behind(&rough(output, steps, settings), output, &shape);
-    let trial = Reactions::of(output, chain, shape, Noise::white()).settled(2);
+    let trial = Reactions::of(output, chain, shape, NoiseModel::white()).settled(2);
     let decide = |(index, step): (usize, &InputStep)| {
         let place = Place { steps, index, step: *step, output, settings };
         trial.decision(&place, lag)
@@ -195,7 +195,7 @@ struct Reactions<'a> {
     output: &'a [f64],
     chain: Chain,
     basis: Basis,
-    noise: Noise,
+    noise: NoiseModel,
     /// Whether holds are long beside delays.
     in_time: bool,
 }
@@ -210,7 +210,7 @@ struct Found<'a> {
 
 impl<'a> Reactions<'a> {
     /// The reactions behind this lag, from about where they are.
-    fn of(output: &'a [f64], chain: Chain, shape: Shape, noise: Noise) -> Self {
+    fn of(output: &'a [f64], chain: Chain, shape: Shape, noise: NoiseModel) -> Self {
         let in_time = chain.in_time();
         let basis = Basis::of(&shape, output.len());
         Self { output, chain, basis, noise, in_time }
@@ -228,7 +228,7 @@ impl<'a> Reactions<'a> {
     }
 
     /// Searches all reactions; tells the noise about them.
-    fn settle(&mut self) -> Noise {
+    fn settle(&mut self) -> NoiseModel {
         /// Reactions that are enough to know the noise.
         const ENOUGH: usize = 100;
         // Where holds are short a place that is not fine may be taken for a neighbour's.
@@ -248,7 +248,7 @@ impl<'a> Reactions<'a> {
                 link.error = found.place_error();
             }
         }
-        Noise::left_by(&leftovers)
+        NoiseModel::left_by(&leftovers)
     }
 
     /// The reaction of step `index`, with its neighbours where they are near, after a step of no
@@ -417,7 +417,7 @@ impl Found<'_> {
 
     /// How far the place may move, about as far as `guess`, until the squared error has
     /// grown by `growth`.
-    fn reach(&self, guess: f64, growth: f64, basis: &Basis, noise: &Noise) -> f64 {
+    fn reach(&self, guess: f64, growth: f64, basis: &Basis, noise: &NoiseModel) -> f64 {
         /// Half-widths in samples below which the error is a parabola.
         const PARABOLIC: f64 = 0.3;
         if guess.abs() < PARABOLIC || self.stretch.places.len() > 1 {

@@ -8,10 +8,10 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::basis::Basis;
-use super::noise::Noise;
 use super::response::{MOST, Poles, Response, Shape};
 use super::stretch::{FINE, Linearised, Stretch};
-use crate::statistics::{median, robust_scale};
+use crate::numerics::NoiseModel;
+use crate::numerics::{median, robust_scale};
 
 /// Squared errors below this part of the output's are rounding.
 const ROUNDING: f64 = 1e-14;
@@ -20,7 +20,7 @@ const ROUNDING: f64 = 1e-14;
 #[derive(Clone, Debug)]
 pub(super) struct Joint<'a> {
     pub(super) stretches: Vec<Stretch<'a>>,
-    pub(super) noise: Noise,
+    pub(super) noise: NoiseModel,
     pub(super) shape: Shape,
     /// The longest time that can be told from a drift, samples.
     longest: f64,
@@ -35,7 +35,7 @@ impl<'a> Joint<'a> {
         let power = stretches.iter().map(|stretch| power(stretch.values)).sum();
         let gaps = stretches.iter().map(|s| s.values.len() / (s.places.len() + 1));
         let longest = gaps.max().unwrap_or(1) as f64;
-        let (noise, shape, found) = (Noise::white(), Shape::NONE, Vec::new());
+        let (noise, shape, found) = (NoiseModel::white(), Shape::NONE, Vec::new());
         Self { stretches, noise, shape, longest, power, found }
     }
 
@@ -134,7 +134,7 @@ impl<'a> Joint<'a> {
     }
 
     /// The same reactions under another lag and noise.
-    pub(super) fn under(self, shape: Shape, noise: Noise) -> Self {
+    pub(super) fn under(self, shape: Shape, noise: NoiseModel) -> Self {
         Self { noise, shape, ..self }
     }
 
@@ -159,7 +159,7 @@ impl<'a> Joint<'a> {
     }
 
     /// The same joint with other noise.
-    pub(super) fn whitened(&self, noise: Noise) -> Self {
+    pub(super) fn whitened(&self, noise: NoiseModel) -> Self {
         let mut joint = Self { noise, ..self.clone() };
         joint.regress();
         joint
@@ -240,9 +240,9 @@ impl<'a> Joint<'a> {
     }
 
     /// The noise that the fits leave.
-    pub(super) fn left(&self) -> Noise {
+    pub(super) fn left(&self) -> NoiseModel {
         let leftovers = some(&self.stretches).map(|stretch| stretch.leftover(&self.shape));
-        Noise::left_by(&leftovers.collect::<Vec<_>>())
+        NoiseModel::left_by(&leftovers.collect::<Vec<_>>())
     }
 
     /// The best lag: no poles, a real one, a pair, or all three.
@@ -254,7 +254,7 @@ impl<'a> Joint<'a> {
             white = usual.with(Shape::NONE).of_each_kind();
         }
         let richest = least(&white);
-        let noise = richest.map_or_else(Noise::white, |richest| richest.left());
+        let noise = richest.map_or_else(NoiseModel::white, |richest| richest.left());
         let all = if noise.order() > 0 {
             white.iter().map(|joint| joint.whitened(noise.clone()).settle(STEPS)).collect()
         } else {
@@ -271,7 +271,7 @@ impl<'a> Joint<'a> {
         let usual = usual.of_those(&usual.plausible());
         let rivals = usual.whitened(usual.left()).rivals();
         let noise = rivals.iter().min_by(|a, b| a.sse().total_cmp(&b.sse())).map(Self::left);
-        let noise = noise.unwrap_or_else(Noise::white);
+        let noise = noise.unwrap_or_else(NoiseModel::white);
         let settled = rivals.iter().map(|rival| rival.whitened(noise.clone()).settle(STEPS));
         let all: Vec<_> = settled.collect();
         let least = all.iter().map(Self::criterion).fold(f64::INFINITY, f64::min);

@@ -38,12 +38,8 @@ mod growing;
 mod hinge;
 mod lag_aware;
 mod lag_search;
-mod leftover;
-mod line;
 mod margin;
 mod method;
-mod noise;
-mod normal_equations;
 mod piece;
 mod places;
 mod profile;
@@ -60,6 +56,7 @@ mod stroke;
 pub mod sweep;
 mod two_line;
 
+pub use crate::numerics::Line;
 pub use against::{AgainstState, Correlation, Direction, StepState};
 pub use auto::{Automatic, Chosen, Grounds, choose};
 pub use broken_line::{BrokenLine, broken_line};
@@ -69,7 +66,6 @@ pub use estimate::{
     Verdict, estimate, estimate_joint,
 };
 pub use growing::{Growing, check_growing, settled};
-pub use line::Line;
 pub use margin::{Remedy, RunnerUp};
 pub use method::Method;
 pub use profile::{DelayProfile, Interpolation};

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use super::frame::Frame;
 use super::piece::Piece;
-use crate::statistics::moments;
+use crate::numerics::moments;
 
 /// Ramps behind each place of a range, and what a break there takes away.
 #[derive(Clone, Debug, Default)]

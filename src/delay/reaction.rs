@@ -7,14 +7,14 @@
 use super::broken_line::{PARAMETERS, Window};
 use super::condition::nothing_happened;
 use super::estimate::Decision;
-use super::noise::Noise;
+use crate::numerics::NoiseModel;
 
 /// Puts the verdict on each decision of a method that has none of its own.
 pub(super) fn judge(decisions: &mut [Decision], raw: &[f64], confidence: f64) {
     let windows: Vec<&[f64]> = decisions.iter().map(|decision| window(decision, raw)).collect();
-    let white = Noise::white();
+    let white = NoiseModel::white();
     let residuals: Vec<_> = windows.iter().filter_map(|values| residuals(values, &white)).collect();
-    let noise = Noise::of(&residuals, PARAMETERS);
+    let noise = NoiseModel::of(&residuals, PARAMETERS);
     for (decision, values) in decisions.iter_mut().zip(windows) {
         if let Some(check) = decision.checks.last_mut() {
             *check = nothing_happened(chance(values, &noise), confidence);
@@ -29,13 +29,13 @@ fn window<'a>(decision: &Decision, raw: &'a [f64]) -> &'a [f64] {
     raw.get(indices.start..end).unwrap_or_default()
 }
 
-fn chance(values: &[f64], noise: &Noise) -> Option<f64> {
+fn chance(values: &[f64], noise: &NoiseModel) -> Option<f64> {
     let window = Window::of(values, noise)?;
     Some(window.best(window.places())?.p_value)
 }
 
 /// What the best broken line leaves of `values`.
-fn residuals(values: &[f64], noise: &Noise) -> Option<Vec<f64>> {
+fn residuals(values: &[f64], noise: &NoiseModel) -> Option<Vec<f64>> {
     let window = Window::of(values, noise)?;
     Some(window.best(window.places())?.residuals(values))
 }

@@ -16,7 +16,7 @@
 //! G. E. P. Box and G. M. Jenkins, Time series analysis: forecasting and control, 1970, whose
 //! series J and M are found.
 
-use super::normal_equations::NormalEquations;
+use crate::numerics::NormalEquations;
 
 /// Samples that are enough.
 const ENOUGH: usize = 20_000;

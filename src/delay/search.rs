@@ -1,7 +1,7 @@
 //! Every candidate breakpoint of a segment: both lines and their squared error.
 
 use super::frame::Bends;
-use super::line::{Line, RunningLine};
+use crate::numerics::{Line, RunningLine};
 
 /// Difference of two squared errors, as a part of the segment's total sum of squares,
 /// below which they tie and the earlier candidate wins. Rounding is four orders below.

@@ -14,10 +14,10 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::basis::{Basis, LINE, Motion, common};
 use super::chain::ceil;
-use super::leftover::Leftover;
-use super::noise::Noise;
-use super::normal_equations::NormalEquations;
 use super::response::{MOST, Response, Shape};
+use crate::numerics::NoiseModel;
+use crate::numerics::NormalEquations;
+use crate::numerics::Projection;
 
 /// Samples: after a step as small as this the next one does not matter, since each is about
 /// the square of the one before.
@@ -66,7 +66,7 @@ impl<'a> Stretch<'a> {
     }
 
     /// The regression with the lag as it is.
-    pub(super) fn at(&self, basis: &Basis, noise: &Noise) -> Linearised {
+    pub(super) fn at(&self, basis: &Basis, noise: &NoiseModel) -> Linearised {
         if noise.order() > 0 {
             return self.linearised(&basis.shape, noise, None);
         }
@@ -148,11 +148,16 @@ impl<'a> Stretch<'a> {
 
     /// The regression with columns for changes of the lag as well; `parts` are the
     /// coefficients of a regression nearby.
-    pub(super) fn with_shape(&self, shape: &Shape, noise: &Noise, parts: &[f64]) -> Linearised {
+    pub(super) fn with_shape(
+        &self,
+        shape: &Shape,
+        noise: &NoiseModel,
+        parts: &[f64],
+    ) -> Linearised {
         self.linearised(shape, noise, Some(parts))
     }
 
-    fn linearised(&self, shape: &Shape, noise: &Noise, parts: Option<&[f64]>) -> Linearised {
+    fn linearised(&self, shape: &Shape, noise: &NoiseModel, parts: Option<&[f64]>) -> Linearised {
         let length = self.values.len();
         let response = Response::of(shape);
         let (modes, reactions) = (response.modes(), self.places.len());
@@ -231,7 +236,7 @@ impl<'a> Stretch<'a> {
     }
 
     /// What a regression leaves of the output when its reactions may move a little.
-    pub(super) fn leftover(&self, shape: &Shape) -> Leftover {
+    pub(super) fn leftover(&self, shape: &Shape) -> Projection {
         let length = self.values.len().max(1);
         let response = Response::of(shape);
         let linear = (LINE + response.modes() + self.places.len()) * length;
@@ -240,7 +245,7 @@ impl<'a> Stretch<'a> {
         self.fill_linear(&response, linear, moves);
         let offset = self.values.first().copied().unwrap_or_default();
         let values: Vec<f64> = self.values.iter().map(|y| y - offset).collect();
-        Leftover::of(&columns, &values)
+        Projection::of(&columns, &values)
     }
 
     /// Limits halfway to the neighbours, whatever the order of the places.
@@ -260,7 +265,7 @@ impl<'a> Stretch<'a> {
     pub(super) fn settle(
         &mut self,
         basis: &Basis,
-        noise: &Noise,
+        noise: &NoiseModel,
         limits: &[(f64, f64)],
         fine: f64,
     ) -> Linearised {
@@ -433,7 +438,7 @@ mod tests {
             let values = made(&shape, 47.37);
             let mut stretch = Stretch::alone(&values, vec![52.0]);
             let basis = Basis::of(&shape, values.len());
-            let found = stretch.settle(&basis, &Noise::white(), &[(0.0, 120.0)], FINE);
+            let found = stretch.settle(&basis, &NoiseModel::white(), &[(0.0, 120.0)], FINE);
             assert!((stretch.places[0] - 47.37).abs() < 1e-3, "{:?}", stretch.places);
             assert!((found.change() - 0.7).abs() < 1e-3, "{}", found.change());
             assert!(stretch.leftover(&shape).power() < 1e-6);
@@ -454,7 +459,7 @@ mod tests {
                 (vec![80.1, 30.9], (90, 70)),
             ] {
                 let stretch = Stretch { values: &values, places, shared };
-                let noise = Noise::white();
+                let noise = NoiseModel::white();
                 let dense = stretch.linearised(&shape, &noise, None).whole;
                 let sums = stretch.at(&Basis::of(&shape, 120), &noise).whole;
                 let size = dense.size();
@@ -471,7 +476,7 @@ mod tests {
     fn columns_of_the_shape_are_what_changes_with_it() {
         let shape = Shape::pair_of(0.2, 0.4).behind(4.0);
         let values = made(&shape.nudged(1), 47.37);
-        let noise = Noise::white();
+        let noise = NoiseModel::white();
         let stretch = Stretch::alone(&values, vec![47.37]);
         let parts = stretch.at(&Basis::of(&shape, 120), &noise).parts;
         let found = stretch.with_shape(&shape, &noise, &parts);

@@ -8,7 +8,7 @@
 
 use super::broken_line::{BrokenLine, broken_line};
 use super::chain::ceil;
-use super::line::Line;
+use crate::numerics::Line;
 
 /// Samples to each side of a break that are looked at.
 const NEAR: usize = 40;

@@ -28,7 +28,7 @@
 //! "Tests of separate families of hypotheses", Proc. 4th Berkeley Symposium (1961), 105-123.
 
 use crate::explain::{ALIKE, BEYOND_DOUBT, BEYOND_DOUBT_PERCENT};
-use crate::statistics::{fisher_tail, normal_below};
+use crate::numerics::{fisher_tail, normal_below};
 
 /// What a model cannot follow of the data of another.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -29,7 +29,7 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use crate::statistics::{chi_square_tail, dot};
+use crate::numerics::{chi_square_tail, dot};
 
 /// Part of the correlations that chance keeps within the bands.
 pub const CONFIDENCE: f64 = 0.99;
@@ -334,8 +334,8 @@ fn products(late: &[Vec<f64>], early: &[Vec<f64>], lag: usize) -> f64 {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::testing::noise;
     use super::*;
+    use crate::numerics::testing::noise;
 
     /// Slow sampling, so that the longest lag is few samples.
     const PERIOD_S: f64 = 0.05;

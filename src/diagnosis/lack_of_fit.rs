@@ -31,11 +31,11 @@
 use serde::Serialize;
 
 use super::local_misfit::LocalMisfit;
-use super::regression::{Regression, residuals_of};
 use super::residual_size::{BEYOND_NOISE, ResidualSize, Says, independent, is_near_noise};
 use super::shown_by::ShownBy;
-use super::whitening::{autoregression, whitened};
-use crate::statistics::fisher_tail;
+use crate::numerics::fisher_tail;
+use crate::numerics::{Regression, residuals_of};
+use crate::numerics::{autoregression, whitened};
 
 /// Whether a model can be told from the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -173,8 +173,8 @@ fn test(columns: &TestColumns, noise: &[f64]) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::noise;
     use super::*;
+    use crate::numerics::testing::noise;
 
     /// Slow shapes, as integrated velocities are.
     fn shapes(count: usize) -> Vec<Vec<Vec<f64>>> {

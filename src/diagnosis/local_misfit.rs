@@ -22,8 +22,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::residual_size::BEYOND_NOISE;
-use super::whitening::{autoregression, correlations};
-use crate::statistics::dot;
+use crate::numerics::dot;
+use crate::numerics::{autoregression, correlations};
 
 /// The part of a record in which a residual stands out most.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -122,8 +122,8 @@ fn variance(shape: &[f64], correlations: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::noise;
     use super::*;
+    use crate::numerics::testing::noise;
 
     /// Noise of first order in windows of several lengths, each without its mean.
     fn windows(rho: f64, seed: u64) -> Vec<Vec<f64>> {

@@ -14,14 +14,10 @@ pub mod failure;
 mod lack_of_fit;
 mod local_misfit;
 mod noise;
-pub(crate) mod regression;
 mod residual_size;
 mod shapes;
 mod shown_by;
 mod speed_error;
-#[cfg(test)]
-pub(crate) mod testing;
-pub(crate) mod whitening;
 
 pub use compare::{Comparison, compare};
 pub(crate) use compare::{compare_knowing, floor_of, lack_of};

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::experiment::Trial;
 use crate::model::{Arrivals, Simulated};
-use crate::statistics::median;
+use crate::numerics::median;
 
 /// Seconds after a change of the input in which a joint may still settle.
 const SETTLING_S: f64 = 0.3;
@@ -100,9 +100,9 @@ fn about_parabola(values: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::noise;
     use super::*;
     use crate::model::Arrival;
+    use crate::numerics::testing::noise;
     use crate::units::SamplePeriod;
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::shown_by::ShownBy;
 use crate::fit::{Evaluation, Part, Record};
-use crate::statistics::{fisher_tail, robust_scale};
+use crate::numerics::{fisher_tail, robust_scale};
 
 /// A residual so many times the noise of the measurement is no noise, however well it
 /// would pass for one that changes slowly.
@@ -119,8 +119,8 @@ pub(super) fn clipped(windows: &[Vec<f64>]) -> Vec<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::noise;
     use super::*;
+    use crate::numerics::testing::noise;
 
     #[test]
     fn a_spike_counts_little_and_a_burst_in_full() {

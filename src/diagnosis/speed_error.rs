@@ -60,8 +60,8 @@ fn slope(values: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::noise;
     use super::*;
+    use crate::numerics::testing::noise;
 
     #[test]
     fn a_ramp_has_its_slope_and_a_jump_between_windows_has_none() {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::statistics::median;
+use crate::numerics::median;
 use crate::units::SamplePeriod;
 
 /// What may be done to a log that is not uniform or not complete.

@@ -33,10 +33,10 @@
 //! models, Biometrika 73; Bell, R. M., and `McCaffrey`, D. F., 2002, Bias reduction in standard
 //! errors for linear regression with multi-stage samples, Survey Methodology 28.
 
-use crate::diagnosis::whitening::{autoregression, whitened};
 use crate::diagnosis::{BEYOND_NOISE, ErrorFigures, floor_of};
 use crate::fit::{Fit, Part, Record, Status};
-use crate::statistics::fisher_tail;
+use crate::numerics::fisher_tail;
+use crate::numerics::{autoregression, whitened};
 
 /// The noise of a record, as the best model leaves it.
 #[derive(Clone, Debug)]
@@ -178,7 +178,7 @@ fn parameters(record: &Record<'_>, fit: &Fit) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::testing::noise;
+    use crate::numerics::testing::noise;
 
     fn evidence(sum: f64, parameters: usize) -> Evidence {
         let training = Squares { sum, samples: 1000 };

@@ -10,7 +10,7 @@ use super::bounds::Bounds;
 use super::record::{Evaluation, Record, Weights};
 use super::space::Space;
 use crate::model::JointModel;
-use crate::statistics::robust_scale;
+use crate::numerics::robust_scale;
 
 /// What the optimiser works on.
 pub(super) struct Problem<'p, 'r> {

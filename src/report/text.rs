@@ -5,7 +5,7 @@ use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use super::number::{measure, rounded};
 use super::{DelayRange, EstimatedJoint, JointSummary};
 use crate::delay::{Automatic, Chosen, Condition, Interpolation, LagPart, Method, Settings};
-use crate::filter::LowPass;
+use crate::numerics::LowPass;
 
 /// The table of `estimate`: a row per joint, and the settings below it.
 pub fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings) -> String {

@@ -69,7 +69,7 @@ impl Agreement {
         let mut agreed = Self { delay: low, low, high, combinations: most };
         let delays: Vec<f64> =
             told.iter().filter(|one| agreed.holds(one)).map(|one| one.delay).collect();
-        agreed.delay = crate::statistics::median(&delays)?;
+        agreed.delay = crate::numerics::median(&delays)?;
         Some(agreed)
     }
 

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use crate::delay::Settings;
-use crate::filter::LowPass;
+use crate::numerics::LowPass;
 
 /// A setting that is varied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]

@@ -6,7 +6,7 @@ use super::agreement::{Agreement, Told, gap};
 use super::grid::{Combination, Factor, Grid};
 use crate::delay::{Lag, Settings, TrialEstimate, input_steps};
 use crate::experiment::Trial;
-use crate::statistics::{median, quantile};
+use crate::numerics::{median, quantile};
 
 /// Part of the combinations that must agree for their delay to be a measure of the others.
 const MOST: f64 = 0.5;
@@ -358,7 +358,7 @@ mod tests {
     use super::super::Base;
     use super::*;
     use crate::delay::Method;
-    use crate::filter::LowPass;
+    use crate::numerics::LowPass;
     use crate::units::SamplePeriod;
 
     /// Two passbands, one α, three β.

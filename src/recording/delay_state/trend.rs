@@ -2,8 +2,8 @@
 
 use rerun::datatypes::Vec2D;
 
+use crate::numerics::{median, quantile};
 use crate::recording::canvas::Plot;
-use crate::statistics::{median, quantile};
 
 /// Bins at most; with few points fewer.
 const BINS: usize = 8;

@@ -127,7 +127,7 @@ mod tests {
     use super::*;
     use crate::delay::sweep::Base;
     use crate::delay::{Method, Settings};
-    use crate::filter::LowPass;
+    use crate::numerics::LowPass;
 
     /// `two-line` with two low-passes, and `hinge`, which keeps its own.
     fn grid() -> Grid {

@@ -11,6 +11,7 @@ use super::map::{Block, beside, blocks, named, picture, rows_of};
 use super::step::TITLE;
 use super::{Cell, Swept};
 use crate::delay::sweep::{Factor, SweptStep};
+use crate::numerics::quantile;
 use crate::recording::canvas::{Labels, Plot, SHEET, Span};
 use crate::recording::chunk::Chunks;
 use crate::recording::entity::below;
@@ -19,7 +20,6 @@ use crate::recording::palette::{self, Rgb, color};
 use crate::recording::rows::Rows;
 use crate::recording::sheet::{Sheet, put_texts, strips};
 use crate::report::{number, settings_in_words};
-use crate::statistics::quantile;
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1090.0);

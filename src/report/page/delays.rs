@@ -224,7 +224,7 @@ impl Spread {
             .filter_map(|(_, row)| row.delta_s)
             .collect();
         delays.sort_by(f64::total_cmp);
-        let at = |share: f64| crate::statistics::quantile(&delays, share);
+        let at = |share: f64| crate::numerics::quantile(&delays, share);
         let name = estimated.joint.name.clone();
         let (low, high) = (*delays.first()?, *delays.last()?);
         Some(Self { name, low, lower: at(0.25)?, median: at(0.5)?, upper: at(0.75)?, high })

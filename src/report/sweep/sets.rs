@@ -79,7 +79,7 @@ mod tests {
     use super::*;
     use crate::delay::sweep::Base;
     use crate::delay::{Method, Settings};
-    use crate::filter::LowPass;
+    use crate::numerics::LowPass;
 
     fn grid() -> Grid {
         let bases = [Method::TwoLine, Method::Hinge]

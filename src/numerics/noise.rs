@@ -1,7 +1,7 @@
 //! The noise of the output, and what takes its memory away.
 
-use super::leftover::{self, Leftover};
-use crate::statistics::{Autoregression, autocovariances, dot};
+use super::projection::{self, Projection};
+use super::{Autoregression, autocovariances, dot};
 
 /// Longest memory of the noise that is looked for, samples.
 const LONGEST_MEMORY: usize = 8;
@@ -17,16 +17,16 @@ const LANES: usize = 8;
 
 /// Noise as an autoregression, `e_k = Σ a_i e_(k−i) + w_k` with white `w`.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Noise {
+pub(crate) struct NoiseModel {
     coefficients: Vec<f64>,
     /// `1 − Σ a_i`: what whitening makes of 1.
-    pub(super) level: f64,
+    pub(crate) level: f64,
     /// `Σ i·a_i`: whitening makes `level·k + shift` of `k`.
-    pub(super) shift: f64,
+    pub(crate) shift: f64,
 }
 
-impl Noise {
-    pub(super) fn white() -> Self {
+impl NoiseModel {
+    pub(crate) fn white() -> Self {
         Self::new(Vec::new())
     }
 
@@ -47,7 +47,7 @@ impl Noise {
     /// Each parameter takes the power of slow noise from the residuals, `S/n` from every
     /// autocovariance, with `S` their sum over all lags and `n` the length of a fit; it is
     /// put back. Little memory is taken for none.
-    pub(super) fn of(residuals: &[Vec<f64>], parameters: usize) -> Self {
+    pub(crate) fn of(residuals: &[Vec<f64>], parameters: usize) -> Self {
         /// Times that `S` is estimated from what it corrects.
         const ROUNDS: usize = 3;
         let power = |values: &Vec<f64>| dot(values, values) / values.len().max(1) as f64;
@@ -67,21 +67,21 @@ impl Noise {
     }
 
     /// The noise that regressions of short windows leave.
-    pub(super) fn left_by(leftovers: &[Leftover]) -> Self {
-        let usual = usual_ones(leftovers, Leftover::power);
+    pub(crate) fn left_by(leftovers: &[Projection]) -> Self {
+        let usual = usual_ones(leftovers, Projection::power);
         let samples: usize = usual.iter().map(|leftover| leftover.samples()).sum();
         let longest = LONGEST_MEMORY.min(samples / 10);
-        let found = Autoregression::of(&leftover::autocovariances(&usual, longest), samples);
+        let found = Autoregression::of(&projection::autocovariances(&usual, longest), samples);
         if found.explained > LEAST * LEAST { Self::new(found.coefficients) } else { Self::white() }
     }
 
     /// Samples that it remembers.
-    pub(super) fn order(&self) -> usize {
+    pub(crate) fn order(&self) -> usize {
         self.coefficients.len()
     }
 
     /// `|1 − Σ a_i e^(−iωi)|²`: what whitening makes of power at `omega` radians per sample.
-    pub(super) fn memory_gain(&self, omega: f64) -> f64 {
+    pub(crate) fn memory_gain(&self, omega: f64) -> f64 {
         let terms = self.coefficients.iter().zip(1..);
         let part = |(real, imaginary): (f64, f64), (a, i): (&f64, i32)| {
             let (sine, cosine) = (omega * f64::from(i)).sin_cos();
@@ -93,7 +93,7 @@ impl Noise {
 
     /// What whitening makes, `d = 1 … order` samples behind the break, of a level and of a
     /// ramp that begin there: `(w_d, h_d)`.
-    pub(super) fn onset(&self) -> Vec<(f64, f64)> {
+    pub(crate) fn onset(&self) -> Vec<(f64, f64)> {
         let (mut level, mut shift) = (1.0, 0.0);
         let mut onset = Vec::with_capacity(self.order());
         for (a, d) in self.coefficients.iter().zip(1..) {
@@ -107,7 +107,7 @@ impl Noise {
 
     /// Turns whitened `values` into those whose products with any column are the products of
     /// `values` with the whitened column.
-    pub(super) fn pull(&self, values: &mut [f64]) {
+    pub(crate) fn pull(&self, values: &mut [f64]) {
         let order = self.order();
         if order == 0 {
             return;
@@ -133,7 +133,7 @@ impl Noise {
     }
 
     /// Takes the memory out of `values` in place; the first ones become 0.
-    pub(super) fn whiten(&self, values: &mut [f64]) {
+    pub(crate) fn whiten(&self, values: &mut [f64]) {
         let order = self.order();
         if order == 0 {
             return;
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn whitening_makes_of_a_line_and_of_an_onset_what_is_promised() {
-        let noise = Noise::new(vec![0.5, -0.2]);
+        let noise = NoiseModel::new(vec![0.5, -0.2]);
         let mut line: Vec<f64> = (0..30).map(f64::from).collect();
         noise.whiten(&mut line);
         for (k, value) in line.iter().enumerate().skip(2) {
@@ -196,7 +196,7 @@ mod tests {
 
     #[test]
     fn products_with_what_is_pulled_are_those_with_a_whitened_column() {
-        let noise = Noise::new(vec![0.5, -0.2]);
+        let noise = NoiseModel::new(vec![0.5, -0.2]);
         let mut column: Vec<f64> = (0..29).map(|k| f64::from(k * k)).collect();
         let mut values: Vec<f64> = (0..29).map(|k| f64::from(k % 4)).collect();
         noise.whiten(&mut values);
@@ -215,6 +215,6 @@ mod tests {
             f64::from(state >> 8) / f64::from(1_u32 << 24) - 0.5
         };
         let signal: Vec<f64> = (0..400).map(white).collect();
-        assert_eq!(Noise::of(&[signal], 2).order(), 0);
+        assert_eq!(NoiseModel::of(&[signal], 2).order(), 0);
     }
 }

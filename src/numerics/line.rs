@@ -31,7 +31,7 @@ impl Line {
 /// # References
 /// R. L. Plackett, "Some theorems in least squares", Biometrika 37 (1950), 149-157.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct RunningLine {
+pub(crate) struct RunningLine {
     n: f64,
     s0: f64,
     s1: f64,
@@ -40,7 +40,7 @@ pub(super) struct RunningLine {
 
 impl RunningLine {
     /// Adds the next value.
-    pub(super) fn push(&mut self, y: f64) {
+    pub(crate) fn push(&mut self, y: f64) {
         let n = self.n;
         let after = n + 1.0;
         if n >= 2.0 {
@@ -55,12 +55,12 @@ impl RunningLine {
     }
 
     /// Sum of squared errors of the line through the values so far.
-    pub(super) fn sse(&self) -> f64 {
+    pub(crate) fn sse(&self) -> f64 {
         self.sse
     }
 
     /// Slope per step. One value has none: its line is level.
-    pub(super) fn slope(&self) -> f64 {
+    pub(crate) fn slope(&self) -> f64 {
         let n = self.n;
         if n < 2.0 {
             0.0
@@ -70,7 +70,7 @@ impl RunningLine {
     }
 
     /// Value of the line in the middle of the values, at `k = (n+1)/2`: their mean.
-    pub(super) fn mean(&self) -> f64 {
+    pub(crate) fn mean(&self) -> f64 {
         self.s0 / self.n
     }
 }

@@ -12,19 +12,19 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::statistics::{dot, dots};
+use super::{dot, dots};
 
 /// What a regression left of the output of a window.
 #[derive(Clone, Debug)]
-pub(super) struct Leftover {
+pub(crate) struct Projection {
     residuals: Vec<f64>,
     /// Orthonormal columns, one behind the other.
     basis: Vec<f64>,
 }
 
-impl Leftover {
+impl Projection {
     /// What the `columns`, one behind the other, leave of `values`.
-    pub(super) fn of(columns: &[f64], values: &[f64]) -> Self {
+    pub(crate) fn of(columns: &[f64], values: &[f64]) -> Self {
         let length = values.len().max(1);
         let mut basis: Vec<f64> = Vec::with_capacity(columns.len());
         for column in columns.chunks_exact(length) {
@@ -44,12 +44,12 @@ impl Leftover {
         Self { residuals, basis }
     }
 
-    pub(super) fn samples(&self) -> usize {
+    pub(crate) fn samples(&self) -> usize {
         self.residuals.len()
     }
 
     /// Mean square of what is left, for each degree of freedom.
-    pub(super) fn power(&self) -> f64 {
+    pub(crate) fn power(&self) -> f64 {
         let parameters = self.basis.len() / self.residuals.len().max(1);
         let freedom = self.residuals.len().saturating_sub(parameters).max(1);
         dot(&self.residuals, &self.residuals) / freedom as f64
@@ -83,7 +83,7 @@ impl Leftover {
 
 /// Autocovariances of the noise of which the `leftovers` are left, up to `longest` samples.
 /// What is kept of them is known well enough from some of the windows.
-pub(super) fn autocovariances(leftovers: &[&Leftover], longest: usize) -> Vec<f64> {
+pub(crate) fn autocovariances(leftovers: &[&Projection], longest: usize) -> Vec<f64> {
     const ENOUGH: usize = 16;
     let mut kept = DMatrix::zeros(longest + 1, longest + 1);
     let mut samples = 0;
@@ -200,10 +200,10 @@ mod tests {
         for k in 0..n {
             let mut unit = vec![0.0; n];
             unit[k] = 1.0;
-            let left = Leftover::of(&columns, &unit).residuals;
+            let left = Projection::of(&columns, &unit).residuals;
             (0..=longest).for_each(|lag| sums[lag] += dot(&left, &left[lag..]));
         }
-        let kept = Leftover::of(&columns, &vec![1.0; n]).kept(longest);
+        let kept = Projection::of(&columns, &vec![1.0; n]).kept(longest);
         for (lag, sum) in sums.iter().enumerate() {
             assert!((sum - kept[(lag, 0)]).abs() < 1e-9, "{lag}: {sum} {}", kept[(lag, 0)]);
         }
@@ -212,7 +212,7 @@ mod tests {
     #[test]
     fn what_is_kept_is_the_trace_of_projected_shifts() {
         let (n, longest) = (11_usize, 3);
-        let leftover = Leftover::of(&columns(11), &[1.0; 11]);
+        let leftover = Projection::of(&columns(11), &[1.0; 11]);
         let basis = DMatrix::from_column_slice(n, leftover.basis.len() / n, &leftover.basis);
         let left = DMatrix::identity(n, n) - &basis * basis.transpose();
         let shift = |lag: usize| {
@@ -245,7 +245,7 @@ mod tests {
                             value
                         })
                         .collect();
-                    Leftover::of(&columns, &window)
+                    Projection::of(&columns, &window)
                 })
                 .collect();
             let found = autocovariances(&leftovers.iter().collect::<Vec<_>>(), 4);

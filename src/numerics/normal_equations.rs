@@ -1,15 +1,15 @@
 //! Small least squares by normal equations, solved column by column.
 
-use crate::statistics::{dot, dots};
+use super::{dot, dots};
 
 /// Pivots below this part of a column's own square belong to columns that the ones before
 /// them already make up.
-pub(super) const DEPENDENT: f64 = 1e-11;
+pub(crate) const DEPENDENT: f64 = 1e-11;
 
 /// The products of all columns with each other, the last of them the target; eliminated
 /// from the front as far as is asked for.
 #[derive(Clone, Debug, Default)]
-pub(super) struct NormalEquations {
+pub(crate) struct NormalEquations {
     size: usize,
     /// Rows of the upper triangle, in a square.
     products: Vec<f64>,
@@ -43,7 +43,7 @@ impl<'a> Column<'a> {
 impl NormalEquations {
     /// Of `columns` of `length` samples each, one behind the other; those that have one of the
     /// `starts` are 0 before it.
-    pub(super) fn of(columns: &[f64], length: usize, starts: &[usize]) -> Self {
+    pub(crate) fn of(columns: &[f64], length: usize, starts: &[usize]) -> Self {
         let size = columns.len() / length.max(1);
         let mut products = vec![0.0; size * size];
         let starts = starts.iter().copied().chain(std::iter::repeat(0));
@@ -61,13 +61,13 @@ impl NormalEquations {
     }
 
     /// Of the rows of the upper triangle of their `products`, in a square.
-    pub(super) fn from_products(size: usize, products: Vec<f64>) -> Self {
+    pub(crate) fn from_products(size: usize, products: Vec<f64>) -> Self {
         let squares = products.iter().step_by(size + 1).copied().collect();
         Self { size, products, squares }
     }
 
     /// The same with the columns in another `order`, before any is eliminated.
-    pub(super) fn reordered(&self, order: &[usize]) -> Self {
+    pub(crate) fn reordered(&self, order: &[usize]) -> Self {
         let product = |i: &usize, j: &usize| self.at(*i.min(j), *i.max(j));
         let rows = order.iter().map(|i| order.iter().map(|j| product(i, j)).collect::<Vec<_>>());
         let squares = order.iter().map(|i| product(i, i)).collect();
@@ -75,29 +75,29 @@ impl NormalEquations {
     }
 
     /// Number of columns, the target among them.
-    pub(super) fn size(&self) -> usize {
+    pub(crate) fn size(&self) -> usize {
         self.size
     }
 
     /// What is left at a row and a column of the upper triangle.
-    pub(super) fn at(&self, row: usize, column: usize) -> f64 {
+    pub(crate) fn at(&self, row: usize, column: usize) -> f64 {
         self.products.get(row * self.size + column).copied().unwrap_or(0.0)
     }
 
     /// The squared error of the target after the columns eliminated so far.
-    pub(super) fn error(&self) -> f64 {
+    pub(crate) fn error(&self) -> f64 {
         let last = self.size.saturating_sub(1);
         self.at(last, last).max(0.0)
     }
 
     /// Whether a column is no combination of those before it.
-    pub(super) fn stands_alone(&self, column: usize) -> bool {
+    pub(crate) fn stands_alone(&self, column: usize) -> bool {
         let square = self.squares.get(column).copied().unwrap_or(0.0);
         self.at(column, column) > DEPENDENT * square && square > 0.0
     }
 
     /// Takes what `column` explains off all behind it.
-    pub(super) fn eliminate(&mut self, column: usize) {
+    pub(crate) fn eliminate(&mut self, column: usize) {
         if !self.stands_alone(column) {
             return;
         }
@@ -116,7 +116,7 @@ impl NormalEquations {
 
     /// Coefficients of the first `count` columns, all of which are eliminated, given those
     /// of the columns behind them.
-    pub(super) fn coefficients(&self, count: usize, behind: &[(usize, f64)]) -> Vec<f64> {
+    pub(crate) fn coefficients(&self, count: usize, behind: &[(usize, f64)]) -> Vec<f64> {
         let target = self.size.saturating_sub(1);
         let mut found = vec![0.0; count];
         for row in (0..count).rev() {

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::statistics::dot;
+use super::dot;
 
 /// A least-squares regression of one column on others.
 pub(crate) struct Regression {

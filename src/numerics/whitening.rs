@@ -1,6 +1,6 @@
 //! Noise with a memory, and the filter that takes its memory away.
 
-use crate::statistics::{Autoregression, dot};
+use super::{Autoregression, dot};
 
 /// Longest memory of the noise, in samples, that is told from motion.
 const LONGEST_MEMORY: usize = 12;
@@ -71,7 +71,7 @@ fn mean_variance(windows: &[Vec<f64>], noise: &[f64], power: f64) -> f64 {
 
 /// Correlations of noise with the memory `noise` at lags from 0 to below `count`, as far as
 /// they matter.
-pub(super) fn correlations(noise: &[f64], count: usize) -> Vec<f64> {
+pub(crate) fn correlations(noise: &[f64], count: usize) -> Vec<f64> {
     // Impulse response, whose products with itself are the covariances.
     /// Below this part of its first value the response is over.
     const OVER: f64 = 1e-4;
@@ -113,8 +113,8 @@ pub(crate) fn whitened(windows: &[Vec<f64>], noise: &[f64]) -> Vec<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::noise;
     use super::*;
+    use crate::numerics::testing::noise;
 
     /// Noise of first order in windows, each without its mean.
     fn windows(rho: f64, length: usize, count: usize) -> Vec<Vec<f64>> {

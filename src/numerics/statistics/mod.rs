@@ -1,7 +1,5 @@
-//! Statistics that are no model's own: quantiles, rank tests, tails of distributions,
-//! autoregressions.
+//! Quantiles, rank tests and tails of distributions.
 
-mod autoregression;
 mod chi_square;
 mod fisher;
 mod normal;
@@ -9,9 +7,6 @@ mod quantile;
 mod rank;
 mod student;
 
-pub(crate) use autoregression::{
-    Autoregression, autocovariances, dot, dots, moments, take_off_line,
-};
 pub use chi_square::chi_square_tail;
 pub use fisher::fisher_tail;
 pub use normal::normal_below;
