@@ -5,13 +5,13 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
-use tauscope::diagnosis::failure::{Record, RecordError, Samples, diagnose};
+use tauscope::diagnosis::failure::{RecordError, ResidualRecord, Samples, diagnose};
 
 const SAMPLES: usize = 12_000;
 const HOLD: usize = 150;
 
 /// A joint driven by steps, whose residual is five times as large where `fails`.
-fn record(fails: fn(f64, f64) -> bool) -> Result<Record, RecordError> {
+fn record(fails: fn(f64, f64) -> bool) -> Result<ResidualRecord, RecordError> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut samples = Samples { trial: vec![0; SAMPLES], ..Samples::default() };
     let (mut level, mut output) = (0.0, 0.0_f64);
@@ -31,7 +31,7 @@ fn record(fails: fn(f64, f64) -> bool) -> Result<Record, RecordError> {
         samples.residual.push(size * (f64::from(random.next_u32()) / f64::from(u32::MAX) - 0.5));
     }
     let segments = (0..SAMPLES).step_by(HOLD).map(|start| start..start + HOLD).collect();
-    Record::new(samples, vec!["1".to_owned()], segments)
+    ResidualRecord::new(samples, vec!["1".to_owned()], segments)
 }
 
 fn benches(criterion: &mut Criterion) {

@@ -7,7 +7,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use tauscope::effect::expression::{Definition, OwnParameter, define};
 use tauscope::effect::{Stage, find};
 use tauscope::experiment::Joint;
-use tauscope::fit::{Horizon, Record, Split, fit};
+use tauscope::fit::{FitRecord, Horizon, Split, fit};
 use tauscope::model::{Component, JointModel, Surroundings, arrivals, simulate};
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec};
 
@@ -94,7 +94,7 @@ fn growth(criterion: &mut Criterion) {
     let model = model.with(Component::neutral(find("actuator_lag").unwrap()));
     for samples in [10_000, 100_000, 1_000_000] {
         let joint = joint(samples);
-        let record = Record::new(&joint, Split::Time(0.7), Horizon::FreeRun);
+        let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::FreeRun);
         let levels = record.input_levels();
         let range = record.range(&levels, 10.0);
         group.throughput(Throughput::Elements(samples as u64));

@@ -11,7 +11,7 @@ use rand_distr::{Distribution as _, Normal};
 use tauscope::diagnosis::ErrorFigures;
 use tauscope::effect::{Dimension, Effect, Moment, Parameter, Spec, Stage, contract};
 use tauscope::experiment::{Joint, Trial};
-use tauscope::fit::{Fit, Horizon, Part, Record, Split, fit};
+use tauscope::fit::{Fit, FitRecord, Horizon, Part, Split, fit};
 use tauscope::model::{Component, JointModel, Restart, Surroundings, arrivals, simulate};
 use tauscope::units::SamplePeriod;
 
@@ -93,7 +93,7 @@ struct Fitted {
 
 /// `start`, fitted to the first 70 % of the record.
 fn fitted(joint: &Joint, start: &JointModel) -> anyhow::Result<Fitted> {
-    let record = Record::new(joint, Split::Time(0.7), Horizon::FreeRun);
+    let record = FitRecord::new(joint, Split::Time(0.7), Horizon::FreeRun);
     let levels = record.input_levels();
     let fit = fit(&record, start, &record.range(&levels, 30.0))?;
     let error = ErrorFigures::of(&record, &fit.evaluation, Part::Validation);

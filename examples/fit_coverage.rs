@@ -13,7 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal};
 use tauscope::effect::{Effect, REGISTRY};
 use tauscope::experiment::{Joint, Trial};
-use tauscope::fit::{Fit, Horizon, Record, Split, Status, fit};
+use tauscope::fit::{Fit, FitRecord, Horizon, Split, Status, fit};
 use tauscope::model::{Component, JointModel, Restart, Surroundings, Value, arrivals, simulate};
 use tauscope::units::SamplePeriod;
 
@@ -184,7 +184,7 @@ fn neutral(effect: &'static dyn Effect, truth: &[f64]) -> anyhow::Result<Compone
 }
 
 fn fitted(made: &Made, start: &JointModel) -> anyhow::Result<Fit> {
-    let record = Record::new(&made.joint, Split::Time(1.0), Horizon::FreeRun);
+    let record = FitRecord::new(&made.joint, Split::Time(1.0), Horizon::FreeRun);
     let record = record.with_others(made.others.clone());
     let levels = record.input_levels();
     let top = levels.last().copied().unwrap_or(1.0);

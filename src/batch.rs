@@ -17,7 +17,7 @@ use crate::effect::Effect;
 use crate::experiment::{Joint, Trial, activity};
 use crate::explain::{AddError, Addition, add};
 use crate::explain::{Explanation, Improvement, Options, Revision, Workers, explain, improve};
-use crate::fit::{Fit, FitError, Horizon, Record, Split, assess, fit};
+use crate::fit::{Fit, FitError, FitRecord, Horizon, Split, assess, fit};
 use crate::model::{JointModel, integrators};
 use crate::numerics::median;
 
@@ -255,7 +255,7 @@ pub fn add_to_joints<'a>(
     protocol: impl Into<Watched<'a>>,
     effect: &'static dyn Effect,
 ) -> Vec<Option<Result<Addition, AddError>>> {
-    let work = |_: usize, record: &Record<'_>, fit: Fit| add(record, fit, effect);
+    let work = |_: usize, record: &FitRecord<'_>, fit: Fit| add(record, fit, effect);
     let added = for_each_joint(joints, estimates, models, protocol.into(), work);
     added.into_iter().map(|result| Some(result?.map_err(AddError::from).flatten())).collect()
 }
@@ -300,7 +300,7 @@ pub fn suspect_joints(
     effects: [&'static dyn Effect; 2],
     (noise, share): (Option<f64>, f64),
 ) -> Vec<Option<Result<Suspects, SuspectsError>>> {
-    let work = |_: usize, record: &Record<'_>, fit: Fit| {
+    let work = |_: usize, record: &FitRecord<'_>, fit: Fit| {
         Suspects::of_record(record, &fit.model, effects, noise, share)
     };
     let suspects = for_each_joint(joints, estimates, models, protocol.into(), work);
@@ -328,7 +328,7 @@ fn for_each_joint<T: Send>(
     estimates: &[Result<JointEstimate, EstimateError>],
     models: impl Fn(&Joint) -> Option<JointModel> + Sync,
     Watched { protocol, watch }: Watched<'_>,
-    work: impl Fn(usize, &Record<'_>, Fit) -> T + Sync,
+    work: impl Fn(usize, &FitRecord<'_>, Fit) -> T + Sync,
 ) -> OfJoints<T> {
     let Protocol { mode, split, horizon } = protocol;
     watch.more(joints.len());
@@ -338,7 +338,7 @@ fn for_each_joint<T: Send>(
         let estimated: Vec<_> = estimate.iter().flat_map(JointEstimate::estimated).collect();
         let split = split.unwrap_or_else(|| Split::of(joint));
         let others = activity(joints, index, &delays_s);
-        let record = Record::new(joint, split, horizon).with_others(others);
+        let record = FitRecord::new(joint, split, horizon).with_others(others);
         let starts = match mode {
             Mode::Integrator => integrators(joint, &estimated),
             Mode::Fit | Mode::AsItIs => vec![models(joint)?],
@@ -369,7 +369,7 @@ fn typical_delay_s((joint, estimate): (&Joint, &Result<JointEstimate, EstimateEr
 
 /// The best of the fits from several starts.
 fn best_fit(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     starts: &[JointModel],
     mode: Mode,
 ) -> Option<Result<Fit, FitError>> {

@@ -8,7 +8,7 @@ use tauscope::delay::{
     Condition, Method, Settings, TrialEstimate, Verdict, estimate, estimate_joint, step_delays,
 };
 use tauscope::effect::VariableDelay;
-use tauscope::fit::{Horizon, Record, Split};
+use tauscope::fit::{FitRecord, Horizon, Split};
 use tauscope::model::{Component, JointModel};
 use tauscope::synthetic::{
     DelayLaw, InputSpec, JointSpec, PlantSpec, Ringing, Synthetic, simulate, write_log,
@@ -138,7 +138,7 @@ fn delays_go_into_a_fit() {
     assert_eq!(delays[0].len(), made.truth.len());
     let seconds = |one: &Option<tauscope::delay::StepDelay>| one.map(|one| one.delay_s);
     let delays = delays.iter().map(|trial| trial.iter().map(seconds).collect()).collect();
-    let record = Record::new(joint, Split::Time(1.0), Horizon::Steps).with_delays(delays);
+    let record = FitRecord::new(joint, Split::Time(1.0), Horizon::Steps).with_delays(delays);
     let measured = Component::measured(&VariableDelay).unwrap();
     let model = JointModel::integrator(10.0, 0.2).with(measured);
     let arrivals = record.arrivals(&model, 0);

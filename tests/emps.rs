@@ -8,7 +8,7 @@ mod real;
 use tauscope::effect::find;
 use tauscope::experiment::{Joint, Trial};
 use tauscope::explain::{Options, Sequential, improve};
-use tauscope::fit::{Fit, Horizon, Record, Split, fit};
+use tauscope::fit::{Fit, FitRecord, Horizon, Split, fit};
 use tauscope::model::{Component, JointModel};
 use tauscope::numerics::LowPass;
 use tauscope::units::SamplePeriod;
@@ -45,14 +45,14 @@ fn start() -> JointModel {
 }
 
 fn fitted(joint: &Joint, horizon: Horizon) -> Fit {
-    let record = Record::new(joint, Split::Time(1.0), horizon);
+    let record = FitRecord::new(joint, Split::Time(1.0), horizon);
     let levels = record.input_levels();
     fit(&record, &start(), &record.range(&levels, 0.5)).unwrap()
 }
 
 /// Root mean square error over the whole record, metres.
 fn error_m(joint: &Joint, model: &JointModel, horizon: Horizon) -> f64 {
-    let record = Record::new(joint, Split::Time(1.0), horizon);
+    let record = FitRecord::new(joint, Split::Time(1.0), horizon);
     let residuals = record.evaluate(model).residuals.concat();
     (residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len() as f64).sqrt()
 }
@@ -130,7 +130,7 @@ fn the_published_parameters_explain_the_force_as_published() {
 #[test]
 fn coulomb_friction_is_named_first_and_the_force_error_falls_as_published() {
     let Some(joint) = joint("emps_train.csv") else { return };
-    let record = Record::new(&joint, Split::Time(0.7), Horizon::Steps);
+    let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::Steps);
     let mut viscous = JointModel::integrator(0.005, 0.0);
     viscous.delay.fixed = true;
     let viscous = viscous.with(Component::neutral(find("actuator_lag").unwrap()));

@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use tauscope::diagnosis::failure::{
-    Clause, FailsWhere, Feature, Record, Relation, Samples, Units, diagnose, fails_where, regions,
-    worst_segments,
+    Clause, FailsWhere, Feature, Relation, ResidualRecord, Samples, Units, diagnose, fails_where,
+    regions, worst_segments,
 };
 
 const PERIOD_S: f64 = 0.01;
@@ -67,14 +67,18 @@ impl Made {
     }
 
     /// With noise of correlation `rho` whose deviation at a sample is `deviation`.
-    fn with_noise(mut self, rho: f64, deviation: impl Fn(&Samples, usize) -> f64) -> Record {
+    fn with_noise(
+        mut self,
+        rho: f64,
+        deviation: impl Fn(&Samples, usize) -> f64,
+    ) -> ResidualRecord {
         let mut value = self.random.normal();
         for index in 0..self.samples.residual.len() {
             value = rho * value + (1.0 - rho * rho).sqrt() * self.random.normal();
             self.samples.residual[index] = deviation(&self.samples, index) * value;
         }
         let labels = (0..self.trials).map(|trial| format!("run_{trial}")).collect();
-        Record::new(self.samples, labels, self.segments).unwrap()
+        ResidualRecord::new(self.samples, labels, self.segments).unwrap()
     }
 }
 
@@ -82,9 +86,9 @@ impl Made {
 fn failing(
     seed: u64,
     inside: impl Fn(&Samples, usize) -> bool + Copy,
-) -> (Record, impl Fn(&Record) -> Vec<usize>) {
+) -> (ResidualRecord, impl Fn(&ResidualRecord) -> Vec<usize>) {
     let deviation = move |s: &Samples, k| if inside(s, k) { 1.0 } else { 0.2 };
-    let truth = move |record: &Record| {
+    let truth = move |record: &ResidualRecord| {
         (0..record.len()).filter(|index| inside(record.samples(), *index)).collect()
     };
     (Made::usual(seed).with_noise(0.8, deviation), truth)
@@ -194,7 +198,7 @@ fn planted_failures_are_found_whatever_the_noise() {
 }
 
 /// Records, of 200, in which something is reported.
-fn false_reports(make: impl Fn(u64) -> Record) -> usize {
+fn false_reports(make: impl Fn(u64) -> ResidualRecord) -> usize {
     (0..200).filter(|seed| !fails_where(&make(*seed)).is_empty()).count()
 }
 
@@ -234,7 +238,7 @@ fn a_perfect_model_fails_nowhere() {
     let diagnosis = diagnose(&record);
     assert_eq!((diagnosis.fails_where.len(), diagnosis.worst_segments.len()), (0, 0));
     assert!(regions(&record).iter().all(|region| region.rmse < 1e-300));
-    let nothing = Record::new(Samples::default(), Vec::new(), Vec::new()).unwrap();
+    let nothing = ResidualRecord::new(Samples::default(), Vec::new(), Vec::new()).unwrap();
     assert_eq!(regions(&nothing), []);
 }
 
@@ -269,7 +273,7 @@ fn the_same_record_gives_the_same_answer() {
 }
 
 /// A condition's shares by going through all samples.
-fn brute_shares(record: &Record, holds: impl Fn(usize) -> bool) -> (f64, f64, f64) {
+fn brute_shares(record: &ResidualRecord, holds: impl Fn(usize) -> bool) -> (f64, f64, f64) {
     let square = |index: usize| record.samples().residual[index].powi(2);
     let inside: Vec<usize> = (0..record.len()).filter(|index| holds(*index)).collect();
     let squares: f64 = inside.iter().map(|index| square(*index)).sum();
@@ -278,7 +282,7 @@ fn brute_shares(record: &Record, holds: impl Fn(usize) -> bool) -> (f64, f64, f6
     (count / record.len() as f64, squares / all, (squares / count).sqrt())
 }
 
-fn holds(record: &Record, clause: &Clause, index: usize) -> bool {
+fn holds(record: &ResidualRecord, clause: &Clause, index: usize) -> bool {
     let s = record.samples();
     let value = match clause.feature {
         Feature::Direction | Feature::Input => s.input[index],

@@ -3,7 +3,7 @@
 
 use tauscope::effect::find;
 use tauscope::experiment::{Joint, Trial};
-use tauscope::fit::{Fit, FitError, Horizon, Parameter, Record, Split, Status, fit};
+use tauscope::fit::{Fit, FitError, FitRecord, Horizon, Parameter, Split, Status, fit};
 use tauscope::model::{Component, JointModel, Restart, Surroundings, Value, arrivals, simulate};
 use tauscope::units::SamplePeriod;
 
@@ -75,7 +75,7 @@ fn joint(model: &JointModel, starts_s: &[f64], seed: u64) -> Joint {
 }
 
 fn fitted(joint: &Joint, start: &JointModel, horizon: Horizon) -> Fit {
-    let record = Record::new(joint, Split::Time(1.0), horizon);
+    let record = FitRecord::new(joint, Split::Time(1.0), horizon);
     let levels = record.input_levels();
     fit(&record, start, &record.range(&levels, 20.0)).unwrap()
 }
@@ -171,7 +171,7 @@ fn four_samples_are_too_few() {
     let period = SamplePeriod::from_seconds(PERIOD_S).unwrap();
     let mut joint = joint(&with(&[]), &[0.0], 7);
     joint.trials[0] = Trial::new("", 0.0, period, vec![1.0; 3], vec![0.0; 3]).unwrap();
-    let record = Record::new(&joint, Split::Time(1.0), Horizon::FreeRun);
+    let record = FitRecord::new(&joint, Split::Time(1.0), Horizon::FreeRun);
     let levels = record.input_levels();
     let error = fit(&record, &start(), &record.range(&levels, 20.0)).unwrap_err();
     assert_eq!(error, FitError::TooFewSamples { samples: 3, parameters: 2 });

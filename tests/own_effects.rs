@@ -7,7 +7,7 @@ use std::path::Path;
 
 use tauscope::effect::{Effect, contract};
 use tauscope::experiment::{Joint, Trial};
-use tauscope::fit::{Horizon, Record, Split, Status, fit};
+use tauscope::fit::{FitRecord, Horizon, Split, Status, fit};
 use tauscope::model::{
     Component, JointModel, ModelError, ModelFile, Restart, Surroundings, arrivals, simulate,
 };
@@ -139,7 +139,7 @@ fn the_parameters_of_an_expression_are_fitted() {
     };
     let start =
         "start = { value = 0.7, min = 0.0, max = 5.0 }, slope = { value = 1.0, neutral = 1.0 }";
-    let record = Record::new(&joint, Split::Time(0.7), Horizon::FreeRun);
+    let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::FreeRun);
     let levels = record.input_levels();
     let range = record.range(&levels, 20.0);
     let fitted = |effects: &str| fit(&record, &model(effects), &range).unwrap();
@@ -170,7 +170,7 @@ fn an_effect_on_the_input_may_depend_on_the_angle() {
         covariates: Vec::new(),
         trials: vec![trial],
     };
-    let record = Record::new(&joint, Split::Time(0.7), Horizon::FreeRun);
+    let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::FreeRun);
     let residuals = record.evaluate(&truth).residuals;
     let largest =
         residuals[0].iter().skip(1).fold(0.0_f64, |largest, error| largest.max(error.abs()));

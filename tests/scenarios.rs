@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use tauscope::diagnosis::compare;
-use tauscope::fit::{Horizon, Record, Split, fit};
+use tauscope::fit::{FitRecord, Horizon, Split, fit};
 use tauscope::model::JointModel;
 use tauscope::synthetic::effects::{CATALOGUE, FINER, OUTSIDE};
 use tauscope::synthetic::scenario::{Noise, Scenario, Strength, draw};
@@ -15,7 +15,7 @@ const NOISE: f64 = 0.05;
 /// Error of a plain integrator that is fitted to the log, in deviations of the noise.
 fn fitted_error(scenario: &Scenario) -> f64 {
     let made = simulate(&scenario.plant).unwrap();
-    let record = Record::new(&made.joints[0], Split::Time(1.0), Horizon::Steps);
+    let record = FitRecord::new(&made.joints[0], Split::Time(1.0), Horizon::Steps);
     let levels = record.input_levels();
     let gain = scenario.plant.joints[0].gain;
     let start = JointModel::integrator(gain, 0.15);

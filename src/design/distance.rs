@@ -5,7 +5,7 @@ use super::predict::Stand;
 use super::schedule::Schedule;
 use super::suspects::Suspects;
 use crate::effect::RecordRange;
-use crate::fit::{Fit, Horizon, Part, Record, Split, Status, fit_to_compare, survey};
+use crate::fit::{Fit, FitRecord, Horizon, Part, Split, Status, fit_to_compare, survey};
 use crate::model::{Component, JointModel};
 
 /// What a race shows of the data of suspect number `truth`, at the numbers of `model`, when
@@ -22,7 +22,7 @@ pub(super) fn expected(
     let carrier: Vec<f64> = (0..clean.len()).map(|k| carrier(k, suspects.noise)).collect();
     let output = clean.iter().zip(&carrier).map(|(y, c)| y + c).collect();
     let joint = stand.log(schedule, output)?;
-    let record = Record::new(&joint, Split::of(&joint), Horizon::Steps);
+    let record = FitRecord::new(&joint, Split::of(&joint), Horizon::Steps);
     let levels = record.input_levels();
     let top = levels.last().copied().unwrap_or(1.0);
     let range = record.range(&levels, suspects.base.gain.value.abs() * top);
@@ -50,7 +50,7 @@ fn carrier(sample: usize, noise: f64) -> f64 {
 /// The better of two fits of a suspect: from where it changes nothing, as in the race, and
 /// from the numbers that are known.
 fn best(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     suspects: &Suspects,
     place: usize,
     base: &JointModel,
@@ -65,7 +65,7 @@ fn best(
 }
 
 /// What `fit` leaves of the data, in variances of the noise.
-fn distance(record: &Record<'_>, fit: &Fit, carrier: &[f64], noise: f64) -> Distance {
+fn distance(record: &FitRecord<'_>, fit: &Fit, carrier: &[f64], noise: f64) -> Distance {
     let part = |part| {
         let squares = record.part(part).map(|window| {
             let all = fit.evaluation.residuals.get(window.trial).map_or(&[][..], Vec::as_slice);

@@ -12,7 +12,7 @@ use rand_distr::{Distribution as _, StandardNormal};
 use super::predict::Uncertain;
 use crate::effect::UNLIMITED;
 use crate::experiment::Trial;
-use crate::fit::{Fit, Record, Status};
+use crate::fit::{Fit, FitRecord, Status};
 use crate::model::JointModel;
 
 /// Standard deviations within which a number lies.
@@ -25,7 +25,7 @@ impl Uncertain {
     /// somewhere in the range in which the record is as likely: it is put into the middle of
     /// that, which is four standard deviations wide. Where there is no such range, it is off by
     /// `share` of its value.
-    pub fn of_fit(record: &Record<'_>, fit: &Fit, noise: f64, share: f64) -> Self {
+    pub fn of_fit(record: &FitRecord<'_>, fit: &Fit, noise: f64, share: f64) -> Self {
         let mut known = Self::by_share(fit.model.clone(), share);
         for (place, parameter) in fit.parameters.iter().enumerate() {
             let is_free = matches!(parameter.status, Status::Undetermined | Status::AtBound);
@@ -75,7 +75,7 @@ impl Uncertain {
 /// takes the place of the noise. The second is the best of all, where it is clearly better
 /// than the one that is known.
 fn likely(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     known: &Uncertain,
     noise: f64,
 ) -> (Vec<JointModel>, Option<JointModel>) {
@@ -167,7 +167,7 @@ fn values(model: &JointModel) -> Vec<f64> {
 }
 
 /// What `model` leaves of the record, in variances of the noise.
-fn cost(record: &Record<'_>, model: &JointModel, noise: f64) -> f64 {
+fn cost(record: &FitRecord<'_>, model: &JointModel, noise: f64) -> f64 {
     let left = record.evaluate(model).residuals;
     left.iter().flatten().map(|e| e * e).sum::<f64>() / (noise * noise)
 }
@@ -181,7 +181,12 @@ fn limits(model: &JointModel) -> Vec<(f64, f64)> {
 
 /// The range of a parameter about its value in which the record is as likely, the others
 /// held.
-fn span(record: &Record<'_>, model: &JointModel, place: usize, noise: f64) -> Option<(f64, f64)> {
+fn span(
+    record: &FitRecord<'_>,
+    model: &JointModel,
+    place: usize,
+    noise: f64,
+) -> Option<(f64, f64)> {
     /// First step from the value, in parts of it, and the growth of further ones.
     const FIRST: f64 = 0.01;
     const GROWTH: f64 = 1.5;
@@ -238,7 +243,7 @@ mod tests {
         let effect = Component::new(&Stiction, vec![0.7.into(), 0.6.into()]).unwrap();
         let model = JointModel::integrator(10.0, 0.1).with(effect);
         let joint = stand.log(&schedule, stand.output(&model, &schedule)).unwrap();
-        let record = Record::new(&joint, Split::Time(0.7), Horizon::Steps);
+        let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::Steps);
         let levels = record.input_levels();
         let fit = assess(&record, &model, &record.range(&levels, 20.0)).unwrap();
         let known = Uncertain::of_fit(&record, &fit, 0.05, 0.1);

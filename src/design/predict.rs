@@ -3,7 +3,7 @@
 use super::schedule::Schedule;
 use crate::effect::UNLIMITED;
 use crate::experiment::{Joint, Trial};
-use crate::fit::{Horizon, Record, Split};
+use crate::fit::{FitRecord, Horizon, Split};
 use crate::model::{JointModel, Restart, Surroundings, arrivals, simulate};
 use crate::units::SamplePeriod;
 
@@ -128,7 +128,7 @@ impl Stand {
             covariates: Vec::new(),
             trials: Vec::new(),
         };
-        let record = Record::new(&joint, Split::Time(1.0), Horizon::FreeRun);
+        let record = FitRecord::new(&joint, Split::Time(1.0), Horizon::FreeRun);
         record.range(&[], 0.0).radians_per_output_unit
     }
 }

@@ -9,7 +9,7 @@ use super::suspects::{Suspects, noisy};
 use crate::delay::{Settings, estimate_joint};
 use crate::experiment::Joint;
 use crate::explain::{Options, Sequential, Workers, named};
-use crate::fit::{Fit, Horizon, Record, Split, fit};
+use crate::fit::{Fit, FitRecord, Horizon, Split, fit};
 use crate::model::{JointModel, integrators};
 
 /// How often a rehearsed experiment told two suspects apart.
@@ -87,7 +87,7 @@ fn is_told(
 ) -> Option<bool> {
     let output = noisy(stand.output(model, schedule), suspects.noise, random);
     let joint = stand.log(schedule, output)?;
-    let record = Record::new(&joint, Split::of(&joint), Horizon::Steps);
+    let record = FitRecord::new(&joint, Split::of(&joint), Horizon::Steps);
     let base = asked(&record, &joint, &suspects.base)?;
     let options = Options { effects: suspects.effects.to_vec(), ..Options::default() };
     let ranking = named(&record, base, &options, &Sequential);
@@ -99,7 +99,7 @@ fn is_told(
 /// The model of which `explain` is asked: `base`, fitted. Where that is a plain integrator none
 /// is given, and `explain` starts from the delays that it finds in the record; it does not
 /// know what was known before.
-fn asked(record: &Record<'_>, joint: &Joint, base: &JointModel) -> Option<Fit> {
+fn asked(record: &FitRecord<'_>, joint: &Joint, base: &JointModel) -> Option<Fit> {
     let starts = if base.components().is_empty() {
         let estimates = estimate_joint(&joint.trials, &Settings::default());
         integrators(joint, &estimates.iter().flatten().collect::<Vec<_>>())

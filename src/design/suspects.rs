@@ -9,7 +9,7 @@ use super::random::{RandomSteps, random_steps};
 use crate::diagnosis::floor_of;
 use crate::effect::Effect;
 use crate::explain::ALIKE;
-use crate::fit::{Fit, FitError, Horizon, Record, Split, fit};
+use crate::fit::{Fit, FitError, FitRecord, Horizon, Split, fit};
 use crate::model::{Component, JointModel};
 
 /// A model that lacks one of two effects.
@@ -46,7 +46,7 @@ impl Suspects {
     /// # Errors
     /// [`SuspectsError`].
     pub fn of_record(
-        record: &Record<'_>,
+        record: &FitRecord<'_>,
         base: &JointModel,
         effects: [&'static dyn Effect; 2],
         noise: Option<f64>,
@@ -84,7 +84,7 @@ impl Suspects {
         let mut random = ChaCha8Rng::seed_from_u64(steps.seed);
         let output = noisy(stand.output(model, &schedule), noise, &mut random);
         let Some(joint) = stand.log(&schedule, output) else { return Err(SuspectsError::NoNoise) };
-        let record = Record::new(&joint, Split::of(&joint), Horizon::Steps);
+        let record = FitRecord::new(&joint, Split::of(&joint), Horizon::Steps);
         let base = model.without(effects[0].spec().id);
         let of_record = Self::of_record(&record, &base, effects, Some(noise), share)?;
         let [_, other] = of_record.models;
@@ -110,7 +110,7 @@ fn behind(fit: &Fit) -> f64 {
     f64::from(samples) * (sum / f64::from(samples.max(1))).max(f64::MIN_POSITIVE).ln()
 }
 
-fn fitted(record: &Record<'_>, model: &JointModel) -> Result<Fit, FitError> {
+fn fitted(record: &FitRecord<'_>, model: &JointModel) -> Result<Fit, FitError> {
     let levels = record.input_levels();
     let top = levels.last().copied().unwrap_or(1.0);
     fit(record, model, &record.range(&levels, model.gain.value.abs() * top))

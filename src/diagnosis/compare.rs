@@ -10,7 +10,7 @@ use super::shapes::shapes;
 use super::speed_error::speed_error;
 use super::{ErrorFigures, InputCorrelation, LackOfFit, TestColumns, TrialSignals, Whiteness};
 use super::{input_correlation, lack_of_fit, noise_floor, whiteness};
-use crate::fit::{Evaluation, Fit, Horizon, Part, Record};
+use crate::fit::{Evaluation, Fit, FitRecord, Horizon, Part};
 use crate::model::JointModel;
 
 /// A fitted model beside the measurement.
@@ -42,14 +42,14 @@ pub struct Comparison {
 }
 
 /// Sets all figures of `fit` on `record` beside one another.
-pub fn compare(record: &Record<'_>, fit: Fit) -> Comparison {
+pub fn compare(record: &FitRecord<'_>, fit: Fit) -> Comparison {
     let lack_of_fit = lack_of(record, &fit);
     compare_knowing(record, fit, lack_of_fit)
 }
 
 /// The same with the lack of fit that is known already.
 pub(crate) fn compare_knowing(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     fit: Fit,
     lack_of_fit: Option<LackOfFit>,
 ) -> Comparison {
@@ -73,7 +73,7 @@ pub(crate) fn compare_knowing(
 }
 
 /// The noise of the measurement, with the delay of `fit`, without what `fit` follows of it.
-pub(crate) fn floor_of(record: &Record<'_>, fit: &Fit) -> Option<f64> {
+pub(crate) fn floor_of(record: &FitRecord<'_>, fit: &Fit) -> Option<f64> {
     let trials = &record.joint().trials;
     let arriving = (0..trials.len()).map(|index| record.arrivals(&fit.model, index));
     let arriving: Vec<_> = arriving.collect();
@@ -83,7 +83,7 @@ pub(crate) fn floor_of(record: &Record<'_>, fit: &Fit) -> Option<f64> {
 }
 
 /// Whether `fit` leaves more than noise on the training part of `record`.
-pub(crate) fn lack_of(record: &Record<'_>, fit: &Fit) -> Option<LackOfFit> {
+pub(crate) fn lack_of(record: &FitRecord<'_>, fit: &Fit) -> Option<LackOfFit> {
     let floor = floor_of(record, fit);
     let residuals = |part| record.cut(&fit.evaluation.residuals, part);
     let mut everywhere = residuals(Part::Training);
@@ -98,7 +98,10 @@ pub(crate) fn lack_of(record: &Record<'_>, fit: &Fit) -> Option<LackOfFit> {
 }
 
 /// The training part of each trial.
-fn training_signals<'a>(record: &Record<'a>, evaluation: &'a Evaluation) -> Vec<TrialSignals<'a>> {
+fn training_signals<'a>(
+    record: &FitRecord<'a>,
+    evaluation: &'a Evaluation,
+) -> Vec<TrialSignals<'a>> {
     let trials = record.joint().trials.iter().zip(&evaluation.simulated);
     let residuals = evaluation.residuals.iter().enumerate();
     let signals = trials.zip(residuals).map(|((trial, simulated), (index, residual))| {
@@ -114,14 +117,14 @@ fn training_signals<'a>(record: &Record<'a>, evaluation: &'a Evaluation) -> Vec<
 }
 
 /// The sample period, where it is the same in all trials to one percent.
-fn common_period_s(record: &Record<'_>) -> Option<f64> {
+fn common_period_s(record: &FitRecord<'_>) -> Option<f64> {
     let mut periods = record.joint().trials.iter().map(|trial| trial.period().seconds());
     let first = periods.next()?;
     periods.all(|period| (period / first - 1.0).abs() < 0.01).then_some(first)
 }
 
 /// The residual of `model` restarted at every step of the input, with what happened.
-fn restarted(record: &Record<'_>, model: &JointModel) -> Option<failure::Record> {
+fn restarted(record: &FitRecord<'_>, model: &JointModel) -> Option<failure::ResidualRecord> {
     let restarted = record.with_horizon(Horizon::Steps);
     let evaluation = restarted.evaluate(model);
     let trials = &record.joint().trials;
@@ -151,7 +154,7 @@ fn restarted(record: &Record<'_>, model: &JointModel) -> Option<failure::Record>
         samples.trial.extend(std::iter::repeat_n(index, trial.len()));
     }
     let labels = trials.iter().map(|trial| trial.label().to_owned()).collect();
-    failure::Record::new(samples, labels, segments).ok()
+    failure::ResidualRecord::new(samples, labels, segments).ok()
 }
 
 /// Spans of samples with one level.
@@ -168,7 +171,7 @@ fn levels(acting: &[f64]) -> Vec<Range<usize>> {
 }
 
 /// Derivatives of the residual to each parameter, by central differences.
-fn sensitivities(record: &Record<'_>, fit: &Fit) -> Vec<Vec<Vec<f64>>> {
+fn sensitivities(record: &FitRecord<'_>, fit: &Fit) -> Vec<Vec<Vec<f64>>> {
     /// Part of a value, or of one unit where the value is small, that is stepped.
     const STEP: f64 = 1e-4;
     let record = record.for_training();

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::fit::{Evaluation, Part, Record};
+use crate::fit::{Evaluation, FitRecord, Part};
 
 /// The error of a model on one part of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -18,7 +18,7 @@ pub struct ErrorFigures {
 
 impl ErrorFigures {
     /// The error of an evaluated model on `part`; `None` where it has no sample.
-    pub fn of(record: &Record<'_>, evaluation: &Evaluation, part: Part) -> Option<Self> {
+    pub fn of(record: &FitRecord<'_>, evaluation: &Evaluation, part: Part) -> Option<Self> {
         let (mut samples, mut squares, mut spread, mut max) = (0, 0.0, 0.0, 0.0_f64);
         for window in record.part(part) {
             let residuals =

@@ -1,7 +1,7 @@
 //! How large a residual is: beside the noise, and beside itself on data not fitted to.
 
 use super::shown_by::ShownBy;
-use crate::fit::{Evaluation, Part, Record};
+use crate::fit::{Evaluation, FitRecord, Part};
 use crate::numerics::{fisher_tail, robust_scale};
 
 /// A residual so many times the noise of the measurement is no noise, however well it
@@ -35,7 +35,7 @@ pub struct ResidualSize {
 
 impl ResidualSize {
     /// The size of the residual of `evaluation`, with the noise `floor`.
-    pub(crate) fn of(record: &Record<'_>, evaluation: &Evaluation, floor: Option<f64>) -> Self {
+    pub(crate) fn of(record: &FitRecord<'_>, evaluation: &Evaluation, floor: Option<f64>) -> Self {
         let part = |part| record.cut(&evaluation.residuals, part);
         let (training, validation) = (part(Part::Training), part(Part::Validation));
         let size = |windows: &[Vec<f64>]| without_spikes(windows);

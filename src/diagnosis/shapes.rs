@@ -1,6 +1,6 @@
 //! What a missing effect could add to the output of an integrating joint.
 
-use crate::fit::{Evaluation, Part, Record, Window};
+use crate::fit::{Evaluation, FitRecord, Part, Window};
 use crate::model::Simulated;
 
 /// Levels of the input that get a shape of their own.
@@ -20,7 +20,7 @@ const TRANSIENTS_S: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
 /// Shapes of the velocity are integrated over the window; all have their mean in the
 /// window taken off, as the residual has.
 pub(super) fn shapes(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     evaluation: &Evaluation,
     part: Part,
 ) -> Vec<Vec<Vec<f64>>> {
@@ -47,7 +47,7 @@ struct Scales {
 }
 
 impl Scales {
-    fn of(record: &Record<'_>, evaluation: &Evaluation) -> Self {
+    fn of(record: &FitRecord<'_>, evaluation: &Evaluation) -> Self {
         let mut levels: Vec<f64> =
             evaluation.simulated.iter().flat_map(|s| s.acting.iter().copied()).collect();
         levels.sort_by(f64::total_cmp);
@@ -70,7 +70,7 @@ impl Scales {
 
 /// All shapes in one window.
 fn of_window(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     simulated: &Simulated,
     window: &Window,
     scales: &Scales,

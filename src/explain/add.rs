@@ -4,7 +4,7 @@ use super::evidence::Noise;
 use super::race::{MUCH_LESS, range};
 use crate::diagnosis::{Comparison, ErrorFigures, NEAR_NOISE, compare, floor_of};
 use crate::effect::Effect;
-use crate::fit::{Fit, FitError, Part, Record, fit};
+use crate::fit::{Fit, FitError, FitRecord, Part, fit};
 use crate::model::{Component, JointModel};
 
 /// A model before and after an effect was added.
@@ -47,7 +47,7 @@ pub enum AddError {
 /// # Errors
 /// [`AddError`] when the model has the effect, or cannot be fitted with it.
 pub fn add(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     base: Fit,
     effect: &'static dyn Effect,
 ) -> Result<Addition, AddError> {
@@ -77,7 +77,7 @@ pub fn add(
 /// The model of `base` with `effect` in the form that takes measured delays, where it has one
 /// and its law does not come near the noise.
 fn of_measured_delays(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     base: &Fit,
     by_law: &Fit,
     effect: &'static dyn Effect,

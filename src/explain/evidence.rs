@@ -34,7 +34,7 @@
 //! errors for linear regression with multi-stage samples, Survey Methodology 28.
 
 use crate::diagnosis::{BEYOND_NOISE, ErrorFigures, floor_of};
-use crate::fit::{Fit, Part, Record, Status};
+use crate::fit::{Fit, FitRecord, Part, Status};
 use crate::numerics::fisher_tail;
 use crate::numerics::{autoregression, whitened};
 
@@ -66,7 +66,7 @@ impl Noise {
     ///
     /// What is far more than the noise of the measurement is a misfit, whose memory is no
     /// noise's: models are then compared as if noise had none.
-    pub(super) fn of(record: &Record<'_>, fit: &Fit) -> Self {
+    pub(super) fn of(record: &FitRecord<'_>, fit: &Fit) -> Self {
         let mut windows = record.cut(&fit.evaluation.residuals, Part::Training);
         windows.extend(record.cut(&fit.evaluation.residuals, Part::Validation));
         let error = ErrorFigures::of(record, &fit.evaluation, Part::Training);
@@ -77,7 +77,7 @@ impl Noise {
     }
 
     /// The evidence of the model of `fit`.
-    pub(super) fn evidence(&self, record: &Record<'_>, fit: &Fit) -> Evidence {
+    pub(super) fn evidence(&self, record: &FitRecord<'_>, fit: &Fit) -> Evidence {
         let cut = |part| record.cut(&fit.evaluation.residuals, part);
         let squares = |windows: &[Vec<f64>]| {
             let windows = whitened(windows, &self.memory);
@@ -170,7 +170,7 @@ impl Squares {
 }
 
 /// Parameters that were fitted, and delays that were measured.
-fn parameters(record: &Record<'_>, fit: &Fit) -> usize {
+fn parameters(record: &FitRecord<'_>, fit: &Fit) -> usize {
     let fitted = fit.parameters.iter().filter(|parameter| parameter.status != Status::Fixed);
     fitted.count() + record.measured_delays(&fit.model)
 }

@@ -7,7 +7,7 @@ use super::race::{Field, Options, is_due, race, range, takes_part};
 use super::verdict::Verdict;
 use crate::diagnosis::{LackOfFit, floor_of, lack_of};
 use crate::effect::{Effect, by_id};
-use crate::fit::{Fit, Record, Survey, fit_to_compare, survey};
+use crate::fit::{Fit, FitRecord, Survey, fit_to_compare, survey};
 use crate::model::{Component, JointModel};
 
 /// What a revision changed.
@@ -39,7 +39,7 @@ pub(super) struct Step {
 }
 
 impl Step {
-    pub(super) fn new(record: &Record<'_>, change: Change, fit: Fit) -> Self {
+    pub(super) fn new(record: &FitRecord<'_>, change: Change, fit: Fit) -> Self {
         Self { change, lack_of_fit: lack_of(record, &fit), fit, ranking: Vec::new() }
     }
 
@@ -60,7 +60,7 @@ impl Step {
     /// doubt: the test knows shapes, the effects know physics.
     pub(super) fn look(
         &mut self,
-        record: &Record<'_>,
+        record: &FitRecord<'_>,
         options: &Options,
         workers: &impl Workers,
     ) -> bool {
@@ -87,7 +87,7 @@ impl Step {
 ///
 /// Effects of `given` stay.
 pub(super) fn grow(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     first: Step,
     given: &[&'static str],
     options: &Options,
@@ -126,7 +126,7 @@ pub(super) fn grow(
 }
 
 /// The model with the first effect of a pair alone: a step on the way, which need not be better.
-fn first_of_several(record: &Record<'_>, found: &Candidate) -> Option<Step> {
+fn first_of_several(record: &FitRecord<'_>, found: &Candidate) -> Option<Step> {
     let [first, second] = found.effects.as_slice() else { return None };
     let model = found.fit.model.without(second);
     let levels = record.input_levels();
@@ -155,7 +155,7 @@ impl Tidying<'_> {
     /// in the place of one.
     fn better(
         &mut self,
-        record: &Record<'_>,
+        record: &FitRecord<'_>,
         whole: &Fit,
         workers: &impl Workers,
     ) -> Option<(Change, Fit)> {
@@ -179,7 +179,7 @@ impl Tidying<'_> {
     }
 
     /// Removals of effects that may go, and exchanges for those that look like them.
-    fn changes(&self, record: &Record<'_>, model: &JointModel) -> Vec<Change> {
+    fn changes(&self, record: &FitRecord<'_>, model: &JointModel) -> Vec<Change> {
         let may_go = |id: &&'static str| !self.given.contains(id) && !self.settled.contains(id);
         let others = |old: &'static str| {
             let effects = self.options.effects.iter().map(|effect| effect.spec());
@@ -207,7 +207,7 @@ fn looks_like(one: &str, other: &str) -> bool {
 
 /// The models after the best few of `changes` that a glance does not rule out, fitted.
 fn promising(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     whole: &Fit,
     changes: &[Change],
     workers: &impl Workers,

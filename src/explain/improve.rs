@@ -7,7 +7,7 @@ use super::race::Options;
 use super::separate::separate;
 use super::verdict::Verdict;
 use crate::diagnosis::{Comparison, compare_knowing};
-use crate::fit::{Fit, Record};
+use crate::fit::{Fit, FitRecord};
 
 /// A model and its error.
 #[derive(Clone, Debug)]
@@ -34,7 +34,7 @@ pub struct Improvement {
 /// After each effect, those that were added before and have become useless are removed.
 /// `done` is called with each revision; where it says no, nothing more is tried.
 pub fn improve(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     fit: Fit,
     options: &Options,
     workers: &impl Workers,

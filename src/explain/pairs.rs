@@ -7,7 +7,7 @@
 use super::Workers;
 use super::race::{Entry, takes_part};
 use crate::effect::{Effect, RecordRange};
-use crate::fit::{Directions, Fit, Record, Score, Survey, fit_to_compare, survey};
+use crate::fit::{Directions, Fit, FitRecord, Score, Survey, fit_to_compare, survey};
 use crate::model::{Component, JointModel};
 
 /// Pairs that are surveyed. Of 23 records that hid two effects of the catalogue their pair was
@@ -19,7 +19,7 @@ const FINALISTS: usize = 3;
 
 /// `base` with two of `effects` more: the best few.
 pub(super) fn pairs(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     base: &Fit,
     effects: &[&'static dyn Effect],
     range: &RecordRange<'_>,
@@ -43,7 +43,7 @@ pub(super) fn pairs(
 
 /// The pairs of `effects` that would take most of the residual of `base` at a glance.
 fn best_scored(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     base: &Fit,
     effects: &[&'static dyn Effect],
     range: &RecordRange<'_>,
@@ -79,7 +79,7 @@ fn of_two<T: Copy>(all: &[T]) -> impl Iterator<Item = [T; 2]> + '_ {
 
 /// `model` with both effects; `None` where one has no place beside the other.
 fn with_both(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     model: &JointModel,
     [one, two]: [&'static dyn Effect; 2],
 ) -> Option<JointModel> {

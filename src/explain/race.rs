@@ -6,7 +6,7 @@ use super::evidence::Noise;
 use super::pairs::pairs;
 use crate::diagnosis::{ErrorFigures, NEAR_NOISE, floor_of};
 use crate::effect::{Effect, REGISTRY, RecordRange, Spec};
-use crate::fit::{Fit, Part, Record, Survey, fit_to_compare, survey};
+use crate::fit::{Fit, FitRecord, Part, Survey, fit_to_compare, survey};
 use crate::model::{Component, JointModel};
 
 /// What a race is about.
@@ -61,7 +61,7 @@ const HOPELESS: f64 = 3.0;
 ///
 /// A long record is surveyed in part first, and as a whole where that shows nothing.
 pub(super) fn race(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     base: &Fit,
     noise_floor: f64,
     options: &Options,
@@ -83,7 +83,7 @@ pub(super) fn race(
 
 /// The candidates of `ranking` among the best pairs of effects.
 fn beside_pairs(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     base: &Fit,
     noise_floor: f64,
     options: &Options,
@@ -103,7 +103,7 @@ fn beside_pairs(
 }
 
 /// The effects of `options` that could be missing from the model of `base`.
-fn able(record: &Record<'_>, base: &Fit, options: &Options) -> Vec<&'static dyn Effect> {
+fn able(record: &FitRecord<'_>, base: &Fit, options: &Options) -> Vec<&'static dyn Effect> {
     let able = |effect: &&&'static dyn Effect| {
         let spec = effect.spec();
         takes_part(record, &base.model, spec) && is_due(&base.model, spec, options)
@@ -112,8 +112,8 @@ fn able(record: &Record<'_>, base: &Fit, options: &Options) -> Vec<&'static dyn 
 }
 
 fn race_on(
-    record: &Record<'_>,
-    surveyed: &Record<'_>,
+    record: &FitRecord<'_>,
+    surveyed: &FitRecord<'_>,
     base: &Fit,
     noise_floor: f64,
     options: &Options,
@@ -148,7 +148,7 @@ fn race_on(
 /// `base` with each step's own delay as it was measured, where none of `entries` comes near
 /// the noise: delays may follow any law, or none.
 fn with_measured_delays(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     base: &Fit,
     noise_floor: f64,
     effects: &[&'static dyn Effect],
@@ -174,7 +174,7 @@ fn with_measured_delays(
 
 /// How large the signals of `record` are, for a model with about the gain of `model`.
 pub(super) fn range<'l>(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     model: &JointModel,
     levels: &'l [f64],
 ) -> RecordRange<'l> {
@@ -183,7 +183,7 @@ pub(super) fn range<'l>(
 
 /// Whether `effect` could be missing: it is not there already, nor contained in one that is,
 /// and the record could show it.
-pub(super) fn takes_part(record: &Record<'_>, model: &JointModel, effect: &Spec) -> bool {
+pub(super) fn takes_part(record: &FitRecord<'_>, model: &JointModel, effect: &Spec) -> bool {
     let is_it = |spec: &Spec| spec.id == effect.id || spec.absorbs.contains(&effect.id);
     !has(model, is_it) && (effect.id != "supply_droop" || record.has_others())
 }
@@ -200,7 +200,7 @@ fn has(model: &JointModel, is_it: impl Fn(&Spec) -> bool) -> bool {
 }
 
 fn ranked(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     base: &Fit,
     noise_floor: f64,
     entries: Vec<Entry>,

@@ -8,7 +8,7 @@ use super::grow::{Change, Step, grow, ids, put_first};
 use super::race::Options;
 use super::separate::separate;
 use crate::diagnosis::{Comparison, compare_knowing};
-use crate::fit::{Fit, Record};
+use crate::fit::{Fit, FitRecord};
 
 /// What is to be said of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -45,7 +45,7 @@ const LOOK_AHEAD: usize = 3;
 /// The first of the ranking is named when the model with it is adequate, or would be with
 /// up to three more effects, or when it takes most of the misfit away.
 pub fn explain(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     fit: Fit,
     options: &Options,
     workers: &impl Workers,
@@ -66,7 +66,7 @@ pub fn explain(
 /// The candidates for what the model of `fit` lacks, best first, where the first is to be
 /// named; else none.
 pub(crate) fn named(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     fit: Fit,
     options: &Options,
     workers: &impl Workers,
@@ -80,7 +80,7 @@ pub(crate) fn named(
 /// Whether the best candidate is to be named. An effect that further ones make useless
 /// gives way to the first that remains.
 fn accounts_for_it(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     ranking: &mut [Candidate],
     options: &Options,
     workers: &impl Workers,

@@ -14,7 +14,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::bounds::Bounds;
-use super::record::{Evaluation, Record, Weights};
+use super::record::{Evaluation, FitRecord, Weights};
 use crate::model::JointModel;
 
 /// The covariance of fitted parameters.
@@ -29,7 +29,7 @@ impl Covariance {
     /// The covariance at `model`, evaluated as `here`, of its parameters with the indices
     /// `free`, which keep `bounds`.
     pub(super) fn of(
-        record: &Record<'_>,
+        record: &FitRecord<'_>,
         model: &JointModel,
         (here, weights): (&Evaluation, Option<&Weights>),
         (free, bounds): (&[usize], &[Bounds]),

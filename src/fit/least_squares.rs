@@ -6,7 +6,7 @@ use levenberg_marquardt::TerminationReason;
 
 use super::covariance::Covariance;
 use super::problem::Problem;
-use super::record::{Evaluation, Part, Record};
+use super::record::{Evaluation, FitRecord, Part};
 use super::search::{Depth, Search};
 use super::space::Space;
 use super::starts::starts;
@@ -115,7 +115,7 @@ pub enum FitError {
 /// J. J. Moré, "The Levenberg-Marquardt algorithm: implementation and theory", 1978.
 /// P. J. Huber, "Robust estimation of a location parameter", 1964.
 pub fn fit(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     model: &JointModel,
     range: &RecordRange<'_>,
 ) -> Result<Fit, FitError> {
@@ -128,7 +128,7 @@ pub fn fit(
 /// # Errors
 /// As [`fit`].
 pub fn fit_to_compare(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     model: &JointModel,
     range: &RecordRange<'_>,
 ) -> Result<Fit, FitError> {
@@ -136,7 +136,7 @@ pub fn fit_to_compare(
 }
 
 fn fit_to(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     model: &JointModel,
     range: &RecordRange<'_>,
     depth: Depth,
@@ -157,7 +157,7 @@ fn fit_to(
 /// A glance at each start and a rough descent from the best few: the best of these, and the
 /// simulations of the others.
 fn rough<'p, 'r>(
-    short: &'p Record<'r>,
+    short: &'p FitRecord<'r>,
     model: &'p JointModel,
     space: &'p Space,
     range: &RecordRange<'_>,
@@ -194,7 +194,7 @@ pub struct Survey {
 /// # Errors
 /// As [`fit`].
 pub fn survey(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     model: &JointModel,
     range: &RecordRange<'_>,
 ) -> Result<Survey, FitError> {
@@ -214,7 +214,7 @@ pub fn survey(
 /// # Errors
 /// As [`fit`].
 pub fn assess(
-    record: &Record<'_>,
+    record: &FitRecord<'_>,
     model: &JointModel,
     range: &RecordRange<'_>,
 ) -> Result<Fit, FitError> {
@@ -224,7 +224,7 @@ pub fn assess(
     Ok(Search::new(&training, model, &space, plain(model)).into_fit(record, 0))
 }
 
-fn check_size(record: &Record<'_>, space: &Space) -> Result<(), FitError> {
+fn check_size(record: &FitRecord<'_>, space: &Space) -> Result<(), FitError> {
     let samples = record.training_samples();
     let parameters = space.free.len();
     if samples <= parameters + record.part(Part::Training).count() {
@@ -262,7 +262,7 @@ impl Termination {
 
 impl Search<'_, '_> {
     /// The fit to the training windows that was searched, on all of `whole`.
-    fn into_fit(self, whole: &Record<'_>, simulations: usize) -> Fit {
+    fn into_fit(self, whole: &FitRecord<'_>, simulations: usize) -> Fit {
         let Problem { record, space, weights, .. } = &self.problem;
         let model = self.problem.model_now();
         let evaluation = self.problem.here();

@@ -1,6 +1,6 @@
 //! Models fitted to measurements: nonlinear least squares on the simulated output.
 //!
-//! - [`Record`]: a joint's trials, cut into windows for training and for validation
+//! - [`FitRecord`]: a joint's trials, cut into windows for training and for validation
 //! - [`fit`]: the parameters that make the training error least, with standard errors
 //!
 //! What the numbers mean for the model is the business of the module `diagnosis`.
@@ -21,5 +21,5 @@ mod thin;
 pub use least_squares::{
     Fit, FitError, Parameter, Status, Survey, Termination, assess, fit, fit_to_compare, survey,
 };
-pub use record::{Evaluation, Horizon, Part, Record, Split, Window};
+pub use record::{Evaluation, FitRecord, Horizon, Part, Split, Window};
 pub use score::{Directions, Score};

@@ -7,14 +7,14 @@ use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 
 use super::bounds::Bounds;
-use super::record::{Evaluation, Record, Weights};
+use super::record::{Evaluation, FitRecord, Weights};
 use super::space::Space;
 use crate::model::JointModel;
 use crate::numerics::robust_scale;
 
 /// What the optimiser works on.
 pub(super) struct Problem<'p, 'r> {
-    pub(super) record: &'p Record<'r>,
+    pub(super) record: &'p FitRecord<'r>,
     pub(super) model: &'p JointModel,
     pub(super) space: &'p Space,
     pub(super) start: Vec<f64>,
@@ -49,7 +49,7 @@ impl Problem<'_, '_> {
 
     /// The model as it is now on another cut of the record; outliers there are weighted down
     /// too.
-    pub(super) fn on(&self, record: &Record<'_>) -> Evaluation {
+    pub(super) fn on(&self, record: &FitRecord<'_>) -> Evaluation {
         let model = self.model_now();
         let evaluation = record.evaluate_weighted(&model, self.weights.as_ref());
         let weights = self.weights.as_ref().and_then(|_| huber(record, &evaluation.residuals));
@@ -226,7 +226,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, '_> {
 const HUBER: f64 = 1.345;
 
 /// The weights, or `None` where there is no outlier to speak of.
-fn huber(record: &Record<'_>, residuals: &[Vec<f64>]) -> Option<Weights> {
+fn huber(record: &FitRecord<'_>, residuals: &[Vec<f64>]) -> Option<Weights> {
     /// In normal noise no sample of a long record lies so far out.
     const OUTLIER: f64 = 6.0;
     let training = record.training(residuals);

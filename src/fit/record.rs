@@ -83,7 +83,7 @@ const SHORTEST_WINDOW: usize = 10;
 
 /// A joint's trials, cut into windows.
 #[derive(Clone, Debug)]
-pub struct Record<'a> {
+pub struct FitRecord<'a> {
     joint: &'a Joint,
     split: Split,
     horizon: Horizon,
@@ -126,7 +126,7 @@ pub struct Evaluation {
 /// A weight for each trial and sample.
 pub(super) type Weights = Vec<Vec<f64>>;
 
-impl<'a> Record<'a> {
+impl<'a> FitRecord<'a> {
     /// The trials of `joint`, cut by `split` and `horizon`.
     ///
     /// Each window starts from the output that makes its error least. Its speed is the

@@ -20,7 +20,7 @@
 use levenberg_marquardt::LeastSquaresProblem as _;
 use nalgebra::DVector;
 
-use super::record::Record;
+use super::record::FitRecord;
 use super::search::Search;
 use super::space::Space;
 use super::starts::starts;
@@ -31,7 +31,7 @@ use crate::model::JointModel;
 #[derive(Debug)]
 pub struct Score<'r> {
     /// Training windows that are short enough for an error to count where it is made.
-    record: Record<'r>,
+    record: FitRecord<'r>,
     /// The residual as it is.
     raw: DVector<f64>,
     /// An orthonormal basis of the slopes to the free parameters.
@@ -50,7 +50,7 @@ pub struct Directions {
 impl<'r> Score<'r> {
     /// The residual of `model` on the training windows of `record`; `None` where there is none
     /// to speak of.
-    pub fn of(record: &Record<'r>, model: &JointModel, range: &RecordRange<'_>) -> Option<Self> {
+    pub fn of(record: &FitRecord<'r>, model: &JointModel, range: &RecordRange<'_>) -> Option<Self> {
         let record = record.shortened();
         let space = Space::of(model, range);
         let start = model.values().iter().map(|value| value.value).collect();
@@ -181,7 +181,7 @@ mod tests {
     #[test]
     fn what_is_there_scores_best() {
         let joint = joint();
-        let record = Record::new(&joint, Split::Time(0.7), Horizon::Steps);
+        let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::Steps);
         let levels = record.input_levels();
         let range = record.range(&levels, 20.0);
         let base = fit(&record, &JointModel::integrator(8.0, 0.05), &range).unwrap().model;

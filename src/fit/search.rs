@@ -7,7 +7,7 @@ use nalgebra::{DVector, DVectorView};
 
 use super::least_squares::Termination;
 use super::problem::Problem;
-use super::record::Record;
+use super::record::FitRecord;
 use super::space::Space;
 use crate::model::JointModel;
 
@@ -53,7 +53,7 @@ impl Depth {
 
 impl<'p, 'r> Search<'p, 'r> {
     pub(super) fn new(
-        record: &'p Record<'r>,
+        record: &'p FitRecord<'r>,
         model: &'p JointModel,
         space: &'p Space,
         start: Vec<f64>,
@@ -77,7 +77,7 @@ impl<'p, 'r> Search<'p, 'r> {
     }
 
     /// The same on another cut of the record.
-    pub(super) fn onto(mut self, record: &'p Record<'r>) -> Self {
+    pub(super) fn onto(mut self, record: &'p FitRecord<'r>) -> Self {
         self.problem.record = record;
         self.problem.weights = None;
         self.problem.here.take();

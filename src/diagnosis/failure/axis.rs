@@ -1,7 +1,7 @@
 //! A feature cut into parts, and the part of every sample.
 
 use super::feature::Feature;
-use super::record::Record;
+use super::record::ResidualRecord;
 use super::threshold::{cuts, levels};
 
 /// A feature cut into parts.
@@ -20,7 +20,7 @@ impl Axis {
     /// The feature cut into at most `parts` parts; `None` where that leaves only one.
     ///
     /// Trials beyond what a byte counts are not cut.
-    pub(super) fn new(record: &Record, feature: Feature, parts: usize) -> Option<Self> {
+    pub(super) fn new(record: &ResidualRecord, feature: Feature, parts: usize) -> Option<Self> {
         let values = feature.values(record.samples());
         let most = if feature.has_kinds() { usize::from(u8::MAX) } else { parts };
         let levels = levels(&values, most);

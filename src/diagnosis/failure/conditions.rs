@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::axis::Axis;
 use super::feature::Feature;
 use super::grid::{Choice, Grid, Selection};
-use super::record::{Record, Units};
+use super::record::{ResidualRecord, Units};
 use super::regions::trial_label;
 use super::search::{DIGITS_COST, MIN_GAIN, Search};
 use super::threshold::to_digits;
@@ -75,7 +75,7 @@ impl fmt::Display for Clause {
 
 impl Clause {
     /// Whether it holds where its feature is `value`.
-    fn holds(&self, record: &Record, value: f64) -> bool {
+    fn holds(&self, record: &ResidualRecord, value: f64) -> bool {
         match (&self.bound, self.relation) {
             (Bound::Label(label), _) => trial_label(record, value) == label,
             (Bound::Number(bound), Relation::Below) => value < *bound,
@@ -176,7 +176,7 @@ fn percent(share: f64) -> String {
 /// N. Lavrač, P. Flach, B. Zupan, "Rule evaluation measures: a unifying view", ILP-99
 /// (the gain); J. H. Friedman, N. I. Fisher, "Bump hunting in high-dimensional data",
 /// Statistics and Computing 9 (1999), 123-143 (covering one after the other).
-pub fn fails_where(record: &Record) -> Vec<FailsWhere> {
+pub fn fails_where(record: &ResidualRecord) -> Vec<FailsWhere> {
     let Some(shares) = record.shares_of_what_arises() else { return Vec::new() };
     let search = Search::new(record, shares);
     let mut rows: Vec<usize> = (0..record.len()).collect();
@@ -205,7 +205,11 @@ pub fn fails_where(record: &Record) -> Vec<FailsWhere> {
 
 /// The condition on which the relative error depends most where the joint moves, which is
 /// all that `moving` says.
-fn beside_motion(record: &Record, search: &Search, moving: &FailsWhere) -> Option<FailsWhere> {
+fn beside_motion(
+    record: &ResidualRecord,
+    search: &Search,
+    moving: &FailsWhere,
+) -> Option<FailsWhere> {
     let relative = search.relative(record, &moving.samples)?;
     let (choice, p_value) = relative.best_on_one_feature(&moving.samples)?;
     let inside = relative.grid().members(&choice.selections, &moving.samples);
@@ -223,7 +227,7 @@ fn beside_motion(record: &Record, search: &Search, moving: &FailsWhere) -> Optio
 /// another condition, and the samples for which these hold. Where even six do not do, as
 /// within values that are all but equal, those of them that gain most.
 fn in_few_digits(
-    record: &Record,
+    record: &ResidualRecord,
     search: &Search,
     grid: &Grid,
     choice: &Choice,
@@ -249,7 +253,7 @@ fn in_few_digits(
 }
 
 fn report(
-    record: &Record,
+    record: &ResidualRecord,
     search: &Search,
     clauses: Vec<Clause>,
     samples: Vec<usize>,
@@ -274,7 +278,7 @@ fn overlap(a: &[usize], b: &[usize]) -> f64 {
 }
 
 /// The samples for which all of `clauses` hold.
-fn holding(record: &Record, clauses: &[Clause]) -> Vec<usize> {
+fn holding(record: &ResidualRecord, clauses: &[Clause]) -> Vec<usize> {
     let known: Vec<_> = clauses.iter().map(|c| (c, c.feature.values(record.samples()))).collect();
     let holds = |row: &usize| {
         let mut all = known.iter();
@@ -287,7 +291,7 @@ fn holding(record: &Record, clauses: &[Clause]) -> Vec<usize> {
 
 /// A selection in words, its bounds as `digits` makes them.
 fn clauses(
-    record: &Record,
+    record: &ResidualRecord,
     axis: &Axis,
     Selection { span, .. }: Selection,
     digits: &dyn Fn(f64) -> f64,
@@ -316,7 +320,7 @@ fn clauses(
 const EQUAL: std::cmp::Ordering = std::cmp::Ordering::Equal;
 
 /// A trial, or a direction.
-fn kind(record: &Record, feature: Feature, level: f64) -> Clause {
+fn kind(record: &ResidualRecord, feature: Feature, level: f64) -> Clause {
     let relation = match feature {
         Feature::Direction if level < 0.0 => Relation::Below,
         Feature::Direction if level > 0.0 => Relation::Above,
@@ -357,7 +361,7 @@ mod tests {
     }
 
     /// A residual that is large for the first part of `output`.
-    fn failing(output: Vec<f64>, part: usize) -> Record {
+    fn failing(output: Vec<f64>, part: usize) -> ResidualRecord {
         let samples = output.len();
         let size = |k: usize| if k < part { 5.0 } else { 0.1 };
         let sign = |k: usize| if k * 7919 % 13 < 6 { -1.0 } else { 1.0 };
@@ -373,7 +377,7 @@ mod tests {
             speed_error: Vec::new(),
         };
         let all = 0..samples.residual.len();
-        Record::new(samples, vec!["1".to_owned()], vec![all]).unwrap()
+        ResidualRecord::new(samples, vec!["1".to_owned()], vec![all]).unwrap()
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::feature::Feature;
-use super::record::Record;
+use super::record::ResidualRecord;
 
 /// Parts that a feature is cut into, so that a threshold is right to 3 % of the time.
 const PARTS: usize = 32;
@@ -96,17 +96,17 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    pub(super) fn new(record: &Record) -> Self {
+    pub(super) fn new(record: &ResidualRecord) -> Self {
         Self::of(record, |_| true)
     }
 
     /// Of all features but those that say how fast the joint is driven.
-    pub(super) fn beside_motion(record: &Record) -> Self {
+    pub(super) fn beside_motion(record: &ResidualRecord) -> Self {
         let drives = [Feature::Input, Feature::AbsInput, Feature::Speed, Feature::AbsSpeed];
         Self::of(record, |feature| !drives.contains(&feature))
     }
 
-    fn of(record: &Record, takes_part: impl Fn(Feature) -> bool) -> Self {
+    fn of(record: &ResidualRecord, takes_part: impl Fn(Feature) -> bool) -> Self {
         let turns = |values: &[f64]| {
             values.iter().any(|value| *value > 0.0) && values.iter().any(|value| *value < 0.0)
         };
@@ -127,7 +127,7 @@ impl Grid {
 
     /// The features of `choice` alone, cut finely, with all ways to move its thresholds no
     /// farther than to the next ones.
-    pub(super) fn about(&self, record: &Record, choice: &Choice) -> Option<Self> {
+    pub(super) fn about(&self, record: &ResidualRecord, choice: &Choice) -> Option<Self> {
         let fine = |selection: &Selection| {
             let coarse = self.axes.get(selection.axis)?;
             let axis = Axis::new(record, coarse.feature, FINE_PARTS)?;
@@ -296,7 +296,7 @@ mod tests {
     use crate::diagnosis::failure::Samples;
 
     /// A small record of random columns, with few values each.
-    fn record(seed: u64) -> Record {
+    fn record(seed: u64) -> ResidualRecord {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut column = |values: u32| -> Vec<f64> {
             (0..120).map(|_| f64::from(random.next_u32() % values) - 3.0).collect()
@@ -312,7 +312,7 @@ mod tests {
             trial: column(3).into_iter().map(|value| usize::from(value > -2.0)).collect(),
             speed_error: Vec::new(),
         };
-        Record::new(samples, vec!["a".into(), "b".into()], Vec::new()).unwrap()
+        ResidualRecord::new(samples, vec!["a".into(), "b".into()], Vec::new()).unwrap()
     }
 
     fn all_pairs(grid: &Grid) -> Vec<[Selection; 2]> {

@@ -1,7 +1,7 @@
 //! Where a model fails: the record cut into regions, and the conditions that hold most of
 //! the squared error in least of the time.
 //!
-//! - [`Record`]: the residual of one joint and what happened at each sample
+//! - [`ResidualRecord`]: the residual of one joint and what happened at each sample
 //! - [`regions`]: the share of the error in each part of each [`Feature`]
 //! - [`fails_where`]: the shortest conditions, `|input| < 1.2 and output > 20`
 //! - [`worst_segments`]: the segments with more than their share
@@ -22,7 +22,7 @@ mod threshold;
 
 pub use conditions::{Bound, Clause, FailsWhere, Relation, fails_where};
 pub use feature::Feature;
-pub use record::{Record, RecordError, Samples, Units};
+pub use record::{RecordError, ResidualRecord, Samples, Units};
 pub use regions::{Region, regions};
 pub use segments::{WorstSegment, worst_segments};
 
@@ -41,6 +41,6 @@ pub struct Diagnosis {
 const WORST: usize = 5;
 
 /// Both [`fails_where`] and [`worst_segments`] (five of them).
-pub fn diagnose(record: &Record) -> Diagnosis {
+pub fn diagnose(record: &ResidualRecord) -> Diagnosis {
     Diagnosis { fails_where: fails_where(record), worst_segments: worst_segments(record, WORST) }
 }

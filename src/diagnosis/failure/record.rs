@@ -22,7 +22,7 @@ pub struct Samples {
     pub since_step_s: Vec<f64>,
     /// How long its level is held, seconds.
     pub hold_s: Vec<f64>,
-    /// Index of the trial in [`Record::trials`].
+    /// Index of the trial in [`ResidualRecord::trials`].
     pub trial: Vec<usize>,
     /// Measured minus simulated speed, output units per second: where an error arises. Empty
     /// where it is not known.
@@ -38,7 +38,7 @@ pub struct Units {
     pub output: Option<String>,
 }
 
-/// Why samples do not make a [`Record`].
+/// Why samples do not make a [`ResidualRecord`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
@@ -80,13 +80,13 @@ pub enum RecordError {
 
 /// The residual of one joint with all that it is held against.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Record {
+pub struct ResidualRecord {
     samples: Samples,
     trials: Vec<String>,
     segments: Vec<Range<usize>>,
 }
 
-impl Record {
+impl ResidualRecord {
     /// A record of `samples`, whose trials have the labels `trials`.
     ///
     /// `segments` are the spans of samples, counted from 0, that belong to one input step
@@ -231,7 +231,7 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_named() {
-        let record = |samples, segments| Record::new(samples, vec!["a".into()], segments);
+        let record = |samples, segments| ResidualRecord::new(samples, vec!["a".into()], segments);
         assert!(record(samples(4), vec![0..2, 2..4]).is_ok());
         let short = Samples { speed: vec![0.0; 3], ..samples(4) };
         let expected = RecordError::UnequalLengths { column: "speed", found: 3, expected: 4 };
@@ -251,10 +251,10 @@ mod tests {
     #[test]
     fn shares_of_a_tiny_error_still_sum_to_one() {
         let tiny = Samples { residual: vec![1e-200, 3e-200], ..samples(2) };
-        let record = Record::new(tiny, vec!["a".into()], vec![]).unwrap();
+        let record = ResidualRecord::new(tiny, vec!["a".into()], vec![]).unwrap();
         let shares = record.error_shares().unwrap();
         assert!((shares[0] - 0.1).abs() < 1e-15 && (shares[1] - 0.9).abs() < 1e-15);
-        let none = Record::new(samples(2), vec!["a".into()], vec![]).unwrap();
+        let none = ResidualRecord::new(samples(2), vec!["a".into()], vec![]).unwrap();
         assert_eq!(none.error_shares(), None);
     }
 }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::axis::Axis;
 use super::feature::Feature;
-use super::record::Record;
+use super::record::ResidualRecord;
 
 /// Parts that a feature is cut into; where it has no more levels, each is a part.
 const PARTS: usize = 10;
@@ -45,7 +45,7 @@ const FEATURES: [Feature; 8] = [
 /// The regions of every feature that varies, feature by feature, each in ascending order.
 ///
 /// The regions of a feature do not overlap. They cover all samples where it is known.
-pub fn regions(record: &Record) -> Vec<Region> {
+pub fn regions(record: &ResidualRecord) -> Vec<Region> {
     let axes = FEATURES.into_iter().filter_map(|feature| Axis::new(record, feature, PARTS));
     axes.flat_map(|axis| of_axis(record, &axis)).collect()
 }
@@ -78,7 +78,7 @@ impl Sums {
     }
 }
 
-fn of_axis(record: &Record, axis: &Axis) -> Vec<Region> {
+fn of_axis(record: &ResidualRecord, axis: &Axis) -> Vec<Region> {
     let mut parts = vec![Sums::NONE; axis.parts()];
     let values = axis.feature.values(record.samples());
     let samples = record.samples().residual.iter().zip(&values).zip(&axis.part_of);
@@ -92,7 +92,7 @@ fn of_axis(record: &Record, axis: &Axis) -> Vec<Region> {
     numbered.map(|(part, sums)| region(record, axis, part, *sums, squares)).collect()
 }
 
-fn region(record: &Record, axis: &Axis, part: usize, sums: Sums, squares: f64) -> Region {
+fn region(record: &ResidualRecord, axis: &Axis, part: usize, sums: Sums, squares: f64) -> Region {
     let below = part.checked_sub(1).and_then(|before| axis.cuts.get(before)).copied();
     let above = axis.cuts.get(part).copied();
     let level = axis.levels.as_ref().and_then(|levels| levels.get(part)).copied();
@@ -110,7 +110,13 @@ fn region(record: &Record, axis: &Axis, part: usize, sums: Sums, squares: f64) -
     }
 }
 
-fn label(record: &Record, feature: Feature, level: Option<f64>, from: f64, to: f64) -> String {
+fn label(
+    record: &ResidualRecord,
+    feature: Feature,
+    level: Option<f64>,
+    from: f64,
+    to: f64,
+) -> String {
     match (feature, level) {
         (Feature::Direction, _) if from < 0.0 => "negative".to_owned(),
         (Feature::Direction, _) if from > 0.0 => "positive".to_owned(),
@@ -122,7 +128,7 @@ fn label(record: &Record, feature: Feature, level: Option<f64>, from: f64, to: f
 }
 
 /// The label of the trial whose index is `level`.
-pub(super) fn trial_label(record: &Record, level: f64) -> &str {
+pub(super) fn trial_label(record: &ResidualRecord, level: f64) -> &str {
     let mut labels = record.trials().iter().zip(0_u32..);
     let found = labels.find(|(_, index)| (f64::from(*index) - level).abs() < 0.5);
     found.map_or("", |(label, _)| label)

@@ -1,7 +1,7 @@
 //! The search for the conditions that hold most of an error.
 
 use super::grid::{Choice, Family, Grid};
-use super::record::Record;
+use super::record::ResidualRecord;
 use super::significance::{Chance, Shuffler, blocks};
 
 /// The gain below which a condition is not worth acting on.
@@ -20,7 +20,7 @@ pub(super) struct Search {
 
 impl Search {
     /// `shares` of the squared error for each sample of `record`.
-    pub(super) fn new(record: &Record, shares: Vec<f64>) -> Self {
+    pub(super) fn new(record: &ResidualRecord, shares: Vec<f64>) -> Self {
         Self { grid: Grid::new(record), block_of: blocks(record), shares }
     }
 
@@ -79,7 +79,7 @@ impl Search {
     /// it is of; none when that gains too little to be worth the digits.
     pub(super) fn sharpened(
         &self,
-        record: &Record,
+        record: &ResidualRecord,
         choice: &Choice,
         rows: &[usize],
     ) -> Option<(Grid, Choice)> {
@@ -111,7 +111,7 @@ impl Search {
 
     /// Whether the error in the samples `rows` is hardly more than their share of the squared
     /// speed: what is wrong there is the gain.
-    pub(super) fn only_moves(&self, record: &Record, rows: &[usize]) -> bool {
+    pub(super) fn only_moves(&self, record: &ResidualRecord, rows: &[usize]) -> bool {
         let square = |row: &usize| record.samples().speed.get(*row).map_or(0.0, |v| v * v);
         let all: f64 = (0..record.len()).map(|row| square(&row)).sum();
         let here: f64 = rows.iter().map(square).sum();
@@ -123,7 +123,7 @@ impl Search {
     ///
     /// The squared error is over `v² + 0.2 mean v²`: what noise adds does not depend on the
     /// speed, and over that of the slowest samples it would be most of all.
-    pub(super) fn relative(&self, record: &Record, rows: &[usize]) -> Option<Self> {
+    pub(super) fn relative(&self, record: &ResidualRecord, rows: &[usize]) -> Option<Self> {
         const FLOOR: f64 = 0.2;
         let square = |row: &usize| record.samples().speed.get(*row).map(|v| v * v);
         let floor = FLOOR * rows.iter().filter_map(square).sum::<f64>() / rows.len().max(1) as f64;

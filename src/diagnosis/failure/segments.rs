@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use super::record::Record;
+use super::record::ResidualRecord;
 
 /// A segment with a larger share of the squared error than of the time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -27,7 +27,7 @@ pub struct WorstSegment {
 /// At most `count` segments, the one with the largest share of the squared error first.
 ///
 /// Only those are named whose share is above what an even spread over the samples gives.
-pub fn worst_segments(record: &Record, count: usize) -> Vec<WorstSegment> {
+pub fn worst_segments(record: &ResidualRecord, count: usize) -> Vec<WorstSegment> {
     let Some(shares) = record.error_shares() else { return Vec::new() };
     let segments = record.segments().iter().filter_map(|span| segment(record, span, &shares));
     let mut worst: Vec<_> = segments.collect();
@@ -36,7 +36,7 @@ pub fn worst_segments(record: &Record, count: usize) -> Vec<WorstSegment> {
     worst
 }
 
-fn segment(record: &Record, span: &Range<usize>, shares: &[f64]) -> Option<WorstSegment> {
+fn segment(record: &ResidualRecord, span: &Range<usize>, shares: &[f64]) -> Option<WorstSegment> {
     let share: f64 = shares.get(span.clone())?.iter().sum();
     let share_of_time = span.len() as f64 / record.len() as f64;
     if share <= share_of_time {

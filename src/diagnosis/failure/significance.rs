@@ -19,7 +19,7 @@ use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
 use super::grid::{BestScores, Family, Grid};
-use super::record::Record;
+use super::record::ResidualRecord;
 
 /// Shuffled records that a condition is held against.
 const SHUFFLES: u32 = 199;
@@ -52,7 +52,7 @@ const SEED: u64 = 0x7A05_C09E;
 ///
 /// Blocks are the segments. Where those are short against the residual's correlation time
 /// neighbours are merged; where they are long against the record they are parted.
-pub(super) fn blocks(record: &Record) -> Vec<usize> {
+pub(super) fn blocks(record: &ResidualRecord) -> Vec<usize> {
     let samples = record.len();
     let enough = (samples / MERGED).max(1);
     let shortest = correlation_time(&record.samples().residual, enough);
@@ -70,7 +70,7 @@ pub(super) fn blocks(record: &Record) -> Vec<usize> {
 }
 
 /// The spans between the segments' borders, merged until each has `shortest` samples.
-fn merged(record: &Record, shortest: usize) -> Vec<Range<usize>> {
+fn merged(record: &ResidualRecord, shortest: usize) -> Vec<Range<usize>> {
     let mut spans: Vec<Range<usize>> = Vec::new();
     let mut start = 0;
     let borders = record.segments().iter().flat_map(|span| [span.start, span.end]);

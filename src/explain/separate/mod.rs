@@ -11,7 +11,7 @@ mod setting;
 
 use super::Workers;
 use super::candidate::Candidate;
-use crate::fit::Record;
+use crate::fit::FitRecord;
 
 pub(crate) use levels::{level_sets, thresholds, two_digits};
 pub use proposal::{Pattern, Proposal, Start};
@@ -36,7 +36,7 @@ pub struct Separation {
 
 /// Tells each candidate that is worth a name by what it is told from those it cannot be
 /// told from.
-pub(super) fn separate(record: &Record<'_>, ranking: &mut [Candidate], workers: &impl Workers) {
+pub(super) fn separate(record: &FitRecord<'_>, ranking: &mut [Candidate], workers: &impl Workers) {
     let place = |id: &str| ranking.iter().position(|c| c.effects == [id]);
     let of_one = |(one, candidate): (usize, &Candidate)| {
         let worthy = candidate.is_significant();

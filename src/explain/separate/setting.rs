@@ -7,7 +7,7 @@ use crate::effect::RecordRange;
 use crate::experiment::Trial;
 use crate::explain::candidate::Candidate;
 use crate::explain::race::ALIKE;
-use crate::fit::Record;
+use crate::fit::FitRecord;
 use crate::model::{JointModel, Restart, Simulated, Surroundings, arrivals, simulate};
 use crate::units::SamplePeriod;
 
@@ -40,7 +40,7 @@ struct Trialled {
 }
 
 impl Setting {
-    pub(super) fn of(record: &Record<'_>) -> Self {
+    pub(super) fn of(record: &FitRecord<'_>) -> Self {
         let levels = record.input_levels();
         let RecordRange {
             output_min,

@@ -10,7 +10,7 @@ use rerun::datatypes::Vec2D;
 use super::{Strips, left};
 use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, Trial};
-use crate::fit::{Horizon, Record, Split};
+use crate::fit::{FitRecord, Horizon, Split};
 use crate::model::{Arrivals, JointModel, Restart, Surroundings, simulate};
 use crate::recording::canvas::{Labels, Plot, Span};
 use crate::recording::error::RecordError;
@@ -257,7 +257,7 @@ struct Still {
 
 impl Still {
     fn of(joint: &Joint) -> Self {
-        let range = Record::new(joint, Split::Time(1.0), Horizon::FreeRun).range(&[], 1.0);
+        let range = FitRecord::new(joint, Split::Time(1.0), Horizon::FreeRun).range(&[], 1.0);
         let input = joint.trials.iter().flat_map(Trial::input).copied();
         Self {
             angle: f64::midpoint(range.output_min, range.output_max),

@@ -7,7 +7,7 @@ use super::timeline::Timeline;
 use super::{HALF, WIDTH, named, values_of};
 use crate::diagnosis::failure::WorstSegment;
 use crate::experiment::{Joint, Trial};
-use crate::fit::{Horizon, Part, Record, Split, Window};
+use crate::fit::{FitRecord, Horizon, Part, Split, Window};
 use crate::report::ComparedJoint;
 use crate::report::number::percent;
 use crate::report::span::{Span, thinned_to};
@@ -140,7 +140,7 @@ fn noise_edges(compared: &ComparedJoint<'_>, (from, to): (f64, f64)) -> Option<M
 
 /// What parameters were not fitted to.
 fn unfitted(joint: &Joint, split: Split, timeline: &Timeline<'_>) -> Vec<(f64, f64)> {
-    let record = Record::new(joint, split, Horizon::FreeRun);
+    let record = FitRecord::new(joint, split, Horizon::FreeRun);
     let ends = |window: &Window| {
         let at = |sample: usize| timeline.at(window.trial, sample as f64);
         (at(window.start + 1), at(window.end))
