@@ -16,6 +16,7 @@
 //! - [`explain`]: which physical effect a model lacks
 //! - [`design`]: the next experiment
 //! - [`batch`]: all joints in parallel
+//! - [`wording`]: what statuses, units, probabilities and numbers are called
 //! - [`report`]: results as text, CSV and JSON, and as a page with figures
 //! - `recording`: results as a Rerun recording (feature `rrd`)
 
@@ -36,3 +37,4 @@ pub mod recording;
 pub mod report;
 pub mod synthetic;
 pub mod units;
+pub mod wording;

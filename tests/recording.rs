@@ -19,7 +19,8 @@ use tauscope::batch::{JointEstimate, estimate_joints};
 use tauscope::delay::{Decision, FineDelay, Method, Settings};
 use tauscope::experiment::{Experiment, ReadOptions};
 use tauscope::recording::{Beside, Detail, RecordError};
-use tauscope::report::{DecisionRow, EstimatedJoint, decision_rows, number};
+use tauscope::report::{DecisionRow, EstimatedJoint, decision_rows};
+use tauscope::wording::number;
 
 #[test]
 fn signals_are_those_of_the_log_sample_by_sample() {

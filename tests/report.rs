@@ -122,7 +122,7 @@ fn a_model_is_reported_with_its_ladder() {
     );
     for revision in improve["joints"][0]["revisions"].as_array().unwrap() {
         let error = number(&revision["error"]["validation"]["rmse"]);
-        let shown = format!("{} deg", tauscope::report::number(error));
+        let shown = format!("{} deg", tauscope::wording::number(error));
         assert!(text.contains(&shown), "no {shown}");
     }
     let headings: Vec<String> = page.select(&select("h3")).map(words).collect();

@@ -6,7 +6,8 @@ use super::palette::{self, Rgb};
 use crate::batch::JointEstimate;
 use crate::delay::{Decision, Method, Settings, Verdict};
 use crate::experiment::Joint;
-use crate::report::{EstimatedJoint, number};
+use crate::report::EstimatedJoint;
+use crate::wording::number;
 
 /// What another method found of the joints of a recording.
 #[derive(Clone, Copy, Debug)]

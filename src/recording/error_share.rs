@@ -11,7 +11,8 @@ use super::palette::{self, Rgb, color};
 use super::sheet::Sheet;
 use crate::diagnosis::failure::{Feature, Region, Units};
 use crate::experiment::Joint;
-use crate::report::{ComparedJoint, number};
+use crate::report::ComparedJoint;
+use crate::wording::number;
 
 /// Width and height of the sheet: two rows of plots.
 pub(super) const SIZE: (f32, f32) = (1900.0, 480.0);

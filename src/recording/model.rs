@@ -14,7 +14,10 @@ use super::{correlogram, error_share, scatter};
 use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures};
 use crate::fit::{Horizon, Parameter, Status};
-use crate::report::{ComparedJoint, correlation_sentences, number, parameter_units, sentences};
+use crate::report::ComparedJoint;
+use crate::wording::{
+    certainty, correlation_sentences, failure_sentences, number, parameter_units,
+};
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
@@ -200,7 +203,7 @@ fn page(
         writeln!(page, "Noise of the measurement: {} {unit}.", number(noise))?;
     }
     for compared in models {
-        for sentence in sentences(compared) {
+        for sentence in failure_sentences(compared.joint, compared.comparison) {
             writeln!(page, "\n**Fails** ({}): {}", compared.model, plain(&sentence))?;
         }
     }
@@ -256,15 +259,5 @@ fn headline(comparison: &Comparison) -> String {
             format!("the error is {} times the noise", number(times.max(0.0).round()))
         }
         _ => "the model fails".to_owned(),
-    }
-}
-
-/// How sure a parameter is.
-pub(super) fn certainty(parameter: &Parameter) -> String {
-    match (parameter.status, parameter.std_error) {
-        (Status::Fixed, _) => "fixed".to_owned(),
-        (Status::AtBound, _) => "at its bound".to_owned(),
-        (Status::Undetermined, _) | (Status::Fitted, None) => "not determined".to_owned(),
-        (Status::Fitted, Some(error)) => number(error),
     }
 }

@@ -13,7 +13,7 @@ use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::palette::{self, color};
 use super::sheet::strips;
 use crate::delay::Verdict;
-use crate::report::number;
+use crate::wording::number;
 
 /// Adds everything of the overview below `root`.
 pub(super) fn add(

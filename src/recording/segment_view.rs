@@ -19,8 +19,8 @@ use super::palette::{self, color};
 use super::rows::Rows;
 use crate::delay::{Candidate, Decision, Line, Method, Verdict};
 use crate::experiment::Joint;
-use crate::report::number;
 use crate::units::signed;
+use crate::wording::number;
 
 /// Adds the drawings of all segments below `root`/drawing.
 pub(super) fn add(

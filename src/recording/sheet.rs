@@ -9,7 +9,7 @@ use super::entity::below;
 use super::error::RecordError;
 use super::palette::{self, Rgb, color};
 use super::rows::HIDDEN;
-use crate::report::number;
+use crate::wording::number;
 
 /// What all plots of a drawing have behind and around their data.
 #[derive(Debug, Default)]

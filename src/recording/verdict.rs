@@ -11,7 +11,7 @@ use super::palette::{self, color};
 use crate::delay::{Check, Condition, Decision, FineDelay, Lag, LagPart, Outcome};
 use crate::delay::{Remedy, Settings, Verdict};
 use crate::experiment::Joint;
-use crate::report::number;
+use crate::wording::number;
 
 /// Adds `/verdict` (text, log line and lane), `/segment` and `/trial` (lanes).
 pub(super) fn add(

@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use super::compare::{ComparedJoint, ErrorJson, JointJson, compare_table, effects};
-use super::number::{number, probability, with_unit};
+use super::compare::{ComparedJoint, ErrorJson, JointJson, compare_table};
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::explain::Addition;
 use crate::model::JointModel;
+use crate::wording::{effect_ids, effects_text, number, p_text, with_unit};
 
 /// A joint whose model got another effect.
 #[derive(Clone, Copy, Debug)]
@@ -64,7 +64,7 @@ impl<'a> AddJson<'a> {
                 p_value: added.addition.p_value,
                 before: BeforeJson {
                     revision: before.revision,
-                    effects: effects(model),
+                    effects: effect_ids(model),
                     error: ErrorJson::new(before.comparison),
                 },
             }
@@ -77,8 +77,8 @@ impl<'a> AddJson<'a> {
 
 /// Ids of the effects that `after` has no more.
 pub fn gone(before: &JointModel, after: &JointModel) -> Vec<&'static str> {
-    let left = effects(after);
-    effects(before).into_iter().filter(|id| !left.contains(id)).collect()
+    let left = effect_ids(after);
+    effect_ids(before).into_iter().filter(|id| !left.contains(id)).collect()
 }
 
 impl<'a> AddedJoint<'a> {
@@ -93,8 +93,7 @@ impl<'a> AddedJoint<'a> {
     /// Names of both models, as `revision 0, integrator` and `revision 1, + dead_band`.
     fn labels(&self) -> [String; 2] {
         let [before, after] = self.compared();
-        let had = effects(&before.comparison.fit.model);
-        let had = if had.is_empty() { "integrator".to_owned() } else { had.join(" + ") };
+        let had = effects_text(&before.comparison.fit.model);
         let (first, second) = (before.revision, after.revision);
         [format!("revision {first}, {had}"), format!("revision {second}, + {}", self.effect)]
     }
@@ -112,7 +111,7 @@ impl<'a> AddedJoint<'a> {
         let (from, to) = (number(before), with_unit(after, unit));
         let chance = self.addition.p_value.map_or_else(String::new, |p| {
             let by_chance = if p < 0.01 { "" } else { ": no more than chance gives" };
-            format!(" ({}{by_chance})", probability(p))
+            format!(" ({}{by_chance})", p_text(p))
         });
         let share = (10.0 * taken.abs()).round() / 10.0;
         let Self { joint, effect, .. } = self;

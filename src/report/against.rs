@@ -2,8 +2,9 @@
 
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
-use super::{EstimatedJoint, number};
+use super::EstimatedJoint;
 use crate::delay::{AgainstState, Correlation, Direction};
+use crate::wording::{bracketed, p_cell};
 
 impl EstimatedJoint<'_> {
     /// The joint's accepted delays against its state.
@@ -49,18 +50,14 @@ fn correlation_row(joint: &str, found: &Correlation) -> [String; 6] {
         variable_text(variable, unit.as_deref()),
         steps.to_string(),
         rho,
-        p_text(*p_value),
+        p_cell(*p_value),
         answer(p_value.map(|_| *significant)),
     ]
 }
 
 /// A variable with its unit, where there is one.
 pub(crate) fn variable_text(variable: &str, unit: Option<&str>) -> String {
-    let variable = variable.replace('_', " ");
-    match unit {
-        Some(unit) => format!("{variable} [{unit}]"),
-        None => variable,
-    }
+    bracketed(&variable.replace('_', " "), unit)
 }
 
 fn direction_row(joint: &str, found: &Direction) -> [String; 6] {
@@ -74,18 +71,9 @@ fn direction_row(joint: &str, found: &Direction) -> [String; 6] {
         name,
         steps,
         difference,
-        p_text(*p_value),
+        p_cell(*p_value),
         answer(p_value.map(|_| *significant)),
     ]
-}
-
-/// To the thousandth; a p-value is no better known.
-pub(crate) fn p_text(p_value: Option<f64>) -> String {
-    match p_value {
-        None => "-".to_owned(),
-        Some(p_value) if p_value < 0.001 => "< 0.001".to_owned(),
-        Some(p_value) => number((p_value * 1000.0).round() / 1000.0),
-    }
 }
 
 fn answer(significant: Option<bool>) -> String {

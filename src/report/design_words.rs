@@ -3,9 +3,8 @@
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
 use super::design::{DesignedJoint, Told, holds, kept_until_s, order};
-use super::number::{measure, rounded};
-use super::words::filled;
 use crate::design::{Expected, Open, Prediction, Rehearsal, Schedule, transitions};
+use crate::wording::{listed, measure, rounded, unit_suffix, wrapped};
 
 /// What is to be played on each joint, and what is expected of it.
 pub fn design_text(joints: &[DesignedJoint]) -> String {
@@ -14,12 +13,12 @@ pub fn design_text(joints: &[DesignedJoint]) -> String {
 
 fn joint_text(joint: &DesignedJoint) -> String {
     let mut sentences = design_sentences(joint);
-    let mut parts = vec![filled(&sentences.remove(0))];
+    let mut parts = vec![wrapped(&sentences.remove(0))];
     parts.extend(joint.told.as_ref().map(|told| side_table(told).to_string()));
     if !sentences.is_empty() {
-        parts.push(filled(&sentences.join(" ")));
+        parts.push(wrapped(&sentences.join(" ")));
     }
-    parts.push(filled(&level_by_level(joint)));
+    parts.push(wrapped(&level_by_level(joint)));
     parts.join("\n\n")
 }
 
@@ -37,7 +36,8 @@ pub fn design_sentences(joint: &DesignedJoint) -> Vec<String> {
 fn headline(joint: &DesignedJoint) -> String {
     let DesignedJoint { stand, schedule, .. } = joint;
     let unit = stand.input_unit.as_deref();
-    let levels = listed(&schedule.levels(), unit);
+    let levels: Vec<String> = schedule.levels().iter().map(|level| rounded(*level)).collect();
+    let levels = listed(&levels, "and") + &unit_suffix(unit);
     let (hold, steps) = (hold_text(schedule), schedule.steps());
     let duration = measure(schedule.duration_s(), Some("s"));
     let name = &stand.name;
@@ -68,17 +68,6 @@ fn hold_text(schedule: &Schedule) -> String {
         return longest;
     }
     format!("{shortest} to {longest}")
-}
-
-fn listed(levels: &[f64], unit: Option<&str>) -> String {
-    let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
-    let all: Vec<String> = levels.iter().map(|level| rounded(*level)).collect();
-    match all.as_slice() {
-        [before @ .., last] if !before.is_empty() => {
-            format!("{} and {last}{unit}", before.join(", "))
-        }
-        _ => format!("{}{unit}", all.concat()),
-    }
 }
 
 /// What [`side_rows`] tell.

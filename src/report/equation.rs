@@ -1,8 +1,8 @@
 //! The equation of an effect with its numbers in it.
 
-use super::number::number;
 use crate::effect::UNLIMITED;
 use crate::model::Component;
+use crate::wording::number;
 
 /// The equation of `component`, each parameter replaced by its value; in words where it takes
 /// measured delays.

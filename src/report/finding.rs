@@ -6,12 +6,12 @@ use serde_json::{Map, Value};
 
 use super::ComparedJoint;
 use super::compare::{align_right, parameters_json};
-use super::number::{probability, with_unit};
 use super::separation::SeparationJson;
 use crate::effect::Spec;
 use crate::experiment::Joint;
 use crate::explain::{Candidate, Verdict};
 use crate::model::Component;
+use crate::wording::{p_text, with_unit};
 
 /// A joint, the verdict on its model, and the race behind it.
 #[derive(Clone, Copy, Debug)]
@@ -98,7 +98,7 @@ pub(super) fn ranking_table(joint: &Joint, ranking: &[Candidate]) -> String {
             candidate.name(),
             with_unit(candidate.rmse(), joint.output_unit.as_deref()),
             format!("{:.1} %", candidate.error_reduction_percent),
-            probability(candidate.p_value),
+            p_text(candidate.p_value),
             if same.is_empty() { "-".to_owned() } else { same.join(", ") },
         ]);
     }

@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 use comfy_table::{CellAlignment, Table, presets};
 
 use super::{DataTable, DelayRange, Kind, Methods, decision_columns};
+use crate::wording::{counted, percent};
 
 /// The result of one log: the document that the command prints as JSON.
 #[derive(Clone, Debug, PartialEq)]
@@ -171,8 +172,7 @@ impl FolderReport {
         for column in table.column_iter_mut().skip(1).take(header.len() - 2) {
             column.set_cell_alignment(CellAlignment::Right);
         }
-        let logs = self.logs.len();
-        format!("{table}\n{logs} {}, each by itself\n", if logs == 1 { "log" } else { "logs" })
+        format!("{table}\n{}, each by itself\n", counted(self.logs.len(), "log"))
     }
 }
 
@@ -246,8 +246,8 @@ impl Across {
     }
 
     fn estimated_cells(&self) -> Vec<String> {
-        let share = 100.0 * self.accepted as f64 / self.steps.max(1) as f64;
-        let accepted = format!("{} ({share:.0} %)", self.accepted);
+        let share = percent(self.accepted as f64 / self.steps.max(1) as f64);
+        let accepted = format!("{} ({share})", self.accepted);
         let medians = DelayRange::of(self.medians_s.clone())
             .map_or_else(String::new, |range| format!("{:.3} … {:.3} s", range.min, range.max));
         let mut cells =

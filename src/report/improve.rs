@@ -5,7 +5,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::compare::{
-    ComparedJoint, ErrorJson, JointJson, align_right, effects, figures, parameters, parameters_json,
+    ComparedJoint, ErrorJson, JointJson, align_right, figures, parameters, parameters_json,
 };
 use super::explain::FindingJson;
 use super::finding::Finding;
@@ -13,6 +13,7 @@ use super::words::{Words, printed};
 use crate::diagnosis::LackOfFit;
 use crate::experiment::Joint;
 use crate::explain::{Candidate, Change, Revision, Verdict};
+use crate::wording::{effect_ids, effects_text};
 
 /// A joint whose model was improved.
 #[derive(Clone, Copy, Debug)]
@@ -139,7 +140,7 @@ impl<'a> ImprovedJoint<'a> {
             revision: number,
             added,
             removed,
-            effects: effects(&fit.model),
+            effects: effect_ids(&fit.model),
             parameters: parameters_json(self.finding.compared.joint, fit),
             error: ErrorJson::new(&revision.comparison),
             lack_of_fit: revision.comparison.lack_of_fit,
@@ -190,10 +191,7 @@ fn made_useless(change: Change) -> Option<String> {
 /// `+ dead_band`; the first revision by what it has.
 pub fn change_in_words(revision: &Revision) -> String {
     match revision.change {
-        Change::Start => {
-            let effects = effects(&revision.comparison.fit.model);
-            if effects.is_empty() { "integrator".to_owned() } else { effects.join(" + ") }
-        }
+        Change::Start => effects_text(&revision.comparison.fit.model),
         Change::Added(id) => format!("+ {id}"),
         Change::Removed(id) => format!("− {id}"),
         Change::Replaced { old, new } => format!("+ {new}, − {old}"),

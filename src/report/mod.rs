@@ -13,7 +13,6 @@ mod finding;
 mod folder;
 mod improve;
 mod json;
-mod number;
 mod page;
 mod separation;
 mod settings;
@@ -28,10 +27,8 @@ mod words;
 pub use add::{AddJson, AddedJoint, add_text, gone};
 pub use against::against_table;
 #[cfg(feature = "rrd")]
-pub(crate) use against::{p_text, variable_text};
-pub use compare::{
-    CompareJson, ComparedJoint, compare_table, correlation_sentences, parameter_units, sentences,
-};
+pub(crate) use against::variable_text;
+pub use compare::{CompareJson, ComparedJoint, compare_table};
 pub use decisions::{
     DecisionDetail, DecisionRow, Methods, decision_columns, decision_rows, decision_table,
     write_decisions,
@@ -44,7 +41,6 @@ pub use finding::Finding;
 pub use folder::{FolderJson, FolderReport, LogResult};
 pub use improve::{ImproveJson, ImprovedJoint, change_in_words, improve_text, revision_line};
 pub use json::EstimateJson;
-pub use number::{measure, number};
 pub use page::{Document, Markdown, PlotError, RecordingFile, Report, ReportJson, report_text};
 #[cfg(feature = "rrd")]
 pub(crate) use settings::settings_rows;

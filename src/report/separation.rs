@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::number::{measure, rounded};
 use crate::experiment::Joint;
 use crate::explain::{Pattern, Proposal, Separation, Start};
+use crate::wording::{listed, measure, rounded, unit_suffix};
 
 /// A [`Separation`] in a document.
 #[derive(Debug, Serialize)]
@@ -81,13 +81,15 @@ fn experiment(joint: &Joint, separation: &Separation) -> String {
 
 fn input(joint: &Joint, proposal: &Proposal) -> String {
     let Proposal { pattern, levels, hold_s, .. } = proposal;
-    let unit = joint.input_unit.as_deref().map_or_else(String::new, |unit| format!(" {unit}"));
-    let (levels, hold) = (list(levels.iter().map(|level| rounded(*level))), rounded(*hold_s));
+    let unit = unit_suffix(joint.input_unit.as_deref());
+    let (levels, hold) =
+        (levels.iter().map(|level| rounded(*level)).collect::<Vec<_>>(), rounded(*hold_s));
     let order = match pattern {
         Pattern::Ladder => "rising and then falling, in one direction and then in the other",
         Pattern::Pulses => "each in both directions, with a rest as long behind it",
         Pattern::Reversals => "each in both directions, without a rest",
     };
+    let levels = listed(&levels, "and");
     format!("hold {levels}{unit} for {hold} s each, {order}")
 }
 
@@ -105,7 +107,7 @@ fn starts(joint: &Joint, starts: &[Start]) -> String {
         }
         None => Vec::new(),
     };
-    let from = format!("from rest at {}", list(angles.into_iter()));
+    let from = format!("from rest at {}", listed(&angles, "and"));
     match (all(|start| start.worked_s).as_slice(), all(|start| start.others).as_slice()) {
         ([cold, warm], _) => {
             let (cold, warm) = (rounded(*cold), rounded(*warm));
@@ -125,15 +127,6 @@ fn is_beyond(joint: &Joint, proposal: &Proposal) -> bool {
     let inputs = joint.trials.iter().flat_map(crate::experiment::Trial::input);
     let largest = inputs.fold(0.0, |largest: f64, input| largest.max(input.abs()));
     proposal.levels.iter().any(|level| *level > ROUNDED * largest)
-}
-
-/// `1, 2 and 3`.
-fn list(items: impl Iterator<Item = String>) -> String {
-    let items: Vec<String> = items.collect();
-    match items.as_slice() {
-        [before @ .., last] if !before.is_empty() => format!("{} and {last}", before.join(", ")),
-        _ => items.concat(),
-    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The settings in words.
 
-use super::number;
 use crate::delay::{Method, Settings};
+use crate::wording::number;
 
 /// Each setting with its value, as a person would say it.
 pub(crate) fn settings_rows(settings: &Settings) -> Vec<(&'static str, String)> {

@@ -2,10 +2,11 @@
 
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
+use super::EstimatedJoint;
 use super::decisions::detailed_rows;
-use super::{EstimatedJoint, number};
 use crate::delay::{Decision, InputStep, Verdict};
 use crate::experiment::{Joint, Trial};
+use crate::wording::{number, unit_suffix};
 
 /// One step in a line, as it is told when it has come, with its trial where there are several.
 pub fn step_line(joint: &Joint, trial: &Trial, decision: &Decision) -> String {
@@ -15,7 +16,7 @@ pub fn step_line(joint: &Joint, trial: &Trial, decision: &Decision) -> String {
     let label = label.unwrap_or_default();
     let time = number(trial.time_s(decision.input_step.sample));
     let InputStep { before, after, .. } = decision.input_step;
-    let unit = joint.input_unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
+    let unit = unit_suffix(joint.input_unit.as_deref());
     let (before, after) = (number(before), number(after));
     let step =
         format!("{name}{label}, step {} at {time} s, {before} to {after}{unit}", decision.number);

@@ -2,10 +2,10 @@
 
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
-use super::number::{measure, rounded};
 use super::{DelayRange, EstimatedJoint, JointSummary};
 use crate::delay::{Automatic, Chosen, Condition, Interpolation, LagPart, Method, Settings};
 use crate::numerics::LowPass;
+use crate::wording::{measure, percent, rounded};
 
 /// The table of `estimate`: a row per joint, and the settings below it.
 pub fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings) -> String {
@@ -91,10 +91,9 @@ pub(crate) const SUMMARY_HEADER: [&str; 7] =
 /// A joint in one row, for people.
 pub(crate) fn summary_cells(name: &str, summary: &JointSummary) -> [String; 7] {
     let JointSummary { steps, accepted, rejected, delay_s, .. } = summary;
-    let percent = |share: f64| format!("{accepted} ({:.0} %)", 100.0 * share);
     let accepted = match steps {
         0 => "-".to_owned(),
-        _ => percent(*accepted as f64 / *steps as f64),
+        _ => format!("{accepted} ({})", percent(*accepted as f64 / *steps as f64)),
     };
     let why = match (steps, rejected.is_empty()) {
         (0, _) => "the input never changes".to_owned(),

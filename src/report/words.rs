@@ -1,17 +1,18 @@
 //! A verdict in words that an engineer can act on.
 
-use super::compare::sentences;
 use super::equation::filled_in;
 use super::finding::{Finding, added, specs};
-use super::number::{measure, number, percent, probability, rounded, with_error};
-use super::parameter_units;
 use super::separation::sentence;
-use crate::diagnosis::failure::{Feature, Region, Units, WorstSegment};
+use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ShownBy};
 use crate::experiment::{Joint, Trial};
 use crate::explain::{Candidate, Verdict};
 use crate::fit::{Fit, Parameter, Status};
 use crate::model::Component;
+use crate::wording::{
+    certainty, failure_sentences, measure, misfit_units, number, p_text, parameter_units, percent,
+    region_text, remark, rounded, unit_suffix, with_error, worst_segment_text, wrapped,
+};
 
 /// What is to be said of a joint.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,9 +24,6 @@ pub struct Words {
     /// Commands that do what it proposes.
     pub commands: Vec<String>,
 }
-
-/// Columns of a line.
-const WIDTH: usize = 92;
 
 /// Times the noise above which an error is said to be more than noise.
 const ABOVE_NOISE: f64 = 1.15;
@@ -93,7 +91,7 @@ impl Finding<'_> {
         let part = if best.validation.is_some() { "not fitted" } else { "fitted" };
         let (before, after) = (self.output(self.error()), self.output(best.rmse()));
         let taken = rounded(best.error_reduction_percent);
-        let chance = probability(best.p_value);
+        let chance = p_text(best.p_value);
         let falls = format!(
             "With it the error on data that were {part} falls from {before} to {after}, by \
              {taken} % ({chance})"
@@ -112,12 +110,12 @@ impl Finding<'_> {
 
     /// What in the record shows it, with times to look at.
     fn where_it_fails(&self) -> Option<String> {
-        let conditions = sentences(&self.compared);
+        let conditions = failure_sentences(self.joint(), self.comparison());
         let worst = self.comparison().failure.iter().flat_map(|failure| &failure.worst_segments);
         let several = self.joint().trials.len() > 1;
         let time = |worst: &WorstSegment| {
             let trial = if several { format!("trial {}, ", worst.trial) } else { String::new() };
-            trial + &time_of(worst)
+            trial + &worst_segment_text(worst)
         };
         let times: Vec<String> = worst.take(3).map(time).collect();
         let look = format!("look at {}", times.join(", "));
@@ -193,7 +191,7 @@ impl Finding<'_> {
     fn test(&self) -> String {
         match self.comparison().lack_of_fit {
             Some(test) if test.p_value >= crate::diagnosis::SIGNIFICANCE => {
-                format!("No lack of fit is shown ({}).", probability(test.p_value))
+                format!("No lack of fit is shown ({}).", p_text(test.p_value))
             }
             Some(test) => {
                 let share = rounded(100.0 * test.misfit_share);
@@ -310,11 +308,9 @@ impl Finding<'_> {
 
     /// `0.2 deg where it is 20 to 30 deg`.
     fn mean_at(&self, region: &Region) -> String {
-        let joint = self.joint();
-        let units = Units { input: joint.input_unit.clone(), output: joint.output_unit.clone() };
-        let unit = region.feature.unit(&units);
-        let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
-        format!("{} where it is {}{unit}", self.output(region.mean_residual), place_of(region))
+        let unit = unit_suffix(region.feature.unit(&misfit_units(self.joint())).as_deref());
+        let part = region_text(region);
+        format!("{} where it is {part}{unit}", self.output(region.mean_residual))
     }
 
     /// The effect that comes nearest, and that it is not to be trusted.
@@ -341,27 +337,16 @@ impl Finding<'_> {
 
 fn measured(name: &str, parameter: &Parameter, unit: &str) -> String {
     let Parameter { value, std_error, status, .. } = parameter;
-    let plain = number(*value);
-    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-    match (status, std_error) {
-        (Status::Fitted, Some(error)) => format!("{name} = {}{unit}", with_error(*value, *error)),
-        (Status::Fixed, _) => format!("{name} = {plain}{unit} (fixed)"),
-        (Status::AtBound, _) => format!("{name} = {plain}{unit} (at its bound)"),
-        (Status::Undetermined, _) | (Status::Fitted, None) => {
-            format!("{name} = {plain}{unit} (not determined)")
-        }
+    let unit = unit_suffix(Some(unit).filter(|unit| !unit.is_empty()));
+    match (remark(*status), std_error) {
+        (None, Some(error)) => format!("{name} = {}{unit}", with_error(*value, *error)),
+        _ => format!("{name} = {}{unit} ({})", number(*value), certainty(parameter)),
     }
 }
 
 /// The error by which a model is judged.
 fn rmse(comparison: &Comparison) -> f64 {
     comparison.validation.or(comparison.training).map_or(f64::NAN, |error| error.rmse)
-}
-
-/// `12.4 s to 13.1 s (9 %)`.
-fn time_of(worst: &WorstSegment) -> String {
-    let (from, to) = (number(worst.start_s), number(worst.end_s));
-    format!("{from} s to {to} s ({})", percent(worst.share_of_squared_error))
 }
 
 /// The parts of the feature whose means hold most of the squared residual, and their share.
@@ -377,16 +362,6 @@ fn most_followed(regions: &[Region]) -> Option<(&[Region], f64)> {
     shares.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// `2 to 3`; a level, a sign, or a trial as it is.
-fn place_of(region: &Region) -> String {
-    #[expect(clippy::float_cmp, reason = "a level has one value")]
-    let is_level = region.from == region.to;
-    if is_level || matches!(region.feature, Feature::Direction | Feature::Trial) {
-        return region.label.clone();
-    }
-    format!("{} to {}", rounded(region.from), rounded(region.to))
-}
-
 /// `-2 to 2 V`.
 fn span(values: impl Iterator<Item = f64>, unit: Option<&str>) -> String {
     let ends = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
@@ -397,22 +372,6 @@ fn span(values: impl Iterator<Item = f64>, unit: Option<&str>) -> String {
 /// The words as they are printed.
 pub(super) fn printed(words: &Words) -> String {
     let commands = words.commands.iter().map(|command| format!("    {command}"));
-    let blocks = std::iter::once(filled(&words.paragraph)).chain(commands);
+    let blocks = std::iter::once(wrapped(&words.paragraph)).chain(commands);
     blocks.collect::<Vec<_>>().join("\n\n") + "\n"
-}
-
-/// `text` in lines of at most [`WIDTH`] columns where words allow.
-pub(super) fn filled(text: &str) -> String {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
-        let length = |line: &str| line.chars().count();
-        match lines.last_mut() {
-            Some(line) if length(line) + 1 + length(word) <= WIDTH => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines.join("\n")
 }

@@ -23,8 +23,9 @@ use super::rows::HIDDEN;
 use super::sheet::put_texts;
 use crate::delay::{AgainstState, StepState};
 use crate::experiment::{Joint, Trial};
-use crate::report::{EstimatedJoint, number};
+use crate::report::EstimatedJoint;
 use crate::units::SamplePeriod;
+use crate::wording::number;
 
 /// Height of the sheet.
 pub(super) const HEIGHT: f32 = 800.0;

@@ -9,7 +9,7 @@ use crate::recording::chunk::{Chunks, Index, fine_columns, integers, numbers};
 use crate::recording::entity::below;
 use crate::recording::error::RecordError;
 use crate::recording::layout::{JointLayout, SegmentLayout, TrialLayout};
-use crate::report::number;
+use crate::wording::number;
 
 /// A segment, and its step among the accepted ones, with its place there.
 pub(super) struct Placed<'l, 'a> {

@@ -5,7 +5,8 @@ use std::f64::consts::GOLDEN_RATIO;
 use super::trend::{self, Bin};
 use crate::delay::{AgainstState, Correlation, Direction, StepState};
 use crate::recording::canvas::Span;
-use crate::report::{number, p_text, variable_text};
+use crate::report::variable_text;
+use crate::wording::{number, p_cell};
 
 /// Where a step of the input goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -142,7 +143,7 @@ impl Quantity {
 
     /// What the test says, in a line.
     pub(super) fn finding(&self) -> String {
-        let p = match (self.p_value, p_text(self.p_value)) {
+        let p = match (self.p_value, p_cell(self.p_value)) {
             (None, _) => return "not known: constant, or too few steps".to_owned(),
             (_, small) if small.starts_with('<') => format!("p {small}"),
             (_, p) => format!("p = {p}"),

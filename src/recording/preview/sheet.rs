@@ -13,7 +13,7 @@ use crate::recording::error::RecordError;
 use crate::recording::palette::{self, Rgb, between, color};
 use crate::recording::rows::Rows;
 use crate::recording::sheet::{Sheet, put_texts, strips};
-use crate::report::{measure, number};
+use crate::wording::{measure, number};
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1090.0);

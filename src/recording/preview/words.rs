@@ -9,7 +9,8 @@ use crate::design::Hold;
 use crate::recording::chunk::Chunks;
 use crate::recording::entity::{below, plain};
 use crate::recording::error::RecordError;
-use crate::report::{SIDE_HEADER, design_sentences, measure, side_rows};
+use crate::report::{SIDE_HEADER, design_sentences, side_rows};
+use crate::wording::measure;
 
 /// Adds all words below `root`.
 pub(super) fn add(

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use super::judged;
 use crate::recording::entity::plain;
 use crate::recording::error_share::short;
-use crate::recording::model::certainty;
-use crate::report::{ImprovedJoint, change_in_words, number, parameter_units};
+use crate::report::{ImprovedJoint, change_in_words};
+use crate::wording::{certainty, number, parameter_units};
 
 /// The page of the revision at `place`.
 pub(super) fn page(improved: &ImprovedJoint<'_>, place: usize) -> String {

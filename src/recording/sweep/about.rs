@@ -10,7 +10,8 @@ use crate::recording::about::made_from;
 use crate::recording::chunk::Chunks;
 use crate::recording::entity::plain;
 use crate::recording::error::RecordError;
-use crate::report::{level_text, number, settings_rows, sweep_sentences};
+use crate::report::{level_text, settings_rows, sweep_sentences};
+use crate::wording::number;
 
 /// Adds the page at `/about`.
 pub(super) fn add(chunks: &mut Chunks, sweep: &SweepRecording<'_>) -> Result<(), RecordError> {

@@ -19,7 +19,8 @@ use crate::recording::error::RecordError;
 use crate::recording::palette::{self, Rgb, color};
 use crate::recording::rows::Rows;
 use crate::recording::sheet::{Sheet, put_texts, strips};
-use crate::report::{number, settings_in_words};
+use crate::report::settings_in_words;
+use crate::wording::number;
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1090.0);

@@ -14,7 +14,7 @@ use crate::recording::error::RecordError;
 use crate::recording::palette::{self, Rgb, color, dimmed};
 use crate::recording::rows::Rows;
 use crate::recording::sheet::{Sheet, put_texts, strips};
-use crate::report::number as shown;
+use crate::wording::number as shown;
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1090.0);

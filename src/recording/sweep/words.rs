@@ -9,7 +9,8 @@ use crate::delay::sweep::{Factor, SweptStep};
 use crate::recording::chunk::{Chunks, Index};
 use crate::recording::entity::{below, plain};
 use crate::recording::error::RecordError;
-use crate::report::{hangs_on, level_cell, level_text, number, sweep_sentences};
+use crate::report::{hangs_on, level_cell, level_text, sweep_sentences};
+use crate::wording::number;
 
 /// Adds all words below `root`.
 pub(super) fn add(

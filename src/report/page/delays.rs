@@ -4,11 +4,12 @@ use super::document::Figure;
 use super::palette::Role;
 use super::plot::{Axis, Mark, Panel, Place, PlotError, Shape, draw};
 use super::timeline::Timeline;
-use super::{HALF, WIDTH, named};
+use super::{HALF, WIDTH};
 use crate::delay::{AgainstState, Correlation, DelayProfile};
 use crate::report::EstimatedJoint;
-use crate::report::against::{p_text, variable_text};
+use crate::report::against::variable_text;
 use crate::report::span::{Span, thinned_to};
+use crate::wording::p_cell;
 
 /// Steps between which the delay is drawn.
 const MOST_STEPS: usize = 2000;
@@ -167,7 +168,7 @@ fn caption(found: &Correlation) -> String {
     let Some(rho) = found.rho else {
         return format!("Delay against {variable}: too few steps, or no change, to tell more.");
     };
-    let p = p_text(found.p_holm);
+    let p = p_cell(found.p_holm);
     let p = if p.starts_with('<') { format!("p {p}") } else { format!("p = {p}") };
     let said = if found.significant { "the delay depends on it" } else { "no dependence shown" };
     format!(
@@ -191,7 +192,7 @@ pub(super) fn overview(joints: &[EstimatedJoint<'_>]) -> Result<Option<Figure>, 
     let medians = rows.iter().enumerate().map(|(index, one)| (one.median, row(index))).collect();
     let x = Span::around(rows.iter().flat_map(|one| [one.low, one.high]).chain([0.0]), 0.03);
     let panel = Panel {
-        x: Axis::new(x, named("delay", Some("s")), 8.0),
+        x: Axis::new(x, "delay [s]", 8.0),
         y: Axis::of_names(&names, ""),
         height: 22 * u32::try_from(rows.len()).unwrap_or(1) + 10,
         marks: vec![

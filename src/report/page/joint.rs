@@ -7,9 +7,8 @@ use crate::delay::{AgainstState, Condition, Method};
 use crate::report::against::{AGAINST_HEADER, against_rows};
 use crate::report::decisions::detailed_rows;
 use crate::report::text::lag_line;
-use crate::report::{
-    DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary, number,
-};
+use crate::report::{DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary};
+use crate::wording::number;
 
 /// Rows of a table that a reader may still want to scroll through.
 const MOST_ROWS: usize = 2000;

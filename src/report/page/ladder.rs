@@ -1,13 +1,15 @@
 //! The ladder of errors: how the error falls from revision to revision.
 
+use super::WIDTH;
 use super::document::{Figure, Table};
 use super::palette::Role;
 use super::plot::{Axis, Mark, Panel, PlotError, Shape, draw};
-use super::{WIDTH, named};
 use crate::explain::Revision;
 use crate::report::compare::figures;
 use crate::report::span::Span;
-use crate::report::{ImprovedJoint, change_in_words, number};
+use crate::report::{ImprovedJoint, change_in_words};
+use crate::wording::bracketed;
+use crate::wording::number;
 
 /// A bar for the error of each revision, and the noise as a line.
 pub(super) fn figure(improved: &ImprovedJoint<'_>, file: String) -> Result<Figure, PlotError> {
@@ -30,7 +32,7 @@ pub(super) fn figure(improved: &ImprovedJoint<'_>, file: String) -> Result<Figur
     marks.extend(noise.map(|noise| {
         Mark::new(Role::Noise, Shape::Verticals(vec![noise], 1.2)).named("noise of the measurement")
     }));
-    let name = named("root-mean-square error", joint.output_unit.as_deref());
+    let name = bracketed("root-mean-square error", joint.output_unit.as_deref());
     let panel = Panel {
         x: Axis::new(Span::new(0.0, 1.15 * largest.max(noise.unwrap_or(0.0))), name, 6.0),
         y: Axis::of_names(&names, ""),

@@ -30,6 +30,7 @@ use crate::delay::Settings;
 use crate::experiment::{Experiment, Joint, Trial};
 use crate::fit::Split;
 use crate::model::ModelFile;
+use crate::wording::counted;
 use document::{Block, Entry, slug};
 
 /// Width of a drawing that stands alone, in pixels.
@@ -119,15 +120,12 @@ impl Report<'_> {
     /// How much was measured.
     fn extent(&self) -> String {
         let (joints, files) = (self.joints.len(), self.experiment.sources.len());
-        let several = |count: usize, what: &str| {
-            if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
-        };
         let trials = || self.joints.iter().flat_map(|joint| &joint.joint.trials);
         let samples: usize = trials().map(Trial::len).sum();
         let mut periods: Vec<String> = trials().map(|trial| trial.period().to_string()).collect();
         periods.dedup();
         periods.truncate(3);
-        let (joints, files) = (several(joints, "joint"), several(files, "file"));
+        let (joints, files) = (counted(joints, "joint"), counted(files, "file"));
         format!("{joints} in {files}, {samples} samples, one every {}.", periods.join(" or "))
     }
 
@@ -149,11 +147,6 @@ impl Report<'_> {
 /// Where links to a joint lead, and what its drawings' names begin with.
 fn anchor(index: usize, joint: &Joint) -> String {
     format!("joint-{}-{}", index + 1, slug(&joint.name))
-}
-
-/// `input [V]`.
-fn named(name: &str, unit: Option<&str>) -> String {
-    unit.map_or_else(|| name.to_owned(), |unit| format!("{name} [{unit}]"))
 }
 
 /// A signal's values in all trials.

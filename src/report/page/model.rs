@@ -6,13 +6,13 @@ use super::{Report, ladder, share, simulated};
 use crate::diagnosis::Comparison;
 use crate::effect::Stage;
 use crate::explain::{Candidate, Revision, Verdict};
-use crate::fit::{Parameter, Split, Status};
+use crate::fit::{Parameter, Split};
 use crate::model::Component;
-use crate::report::compare::effects;
 use crate::report::equation::filled_in;
-use crate::report::number::{measure, number, probability, with_error, with_unit};
-use crate::report::{
-    ComparedJoint, ImprovedJoint, correlation_sentences, parameter_units, sentences,
+use crate::report::{ComparedJoint, ImprovedJoint};
+use crate::wording::{
+    correlation_sentences, effect_ids, failure_sentences, measure, number, p_text, parameter_units,
+    remark, with_error, with_remark, with_unit,
 };
 
 /// All that is said of the model of a joint.
@@ -48,7 +48,7 @@ fn lead(improved: &ImprovedJoint<'_>, headline: &str) -> String {
 /// What is said of the model in one sentence.
 pub(super) fn sentence(improved: &ImprovedJoint<'_>) -> String {
     let comparison = improved.finding.compared.comparison;
-    let own = effects(&comparison.fit.model);
+    let own = effect_ids(&comparison.fit.model);
     let model = ["integrator"].into_iter().chain(own).collect::<Vec<_>>().join(" + ");
     let (error, rest) = (error_of(improved, comparison), missing(improved));
     match (improved.revisions.first(), came(improved).as_slice()) {
@@ -69,7 +69,7 @@ pub(super) fn sentence(improved: &ImprovedJoint<'_>) -> String {
 
 /// Effects that the last revision has and the first has not.
 fn came(improved: &ImprovedJoint<'_>) -> Vec<&'static str> {
-    let of = |revision: &Revision| effects(&revision.comparison.fit.model);
+    let of = |revision: &Revision| effect_ids(&revision.comparison.fit.model);
     let given = improved.revisions.first().map(of).unwrap_or_default();
     let last = improved.revisions.last().map(of).unwrap_or_default();
     last.into_iter().filter(|id| !given.contains(id)).collect()
@@ -148,22 +148,13 @@ fn law(component: &Component) -> String {
 
 /// `11.900 ± 0.020 deg/s/V`.
 fn value(parameter: &Parameter, unit: &str) -> String {
-    format!("{} {unit}{}", known(parameter), remark(parameter.status)).trim_end().to_owned()
+    with_remark(&format!("{} {unit}", known(parameter)), parameter.status)
 }
 
 /// `11.900 ± 0.020`.
 fn known(parameter: &Parameter) -> String {
     let Parameter { value, std_error, .. } = parameter;
     std_error.map_or_else(|| number(*value), |error| with_error(*value, error))
-}
-
-fn remark(status: Status) -> &'static str {
-    match status {
-        Status::Fitted => "",
-        Status::Fixed => " (fixed)",
-        Status::AtBound => " (at its bound)",
-        Status::Undetermined => " (not determined by this record)",
-    }
 }
 
 /// A row per parameter.
@@ -173,7 +164,7 @@ fn parameters(compared: &ComparedJoint<'_>) -> Table {
     let header = ["parameter", "value ± standard error", "unit", "remark"];
     let mut table = Table::new(header, &[1]);
     for (parameter, unit) in fit.parameters.iter().zip(units) {
-        let remark = remark(parameter.status).trim_matches([' ', '(', ')']).to_owned();
+        let remark = remark(parameter.status).unwrap_or_default().to_owned();
         table.row([parameter.name.clone(), known(parameter), unit, remark]);
     }
     table
@@ -240,7 +231,9 @@ fn failures(improved: &ImprovedJoint<'_>, file: &str) -> Result<Vec<Block>, Plot
     } else {
         format!("Where revision {revision} failed")
     };
-    let said = sentences(&compared).into_iter().map(|sentence| format!("{sentence}."));
+    let said = failure_sentences(compared.joint, compared.comparison)
+        .into_iter()
+        .map(|sentence| format!("{sentence}."));
     let said: Vec<String> = said.collect();
     let mut blocks = vec![Block::part(heading)];
     if said.is_empty() {
@@ -289,7 +282,7 @@ fn ranking(improved: &ImprovedJoint<'_>, candidates: &[Candidate]) -> Table {
             candidate.name(),
             with_unit(candidate.rmse(), unit),
             format!("{:.1} %", candidate.error_reduction_percent),
-            probability(candidate.p_value),
+            p_text(candidate.p_value),
             if same.is_empty() { "-".to_owned() } else { same.join(", ") },
         ]);
     }

@@ -12,8 +12,8 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::palette::Role;
-use crate::report::number;
 use crate::report::span::Span;
+use crate::wording::number;
 
 /// Parts of a pixel that a coordinate tells.
 const FINE: u32 = 4;

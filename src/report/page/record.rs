@@ -4,11 +4,12 @@ use super::document::Figure;
 use super::palette::Role;
 use super::plot::{Axis, Mark, Panel, Place, PlotError, Shape, draw};
 use super::timeline::Timeline;
-use super::{WIDTH, named, values_of};
+use super::{WIDTH, values_of};
 use crate::delay::{Decision, Verdict};
 use crate::experiment::Trial;
 use crate::report::EstimatedJoint;
 use crate::report::span::Span;
+use crate::wording::bracketed;
 
 /// Input and output over time.
 pub(super) fn figure(estimated: EstimatedJoint<'_>, file: String) -> Result<Figure, PlotError> {
@@ -18,7 +19,7 @@ pub(super) fn figure(estimated: EstimatedJoint<'_>, file: String) -> Result<Figu
     let span = |values: fn(&Trial) -> &[f64]| Span::around(values_of(joint, values), 0.06);
     let output = Panel {
         x: timeline.axis().bare(),
-        y: Axis::new(span(Trial::output), named("output", joint.output_unit.as_deref()), 5.0),
+        y: Axis::new(span(Trial::output), bracketed("output", joint.output_unit.as_deref()), 5.0),
         height: 170,
         marks: vec![
             timeline.borders(),
@@ -30,7 +31,7 @@ pub(super) fn figure(estimated: EstimatedJoint<'_>, file: String) -> Result<Figu
     };
     let input = Panel {
         x: timeline.axis(),
-        y: Axis::new(span(Trial::input), named("input", joint.input_unit.as_deref()), 3.0),
+        y: Axis::new(span(Trial::input), bracketed("input", joint.input_unit.as_deref()), 3.0),
         height: 80,
         marks: vec![
             timeline.borders(),

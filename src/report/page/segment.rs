@@ -1,14 +1,16 @@
 //! Single decisions: the segment with both lines, and the error of every candidate.
 
+use super::NARROW;
 use super::document::Figure;
 use super::palette::Role;
 use super::plot::{Axis, Mark, Panel, Place, PlotError, Shape, draw};
-use super::{NARROW, named};
 use crate::delay::{Candidate, Condition, Decision, Line, Verdict};
 use crate::experiment::{Joint, Trial};
-use crate::report::number::rounded;
+use crate::report::EstimatedJoint;
 use crate::report::span::{Span, thinned_to};
-use crate::report::{EstimatedJoint, number};
+use crate::wording::bracketed;
+use crate::wording::number;
+use crate::wording::rounded;
 
 /// Errors less than this part of the largest are drawn at it: the fit is exact there.
 const EXACT: f64 = 1e-9;
@@ -171,7 +173,7 @@ impl Choice<'_> {
         }));
         marks.push(Mark::new(Role::Input, Shape::Verticals(step, 1.2)).named("p"));
         marks.push(Mark::new(role, Shape::Verticals(q, 1.2)).named("q"));
-        let y = Axis::new(y, named("output", joint.output_unit.as_deref()), 4.0);
+        let y = Axis::new(y, bracketed("output", joint.output_unit.as_deref()), 4.0);
         Panel { x, y, height: 170, marks }
     }
 
@@ -201,7 +203,7 @@ impl Choice<'_> {
         let curve = Mark::new(Role::Error, Shape::Lines(vec![curve], 1.6));
         Panel {
             x,
-            y: Axis::logarithmic(y, named("SSE", unit.as_deref()), 3.0),
+            y: Axis::logarithmic(y, bracketed("SSE", unit.as_deref()), 3.0),
             height: 76,
             marks: vec![
                 curve.named("error of each candidate"),

@@ -1,13 +1,14 @@
 //! How a model's error is shared: by the feature that it goes with most.
 
+use super::HALF;
 use super::document::Figure;
 use super::palette::Role;
 use super::plot::{Axis, Mark, Panel, PlotError, Shape, draw};
-use super::{HALF, named};
 use crate::diagnosis::failure::{Feature, Region, Units};
 use crate::report::ComparedJoint;
-use crate::report::number::rounded;
 use crate::report::span::Span;
+use crate::wording::bracketed;
+use crate::wording::rounded;
 
 /// Shares of the squared error and of the time in each part of the feature whose parts
 /// differ most in them.
@@ -23,7 +24,7 @@ pub(super) fn figure(
     };
     let joint = compared.joint;
     let units = Units { input: joint.input_unit.clone(), output: joint.output_unit.clone() };
-    let name = named(first.feature.name(), first.feature.unit(&units).as_deref());
+    let name = bracketed(first.feature.name(), first.feature.unit(&units).as_deref());
     let svg = draw(&[panel(parts)], HALF, &format!("Share of the error of {}", joint.name))?;
     let caption = format!(
         "Where the error is, by {name}: the squared error of the model restarted at every step \

@@ -4,13 +4,14 @@ use super::document::Figure;
 use super::palette::Role;
 use super::plot::{Axis, Mark, Panel, Place, PlotError, Shape, draw};
 use super::timeline::Timeline;
-use super::{HALF, WIDTH, named, values_of};
+use super::{HALF, WIDTH, values_of};
 use crate::diagnosis::failure::WorstSegment;
 use crate::experiment::{Joint, Trial};
 use crate::fit::{FitRecord, Horizon, Part, Split, Window};
 use crate::report::ComparedJoint;
-use crate::report::number::percent;
 use crate::report::span::{Span, thinned_to};
+use crate::wording::bracketed;
+use crate::wording::percent;
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
@@ -29,7 +30,7 @@ pub(super) fn figure(
     let worst = worst_stretches(compared, &timeline);
     let output = Panel {
         x: timeline.axis().bare(),
-        y: Axis::new(outputs(compared), named("output", joint.output_unit.as_deref()), 5.0),
+        y: Axis::new(outputs(compared), bracketed("output", joint.output_unit.as_deref()), 5.0),
         height: 170,
         marks: vec![
             unfitted.clone().named("not fitted"),
@@ -51,7 +52,8 @@ pub(super) fn figure(
     let left = timeline.lines(|index, _| residual(compared, index));
     marks.push(Mark::new(Role::Model, Shape::Lines(left, 1.0)).named("measured − simulated"));
     marks.extend(noise_edges(compared, timeline.ends()));
-    let y = Axis::new(residuals(compared), named("residual", joint.output_unit.as_deref()), 6.0);
+    let y =
+        Axis::new(residuals(compared), bracketed("residual", joint.output_unit.as_deref()), 6.0);
     let left = Panel { x: timeline.axis(), y, height: 110, marks };
     let name = format!("Measured and simulated output of {}", joint.name);
     let svg = draw(&[output, left], WIDTH, &name)?;
@@ -79,7 +81,7 @@ pub(super) fn worst(
     let y = Span::around(measured.iter().chain(&simulated).map(|place| place.1), 0.08);
     let panel = Panel {
         x: Axis::new(x, "time [s]", 6.0),
-        y: Axis::new(y, named("output", joint.output_unit.as_deref()), 5.0),
+        y: Axis::new(y, bracketed("output", joint.output_unit.as_deref()), 5.0),
         height: 190,
         marks: vec![
             Mark::new(Role::Stretch, Shape::Stretches(vec![(worst.start_s, worst.end_s)], 0.22)),

@@ -6,8 +6,7 @@ use comfy_table::{Cell, CellAlignment, ContentArrangement, Table, presets};
 use super::sets::{Clause, clauses};
 use super::{ReportedSweep, level_text};
 use crate::delay::sweep::{Factor, Grid, Hanging, LevelSummary, SweptStep};
-use crate::report::number::{percent, rounded};
-use crate::report::words::filled;
+use crate::wording::{percent, rounded, wrapped};
 
 /// Clauses of the settings that agree that are said; the JSON has all.
 const CLAUSES: usize = 3;
@@ -39,9 +38,9 @@ pub fn sweep_text(
                      differ from what most settings say:";
     [
         paragraphs.join("\n"),
-        format!("{}\n{}", filled(of_values), levels_table(grid, joints)),
+        format!("{}\n{}", wrapped(of_values), levels_table(grid, joints)),
         steps_part(grid, joints, shown),
-        filled(&note),
+        wrapped(&note),
     ]
     .join("\n\n")
         + "\n"
@@ -49,7 +48,7 @@ pub fn sweep_text(
 
 /// A joint in sentences.
 fn paragraph(grid: &Grid, reported: &ReportedSweep<'_>) -> String {
-    filled(&format!("{}: {}", reported.joint.name, sweep_sentences(grid, reported).join(" ")))
+    wrapped(&format!("{}: {}", reported.joint.name, sweep_sentences(grid, reported).join(" ")))
 }
 
 /// How many delays are the same, what the others hang on, and which settings agree.

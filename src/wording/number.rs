@@ -1,4 +1,4 @@
-//! Numbers as a person reads them.
+//! Numbers and units as a person reads them.
 
 /// `value` to five significant digits, without trailing zeros: `0.012346`, `1.2e-9`.
 pub fn number(value: f64) -> String {
@@ -8,7 +8,7 @@ pub fn number(value: f64) -> String {
 }
 
 /// `value` as it is said in a sentence: to three significant digits.
-pub(super) fn rounded(value: f64) -> String {
+pub fn rounded(value: f64) -> String {
     to_digits(value, 3)
 }
 
@@ -36,20 +36,28 @@ fn tidy(text: &str) -> String {
     format!("{mantissa}{exponent}")
 }
 
-/// The same with a unit behind it, where there is one.
-pub(super) fn with_unit(value: f64, unit: Option<&str>) -> String {
-    let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
-    format!("{}{unit}", number(value))
+/// A unit as it stands behind a number: ` V`, or nothing.
+pub fn unit_suffix(unit: Option<&str>) -> String {
+    unit.map_or_else(String::new, |unit| format!(" {unit}"))
+}
+
+/// A quantity's name with its unit, as a heading: `input [V]`.
+pub fn bracketed(name: &str, unit: Option<&str>) -> String {
+    unit.map_or_else(|| name.to_owned(), |unit| format!("{name} [{unit}]"))
+}
+
+/// A number to five digits, with its unit where there is one.
+pub fn with_unit(value: f64, unit: Option<&str>) -> String {
+    number(value) + &unit_suffix(unit)
 }
 
 /// A number to three digits, with its unit where there is one.
 pub fn measure(value: f64, unit: Option<&str>) -> String {
-    let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
-    format!("{}{unit}", rounded(value))
+    rounded(value) + &unit_suffix(unit)
 }
 
 /// A value to the digits that its standard error leaves: `0.612 ± 0.021`.
-pub(super) fn with_error(value: f64, std_error: f64) -> String {
+pub fn with_error(value: f64, std_error: f64) -> String {
     let known = std_error.is_finite() && std_error > 0.0;
     #[expect(clippy::cast_possible_truncation, reason = "an exponent is small")]
     let decimals = if known { 1 - std_error.log10().floor() as i32 } else { 0 };
@@ -59,16 +67,6 @@ pub(super) fn with_error(value: f64, std_error: f64) -> String {
         }
         _ => format!("{} ± {}", number(value), number(std_error)),
     }
-}
-
-/// A probability as a test gives it: `p = 0.0312`.
-pub(super) fn probability(p_value: f64) -> String {
-    if p_value < 1e-4 { "p < 0.0001".to_owned() } else { format!("p = {p_value:.4}") }
-}
-
-/// Parts of a hundred: `31 %`.
-pub(super) fn percent(share: f64) -> String {
-    format!("{:.0} %", 100.0 * share)
 }
 
 #[cfg(test)]

@@ -1,0 +1,57 @@
+//! Sentences: lists, counts, and lines of a terminal.
+
+/// Columns of a line of prose.
+const WIDTH: usize = 92;
+
+/// `text` in lines of at most [`WIDTH`] columns where words allow.
+pub fn wrapped(text: &str) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        let length = |line: &str| line.chars().count();
+        match lines.last_mut() {
+            Some(line) if length(line) + 1 + length(word) <= WIDTH => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines.join("\n")
+}
+
+/// `1, 2 and 3`, with `and` or another word before the last.
+pub fn listed(items: &[String], conjunction: &str) -> String {
+    match items {
+        [before @ .., last] if !before.is_empty() => {
+            format!("{} {conjunction} {last}", before.join(", "))
+        }
+        _ => items.concat(),
+    }
+}
+
+/// `1 joint`, `2 joints`.
+pub fn counted(count: usize, noun: &str) -> String {
+    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_and_counts_read_as_prose() {
+        let items = ["1", "2", "3"].map(str::to_owned);
+        assert_eq!(
+            [0, 1, 2, 3].map(|n| listed(&items[..n], "or")),
+            ["", "1", "1 or 2", "1, 2 or 3"]
+        );
+        assert_eq!([0, 1, 2].map(|n| counted(n, "joint")), ["0 joints", "1 joint", "2 joints"]);
+    }
+
+    #[test]
+    fn lines_break_between_words() {
+        let text = "word ".repeat(40);
+        assert!(wrapped(&text).lines().all(|line| line.len() <= WIDTH));
+        assert_eq!(wrapped(&text).split_whitespace().count(), 40);
+    }
+}
