@@ -146,6 +146,18 @@ pub trait Effect: Debug + Send + Sync {
         matches!(self.spec().stage, Stage::Load | Stage::Output)
     }
 
+    /// Whether a joint with it moves otherwise while other joints move.
+    ///
+    /// A record of one joint alone cannot show such an effect.
+    fn depends_on_others(&self) -> bool {
+        false
+    }
+
+    /// Whether a joint with it moves otherwise when the machine has worked for a while.
+    fn depends_on_warmth(&self) -> bool {
+        false
+    }
+
     /// How a model file defines it, where it is not an effect of the program.
     fn definition(&self) -> Option<&expression::Definition> {
         None

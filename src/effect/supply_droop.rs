@@ -43,6 +43,10 @@ impl Effect for SupplyDroop {
         &SPEC
     }
 
+    fn depends_on_others(&self) -> bool {
+        true
+    }
+
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
         let &[droop] = parameters else { return at.signal };
         at.signal * (1.0 - droop * at.others)

@@ -55,6 +55,10 @@ impl Effect for ThermalDrift {
         &SPEC
     }
 
+    fn depends_on_warmth(&self) -> bool {
+        true
+    }
+
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
         let &[rate, time_constant] = parameters else { return at.signal };
         let share = -(-at.time_s / time_constant.max(f64::MIN_POSITIVE)).exp_m1();

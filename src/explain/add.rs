@@ -1,46 +1,13 @@
 //! One effect more in a model, because a user says so.
 
-use super::evidence::Noise;
-use super::race::{MUCH_LESS, range};
-use crate::diagnosis::{Comparison, ErrorFigures, NEAR_NOISE, compare, floor_of};
+use super::comparison::MUCH_LESS;
+use super::eligible::range;
+use super::evidence::NoiseMemory;
+use super::revision::{AddError, Addition};
+use crate::diagnosis::{ErrorFigures, NEAR_NOISE, compare, floor_of};
 use crate::effect::Effect;
-use crate::fit::{Fit, FitError, FitRecord, Part, fit};
+use crate::fit::{Fit, FitRecord, Part, fit};
 use crate::model::{Component, JointModel};
-
-/// A model before and after an effect was added.
-#[derive(Clone, Debug)]
-pub struct Addition {
-    /// The model as it was, fitted.
-    pub before: Comparison,
-    /// The model with the effect, fitted.
-    pub after: Comparison,
-    /// Probability of so much or more when the effect is not there, as for a
-    /// [`Candidate`](super::Candidate); `None` where the two models do not nest.
-    pub p_value: Option<f64>,
-}
-
-/// Why an effect cannot be added.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum AddError {
-    /// The model has it.
-    #[error("`{effect}` is in the model already; `tauscope compare --fit` fits it again")]
-    AlreadyThere {
-        /// Its id.
-        effect: &'static str,
-    },
-    /// The model has an effect that contains it.
-    #[error("`{effect}` is a part of `{whole}`, which is in the model already")]
-    Contained {
-        /// Its id.
-        effect: &'static str,
-        /// The id of the other.
-        whole: &'static str,
-    },
-    /// The model cannot be fitted.
-    #[error(transparent)]
-    Fit(#[from] FitError),
-}
 
 /// Fits the model of `base` with `effect`, which starts where it changes nothing.
 ///
@@ -59,7 +26,7 @@ pub fn add(
     let measured = of_measured_delays(record, &base, &by_law, effect);
     let measured = measured.and_then(|model| fit(record, &model, &range).ok());
     let costs_less = |other: &&Fit| other.cost < by_law.cost;
-    let noise = Noise::of(record, measured.as_ref().filter(costs_less).unwrap_or(&by_law));
+    let noise = NoiseMemory::of(record, measured.as_ref().filter(costs_less).unwrap_or(&by_law));
     let evidence = |fit: &Fit| noise.evidence(record, fit);
     let law = evidence(&by_law).criterion();
     let better = measured.filter(|measured| {

@@ -1,14 +1,39 @@
-//! A model with one effect more, fitted.
+//! A model with one effect more, beside the measurement, and when it is worth a name.
 
-use super::separate::Separation;
+use super::extension::components_of;
+use super::separation::Separation;
 use crate::diagnosis::ErrorFigures;
 use crate::fit::Fit;
+use crate::model::Component;
 
-/// Probability below which the best of a whole catalogue is no chance.
+/// The p-value below which the best of a whole catalogue is significant: about 0.02 for all of
+/// 19 effects together (Bonferroni).
 const OF_A_CATALOGUE: f64 = 1e-3;
 
-/// The same of all pairs of a catalogue.
+/// The p-value below which the best of all pairs of a catalogue is significant: 1.7e-4 for 171
+/// pairs together. A pair has more freedom to follow what is no effect at all.
 const OF_ALL_PAIRS: f64 = 1e-6;
+
+/// The p-value below which an effect is needed even in a model that passes for adequate: no
+/// memory of the noise accounts for it.
+pub(crate) const BEYOND_DOUBT: f64 = 1e-6;
+
+/// Percent of the error that an effect beyond doubt explains.
+pub(crate) const BEYOND_DOUBT_PERCENT: f64 = 5.0;
+
+/// Percent of the error that a single effect must explain to be worth a name.
+const SINGLE_PERCENT: f64 = 2.0;
+
+/// Percent of the error that a pair of effects must explain to be worth its names.
+const PAIR_PERCENT: f64 = 10.0;
+
+/// Percent of the error on the validation part by which it may grow through an effect that does
+/// not act there.
+const UNCHANGED_PERCENT: f64 = 1.0;
+
+/// Twice the difference in log-likelihood below which two models are as likely: a likelihood
+/// ratio of one in 150.
+pub(crate) const ALIKE: f64 = 10.0;
 
 /// A model with one effect more, or several, beside the measurement.
 #[derive(Clone, Debug)]
@@ -21,15 +46,15 @@ pub struct Candidate {
     pub training: Option<ErrorFigures>,
     /// The error on the part it was not fitted to.
     pub validation: Option<ErrorFigures>,
-    /// How much of the root mean square error it takes away, in percent: on the validation
+    /// How much of the root mean square error it explains, in percent: on the validation
     /// part, or on the training part where there is no other.
     pub error_reduction_percent: f64,
-    /// The same on the training part.
+    /// How much of the root mean square error of the training part it explains, in percent.
     pub training_reduction_percent: f64,
-    /// Probability of so much or more when the effect is not there: the smaller of two tests',
-    /// times two (see `evidence`).
+    /// The p-value: probability of so much or more when the effect is not there, the smaller of
+    /// two tests', times two (see `evidence`).
     pub p_value: f64,
-    /// Share of the misfit that it takes away: of the mean square error of the training part
+    /// Share of the misfit that it explains: of the mean square error of the training part
     /// beyond the noise of the measurement.
     pub share_of_misfit: f64,
     /// Twice the difference in log-likelihood to the best candidate, both parts of the
@@ -37,19 +62,13 @@ pub struct Candidate {
     pub behind: f64,
     /// Twice the negative log-likelihood, without a penalty.
     pub(super) deviance: f64,
-    /// Other candidates that this record cannot tell from this one.
+    /// Other candidates that this record cannot distinguish from this one.
     pub indistinguishable_from: Vec<&'static str>,
-    /// What would tell it from each of them, where it is significant.
+    /// What would separate it from each of them, where it is significant.
     pub separated_by: Vec<Separation>,
     /// Standard deviation of the measurement noise with its delay, output units.
     pub noise_floor: Option<f64>,
 }
-
-/// Probability that no memory of the noise accounts for.
-pub(crate) const BEYOND_DOUBT: f64 = 1e-6;
-
-/// Percent of the error that an effect beyond doubt takes away.
-pub(crate) const BEYOND_DOUBT_PERCENT: f64 = 5.0;
 
 impl Candidate {
     /// What was added, in one word: `dead_band`, or `dead_band + actuator_lag`.
@@ -57,26 +76,34 @@ impl Candidate {
         self.effects.join(" + ")
     }
 
-    /// Whether it takes away so much of the error that it is worth a name.
+    /// The effects that were added, with their fitted parameters.
+    pub(super) fn added(&self) -> impl Iterator<Item = &Component> {
+        components_of(&self.fit.model, &self.effects)
+    }
+
+    /// Id of the effect that was added last.
+    pub(super) fn newest(&self) -> &'static str {
+        self.effects[self.effects.len() - 1]
+    }
+
+    /// Whether it explains so much of the error that it is worth a name.
     pub(super) fn is_significant(&self) -> bool {
         match self.effects.as_slice() {
-            [_] => self.p_value < OF_A_CATALOGUE && self.takes_away(2.0),
-            _ => self.p_value < OF_ALL_PAIRS && self.takes_away(10.0),
+            [_] => self.p_value < OF_A_CATALOGUE && self.explains(SINGLE_PERCENT),
+            _ => self.p_value < OF_ALL_PAIRS && self.explains(PAIR_PERCENT),
         }
     }
 
     /// Whether it is needed even where the model passes for adequate.
     pub(super) fn is_beyond_doubt(&self) -> bool {
-        self.p_value < BEYOND_DOUBT && self.takes_away(BEYOND_DOUBT_PERCENT)
+        self.p_value < BEYOND_DOUBT && self.explains(BEYOND_DOUBT_PERCENT)
     }
 
-    /// Whether it takes `percent` off the error: on data that were not fitted, or, where it
+    /// Whether it explains `percent` of the error: on data that were not fitted, or, where it
     /// does not show there, on those that were.
-    fn takes_away(&self, percent: f64) -> bool {
-        /// An effect that does not act on the validation part changes its error so little.
-        const NOTHING_PERCENT: f64 = 1.0;
+    fn explains(&self, percent: f64) -> bool {
         self.error_reduction_percent > percent
-            || self.error_reduction_percent > -NOTHING_PERCENT
+            || self.error_reduction_percent > -UNCHANGED_PERCENT
                 && self.training_reduction_percent > percent
     }
 

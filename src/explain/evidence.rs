@@ -1,7 +1,7 @@
 //! How likely a record is under each of several models.
 //!
-//! The noise of the measurement may have a memory. One autoregression is fitted to what the
-//! best model leaves; the residuals of all models are filtered by it, and what remains is
+//! The noise of the measurement may have a memory. One autoregression is fitted to the residual
+//! of the best model; the residuals of all models are filtered by it, and what remains is
 //! held to be white. With sums of squares `R_t` of `n_t` samples that were fitted with `k`
 //! parameters, and `R_v` of `n_v` samples that were not, a model is judged by
 //!
@@ -13,11 +13,12 @@
 //! fitted.
 //!
 //! Whether a model is better than a simpler one is tested twice. Fisher's test compares the
-//! `R_t`. While much is still missing from both models, though, the memory of what the best
-//! one leaves is no noise's, and the filter can hide what is plain to see. So the residuals
-//! `e` of the simpler one in all windows, fitted or not, are also regressed, as they are, on
-//! what the other does otherwise, `d`, with an error that allows for any memory within a
-//! window (Liang and Zeger; each window in its turn left out, as Bell and `McCaffrey` have it):
+//! `R_t`. While much is still missing from both models, though, the memory of the best
+//! one's residual is not that of the noise, and the filter can hide what is plain to see. So the
+//! residuals `e` of the simpler one in all windows, fitted or not, are also regressed, without
+//! whitening, on the change `d` that the other makes to them, with a variance that is robust to
+//! any memory within a window (Liang and Zeger's sandwich, each window being a cluster, with the
+//! leave-one-out correction of Bell and `McCaffrey`):
 //!
 //! ```text
 //! β = Σ e·d / D,   D = Σ D_w,   D_w = |d_w|²,   h_w = D_w / D
@@ -29,19 +30,21 @@
 //! few windows only is beyond this test, and left to the first.
 //!
 //! # References
-//! Liang, K.-Y., and Zeger, S. L., 1986, Longitudinal data analysis using generalized linear
-//! models, Biometrika 73; Bell, R. M., and `McCaffrey`, D. F., 2002, Bias reduction in standard
-//! errors for linear regression with multi-stage samples, Survey Methodology 28.
+//! G. Schwarz, "Estimating the dimension of a model", Annals of Statistics 6 (1978), 461-464.
+//! K.-Y. Liang and S. L. Zeger, "Longitudinal data analysis using generalized linear models",
+//! Biometrika 73 (1986), 13-22. R. M. Bell and D. F. `McCaffrey`, "Bias reduction in standard
+//! errors for linear regression with multi-stage samples", Survey Methodology 28 (2002), 169-181.
 
 use crate::diagnosis::{BEYOND_NOISE, ErrorFigures, floor_of};
 use crate::fit::{Fit, FitRecord, Part, Status};
 use crate::numerics::fisher_tail;
 use crate::numerics::{autoregression, whitened};
 
-/// The noise of a record, as the best model leaves it.
+/// The memory of a record's noise, as the residual of the best model shows it.
 #[derive(Clone, Debug)]
-pub(super) struct Noise {
-    memory: Vec<f64>,
+pub(super) struct NoiseMemory {
+    /// Coefficients of an autoregression; none where the noise is taken to be white.
+    coefficients: Vec<f64>,
 }
 
 /// One model's residuals.
@@ -49,7 +52,7 @@ pub(super) struct Noise {
 pub(super) struct Evidence {
     training: Squares,
     validation: Squares,
-    /// The residuals of each window of both parts, as they are.
+    /// The residuals of each window of both parts, not whitened.
     windows: Vec<Vec<f64>>,
     /// Parameters that were fitted.
     parameters: usize,
@@ -61,11 +64,11 @@ struct Squares {
     samples: usize,
 }
 
-impl Noise {
-    /// The memory of what `fit` leaves, both parts together.
+impl NoiseMemory {
+    /// The memory of the residual of `fit`, both parts together.
     ///
-    /// What is far more than the noise of the measurement is a misfit, whose memory is no
-    /// noise's: models are then compared as if noise had none.
+    /// What is far more than the noise of the measurement is a misfit, whose memory is not that
+    /// of the noise: models are then compared as if the noise were white.
     pub(super) fn of(record: &FitRecord<'_>, fit: &Fit) -> Self {
         let mut windows = record.cut(&fit.evaluation.residuals, Part::Training);
         windows.extend(record.cut(&fit.evaluation.residuals, Part::Validation));
@@ -73,14 +76,14 @@ impl Noise {
         let is_misfit = error
             .zip(floor_of(record, fit))
             .is_some_and(|(error, floor)| error.rmse > BEYOND_NOISE * floor);
-        Self { memory: if is_misfit { Vec::new() } else { autoregression(&windows) } }
+        Self { coefficients: if is_misfit { Vec::new() } else { autoregression(&windows) } }
     }
 
     /// The evidence of the model of `fit`.
     pub(super) fn evidence(&self, record: &FitRecord<'_>, fit: &Fit) -> Evidence {
         let cut = |part| record.cut(&fit.evaluation.residuals, part);
         let squares = |windows: &[Vec<f64>]| {
-            let windows = whitened(windows, &self.memory);
+            let windows = whitened(windows, &self.coefficients);
             let sum: f64 = windows.iter().flatten().map(|e| e * e).sum();
             Squares { sum, samples: windows.iter().map(Vec::len).sum() }
         };
@@ -92,7 +95,8 @@ impl Noise {
 }
 
 impl Evidence {
-    /// The criterion: less is better.
+    /// Schwarz's criterion, `n_t ln R_t + k ln n_t + n_v ln R_v` but for a constant: less is
+    /// better.
     pub(super) fn criterion(&self) -> f64 {
         let penalty = self.parameters as f64 * (self.training.samples.max(2) as f64).ln();
         self.deviance() + penalty
@@ -103,56 +107,57 @@ impl Evidence {
         self.training.deviance() + self.validation.deviance()
     }
 
-    /// The same beside a simpler model that is no special case of it: the way from that to
+    /// This evidence beside a simpler model that is no special case of it: the way from that to
     /// the nearest of its own is a direction in which noise may lie, too, and counts as a
     /// parameter.
-    pub(super) fn apart(self) -> Self {
+    pub(super) fn not_nested(self) -> Self {
         Self { parameters: self.parameters + 1, ..self }
     }
 
-    /// The probability of so much more than a simpler model explains, were it no better: the
-    /// smaller of two tests', times two.
+    /// The p-value of what this model explains beyond a simpler one: the smaller of two tests',
+    /// times two (Bonferroni).
     pub(super) fn p_value_against(&self, simpler: &Self) -> f64 {
         const TESTS: f64 = 2.0;
-        (TESTS * self.by_likelihood(simpler).min(self.over_windows(simpler))).min(1.0)
+        let smaller = self.fisher_p_value(simpler).min(self.p_value_over_windows(simpler));
+        (TESTS * smaller).min(1.0)
     }
 
-    /// Fisher's test of this model against one with fewer parameters, on the training part.
-    fn by_likelihood(&self, simpler: &Self) -> f64 {
+    /// The p-value of Fisher's test of this model against one with fewer parameters, on the
+    /// training part:
+    ///
+    /// ```text
+    /// F = ((R₀ − R) / (k − k₀)) / (R / (n − k))
+    /// ```
+    fn fisher_p_value(&self, simpler: &Self) -> f64 {
         let added = self.parameters.saturating_sub(simpler.parameters).max(1);
         let freedom = self.training.samples.saturating_sub(self.parameters).max(1);
         let gained = (simpler.training.sum - self.training.sum).max(0.0) / added as f64;
-        let left = (self.training.sum / freedom as f64).max(f64::MIN_POSITIVE);
-        fisher_tail(gained / left, added, freedom).unwrap_or(1.0)
+        let variance = (self.training.sum / freedom as f64).max(f64::MIN_POSITIVE);
+        fisher_tail(gained / variance, added, freedom).unwrap_or(1.0)
     }
 
-    /// The probability of so much more than another model explains in many windows, were this
-    /// one no better: see the [module](self). 1 where it is spread over too few.
-    pub(super) fn over_windows(&self, other: &Self) -> f64 {
-        /// What a window does to the sum: `e·d` and `d·d`.
-        struct Pull {
-            with_residual: f64,
-            own: f64,
-        }
-        let pull = |(before, after): (&Vec<f64>, &Vec<f64>)| {
-            let pairs = || before.iter().zip(after).map(|(before, after)| (before, before - after));
-            let with_residual = pairs().map(|(e, d)| e * d).sum();
-            Pull { with_residual, own: pairs().map(|(_, d)| d * d).sum() }
-        };
-        let pulls: Vec<Pull> = other.windows.iter().zip(&self.windows).map(pull).collect();
-        let sum = |of: &dyn Fn(&Pull) -> f64| pulls.iter().map(of).sum::<f64>();
-        let whole = sum(&|pull| pull.own);
-        let factor = sum(&|pull| pull.with_residual) / whole;
+    /// The p-value of what this model explains beyond another in many windows: see the
+    /// [module](self). 1 where it is spread over too few.
+    pub(super) fn p_value_over_windows(&self, other: &Self) -> f64 {
+        let pairs = other.windows.iter().zip(&self.windows);
+        let windows: Vec<_> = pairs.map(|(before, after)| WindowSums::of(before, after)).collect();
+        let sum = |of: &dyn Fn(&WindowSums) -> f64| windows.iter().map(of).sum::<f64>();
+        // D = Σ D_w and β = Σ e·d / D.
+        let whole = sum(&|window| window.change_squared);
+        let slope = sum(&|window| window.residual_by_change) / whole;
+        // As many windows as d is spread over: D² / Σ D_w².
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
-        let spread = (whole * whole / sum(&|pull| pull.own * pull.own)) as usize;
-        let added = self.parameters.saturating_sub(other.parameters).max(1);
-        let error = |pull: &Pull| {
-            let left = pull.with_residual - factor * pull.own;
-            (left / (1.0 - pull.own / whole)).powi(2)
+        let spread = (whole * whole / sum(&|window| window.change_squared.powi(2))) as usize;
+        // var β = Σ_w ((e − β d)_w · d_w / (1 − h_w))² / D², with the leverage h_w = D_w / D.
+        let squared_score = |window: &WindowSums| {
+            let score = window.residual_by_change - slope * window.change_squared;
+            (score / (1.0 - window.change_squared / whole)).powi(2)
         };
-        let variance = (sum(&error) / (whole * whole)).max(f64::MIN_POSITIVE);
-        let statistic = factor * factor / (variance * added as f64);
-        if factor > 0.0 {
+        let variance = (sum(&squared_score) / (whole * whole)).max(f64::MIN_POSITIVE);
+        // F = β² / (var β · q), one-sided: a change against the residual explains nothing.
+        let added = self.parameters.saturating_sub(other.parameters).max(1);
+        let statistic = slope * slope / (variance * added as f64);
+        if slope > 0.0 {
             fisher_tail(statistic, added, spread.saturating_sub(added)).unwrap_or(1.0)
         } else {
             1.0
@@ -160,7 +165,27 @@ impl Evidence {
     }
 }
 
+/// What one window adds to the regression of residuals on their change.
+struct WindowSums {
+    /// `e_w · d_w`.
+    residual_by_change: f64,
+    /// `D_w = |d_w|²`.
+    change_squared: f64,
+}
+
+impl WindowSums {
+    /// Of the residuals `before` and `after` an effect was added.
+    fn of(before: &[f64], after: &[f64]) -> Self {
+        let pairs = || before.iter().zip(after).map(|(before, after)| (before, before - after));
+        Self {
+            residual_by_change: pairs().map(|(e, d)| e * d).sum(),
+            change_squared: pairs().map(|(_, d)| d * d).sum(),
+        }
+    }
+}
+
 impl Squares {
+    /// Twice the negative log-likelihood of white noise of unknown variance: `n ln (R / n)`.
     fn deviance(self) -> f64 {
         if self.samples == 0 {
             return 0.0;
@@ -198,7 +223,7 @@ mod tests {
     fn fisher_judges_what_a_parameter_gains() {
         let plain = evidence(1000.0, 2);
         // F(1, 997) of 2.7 is exceeded with probability 0.10, of 10 with 0.0016.
-        let by = |gain: f64| evidence(1000.0 - gain, 3).by_likelihood(&plain);
+        let by = |gain: f64| evidence(1000.0 - gain, 3).fisher_p_value(&plain);
         assert!((by(2.7) - 0.1).abs() < 0.01 && (by(10.0) - 0.0015).abs() < 0.0003);
     }
 
@@ -208,11 +233,11 @@ mod tests {
         // directions, whose square is beyond 9.21 with probability 0.01.
         let plain = evidence(1000.0, 2);
         let found = |parameters| evidence(1000.0 - 9.21, parameters);
-        let nested = found(3).by_likelihood(&plain);
-        let apart = found(3).apart().by_likelihood(&plain);
+        let nested = found(3).fisher_p_value(&plain);
+        let apart = found(3).not_nested().fisher_p_value(&plain);
         assert!((apart - 0.01).abs() < 0.001 && nested < 0.003);
         // Without a parameter of its own there is only the way.
-        assert!((found(2).apart().by_likelihood(&plain) / nested - 1.0).abs() < 1e-9);
+        assert!((found(2).not_nested().fisher_p_value(&plain) / nested - 1.0).abs() < 1e-9);
     }
 
     /// Windows of 50 samples of noise with a memory, with `effect` in each window.
@@ -225,16 +250,16 @@ mod tests {
         values.chunks(50).enumerate().map(window).collect()
     }
 
-    /// The test of a model that takes `slope` times a ramp off each window, fitted.
+    /// The test of a model that explains `slope` times a ramp in each window, fitted.
     fn of_ramp(seed: u64, effect: impl Fn(usize) -> f64, parameters: usize) -> f64 {
         let before = windows(seed, effect);
-        let places = || before.iter().flat_map(|w| (0..w.len()).map(|k| k as f64));
-        let with: f64 = places().zip(before.iter().flatten()).map(|(x, e)| x * e).sum();
-        let slope = with / places().map(|x| x * x).sum::<f64>();
+        let ramp = || before.iter().flat_map(|w| (0..w.len()).map(|k| k as f64));
+        let with: f64 = ramp().zip(before.iter().flatten()).map(|(x, e)| x * e).sum();
+        let slope = with / ramp().map(|x| x * x).sum::<f64>();
         let less = |w: &Vec<f64>| w.iter().enumerate().map(|(k, e)| e - slope * k as f64).collect();
         let after =
             Evidence { windows: before.iter().map(less).collect(), ..evidence(1.0, parameters) };
-        after.over_windows(&Evidence { windows: before, ..evidence(1.0, 2) })
+        after.p_value_over_windows(&Evidence { windows: before, ..evidence(1.0, 2) })
     }
 
     #[test]
@@ -252,7 +277,7 @@ mod tests {
         let once = Evidence { windows: vec![vec![0.0, 0.0], vec![0.0, 0.0]], ..evidence(1.0, 3) };
         let before = vec![vec![1.0, 5.0], vec![0.0, 0.0]];
         let before = Evidence { windows: before, ..evidence(1.0, 2) };
-        assert!((once.over_windows(&before) - 1.0).abs() < 1e-12);
+        assert!((once.p_value_over_windows(&before) - 1.0).abs() < 1e-12);
     }
 
     #[test]

@@ -1,33 +1,13 @@
-//! Explain and add, until nothing significant is left.
+//! Explain and add, until nothing significant is missing.
 
-use super::Workers;
-use super::candidate::Candidate;
-use super::grow::{Change, Step, grow, ids};
-use super::race::Options;
+use super::extension::ids;
+use super::options::Options;
+use super::revision::{Change, Improvement, Revision};
 use super::separate::separate;
-use super::verdict::Verdict;
-use crate::diagnosis::{Comparison, compare_knowing};
+use super::stepwise::{Step, add_stepwise};
+use super::workers::Workers;
+use crate::diagnosis::compare_knowing;
 use crate::fit::{Fit, FitRecord};
-
-/// A model and its error.
-#[derive(Clone, Debug)]
-pub struct Revision {
-    /// What changed.
-    pub change: Change,
-    /// The model, fitted.
-    pub comparison: Comparison,
-    /// The candidates for what comes next, best first; none where none was looked for.
-    pub ranking: Vec<Candidate>,
-}
-
-/// A model that was improved.
-#[derive(Clone, Debug)]
-pub struct Improvement {
-    /// The model as it was given, and after each change.
-    pub revisions: Vec<Revision>,
-    /// What is to be said of the last.
-    pub verdict: Verdict,
-}
 
 /// Adds what is missing from the model of `fit`, one effect after the other.
 ///
@@ -43,7 +23,7 @@ pub fn improve(
     let given = ids(&fit.model);
     let first = Step::new(record, Change::Start, fit);
     let mut revisions = Vec::new();
-    let verdict = grow(record, first, &given, options, workers, |step| {
+    let verdict = add_stepwise(record, first, &given, options, workers, |step| {
         let Step { change, fit, lack_of_fit, mut ranking } = step.clone();
         separate(record, &mut ranking, workers);
         let comparison = compare_knowing(record, fit, lack_of_fit);

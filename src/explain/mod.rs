@@ -1,18 +1,18 @@
 //! Which physical effect is missing from a model.
 //!
 //! The model is fitted, and if its misfit is more than noise, every effect of the catalogue
-//! is added to it in turn and fitted with it. The race is judged on the whole record: what
-//! was fitted counts with a penalty for its parameters, what was not counts as it is.
+//! is added to it in turn and fitted with it. They are ranked on the whole record: what was
+//! fitted counts with a penalty for its parameters, what was not counts as it is.
 //!
 //! - [`explain`]: verdict and ranking for one model
 //! - [`add()`]: an effect that the user chose
-//! - [`improve`]: explain and add until nothing significant is left
-//! - [`Separation`]: the experiment that would tell two effects apart
+//! - [`improve`]: explain and add until nothing significant is missing
+//! - [`Separation`]: the experiment that would separate two effects
 //! - [`Workers`]: who does the fits, one after the other or in parallel
 //!
 //! A closed world always blames somebody: the nearest effect lowers any error a little. So
 //! an effect is only named when the model with it, or with it and a few more, is adequate,
-//! or when it alone takes most of the misfit away.
+//! or when it alone explains most of the misfit.
 //!
 //! # References
 //! T. Bohlin, "Practical Grey-box Process Identification", 2006. N. R. Kristensen,
@@ -23,24 +23,33 @@
 
 mod add;
 mod candidate;
+mod comparison;
+mod eligible;
 mod evidence;
-mod grow;
+mod extension;
 mod improve;
+mod judge;
+mod options;
 mod pairs;
-mod race;
+mod ranking;
+mod removal;
+mod revision;
+mod screening;
 mod separate;
+mod separation;
+mod stepwise;
 mod verdict;
 mod workers;
 
-pub use add::{AddError, Addition, add};
+pub use add::add;
 pub use candidate::Candidate;
-pub(crate) use candidate::{BEYOND_DOUBT, BEYOND_DOUBT_PERCENT};
-pub use grow::Change;
-pub use improve::{Improvement, Revision, improve};
-pub(crate) use race::ALIKE;
-pub use race::{MAX_EFFECTS, Options};
-pub use separate::{Pattern, Proposal, Separation, Start};
+pub(crate) use candidate::{ALIKE, BEYOND_DOUBT, BEYOND_DOUBT_PERCENT};
+pub use improve::improve;
+pub use judge::explain;
+pub(crate) use judge::named;
+pub use options::{MAX_EFFECTS, Options};
+pub use revision::{AddError, Addition, Change, Improvement, Revision};
 pub(crate) use separate::{level_sets, thresholds, two_digits};
-pub(crate) use verdict::named;
-pub use verdict::{Explanation, Verdict, explain};
+pub use separation::{Pattern, Proposal, Separation, Start};
+pub use verdict::{Explanation, Verdict};
 pub use workers::{Sequential, Workers};

@@ -1,20 +1,22 @@
 //! Pairs of effects, for where no single one shows.
 //!
 //! An effect may only show once another one is there: a dead band behind a gain that was
-//! fitted without it, or two that take each other back. Scores on a part of the record tell
-//! which pairs are worth a survey, and the best few of these are fitted to the end.
+//! fitted without it, or two that cancel each other. Scores on a part of the record say which
+//! pairs are worth a survey, and the best few of these are fitted.
 
-use super::Workers;
-use super::race::{Entry, takes_part};
+use super::eligible::could_be_missing;
+use super::extension::Extension;
+use super::screening::fit_best;
+use super::workers::Workers;
 use crate::effect::{Effect, RecordRange};
-use crate::fit::{Directions, Fit, FitRecord, Score, Survey, fit_to_compare, survey};
+use crate::fit::{Directions, Fit, FitRecord, Score};
 use crate::model::{Component, JointModel};
 
 /// Pairs that are surveyed. Of 23 records that hid two effects of the catalogue their pair was
 /// among the first 17 of 136 by its score in 22, and the 48th in the other.
 const SURVEYED: usize = 48;
 
-/// Pairs that are fitted to the end.
+/// Pairs that are fitted. Chosen: each more costs a fit.
 const FINALISTS: usize = 3;
 
 /// `base` with two of `effects` more: the best few.
@@ -24,24 +26,18 @@ pub(super) fn pairs(
     effects: &[&'static dyn Effect],
     range: &RecordRange<'_>,
     workers: &impl Workers,
-) -> Vec<Entry> {
+) -> Vec<Extension> {
     let surveyed = record.thinned();
-    let glance = |pair: &[&'static dyn Effect; 2]| {
-        let model = with_both(record, &base.model, *pair)?;
-        Some((pair.map(|effect| effect.spec().id), survey(&surveyed, &model, range).ok()?))
+    let scored = best_scored(&surveyed, base, effects, range, workers);
+    let with = |pair: &[&'static dyn Effect; 2]| {
+        Some((pair.map(|effect| effect.spec().id), with_both(record, &base.model, *pair)?))
     };
-    let all = best_scored(&surveyed, base, effects, range, workers);
-    let mut glances: Vec<_> = workers.map(&all, glance).into_iter().flatten().collect();
-    glances.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
-    glances.truncate(FINALISTS);
-    let to_the_end = |(ids, survey): &([&'static str; 2], Survey)| {
-        let fit = fit_to_compare(record, &survey.model, range).ok()?;
-        Some(Entry { effects: ids.to_vec(), fit })
-    };
-    workers.map(&glances, to_the_end).into_iter().flatten().collect()
+    let models: Vec<_> = scored.iter().filter_map(with).collect();
+    let fits = fit_best(record, &surveyed, &models, range, |_| FINALISTS, workers);
+    fits.into_iter().map(|(ids, fit)| Extension { effects: ids.to_vec(), fit }).collect()
 }
 
-/// The pairs of `effects` that would take most of the residual of `base` at a glance.
+/// The pairs of `effects` that would explain most of the residual of `base`, to first order.
 fn best_scored(
     record: &FitRecord<'_>,
     base: &Fit,
@@ -56,37 +52,35 @@ fn best_scored(
         score.directions(&base.model.with(Component::neutral(*effect)), range)
     };
     let directions = workers.map(effects, directions);
-    let known: Vec<(&'static dyn Effect, Directions)> =
-        effects.iter().copied().zip(directions).collect();
-    let indices: Vec<usize> = (0..known.len()).collect();
-    let pairs: Vec<_> = of_two(&indices).collect();
-    let share = |pair: &[usize; 2]| {
-        let [one, two] = pair.map(|index| known.get(index));
-        one.zip(two).map_or(0.0, |(one, two)| one.1.share_with(&two.1))
-    };
+    let known: Vec<(&'static dyn Effect, &Directions)> =
+        effects.iter().copied().zip(&directions).collect();
+    let pairs: Vec<_> = of_two(&known).collect();
+    let share = |[one, two]: &[(&'static dyn Effect, &Directions); 2]| one.1.share_with(two.1);
     let mut scored: Vec<_> = workers.map(&pairs, share).into_iter().zip(pairs).collect();
     scored.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let effect = |index: usize| known.get(index).map(|(effect, _)| *effect);
-    let pair = |(_, [one, two]): (f64, [usize; 2])| Some([effect(one)?, effect(two)?]);
-    scored.into_iter().take(SURVEYED).filter_map(pair).collect()
+    scored.truncate(SURVEYED);
+    scored.into_iter().map(|(_, pair)| pair.map(|(effect, _)| effect)).collect()
 }
 
 /// Each two of `all`, once.
 fn of_two<T: Copy>(all: &[T]) -> impl Iterator<Item = [T; 2]> + '_ {
-    let behind = |place: usize| all.iter().skip(place + 1);
-    all.iter().enumerate().flat_map(move |(place, one)| behind(place).map(|two| [*one, *two]))
+    let pairs_of = |(index, one): (usize, &T)| {
+        let one = *one;
+        all[index + 1..].iter().map(move |two| [one, *two])
+    };
+    all.iter().enumerate().flat_map(pairs_of)
 }
 
-/// `model` with both effects; `None` where one has no place beside the other.
+/// `model` with both effects; `None` where one makes the other useless.
 fn with_both(
     record: &FitRecord<'_>,
     model: &JointModel,
     [one, two]: [&'static dyn Effect; 2],
 ) -> Option<JointModel> {
     let first = model.with(Component::neutral(one));
-    let has_place =
-        takes_part(record, &first, two.spec()) && !two.spec().absorbs.contains(&one.spec().id);
-    has_place.then(|| first.with(Component::neutral(two)))
+    let is_useful =
+        could_be_missing(record, &first, two) && !two.spec().absorbs.contains(&one.spec().id);
+    is_useful.then(|| first.with(Component::neutral(two)))
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 /// Does independent pieces of work.
 ///
-/// The fits of a race know nothing of one another. Who runs them, and on how many threads,
+/// The fits of a ranking know nothing of one another. Who runs them, and on how many threads,
 /// is the caller's business; results come back in the order of the pieces.
 pub trait Workers: Sync {
     /// `work` on each of `pieces`.

@@ -1,11 +1,12 @@
 //! Levels that are worth a trial.
 
-use super::proposal::Pattern;
 use crate::effect::Dimension;
+use crate::explain::extension::components_of;
+use crate::explain::separation::Pattern;
 use crate::model::JointModel;
 
 /// Magnitudes of levels that are worth a trial between a least and a largest one, and the
-/// patterns to try them in: about both, about the `thresholds` of the effects, and beyond the
+/// patterns to try them in: near both, near the `thresholds` of the effects, and beyond the
 /// largest.
 pub(crate) fn level_sets(
     (least, largest): (f64, f64),
@@ -13,35 +14,32 @@ pub(crate) fn level_sets(
 ) -> Vec<(Vec<f64>, &'static [Pattern])> {
     const ALL: &[Pattern] = &[Pattern::Ladder, Pattern::Pulses, Pattern::Reversals];
     const LADDER: &[Pattern] = &[Pattern::Ladder];
-    let about = |level: f64, parts: &[f64]| -> Vec<f64> {
+    let parts_of = |level: f64, parts: &[f64]| -> Vec<f64> {
         let mut levels: Vec<f64> = parts.iter().map(|part| two_digits(part * level)).collect();
         levels.dedup();
         levels
     };
     let mut sets = vec![
-        (about(least, &[0.25, 0.5, 0.75, 1.0]), LADDER),
-        (about(largest, &[0.25, 0.5, 0.75, 1.0]), LADDER),
-        (about(largest, &[0.5, 1.0]), ALL),
-        (about(largest, &[1.25, 1.5]), ALL),
+        (parts_of(least, &[0.25, 0.5, 0.75, 1.0]), LADDER),
+        (parts_of(largest, &[0.25, 0.5, 0.75, 1.0]), LADDER),
+        (parts_of(largest, &[0.5, 1.0]), ALL),
+        (parts_of(largest, &[1.25, 1.5]), ALL),
     ];
-    sets.extend(thresholds.iter().map(|t| (about(*t, &[0.6, 0.8, 1.2, 1.4]), LADDER)));
+    sets.extend(thresholds.iter().map(|t| (parts_of(*t, &[0.6, 0.8, 1.2, 1.4]), LADDER)));
     sets
 }
 
 /// The levels of the input at which the effects `ids` of their models switch or bend,
 /// different ones.
+///
+/// A level within 15 % of one before counts as the same; one below 2 % of the largest is none.
 pub(crate) fn thresholds(suspects: [(&JointModel, &[&'static str]); 2], largest: f64) -> Vec<f64> {
-    /// Thresholds that are tried.
-    const MOST: usize = 4;
-    /// What is nearer, in parts, is the same.
+    /// Thresholds that are tried, at most. Chosen: each multiplies the inputs to simulate.
+    const TRIED: usize = 4;
     const SAME: f64 = 0.15;
-    /// A threshold of a smaller part of the largest level is none.
     const LEAST: f64 = 0.02;
     let mut found: Vec<f64> = Vec::new();
-    let components = suspects.into_iter().flat_map(|(model, ids)| {
-        let all = model.components().iter();
-        all.filter(move |c| ids.contains(&c.effect().spec().id))
-    });
+    let components = suspects.into_iter().flat_map(|(model, ids)| components_of(model, ids));
     for component in components {
         let specs = component.effect().spec().parameters.iter();
         let levels = specs.zip(component.parameters());
@@ -53,7 +51,7 @@ pub(crate) fn thresholds(suspects: [(&JointModel, &[&'static str]); 2], largest:
             }
         }
     }
-    found.truncate(MOST);
+    found.truncate(TRIED);
     found
 }
 

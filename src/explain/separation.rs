@@ -1,13 +1,13 @@
-//! An experiment in numbers: levels, their order, holds and starts.
+//! What would separate two effects: an experiment in numbers, and how far apart it brings them.
 
 /// How the levels of an input follow one another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pattern {
     /// Rising and then falling, first in one direction and then in the other.
     Ladder,
-    /// Each in both directions, with the input at zero behind each.
+    /// Each in both directions, with the input at zero after each.
     Pulses,
-    /// Each in both directions, one at once behind the other.
+    /// Each in both directions, one directly after the other.
     Reversals,
 }
 
@@ -35,8 +35,25 @@ pub struct Proposal {
     pub starts: Vec<Start>,
 }
 
+/// What would separate two effects.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Separation {
+    /// Id of the other effect.
+    pub other: &'static str,
+    /// The best experiment of those that were tried.
+    pub proposal: Proposal,
+    /// The largest difference between the outputs of the two models in it, in times the
+    /// noise of the measurement.
+    pub times_noise: f64,
+    /// Seconds from the start of a run to that.
+    pub after_s: f64,
+    /// Whether the difference is large enough beside what other gains and starts of the
+    /// output could explain.
+    pub is_clear: bool,
+}
+
 impl Pattern {
-    /// `levels` in the order of the pattern, behind a rest.
+    /// `levels` in the order of the pattern, after a rest.
     pub(crate) fn sequence(self, levels: &[f64]) -> Vec<f64> {
         let mirrored = |level: &f64| [*level, -level];
         match self {

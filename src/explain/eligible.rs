@@ -1,0 +1,50 @@
+//! Which effects could be missing from a model.
+
+use super::options::Options;
+use crate::effect::{Effect, RecordRange, Spec};
+use crate::fit::FitRecord;
+use crate::model::JointModel;
+
+/// The effects of `options` that could be missing from `model`.
+pub(super) fn eligible(
+    record: &FitRecord<'_>,
+    model: &JointModel,
+    options: &Options,
+) -> Vec<&'static dyn Effect> {
+    let is_eligible = |effect: &&&'static dyn Effect| {
+        could_be_missing(record, model, **effect) && is_due(model, effect.spec(), options)
+    };
+    options.effects.iter().filter(is_eligible).copied().collect()
+}
+
+/// Whether `effect` could be missing: it is not there already, nor contained in one that is,
+/// and the record could show it.
+pub(super) fn could_be_missing(
+    record: &FitRecord<'_>,
+    model: &JointModel,
+    effect: &'static dyn Effect,
+) -> bool {
+    let id = effect.spec().id;
+    let is_it = |spec: &Spec| spec.id == id || spec.absorbs.contains(&id);
+    !has(model, is_it) && (!effect.depends_on_others() || record.has_others())
+}
+
+/// Whether it is time to look for `effect`: what it refines is in the model, or is not to be
+/// looked for.
+pub(super) fn is_due(model: &JointModel, effect: &Spec, options: &Options) -> bool {
+    let is_sought = |id| options.effects.iter().any(|effect| effect.spec().id == id);
+    effect.refines.is_none_or(|id| has(model, |spec| spec.id == id) || !is_sought(id))
+}
+
+fn has(model: &JointModel, is_it: impl Fn(&Spec) -> bool) -> bool {
+    model.components().iter().any(|component| is_it(component.effect().spec()))
+}
+
+/// How large the signals of `record` are, for a model with about the gain of `model`.
+pub(super) fn range<'l>(
+    record: &FitRecord<'_>,
+    model: &JointModel,
+    levels: &'l [f64],
+) -> RecordRange<'l> {
+    record.range(levels, model.gain.value.abs() * levels.last().copied().unwrap_or(1.0))
+}

@@ -1,0 +1,136 @@
+//! Every effect added to a model in turn, and fitted: which of them explains the misfit best.
+
+use super::candidate::Candidate;
+use super::comparison::compared;
+use super::eligible::{eligible, range};
+use super::extension::Extension;
+use super::options::Options;
+use super::pairs::pairs;
+use super::screening::fit_best;
+use super::workers::Workers;
+use crate::diagnosis::{ErrorFigures, NEAR_NOISE};
+use crate::effect::{Effect, RecordRange};
+use crate::fit::{Fit, FitRecord, Part, fit_to_compare};
+use crate::model::Component;
+
+/// What is tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scope {
+    /// Each effect by itself.
+    SingleEffects,
+    /// Measured delays, too, and pairs where no single effect shows: for a model that lacks
+    /// something for sure.
+    Everything,
+}
+
+/// Effects that are fitted, of those that were surveyed: at most, and at least. Chosen: each
+/// more costs a fit; `tests/hidden_effects.rs` finds what it hides with so many.
+const FINALISTS: (usize, usize) = (6, 3);
+
+/// What the cost of a finalist may be after the survey, in parts of the least. Chosen: a rough
+/// descent may end well above where a fit does.
+const HOPELESS: f64 = 3.0;
+
+/// Ranks the effects of `options` by how well the model of `base` with each of them, fitted,
+/// explains the record, best first.
+///
+/// A long record is surveyed in part first, and as a whole where that shows nothing.
+pub(super) fn rank(
+    record: &FitRecord<'_>,
+    base: &Fit,
+    noise_floor: f64,
+    options: &Options,
+    scope: Scope,
+    workers: &impl Workers,
+) -> Vec<Candidate> {
+    let levels = record.input_levels();
+    let range = range(record, &base.model, &levels);
+    let effects = eligible(record, &base.model, options);
+    let search = Search { record, base, noise_floor, effects: &effects, range: &range };
+    let [thinned, training] = [record.thinned(), record.for_training()];
+    let ranking = search.singles(&thinned, scope, workers);
+    let is_whole = thinned.windows().len() == training.windows().len();
+    let shows = |ranking: &[Candidate]| ranking.iter().any(Candidate::is_significant);
+    let ranking = if is_whole || shows(&ranking) {
+        ranking
+    } else {
+        search.singles(&training, scope, workers)
+    };
+    if scope == Scope::SingleEffects || shows(&ranking) {
+        return ranking;
+    }
+    let paired = search.beside_pairs(&ranking, workers);
+    if shows(&paired) { paired } else { ranking }
+}
+
+/// A model, and what may be missing from it.
+struct Search<'a, 'r> {
+    record: &'a FitRecord<'r>,
+    base: &'a Fit,
+    /// Standard deviation of the measurement noise, output units.
+    noise_floor: f64,
+    effects: &'a [&'static dyn Effect],
+    range: &'a RecordRange<'a>,
+}
+
+impl Search<'_, '_> {
+    /// The base with each effect by itself, ranked.
+    fn singles(
+        &self,
+        surveyed: &FitRecord<'_>,
+        scope: Scope,
+        workers: &impl Workers,
+    ) -> Vec<Candidate> {
+        let with = |effect: &&'static dyn Effect| {
+            (effect.spec().id, self.base.model.with(Component::neutral(*effect)))
+        };
+        let models: Vec<_> = self.effects.iter().map(with).collect();
+        let kept = |costs: &[f64]| {
+            let (most, least) = FINALISTS;
+            let limit = costs.first().map_or(0.0, |best| HOPELESS * best);
+            costs.iter().filter(|cost| **cost <= limit).count().clamp(least, most)
+        };
+        let fits = fit_best(self.record, surveyed, &models, self.range, kept, workers);
+        let extension = |(id, fit)| Extension { effects: vec![id], fit };
+        let mut extensions: Vec<Extension> = fits.into_iter().map(extension).collect();
+        if scope == Scope::Everything {
+            extensions.extend(self.with_measured_delays(&extensions));
+        }
+        self.compared(extensions)
+    }
+
+    /// The candidates of `ranking` among the best pairs of effects.
+    fn beside_pairs(&self, ranking: &[Candidate], workers: &impl Workers) -> Vec<Candidate> {
+        let single = |candidate: &Candidate| Extension {
+            effects: candidate.effects.clone(),
+            fit: candidate.fit.clone(),
+        };
+        let mut extensions = pairs(self.record, self.base, self.effects, self.range, workers);
+        extensions.extend(ranking.iter().map(single));
+        self.compared(extensions)
+    }
+
+    /// The base with each step's own delay as it was measured, where none of `extensions` comes
+    /// near the noise: delays may follow any law, or none.
+    fn with_measured_delays(&self, extensions: &[Extension]) -> Option<Extension> {
+        let Self { record, base, .. } = self;
+        let error = |one: &Extension| ErrorFigures::of(record, &one.fit.evaluation, Part::Training);
+        let errors = extensions.iter().filter_map(error).map(|error| error.rmse);
+        let least = errors.fold(f64::INFINITY, f64::min);
+        if least <= NEAR_NOISE * self.noise_floor {
+            return None;
+        }
+        let component = self.effects.iter().find_map(|effect| Component::measured(*effect))?;
+        let id = component.effect().spec().id;
+        let model = base.model.with(component);
+        if record.measured_delays(&model) == 0 {
+            return None;
+        }
+        let fit = fit_to_compare(record, &model, self.range).ok()?;
+        Some(Extension { effects: vec![id], fit })
+    }
+
+    fn compared(&self, extensions: Vec<Extension>) -> Vec<Candidate> {
+        compared(self.record, self.base, self.noise_floor, extensions)
+    }
+}

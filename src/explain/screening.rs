@@ -1,0 +1,31 @@
+//! Many models, of which the most promising are fitted.
+//!
+//! A survey, which is a rough descent in short windows of a part of the record, is cheap; a
+//! fit is not.
+
+use super::workers::Workers;
+use crate::effect::RecordRange;
+use crate::fit::{Fit, FitRecord, Survey, fit_to_compare, survey};
+use crate::model::JointModel;
+
+/// Surveys `models` on `surveyed` and fits the best of them to `record`; `kept` says how many,
+/// of the ascending costs of all surveys.
+pub(super) fn fit_best<K: Copy + Send + Sync>(
+    record: &FitRecord<'_>,
+    surveyed: &FitRecord<'_>,
+    models: &[(K, JointModel)],
+    range: &RecordRange<'_>,
+    kept: impl FnOnce(&[f64]) -> usize,
+    workers: &impl Workers,
+) -> Vec<(K, Fit)> {
+    let survey =
+        |(key, model): &(K, JointModel)| Some((*key, survey(surveyed, model, range).ok()?));
+    let mut surveys: Vec<(K, Survey)> = workers.map(models, survey).into_iter().flatten().collect();
+    surveys.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+    let costs: Vec<f64> = surveys.iter().map(|(_, survey)| survey.cost).collect();
+    surveys.truncate(kept(&costs));
+    let fit = |(key, survey): &(K, Survey)| {
+        Some((*key, fit_to_compare(record, &survey.model, range).ok()?))
+    };
+    workers.map(&surveys, fit).into_iter().flatten().collect()
+}

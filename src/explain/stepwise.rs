@@ -1,0 +1,124 @@
+//! Stepwise addition: effects are added to a model one after the other, until nothing
+//! significant is missing, and removed again where later ones make them useless.
+//!
+//! # References
+//! T. Hastie, R. Tibshirani and J. Friedman, "The Elements of Statistical Learning", 2009,
+//! section 3.3.2 (forward stepwise selection); M. A. Efroymson, "Multiple regression analysis",
+//! 1960 (with removal).
+
+use super::candidate::Candidate;
+use super::eligible::range;
+use super::extension::ids;
+use super::options::Options;
+use super::ranking::{Scope, rank};
+use super::removal::Removal;
+use super::revision::Change;
+use super::verdict::Verdict;
+use super::workers::Workers;
+use crate::diagnosis::{LackOfFit, floor_of, lack_of};
+use crate::fit::{Fit, FitRecord, fit_to_compare};
+
+/// A model on the way.
+#[derive(Clone, Debug)]
+pub(super) struct Step {
+    pub(super) change: Change,
+    pub(super) fit: Fit,
+    pub(super) lack_of_fit: Option<LackOfFit>,
+    /// The candidates for what comes next, best first; none where none was looked for.
+    pub(super) ranking: Vec<Candidate>,
+}
+
+impl Step {
+    pub(super) fn new(record: &FitRecord<'_>, change: Change, fit: Fit) -> Self {
+        Self { change, lack_of_fit: lack_of(record, &fit), fit, ranking: Vec::new() }
+    }
+
+    /// Whether no lack of fit is shown.
+    fn is_adequate(&self) -> bool {
+        self.lack_of_fit.is_none_or(|test| test.adequate)
+    }
+
+    /// Whether nothing can be missing: the residual is hardly more than the noise.
+    fn is_at_the_noise(&self) -> bool {
+        self.lack_of_fit.is_none_or(|test| test.adequate && test.is_near_noise())
+    }
+
+    /// Ranks what may be missing, where that is not done; whether anything is. The first of
+    /// the ranking is then one that is significant, if any is.
+    ///
+    /// A model that passes the test lacks something still when an effect shows it beyond
+    /// doubt: the test knows shapes, the effects know physics.
+    pub(super) fn rank_missing(
+        &mut self,
+        record: &FitRecord<'_>,
+        options: &Options,
+        workers: &impl Workers,
+    ) -> bool {
+        if self.is_at_the_noise() {
+            return false;
+        }
+        if self.ranking.is_empty() {
+            let floor = floor_of(record, &self.fit).unwrap_or(0.0);
+            let scope = if self.is_adequate() { Scope::SingleEffects } else { Scope::Everything };
+            self.ranking = rank(record, &self.fit, floor, options, scope, workers);
+        }
+        let lacks = !self.is_adequate() || self.ranking.iter().any(Candidate::is_beyond_doubt);
+        match self.ranking.iter().position(Candidate::is_significant) {
+            _ if !lacks => self.ranking.clear(),
+            Some(index) => self.ranking[..=index].rotate_right(1),
+            None => {}
+        }
+        lacks
+    }
+}
+
+/// Adds to `first` what it lacks, one effect after the other, and removes what has become
+/// useless. `visit` sees each step once; where it says no, nothing more is tried.
+///
+/// Effects of `given` stay.
+pub(super) fn add_stepwise(
+    record: &FitRecord<'_>,
+    first: Step,
+    given: &[&'static str],
+    options: &Options,
+    workers: &impl Workers,
+    mut visit: impl FnMut(&Step) -> bool,
+) -> Verdict {
+    let mut step = first;
+    loop {
+        if !step.rank_missing(record, options, workers) {
+            visit(&step);
+            return Verdict::Adequate;
+        }
+        let found = step.ranking.first().filter(|best| best.is_significant()).cloned();
+        let explained = found.is_some();
+        let added = ids(&step.fit.model).len().saturating_sub(given.len());
+        let goes_on = visit(&step) && added < options.max_effects;
+        let Some(found) = found.filter(|_| goes_on) else {
+            return if explained { Verdict::MissingEffect } else { Verdict::Unexplained };
+        };
+        if let Some(alone) = first_of_pair(record, &found) {
+            step = alone;
+            if !visit(&step) {
+                return Verdict::MissingEffect;
+            }
+        }
+        step = Step::new(record, Change::Added(found.newest()), found.fit);
+        let mut removal = Removal { given, kept: found.effects, options };
+        while let Some((change, fit)) = removal.better(record, &step.fit, workers) {
+            if !visit(&step) {
+                return if step.is_adequate() { Verdict::Adequate } else { Verdict::MissingEffect };
+            }
+            step = Step::new(record, change, fit);
+        }
+    }
+}
+
+/// The model with the first effect of a pair alone: a step on the way, which need not be better.
+fn first_of_pair(record: &FitRecord<'_>, found: &Candidate) -> Option<Step> {
+    let [first, second] = found.effects.as_slice() else { return None };
+    let model = found.fit.model.without(second);
+    let levels = record.input_levels();
+    let fit = fit_to_compare(record, &model, &range(record, &model, &levels)).ok()?;
+    Some(Step::new(record, Change::Added(first), fit))
+}
