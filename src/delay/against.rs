@@ -5,7 +5,8 @@
 
 use serde::Serialize;
 
-use super::estimate::{Breakpoint, Decision, TrialEstimate};
+use super::decision::{Breakpoint, Decision};
+use super::trial_estimate::TrialEstimate;
 use crate::experiment::{Joint, Trial};
 use crate::numerics::{RankTest, holm, mann_whitney, median, spearman};
 

@@ -42,9 +42,11 @@ use std::f64::consts::{PI, TAU};
 use serde::Serialize;
 
 use super::chain::ceil;
-use super::estimate::{Decision, FineDelay, Settings, Verdict};
+use super::decision::{Decision, Verdict};
 use super::hinge;
-use super::method::Method;
+use super::interval::FineDelay;
+use super::settings::Method;
+use super::settings::Settings;
 use super::steps::input_steps;
 use crate::experiment::Trial;
 use crate::numerics::LowPass;

@@ -8,9 +8,9 @@
 use std::ops::Range;
 
 use super::broken_line::floor;
-use super::estimate::Settings;
 use super::free_motion::FreeMotion;
 use super::response::{Response, Shape};
+use super::settings::Settings;
 use super::steps::InputStep;
 use crate::numerics::moments;
 

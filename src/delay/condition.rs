@@ -4,8 +4,9 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::estimate::{FineDelay, Settings};
+use super::interval::FineDelay;
 use super::search::Candidate;
+use super::settings::Settings;
 
 /// What a decision may fail, in the paper's order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]

@@ -3,8 +3,9 @@
 //! Algorithm 1 goes step by step, so that a decision stays as soon as its segment has come
 //! whole: up to `p_(i+1) + α`, and so much further that the low-pass has forgotten the end.
 
-use super::estimate::{EstimateError, Settings, TrialEstimate};
 use super::profile::DelayProfile;
+use super::settings::Settings;
+use super::trial_estimate::{EstimateError, TrialEstimate};
 use crate::experiment::Trial;
 use crate::numerics::FilterError;
 
@@ -30,7 +31,7 @@ pub enum Growing {
 /// # Errors
 /// [`Growing`] when they hang on the whole record.
 pub fn check_growing(settings: &Settings) -> Result<(), Growing> {
-    if settings.method != super::Method::TwoLine {
+    if settings.method != super::settings::Method::TwoLine {
         return Err(Growing::Method { method: settings.method.id() });
     }
     if settings.confidence.is_some() {

@@ -3,8 +3,9 @@
 use std::fmt;
 
 use super::condition::{Check, Condition, Outcome};
-use super::estimate::{Decision, Settings};
-use super::method::Method;
+use super::decision::Decision;
+use super::settings::Method;
+use super::settings::Settings;
 
 /// The smallest change of the settings with which one condition would have been met, all
 /// else being as it was.

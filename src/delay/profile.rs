@@ -1,20 +1,7 @@
 //! The delay of every sample: `τ_k`.
 
-use serde::Serialize;
-
-use super::estimate::Decision;
-
-/// How `τ_k` goes on between two steps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Interpolation {
-    /// `τ_k = δ_i` for `k = p_i … p_(i+1)`: the paper's.
-    #[default]
-    Hold,
-    /// From `δ_i` at `p_i` in a line to `δ_(i+1)` at `p_(i+1)`; held where the next step
-    /// was not accepted.
-    Linear,
-}
+use super::decision::Decision;
+use super::settings::Interpolation;
 
 /// The delay of every sample in samples; empty where none was recorded.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@
 
 use super::broken_line::{PARAMETERS, Window};
 use super::condition::nothing_happened;
-use super::estimate::Decision;
+use super::decision::Decision;
 use crate::numerics::NoiseModel;
 
 /// Puts the verdict on each decision of a method that has none of its own.

@@ -1,7 +1,9 @@
 //! The delays of a joint for whoever only wants the delays.
 
-use super::estimate::{EstimateError, Settings, estimate_joint};
-use super::method::Method;
+use super::estimate::estimate_joint;
+use super::settings::Method;
+use super::settings::Settings;
+use super::trial_estimate::EstimateError;
 use crate::experiment::Trial;
 
 /// The dead time of one change of the input, seconds, with its 95 % interval.
@@ -39,7 +41,7 @@ pub fn step_delays(trials: &[Trial]) -> Result<Vec<Vec<Option<StepDelay>>>, Esti
     let settings = Settings { keep_first_last: true, ..Settings::of(Method::LagAware) };
     let estimates = estimate_joint(trials, &settings);
     let of = |(trial, estimate): (&Trial, Result<_, EstimateError>)| {
-        let estimate: super::estimate::TrialEstimate = estimate?;
+        let estimate: super::trial_estimate::TrialEstimate = estimate?;
         let period_s = trial.period().seconds();
         let decisions = estimate.decisions.iter().map(|decision| {
             decision.accepted_delay()?;

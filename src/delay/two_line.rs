@@ -8,10 +8,11 @@
 //! Albrecht and Taylor, Algorithm 1 (time-varying delays of hydraulic manipulators).
 
 use super::condition::Facts;
-use super::estimate::{Decision, Settings, Verdict};
+use super::decision::{Decision, Verdict};
 use super::reaction;
 use super::search::Candidates;
 use super::segment::Segment;
+use super::settings::Settings;
 use super::steps::InputStep;
 
 /// The decisions on all `steps`; `output` is what the lines are fitted to, `raw` what was

@@ -1,0 +1,93 @@
+//! What became of an input step, with the evidence for it.
+
+use std::fmt;
+
+use super::condition::{Check, Condition, Outcome};
+use super::interval::FineDelay;
+use super::search::{Candidate, Candidates};
+use super::segment::Segment;
+use super::steps::InputStep;
+use crate::units::signed;
+
+/// The decision on one input step, with the evidence for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decision {
+    /// `i`: number of the step in its trial, from 1.
+    pub number: usize,
+    /// `p_i` and the levels of the input.
+    pub input_step: InputStep,
+    /// Samples to the next step, or to the end of the trial.
+    pub hold: usize,
+    /// The samples that were looked at.
+    pub segment: Segment,
+    /// Every pair of lines.
+    pub candidates: Candidates,
+    /// Every condition, in the order of [`Condition::ALL`].
+    pub checks: Vec<Check>,
+    /// The delay between samples, where the method tells it.
+    pub fine: Option<FineDelay>,
+}
+
+/// The best breakpoint of a segment, accepted or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Breakpoint {
+    /// The pair of lines.
+    pub candidate: Candidate,
+    /// `δ_i = q_i − p_i` in samples; negative when it comes before the input step.
+    pub delay: i64,
+}
+
+/// What became of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Its delay counts.
+    Accepted,
+    /// It does not; the first condition that failed.
+    Rejected(Condition),
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Accepted => f.write_str("accepted"),
+            Self::Rejected(condition) => f.write_str(condition.id()),
+        }
+    }
+}
+
+impl Decision {
+    /// The best breakpoint, if there was a candidate.
+    pub fn breakpoint(&self) -> Option<Breakpoint> {
+        let candidate = self.candidates.best()?;
+        let delay = signed(candidate.breakpoint) - signed(self.input_step.sample);
+        Some(Breakpoint { candidate, delay })
+    }
+
+    /// `p_(i+1)`: the sample of the next step, or the one behind the trial's last.
+    pub fn next_sample(&self) -> usize {
+        self.input_step.sample + self.hold
+    }
+
+    /// Accepted, or the first condition that failed.
+    pub fn verdict(&self) -> Verdict {
+        self.failed().next().map_or(Verdict::Accepted, Verdict::Rejected)
+    }
+
+    /// All conditions that failed.
+    pub fn failed(&self) -> impl Iterator<Item = Condition> + '_ {
+        let failed = self.checks.iter().filter(|check| check.outcome == Outcome::Failed);
+        failed.map(|check| check.condition)
+    }
+
+    /// The delay in samples, if it was accepted.
+    pub fn accepted_delay(&self) -> Option<f64> {
+        let accepted = self.verdict() == Verdict::Accepted;
+        self.delay().filter(|_| accepted)
+    }
+
+    /// The delay in samples, accepted or not, as finely as the method tells it.
+    pub fn delay(&self) -> Option<f64> {
+        let fine = self.fine.map(|fine| fine.delay);
+        fine.or_else(|| self.breakpoint().map(|best| best.delay as f64))
+    }
+}

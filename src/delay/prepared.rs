@@ -1,0 +1,29 @@
+//! A trial as a method sees it: its steps, and its output smoothed as asked.
+
+use super::settings::Settings;
+use super::steps::{InputStep, input_steps};
+use crate::experiment::Trial;
+use crate::numerics::{FilterError, LowPass};
+use crate::units::SamplePeriod;
+
+/// A trial as a method sees it.
+pub(super) struct Prepared<'a> {
+    pub(super) raw: &'a [f64],
+    pub(super) smoothed: Option<Vec<f64>>,
+    pub(super) period: SamplePeriod,
+    pub(super) steps: Vec<InputStep>,
+}
+
+impl<'a> Prepared<'a> {
+    pub(super) fn of(trial: &'a Trial, settings: &Settings) -> Result<Self, FilterError> {
+        let smooth = |filter: LowPass| filter.smooth(trial.output(), trial.period());
+        let smoothed = settings.low_pass.map(smooth).transpose()?;
+        let steps = input_steps(trial.input(), settings.min_step);
+        Ok(Self { raw: trial.output(), smoothed, period: trial.period(), steps })
+    }
+
+    /// What the method is to look at.
+    pub(super) fn output(&self) -> &[f64] {
+        self.smoothed.as_deref().unwrap_or(self.raw)
+    }
+}

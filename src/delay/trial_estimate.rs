@@ -1,0 +1,45 @@
+//! The delays of one trial, and why a trial has none.
+
+use super::decision::Decision;
+use super::profile::DelayProfile;
+use super::response::Lag;
+use super::settings::SettingsError;
+use crate::numerics::FilterError;
+
+/// Why a trial has no estimate.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EstimateError {
+    /// The settings make no sense.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The output cannot be smoothed as asked.
+    #[error(transparent)]
+    Filter(#[from] FilterError),
+    /// Every trial of a joint is shorter than two rows of β samples.
+    #[error(
+        "the longest trial has {samples} samples, but two lines need at least 2β = {needed}; \
+         choose a smaller `--beta`"
+    )]
+    TooFewSamples {
+        /// Samples of the longest trial.
+        samples: usize,
+        /// Samples it needs.
+        needed: usize,
+    },
+}
+
+/// The delays of one trial of one joint, with all evidence.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrialEstimate {
+    /// The trial's label.
+    pub label: String,
+    /// The output that the lines were fitted to; `None` when it is the measured one.
+    pub smoothed: Option<Vec<f64>>,
+    /// One decision per input step, in order.
+    pub decisions: Vec<Decision>,
+    /// The delay of every sample.
+    pub profile: DelayProfile,
+    /// How the joint follows after its dead time, where the method looks for it.
+    pub lag: Option<Lag>,
+}
