@@ -12,12 +12,12 @@ use crate::delay::{
 use crate::design::{
     Design, DesignError, Limits, Stand, Suspects, SuspectsError, Uncertain, shortest,
 };
-use crate::diagnosis::{Comparison, compare, floor_of};
-use crate::effect::Effect;
+use crate::diagnosis::{Comparison, compare, compare_unfitted, floor_of};
+use crate::effect::{Effect, RecordRange};
 use crate::experiment::{Joint, Trial, activity};
 use crate::explain::{AddError, Addition, add};
 use crate::explain::{Explanation, Improvement, Options, Revision, Workers, explain, improve};
-use crate::fit::{Fit, FitError, FitRecord, Horizon, Split, assess, fit};
+use crate::fit::{Assessment, Fit, FitError, FitRecord, Horizon, Split, assess, fit};
 use crate::model::{JointModel, integrators};
 use crate::numerics::median;
 
@@ -230,7 +230,12 @@ pub fn compare_joints<'a>(
     protocol: impl Into<Watched<'a>>,
 ) -> OfJoints<Comparison> {
     let watched = protocol.into();
-    for_each_joint(joints, estimates, models, watched, |_, record, fit| compare(record, fit))
+    if watched.protocol.mode == Mode::AsItIs {
+        let compared = |_: usize, record: &FitRecord<'_>, model| compare_unfitted(record, model);
+        return for_each_joint(joints, estimates, models, watched, (as_it_is, compared));
+    }
+    let compared = |_: usize, record: &FitRecord<'_>, fit| compare(record, fit);
+    for_each_joint(joints, estimates, models, watched, (best_fit, compared))
 }
 
 /// Says what each joint's model lacks: see [`explain`].
@@ -242,9 +247,10 @@ pub fn explain_joints<'a>(
     options: &Options,
 ) -> OfJoints<Explanation> {
     let watched = protocol.into();
-    for_each_joint(joints, estimates, models, watched, |_, record, fit| {
+    let work = |_: usize, record: &FitRecord<'_>, fit| {
         explain(record, fit, options, &Threads(watched.watch))
-    })
+    };
+    for_each_joint(joints, estimates, models, watched, (best_fit, work))
 }
 
 /// Adds `effect` to each joint's model: see [`add`].
@@ -256,7 +262,7 @@ pub fn add_to_joints<'a>(
     effect: &'static dyn Effect,
 ) -> Vec<Option<Result<Addition, AddError>>> {
     let work = |_: usize, record: &FitRecord<'_>, fit: Fit| add(record, fit, effect);
-    let added = for_each_joint(joints, estimates, models, protocol.into(), work);
+    let added = for_each_joint(joints, estimates, models, protocol.into(), (best_fit, work));
     added.into_iter().map(|result| Some(result?.map_err(AddError::from).flatten())).collect()
 }
 
@@ -271,9 +277,10 @@ pub fn improve_joints<'a>(
     done: impl Fn(usize, &Revision) -> bool + Sync,
 ) -> OfJoints<Improvement> {
     let watched = protocol.into();
-    for_each_joint(joints, estimates, models, watched, |index, record, fit| {
+    let work = |index, record: &FitRecord<'_>, fit| {
         improve(record, fit, options, &Threads(watched.watch), |revision| done(index, revision))
-    })
+    };
+    for_each_joint(joints, estimates, models, watched, (best_fit, work))
 }
 
 /// Fits each joint's model and says how well its log knows the numbers; what it does not
@@ -285,10 +292,11 @@ pub fn know_joints(
     protocol: Protocol,
     share: f64,
 ) -> OfJoints<Uncertain> {
-    for_each_joint(joints, estimates, models, protocol.into(), |_, record, fit| {
+    let work = |_: usize, record: &FitRecord<'_>, fit: Fit| {
         let noise = floor_of(record, &fit).unwrap_or_default().max(f64::MIN_POSITIVE);
         Uncertain::of_fit(record, &fit, noise, share)
-    })
+    };
+    for_each_joint(joints, estimates, models, protocol.into(), (best_fit, work))
 }
 
 /// Fits two effects to each joint, each beside its model: see [`Suspects::of_record`].
@@ -303,7 +311,7 @@ pub fn suspect_joints(
     let work = |_: usize, record: &FitRecord<'_>, fit: Fit| {
         Suspects::of_record(record, &fit.model, effects, noise, share)
     };
-    let suspects = for_each_joint(joints, estimates, models, protocol.into(), work);
+    let suspects = for_each_joint(joints, estimates, models, protocol.into(), (best_fit, work));
     let flat = |of: Result<Result<_, _>, FitError>| of.map_err(SuspectsError::from).flatten();
     suspects.into_iter().map(|result| result.map(flat)).collect()
 }
@@ -322,13 +330,16 @@ pub fn design_separation(
     shortest(suspects, stand, limits, &Threads(&()), &tried)
 }
 
-/// Fits the model of each joint and does `work` with it.
-fn for_each_joint<T: Send>(
+/// Prepares the model of each joint from its starts, and does `work` with what comes of it.
+fn for_each_joint<P, T: Send>(
     joints: &[Joint],
     estimates: &[Result<JointEstimate, EstimateError>],
     models: impl Fn(&Joint) -> Option<JointModel> + Sync,
     Watched { protocol, watch }: Watched<'_>,
-    work: impl Fn(usize, &FitRecord<'_>, Fit) -> T + Sync,
+    (prepare, work): (
+        impl Fn(&FitRecord<'_>, &[JointModel]) -> Option<Result<P, FitError>> + Sync,
+        impl Fn(usize, &FitRecord<'_>, P) -> T + Sync,
+    ),
 ) -> OfJoints<T> {
     let Protocol { mode, split, horizon } = protocol;
     watch.more(joints.len());
@@ -347,9 +358,9 @@ fn for_each_joint<T: Send>(
                 given.unwrap_or_else(|| integrators(joint, &estimated))
             }
         };
-        let fit = best_fit(&record, &starts, mode);
+        let prepared = prepare(&record, &starts);
         watch.done();
-        Some(fit?.map(|fit| work(index, &record, fit)))
+        Some(prepared?.map(|prepared| work(index, &record, prepared)))
     };
     (0..joints.len()).into_par_iter().zip(estimates).map(one_joint).collect()
 }
@@ -368,21 +379,24 @@ fn typical_delay_s((joint, estimate): (&Joint, &Result<JointEstimate, EstimateEr
 }
 
 /// The best of the fits from several starts.
-fn best_fit(
-    record: &FitRecord<'_>,
-    starts: &[JointModel],
-    mode: Mode,
-) -> Option<Result<Fit, FitError>> {
+fn best_fit(record: &FitRecord<'_>, starts: &[JointModel]) -> Option<Result<Fit, FitError>> {
     let levels = record.input_levels();
-    let top = levels.last().copied().unwrap_or(1.0);
-    let speed = starts.first().map_or(1.0, |model| model.gain.value.abs() * top);
-    let range = record.range(&levels, speed);
-    let fits = starts.iter().map(|start| match mode {
-        Mode::Integrator | Mode::Fit | Mode::FitOrIntegrator => fit(record, start, &range),
-        Mode::AsItIs => assess(record, start, &range),
-    });
+    let range = range(record, &levels, starts.first()?);
+    let fits = starts.iter().map(|start| fit(record, start, &range));
     let cost = |result: &Result<Fit, FitError>| result.as_ref().map_or(f64::MAX, |fit| fit.cost);
     fits.min_by(|a, b| cost(a).total_cmp(&cost(b)))
+}
+
+/// The first of the models as it is.
+fn as_it_is(record: &FitRecord<'_>, models: &[JointModel]) -> Option<Result<Assessment, FitError>> {
+    let (levels, model) = (record.input_levels(), models.first()?);
+    Some(assess(record, model, &range(record, &levels, model)))
+}
+
+/// How large the signals of a record are, with the speeds that `model` reaches.
+fn range<'l>(record: &FitRecord<'_>, levels: &'l [f64], model: &JointModel) -> RecordRange<'l> {
+    let top = levels.last().copied().unwrap_or(1.0);
+    record.range(levels, model.gain.value.abs() * top)
 }
 
 /// The threads of the pool that the caller runs in, and who is told of their work.

@@ -8,7 +8,7 @@ mod real;
 use tauscope::effect::find;
 use tauscope::experiment::{Joint, Trial};
 use tauscope::explain::{Options, Sequential, improve};
-use tauscope::fit::{Fit, FitRecord, Horizon, Split, fit};
+use tauscope::fit::{Assessment, Fit, FitRecord, Horizon, Split, fit};
 use tauscope::model::{Component, JointModel};
 use tauscope::numerics::LowPass;
 use tauscope::units::SamplePeriod;
@@ -143,7 +143,7 @@ fn coulomb_friction_is_named_first_and_the_force_error_falls_as_published() {
     // Published: 17.97 % with inertia and viscous friction, 4.08 % with Coulomb friction and
     // offset, which are two levels here.
     let value =
-        |fit: &Fit, name: &str| fit.parameters.iter().find(|p| p.name == name).unwrap().value;
+        |fit: &Assessment, name: &str| fit.parameters.iter().find(|p| p.name == name).unwrap().value;
     let base = &revision.comparison.fit;
     let viscous = 1.0 / value(base, "gain");
     let inertia = viscous * value(base, "actuator_lag.time_constant");

@@ -12,7 +12,7 @@ use rand_distr::{Distribution as _, StandardNormal};
 use super::predict::Uncertain;
 use crate::effect::UNLIMITED;
 use crate::experiment::Trial;
-use crate::fit::{Fit, FitRecord, Status};
+use crate::fit::{Assessment, FitRecord, Status};
 use crate::model::JointModel;
 
 /// Standard deviations within which a number lies.
@@ -25,7 +25,7 @@ impl Uncertain {
     /// somewhere in the range in which the record is as likely: it is put into the middle of
     /// that, which is four standard deviations wide. Where there is no such range, it is off by
     /// `share` of its value.
-    pub fn of_fit(record: &FitRecord<'_>, fit: &Fit, noise: f64, share: f64) -> Self {
+    pub fn of_fit(record: &FitRecord<'_>, fit: &Assessment, noise: f64, share: f64) -> Self {
         let mut known = Self::by_share(fit.model.clone(), share);
         for (place, parameter) in fit.parameters.iter().enumerate() {
             let is_free = matches!(parameter.status, Status::Undetermined | Status::AtBound);

@@ -10,14 +10,16 @@ use super::shapes::shapes;
 use super::speed_error::speed_error;
 use super::{ErrorFigures, InputCorrelation, LackOfFit, TestColumns, TrialSignals, Whiteness};
 use super::{input_correlation, lack_of_fit, noise_floor, whiteness};
-use crate::fit::{Evaluation, Fit, FitRecord, Horizon, Part};
+use crate::fit::{Assessment, Evaluation, Fit, FitRecord, Horizon, Part, Termination};
 use crate::model::JointModel;
 
-/// A fitted model beside the measurement.
+/// A model beside the measurement.
 #[derive(Clone, Debug)]
 pub struct Comparison {
     /// The model, its parameters and what it simulates.
-    pub fit: Fit,
+    pub fit: Assessment,
+    /// Why its fit stopped; [`Termination::NothingToFit`] for a model as it was given.
+    pub termination: Termination,
     /// The error on the part it was fitted to.
     pub training: Option<ErrorFigures>,
     /// The error on the part it was not fitted to.
@@ -41,16 +43,31 @@ pub struct Comparison {
     pub regions: Vec<Region>,
 }
 
-/// Sets all figures of `fit` on `record` beside one another.
+/// All figures of a fitted model on `record`.
 pub fn compare(record: &FitRecord<'_>, fit: Fit) -> Comparison {
     let lack_of_fit = lack_of(record, &fit);
     compare_knowing(record, fit, lack_of_fit)
 }
 
-/// The same with the lack of fit that is known already.
+/// All figures of a model that was not fitted.
+pub fn compare_unfitted(record: &FitRecord<'_>, model: Assessment) -> Comparison {
+    let lack_of_fit = lack_of(record, &model);
+    figures(record, model, Termination::NothingToFit, lack_of_fit)
+}
+
+/// All figures of a fitted model whose lack of fit is known already.
 pub(crate) fn compare_knowing(
     record: &FitRecord<'_>,
     fit: Fit,
+    lack_of_fit: Option<LackOfFit>,
+) -> Comparison {
+    figures(record, fit.assessment, fit.termination, lack_of_fit)
+}
+
+fn figures(
+    record: &FitRecord<'_>,
+    fit: Assessment,
+    termination: Termination,
     lack_of_fit: Option<LackOfFit>,
 ) -> Comparison {
     let error = |part| ErrorFigures::of(record, &fit.evaluation, part);
@@ -69,11 +86,12 @@ pub(crate) fn compare_knowing(
         failure,
         regions: restarted.as_ref().map(regions).unwrap_or_default(),
         fit,
+        termination,
     }
 }
 
 /// The noise of the measurement, with the delay of `fit`, without what `fit` follows of it.
-pub(crate) fn floor_of(record: &FitRecord<'_>, fit: &Fit) -> Option<f64> {
+pub(crate) fn floor_of(record: &FitRecord<'_>, fit: &Assessment) -> Option<f64> {
     let trials = &record.joint().trials;
     let arriving = (0..trials.len()).map(|index| record.arrivals(&fit.model, index));
     let arriving: Vec<_> = arriving.collect();
@@ -83,7 +101,7 @@ pub(crate) fn floor_of(record: &FitRecord<'_>, fit: &Fit) -> Option<f64> {
 }
 
 /// Whether `fit` leaves more than noise on the training part of `record`.
-pub(crate) fn lack_of(record: &FitRecord<'_>, fit: &Fit) -> Option<LackOfFit> {
+pub(crate) fn lack_of(record: &FitRecord<'_>, fit: &Assessment) -> Option<LackOfFit> {
     let floor = floor_of(record, fit);
     let residuals = |part| record.cut(&fit.evaluation.residuals, part);
     let mut everywhere = residuals(Part::Training);
@@ -171,7 +189,7 @@ fn levels(acting: &[f64]) -> Vec<Range<usize>> {
 }
 
 /// Derivatives of the residual to each parameter, by central differences.
-fn sensitivities(record: &FitRecord<'_>, fit: &Fit) -> Vec<Vec<Vec<f64>>> {
+fn sensitivities(record: &FitRecord<'_>, fit: &Assessment) -> Vec<Vec<Vec<f64>>> {
     /// Part of a value, or of one unit where the value is small, that is stepped.
     const STEP: f64 = 1e-4;
     let record = record.for_training();

@@ -19,7 +19,7 @@ mod shapes;
 mod shown_by;
 mod speed_error;
 
-pub use compare::{Comparison, compare};
+pub use compare::{Comparison, compare, compare_unfitted};
 pub(crate) use compare::{compare_knowing, floor_of, lack_of};
 pub use correlation::{
     CONFIDENCE, CrossCorrelation, InputCorrelation, TrialSignals, Whiteness, input_correlation,

@@ -14,7 +14,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::bounds::Bounds;
-use super::record::{Evaluation, FitRecord, Weights};
+use super::evaluation::{Evaluation, Weights};
+use super::record::FitRecord;
 use crate::model::JointModel;
 
 /// The covariance of fitted parameters.

@@ -2,14 +2,17 @@
 //!
 //! - [`FitRecord`]: a joint's trials, cut into windows for training and for validation
 //! - [`fit`]: the parameters that make the training error least, with standard errors
+//! - [`assess`]: a model as it is, with the standard errors that a fit would find
 //!
 //! What the numbers mean for the model is the business of the module `diagnosis`.
 
 mod bounds;
 mod covariance;
+mod evaluation;
 mod least_squares;
 mod problem;
 mod record;
+mod result;
 mod run;
 mod score;
 mod search;
@@ -17,9 +20,11 @@ mod space;
 mod speed;
 mod starts;
 mod thin;
+mod window;
 
-pub use least_squares::{
-    Fit, FitError, Parameter, Status, Survey, Termination, assess, fit, fit_to_compare, survey,
-};
-pub use record::{Evaluation, FitRecord, Horizon, Part, Split, Window};
+pub use evaluation::Evaluation;
+pub use least_squares::{assess, fit, fit_to_compare, survey};
+pub use record::FitRecord;
+pub use result::{Assessment, Fit, FitError, Parameter, Status, Survey, Termination};
 pub use score::{Directions, Score};
+pub use window::{Horizon, Part, Split, Window};

@@ -1,13 +1,14 @@
 //! A model on a record, as the optimiser sees it.
 
-use std::cell::{Cell, OnceCell};
+use std::cell::OnceCell;
 
 use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 
 use super::bounds::Bounds;
-use super::record::{Evaluation, FitRecord, Weights};
+use super::evaluation::{Evaluation, Weights};
+use super::record::FitRecord;
 use super::space::Space;
 use crate::model::JointModel;
 use crate::numerics::robust_scale;
@@ -24,7 +25,6 @@ pub(super) struct Problem<'p, 'r> {
     pub(super) weights: Option<Weights>,
     /// The evaluation at `variables`, once it is asked for.
     pub(super) here: OnceCell<Evaluation>,
-    pub(super) evaluations: Cell<usize>,
 }
 
 impl Problem<'_, '_> {
@@ -41,10 +41,8 @@ impl Problem<'_, '_> {
     }
 
     pub(super) fn here(&self) -> &Evaluation {
-        self.here.get_or_init(|| {
-            self.evaluations.set(self.evaluations.get() + 1);
-            self.record.evaluate_weighted(&self.model_now(), self.weights.as_ref())
-        })
+        self.here
+            .get_or_init(|| self.record.evaluate_weighted(&self.model_now(), self.weights.as_ref()))
     }
 
     /// The model as it is now on another cut of the record; outliers there are weighted down
@@ -76,7 +74,6 @@ impl Problem<'_, '_> {
         if let Some(variable) = variables.get_mut(place) {
             *variable += step;
         }
-        self.evaluations.set(self.evaluations.get() + 1);
         let (model, weights) = (self.model_at(&variables), self.weights.as_ref());
         (self.weighted(&self.record.residuals_near(&model, weights, self.here())) - here) / step
     }

@@ -1,85 +1,18 @@
-//! A joint's trials as a fit sees them: windows, restarts, residuals.
+//! A joint's trials as a fit sees them: windows, surroundings, residuals.
 
 use std::sync::{Arc, OnceLock};
 
 use nalgebra::DVector;
 
+use super::evaluation::{Evaluation, Weights};
 use super::run::Run;
 use super::speed;
 use super::thin::thinned;
+use super::window::{Horizon, Part, Split, Window, changes, cut, shorter};
 use crate::delay::{StepDelay, step_delays};
 use crate::effect::RecordRange;
 use crate::experiment::{Joint, Trial};
-use crate::model::{Arrivals, Commands, JointModel, Simulated, Surroundings};
-
-/// How long a simulation runs before its angle is set to the measured one again.
-///
-/// An integrator keeps every error it made; a short horizon shows where errors are made,
-/// the free run what becomes of them.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Horizon {
-    /// Never: each part of a trial is one run.
-    #[default]
-    FreeRun,
-    /// At every step of the input, and in between so that no run is longer than 200 samples;
-    /// every 200 samples where the input is not held between steps.
-    Steps,
-    /// Every so many seconds.
-    Seconds(f64),
-}
-
-impl std::fmt::Display for Horizon {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::FreeRun => f.write_str("free run"),
-            Self::Steps => f.write_str("restarted at every step of the input"),
-            Self::Seconds(seconds) => write!(f, "restarted every {seconds} s"),
-        }
-    }
-}
-
-/// How training and validation are told apart; never sample by sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Split {
-    /// The first part of each trial is for training: its share, 0 to 1.
-    Time(f64),
-    /// Every third trial is for validation.
-    Trials,
-}
-
-impl Split {
-    /// By trial where there are enough of them, else 70 % of the time of each.
-    pub fn of(joint: &Joint) -> Self {
-        /// Trials from which a third of them is a fair sample.
-        const ENOUGH: usize = 6;
-        if joint.trials.len() >= ENOUGH { Self::Trials } else { Self::Time(0.7) }
-    }
-}
-
-/// What a window is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// Parameters are fitted to it.
-    Training,
-    /// The error is judged on it.
-    Validation,
-}
-
-/// Samples `start .. end` of a trial (from 0), simulated without a restart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Window {
-    /// Index of the trial.
-    pub trial: usize,
-    /// Index of its first sample.
-    pub start: usize,
-    /// Index behind its last sample.
-    pub end: usize,
-    /// What it is for.
-    pub part: Part,
-}
-
-/// Fewest samples of a window: its offset is taken from them.
-const SHORTEST_WINDOW: usize = 10;
+use crate::model::{Arrivals, Commands, JointModel, Surroundings};
 
 /// A joint's trials, cut into windows.
 #[derive(Clone, Debug)]
@@ -106,25 +39,6 @@ pub struct FitRecord<'a> {
 
 /// Delay of each change of the input in seconds, per trial, where it is known.
 type Delays = Vec<Vec<Option<f64>>>;
-
-/// A model on a record: what it simulates, and what is left.
-#[derive(Clone, Debug)]
-pub struct Evaluation {
-    /// How long each simulation ran before it was set right.
-    pub horizon: Horizon,
-    /// One simulation per trial.
-    pub simulated: Vec<Simulated>,
-    /// Measured minus simulated, per trial and sample, output units. Each window is
-    /// simulated from the output that makes its own error least.
-    pub residuals: Vec<Vec<f64>>,
-    /// Per trial, the output at the start of each window.
-    starts: Vec<Vec<f64>>,
-    /// Per trial and sample, the slope of the output to it; `None` where it is 1.
-    slopes: Vec<Option<Vec<f64>>>,
-}
-
-/// A weight for each trial and sample.
-pub(super) type Weights = Vec<Vec<f64>>;
 
 impl<'a> FitRecord<'a> {
     /// The trials of `joint`, cut by `split` and `horizon`.
@@ -412,88 +326,6 @@ fn radians(unit: Option<&str>) -> f64 {
     }
 }
 
-/// The windows of one trial.
-fn cut(trial: &Trial, index: usize, split: Split, horizon: Horizon) -> Vec<Window> {
-    let samples = trial.len();
-    let border = match split {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1")]
-        Split::Time(share) => (samples as f64 * share.clamp(0.0, 1.0)) as usize,
-        Split::Trials if index % 3 == 2 => 0,
-        Split::Trials => samples,
-    };
-    let mut borders = vec![0, border, samples];
-    match horizon {
-        Horizon::FreeRun => {}
-        Horizon::Steps if is_held(trial.input()) => {
-            borders.extend(changes(trial.input()));
-            borders = divided(borders);
-        }
-        Horizon::Steps => borders.extend((0..samples).step_by(LONGEST_STEP)),
-        Horizon::Seconds(seconds) => {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 1")]
-            let every = (seconds / trial.period().seconds()).round().max(1.0) as usize;
-            borders.extend((0..samples).step_by(every));
-        }
-    }
-    borders.sort_unstable();
-    let mut windows: Vec<Window> = Vec::new();
-    let mut start = 0;
-    for end in borders {
-        let must_end = end == border || end == samples;
-        if end - start >= SHORTEST_WINDOW || must_end && end > start {
-            let part = if start < border { Part::Training } else { Part::Validation };
-            windows.push(Window { trial: index, start, end, part });
-            start = end;
-        }
-    }
-    windows
-}
-
-/// Samples of a window between steps of the input, at most: a small error of the speed would
-/// else grow with the square of a long hold, and the longest holds alone decide a fit.
-const LONGEST_STEP: usize = 200;
-
-/// `borders`, and between those that are far apart further ones at equal distances.
-fn divided(mut borders: Vec<usize>) -> Vec<usize> {
-    borders.sort_unstable();
-    let between = borders.windows(2).flat_map(|pair| {
-        let &[start, end] = pair else { return Vec::new() };
-        let parts = (end - start).div_ceil(LONGEST_STEP);
-        (1..parts).map(|part| start + (end - start) * part / parts).collect()
-    });
-    let between: Vec<usize> = between.collect();
-    borders.extend(between);
-    borders
-}
-
-/// Whether the input is held for some samples between its steps.
-fn is_held(input: &[f64]) -> bool {
-    /// Samples between steps, on average.
-    const HELD: usize = 20;
-    changes(input).count() * HELD < input.len()
-}
-
-/// `window` in parts, in each of which the input changes a few times.
-fn shorter(window: Window, changes: usize) -> Vec<Window> {
-    /// Changes in a part: some information on how they act together.
-    const CHANGES: usize = 5;
-    /// Fewest samples of a part.
-    const SHORTEST: usize = 100;
-    let samples = window.end - window.start;
-    let parts = (changes / CHANGES).min(samples / SHORTEST).max(1);
-    let border = |part: usize| window.start + samples * part / parts;
-    let part = |part| Window { start: border(part), end: border(part + 1), ..window };
-    (0..parts).map(part).collect()
-}
-
-/// Indices of samples whose input differs from the one before.
-fn changes(input: &[f64]) -> impl Iterator<Item = usize> {
-    #[expect(clippy::float_cmp, reason = "a step is any change")]
-    let changed = |pair: &[f64]| matches!(pair, [a, b] if a != b);
-    let pairs = input.windows(2).zip(1..);
-    pairs.filter(move |(pair, _)| changed(pair)).map(|(_, index)| index)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -508,25 +340,5 @@ mod tests {
     fn trials_that_each_count_from_zero_follow_one_another() {
         assert_eq!(starts_s(&[trial(7.0, 4), trial(20.0, 4)]), [0.0, 13.0]);
         assert_eq!(starts_s(&[trial(0.0, 4), trial(0.0, 6), trial(0.0, 2)]), [0.0, 2.0, 5.0]);
-    }
-
-    #[test]
-    fn steps_of_an_input_that_is_never_held_are_no_windows() {
-        let input: Vec<f64> = (0..1000).map(f64::from).collect();
-        let period = SamplePeriod::from_seconds(0.01).unwrap();
-        let trial = Trial::new("a", 0.0, period, input, vec![0.0; 1000]).unwrap();
-        let windows = cut(&trial, 0, Split::Time(0.5), Horizon::Steps);
-        let borders: Vec<_> = windows.iter().map(|window| window.start).collect();
-        assert_eq!(borders, [0, 200, 400, 500, 600, 800]);
-    }
-
-    #[test]
-    fn a_long_hold_is_divided_evenly() {
-        let input: Vec<f64> = (0..1000).map(|k| if k < 450 { 1.0 } else { 2.0 }).collect();
-        let period = SamplePeriod::from_seconds(0.01).unwrap();
-        let trial = Trial::new("a", 0.0, period, input, vec![0.0; 1000]).unwrap();
-        let windows = cut(&trial, 0, Split::Time(1.0), Horizon::Steps);
-        let borders: Vec<_> = windows.iter().map(|window| window.start).collect();
-        assert_eq!(borders, [0, 150, 300, 450, 633, 816]);
     }
 }

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::record::Window;
 use super::speed;
+use super::window::Window;
 use crate::experiment::Trial;
 use crate::model::{Arrivals, JointModel, Restart, Simulated, Surroundings, simulate};
 

@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 use super::bounds::Bounds;
 use super::covariance::Covariance;
-use super::least_squares::Status;
+use super::result::Status;
 use crate::effect::{Dimension, RecordRange};
 use crate::model::JointModel;
 

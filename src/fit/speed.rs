@@ -1,6 +1,6 @@
 //! The speed of a joint where a simulation starts, from the measurement.
 
-use super::record::Window;
+use super::window::Window;
 use crate::experiment::Trial;
 
 /// Samples on either side from which a speed is taken.

@@ -1,6 +1,6 @@
 //! A part of a record from which it is seen which models are worth a fit.
 
-use super::record::Window;
+use super::window::Window;
 
 /// Samples that are kept of a record at least.
 const FEWEST: usize = 4000;

@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 use crate::diagnosis::failure::{FailsWhere, Region, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures, InputCorrelation, LackOfFit, Whiteness};
 use crate::experiment::Joint;
-use crate::fit::{Fit, Parameter, Status};
+use crate::fit::{Assessment, Parameter, Status};
 use crate::wording::{
     self, correlation_sentences, effect_ids, effects_text, number, parameter_units, with_remark,
     with_unit,
@@ -87,7 +87,7 @@ impl<'a> JointJson<'a> {
             fails_where: comparison.failure.as_ref().map_or(&[], |f| &f.fails_where),
             worst_segments: comparison.failure.as_ref().map_or(&[], |f| &f.worst_segments),
             regions: &comparison.regions,
-            termination: comparison.fit.termination.to_string(),
+            termination: comparison.termination.to_string(),
         }
     }
 }
@@ -100,7 +100,7 @@ impl ErrorJson {
 }
 
 /// Parameters by name, with their standard errors and units.
-pub(super) fn parameters_json(joint: &Joint, fit: &Fit) -> Map<String, Value> {
+pub(super) fn parameters_json(joint: &Joint, fit: &Assessment) -> Map<String, Value> {
     let parameter = |(parameter, unit): (&Parameter, String)| {
         let Parameter { name, value, std_error, status } = parameter;
         let status = status_id(*status);
@@ -205,5 +205,10 @@ pub(super) fn parameters(compared: &ComparedJoint<'_>) -> String {
         with_remark(&format!("{name} {}{error} {unit}", number(*value)), *status)
     };
     let parameters: Vec<_> = fit.parameters.iter().zip(units).map(parameter).collect();
-    format!("{}: {}; {}", compared.joint.name, parameters.join(", "), fit.termination)
+    format!(
+        "{}: {}; {}",
+        compared.joint.name,
+        parameters.join(", "),
+        compared.comparison.termination
+    )
 }

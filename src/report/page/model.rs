@@ -32,7 +32,7 @@ pub(super) fn blocks(
     blocks.extend(words.commands.into_iter().map(Block::Code));
     blocks.push(Block::Code(equations(compared)));
     blocks.push(Block::Table(parameters(compared)));
-    blocks.push(Block::text(format!("The fit: {}.", compared.comparison.fit.termination)));
+    blocks.push(Block::text(format!("The fit: {}.", compared.comparison.termination)));
     blocks.extend(errors(report, improved, file)?);
     blocks.extend(beside_the_measurement(report, compared, file)?);
     blocks.extend(failures(improved, file)?);

@@ -1,0 +1,132 @@
+//! What comes of a fit, and why there is none.
+
+use std::fmt;
+use std::ops::Deref;
+
+use levenberg_marquardt::TerminationReason;
+
+use super::evaluation::Evaluation;
+use crate::model::JointModel;
+
+/// A model on a record, fitted or as it was given, with how sure its parameters are.
+#[derive(Clone, Debug)]
+pub struct Assessment {
+    /// The model.
+    pub model: JointModel,
+    /// Its parameters, in the order of [`JointModel::values`].
+    pub parameters: Vec<Parameter>,
+    /// The model on the record.
+    pub evaluation: Evaluation,
+}
+
+/// A fitted model: its assessment at the fitted values, and how the fit went.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// The model at the fitted values.
+    pub assessment: Assessment,
+    /// The robust sum of squared errors that was minimised.
+    pub cost: f64,
+    /// Why it stopped.
+    pub termination: Termination,
+}
+
+impl Deref for Fit {
+    type Target = Assessment;
+
+    fn deref(&self) -> &Assessment {
+        &self.assessment
+    }
+}
+
+/// A parameter of a fitted model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// `gain`, or `dead_band.lower`.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// Its standard error, where the data determine it.
+    pub std_error: Option<f64>,
+    /// What the fit could do with it.
+    pub status: Status,
+}
+
+/// What a fit could do with a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// It was fitted.
+    Fitted,
+    /// It was not to be changed.
+    Fixed,
+    /// It came to lie on a bound: its standard error says little.
+    AtBound,
+    /// The data do not determine it: the error is the same over a wide range.
+    Undetermined,
+}
+
+/// Why a fit stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Termination {
+    /// No change of the parameters makes the error less.
+    Converged,
+    /// There was nothing to fit.
+    NothingToFit,
+    /// It took too many simulations; the parameters may not be the best.
+    OutOfPatience,
+    /// The simulation gave no numbers any more.
+    Numerical,
+}
+
+impl fmt::Display for Termination {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Converged => "converged",
+            Self::NothingToFit => "nothing to fit",
+            Self::OutOfPatience => "stopped after too many simulations",
+            Self::Numerical => "the simulation gave no numbers",
+        })
+    }
+}
+
+/// Why a model cannot be fitted at all.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FitError {
+    /// There are fewer samples for training than parameters.
+    #[error("{samples} samples for training are too few for {parameters} parameters")]
+    TooFewSamples {
+        /// Samples there are.
+        samples: usize,
+        /// Parameters to fit.
+        parameters: usize,
+    },
+}
+
+/// A model surveyed: where a rough descent in short windows leads, and its robust sum of
+/// squared errors there.
+///
+/// Sums are comparable between models of the same record.
+#[derive(Clone, Debug)]
+pub struct Survey {
+    /// The model at the values that were found.
+    pub model: JointModel,
+    /// The sum in the short windows.
+    pub cost: f64,
+}
+
+impl Termination {
+    /// What the optimiser says, in fewer words.
+    pub(super) fn of(reason: &TerminationReason) -> Self {
+        match reason {
+            TerminationReason::LostPatience => Self::OutOfPatience,
+            TerminationReason::User(_)
+            | TerminationReason::Numerical(_)
+            | TerminationReason::WrongDimensions(_) => Self::Numerical,
+            TerminationReason::NoParameters | TerminationReason::NoResiduals => Self::NothingToFit,
+            TerminationReason::ResidualsZero
+            | TerminationReason::Orthogonal
+            | TerminationReason::Converged { .. }
+            | TerminationReason::NoImprovementPossible(_) => Self::Converged,
+        }
+    }
+}
