@@ -142,8 +142,9 @@ fn coulomb_friction_is_named_first_and_the_force_error_falls_as_published() {
     assert_eq!(best.effects, ["coulomb_friction"]);
     // Published: 17.97 % with inertia and viscous friction, 4.08 % with Coulomb friction and
     // offset, which are two levels here.
-    let value =
-        |fit: &Assessment, name: &str| fit.parameters.iter().find(|p| p.name == name).unwrap().value;
+    let value = |fit: &Assessment, name: &str| {
+        fit.parameters.iter().find(|p| p.name == name).unwrap().value
+    };
     let base = &revision.comparison.fit;
     let viscous = 1.0 / value(base, "gain");
     let inertia = viscous * value(base, "actuator_lag.time_constant");
