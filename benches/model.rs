@@ -4,8 +4,8 @@
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use tauscope::effect::expression::{Definition, OwnParameter, define};
-use tauscope::effect::{Stage, find};
+use tauscope::effect::expression::define;
+use tauscope::effect::{Definition, OwnParameter, Stage, find};
 use tauscope::experiment::Joint;
 use tauscope::fit::{FitRecord, Horizon, Split, fit};
 use tauscope::model::{Component, JointModel, Surroundings, arrivals, simulate};

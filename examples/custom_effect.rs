@@ -23,22 +23,14 @@ struct Accumulator;
 /// Seconds in which the pump fills it to 63 %.
 const REFILL_S: f64 = 4.0;
 
-static ACCUMULATOR: Spec = Spec {
-    id: "accumulator",
-    summary: "pressure that falls with the way gone of late",
-    equation: "out = in / (1 + e), de/dt = draw abs(in) - e / 4 s",
-    source: "made up for this example",
-    stage: Stage::Load,
-    drawing: None,
-    parameters: &[
-        Parameter::new("draw", "how far a way empties it", Dimension::PerOutput).between(0.0, 1e3)
-    ],
-    memory: 1,
-    confused_with: &["supply_droop"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+static ACCUMULATOR: Spec =
+    Spec::new("accumulator", Stage::Load, "pressure that falls with the way gone of late")
+        .equation("out = in / (1 + e), de/dt = draw abs(in) - e / 4 s")
+        .source("made up for this example")
+        .parameters(&[Parameter::new("draw", "how far a way empties it", Dimension::PerOutput)
+            .between(0.0, 1e3)])
+        .memory(1)
+        .confused_with(&["supply_droop"]);
 
 impl Effect for Accumulator {
     fn spec(&self) -> &'static Spec {

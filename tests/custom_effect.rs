@@ -7,20 +7,11 @@ use tauscope::effect::{Dimension, Effect, Moment, Parameter, Spec, Stage};
 #[derive(Debug)]
 struct Hose;
 
-static HOSE: Spec = Spec {
-    id: "hose",
-    summary: "pressure lost in a long hose",
-    equation: "out = in / (1 + loss abs(in))",
-    source: "made up for this test",
-    stage: Stage::Load,
-    drawing: None,
-    parameters: &[Parameter::new("loss", "loss per speed", Dimension::One).between(0.0, 1.0)],
-    memory: 0,
-    confused_with: &["input_saturation"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+static HOSE: Spec = Spec::new("hose", Stage::Load, "pressure lost in a long hose")
+    .equation("out = in / (1 + loss abs(in))")
+    .source("made up for this test")
+    .parameters(&[Parameter::new("loss", "loss per speed", Dimension::One).between(0.0, 1.0)])
+    .confused_with(&["input_saturation"]);
 
 impl Effect for Hose {
     fn spec(&self) -> &'static Spec {

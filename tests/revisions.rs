@@ -4,7 +4,8 @@
 use std::path::Path;
 
 use proptest::prelude::*;
-use tauscope::effect::expression::{Definition, OwnParameter, define};
+use tauscope::effect::expression::define;
+use tauscope::effect::{Definition, OwnParameter};
 use tauscope::effect::{Effect, Placebo, REGISTRY, Stage, find};
 use tauscope::model::{Component, JointModel, ModelError, ModelFile, Revision, Value};
 

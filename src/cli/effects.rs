@@ -1,6 +1,7 @@
 //! `tauscope effects`
 
-use crate::effect::{EffectsJson, REGISTRY, find, listing, sheet};
+use crate::effect::{REGISTRY, find};
+use crate::report::{EffectsJson, listing, sheet};
 use clap::Args as ClapArgs;
 
 use super::Completion;

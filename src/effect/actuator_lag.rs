@@ -26,22 +26,20 @@ use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLI
 #[derive(Clone, Copy, Debug)]
 pub struct ActuatorLag;
 
-static SPEC: Spec = Spec {
-    id: "actuator_lag",
-    summary: "first-order lag: the speed approaches what is commanded",
-    equation: "time_constant d out/dt + out = in",
-    source: "Merritt, 1967, Hydraulic Control Systems; Ljung, 1999, System Identification: Theory \
+static SPEC: Spec = Spec::new(
+    "actuator_lag",
+    Stage::Dynamics,
+    "first-order lag: the speed approaches what is commanded",
+)
+.equation("time_constant d out/dt + out = in")
+.source(
+    "Merritt, 1967, Hydraulic Control Systems; Ljung, 1999, System Identification: Theory \
              for the User",
-    stage: Stage::Dynamics,
-    drawing: None,
-    parameters: &[Parameter::new("time_constant", "time to 63 % of a change", Dimension::Seconds)
-        .between(0.0, UNLIMITED)],
-    memory: 1 + DECAY_MEMORY,
-    confused_with: &["resonance", "variable_delay", "rate_limit"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+)
+.parameters(&[Parameter::new("time_constant", "time to 63 % of a change", Dimension::Seconds)
+    .between(0.0, UNLIMITED)])
+.memory(1 + DECAY_MEMORY)
+.confused_with(&["resonance", "variable_delay", "rate_limit"]);
 
 impl Effect for ActuatorLag {
     fn spec(&self) -> &'static Spec {

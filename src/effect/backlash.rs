@@ -22,23 +22,18 @@ use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLI
 #[derive(Clone, Copy, Debug)]
 pub struct Backlash;
 
-static SPEC: Spec = Spec {
-    id: "backlash",
-    summary: "play between actuator and sensor",
-    equation: "out stays until abs(in - out) > width / 2, then follows at that distance",
-    source: "Tao and Kokotović, 1996, Adaptive Control of Systems with Actuator and Sensor \
+static SPEC: Spec = Spec::new("backlash", Stage::Output, "play between actuator and sensor")
+    .equation("out stays until abs(in - out) > width / 2, then follows at that distance")
+    .source(
+        "Tao and Kokotović, 1996, Adaptive Control of Systems with Actuator and Sensor \
              Nonlinearities",
-    stage: Stage::Output,
-    drawing: Some(include_str!("drawing/backlash.txt")),
-    parameters: &[Parameter::new("width", "whole width of the play", Dimension::Output)
+    )
+    .drawing(include_str!("drawing/backlash.txt"))
+    .parameters(&[Parameter::new("width", "whole width of the play", Dimension::Output)
         .between(0.0, UNLIMITED)
-        .typical(0.02)],
-    memory: 1,
-    confused_with: &["dead_band", "variable_delay"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+        .typical(0.02)])
+    .memory(1)
+    .confused_with(&["dead_band", "variable_delay"]);
 
 impl Effect for Backlash {
     fn spec(&self) -> &'static Spec {

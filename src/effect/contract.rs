@@ -384,20 +384,10 @@ mod tests {
     #[derive(Debug)]
     struct Faulty(fn(&[f64], &mut [f64], &Moment) -> f64);
 
-    static FAULTY: Spec = Spec {
-        id: "faulty",
-        summary: "a fault",
-        equation: "out = ?",
-        source: "none",
-        stage: Stage::Load,
-        drawing: None,
-        parameters: &[Parameter::new("size", "a size", Dimension::One).between(-1.0, 1.0)],
-        memory: 0,
-        confused_with: &[],
-        absorbs: &[],
-        refines: None,
-        acts_on_state: false,
-    };
+    static FAULTY: Spec = Spec::new("faulty", Stage::Load, "a fault")
+        .equation("out = ?")
+        .source("none")
+        .parameters(&[Parameter::new("size", "a size", Dimension::One).between(-1.0, 1.0)]);
 
     impl Effect for Faulty {
         fn spec(&self) -> &'static Spec {

@@ -45,30 +45,32 @@ use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLI
 #[derive(Clone, Copy, Debug)]
 pub struct CoulombFriction;
 
-static SPEC: Spec = Spec {
-    id: "coulomb_friction",
-    summary: "a constant force against the motion, which may differ by direction",
-    equation: "time_constant dv/dt + v = in - positive where v > 0, in + negative where v < 0; \
+static SPEC: Spec = Spec::new(
+    "coulomb_friction",
+    Stage::Dynamics,
+    "a constant force against the motion, which may differ by direction",
+)
+.equation(
+    "time_constant dv/dt + v = in - positive where v > 0, in + negative where v < 0; \
                v = 0 while -negative <= in <= positive",
-    source: "Armstrong-Hélouvry, Dupont and Canudas de Wit, 1994, A survey of models, analysis \
+)
+.source(
+    "Armstrong-Hélouvry, Dupont and Canudas de Wit, 1994, A survey of models, analysis \
              tools and compensation methods for the control of machines with friction, \
              Automatica 30; Åström and Canudas de Wit, 2008, Revisiting the LuGre friction model",
-    stage: Stage::Dynamics,
-    drawing: Some(include_str!("drawing/coulomb_friction.txt")),
-    parameters: &[
-        Parameter::new("positive", "level against positive motion", Dimension::Input)
-            .between(0.0, UNLIMITED),
-        Parameter::new("negative", "level against negative motion", Dimension::Input)
-            .between(0.0, UNLIMITED),
-        Parameter::new("time_constant", "inertia: time to 63 % of a change", Dimension::Seconds)
-            .between(0.0, UNLIMITED),
-    ],
-    memory: 1 + DECAY_MEMORY,
-    confused_with: &["dead_band", "stiction", "input_offset"],
-    absorbs: &["actuator_lag"],
-    refines: None,
-    acts_on_state: false,
-};
+)
+.drawing(include_str!("drawing/coulomb_friction.txt"))
+.parameters(&[
+    Parameter::new("positive", "level against positive motion", Dimension::Input)
+        .between(0.0, UNLIMITED),
+    Parameter::new("negative", "level against negative motion", Dimension::Input)
+        .between(0.0, UNLIMITED),
+    Parameter::new("time_constant", "inertia: time to 63 % of a change", Dimension::Seconds)
+        .between(0.0, UNLIMITED),
+])
+.memory(1 + DECAY_MEMORY)
+.confused_with(&["dead_band", "stiction", "input_offset"])
+.absorbing(&["actuator_lag"]);
 
 /// Gaps between input levels in which a fit starts.
 const GAPS: usize = 3;

@@ -24,24 +24,22 @@ use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLI
 #[derive(Clone, Copy, Debug)]
 pub struct DeadBand;
 
-static SPEC: Spec = Spec {
-    id: "dead_band",
-    summary: "valve overlap: no flow in a band about zero, shifted outside",
-    equation: "out = max(in - upper, 0) + min(in - lower, 0)",
-    source: "Tao and Kokotović, 1996, Adaptive Control of Systems with Actuator and Sensor \
+static SPEC: Spec = Spec::new(
+    "dead_band",
+    Stage::Input,
+    "valve overlap: no flow in a band about zero, shifted outside",
+)
+.equation("out = max(in - upper, 0) + min(in - lower, 0)")
+.source(
+    "Tao and Kokotović, 1996, Adaptive Control of Systems with Actuator and Sensor \
              Nonlinearities; Merritt, 1967, Hydraulic Control Systems",
-    stage: Stage::Input,
-    drawing: Some(include_str!("drawing/dead_band.txt")),
-    parameters: &[
-        Parameter::new("lower", "lower end of the band", Dimension::Input).between(-UNLIMITED, 0.0),
-        Parameter::new("upper", "upper end of the band", Dimension::Input).between(0.0, UNLIMITED),
-    ],
-    memory: 0,
-    confused_with: &["stiction", "flow_curve", "coulomb_friction"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+)
+.drawing(include_str!("drawing/dead_band.txt"))
+.parameters(&[
+    Parameter::new("lower", "lower end of the band", Dimension::Input).between(-UNLIMITED, 0.0),
+    Parameter::new("upper", "upper end of the band", Dimension::Input).between(0.0, UNLIMITED),
+])
+.confused_with(&["stiction", "flow_curve", "coulomb_friction"]);
 
 /// Gaps between input levels in which a fit starts.
 const GAPS: usize = 4;

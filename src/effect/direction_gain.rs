@@ -23,27 +23,23 @@ use super::{Dimension, Effect, Moment, Parameter, Spec, Stage};
 #[derive(Clone, Copy, Debug)]
 pub struct DirectionGain;
 
-static SPEC: Spec = Spec {
-    id: "direction_gain",
-    summary: "single-rod cylinder: another gain where the input is negative",
-    equation: "out = in where in >= 0, negative_factor in where in < 0",
-    source: "Jelali and Kroll, 2003, Hydraulic Servo-systems",
-    stage: Stage::Input,
-    drawing: Some(include_str!("drawing/direction_gain.txt")),
-    parameters: &[Parameter::new(
-        "negative_factor",
-        "gain of the negative direction over that of the positive one",
-        Dimension::One,
-    )
-    .between(0.05, 20.0)
-    .neutral(1.0)
-    .typical(-0.2)],
-    memory: 0,
-    confused_with: &["input_offset", "gravity_load"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+static SPEC: Spec = Spec::new(
+    "direction_gain",
+    Stage::Input,
+    "single-rod cylinder: another gain where the input is negative",
+)
+.equation("out = in where in >= 0, negative_factor in where in < 0")
+.source("Jelali and Kroll, 2003, Hydraulic Servo-systems")
+.drawing(include_str!("drawing/direction_gain.txt"))
+.parameters(&[Parameter::new(
+    "negative_factor",
+    "gain of the negative direction over that of the positive one",
+    Dimension::One,
+)
+.between(0.05, 20.0)
+.neutral(1.0)
+.typical(-0.2)])
+.confused_with(&["input_offset", "gravity_load"]);
 
 impl Effect for DirectionGain {
     fn spec(&self) -> &'static Spec {

@@ -22,23 +22,16 @@ use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLI
 #[derive(Clone, Copy, Debug)]
 pub struct EndStop;
 
-static SPEC: Spec = Spec {
-    id: "end_stop",
-    summary: "hardware limits of the angle",
-    equation: "low <= y <= high",
-    source: "Jelali and Kroll, 2003, Hydraulic Servo-systems",
-    stage: Stage::Output,
-    drawing: Some(include_str!("drawing/end_stop.txt")),
-    parameters: &[
+static SPEC: Spec = Spec::new("end_stop", Stage::Output, "hardware limits of the angle")
+    .equation("low <= y <= high")
+    .source("Jelali and Kroll, 2003, Hydraulic Servo-systems")
+    .drawing(include_str!("drawing/end_stop.txt"))
+    .parameters(&[
         Parameter::new("low", "lowest angle", Dimension::Output).neutral(-UNLIMITED),
         Parameter::new("high", "highest angle", Dimension::Output).neutral(UNLIMITED),
-    ],
-    memory: 0,
-    confused_with: &["input_saturation"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: true,
-};
+    ])
+    .confused_with(&["input_saturation"])
+    .acting_on_state();
 
 impl Effect for EndStop {
     fn spec(&self) -> &'static Spec {

@@ -23,22 +23,18 @@ use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage};
 #[derive(Clone, Copy, Debug)]
 pub struct FlowCurve;
 
-static SPEC: Spec = Spec {
-    id: "flow_curve",
-    summary: "progressive or degressive valve: a power of the opening",
-    equation: "out = sign(in) abs(in)^exponent, in and out counted in input units",
-    source: "Jelali and Kroll, 2003, Hydraulic Servo-systems",
-    stage: Stage::Input,
-    drawing: Some(include_str!("drawing/flow_curve.txt")),
-    parameters: &[Parameter::new("exponent", "power of the opening", Dimension::One)
-        .between(0.2, 5.0)
-        .neutral(1.0)],
-    memory: 0,
-    confused_with: &["input_saturation", "dead_band"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+static SPEC: Spec = Spec::new(
+    "flow_curve",
+    Stage::Input,
+    "progressive or degressive valve: a power of the opening",
+)
+.equation("out = sign(in) abs(in)^exponent, in and out counted in input units")
+.source("Jelali and Kroll, 2003, Hydraulic Servo-systems")
+.drawing(include_str!("drawing/flow_curve.txt"))
+.parameters(&[Parameter::new("exponent", "power of the opening", Dimension::One)
+    .between(0.2, 5.0)
+    .neutral(1.0)])
+.confused_with(&["input_saturation", "dead_band"]);
 
 impl Effect for FlowCurve {
     fn spec(&self) -> &'static Spec {

@@ -24,27 +24,24 @@ use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLI
 #[derive(Clone, Copy, Debug)]
 pub struct GravityLoad;
 
-static SPEC: Spec = Spec {
-    id: "gravity_load",
-    summary: "weight of the arm: slower up, faster down, and creep, by the angle",
-    equation: "out = in sqrt(1 - sign(in) kappa cos(y - y0)) - creep cos(y - y0)",
-    source: "Merritt, 1967, Hydraulic Control Systems; Jelali and Kroll, 2003, Hydraulic \
+static SPEC: Spec = Spec::new(
+    "gravity_load",
+    Stage::Load,
+    "weight of the arm: slower up, faster down, and creep, by the angle",
+)
+.equation("out = in sqrt(1 - sign(in) kappa cos(y - y0)) - creep cos(y - y0)")
+.source(
+    "Merritt, 1967, Hydraulic Control Systems; Jelali and Kroll, 2003, Hydraulic \
              Servo-systems",
-    stage: Stage::Load,
-    drawing: None,
-    parameters: &[
-        Parameter::new("kappa", "largest load pressure over supply pressure", Dimension::One)
-            .between(-0.95, 0.95)
-            .typical(0.3),
-        Parameter::new("y0", "angle at which gravity acts in full", Dimension::Output),
-        Parameter::new("creep", "speed at which the weight lowers it", Dimension::OutputPerSecond),
-    ],
-    memory: 0,
-    confused_with: &["leakage", "direction_gain", "position_gain"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+)
+.parameters(&[
+    Parameter::new("kappa", "largest load pressure over supply pressure", Dimension::One)
+        .between(-0.95, 0.95)
+        .typical(0.3),
+    Parameter::new("y0", "angle at which gravity acts in full", Dimension::Output),
+    Parameter::new("creep", "speed at which the weight lowers it", Dimension::OutputPerSecond),
+])
+.confused_with(&["leakage", "direction_gain", "position_gain"]);
 
 impl Effect for GravityLoad {
     fn spec(&self) -> &'static Spec {

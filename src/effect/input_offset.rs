@@ -16,22 +16,14 @@ use super::{Dimension, Effect, Moment, Parameter, Spec, Stage};
 #[derive(Clone, Copy, Debug)]
 pub struct InputOffset;
 
-static SPEC: Spec = Spec {
-    id: "input_offset",
-    summary: "null offset: the valve is not centred at zero input",
-    equation: "out = in + offset",
-    source: "Merritt, 1967, Hydraulic Control Systems",
-    stage: Stage::Input,
-    drawing: None,
-    parameters: &[
-        Parameter::new("offset", "what is added to the input", Dimension::Input).typical(0.02)
-    ],
-    memory: 0,
-    confused_with: &["direction_gain", "leakage", "coulomb_friction"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+static SPEC: Spec =
+    Spec::new("input_offset", Stage::Input, "null offset: the valve is not centred at zero input")
+        .equation("out = in + offset")
+        .source("Merritt, 1967, Hydraulic Control Systems")
+        .parameters(&[
+            Parameter::new("offset", "what is added to the input", Dimension::Input).typical(0.02)
+        ])
+        .confused_with(&["direction_gain", "leakage", "coulomb_friction"]);
 
 impl Effect for InputOffset {
     fn spec(&self) -> &'static Spec {

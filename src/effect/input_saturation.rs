@@ -24,30 +24,23 @@ use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLI
 #[derive(Clone, Copy, Debug)]
 pub struct InputSaturation;
 
-static SPEC: Spec = Spec {
-    id: "input_saturation",
-    summary: "flow limit, hard or with a soft knee",
-    equation: "abs(out) = min(abs(in), limit), rounded within limit (1 -+ softness)",
-    source: "Jelali and Kroll, 2003, Hydraulic Servo-systems",
-    stage: Stage::Input,
-    drawing: Some(include_str!("drawing/input_saturation.txt")),
-    parameters: &[
-        Parameter::new("limit", "largest magnitude that passes", Dimension::Input)
-            .between(0.0, UNLIMITED)
-            .neutral(UNLIMITED),
-        Parameter::new(
-            "softness",
-            "half the width of the knee, as a part of the limit",
-            Dimension::One,
-        )
-        .between(0.0, 1.0),
-    ],
-    memory: 0,
-    confused_with: &["flow_curve", "rate_limit"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+static SPEC: Spec =
+    Spec::new("input_saturation", Stage::Input, "flow limit, hard or with a soft knee")
+        .equation("abs(out) = min(abs(in), limit), rounded within limit (1 -+ softness)")
+        .source("Jelali and Kroll, 2003, Hydraulic Servo-systems")
+        .drawing(include_str!("drawing/input_saturation.txt"))
+        .parameters(&[
+            Parameter::new("limit", "largest magnitude that passes", Dimension::Input)
+                .between(0.0, UNLIMITED)
+                .neutral(UNLIMITED),
+            Parameter::new(
+                "softness",
+                "half the width of the knee, as a part of the limit",
+                Dimension::One,
+            )
+            .between(0.0, 1.0),
+        ])
+        .confused_with(&["flow_curve", "rate_limit"]);
 
 /// Range of the limit in a fit, in parts of the largest input: below it nothing of the
 /// input's shape is left, above it nothing of the limit is seen.

@@ -17,24 +17,15 @@ use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage};
 #[derive(Clone, Copy, Debug)]
 pub struct Leakage;
 
-static SPEC: Spec = Spec {
-    id: "leakage",
-    summary: "drifts toward an angle, whatever the input",
-    equation: "out = in - rate (y - y0)",
-    source: "Merritt, 1967, Hydraulic Control Systems",
-    stage: Stage::Load,
-    drawing: None,
-    parameters: &[
+static SPEC: Spec = Spec::new("leakage", Stage::Load, "drifts toward an angle, whatever the input")
+    .equation("out = in - rate (y - y0)")
+    .source("Merritt, 1967, Hydraulic Control Systems")
+    .parameters(&[
         Parameter::new("rate", "speed of the drift per distance", Dimension::PerSecond)
             .between(0.0, 10.0),
         Parameter::new("y0", "angle toward which it drifts", Dimension::Output),
-    ],
-    memory: 0,
-    confused_with: &["gravity_load", "input_offset"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+    ])
+    .confused_with(&["gravity_load", "input_offset"]);
 
 impl Effect for Leakage {
     fn spec(&self) -> &'static Spec {

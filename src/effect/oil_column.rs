@@ -32,45 +32,41 @@ use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLI
 #[derive(Clone, Copy, Debug)]
 pub struct OilColumn;
 
-static SPEC: Spec = Spec {
-    id: "oil_column",
-    summary: "a resonance whose period follows the angle, damped by the open valve",
-    equation: "d2 out/dt2 + 2 (damping + valve_damping abs(in)) w d out/dt + w^2 out = w^2 in, w = \
+static SPEC: Spec = Spec::new(
+    "oil_column",
+    Stage::Dynamics,
+    "a resonance whose period follows the angle, damped by the open valve",
+)
+.equation(
+    "d2 out/dt2 + 2 (damping + valve_damping abs(in)) w d out/dt + w^2 out = w^2 in, w = \
                2 pi / (period (1 + slope (y - reference) + curvature (y - reference)^2))",
-    source: "Merritt, 1967, Hydraulic Control Systems",
-    stage: Stage::Dynamics,
-    drawing: None,
-    parameters: &[
-        Parameter::new("period", "period without damping, at `reference`", Dimension::Seconds)
-            .between(0.0, UNLIMITED),
-        Parameter::new("damping", "damping ratio with the valve closed", Dimension::One)
-            .between(0.0, MOST_DAMPING)
-            .neutral(1.0),
-        Parameter::new(
-            "valve_damping",
-            "what one input unit of opening adds to it",
-            Dimension::PerInput,
-        )
+)
+.source("Merritt, 1967, Hydraulic Control Systems")
+.parameters(&[
+    Parameter::new("period", "period without damping, at `reference`", Dimension::Seconds)
         .between(0.0, UNLIMITED),
-        Parameter::new(
-            "slope",
-            "relative change of the period with the angle",
-            Dimension::PerOutput,
-        ),
-        Parameter::new(
-            "curvature",
-            "relative change of the period with its square",
-            Dimension::PerOutputSquared,
-        ),
-        Parameter::new("reference", "angle at which the period is `period`", Dimension::Output)
-            .not_fitted(),
-    ],
-    memory: 2,
-    confused_with: &["resonance"],
-    absorbs: &["resonance"],
-    refines: Some("resonance"),
-    acts_on_state: false,
-};
+    Parameter::new("damping", "damping ratio with the valve closed", Dimension::One)
+        .between(0.0, MOST_DAMPING)
+        .neutral(1.0),
+    Parameter::new(
+        "valve_damping",
+        "what one input unit of opening adds to it",
+        Dimension::PerInput,
+    )
+    .between(0.0, UNLIMITED),
+    Parameter::new("slope", "relative change of the period with the angle", Dimension::PerOutput),
+    Parameter::new(
+        "curvature",
+        "relative change of the period with its square",
+        Dimension::PerOutputSquared,
+    ),
+    Parameter::new("reference", "angle at which the period is `period`", Dimension::Output)
+        .not_fitted(),
+])
+.memory(2)
+.confused_with(&["resonance"])
+.absorbing(&["resonance"])
+.refining("resonance");
 
 /// Largest damping ratio: with more, nothing is left of the swing.
 const MOST_DAMPING: f64 = 10.0;

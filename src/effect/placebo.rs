@@ -22,21 +22,16 @@ const PERIOD_S: f64 = 17.3;
 /// Radians at the start of the record.
 const PHASE: f64 = 0.7;
 
-static SPEC: Spec = Spec {
-    id: "placebo",
-    summary: "means nothing: a slow swing of the gain, to compare real effects with",
-    equation: "out = in (1 + amplitude sin(2 pi t / 17.3 s + 0.7))",
-    source: "none: made up",
-    stage: Stage::Load,
-    drawing: None,
-    parameters: &[Parameter::new("amplitude", "relative swing of the gain", Dimension::One)
-        .between(-0.9, 0.9)],
-    memory: 0,
-    confused_with: &[],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+static SPEC: Spec = Spec::new(
+    "placebo",
+    Stage::Load,
+    "means nothing: a slow swing of the gain, to compare real effects with",
+)
+.equation("out = in (1 + amplitude sin(2 pi t / 17.3 s + 0.7))")
+.source("none: made up")
+.parameters(&[
+    Parameter::new("amplitude", "relative swing of the gain", Dimension::One).between(-0.9, 0.9)
+]);
 
 impl Effect for Placebo {
     fn spec(&self) -> &'static Spec {

@@ -19,34 +19,28 @@ use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage};
 #[derive(Clone, Copy, Debug)]
 pub struct PositionGain;
 
-static SPEC: Spec = Spec {
-    id: "position_gain",
-    summary: "linkage: the gain depends on the angle",
-    equation: "out = in (1 + slope (y - reference) + curvature (y - reference)^2)",
-    source: "Koivo, 1994, Kinematics of excavators (backhoes) for transferring surface material, \
+static SPEC: Spec =
+    Spec::new("position_gain", Stage::Load, "linkage: the gain depends on the angle")
+        .equation("out = in (1 + slope (y - reference) + curvature (y - reference)^2)")
+        .source(
+            "Koivo, 1994, Kinematics of excavators (backhoes) for transferring surface material, \
              Journal of Aerospace Engineering 7",
-    stage: Stage::Load,
-    drawing: None,
-    parameters: &[
-        Parameter::new("slope", "change of the gain with the angle", Dimension::PerOutput),
-        Parameter::new(
-            "curvature",
-            "change of the gain with its square",
-            Dimension::PerOutputSquared,
-        ),
-        Parameter::new(
-            "reference",
-            "angle at which the gain is that of the joint",
-            Dimension::Output,
         )
-        .not_fitted(),
-    ],
-    memory: 0,
-    confused_with: &["gravity_load"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+        .parameters(&[
+            Parameter::new("slope", "change of the gain with the angle", Dimension::PerOutput),
+            Parameter::new(
+                "curvature",
+                "change of the gain with its square",
+                Dimension::PerOutputSquared,
+            ),
+            Parameter::new(
+                "reference",
+                "angle at which the gain is that of the joint",
+                Dimension::Output,
+            )
+            .not_fitted(),
+        ])
+        .confused_with(&["gravity_load"]);
 
 /// Smallest factor that is left of the gain.
 const SMALLEST_FACTOR: f64 = 0.05;

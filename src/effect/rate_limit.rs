@@ -23,25 +23,18 @@ use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLI
 #[derive(Clone, Copy, Debug)]
 pub struct RateLimit;
 
-static SPEC: Spec = Spec {
-    id: "rate_limit",
-    summary: "slew rate of the spool",
-    equation: "abs(d out/dt) <= 1 / seconds_per_input, toward in",
-    source: "Jelali and Kroll, 2003, Hydraulic Servo-systems",
-    stage: Stage::Dynamics,
-    drawing: Some(include_str!("drawing/rate_limit.txt")),
-    parameters: &[Parameter::new(
+static SPEC: Spec = Spec::new("rate_limit", Stage::Dynamics, "slew rate of the spool")
+    .equation("abs(d out/dt) <= 1 / seconds_per_input, toward in")
+    .source("Jelali and Kroll, 2003, Hydraulic Servo-systems")
+    .drawing(include_str!("drawing/rate_limit.txt"))
+    .parameters(&[Parameter::new(
         "seconds_per_input",
         "time for a change of one input unit",
         Dimension::SecondsPerInput,
     )
-    .between(0.0, UNLIMITED)],
-    memory: 1,
-    confused_with: &["actuator_lag", "variable_delay"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+    .between(0.0, UNLIMITED)])
+    .memory(1)
+    .confused_with(&["actuator_lag", "variable_delay"]);
 
 impl Effect for RateLimit {
     fn spec(&self) -> &'static Spec {

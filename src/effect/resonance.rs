@@ -19,26 +19,19 @@ use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLI
 #[derive(Clone, Copy, Debug)]
 pub struct Resonance;
 
-static SPEC: Spec = Spec {
-    id: "resonance",
-    summary: "compressible oil: a poorly damped swing of the speed",
-    equation: "d2 out/dt2 + 2 damping w d out/dt + w^2 out = w^2 in, w = 2 pi / period",
-    source: "Merritt, 1967, Hydraulic Control Systems",
-    stage: Stage::Dynamics,
-    drawing: None,
-    parameters: &[
-        Parameter::new("period", "period without damping", Dimension::Seconds)
-            .between(0.0, UNLIMITED),
-        Parameter::new("damping", "damping ratio; 1 is critical", Dimension::One)
-            .between(0.0, 10.0)
-            .neutral(1.0),
-    ],
-    memory: 2 + SWING_MEMORY,
-    confused_with: &["actuator_lag"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+static SPEC: Spec =
+    Spec::new("resonance", Stage::Dynamics, "compressible oil: a poorly damped swing of the speed")
+        .equation("d2 out/dt2 + 2 damping w d out/dt + w^2 out = w^2 in, w = 2 pi / period")
+        .source("Merritt, 1967, Hydraulic Control Systems")
+        .parameters(&[
+            Parameter::new("period", "period without damping", Dimension::Seconds)
+                .between(0.0, UNLIMITED),
+            Parameter::new("damping", "damping ratio; 1 is critical", Dimension::One)
+                .between(0.0, 10.0)
+                .neutral(1.0),
+        ])
+        .memory(2 + SWING_MEMORY)
+        .confused_with(&["actuator_lag"]);
 
 /// Period below which the output is the input: it is then over before anything moves,
 /// and its square is still far from the ends of what a number can hold.

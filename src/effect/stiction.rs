@@ -26,27 +26,26 @@ use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLI
 #[derive(Clone, Copy, Debug)]
 pub struct Stiction;
 
-static SPEC: Spec = Spec {
-    id: "stiction",
-    summary: "starts above one level of the input, stops below a lower one",
-    equation: "out = in while moving, else 0; starts at abs(in) > start, stops at abs(in) < stop",
-    source: "Armstrong-Hélouvry, Dupont and Canudas de Wit, 1994, A survey of models, analysis \
+static SPEC: Spec = Spec::new(
+    "stiction",
+    Stage::Input,
+    "starts above one level of the input, stops below a lower one",
+)
+.equation("out = in while moving, else 0; starts at abs(in) > start, stops at abs(in) < stop")
+.source(
+    "Armstrong-Hélouvry, Dupont and Canudas de Wit, 1994, A survey of models, analysis \
              tools and compensation methods for the control of machines with friction, \
              Automatica 30",
-    stage: Stage::Input,
-    drawing: Some(include_str!("drawing/stiction.txt")),
-    parameters: &[
-        Parameter::new("start", "level above which it starts to move", Dimension::Input)
-            .between(0.0, UNLIMITED),
-        Parameter::new("stop", "level below which it stops, at most `start`", Dimension::Input)
-            .between(0.0, UNLIMITED),
-    ],
-    memory: 1,
-    confused_with: &["dead_band", "coulomb_friction"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+)
+.drawing(include_str!("drawing/stiction.txt"))
+.parameters(&[
+    Parameter::new("start", "level above which it starts to move", Dimension::Input)
+        .between(0.0, UNLIMITED),
+    Parameter::new("stop", "level below which it stops, at most `start`", Dimension::Input)
+        .between(0.0, UNLIMITED),
+])
+.memory(1)
+.confused_with(&["dead_band", "coulomb_friction"]);
 
 /// Gaps between input levels in which a fit starts.
 const GAPS: usize = 4;

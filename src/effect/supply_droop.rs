@@ -17,26 +17,18 @@ use super::{Dimension, Effect, Moment, Parameter, Spec, Stage};
 #[derive(Clone, Copy, Debug)]
 pub struct SupplyDroop;
 
-static SPEC: Spec = Spec {
-    id: "supply_droop",
-    summary: "shared pump: the gain falls while other joints move",
-    equation: "out = in (1 - droop others)",
-    source: "Merritt, 1967, Hydraulic Control Systems",
-    stage: Stage::Load,
-    drawing: None,
-    parameters: &[Parameter::new(
-        "droop",
-        "part of the speed that is lost while all others move",
-        Dimension::One,
-    )
-    .between(0.0, 0.95)
-    .typical(0.2)],
-    memory: 0,
-    confused_with: &["thermal_drift"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+static SPEC: Spec =
+    Spec::new("supply_droop", Stage::Load, "shared pump: the gain falls while other joints move")
+        .equation("out = in (1 - droop others)")
+        .source("Merritt, 1967, Hydraulic Control Systems")
+        .parameters(&[Parameter::new(
+            "droop",
+            "part of the speed that is lost while all others move",
+            Dimension::One,
+        )
+        .between(0.0, 0.95)
+        .typical(0.2)])
+        .confused_with(&["thermal_drift"]);
 
 impl Effect for SupplyDroop {
     fn spec(&self) -> &'static Spec {

@@ -19,26 +19,18 @@ use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLI
 #[derive(Clone, Copy, Debug)]
 pub struct ThermalDrift;
 
-static SPEC: Spec = Spec {
-    id: "thermal_drift",
-    summary: "the gain drifts over the record as the oil warms",
-    equation: "out = in (1 + rate time_constant (1 - exp(-t / time_constant)))",
-    source: "Merritt, 1967, Hydraulic Control Systems",
-    stage: Stage::Load,
-    drawing: None,
-    parameters: &[
-        Parameter::new("rate", "relative drift of the gain at the start", Dimension::PerSecond)
-            .between(-10.0, 10.0),
-        Parameter::new("time_constant", "time to 63 % of the drift", Dimension::Seconds)
-            .between(0.0, UNLIMITED)
-            .neutral(UNLIMITED),
-    ],
-    memory: 0,
-    confused_with: &["supply_droop"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+static SPEC: Spec =
+    Spec::new("thermal_drift", Stage::Load, "the gain drifts over the record as the oil warms")
+        .equation("out = in (1 + rate time_constant (1 - exp(-t / time_constant)))")
+        .source("Merritt, 1967, Hydraulic Control Systems")
+        .parameters(&[
+            Parameter::new("rate", "relative drift of the gain at the start", Dimension::PerSecond)
+                .between(-10.0, 10.0),
+            Parameter::new("time_constant", "time to 63 % of the drift", Dimension::Seconds)
+                .between(0.0, UNLIMITED)
+                .neutral(UNLIMITED),
+        ])
+        .confused_with(&["supply_droop"]);
 
 /// Smallest factor that is left of the gain.
 const SMALLEST_FACTOR: f64 = 0.05;

@@ -33,53 +33,48 @@ use super::{
 #[derive(Clone, Copy, Debug)]
 pub struct VariableDelay;
 
-static SPEC: Spec = Spec {
-    id: "variable_delay",
-    summary: "the delay depends on step size, direction, dwell and time",
-    equation: "extra = size f(abs(after - before), size_scale) + falling [after < before] + \
+static SPEC: Spec = Spec::new(
+    "variable_delay",
+    Stage::Transport,
+    "the delay depends on step size, direction, dwell and time",
+)
+.equation(
+    "extra = size f(abs(after - before), size_scale) + falling [after < before] + \
                dwell f(held, dwell_scale) + drift f(t, drift_scale); f(x, s) = s (1 - exp(-x / s))",
-    source: "Armstrong-Hélouvry, Dupont and Canudas de Wit, 1994, A survey of models, analysis \
+)
+.source(
+    "Armstrong-Hélouvry, Dupont and Canudas de Wit, 1994, A survey of models, analysis \
              tools and compensation methods for the control of machines with friction, \
              Automatica 30; Merritt, 1967, Hydraulic Control Systems",
-    stage: Stage::Transport,
-    drawing: None,
-    parameters: &[
-        Parameter::new("size", "extra delay per size of the step", Dimension::SecondsPerInput)
-            .between(-UNLIMITED, UNLIMITED)
-            .typical(-0.05),
-        Parameter::new("falling", "extra delay of a step downward", Dimension::Seconds)
-            .between(-10.0, 10.0)
-            .typical(0.02),
-        Parameter::new("dwell", "extra delay per second at the level before", Dimension::One)
-            .between(-1.0, 1.0)
-            .typical(0.01),
-        Parameter::new("drift", "extra delay per second at the start", Dimension::One)
-            .between(-0.1, 0.1)
-            .typical(0.0),
-        Parameter::new(
-            "size_scale",
-            "size of a step beyond which it gains little",
-            Dimension::Input,
-        )
+)
+.parameters(&[
+    Parameter::new("size", "extra delay per size of the step", Dimension::SecondsPerInput)
+        .between(-UNLIMITED, UNLIMITED)
+        .typical(-0.05),
+    Parameter::new("falling", "extra delay of a step downward", Dimension::Seconds)
+        .between(-10.0, 10.0)
+        .typical(0.02),
+    Parameter::new("dwell", "extra delay per second at the level before", Dimension::One)
+        .between(-1.0, 1.0)
+        .typical(0.01),
+    Parameter::new("drift", "extra delay per second at the start", Dimension::One)
+        .between(-0.1, 0.1)
+        .typical(0.0),
+    Parameter::new("size_scale", "size of a step beyond which it gains little", Dimension::Input)
         .between(0.0, UNLIMITED)
         .neutral(UNLIMITED),
-        Parameter::new("dwell_scale", "hold beyond which it gains little", Dimension::Seconds)
-            .between(0.0, UNLIMITED)
-            .neutral(UNLIMITED),
-        Parameter::new("drift_scale", "time after which it drifts little", Dimension::Seconds)
-            .between(0.0, UNLIMITED)
-            .neutral(UNLIMITED),
-        Parameter::new(PER_STEP, "1: the delay of each step as it was measured", Dimension::One)
-            .between(0.0, 1.0)
-            .typical(0.0)
-            .not_fitted(),
-    ],
-    memory: 0,
-    confused_with: &["actuator_lag", "rate_limit"],
-    absorbs: &[],
-    refines: None,
-    acts_on_state: false,
-};
+    Parameter::new("dwell_scale", "hold beyond which it gains little", Dimension::Seconds)
+        .between(0.0, UNLIMITED)
+        .neutral(UNLIMITED),
+    Parameter::new("drift_scale", "time after which it drifts little", Dimension::Seconds)
+        .between(0.0, UNLIMITED)
+        .neutral(UNLIMITED),
+    Parameter::new(PER_STEP, "1: the delay of each step as it was measured", Dimension::One)
+        .between(0.0, 1.0)
+        .typical(0.0)
+        .not_fitted(),
+])
+.confused_with(&["actuator_lag", "rate_limit"]);
 
 impl Effect for VariableDelay {
     fn spec(&self) -> &'static Spec {

@@ -7,6 +7,7 @@ mod decisions;
 mod delays;
 mod design;
 mod design_words;
+mod effects;
 mod equation;
 mod explain;
 mod finding;
@@ -36,6 +37,7 @@ pub use decisions::{
 pub use delays::{delay_table, write_delays};
 pub use design::{DesignJson, DesignedJoint, Told, write_input, write_preview};
 pub use design_words::{SIDE_HEADER, design_sentences, design_text, side_rows};
+pub use effects::{EffectsJson, listing, sheet};
 pub use explain::{ExplainJson, explain_text};
 pub use finding::Finding;
 pub use folder::{FolderJson, FolderReport, LogResult};

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::ModelError;
 use super::schema::{EffectToml, JointToml, Parameters, TableToml};
-use crate::effect::expression::{self, Definition, OwnParameter};
-use crate::effect::{self, Effect};
+use crate::effect::expression;
+use crate::effect::{self, Definition, Effect, OwnParameter};
 use crate::model::{Component, JointModel, Value};
 
 /// The effects that a file offers, in its order.

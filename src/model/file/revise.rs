@@ -6,8 +6,8 @@
 use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, TableLike};
 
 use super::{ModelError, ModelFile, Revision, SCHEMA};
-use crate::effect::expression::{Definition, KIND, OwnParameter};
-use crate::effect::{Dimension, Effect, Parameter};
+use crate::effect::expression::KIND;
+use crate::effect::{Definition, Dimension, Effect, OwnParameter, Parameter};
 use crate::model::{Component, JointModel, Value};
 
 impl ModelFile {

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use serde::Deserialize;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
 
 use super::Revision;
 use crate::effect::{Dimension, Stage};
@@ -38,6 +39,7 @@ pub(super) struct EffectToml {
     /// This and the next three are for expressions only.
     pub(super) id: Option<String>,
     pub(super) summary: Option<String>,
+    #[serde(default, deserialize_with = "stage")]
     pub(super) stage: Option<Stage>,
     pub(super) expression: Option<String>,
     #[serde(default)]
@@ -62,6 +64,7 @@ pub(super) struct TableToml {
     pub(super) max: Option<f64>,
     /// This and the next are for expressions only.
     pub(super) neutral: Option<f64>,
+    #[serde(default, deserialize_with = "dimension")]
     pub(super) dimension: Option<Dimension>,
 }
 
@@ -81,4 +84,27 @@ impl TableToml {
         let Self { value, fixed, min, max, .. } = self;
         value.map(|value| Value { value, fixed, min, max })
     }
+}
+
+fn stage<'d, D: Deserializer<'d>>(deserializer: D) -> Result<Option<Stage>, D::Error> {
+    named(deserializer, &Stage::ALL, Stage::id).map(Some)
+}
+
+fn dimension<'d, D: Deserializer<'d>>(deserializer: D) -> Result<Option<Dimension>, D::Error> {
+    named(deserializer, &Dimension::ALL, Dimension::id).map(Some)
+}
+
+/// The one of `all` whose id is written.
+fn named<'d, D: Deserializer<'d>, T: Copy>(
+    deserializer: D,
+    all: &[T],
+    id: fn(T) -> &'static str,
+) -> Result<T, D::Error> {
+    let found = String::deserialize(deserializer)?;
+    let is_it = |known: &&T| id(**known) == found;
+    all.iter().find(is_it).copied().ok_or_else(|| {
+        let known: Vec<_> = all.iter().map(|known| format!("`{}`", id(*known))).collect();
+        let known = known.join(", ");
+        D::Error::custom(format_args!("unknown variant `{found}`, expected one of {known}"))
+    })
 }

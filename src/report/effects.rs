@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Effect, Parameter, REGISTRY, Spec, UNLIMITED};
+use crate::effect::{Effect, Parameter, REGISTRY, Spec, UNLIMITED};
 
 /// Narrowest text, in columns: below it lines would hold a word or two.
 const NARROWEST: usize = 40;
@@ -39,24 +39,69 @@ pub struct EffectsJson {
 
 #[derive(Clone, Debug, Serialize)]
 struct EffectJson {
-    #[serde(flatten)]
-    spec: &'static Spec,
+    id: &'static str,
+    summary: &'static str,
+    equation: &'static str,
+    source: &'static str,
+    stage: &'static str,
+    drawing: Option<&'static str>,
+    parameters: Vec<ParameterJson>,
+    memory: usize,
+    confused_with: &'static [&'static str],
+    absorbs: &'static [&'static str],
+    refines: Option<&'static str>,
+    acts_on_state: bool,
     units: Vec<String>,
 }
 
+#[derive(Clone, Debug, Serialize)]
+struct ParameterJson {
+    name: &'static str,
+    meaning: &'static str,
+    dimension: &'static str,
+    neutral: f64,
+    min: f64,
+    max: f64,
+    typical: f64,
+    fitted: bool,
+}
+
 impl EffectsJson {
-    /// Collects `effects`; `units` stand in the order of the parameters.
+    /// Collects `effects`; `units` are in the order of the parameters.
     pub fn new(effects: &[&dyn Effect]) -> Self {
-        let units = |spec: &Spec| spec.parameters.iter().map(unit).collect();
-        let effect = |effect: &&dyn Effect| {
-            let spec = effect.spec();
-            EffectJson { spec, units: units(spec) }
-        };
         Self {
             schema: "tauscope/effects/1",
             version: env!("CARGO_PKG_VERSION"),
-            effects: effects.iter().map(effect).collect(),
+            effects: effects.iter().map(|effect| effect.spec().into()).collect(),
         }
+    }
+}
+
+impl From<&'static Spec> for EffectJson {
+    fn from(spec: &'static Spec) -> Self {
+        Self {
+            id: spec.id,
+            summary: spec.summary,
+            equation: spec.equation,
+            source: spec.source,
+            stage: spec.stage.id(),
+            drawing: spec.drawing,
+            parameters: spec.parameters.iter().map(ParameterJson::from).collect(),
+            memory: spec.memory,
+            confused_with: spec.confused_with,
+            absorbs: spec.absorbs,
+            refines: spec.refines,
+            acts_on_state: spec.acts_on_state,
+            units: spec.parameters.iter().map(unit).collect(),
+        }
+    }
+}
+
+impl From<&Parameter> for ParameterJson {
+    fn from(parameter: &Parameter) -> Self {
+        let Parameter { name, meaning, dimension, neutral, min, max, typical, fitted } = *parameter;
+        let dimension = dimension.id();
+        Self { name, meaning, dimension, neutral, min, max, typical, fitted }
     }
 }
 
@@ -125,8 +170,8 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{InputSaturation, OilColumn, PositionGain};
     use super::*;
+    use crate::effect::{InputSaturation, OilColumn, PositionGain};
 
     #[test]
     fn a_sheet_reads_so() {

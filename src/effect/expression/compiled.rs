@@ -1,0 +1,442 @@
+//! An expression as an effect.
+
+use std::sync::{Mutex, PoisonError};
+
+use super::super::{
+    Definition, Effect, InputChange, Moment, OwnParameter, Parameter, RecordRange, Spec, Stage,
+    UNLIMITED, by_id, contract,
+};
+use super::DefinitionError;
+use super::grammar::{self, Names};
+use super::tree::Node;
+
+/// The word for it in a model file.
+pub const KIND: &str = "expression";
+
+/// The angle of the joint.
+const POSITION: &str = "position";
+
+/// What an expression of any stage but the transport sees of a [`Moment`].
+const SIGNALS: [&str; 7] = ["signal", POSITION, "velocity", "time", "dt", "others", "radians"];
+
+/// What an expression of the transport stage sees of an [`InputChange`].
+const CHANGES: [&str; 4] = ["before", "after", "held", "time"];
+
+/// An effect that computes an expression.
+#[derive(Debug)]
+struct Expression {
+    definition: Definition,
+    spec: &'static Spec,
+    node: Node,
+    nests: bool,
+}
+
+/// The effect that `definition` describes.
+///
+/// # Errors
+/// [`DefinitionError`] when a name is taken, numbers do not go together, or the expression
+/// cannot be computed.
+///
+/// # Examples
+/// ```
+/// use tauscope::effect::{Definition, OwnParameter, expression::define};
+/// use tauscope::effect::Stage;
+///
+/// let hose = define(Definition {
+///     id: "hose".to_owned(),
+///     summary: None,
+///     stage: Stage::Load,
+///     expression: "signal / (1 + loss * abs(signal))".to_owned(),
+///     parameters: vec![OwnParameter { min: Some(0.0), ..OwnParameter::new("loss", 0.1) }],
+/// })?;
+/// assert_eq!(hose.spec().id, "hose");
+/// assert!(hose.nests());
+/// # Ok::<(), tauscope::effect::expression::DefinitionError>(())
+/// ```
+pub fn define(definition: Definition) -> Result<&'static dyn Effect, DefinitionError> {
+    /// Effects are `'static`, those of the catalogue being constants, and a model may go
+    /// wherever it likes. Those of users are never freed either, but the same definition
+    /// is the same effect: reading a file again costs nothing.
+    static DEFINED: Mutex<Vec<&'static Expression>> = Mutex::new(Vec::new());
+    let mut defined = DEFINED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = defined.iter().find(|known| known.definition == definition) {
+        return Ok(*known);
+    }
+    let new: &'static Expression = Box::leak(Box::new(Expression::new(definition)?));
+    defined.push(new);
+    Ok(new)
+}
+
+impl Expression {
+    fn new(definition: Definition) -> Result<Self, DefinitionError> {
+        let signals = signals(definition.stage);
+        check_names(&definition, signals)?;
+        if let Some(fault) = definition.parameters.iter().find_map(OwnParameter::fault) {
+            return Err(fault);
+        }
+        let parameters: Vec<_> = definition.parameters.iter().map(|p| p.name.as_str()).collect();
+        let names = Names { signals, parameters: &parameters };
+        let node = grammar::parse(&definition.expression, names)?;
+        let is_unused =
+            |place: usize| !node.has(&|node| matches!(node, Node::Parameter(p) if *p == place));
+        if let Some((_, name)) = (0..).zip(&parameters).find(|(place, _)| is_unused(*place)) {
+            return Err(DefinitionError::Unused { parameter: (*name).to_owned() });
+        }
+        let spec = Box::leak(Box::new(specified(&definition)));
+        let mut new = Self { definition, spec, node, nests: true };
+        if let Some(fault) = new.neutral_fault() {
+            if new.definition.parameters.iter().any(|parameter| parameter.neutral.is_some()) {
+                return Err(fault);
+            }
+            new.nests = false;
+        }
+        Ok(new)
+    }
+
+    /// The value of the expression, or what it must be to change nothing.
+    fn or_else(&self, unchanged: f64, signals: &[f64], parameters: &[f64]) -> f64 {
+        let value = self.node.value(signals, parameters);
+        if value.is_finite() { value } else { unchanged }
+    }
+
+    /// What the neutral values change, at a handful of moments.
+    fn neutral_fault(&self) -> Option<DefinitionError> {
+        /// Part of the signal, or of 1, that rounding may make.
+        const TOLERANCE: f64 = 1e-9;
+        let neutral = self.spec.neutral();
+        samples().find_map(|sample| {
+            let (signal, found) = match self.spec.stage {
+                Stage::Transport => (0.0, self.extra_delay_s(&neutral, &change(&sample))),
+                _ => (sample.signal, self.step(&neutral, &mut [], &sample)),
+            };
+            let is_same = (found - signal).abs() <= TOLERANCE * signal.abs().max(1.0);
+            (!is_same).then_some(DefinitionError::NotNeutral { signal, found })
+        })
+    }
+}
+
+impl Effect for Expression {
+    fn spec(&self) -> &'static Spec {
+        self.spec
+    }
+
+    fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
+        if self.spec.stage == Stage::Transport {
+            return at.signal;
+        }
+        let Moment { signal, position, velocity, time_s, dt_s, others, .. } = *at;
+        let radians = at.radians_per_output_unit;
+        let signals = [signal, position, velocity, time_s, dt_s, others, radians];
+        self.or_else(signal, &signals, parameters)
+    }
+
+    fn extra_delay_s(&self, parameters: &[f64], change: &InputChange) -> f64 {
+        if self.spec.stage != Stage::Transport {
+            return 0.0;
+        }
+        let signals = [change.before, change.after, change.held_s, change.time_s];
+        self.or_else(0.0, &signals, parameters)
+    }
+
+    fn nests(&self) -> bool {
+        self.nests
+    }
+
+    fn depends_on_angle(&self) -> bool {
+        let names = signals(self.spec.stage);
+        let is_position = |place: usize| names.get(place) == Some(&POSITION);
+        let by_stage = matches!(self.spec.stage, Stage::Load | Stage::Output);
+        by_stage || self.node.has(&|node| matches!(node, Node::Signal(p) if is_position(*p)))
+    }
+
+    fn definition(&self) -> Option<&Definition> {
+        Some(&self.definition)
+    }
+
+    fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
+        let own = self.definition.parameters.iter().zip(self.spec.parameters);
+        let within = |(own, parameter): (&OwnParameter, &Parameter)| {
+            let (min, max) = own.bounds();
+            Parameter { min, max, ..*parameter }.bounds(record)
+        };
+        own.map(within).collect()
+    }
+
+    /// The start values of the definition; away from neutral where they are neutral.
+    fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
+        let own = self.definition.parameters.iter().zip(self.spec.parameters);
+        let start = |(own, parameter): (&OwnParameter, &Parameter)| {
+            let given = own.start.filter(|start| (start - parameter.neutral).abs() > 0.0);
+            given.unwrap_or_else(|| parameter.start(record))
+        };
+        vec![own.map(start).collect()]
+    }
+}
+
+impl OwnParameter {
+    /// Lowest and highest value of a fit.
+    pub(super) fn bounds(&self) -> (f64, f64) {
+        (self.min.unwrap_or(-UNLIMITED), self.max.unwrap_or(UNLIMITED))
+    }
+
+    /// As the specification has it: its range holds the neutral value, too.
+    pub(super) fn specified(&self) -> Parameter {
+        let neutral = self.neutral.unwrap_or_default();
+        let (min, max) = self.bounds();
+        Parameter {
+            neutral,
+            min: min.min(neutral),
+            max: max.max(neutral),
+            fitted: !self.fixed,
+            ..Parameter::new(leaked(&self.name), "a number in the expression", self.dimension)
+        }
+    }
+
+    /// What is wrong with its numbers.
+    pub(super) fn fault(&self) -> Option<DefinitionError> {
+        let (min, max) = self.bounds();
+        let neutral = self.neutral.unwrap_or_default();
+        let is_finite = [min, max, neutral].iter().all(|number| number.is_finite());
+        let value = self.start.unwrap_or(min);
+        let holds = is_finite && min <= max && (min..=max).contains(&value);
+        let parameter = self.name.clone();
+        (!holds).then_some(DefinitionError::Range { parameter, value, min, max, neutral })
+    }
+}
+
+/// A text that lives as long as the program.
+fn leaked(text: &str) -> &'static str {
+    Box::leak(text.to_owned().into_boxed_str())
+}
+
+/// The names of what an expression of this stage sees.
+fn signals(stage: Stage) -> &'static [&'static str] {
+    if stage == Stage::Transport { &CHANGES } else { &SIGNALS }
+}
+
+fn check_names(definition: &Definition, signals: &[&str]) -> Result<(), DefinitionError> {
+    let Definition { id, parameters, .. } = definition;
+    let mut names = std::iter::once(id).chain(parameters.iter().map(|each| &each.name));
+    if let Some(name) = names.find(|name| !contract::is_snake_case(name)) {
+        return Err(DefinitionError::Name { name: name.clone() });
+    }
+    if by_id(id).is_some() || id == KIND {
+        return Err(DefinitionError::TakenId { id: id.clone() });
+    }
+    for (place, OwnParameter { name, .. }) in parameters.iter().enumerate() {
+        let mut before = parameters.iter().take(place);
+        let is_taken = signals.contains(&name.as_str()) || grammar::is_taken(name);
+        if is_taken || before.any(|other| other.name == *name) {
+            return Err(DefinitionError::TakenName { parameter: name.clone() });
+        }
+    }
+    Ok(())
+}
+
+fn specified(definition: &Definition) -> Spec {
+    let behind = if definition.stage == Stage::Transport { "extra delay" } else { "out" };
+    let parameters: Vec<_> = definition.parameters.iter().map(OwnParameter::specified).collect();
+    let summary = definition.summary.as_deref().unwrap_or("an effect of one's own");
+    Spec::new(leaked(&definition.id), definition.stage, leaked(summary))
+        .equation(leaked(&format!("{behind} = {}", definition.expression)))
+        .source("the model file")
+        .parameters(parameters.leak())
+}
+
+/// Moments at which an effect without an effect is seen to have one: signals of either
+/// sign up to 1000, at several places and times.
+fn samples() -> impl Iterator<Item = Moment> {
+    let sizes = [0.0, 0.01, 0.7, 3.0, 45.0, 1000.0];
+    let signals = sizes.into_iter().flat_map(|size| [size, -size]);
+    let places = [(0.0, 0.0, 0.0, 0.0), (30.0, -2.0, 12.0, 0.4), (-170.0, 25.0, 3600.0, 1.0)];
+    signals.flat_map(move |signal| {
+        places.map(|(position, velocity, time_s, others)| {
+            let radians_per_output_unit = 1_f64.to_radians();
+            let dt_s = 0.01;
+            Moment { signal, position, velocity, time_s, dt_s, others, radians_per_output_unit }
+        })
+    })
+}
+
+/// A change of the input at this moment.
+fn change(at: &Moment) -> InputChange {
+    let (before, held_s) = (0.1 * at.position, at.velocity.abs());
+    InputChange { before, after: at.signal, held_s, time_s: at.time_s }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Dimension;
+    use crate::effect::contract::{Fault, check};
+    use crate::effect::testing::{assert_close, moment, run};
+
+    fn definition(stage: Stage, expression: &str, parameters: &[OwnParameter]) -> Definition {
+        let (id, parameters) = ("own".to_owned(), parameters.to_vec());
+        Definition { id, summary: None, stage, expression: expression.to_owned(), parameters }
+    }
+
+    fn own(expression: &str, parameters: &[OwnParameter]) -> &'static dyn Effect {
+        define(definition(Stage::Input, expression, parameters)).unwrap()
+    }
+
+    fn number(name: &str, neutral: f64) -> OwnParameter {
+        OwnParameter { neutral: Some(neutral), ..OwnParameter::new(name, 0.5) }
+    }
+
+    #[test]
+    fn the_result_is_the_signal_behind_it() {
+        let text = "if(signal > start, start + slope * (signal - start), signal)";
+        let knee = own(text, &[number("start", 0.0), number("slope", 1.0)]);
+        assert_close(&run(knee, &[1.0, 0.5], &[-2.0, 0.5, 1.0, 3.0]), &[-2.0, 0.5, 1.0, 2.0]);
+        assert!(knee.nests());
+    }
+
+    #[test]
+    fn every_signal_has_its_name() {
+        let text = "signal + 10 * position + 100 * velocity + 1000 * time + 1e4 * dt + 1e5 * others
+            + 1e6 * radians";
+        let at = Moment {
+            signal: 1.0,
+            position: 2.0,
+            velocity: 3.0,
+            time_s: 4.0,
+            dt_s: 5.0,
+            others: 6.0,
+            radians_per_output_unit: 7.0,
+        };
+        assert_close(&[own(text, &[]).step(&[], &mut [], &at)], &[7_654_321.0]);
+        let text = "before + 10 * after + 100 * held + 1000 * time";
+        let delay = define(definition(Stage::Transport, text, &[])).unwrap();
+        let change = InputChange { before: 1.0, after: 2.0, held_s: 3.0, time_s: 4.0 };
+        assert_close(&[delay.extra_delay_s(&[], &change)], &[4321.0]);
+        assert_close(&[delay.step(&[], &mut [], &at)], &[1.0]);
+    }
+
+    #[test]
+    fn effects_of_every_stage_keep_the_contract() {
+        let bounded = OwnParameter { min: Some(-0.9), max: Some(0.9), ..number("k", 0.0) };
+        for (stage, text) in [
+            (Stage::Input, "sign(signal) * abs(signal)^(1 + k)"),
+            (Stage::Dynamics, "signal * exp(-k * time)"),
+            (Stage::Load, "signal * sqrt(1 - k * cos(position * radians))"),
+            (Stage::Output, "signal + k * sin(2 * pi * signal / 360)"),
+            (Stage::Transport, "k * abs(after - before) + ln(1 + k)"),
+            (Stage::Load, "signal + k / 0 * 0"),
+        ] {
+            let effect = define(definition(stage, text, std::slice::from_ref(&bounded))).unwrap();
+            assert_eq!(check(effect), Ok(()), "{text}");
+            assert!(effect.nests(), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_a_number_changes_nothing() {
+        let root = own("sqrt(signal)", &[]);
+        assert_close(&run(root, &[], &[4.0, -4.0]), &[2.0, -4.0]);
+        let broken = own("signal / 0 + k", &[OwnParameter::new("k", 1.0)]);
+        assert_close(&run(broken, &[1.0], &[4.0]), &[4.0]);
+        assert_close(&run(broken, &[], &[4.0]), &[4.0]);
+    }
+
+    #[test]
+    fn without_a_neutral_point_it_does_not_nest() {
+        let always = own("signal / (1 + abs(signal))", &[]);
+        assert!(!always.nests());
+        assert_eq!(check(always), Ok(()));
+        let promised = definition(Stage::Input, "signal + k", &[number("k", 1.0)]);
+        let error = define(promised).unwrap_err();
+        assert!(matches!(error, DefinitionError::NotNeutral { .. }), "{error}");
+        let delay = define(definition(Stage::Transport, "0.1", &[])).unwrap();
+        assert!(!delay.nests());
+    }
+
+    #[test]
+    fn neutral_may_lie_outside_the_bounds_of_a_fit() {
+        let start = OwnParameter { min: Some(0.0), max: Some(5.0), ..number("start", 1e3) };
+        let limit = own("min(signal, start)", &[start]);
+        let parameter = limit.spec().parameters[0];
+        assert_close(&[parameter.min, parameter.neutral, parameter.max], &[0.0, 1e3, 1e3]);
+        assert_eq!(limit.bounds(&RecordRange::default()), [(0.0, 5.0)]);
+        assert_eq!(limit.starts(&RecordRange::default()), [[0.5]]);
+        // Beyond the signals at which that is tested it is not neutral at all.
+        assert!(matches!(check(limit).unwrap_err().fault, Fault::NotNeutral { .. }));
+    }
+
+    #[test]
+    fn a_fit_starts_at_the_given_value_or_away_from_neutral() {
+        let level =
+            OwnParameter { start: Some(0.0), dimension: Dimension::Input, ..number("level", 0.0) };
+        let effect = own("signal - level + k", &[level, number("k", 0.0)]);
+        let record = RecordRange { input_abs_max: 4.0, ..RecordRange::default() };
+        assert_close(&effect.starts(&record)[0], &[0.4, 0.5]);
+        assert_eq!(effect.bounds(&record), [(-4.0, 4.0), (-UNLIMITED, UNLIMITED)]);
+    }
+
+    #[test]
+    fn the_same_definition_is_the_same_effect() {
+        let twice = [own("signal * 1", &[]), own("signal * 1", &[])];
+        assert!(std::ptr::eq(twice[0].spec(), twice[1].spec()));
+        assert!(!std::ptr::eq(twice[0].spec(), own("signal * 2", &[]).spec()));
+    }
+
+    #[test]
+    fn names_that_are_taken_are_refused() {
+        let error = |definition: Definition| define(definition).unwrap_err().to_string();
+        let id = |id: &str| Definition { id: id.to_owned(), ..definition(Stage::Load, "1", &[]) };
+        assert!(error(id("dead_band")).contains("`dead_band` is taken"));
+        assert!(error(id("expression")).contains("is taken"));
+        assert!(error(id("My knee")).contains("not in snake case"));
+        for name in ["signal", "sqrt", "pi", "if"] {
+            let given = definition(Stage::Load, "1", &[OwnParameter::new(name, 1.0)]);
+            assert!(error(given).contains(&format!("parameter `{name}` has a name that is taken")));
+        }
+        let twice = [OwnParameter::new("k", 1.0), OwnParameter::new("k", 2.0)];
+        assert!(error(definition(Stage::Load, "1", &twice)).contains("`k` has a name"));
+        // `before` is a signal of another stage, and `signal` none of the transport's.
+        assert!(
+            define(definition(Stage::Load, "before", &[OwnParameter::new("before", 1.0)])).is_ok()
+        );
+        let transport = error(definition(Stage::Transport, "signal", &[]));
+        assert_eq!(transport, "the expression cannot be computed");
+    }
+
+    #[test]
+    fn numbers_that_do_not_go_together_are_refused() {
+        let own = |own: OwnParameter| define(definition(Stage::Load, "signal + k", &[own]));
+        for wrong in [
+            OwnParameter::new("k", f64::NAN),
+            OwnParameter { min: Some(1.0), ..OwnParameter::new("k", 0.0) },
+            OwnParameter { max: Some(f64::INFINITY), ..OwnParameter::new("k", 0.0) },
+            OwnParameter { neutral: Some(f64::NAN), ..OwnParameter::new("k", 0.0) },
+        ] {
+            assert!(matches!(own(wrong), Err(DefinitionError::Range { .. })));
+        }
+    }
+
+    #[test]
+    fn it_depends_on_the_angle_where_it_says_so() {
+        let on = |stage, text| define(definition(stage, text, &[])).unwrap().depends_on_angle();
+        assert!(on(Stage::Input, "if(signal > 0, signal, signal * abs(position))"));
+        assert!(!on(Stage::Dynamics, "signal * exp(-time)"));
+        assert!(on(Stage::Load, "2 * signal"));
+        assert!(!on(Stage::Transport, "0 * before"));
+    }
+
+    #[test]
+    fn a_parameter_without_a_use_is_refused() {
+        let k = OwnParameter::new("k", 1.0);
+        let error = define(definition(Stage::Load, "if(signal > 0, signal, -signal)", &[k]));
+        assert!(matches!(error, Err(DefinitionError::Unused { parameter }) if parameter == "k"));
+    }
+
+    #[test]
+    fn it_runs_on_several_threads() {
+        let effect = own("signal * 3", &[]);
+        let run = || effect.step(&[], &mut [], &moment(2.0));
+        std::thread::scope(|scope| {
+            let threads = [scope.spawn(run), scope.spawn(run)];
+            assert!(threads.into_iter().all(|thread| (thread.join().unwrap() - 6.0).abs() < 1e-9));
+        });
+    }
+}

@@ -1,0 +1,65 @@
+//! Why an effect of a user's own cannot be used.
+
+use super::grammar::SyntaxError;
+
+/// Why an effect of a user's own cannot be used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DefinitionError {
+    /// A name is not in snake case.
+    #[error("`{name}` is not in snake case: small letters, digits and `_`, a letter first")]
+    Name {
+        /// The id, or the name of a parameter.
+        name: String,
+    },
+    /// The id is one of the catalogue's, or has a meaning of its own in a model file.
+    #[error("`{id}` is taken; give the effect an id of its own")]
+    TakenId {
+        /// The id.
+        id: String,
+    },
+    /// A parameter has the name of a signal, a function or a constant, or of another
+    /// parameter.
+    #[error("parameter `{parameter}` has a name that is taken: rename it")]
+    TakenName {
+        /// The parameter.
+        parameter: String,
+    },
+    /// Numbers of a parameter do not go together.
+    #[error(
+        "parameter `{parameter}`: {min} <= {value} <= {max}, neutral at {neutral}, does not hold \
+         with finite numbers"
+    )]
+    Range {
+        /// The parameter.
+        parameter: String,
+        /// Its start value.
+        value: f64,
+        /// Its lowest value.
+        min: f64,
+        /// Its highest value.
+        max: f64,
+        /// Its neutral value.
+        neutral: f64,
+    },
+    /// The expression cannot be computed.
+    #[error("the expression cannot be computed")]
+    Syntax(#[from] SyntaxError),
+    /// The expression does not depend on a parameter.
+    #[error("parameter `{parameter}` is not in the expression: use it, or take it out")]
+    Unused {
+        /// The parameter.
+        parameter: String,
+    },
+    /// The neutral values that are given are not neutral.
+    #[error(
+        "at its neutral values the effect makes {found} of {signal}, and must leave it as it is; \
+         correct `neutral`, or leave it out of all parameters if there is no such point"
+    )]
+    NotNeutral {
+        /// The signal in front of it.
+        signal: f64,
+        /// The signal behind it.
+        found: f64,
+    },
+}

@@ -1,0 +1,104 @@
+//! The trait that every effect implements.
+
+use std::fmt::Debug;
+
+use super::{Definition, InputChange, Moment, RecordRange, Spec, Stage};
+
+/// One physical effect.
+///
+/// The caller passes as many parameters and numbers of memory as the [`Spec`] says;
+/// with another number an effect returns the signal unchanged.
+pub trait Effect: Debug + Send + Sync {
+    /// What it is, where it acts, and its parameters.
+    fn spec(&self) -> &'static Spec;
+
+    /// The signal after this effect; `at.signal` itself at the neutral parameters.
+    ///
+    /// Fresh memory is all zeros: at rest with no signal. In the dynamics stage the
+    /// result is the mean of the effect's output over the interval `at.dt_s`, in which
+    /// the signal is constant, and the memory then holds the state at its end. In the
+    /// other stages it is the value at this moment.
+    fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64;
+
+    /// Puts the memory into the state it has when `at.signal` has long been held.
+    fn settle(&self, _parameters: &[f64], _memory: &mut [f64], _at: &Moment) {}
+
+    /// Seconds by which a change of the input arrives later than the joint's delay.
+    ///
+    /// May be negative; the caller keeps the whole delay at zero or above.
+    fn extra_delay_s(&self, _parameters: &[f64], _change: &InputChange) -> f64 {
+        0.0
+    }
+
+    /// Parameters with which each step's own delay, as it was measured, takes the place of the
+    /// joint's; `None` where it has no such form.
+    fn measured_delays(&self) -> Option<Vec<f64>> {
+        None
+    }
+
+    /// Whether `parameters` are of that form.
+    fn takes_measured_delays(&self, _parameters: &[f64]) -> bool {
+        false
+    }
+
+    /// Whether it has neutral parameters, at which it changes nothing.
+    ///
+    /// If not, a model with it and the same without are not nested: one is not a special
+    /// case of the other.
+    fn nests(&self) -> bool {
+        true
+    }
+
+    /// Whether a joint with it moves otherwise from another angle.
+    ///
+    /// A fit need not find the angle at which a record starts where nothing depends on it.
+    fn depends_on_angle(&self) -> bool {
+        matches!(self.spec().stage, Stage::Load | Stage::Output)
+    }
+
+    /// Whether a joint with it moves otherwise while other joints move.
+    ///
+    /// A record of one joint alone cannot show such an effect.
+    fn depends_on_others(&self) -> bool {
+        false
+    }
+
+    /// Whether a joint with it moves otherwise when the machine has worked for a while.
+    fn depends_on_warmth(&self) -> bool {
+        false
+    }
+
+    /// How a model file defines it, where it is not an effect of the program.
+    fn definition(&self) -> Option<&Definition> {
+        None
+    }
+
+    /// Lowest and highest value of each parameter that a fit to `record` should try.
+    ///
+    /// They lie within those of the [`Spec`]; the neutral value may lie outside, where
+    /// a value at the bound has no effect on this record either.
+    fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
+        self.spec().parameters.iter().map(|parameter| parameter.bounds(record)).collect()
+    }
+
+    /// Parameters from which a fit to `record` may find the best ones.
+    ///
+    /// Several where the error has several valleys. They need not keep the bounds; a fit
+    /// takes [`starts`](Self::starts).
+    fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
+        vec![self.spec().parameters.iter().map(|parameter| parameter.start(record)).collect()]
+    }
+
+    /// Where a fit to `record` should start: the [`guesses`](Self::guesses), each value
+    /// moved into its [`bounds`](Self::bounds).
+    fn starts(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
+        let bounds = self.bounds(record);
+        let mut starts = self.guesses(record);
+        for start in &mut starts {
+            for (value, (low, high)) in start.iter_mut().zip(&bounds) {
+                *value = value.max(*low).min(*high);
+            }
+        }
+        starts
+    }
+}

@@ -1,0 +1,116 @@
+//! The catalogue: one line for each effect.
+
+use super::{
+    ActuatorLag, Backlash, CoulombFriction, DeadBand, DirectionGain, Effect, EndStop, FlowCurve,
+    GravityLoad, InputOffset, InputSaturation, Leakage, OilColumn, PositionGain, RateLimit,
+    Resonance, Stiction, SupplyDroop, ThermalDrift, VariableDelay,
+};
+
+/// Every built-in effect, in the order the documentation lists them.
+pub const REGISTRY: &[&dyn Effect] = &[
+    &InputOffset,
+    &DeadBand,
+    &Stiction,
+    &InputSaturation,
+    &FlowCurve,
+    &DirectionGain,
+    &RateLimit,
+    &VariableDelay,
+    &ActuatorLag,
+    &Resonance,
+    &OilColumn,
+    &CoulombFriction,
+    &GravityLoad,
+    &PositionGain,
+    &ThermalDrift,
+    &SupplyDroop,
+    &Leakage,
+    &EndStop,
+    &Backlash,
+];
+
+/// No effect has this id.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no effect `{id}`; the nearest is `{nearest}`")]
+pub struct UnknownEffect {
+    /// What was asked for.
+    pub id: String,
+    /// The id that is most like it.
+    pub nearest: &'static str,
+}
+
+/// The built-in effect with this id.
+pub fn by_id(id: &str) -> Option<&'static dyn Effect> {
+    REGISTRY.iter().copied().find(|effect| effect.spec().id == id)
+}
+
+/// The built-in effect with this id, or an error that names the nearest.
+///
+/// # Errors
+/// [`UnknownEffect`] when no built-in effect has it.
+///
+/// # Examples
+/// ```
+/// use tauscope::effect::find;
+/// assert_eq!(find("dead_band")?.spec().parameters.len(), 2);
+/// assert_eq!(find("deadband").unwrap_err().nearest, "dead_band");
+/// # Ok::<(), tauscope::effect::UnknownEffect>(())
+/// ```
+pub fn find(id: &str) -> Result<&'static dyn Effect, UnknownEffect> {
+    find_among(id, &[])
+}
+
+/// The effect with this id, built in or one of `others`.
+///
+/// # Errors
+/// [`UnknownEffect`] when none has it.
+pub fn find_among(
+    id: &str,
+    others: &[&'static dyn Effect],
+) -> Result<&'static dyn Effect, UnknownEffect> {
+    let all = || REGISTRY.iter().chain(others).copied();
+    let likeness = |known: &str| strsim::jaro_winkler(id, known);
+    let ids = all().map(|effect| effect.spec().id);
+    let nearest = ids.max_by(|a, b| likeness(a).total_cmp(&likeness(b))).unwrap_or_default();
+    let unknown = || UnknownEffect { id: id.to_owned(), nearest };
+    all().find(|effect| effect.spec().id == id).ok_or_else(unknown)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_catalogue_is_the_documented_one() {
+        let documented = [
+            "input_offset",
+            "dead_band",
+            "stiction",
+            "input_saturation",
+            "flow_curve",
+            "direction_gain",
+            "rate_limit",
+            "variable_delay",
+            "actuator_lag",
+            "resonance",
+            "oil_column",
+            "coulomb_friction",
+            "gravity_load",
+            "position_gain",
+            "thermal_drift",
+            "supply_droop",
+            "leakage",
+            "end_stop",
+            "backlash",
+        ];
+        let ids: Vec<_> = REGISTRY.iter().map(|effect| effect.spec().id).collect();
+        assert_eq!(ids, documented);
+    }
+
+    #[test]
+    fn an_unknown_id_names_the_nearest() {
+        assert_eq!(find("couloumb").unwrap_err().nearest, "coulomb_friction");
+        assert_eq!(find("gravity").unwrap_err().nearest, "gravity_load");
+        assert!(by_id("").is_none());
+    }
+}
