@@ -28,7 +28,7 @@ fn methods(criterion: &mut Criterion) {
         for samples in [10_000, 100_000, 1_000_000] {
             let trial = trial(samples, hold_s, lag_s);
             group.throughput(Throughput::Elements(samples as u64));
-            for method in Method::ALL {
+            for method in Method::all() {
                 let settings = Settings::of(method);
                 let id = BenchmarkId::new(method.id(), samples);
                 group.bench_with_input(id, &trial, |bencher, trial| {

@@ -68,10 +68,8 @@ fn plants() -> Vec<(&'static str, JointSpec)> {
 
 fn settings(method: Method) -> Settings {
     let settings = Settings { keep_first_last: true, ..Settings::of(method) };
-    match method {
-        Method::TwoLine => Settings { beta: 2, ..settings },
-        Method::Hinge | Method::LagAware => settings,
-    }
+    // Means nothing to methods without rows.
+    Settings { beta: 2, ..settings }
 }
 
 /// What became of the steps of a plant under one method.
@@ -314,13 +312,13 @@ struct Records {
 
 /// Every method on the records of a plant; the mean bound and the least error of the first ones.
 fn measure(spec: &JointSpec, records: Records) -> anyhow::Result<(Vec<Tally>, [Option<f64>; 2])> {
-    let mut tallies: Vec<Tally> = Method::ALL.iter().map(|_| Tally::default()).collect();
+    let mut tallies: Vec<Tally> = Method::all().map(|_| Tally::default()).collect();
     let (mut bounds, mut leasts) = (Vec::new(), Vec::new());
     for seed in 0..records.count {
         let made = made(spec, records.first_seed + seed, records.duration_s)?;
         let joint = made.joints.first().context("a plant has a joint")?;
         let trial = joint.trials.first().context("a joint has a trial")?;
-        for (method, tally) in Method::ALL.into_iter().zip(&mut tallies) {
+        for (method, tally) in Method::all().zip(&mut tallies) {
             let begun = Instant::now();
             let found = estimate(trial, &settings(method))?;
             tally.time += begun.elapsed();
@@ -340,7 +338,7 @@ fn measure(spec: &JointSpec, records: Records) -> anyhow::Result<(Vec<Tally>, [O
 
 fn print(name: &str, tallies: &[Tally], limits: [Option<f64>; 2]) {
     let limits = limits.map(|limit| limit.map_or_else(|| "-".to_owned(), |l| format!("{l:.3}")));
-    for (method, tally) in Method::ALL.into_iter().zip(tallies) {
+    for (method, tally) in Method::all().zip(tallies) {
         let dash = |text: String, known: bool| if known { text } else { "-".to_owned() };
         println!(
             "{name:21}{:10}{:6}{:8.1}{:9.3}{:+8.3}{:>8}{:>8}{:>8}{:>8}{:8.1}",

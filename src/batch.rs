@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::delay::sweep::{Grid, JointSweep, RunTold};
 use crate::delay::{
-    Automatic, Chosen, Decision, EstimateError, Settings, Shared, TrialEstimate, choose,
+    Automatic, Chosen, Decision, EstimateError, Estimator, Settings, TrialEstimate, choose,
 };
 use crate::design::{
     Design, DesignError, Limits, Stand, Suspects, SuspectsError, Uncertain, shortest,
@@ -86,9 +86,9 @@ fn estimate_one(
     if let Some(samples) = longest.filter(|samples| *samples < needed) {
         return Err(EstimateError::TooFewSamples { samples, needed });
     }
-    let shared = Shared::of(&joint.trials, settings)?;
+    let estimator = Estimator::of(&joint.trials, settings)?;
     let one_trial = |trial| {
-        let estimate = shared.estimate(trial, settings);
+        let estimate = estimator.estimate(trial);
         done();
         estimate
     };

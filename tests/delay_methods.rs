@@ -53,7 +53,7 @@ fn errors(made: &Synthetic, found: &TrialEstimate) -> (f64, f64) {
 #[test]
 fn a_broken_line_finds_the_delay_between_samples() {
     let made = made(joint());
-    let (error, covered) = errors(&made, &found(&made, Method::Hinge));
+    let (error, covered) = errors(&made, &found(&made, Method::HINGE));
     assert!(error < 0.13, "{error}");
     // 95 % of some forty.
     assert!(covered > 0.85, "{covered}");
@@ -65,9 +65,9 @@ fn dead_time_is_told_from_a_lag_and_from_ringing() {
     let ringing = Ringing { period_s: 0.4, damping: 0.25 };
     for spec in [lag, JointSpec { ringing: Some(ringing), ..joint() }] {
         let (lag_s, made) = (spec.lag_s, made(spec));
-        let (booked, _) = errors(&made, &found(&made, Method::Hinge));
+        let (booked, _) = errors(&made, &found(&made, Method::HINGE));
         assert!(booked > 3.0, "the broken line books the lag as delay: {booked}");
-        let estimate = found(&made, Method::LagAware);
+        let estimate = found(&made, Method::LAG_AWARE);
         let (error, covered) = errors(&made, &estimate);
         assert!(error < 0.2, "{error}");
         assert!(covered > 0.85, "{covered}");
@@ -85,9 +85,9 @@ fn dead_time_is_told_from_a_lag_and_from_ringing() {
 #[test]
 fn without_a_lag_there_is_none_to_report() {
     let made = made(joint());
-    let estimate = found(&made, Method::LagAware);
+    let estimate = found(&made, Method::LAG_AWARE);
     assert_eq!(estimate.lag.as_ref().unwrap().order(), 0);
-    assert_eq!(estimate.decisions, found(&made, Method::Hinge).decisions);
+    assert_eq!(estimate.decisions, found(&made, Method::HINGE).decisions);
 }
 
 #[test]
@@ -98,7 +98,7 @@ fn nothing_happens_in_a_dead_band() {
     let still: Vec<usize> =
         made.truth.iter().filter(|s| s.slope_change == 0.0).map(|s| s.i).collect();
     assert!(still.len() > 10);
-    for method in Method::ALL {
+    for method in Method::all() {
         let settings = Settings { confidence: Some(0.99), ..Settings::of(method) };
         let found = estimate(&made.joints[0].trials[0], &settings).unwrap();
         let accepted = |i: &&usize| found.decisions[**i - 1].verdict() == Verdict::Accepted;
@@ -114,7 +114,7 @@ fn nothing_happens_in_a_dead_band() {
 #[test]
 fn the_papers_method_tests_nothing_by_itself() {
     let made = made(joint());
-    let found = found(&made, Method::TwoLine);
+    let found = found(&made, Method::TWO_LINE);
     let checks = found.decisions.iter().flat_map(|decision| &decision.checks);
     let mut tests = checks.filter(|check| check.condition == Condition::NothingHappened);
     assert!(tests.all(|check| check.value.is_none() && check.limit.is_none()));
@@ -124,7 +124,7 @@ fn the_papers_method_tests_nothing_by_itself() {
 fn trials_share_their_lag() {
     let one = lasting(20.0, JointSpec { lag_s: Some(0.06), ..joint() }).joints[0].trials[0].clone();
     let trials = [one.clone(), one];
-    let settings = Settings::of(Method::LagAware);
+    let settings = Settings::of(Method::LAG_AWARE);
     let found: Vec<_> =
         estimate_joint(&trials, &settings).into_iter().map(Result::unwrap).collect();
     assert_eq!(found[0].lag, found[1].lag);
@@ -169,7 +169,7 @@ fn odd_outputs_are_estimated_or_refused_but_nothing_panics() {
             (0..length).map(*output).collect(),
         )
         .unwrap();
-        for method in Method::ALL {
+        for method in Method::all() {
             let found = estimate(&trial, &Settings::of(method)).unwrap();
             assert_eq!(found.decisions.len(), usize::try_from((length - 1) / 7).unwrap());
         }
@@ -221,7 +221,7 @@ const RINGING: Option<Ringing> = Some(Ringing { period_s: 0.4, damping: 0.25 });
 
 #[test]
 fn errors_are_small_and_intervals_hold_what_they_say() {
-    let ideal = Pool::of(&joint(), Method::Hinge, 1..=10);
+    let ideal = Pool::of(&joint(), Method::HINGE, 1..=10);
     assert!(ideal.mean_error() <= 0.1, "{}", ideal.mean_error());
     assert!((0.92..=0.98).contains(&ideal.coverage()), "{}", ideal.coverage());
     let plants = [
@@ -230,7 +230,7 @@ fn errors_are_small_and_intervals_hold_what_they_say() {
         JointSpec { ringing: RINGING, ..joint() },
     ];
     for plant in plants {
-        let pool = Pool::of(&plant, Method::LagAware, 1..=10);
+        let pool = Pool::of(&plant, Method::LAG_AWARE, 1..=10);
         assert!(pool.mean_error() <= 0.15, "{plant:?}: {}", pool.mean_error());
         assert!((0.92..=0.98).contains(&pool.coverage()), "{plant:?}: {}", pool.coverage());
     }
@@ -249,7 +249,7 @@ fn holds_may_be_shorter_than_delay_and_lag() {
     for plant in
         [JointSpec { lag_s: Some(0.06), ..short.clone() }, JointSpec { ringing: RINGING, ..short }]
     {
-        let pool = Pool::of(&plant, Method::LagAware, 1..=1);
+        let pool = Pool::of(&plant, Method::LAG_AWARE, 1..=1);
         assert!(pool.mean_error() <= 1.5, "{plant:?}: {}", pool.mean_error());
         assert!(pool.errors.len() > 250, "{plant:?}: {}", pool.errors.len());
     }
@@ -261,7 +261,7 @@ fn one_still_step_of_a_hundred_is_taken_for_a_reaction() {
     let input = InputSpec::Levels { levels, hold_s: [0.9, 2.0] };
     let dead = JointSpec { input, dead_band: Some([-0.5, 0.5]), gain: 20.0, ..joint() };
     for plant in [JointSpec { lag_s: Some(0.06), ..dead.clone() }, dead] {
-        let pool = Pool::of(&plant, Method::LagAware, 1..=10);
+        let pool = Pool::of(&plant, Method::LAG_AWARE, 1..=10);
         assert!(pool.still > 300, "{}", pool.still);
         assert!(100 * pool.still_accepted <= pool.still, "{pool:?}");
     }

@@ -91,7 +91,7 @@ fn the_table_holds_every_decision_and_every_candidate() {
 
 #[test]
 fn a_delay_between_samples_is_recorded_as_finely_as_it_was_found() {
-    for method in [Method::Hinge, Method::LagAware] {
+    for method in [Method::HINGE, Method::LAG_AWARE] {
         let recorded = Recorded::with(Settings::of(method));
         let back = recorded.read_back(Detail::Full);
         for joint in recorded.joints() {
@@ -123,7 +123,7 @@ fn a_delay_between_samples_is_recorded_as_finely_as_it_was_found() {
                 let shown = decision.fine.map(|fine| number(fine.low)).unwrap_or_default();
                 assert!(text.contains(&format!("| 95 % interval of δ | {shown} … ")), "{text}");
                 let lag = text.contains("| lag behind the dead time | none |");
-                assert_eq!(lag, method == Method::LagAware, "{text}");
+                assert_eq!(lag, method == Method::LAG_AWARE, "{text}");
             }
         }
     }
@@ -134,7 +134,7 @@ fn a_delay_between_samples_is_recorded_as_finely_as_it_was_found() {
 
 #[test]
 fn what_another_method_decided_is_drawn_beside_the_first() {
-    let recorded = Recorded::with(Settings::of(Method::LagAware));
+    let recorded = Recorded::with(Settings::of(Method::LAG_AWARE));
     let settings = Settings { keep_first_last: true, ..Settings::default() };
     let other = estimate_joints(&recorded.experiment.joints, &settings, || ());
     let other: Vec<JointEstimate> = other.into_iter().map(Result::unwrap).collect();

@@ -37,7 +37,7 @@ fn grid() -> Grid {
         Base { settings, keeps_low_pass }
     };
     let slow = Some(LowPass { cutoff_hz: 5.0, order: 4 });
-    Grid::new(Method::ALL.map(base).to_vec(), vec![slow, None], vec![10], vec![1, 5])
+    Grid::new(Method::all().map(base).collect(), vec![slow, None], vec![10], vec![1, 5])
 }
 
 impl Swept {

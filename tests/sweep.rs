@@ -45,7 +45,8 @@ fn counts(sweep: &JointSweep) -> [usize; 4] {
 
 #[test]
 fn the_delays_of_an_ideal_joint_hang_on_nothing() {
-    let sweep = swept(&made(vec![joint("arm")]), &Method::ALL, &[Some(10.0), None]);
+    let sweep =
+        swept(&made(vec![joint("arm")]), &Method::all().collect::<Vec<_>>(), &[Some(10.0), None]);
     let settled = sweep.judged().filter(|step| step.is_settled()).count();
     assert!(10 * settled >= 9 * sweep.judged().count(), "{settled} of {}", sweep.judged().count());
     // All settings say what is true.
@@ -59,7 +60,7 @@ fn the_delays_of_an_ideal_joint_hang_on_nothing() {
 #[test]
 fn behind_a_lag_the_delays_hang_on_the_method() {
     let lagged = made(vec![JointSpec { lag_s: Some(0.06), ..joint("arm") }]);
-    let sweep = swept(&lagged, &Method::ALL, &[Some(10.0), None]);
+    let sweep = swept(&lagged, &Method::all().collect::<Vec<_>>(), &[Some(10.0), None]);
     let [method, others @ ..] = counts(&sweep);
     assert!(10 * method >= 9 * sweep.judged().count(), "{method} {others:?}");
     let lag = sweep.runs.iter().flatten().find_map(|run| run.lag.as_ref()).unwrap();
@@ -74,7 +75,7 @@ fn a_passband_that_is_too_low_is_seen() {
     let input = InputSpec::Levels { levels: vec![-1.0, -0.5, 0.5, 1.0], hold_s: [0.4, 0.8] };
     let delay = DelayLaw::Uniform { min: 0.05, max: 0.2 };
     let short = made(vec![JointSpec { input, delay, ..joint("arm") }]);
-    let sweep = swept(&short, &[Method::TwoLine], &[Some(0.3), Some(10.0), None]);
+    let sweep = swept(&short, &[Method::TWO_LINE], &[Some(0.3), Some(10.0), None]);
     let [_, passband, ..] = counts(&sweep);
     assert!(3 * passband > 2 * sweep.judged().count(), "{:?}", counts(&sweep));
     let levels = &sweep.levels[1];

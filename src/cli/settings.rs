@@ -1,16 +1,15 @@
 //! The settings that every command takes whose delays are asked for.
 
-use crate::delay::{self, Settings};
+use crate::delay::{Method, MethodSpec, Settings};
 use crate::numerics::LowPass;
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 /// The settings that are no part of how a breakpoint is searched.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Algorithm")]
 pub(super) struct ConditionArgs {
-    /// Reject a step as `nothing_happened` unless its change of slope is this unlikely to
-    /// be noise, or `none` [default: 0.99; `none` for two-line]
-    #[arg(long, value_name = "X|none", value_parser = confidence, allow_negative_numbers = true)]
+    #[arg(long, help = confidence_help(), value_name = "X|none", value_parser = confidence, allow_negative_numbers = true)]
     confidence: Option<Confidence>,
 
     /// How often the interval of a delay is to hold the true one
@@ -52,24 +51,25 @@ pub(super) struct ConditionArgs {
     min_step: f64,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum Method {
-    /// Two regression lines (Albrecht and Taylor)
-    TwoLine,
-    /// A continuous broken line, with intervals
-    Hinge,
-    /// A broken line behind a lag: dead time apart from lag, with intervals
-    LagAware,
+/// The methods that say so of themselves.
+pub(super) fn ids_with(says: impl Fn(&MethodSpec) -> bool) -> String {
+    let methods = Method::all().filter(|method| says(method.spec()));
+    methods.map(Method::id).collect::<Vec<_>>().join(", ")
 }
 
-impl From<Method> for delay::Method {
-    fn from(method: Method) -> Self {
-        match method {
-            Method::TwoLine => Self::TwoLine,
-            Method::Hinge => Self::Hinge,
-            Method::LagAware => Self::LagAware,
-        }
-    }
+fn confidence_help() -> String {
+    let untested = ids_with(|spec| spec.confidence.is_none());
+    format!(
+        "Reject a step as `nothing_happened` unless its change of slope is this unlikely to be \
+         noise, or `none` [default: 0.99; `none` for {untested}]"
+    )
+}
+
+/// Names of methods, with their help.
+pub(super) fn method() -> impl TypedValueParser<Value = Method> {
+    let known = |method: Method| PossibleValue::new(method.id()).help(method.spec().summary);
+    let ids = PossibleValuesParser::new(Method::all().map(known));
+    ids.try_map(|id| Method::find(&id).ok_or("no method has this name"))
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -137,7 +137,7 @@ impl Passband {
 
 impl ConditionArgs {
     /// The settings of `method` with these conditions; all else is as usual.
-    pub(super) fn settings(&self, method: delay::Method) -> Settings {
+    pub(super) fn settings(&self, method: Method) -> Settings {
         let usual = Settings::of(method);
         let order = self.filter_order;
         let confidence = match self.confidence {

@@ -45,8 +45,8 @@ use super::chain::ceil;
 use super::decision::{Decision, Verdict};
 use super::hinge;
 use super::interval::FineDelay;
-use super::settings::Method;
 use super::settings::Settings;
+use super::spec::Method;
 use super::steps::input_steps;
 use crate::experiment::Trial;
 use crate::numerics::LowPass;
@@ -122,12 +122,11 @@ pub fn choose(trials: &[Trial], settings: &Settings, automatic: Automatic) -> (S
         chosen.alpha = ceil(delay).max(1);
     }
     if automatic.passband {
-        chosen.low_pass = match settings.method {
-            Method::TwoLine => record.low_pass(settings.low_pass, grounds.motion_ends_hz),
-            Method::Hinge | Method::LagAware => None,
-        };
+        let smooths = settings.method.spec().low_pass.is_some();
+        let low_pass = || record.low_pass(settings.low_pass, grounds.motion_ends_hz);
+        chosen.low_pass = if smooths { low_pass() } else { None };
     }
-    if automatic.beta && settings.method.has_rows() {
+    if automatic.beta && settings.method.spec().has_rows {
         chosen.beta = if chosen.low_pass.is_some() { 1 } else { record.blur() };
     }
     (chosen, Chosen { automatic, grounds })
@@ -158,7 +157,7 @@ impl<'a> Record<'a> {
             max_delay: settings.max_delay,
             min_step: settings.min_step,
             keep_first_last: true,
-            ..Settings::of(Method::Hinge)
+            ..Settings::of(Method::HINGE)
         };
         let period = trials.first().map(Trial::period);
         let alike: Vec<_> = trials.iter().filter(|t| Some(t.period()) == period).collect();

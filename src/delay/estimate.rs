@@ -1,10 +1,13 @@
 //! From a trial to its delays: prepared, decided by the method, and every sample filled in.
 
+use std::fmt;
+
+use super::method::{DelayMethod, implementation};
 use super::prepared::Prepared;
 use super::profile::DelayProfile;
-use super::registry;
 use super::response::Lag;
 use super::settings::Settings;
+use super::spec::Scope;
 use super::trial_estimate::{EstimateError, TrialEstimate};
 use crate::experiment::Trial;
 
@@ -18,8 +21,7 @@ use crate::experiment::Trial;
 /// trial. An input without a step is no error: there are no decisions then; nor is a
 /// trial too short for two lines, whose decisions say so.
 pub fn estimate(trial: &Trial, settings: &Settings) -> Result<TrialEstimate, EstimateError> {
-    let shared = Shared::of(std::slice::from_ref(trial), settings)?;
-    shared.estimate(trial, settings)
+    Estimator::of(std::slice::from_ref(trial), settings)?.estimate(trial)
 }
 
 /// Estimates all trials of a joint, which share what its lag looks like.
@@ -27,46 +29,49 @@ pub fn estimate_joint(
     trials: &[Trial],
     settings: &Settings,
 ) -> Vec<Result<TrialEstimate, EstimateError>> {
-    match Shared::of(trials, settings) {
-        Ok(shared) => trials.iter().map(|trial| shared.estimate(trial, settings)).collect(),
+    match Estimator::of(trials, settings) {
+        Ok(estimator) => trials.iter().map(|trial| estimator.estimate(trial)).collect(),
         Err(error) => trials.iter().map(|_| Err(error.clone())).collect(),
     }
 }
 
-/// What all trials of a joint have in common.
-#[derive(Clone, Debug)]
-pub struct Shared {
+/// Estimates the trials of a joint, which share what the method finds out from all of them.
+pub struct Estimator<'a> {
+    settings: &'a Settings,
+    method: &'static dyn DelayMethod,
     lag: Option<Lag>,
 }
 
-impl Shared {
+impl<'a> Estimator<'a> {
     /// Looks at all trials of a joint.
     ///
     /// # Errors
     /// [`EstimateError::Settings`] when the settings make no sense.
-    pub fn of(trials: &[Trial], settings: &Settings) -> Result<Self, EstimateError> {
+    pub fn of(trials: &[Trial], settings: &'a Settings) -> Result<Self, EstimateError> {
         settings.check()?;
-        let prepared: Vec<_> = if settings.method.shares_a_lag() {
-            trials.iter().filter_map(|trial| Prepared::of(trial, settings).ok()).collect()
-        } else {
-            Vec::new()
-        };
-        Ok(Self { lag: registry::lag_of(&prepared, settings) })
+        let method = implementation(settings.method);
+        let lag = (settings.method.spec().scope == Scope::Joint).then(|| {
+            let prepared = trials.iter().filter_map(|trial| Prepared::of(trial, settings).ok());
+            method.shared_lag(&prepared.collect::<Vec<_>>(), settings)
+        });
+        Ok(Self { settings, method, lag: lag.flatten() })
     }
 
     /// Estimates one trial of the joint.
     ///
     /// # Errors
     /// [`EstimateError::Filter`] when the filter does not fit this trial.
-    pub fn estimate(
-        &self,
-        trial: &Trial,
-        settings: &Settings,
-    ) -> Result<TrialEstimate, EstimateError> {
-        let prepared = Prepared::of(trial, settings)?;
-        let decisions = registry::decide_all(&prepared, self.lag.as_ref(), settings);
-        let profile = DelayProfile::of(&decisions, trial.len(), settings.interpolation);
+    pub fn estimate(&self, trial: &Trial) -> Result<TrialEstimate, EstimateError> {
+        let prepared = Prepared::of(trial, self.settings)?;
+        let decisions = self.method.decide(&prepared, self.lag.as_ref(), self.settings);
+        let profile = DelayProfile::of(&decisions, trial.len(), self.settings.interpolation);
         let (lag, smoothed) = (self.lag.clone(), prepared.smoothed);
         Ok(TrialEstimate { label: trial.label().to_owned(), smoothed, decisions, profile, lag })
+    }
+}
+
+impl fmt::Debug for Estimator<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Estimator").field("settings", self.settings).finish_non_exhaustive()
     }
 }

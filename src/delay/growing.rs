@@ -5,6 +5,7 @@
 
 use super::profile::DelayProfile;
 use super::settings::Settings;
+use super::spec::Scope;
 use super::trial_estimate::{EstimateError, TrialEstimate};
 use crate::experiment::Trial;
 use crate::numerics::FilterError;
@@ -31,7 +32,7 @@ pub enum Growing {
 /// # Errors
 /// [`Growing`] when they hang on the whole record.
 pub fn check_growing(settings: &Settings) -> Result<(), Growing> {
-    if settings.method != super::settings::Method::TwoLine {
+    if settings.method.spec().scope != Scope::Segment {
         return Err(Growing::Method { method: settings.method.id() });
     }
     if settings.confidence.is_some() {
@@ -118,7 +119,7 @@ mod tests {
     #[test]
     fn what_hangs_on_the_whole_record_is_refused() {
         assert_eq!(check_growing(&Settings::default()), Ok(()));
-        let hinge = Settings::of(crate::delay::Method::Hinge);
+        let hinge = Settings::of(crate::delay::Method::HINGE);
         assert_eq!(check_growing(&hinge), Err(Growing::Method { method: "hinge" }));
         let judged = Settings { confidence: Some(0.99), ..Settings::default() };
         assert_eq!(check_growing(&judged), Err(Growing::Confidence));

@@ -4,7 +4,6 @@ use std::fmt;
 
 use super::condition::{Check, Condition, Outcome};
 use super::decision::Decision;
-use super::settings::Method;
 use super::settings::Settings;
 
 /// The smallest change of the settings with which one condition would have been met, all
@@ -57,7 +56,7 @@ impl Decision {
             Condition::Sse => Some(format!("--max-sse {}", above(value))),
             Condition::TooShort => {
                 let beta = self.segment.len() / 2;
-                let helps = settings.method == Method::TwoLine && beta > 0;
+                let helps = settings.method.spec().has_rows && beta > 0;
                 helps.then(|| format!("--beta {beta}"))
             }
             Condition::NothingHappened => check.value.map(|p_value| {

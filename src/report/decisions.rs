@@ -208,7 +208,7 @@ pub enum Methods {
 
 impl Methods {
     fn of(runs: &[(&Settings, &[EstimatedJoint<'_>])]) -> Self {
-        let paper = runs.iter().all(|(settings, _)| settings.method == Method::TwoLine);
+        let paper = runs.iter().all(|(settings, _)| settings.method == Method::default());
         if paper { Self::PaperOnly } else { Self::Others }
     }
 }

@@ -17,7 +17,7 @@ pub(crate) fn settings_rows(settings: &Settings) -> Vec<(&'static str, String)> 
     let not_tested = || "not tested".to_owned();
     let percent = |part: f64| format!("{} %", number(100.0 * part));
     vec![
-        ("method", method(settings.method).to_owned()),
+        ("method", method(settings.method)),
         ("α", format!("{} samples", settings.alpha)),
         ("β", format!("{} samples", settings.beta)),
         ("low-pass", low_pass),
@@ -37,9 +37,7 @@ pub(crate) fn settings_rows(settings: &Settings) -> Vec<(&'static str, String)> 
     ]
 }
 
-fn method(method: Method) -> &'static str {
-    match method {
-        Method::TwoLine => "two-line regression (Albrecht and Taylor, Algorithm 1)",
-        Method::Hinge | Method::LagAware => method.meaning(),
-    }
+fn method(method: Method) -> String {
+    let spec = method.spec();
+    spec.source.map_or_else(|| spec.fits.to_owned(), |source| format!("{} ({source})", spec.fits))
 }

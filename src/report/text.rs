@@ -3,7 +3,7 @@
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
 use super::{DelayRange, EstimatedJoint, JointSummary};
-use crate::delay::{Automatic, Chosen, Condition, Interpolation, LagPart, Method, Settings};
+use crate::delay::{Automatic, Chosen, Condition, Interpolation, LagPart, Settings};
 use crate::numerics::LowPass;
 use crate::wording::{measure, percent, rounded};
 
@@ -45,7 +45,7 @@ pub(crate) fn chosen_line(joint: &EstimatedJoint<'_>) -> Option<String> {
             None => format!("α = {} (as usual: no delay is known)", settings.alpha),
         });
     }
-    if automatic.beta && settings.method.has_rows() {
+    if automatic.beta && settings.method.spec().has_rows {
         parts.push(format!("β = {}", settings.beta));
     }
     if automatic.passband {
@@ -114,21 +114,23 @@ fn reasons(rejected: &[(Condition, usize)]) -> String {
 
 /// The settings in one line, as a person would say them.
 fn settings_line(settings: &Settings, automatic: Automatic) -> String {
+    let spec = settings.method.spec();
     let own = |name: &str, is_chosen: bool, value: usize| {
         if is_chosen { format!("{name} as above") } else { format!("{name} = {value}") }
     };
-    let grid = match settings.method {
-        Method::TwoLine => {
-            let alpha = own("α", automatic.alpha, settings.alpha);
-            let beta = own("β", automatic.beta, settings.beta);
-            let both = automatic.alpha && automatic.beta;
-            format!("{alpha}, {beta}{}", if both { "" } else { " samples" })
-        }
-        Method::Hinge | Method::LagAware => format!("{} % intervals", 100.0 * settings.interval),
-    };
+    let mut parts = Vec::new();
+    if spec.has_rows {
+        let alpha = own("α", automatic.alpha, settings.alpha);
+        let beta = own("β", automatic.beta, settings.beta);
+        let both = automatic.alpha && automatic.beta;
+        parts.push(format!("{alpha}, {beta}{}", if both { "" } else { " samples" }));
+    }
+    if spec.has_intervals {
+        parts.push(format!("{} % intervals", 100.0 * settings.interval));
+    }
     let low_pass = low_pass_text(settings);
     let low_pass = if automatic.passband { "low-pass as above".to_owned() } else { low_pass };
-    let mut parts = vec![grid, low_pass];
+    parts.push(low_pass);
     if let Some(confidence) = settings.confidence {
         parts.push(format!("reactions at {} %", 100.0 * confidence));
     }
@@ -156,5 +158,5 @@ fn settings_line(settings: &Settings, automatic: Automatic) -> String {
     if settings.keep_first_last {
         parts.push("first and last step kept".to_owned());
     }
-    format!("{}: {}", settings.method.meaning(), parts.join("; "))
+    format!("{}: {}", spec.fits, parts.join("; "))
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::delay::{self, Automatic, Interpolation, Settings};
+use crate::delay::{Automatic, Interpolation, Method, Settings};
 use clap::{Args as ClapArgs, ValueEnum};
 
 use crate::cli::data::{DataArgs, threads};
@@ -10,7 +10,9 @@ use crate::cli::fitting::Format;
 use crate::cli::folder::FolderArgs;
 use crate::cli::progress::Verbosity;
 use crate::cli::record::Detail;
-use crate::cli::settings::{ConditionArgs, Method, Passband, at_least_one, passband, threshold};
+use crate::cli::settings::{
+    ConditionArgs, Passband, at_least_one, ids_with, method, passband, threshold,
+};
 use crate::cli::stream::StreamArgs;
 
 /// Estimate the delay of every input step of every joint
@@ -54,7 +56,7 @@ pub(super) struct FollowArgs {
 pub(crate) struct AlgorithmArgs {
     /// How a breakpoint is found. May be repeated: the first one is the answer, the others
     /// are told beside it
-    #[arg(long, value_enum, default_values_t = [Method::TwoLine])]
+    #[arg(long, default_values_t = [Method::default()], value_parser = method())]
     method: Vec<Method>,
 
     /// Samples that a segment reaches beyond its input steps; `auto` chooses this and the
@@ -66,9 +68,7 @@ pub(crate) struct AlgorithmArgs {
     #[arg(long, value_name = "N|auto", value_parser = or_auto(at_least_one), allow_negative_numbers = true)]
     beta: Option<OrAuto<usize>>,
 
-    /// Zero-phase low-pass on the output: its cutoff, or `none` [default: 5 for two-line,
-    /// else none]
-    #[arg(long, value_name = "HZ|none|auto", value_parser = or_auto(passband), allow_negative_numbers = true)]
+    #[arg(long, help = passband_help(), value_name = "HZ|none|auto", value_parser = or_auto(passband), allow_negative_numbers = true)]
     passband: Option<OrAuto<Passband>>,
 
     #[command(flatten)]
@@ -77,6 +77,14 @@ pub(crate) struct AlgorithmArgs {
     /// The delay between two steps
     #[arg(long, value_enum, default_value_t = Between::Hold)]
     interpolate: Between,
+}
+
+fn passband_help() -> String {
+    let smoothed = ids_with(|spec| spec.low_pass.is_some());
+    format!(
+        "Zero-phase low-pass on the output: its cutoff, or `none` [default: 5 for {smoothed}, \
+         else none]"
+    )
 }
 
 /// What is written where.
@@ -160,7 +168,7 @@ impl AlgorithmArgs {
     /// The settings of each method that was asked for, each once.
     pub(super) fn runs(&self) -> Vec<Settings> {
         let mut runs: Vec<Settings> = Vec::new();
-        for method in self.method.iter().copied().map(delay::Method::from) {
+        for method in self.method.iter().copied() {
             if runs.iter().all(|run| run.method != method) {
                 runs.push(self.settings(method));
             }
@@ -180,7 +188,7 @@ impl AlgorithmArgs {
         }
     }
 
-    fn settings(&self, method: delay::Method) -> Settings {
+    fn settings(&self, method: Method) -> Settings {
         let base = self.conditions.settings(method);
         let (alpha, beta) = (given(self.alpha), given(self.beta));
         let (alpha, beta) = (alpha.unwrap_or(base.alpha), beta.unwrap_or(base.beta));

@@ -17,7 +17,7 @@ use super::fitting::{Format, read};
 use super::output::check_outputs;
 use super::progress::{Bar, Verbosity};
 use super::record::SweepContents;
-use super::settings::{ConditionArgs, Passband, threshold};
+use super::settings::{ConditionArgs, Passband, ids_with, threshold};
 use super::stream::StreamArgs;
 use super::terminal::{self, message};
 use super::{Completion, read_failures};
@@ -33,20 +33,17 @@ pub(super) struct Args {
     data: DataArgs,
 
     /// How a breakpoint is found
-    #[arg(long, value_name = "NAMES", default_value = "two-line,hinge,lag-aware", value_parser = methods, help_heading = "Settings that are varied")]
+    #[arg(long, value_name = "NAMES", default_value_t = Values::all(), value_parser = methods, help_heading = "Settings that are varied")]
     method: Values<Method>,
 
     /// Samples that a segment reaches beyond its input steps
     #[arg(long, value_name = "LIST", default_value = "5,10,20", value_parser = whole, allow_hyphen_values = true, help_heading = "Settings that are varied")]
     alpha: Values<usize>,
 
-    /// Samples between two candidate breakpoints; for `two-line` alone
-    #[arg(long, value_name = "LIST", default_value = "1,2,5,10", value_parser = whole, allow_hyphen_values = true, help_heading = "Settings that are varied")]
+    #[arg(long, help = format!("Samples between two candidate breakpoints; for `{}` alone", ids_with(|spec| spec.has_rows)), value_name = "LIST", default_value = "1,2,5,10", value_parser = whole, allow_hyphen_values = true, help_heading = "Settings that are varied")]
     beta: Values<usize>,
 
-    /// Cutoffs of the low-pass in Hz, and `none` [default: 2,5,10,none for two-line, else
-    /// none]
-    #[arg(long, value_name = "LIST", value_parser = passbands, allow_hyphen_values = true, help_heading = "Settings that are varied")]
+    #[arg(long, help = format!("Cutoffs of the low-pass in Hz, and `none` [default: 2,5,10,none for {}, else none]", ids_with(|spec| spec.low_pass.is_some())), value_name = "LIST", value_parser = passbands, allow_hyphen_values = true, help_heading = "Settings that are varied")]
     passband: Option<Values<Passband>>,
 
     /// Delays that differ by so many samples more than β or their intervals allow still agree

@@ -1,5 +1,7 @@
 //! Several values of a setting in one argument: `1,2,5`, `1..10`, `2..20:2`.
 
+use std::fmt;
+
 use crate::delay::Method;
 
 use crate::cli::nearest::did_you_mean;
@@ -11,6 +13,20 @@ const MOST: usize = 1000;
 /// The values of an argument, each once, in their order.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Values<T>(pub(super) Vec<T>);
+
+impl Values<Method> {
+    /// Every method.
+    pub(super) fn all() -> Self {
+        Self(Method::all().collect())
+    }
+}
+
+impl fmt::Display for Values<Method> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ids: Vec<_> = self.0.iter().map(|method| method.id()).collect();
+        f.write_str(&ids.join(","))
+    }
+}
 
 /// Whole numbers from 1 up.
 pub(super) fn whole(text: &str) -> Result<Values<usize>, String> {
@@ -51,11 +67,12 @@ pub(super) fn passbands(text: &str) -> Result<Values<Passband>, String> {
 /// Names of methods.
 pub(super) fn methods(text: &str) -> Result<Values<Method>, String> {
     let one = |name: &str| {
-        let known = Method::ALL.into_iter().find(|method| method.id() == name);
-        let ids = Method::ALL.map(Method::id);
-        let names = ids.join(", ");
-        let near = did_you_mean(name, ids);
-        known.map(|method| vec![method]).ok_or_else(|| format!("expected some of {names}{near}"))
+        let ids = || Method::all().map(Method::id);
+        let expected = || {
+            let names: Vec<_> = ids().collect();
+            format!("expected some of {}{}", names.join(", "), did_you_mean(name, ids()))
+        };
+        Method::find(name).map(|method| vec![method]).ok_or_else(expected)
     };
     listed(text, one)
 }
@@ -117,7 +134,7 @@ mod tests {
         assert_eq!(passbands("1..2:0.5"), Ok(Values(hz(&[1.0, 1.5, 2.0]))));
         let last = passbands("5,none").map(|found| found.0.last().copied());
         assert_eq!(last, Ok(Some(Passband::None)));
-        assert_eq!(methods("hinge,two-line"), Ok(Values(vec![Method::Hinge, Method::TwoLine])));
+        assert_eq!(methods("hinge,two-line"), Ok(Values(vec![Method::HINGE, Method::TWO_LINE])));
     }
 
     #[test]

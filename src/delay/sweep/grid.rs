@@ -103,7 +103,7 @@ impl Grid {
         let alpha = self.alphas.get(a).copied().unwrap_or(settings.alpha);
         for b in 0..self.betas.len() {
             let levels = [m, p, a, b];
-            if !known && (b == 0 || settings.method.has_rows()) {
+            if !known && (b == 0 || settings.method.spec().has_rows) {
                 let beta = self.betas.get(b).copied().unwrap_or(settings.beta);
                 self.runs.push(Settings { alpha, beta, low_pass, ..settings.clone() });
             }
@@ -187,7 +187,7 @@ impl Grid {
         let knows = |base: &Base| match factor {
             Factor::Method | Factor::Alpha => true,
             Factor::Passband => !base.keeps_low_pass,
-            Factor::Beta => base.settings.method.has_rows(),
+            Factor::Beta => base.settings.method.spec().has_rows,
         };
         self.bases.get(method).is_some_and(knows)
     }
@@ -200,7 +200,7 @@ mod tests {
 
     /// Two methods, of which the one that is told keeps its own low-pass.
     fn grid(kept: Option<Method>) -> Grid {
-        let bases = [Method::TwoLine, Method::Hinge].map(|method| Base {
+        let bases = [Method::TWO_LINE, Method::HINGE].map(|method| Base {
             settings: Settings::of(method),
             keeps_low_pass: kept == Some(method),
         });
@@ -217,7 +217,7 @@ mod tests {
         let all = grid(None);
         assert_eq!(runs(&all), [0, 1, 2, 3, 4, 5, 6, 6, 6, 7, 7, 7]);
         assert_eq!((all.runs()[4].beta, all.runs()[4].low_pass), (2, None));
-        let kept = grid(Some(Method::Hinge));
+        let kept = grid(Some(Method::HINGE));
         assert_eq!(runs(&kept), [0, 1, 2, 3, 4, 5, 6, 6, 6, 6, 6, 6]);
         assert_eq!(kept.runs()[6].low_pass, None);
     }
@@ -232,6 +232,6 @@ mod tests {
         assert_eq!(lines(&all, Factor::Method)[2], [2, 8]);
         assert_eq!(all.at(Factor::Beta, 0).count(), 2);
         assert_eq!(all.at(Factor::Passband, 0).count(), 6);
-        assert_eq!(lines(&grid(Some(Method::Hinge)), Factor::Passband).len(), 3);
+        assert_eq!(lines(&grid(Some(Method::HINGE)), Factor::Passband).len(), 3);
     }
 }

@@ -363,7 +363,7 @@ mod tests {
 
     /// Two passbands, one α, three β.
     fn grid() -> Grid {
-        let base = Base { settings: Settings::of(Method::TwoLine), keeps_low_pass: false };
+        let base = Base { settings: Settings::of(Method::TWO_LINE), keeps_low_pass: false };
         let slow = Some(LowPass { cutoff_hz: 2.0, order: 4 });
         Grid::new(vec![base], vec![slow, None], vec![10], vec![1, 2, 3])
     }

@@ -47,7 +47,7 @@ fn add_settings(
         texts("method", &runs.iter().map(|run| Some(run.method.to_string())).collect::<Vec<_>>()),
         numbers("passband_hz", &passbands.collect::<Vec<_>>()),
         integers("alpha", &whole(|run| Some(run.alpha))),
-        integers("beta", &whole(|run| run.method.has_rows().then_some(run.beta))),
+        integers("beta", &whole(|run| run.method.spec().has_rows.then_some(run.beta))),
         integers("combinations", &votes.collect::<Vec<_>>()),
         integers("accepted", &count(|run| run.accepted)),
         integers("disagreements", &count(|run| run.disagreements)),

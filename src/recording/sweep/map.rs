@@ -133,10 +133,10 @@ mod tests {
     fn grid() -> Grid {
         let base = |method| Base {
             settings: Settings::of(method),
-            keeps_low_pass: method == Method::Hinge,
+            keeps_low_pass: method == Method::HINGE,
         };
         let slow = Some(LowPass { cutoff_hz: 2.0, order: 4 });
-        let bases = [Method::TwoLine, Method::Hinge].map(base).to_vec();
+        let bases = [Method::TWO_LINE, Method::HINGE].map(base).to_vec();
         Grid::new(bases, vec![slow, None], vec![5, 10], vec![1, 2])
     }
 

@@ -3,7 +3,7 @@
 use super::document::{Block, Table};
 use super::plot::PlotError;
 use super::{Report, delays, model, record, segment};
-use crate::delay::{AgainstState, Condition, Method};
+use crate::delay::{AgainstState, Condition};
 use crate::report::against::{AGAINST_HEADER, against_rows};
 use crate::report::decisions::detailed_rows;
 use crate::report::text::lag_line;
@@ -124,28 +124,24 @@ fn decisions(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Block {
     Block::Details { summary: format!("All {all} decisions"), blocks }
 }
 
-/// A row per decision; intervals only of a method that tells them.
+/// A row per decision; intervals only of a method that has them.
 fn decision_table(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Table {
     let unit = estimated.joint.output_unit.as_ref();
     let sse = unit.map_or_else(|| "SSE".to_owned(), |unit| format!("SSE [{unit}²]"));
     let before = ["trial", "i", "p", "r", "end", "q", "δ [samples]", "δ [s]"];
-    let method = report.settings.method;
-    let interval = tells_intervals(method).then(|| "interval [samples]".to_owned());
+    let has_intervals = report.settings.method.spec().has_intervals;
+    let interval = has_intervals.then(|| "interval [samples]".to_owned());
     let header = before.map(str::to_owned).into_iter().chain(interval).chain([sse]);
     let behind = ["verdict", "accepted with"].map(str::to_owned);
     let rows = detailed_rows(estimated).take(MOST_ROWS);
     Table {
-        numbers: (1..before.len() + 1 + usize::from(tells_intervals(method))).collect(),
+        numbers: (1..before.len() + 1 + usize::from(has_intervals)).collect(),
         header: header.chain(behind).collect(),
-        rows: rows.map(|(row, detail)| decision_row(row, detail, method)).collect(),
+        rows: rows.map(|(row, detail)| decision_row(row, detail, has_intervals)).collect(),
     }
 }
 
-fn tells_intervals(method: Method) -> bool {
-    method != Method::TwoLine
-}
-
-fn decision_row(row: DecisionRow<'_>, detail: DecisionDetail, method: Method) -> Vec<String> {
+fn decision_row(row: DecisionRow<'_>, detail: DecisionDetail, has_intervals: bool) -> Vec<String> {
     let dash = || "-".to_owned();
     let optional = |value: Option<f64>| value.map_or_else(dash, number);
     let ends = detail.delta_low.zip(detail.delta_high);
@@ -155,5 +151,5 @@ fn decision_row(row: DecisionRow<'_>, detail: DecisionDetail, method: Method) ->
     let delay = [row.q, row.delta, row.delta_s].map(optional);
     let before = [row.trial.to_owned()].into_iter().chain(samples).chain(delay);
     let behind = [optional(row.sse), row.verdict, detail.accepted_with];
-    before.chain(tells_intervals(method).then(interval)).chain(behind).collect()
+    before.chain(has_intervals.then(interval)).chain(behind).collect()
 }

@@ -82,7 +82,7 @@ mod tests {
     use crate::numerics::LowPass;
 
     fn grid() -> Grid {
-        let bases = [Method::TwoLine, Method::Hinge]
+        let bases = [Method::TWO_LINE, Method::HINGE]
             .map(|method| Base { settings: Settings::of(method), keeps_low_pass: false });
         let slow = |cutoff_hz| Some(LowPass { cutoff_hz, order: 4 });
         Grid::new(bases.to_vec(), vec![slow(2.0), slow(5.0), None], vec![10], vec![1, 2, 5, 10])
@@ -98,7 +98,7 @@ mod tests {
     fn what_goes_together_is_said_once_and_what_is_free_is_not() {
         assert_eq!(said(|_| true), [""]);
         assert!(said(|_| false).is_empty());
-        let coarse = said(|run| run.method == Method::Hinge || run.beta < 10);
+        let coarse = said(|run| run.method == Method::HINGE || run.beta < 10);
         assert_eq!(coarse, ["hinge", "two-line, β 1 to 5"]);
         let slow = said(|run| run.low_pass.is_none_or(|low_pass| low_pass.cutoff_hz > 3.0));
         assert_eq!(slow, ["5 Hz or no low-pass"]);

@@ -1,4 +1,5 @@
-//! Algorithm 1: step by step, since each segment hangs on the verdict before it.
+//! `two-line`: Albrecht and Taylor's Algorithm 1, step by step, since each segment begins
+//! where the verdict before it says.
 //!
 //! For step `i` at sample `p_i` the segment runs from `r_i` to `p_(i+1) + α`, with
 //! `r_i = q_(i−1)` if step `i−1` was accepted and `p_i − α` otherwise. The pair of lines
@@ -7,17 +8,65 @@
 //! # References
 //! Albrecht and Taylor, Algorithm 1 (time-varying delays of hydraulic manipulators).
 
-use super::condition::Facts;
-use super::decision::{Decision, Verdict};
-use super::reaction;
-use super::search::Candidates;
-use super::segment::Segment;
-use super::settings::Settings;
-use super::steps::InputStep;
+use super::interface::DelayMethod;
+use crate::delay::condition::Facts;
+use crate::delay::decision::{Decision, Verdict};
+use crate::delay::prepared::Prepared;
+use crate::delay::reaction;
+use crate::delay::response::Lag;
+use crate::delay::search::Candidates;
+use crate::delay::segment::Segment;
+use crate::delay::settings::Settings;
+use crate::delay::spec::{Method, MethodSpec, Scope};
+use crate::delay::steps::InputStep;
+use crate::numerics::LowPass;
+
+static SPEC: MethodSpec = MethodSpec {
+    id: "two-line",
+    fits: "two-line regression",
+    source: Some("Albrecht and Taylor, Algorithm 1"),
+    summary: "Two regression lines (Albrecht and Taylor)",
+    has_rows: true,
+    has_intervals: false,
+    scope: Scope::Segment,
+    low_pass: Some(LowPass { cutoff_hz: 5.0, order: 4 }),
+    confidence: None,
+};
+
+impl Method {
+    /// Two regression lines that need not meet: Albrecht and Taylor's Algorithm 1.
+    pub const TWO_LINE: Self = Self::of(&SPEC);
+}
+
+impl Default for Method {
+    /// The paper's.
+    fn default() -> Self {
+        Self::TWO_LINE
+    }
+}
+
+impl Default for Settings {
+    /// The paper's.
+    fn default() -> Self {
+        Self::of(Method::default())
+    }
+}
+
+pub(super) struct TwoLine;
+
+impl DelayMethod for TwoLine {
+    fn method(&self) -> Method {
+        Method::TWO_LINE
+    }
+
+    fn decide(&self, trial: &Prepared<'_>, _: Option<&Lag>, settings: &Settings) -> Vec<Decision> {
+        decide_all(trial.output(), trial.raw, &trial.steps, settings)
+    }
+}
 
 /// The decisions on all `steps`; `output` is what the lines are fitted to, `raw` what was
 /// measured.
-pub(super) fn decide_all(
+fn decide_all(
     output: &[f64],
     raw: &[f64],
     steps: &[InputStep],

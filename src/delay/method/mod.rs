@@ -1,0 +1,14 @@
+//! The methods: one file each, and one entry each in the registry.
+//!
+//! A new method is a file here, with its [`MethodSpec`](super::MethodSpec), its handle and
+//! its [`DelayMethod`], and a line in `registry.rs`: help, defaults, sweeps, reports and
+//! recordings follow from what it says of itself.
+
+mod hinge;
+mod interface;
+mod lag_aware;
+mod registry;
+mod two_line;
+
+pub(super) use interface::DelayMethod;
+pub(super) use registry::implementation;

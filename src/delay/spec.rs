@@ -1,0 +1,98 @@
+//! What a method says of itself, and the handle by which settings name it.
+
+use std::fmt;
+use std::hash::{Hash, Hasher};
+
+use serde::{Serialize, Serializer};
+
+use crate::numerics::LowPass;
+
+/// What a method says of itself: help, defaults, tables and pages follow from it.
+#[derive(Debug)]
+pub struct MethodSpec {
+    /// Its name in options and files, in kebab case.
+    pub id: &'static str,
+    /// What it fits, in few words.
+    pub fits: &'static str,
+    /// Who described it, and where.
+    pub source: Option<&'static str>,
+    /// What it does, in a line of help.
+    pub summary: &'static str,
+    /// Whether it compares candidates β samples apart; β means nothing to others.
+    pub has_rows: bool,
+    /// Whether it gives each delay an interval.
+    pub has_intervals: bool,
+    /// What its decision on a step depends on.
+    pub scope: Scope,
+    /// Its low-pass where no other is asked for; none where it looks at the output as it
+    /// was measured, since smoothing removes from noise what intervals are made of.
+    pub low_pass: Option<LowPass>,
+    /// How sure a reaction must be where nothing else is asked for: see
+    /// [`Settings::confidence`](super::Settings::confidence).
+    pub confidence: Option<f64>,
+}
+
+/// What a method's decision on a step depends on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Scope {
+    /// The step's segment and the decisions before it, so that it stays as a record grows.
+    Segment,
+    /// The whole trial.
+    Trial,
+    /// All trials of a joint, which share a lag.
+    Joint,
+}
+
+/// How a delay is found: one of [`Method::all`].
+#[derive(Clone, Copy)]
+pub struct Method(&'static MethodSpec);
+
+impl Method {
+    /// The handle of the method that says so of itself.
+    pub(super) const fn of(spec: &'static MethodSpec) -> Self {
+        Self(spec)
+    }
+
+    /// What it says of itself.
+    pub fn spec(self) -> &'static MethodSpec {
+        self.0
+    }
+
+    /// Its name in options and files.
+    pub fn id(self) -> &'static str {
+        self.0.id
+    }
+}
+
+impl PartialEq for Method {
+    /// Ids are unique.
+    fn eq(&self, other: &Self) -> bool {
+        self.id() == other.id()
+    }
+}
+
+impl Eq for Method {}
+
+impl Hash for Method {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.id().hash(state);
+    }
+}
+
+impl fmt::Debug for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.id())
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.id())
+    }
+}
+
+impl Serialize for Method {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.id())
+    }
+}
