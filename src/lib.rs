@@ -29,6 +29,7 @@ pub mod diagnosis;
 pub mod effect;
 pub mod experiment;
 pub mod explain;
+mod figure;
 pub mod fit;
 pub mod model;
 pub mod numerics;

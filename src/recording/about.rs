@@ -4,12 +4,13 @@ use std::fmt::Write as _;
 
 use rerun::{EntityPath, TextDocument};
 
-use super::Recording;
 use super::chunk::Chunks;
-use super::entity::plain;
 use super::error::RecordError;
 use super::layout::{Detail, JointLayout};
-use crate::experiment::{ReadOptions, Source};
+use super::markdown::plain;
+use super::origin::made_from;
+use super::paths::ABOUT;
+use super::recorded::Recording;
 use crate::report::{JointSummary, SUMMARY_HEADER, chosen_line, settings_rows, summary_cells};
 
 /// Adds the page at `/about`.
@@ -20,7 +21,7 @@ pub(super) fn add(
 ) -> Result<(), RecordError> {
     let text = page(recording, layouts).unwrap_or_default();
     let document = TextDocument::from_markdown(text);
-    chunks.push_static(EntityPath::from("about"), &document)
+    chunks.push_static(EntityPath::from(ABOUT), &document)
 }
 
 fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String, std::fmt::Error> {
@@ -67,42 +68,6 @@ accepted segment, red that of a rejected one.
 - The timeline `segment` goes from step to step; `sample` and `time` run through the record.
 - Sample numbers count from 1 within the trial, as in the paper: p is the input step, r the \
 first sample of the segment, q the breakpoint, δ = q − p the delay.";
-
-/// The files, how they were read, and the program.
-pub(super) fn made_from(
-    page: &mut String,
-    sources: &[Source],
-    reading: &ReadOptions,
-) -> std::fmt::Result {
-    writeln!(page, "\n## Made from\n")?;
-    for source in sources {
-        let path = source.path.display();
-        writeln!(page, "- `{path}`, {} bytes, SHA-256 `{}`", source.bytes, source.sha256)?;
-    }
-    writeln!(page, "\n{}", read_with(reading))?;
-    writeln!(page, "\nMade by tauscope {}.\n", env!("CARGO_PKG_VERSION"))
-}
-
-/// How the files were read, where it was not as they are.
-fn read_with(reading: &ReadOptions) -> String {
-    let ReadOptions { columns, repair, .. } = reading;
-    let mut parts = Vec::new();
-    parts.extend(repair.resample.map(|period| format!("resampled to {period}")));
-    parts.extend(
-        repair.fill_s.map(|fill| format!("gaps up to {fill} s filled, split at longer ones")),
-    );
-    parts.extend(columns.sample_period_s.map(|s| format!("a sample period of {s} s given")));
-    parts.extend(columns.time.iter().map(|time| format!("time from column `{time}`")));
-    parts.extend(columns.trial.iter().map(|trial| format!("trials from column `{trial}`")));
-    parts.extend(columns.joints.iter().map(|joint| {
-        format!("{} from `{}` and `{}`", plain(&joint.name), joint.input, joint.output)
-    }));
-    if parts.is_empty() {
-        "Read as they are.".to_owned()
-    } else {
-        format!("Read with: {}.", parts.join("; "))
-    }
-}
 
 /// How many candidates of how many are in the recording.
 fn detail(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> String {

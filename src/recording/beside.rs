@@ -1,22 +1,12 @@
 //! What other methods found of a step, beside the first.
 
-use super::Recording;
 use super::layout::{SegmentLayout, TrialLayout};
 use super::palette::{self, Rgb};
+use super::recorded::{Beside, Recording};
 use crate::batch::JointEstimate;
-use crate::delay::{Decision, Method, Settings, Verdict};
+use crate::delay::{Decision, Method, Verdict};
 use crate::experiment::Joint;
-use crate::report::EstimatedJoint;
 use crate::wording::number;
-
-/// What another method found of the joints of a recording.
-#[derive(Clone, Copy, Debug)]
-pub struct Beside<'a> {
-    /// Its settings.
-    pub settings: &'a Settings,
-    /// The joints that it has an estimate of.
-    pub joints: &'a [EstimatedJoint<'a>],
-}
 
 /// Another method on one joint.
 #[derive(Clone, Copy, Debug)]

@@ -9,6 +9,9 @@ use rerun::datatypes::Vec2D;
 
 pub(super) use crate::report::{Span, thinned_to};
 
+/// Lines of one drawing.
+pub(super) type Strips = Vec<Vec<Vec2D>>;
+
 /// Width and height of the sheet.
 pub(super) const SHEET: (f32, f32) = (1600.0, 640.0);
 

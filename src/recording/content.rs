@@ -3,37 +3,75 @@
 use rerun::ApplicationId;
 use rerun::log::{Chunk, LogMsg};
 
-use super::blueprint::Ladder;
+use super::chunk::Chunks;
 use super::error::RecordError;
 use crate::experiment::{Joint, Source};
 
 /// Who takes the chunks as they are made.
 pub(super) type Take<'t> = &'t mut dyn FnMut(&Chunk) -> Result<(), RecordError>;
 
+/// Whether more revisions of models are to come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Growth {
+    Finished,
+    /// Every joint will have some; the viewer goes along with them.
+    Growing,
+}
+
+/// A joint of a recording, and what adds all of it.
+pub(super) struct Tab<'c> {
+    pub(super) joint: &'c str,
+    pub(super) add: Box<Add<'c>>,
+}
+
+type Add<'c> = dyn Fn(&mut Chunks) -> Result<(), RecordError> + 'c;
+
 /// A recording of some kind.
 pub(super) trait Content {
     /// Its name in the viewer.
     fn name(&self) -> String;
 
-    /// The same for the same content: see [`hashed`].
+    /// Equal for equal content: see [`hashed`].
     fn id(&self) -> String;
 
-    /// Namespaces that its chunks need, beside the first one.
-    fn namespaces(&self) -> u64;
+    /// Adds the page on the whole recording.
+    fn add_about(&self, chunks: &mut Chunks) -> Result<(), RecordError>;
 
-    /// Makes the chunks joint by joint, so that only one joint's are in memory.
-    fn for_each_chunk(&self, part: Part<'_>, take: Take<'_>) -> Result<(), RecordError>;
+    /// The joints in the order of their tabs.
+    fn tabs(&self) -> Vec<Tab<'_>>;
 
     /// The messages of its blueprint.
     fn views(
         &self,
-        ladder: Ladder,
+        growth: Growth,
         application: &ApplicationId,
         id: &str,
     ) -> Result<Vec<LogMsg>, RecordError>;
 
     /// What decides which views there are.
-    fn views_in_words(&self, ladder: Ladder) -> String;
+    fn views_in_words(&self, growth: Growth) -> String;
+}
+
+/// Makes the chunks of `content` joint by joint, so that only one joint's are in memory;
+/// the number of namespaces that their ids take.
+pub(super) fn for_each_chunk(
+    content: &dyn Content,
+    part: Part<'_>,
+    take: Take<'_>,
+) -> Result<u64, RecordError> {
+    let mut chunks = Chunks::new(part.used + 2);
+    if part.joint.is_none() {
+        content.add_about(&mut chunks)?;
+    }
+    let tabs = content.tabs();
+    let taken = tabs.len() as u64 + 1;
+    for (namespace, tab) in (part.used + 3..).zip(tabs).filter(|(_, tab)| part.has(tab.joint)) {
+        chunks.into_chunks().iter().try_for_each(&mut *take)?;
+        chunks = Chunks::new(namespace);
+        (tab.add)(&mut chunks)?;
+    }
+    chunks.into_chunks().iter().try_for_each(take)?;
+    Ok(taken)
 }
 
 /// Which of a recording's chunks are made, and which ids they have.
@@ -46,8 +84,8 @@ pub(super) struct Part<'n> {
 }
 
 impl Part<'_> {
-    pub(super) fn has(self, joint: &Joint) -> bool {
-        self.joint.is_none_or(|name| joint.name == name)
+    fn has(self, joint: &str) -> bool {
+        self.joint.is_none_or(|name| joint == name)
     }
 }
 

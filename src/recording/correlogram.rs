@@ -5,9 +5,9 @@ use rerun::{EntityPath, LineStrips2D};
 
 use super::canvas::{Plot, Span};
 use super::chunk::Chunks;
-use super::entity::below;
 use super::error::RecordError;
 use super::palette::{self, color};
+use super::paths::{at, correlation, of_model};
 use super::sheet::{Sheet, strips};
 use crate::diagnosis::Comparison;
 use crate::report::ComparedJoint;
@@ -74,14 +74,23 @@ pub(super) fn add(
         }
     }
     sheet.push(chunks, root)?;
-    strips(chunks, below(root, &["axes"]), palette::RAW, 0.8, axes)?;
-    let models = curves.into_iter().zip(bands).zip(palette::models()).zip(0_u8..);
+    strips(chunks, at(root, correlation::AXES), palette::RAW, 0.8, axes)?;
+    let models = curves.into_iter().zip(bands).zip(palette::models()).zip(0_usize..);
     for (((curves, bands), rgb), number) in models {
-        let (order, number) = (100.0 + f32::from(number), format!("{number}"));
-        strips(chunks, below(root, &["band", &number]), palette::dimmed(rgb), 1.6, bands)?;
+        let order = 100.0 + number as f32;
+        strips(
+            chunks,
+            of_model(root, correlation::BAND, number),
+            palette::dimmed(rgb),
+            1.6,
+            bands,
+        )?;
         // The later a model, the smaller its correlations should be.
         let curves = LineStrips2D::new(curves).with_colors([color(rgb)]).with_radii([1.3]);
-        chunks.push_static(below(root, &["curve", &number]), &curves.with_draw_order(order))?;
+        chunks.push_static(
+            of_model(root, correlation::CURVE, number),
+            &curves.with_draw_order(order),
+        )?;
     }
     Ok(())
 }

@@ -3,10 +3,10 @@
 use rerun::{EntityPath, Scalars, SeriesLines, SeriesPoints, components::MarkerShape};
 
 use super::chunk::{Chunks, Index, fine_columns, integers, numbers, texts};
-use super::entity::below;
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::palette::{self, color};
+use super::paths::{self, at};
 use crate::delay::{Candidate, FineDelay, Verdict};
 use crate::units::signed;
 
@@ -45,12 +45,12 @@ fn add_errors(
         lengths.push(0);
     }
     let logarithms: Vec<f64> = errors.iter().map(|sse| log10(*sse)).collect();
-    let entity = below(root, &["decision", "sse"]);
+    let entity = at(root, paths::SSE);
     let name = SeriesLines::new().with_names(["SSE"]);
     chunks.push_static(entity.clone(), &name)?;
     let columns = Scalars::new(errors).columns(lengths.clone())?;
     chunks.push(entity, index, columns)?;
-    let entity = below(root, &["decision", "log10_sse"]);
+    let entity = at(root, paths::LOG10_SSE);
     let name = SeriesLines::new().with_names(["log10 SSE"]);
     let name = name.with_colors([color(palette::ERROR)]).with_widths([2.0]);
     chunks.push_static(entity.clone(), &name)?;
@@ -70,9 +70,10 @@ fn add_minimum(
     root: &EntityPath,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
-    for (name, rgb, accepted) in
-        [("accepted", palette::ACCEPTED, true), ("rejected", palette::REJECTED, false)]
-    {
+    for (path, rgb, accepted) in [
+        (paths::MINIMUM_ACCEPTED, palette::ACCEPTED, true),
+        (paths::MINIMUM_REJECTED, palette::REJECTED, false),
+    ] {
         let mut index = Index::default();
         let mut values = Vec::new();
         for (trial, segment) in layout.segments() {
@@ -85,7 +86,8 @@ fn add_minimum(
             index.extend(ticks.next().map(|(moment, _)| trial.within(segment, moment)));
             values.push(log10(best.sse));
         }
-        let entity = below(root, &["decision", "minimum", name]);
+        let entity = at(root, path);
+        let name = if accepted { "accepted" } else { "rejected" };
         let style = SeriesPoints::new().with_names([format!("minimum, {name}")]);
         let style = style.with_colors([color(rgb)]).with_markers([MarkerShape::Circle]);
         chunks.push_static(entity.clone(), &style.with_marker_sizes([4.0]))?;
@@ -174,5 +176,5 @@ fn add_table(
     let accepted = [integers("accepted", &table.accepted)];
     let fine = fine_columns(&table.fine);
     let columns: Vec<_> = whole.chain(real).chain(accepted).chain(words).chain(fine).collect();
-    chunks.push(below(root, &["decision", "table"]), table.index, columns)
+    chunks.push(at(root, paths::DECISION_TABLE), table.index, columns)
 }

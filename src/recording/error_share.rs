@@ -5,9 +5,9 @@ use rerun::{Color, EntityPath, LineStrips2D};
 
 use super::canvas::{Plot, Span};
 use super::chunk::Chunks;
-use super::entity::below;
 use super::error::RecordError;
 use super::palette::{self, Rgb, color};
+use super::paths::{at, error_share, of_model};
 use super::sheet::Sheet;
 use crate::diagnosis::failure::{Feature, Region, Units};
 use crate::experiment::Joint;
@@ -86,10 +86,10 @@ pub(super) fn add(
     for ((bars, rgb), number) in bars.into_iter().zip(palette::models()).zip(0..) {
         let shades: Vec<_> = bars.shades(rgb).collect();
         let strips = LineStrips2D::new(bars.strips).with_radii([HATCH]).with_colors(shades);
-        chunks.push_static(below(root, &["bars", &format!("{number}")]), &strips)?;
+        chunks.push_static(of_model(root, error_share::BARS, number), &strips)?;
     }
     let marks = LineStrips2D::new(marks).with_colors([color(palette::BORDER)]).with_radii([1.6]);
-    chunks.push_static(below(root, &["time"]), &marks.with_draw_order(100.0))
+    chunks.push_static(at(root, error_share::TIME), &marks.with_draw_order(100.0))
 }
 
 /// The regions of a model, feature by feature.

@@ -2,10 +2,15 @@
 
 use rerun::StoreId;
 use rerun::external::re_log_types::external::re_tuid::Tuid;
-use rerun::external::re_log_types::{SetStoreInfo, StoreInfo, StoreSource};
+use rerun::external::re_log_types::{
+    BlueprintActivationCommand, SetStoreInfo, StoreInfo, StoreSource,
+};
 use rerun::log::{Chunk, LogMsg};
 
 use super::error::RecordError;
+
+/// The application's name in the viewer; blueprints are kept per application.
+pub(super) const APPLICATION: &str = "tauscope";
 
 /// What a store is and who made it: the first message of each.
 pub(super) fn store_message(store: &StoreId) -> LogMsg {
@@ -19,4 +24,9 @@ pub(super) fn store_message(store: &StoreId) -> LogMsg {
 /// A chunk of a store.
 pub(super) fn chunk_message(store: &StoreId, chunk: &Chunk) -> Result<LogMsg, RecordError> {
     Ok(LogMsg::ArrowMsg(store.clone(), chunk.to_arrow_msg()?))
+}
+
+/// What makes the viewer show a blueprint that it has been sent.
+pub(super) fn activation(blueprint_id: StoreId) -> BlueprintActivationCommand {
+    BlueprintActivationCommand { blueprint_id, make_active: true, make_default: true }
 }

@@ -6,10 +6,11 @@ use std::ops::RangeInclusive;
 use rerun::{EntityPath, Scalars, SeriesLines, StateChange, TextDocument};
 
 use super::chunk::{Chunks, Index, list, words};
-use super::entity::{below, plain};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialLayout};
+use super::markdown::plain;
 use super::palette::{self, Rgb, color};
+use super::paths::{self, at, child};
 use super::{correlogram, error_share, scatter};
 use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures};
@@ -38,22 +39,23 @@ pub(super) fn add(
             evaluation.residuals.get(trial.index).cloned().unwrap_or_default()
         };
         let name = compared.model;
-        let entity = below(root, &["model", name, "simulated"]);
+        let model = child(&at(root, paths::MODEL), name);
+        let entity = at(&model, paths::SIMULATED);
         line(chunks, &entity, &format!("{name}: simulated"), rgb)?;
         signal(chunks, entity, layout, simulated)?;
-        let entity = below(root, &["model", name, "residual"]);
+        let entity = at(&model, paths::RESIDUAL);
         line(chunks, &entity, &format!("{name}: measured − simulated"), rgb)?;
         signal(chunks, entity, layout, residual)?;
-        figures(chunks, &below(root, &["model", name]), compared.comparison)?;
+        figures(chunks, &model, compared.comparison)?;
     }
     if let Some(first) = models.first() {
         band(chunks, root, layout, first.comparison.noise_floor)?;
         let page = page(layout, models).unwrap_or_default();
         let document = TextDocument::from_markdown(page);
-        chunks.push_static(below(root, &["model_page"]), &document)?;
-        scatter::add(chunks, &below(root, &["scatter"]), models)?;
-        error_share::add(chunks, &below(root, &["error_share"]), models)?;
-        correlogram::add(chunks, &below(root, &["correlation"]), models)?;
+        chunks.push_static(at(root, paths::MODEL_PAGE), &document)?;
+        scatter::add(chunks, &at(root, paths::scatter::ROOT), models)?;
+        error_share::add(chunks, &at(root, paths::error_share::ROOT), models)?;
+        correlogram::add(chunks, &at(root, paths::correlation::ROOT), models)?;
         worst(chunks, root, layout, first.comparison)?;
     }
     Ok(())
@@ -77,7 +79,7 @@ fn figures(
         column("rmse", |region| region.rmse),
         column("mean_residual", |region| region.mean_residual),
     ];
-    chunks.push_static(below(model, &["regions"]), &lists)?;
+    chunks.push_static(at(model, paths::REGIONS), &lists)?;
     if let Some(found) = &comparison.whiteness {
         let lags = (1..=found.correlation.len()).map(|k| k as f64 * found.lag_step_s);
         let lists = vec![
@@ -85,7 +87,7 @@ fn figures(
             list("correlation", found.correlation.iter().copied()),
             list("band", std::iter::once(found.band)),
         ];
-        chunks.push_static(below(model, &["whiteness"]), &lists)?;
+        chunks.push_static(at(model, paths::WHITENESS), &lists)?;
     }
     if let Some(found) = &comparison.input_correlation {
         let lags = 0..found.acting.correlation.len();
@@ -97,7 +99,7 @@ fn figures(
             list("raw", found.raw.correlation.iter().copied()),
             list("raw_band", std::iter::once(found.raw.band)),
         ];
-        chunks.push_static(below(model, &["input_correlation"]), &lists)?;
+        chunks.push_static(at(model, paths::INPUT_CORRELATION), &lists)?;
     }
     Ok(())
 }
@@ -143,7 +145,7 @@ fn worst(
     marks.sort_by_key(|(moment, name)| (moment.sample, !name.is_empty()));
     let (index, names): (Vec<_>, Vec<_>) = marks.into_iter().unzip();
     let states = StateChange::new().with_state(names).columns_of_unit_batches()?;
-    chunks.push(below(root, &["worst"]), index.into_iter().collect(), states)
+    chunks.push(at(root, paths::WORST), index.into_iter().collect(), states)
 }
 
 /// The samples of `worst` in its trial, counted from 1.
@@ -162,9 +164,12 @@ fn band(
     noise: Option<f64>,
 ) -> Result<(), RecordError> {
     let Some(noise) = noise else { return Ok(()) };
-    for (name, level) in [("upper", BAND * noise), ("lower", -BAND * noise)] {
-        let entity = below(root, &["noise", name]);
-        let style = SeriesLines::new().with_names([format!("noise, {name}")]);
+    for (path, name, level) in [
+        (paths::NOISE_UPPER, "noise, upper", BAND * noise),
+        (paths::NOISE_LOWER, "noise, lower", -BAND * noise),
+    ] {
+        let entity = at(root, path);
+        let style = SeriesLines::new().with_names([name]);
         let style = style.with_colors([color(palette::BORDER)]).with_widths([1.0]);
         chunks.push_static(entity.clone(), &style)?;
         let ends = layout.trials.iter().flat_map(|t| [t.moment_of(1), t.moment_of(t.trial.len())]);

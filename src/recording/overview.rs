@@ -7,12 +7,12 @@ use rerun::{Boxes2D, EntityPath, Points2D, Scalars, SeriesLines, SeriesPoints};
 
 use super::canvas::{Labels, Plot, SHEET, Span, thinned};
 use super::chunk::{Chunks, Index, Moment};
-use super::entity::below;
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
-use super::palette::{self, color};
+use super::palette::{self, Rgb, color};
+use super::paths::{self, at, map};
 use super::sheet::strips;
-use crate::delay::Verdict;
+use crate::delay::{Candidate, Line, Verdict};
 use crate::wording::number;
 
 /// Adds everything of the overview below `root`.
@@ -22,24 +22,34 @@ pub(super) fn add(
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
     add_lines(chunks, root, layout)?;
-    for (name, rgb, marker, verdict) in [
-        ("accepted", palette::ACCEPTED, MarkerShape::Circle, Kind::Accepted),
-        ("rejected", palette::REJECTED, MarkerShape::Cross, Kind::Rejected),
+    for (kind, [on_output, on_delay], rgb, marker) in [
+        (
+            Kind::Accepted,
+            [paths::BREAKPOINT_ACCEPTED, paths::DELAY_ACCEPTED],
+            palette::ACCEPTED,
+            MarkerShape::Circle,
+        ),
+        (
+            Kind::Rejected,
+            [paths::BREAKPOINT_REJECTED, paths::DELAY_REJECTED],
+            palette::REJECTED,
+            MarkerShape::Cross,
+        ),
     ] {
-        let style = Marks { name, color: color(rgb), marker };
+        let style = Marks { kind, color: color(rgb), marker };
         let breakpoint = |s: &SegmentLayout<'_>| {
             let best = s.decision.candidates.best()?;
             Some((best.breakpoint, best.after.at(best.breakpoint as f64)))
         };
-        style.add(chunks, below(root, &["breakpoint", name]), layout, verdict, breakpoint)?;
+        style.add(chunks, at(root, on_output), layout, breakpoint)?;
         let delay = |s: &SegmentLayout<'_>| {
             // A breakpoint before its step would stretch the plot for no delay at all.
             let delay = s.decision.delay().filter(|delay| *delay >= 0.0)?;
             Some((s.decision.input_step.sample, delay))
         };
-        style.add(chunks, below(root, &["delay", name]), layout, verdict, delay)?;
+        style.add(chunks, at(root, on_delay), layout, delay)?;
     }
-    Map::of(layout).add(chunks, &below(root, &["map"]), layout)
+    Map::of(layout).add(chunks, &at(root, map::ROOT), layout)
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -49,6 +59,13 @@ enum Kind {
 }
 
 impl Kind {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Accepted => "accepted",
+            Self::Rejected => "rejected",
+        }
+    }
+
     fn of(segment: &SegmentLayout<'_>) -> Self {
         match segment.decision.verdict() {
             Verdict::Accepted => Self::Accepted,
@@ -58,7 +75,7 @@ impl Kind {
 }
 
 struct Marks {
-    name: &'static str,
+    kind: Kind,
     color: Color,
     marker: MarkerShape,
 }
@@ -70,17 +87,16 @@ impl Marks {
         chunks: &mut Chunks,
         entity: EntityPath,
         layout: &JointLayout<'_>,
-        kind: Kind,
         place: impl Fn(&SegmentLayout<'_>) -> Option<(usize, f64)>,
     ) -> Result<(), RecordError> {
-        let segments = layout.segments().filter(|(_, segment)| Kind::of(segment) == kind);
+        let segments = layout.segments().filter(|(_, segment)| Kind::of(segment) == self.kind);
         let marks: Vec<(Moment, f64)> = segments
             .filter_map(|(trial, segment)| {
                 let (k, value) = place(segment)?;
                 Some((trial.moment_of(k), value))
             })
             .collect();
-        let style = SeriesPoints::new().with_names([self.name]).with_colors([self.color]);
+        let style = SeriesPoints::new().with_names([self.kind.name()]).with_colors([self.color]);
         let style = style.with_markers([self.marker]).with_marker_sizes([4.0]);
         chunks.push_static(entity.clone(), &style)?;
         let index: Index = marks.iter().map(|(moment, _)| *moment).collect();
@@ -95,20 +111,28 @@ fn add_lines(
     root: &EntityPath,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
-    for (name, rgb) in [("before", palette::CANDIDATE), ("after", palette::ACCEPTED)] {
+    let before = |best: &Candidate, segment: &SegmentLayout<'_>| {
+        (best.before, [segment.decision.segment.first, best.breakpoint])
+    };
+    let after = |best: &Candidate, segment: &SegmentLayout<'_>| {
+        let q = best.breakpoint;
+        // Where the next segment starts before this one ends, its lines take over.
+        let end = segment.decision.segment.last.min(q + segment.decision.hold).max(q);
+        (best.after, [q, end])
+    };
+    type Side = fn(&Candidate, &SegmentLayout<'_>) -> (Line, [usize; 2]);
+    let sides: [(&str, &str, Rgb, Side); 2] = [
+        (paths::LINE_BEFORE, "line before", palette::CANDIDATE, before),
+        (paths::LINE_AFTER, "line after", palette::ACCEPTED, after),
+    ];
+    for (path, name, rgb, side) in sides {
         let mut index = Index::default();
         let (mut values, mut lengths) = (Vec::new(), Vec::new());
         for (trial, segment) in layout.segments() {
             let Some(best) = segment.decision.candidates.best() else {
                 continue;
             };
-            let q = best.breakpoint;
-            // Where the next segment starts before this one ends, its lines take over.
-            let end = segment.decision.segment.last.min(q + segment.decision.hold).max(q);
-            let (line, ends) = match name {
-                "before" => (best.before, [segment.decision.segment.first, q]),
-                _ => (best.after, [q, end]),
-            };
+            let (line, ends) = side(&best, segment);
             let steps = [segment.decision.input_step.sample, segment.decision.next_sample()];
             for k in vertices(ends, steps) {
                 index.extend([trial.moment_of(k)]);
@@ -118,8 +142,8 @@ fn add_lines(
             index.extend([trial.moment_of(ends[1])]);
             lengths.push(0);
         }
-        let entity = below(root, &["line", name]);
-        let style = SeriesLines::new().with_names([format!("line {name}")]);
+        let entity = at(root, path);
+        let style = SeriesLines::new().with_names([name]);
         let style = style.with_colors([color(rgb)]).with_widths([2.0]);
         chunks.push_static(entity.clone(), &style)?;
         chunks.push(entity, index, Scalars::new(values).columns(lengths)?)?;
@@ -178,24 +202,24 @@ impl Map {
         for k in x_ticks {
             labels.put(self.input.below(k, 4.0), number(k));
         }
-        strips(chunks, below(root, &["grid"]), palette::GRID, 0.7, grid)?;
+        strips(chunks, at(root, map::GRID), palette::GRID, 0.7, grid)?;
         let outputs = layout.trials.iter().map(|trial| self.output_curve(trial)).collect();
-        strips(chunks, below(root, &["output"]), palette::SMOOTHED, 1.2, outputs)?;
+        strips(chunks, at(root, map::OUTPUT), palette::SMOOTHED, 1.2, outputs)?;
         let inputs = layout.trials.iter().map(|trial| self.input_curve(trial)).collect();
-        strips(chunks, below(root, &["input"]), palette::INPUT, 1.2, inputs)?;
-        for (name, rgb, kind) in [
-            ("accepted", palette::ACCEPTED, Kind::Accepted),
-            ("rejected", palette::REJECTED, Kind::Rejected),
+        strips(chunks, at(root, map::INPUT), palette::INPUT, 1.2, inputs)?;
+        for (path, rgb, kind) in [
+            (map::ACCEPTED, palette::ACCEPTED, Kind::Accepted),
+            (map::REJECTED, palette::REJECTED, Kind::Rejected),
         ] {
             let breaks = layout.segments().filter(|(_, segment)| Kind::of(segment) == kind);
             let places: Vec<_> = breaks.filter_map(|(t, s)| self.breakpoint(t, s)).collect();
             let points = Points2D::new(places).with_colors([color(rgb)]).with_radii([3.0]);
-            chunks.push_static(below(root, &[name]), &points)?;
+            chunks.push_static(at(root, path), &points)?;
         }
         let texts = Points2D::new(labels.places).with_labels(labels.texts).with_radii([0.01]);
         let texts = texts.with_colors([color(palette::BORDER)]).with_show_labels(true);
-        chunks.push_static(below(root, &["ticks"]), &texts)?;
-        self.add_frames(chunks, &below(root, &["here"]), layout)
+        chunks.push_static(at(root, map::TICKS), &texts)?;
+        self.add_frames(chunks, &at(root, map::HERE), layout)
     }
 
     fn output_curve(&self, trial: &TrialLayout<'_>) -> Vec<Vec2D> {

@@ -5,9 +5,9 @@ use rerun::{Color, EntityPath, LineStrips2D, Points2D};
 
 use super::canvas::Labels;
 use super::chunk::{Chunks, Index};
-use super::entity::below;
 use super::error::RecordError;
 use super::palette::{Rgb, color};
+use super::paths::at;
 
 /// Radius of a text's own point: too small to be seen.
 pub(super) const HIDDEN: f32 = 0.01;
@@ -34,20 +34,20 @@ impl<'c> Rows<'c> {
 
     pub(super) fn strips(
         &mut self,
-        name: &str,
+        path: &str,
         rgb: Rgb,
         radius: f32,
         rows: impl Iterator<Item = Vec<Vec<Vec2D>>>,
     ) -> Result<(), RecordError> {
         let (strips, lengths) = flattened(rows);
         let style = LineStrips2D::update_fields().with_colors([color(rgb)]).with_radii([radius]);
-        self.lines(name, style, LineStrips2D::update_fields().with_strips(strips), lengths)
+        self.lines(path, style, LineStrips2D::update_fields().with_strips(strips), lengths)
     }
 
     /// Strips with a colour each.
     pub(super) fn colored(
         &mut self,
-        name: &str,
+        path: &str,
         radius: f32,
         rows: impl Iterator<Item = Vec<(Vec<Vec2D>, Color)>>,
     ) -> Result<(), RecordError> {
@@ -55,17 +55,17 @@ impl<'c> Rows<'c> {
         let (strips, colors): (Vec<_>, Vec<_>) = strips.into_iter().unzip();
         let lines = LineStrips2D::update_fields().with_strips(strips).with_colors(colors);
         let style = LineStrips2D::update_fields().with_radii([radius]);
-        self.lines(name, style, lines, lengths)
+        self.lines(path, style, lines, lengths)
     }
 
     fn lines(
         &mut self,
-        name: &str,
+        path: &str,
         mut style: LineStrips2D,
         lines: LineStrips2D,
         lengths: Vec<usize>,
     ) -> Result<(), RecordError> {
-        let entity = below(&self.root, &[name]);
+        let entity = at(&self.root, path);
         if let Some(order) = self.next_order() {
             style = style.with_draw_order(order);
         }
@@ -75,12 +75,12 @@ impl<'c> Rows<'c> {
 
     pub(super) fn points(
         &mut self,
-        name: &str,
+        path: &str,
         rgb: Rgb,
         radius: f32,
         rows: impl Iterator<Item = Vec<Vec2D>>,
     ) -> Result<(), RecordError> {
-        let entity = below(&self.root, &[name]);
+        let entity = at(&self.root, path);
         let (points, lengths) = flattened(rows);
         let mut style = Points2D::update_fields().with_colors([color(rgb)]).with_radii([radius]);
         if let Some(order) = self.next_order() {
@@ -93,11 +93,11 @@ impl<'c> Rows<'c> {
 
     pub(super) fn texts(
         &mut self,
-        name: &str,
+        path: &str,
         rgb: Rgb,
         rows: impl Iterator<Item = Labels>,
     ) -> Result<(), RecordError> {
-        let entity = below(&self.root, &[name]);
+        let entity = at(&self.root, path);
         let style = Points2D::update_fields().with_colors([color(rgb)]).with_radii([HIDDEN]);
         self.chunks.push_static(entity.clone(), &style.with_show_labels(true))?;
         let (mut places, mut texts, mut lengths) = (Vec::new(), Vec::new(), Vec::new());

@@ -5,9 +5,9 @@ use rerun::{EntityPath, LineStrips2D, Points2D};
 
 use super::canvas::{Plot, SHEET, Span};
 use super::chunk::Chunks;
-use super::entity::below;
 use super::error::RecordError;
 use super::palette::{self, color};
+use super::paths::{at, of_model, scatter};
 use super::sheet::Sheet;
 use crate::report::ComparedJoint;
 
@@ -50,10 +50,10 @@ pub(super) fn add(
     }
     sheet.push(chunks, root)?;
     let dots = Points2D::new(points).with_colors([color(palette::RAW)]).with_radii([1.2]);
-    chunks.push_static(below(root, &["points"]), &dots)?;
+    chunks.push_static(at(root, scatter::POINTS), &dots)?;
     for ((curves, rgb), number) in curves.into_iter().zip(palette::models()).zip(0..) {
         let strips = LineStrips2D::new(curves).with_colors([color(rgb)]).with_radii([2.4]);
-        chunks.push_static(below(root, &["curve", &format!("{number}")]), &strips)?;
+        chunks.push_static(of_model(root, scatter::CURVE, number), &strips)?;
     }
     Ok(())
 }

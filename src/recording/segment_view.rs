@@ -12,10 +12,10 @@ use rerun::{EntityPath, LineStrips2D, Points2D};
 use super::beside::{Other, in_short};
 use super::canvas::{Labels, Plot, SHEET, Span, simplified, thinned};
 use super::chunk::{Chunks, Index};
-use super::entity::below;
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::palette::{self, color};
+use super::paths::{at, drawing};
 use super::rows::Rows;
 use crate::delay::{Candidate, Decision, Line, Method, Verdict};
 use crate::experiment::Joint;
@@ -32,35 +32,37 @@ pub(super) fn add(
 ) -> Result<(), RecordError> {
     let drawings: Vec<_> =
         layout.segments().map(|(trial, segment)| Drawing::new(trial, segment)).collect();
-    let root = below(root, &["drawing"]);
+    let root = at(root, drawing::ROOT);
     let opening: Index = drawings.iter().map(|d| d.trial.opening(d.segment)).collect();
     let mut sheet = Rows::new(chunks, root.clone(), opening);
     let rows = || drawings.iter();
-    sheet.strips("grid", palette::GRID, 0.8, rows().map(|d| d.grid().0))?;
-    sheet.texts("ticks", palette::BORDER, rows().map(|d| d.grid().1))?;
-    sheet.points("measured", palette::RAW, 1.6, rows().map(Drawing::measured))?;
-    sheet.strips("smoothed", palette::SMOOTHED, 1.4, rows().map(|d| vec![d.smoothed()]))?;
-    sheet.strips("borders", palette::BORDER, 1.2, rows().map(Drawing::borders))?;
-    sheet.strips("input_step", palette::INPUT, 1.6, rows().map(Drawing::input_step))?;
-    sheet.strips("sse", palette::ERROR, 1.6, rows().map(|d| vec![d.errors()]))?;
-    sheet.strips("accepted", palette::ACCEPTED, 2.4, rows().map(|d| d.chosen(Chosen::Accepted)))?;
-    sheet.strips("rejected", palette::REJECTED, 2.4, rows().map(|d| d.chosen(Chosen::Rejected)))?;
-    sheet.texts("names", palette::BORDER, rows().map(|d| d.names(joint)))?;
+    sheet.strips(drawing::GRID, palette::GRID, 0.8, rows().map(|d| d.grid().0))?;
+    sheet.texts(drawing::TICKS, palette::BORDER, rows().map(|d| d.grid().1))?;
+    sheet.points(drawing::MEASURED, palette::RAW, 1.6, rows().map(Drawing::measured))?;
+    sheet.strips(drawing::SMOOTHED, palette::SMOOTHED, 1.4, rows().map(|d| vec![d.smoothed()]))?;
+    sheet.strips(drawing::BORDERS, palette::BORDER, 1.2, rows().map(Drawing::borders))?;
+    sheet.strips(drawing::INPUT_STEP, palette::INPUT, 1.6, rows().map(Drawing::input_step))?;
+    sheet.strips(drawing::SSE, palette::ERROR, 1.6, rows().map(|d| vec![d.errors()]))?;
+    sheet.strips(
+        drawing::ACCEPTED,
+        palette::ACCEPTED,
+        2.4,
+        rows().map(|d| d.chosen(Chosen::Accepted)),
+    )?;
+    sheet.strips(
+        drawing::REJECTED,
+        palette::REJECTED,
+        2.4,
+        rows().map(|d| d.chosen(Chosen::Rejected)),
+    )?;
+    sheet.texts(drawing::NAMES, palette::BORDER, rows().map(|d| d.names(joint)))?;
     if layout.is_fine() {
-        sheet.strips("interval", palette::BORDER, 1.6, rows().map(Drawing::interval))?;
+        sheet.strips(drawing::INTERVAL, palette::BORDER, 1.6, rows().map(Drawing::interval))?;
     }
     if !others.is_empty() {
         add_others(&mut sheet, &drawings, method, others)?;
     }
     add_candidates(chunks, &root, &drawings)
-}
-
-/// The legend of the first method where others are drawn: in the colour of its verdict.
-pub(super) const FIRST: [&str; 2] = ["first_accepted", "first_rejected"];
-
-/// The drawing of a further method, and its line of the legend.
-pub(super) fn other_names(index: usize) -> [String; 2] {
-    [format!("other_{index}"), format!("other_{index}_name")]
 }
 
 /// What other methods decided, with a legend of all.
@@ -71,14 +73,16 @@ fn add_others(
     others: &[Other<'_>],
 ) -> Result<(), RecordError> {
     let legend = Legend { entries: others.len() + 1 };
-    let colors = [palette::ACCEPTED, palette::REJECTED];
-    for ((name, rgb), accepted) in FIRST.into_iter().zip(colors).zip([true, false]) {
+    for (path, rgb, accepted) in [
+        (drawing::FIRST_ACCEPTED, palette::ACCEPTED, true),
+        (drawing::FIRST_REJECTED, palette::REJECTED, false),
+    ] {
         let entry = |drawing: &Drawing<'_, '_>| {
             let decision = drawing.segment.decision;
             let is_it = (decision.verdict() == Verdict::Accepted) == accepted;
             legend.entry(0, is_it.then(|| in_short(method, decision)))
         };
-        sheet.texts(name, rgb, drawings.iter().map(entry))?;
+        sheet.texts(path, rgb, drawings.iter().map(entry))?;
     }
     for (index, other) in others.iter().enumerate() {
         let decision = |drawing: &Drawing<'_, '_>| other.decision(drawing.trial, drawing.segment);
@@ -89,7 +93,7 @@ fn add_others(
             let text = decision(drawing).map(|decision| in_short(other.method, decision));
             legend.entry(index + 1, text)
         };
-        let [lines, name] = other_names(index);
+        let [lines, name] = drawing::of_method(index);
         sheet.strips(&lines, other.rgb, 1.8, drawings.iter().map(strips))?;
         sheet.texts(&name, other.rgb, drawings.iter().map(entry))?;
     }
@@ -351,12 +355,12 @@ fn add_candidates(
         strip_lengths.extend(cleared(PAIR_STRIPS));
         mark_lengths.extend(cleared(1));
     }
-    let lines = below(root, &["candidate"]);
+    let lines = at(root, drawing::CANDIDATE);
     let style = LineStrips2D::update_fields().with_colors([color(palette::CANDIDATE)]);
     chunks.push_static(lines.clone(), &style.with_radii([2.0]))?;
     let columns = LineStrips2D::update_fields().with_strips(strips).columns(strip_lengths)?;
     chunks.push(lines, index.clone(), columns)?;
-    let mark = below(root, &["candidate", "mark"]);
+    let mark = at(root, drawing::CANDIDATE_MARK);
     let style = Points2D::update_fields().with_colors([color(palette::CANDIDATE)]);
     chunks.push_static(mark.clone(), &style.with_radii([7.0]).with_show_labels(true))?;
     let points = Points2D::update_fields().with_positions(marks.places).with_labels(marks.texts);

@@ -5,9 +5,9 @@ use rerun::{Color, EntityPath, LineStrips2D, Points2D};
 
 use super::canvas::{Labels, Plot, Span};
 use super::chunk::Chunks;
-use super::entity::below;
 use super::error::RecordError;
 use super::palette::{self, Rgb, color};
+use super::paths::{self, at};
 use super::rows::HIDDEN;
 use crate::wording::number;
 
@@ -57,8 +57,8 @@ impl Sheet {
 
     /// Adds `grid` and `texts` below `root`.
     pub(super) fn push(self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
-        strips(chunks, below(root, &["grid"]), palette::GRID, 0.7, self.grid)?;
-        put_texts(chunks, below(root, &["texts"]), self.labels, &[color(palette::BORDER)])
+        strips(chunks, at(root, paths::GRID), palette::GRID, 0.7, self.grid)?;
+        put_texts(chunks, at(root, paths::TEXTS), self.labels, &[color(palette::BORDER)])
     }
 }
 

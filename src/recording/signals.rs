@@ -6,6 +6,7 @@ use super::chunk::{Chunks, Index};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialLayout};
 use super::palette::{self, Rgb, color};
+use super::paths::{self, at, child};
 use crate::experiment::Joint;
 
 /// Adds all signals of `joint` below the entity `root`.
@@ -17,18 +18,39 @@ pub(super) fn add(
 ) -> Result<(), RecordError> {
     let unit = |unit: &Option<String>| unit.as_ref().map_or(String::new(), |u| format!(" [{u}]"));
     let (input, output) = (unit(&joint.input_unit), unit(&joint.output_unit));
-    let path = |parts: &[&str]| super::entity::below(root, parts);
-    let entity = path(&["input"]);
-    style(chunks, &entity, format!("input{input}"), palette::INPUT, 1.5)?;
+    // Input and delay are held between samples; what was measured is drawn from point to point.
+    let entity = at(root, paths::INPUT);
+    style(
+        chunks,
+        &entity,
+        format!("input{input}"),
+        palette::INPUT,
+        1.5,
+        InterpolationMode::StepAfter,
+    )?;
     add_signal(chunks, entity, layout, |trial| trial.trial.input())?;
-    let entity = path(&["output", "raw"]);
-    style(chunks, &entity, format!("measured{output}"), palette::RAW, 1.0)?;
+    let entity = at(root, paths::OUTPUT_RAW);
+    style(
+        chunks,
+        &entity,
+        format!("measured{output}"),
+        palette::RAW,
+        1.0,
+        InterpolationMode::Linear,
+    )?;
     add_signal(chunks, entity, layout, |trial| trial.trial.output())?;
-    let entity = path(&["output", "smoothed"]);
-    style(chunks, &entity, format!("smoothed{output}"), palette::SMOOTHED, 1.5)?;
+    let entity = at(root, paths::OUTPUT_SMOOTHED);
+    style(
+        chunks,
+        &entity,
+        format!("smoothed{output}"),
+        palette::SMOOTHED,
+        1.5,
+        InterpolationMode::Linear,
+    )?;
     add_signal(chunks, entity, layout, TrialLayout::output)?;
     for (index, signal) in joint.covariates.iter().enumerate() {
-        let entity = path(&["covariate", &signal.name]);
+        let entity = child(&at(root, paths::COVARIATE), &signal.name);
         let name = format!("{}{}", signal.name, unit(&signal.unit));
         chunks.push_static(entity.clone(), &SeriesLines::new().with_names([name]))?;
         let values = |trial: &TrialLayout<'_>| {
@@ -37,8 +59,15 @@ pub(super) fn add(
         };
         add_sparse(chunks, entity, layout, values)?;
     }
-    let entity = path(&["delay", "tau"]);
-    style(chunks, &entity, "delay τ [samples]".to_owned(), palette::ACCEPTED, 1.5)?;
+    let entity = at(root, paths::TAU);
+    style(
+        chunks,
+        &entity,
+        "delay τ [samples]".to_owned(),
+        palette::ACCEPTED,
+        1.5,
+        InterpolationMode::StepAfter,
+    )?;
     add_sparse(chunks, entity, layout, |trial| trial.estimate.profile.iter().collect())
 }
 
@@ -48,12 +77,10 @@ fn style(
     name: String,
     rgb: Rgb,
     width: f32,
+    mode: InterpolationMode,
 ) -> Result<(), RecordError> {
     let lines = SeriesLines::new().with_names([name]).with_colors([color(rgb)]);
     let lines = lines.with_widths([width]);
-    // The input is held between samples; what was measured is drawn from point to point.
-    let held = rgb == palette::INPUT || rgb == palette::ACCEPTED;
-    let mode = if held { InterpolationMode::StepAfter } else { InterpolationMode::Linear };
     chunks.push_static(entity.clone(), &lines.with_interpolation_mode(mode))
 }
 

@@ -4,10 +4,11 @@ use rerun::{Color, EntityPath, StateChange, StateConfiguration, TextDocument, Te
 
 use super::beside::{Other, row};
 use super::chunk::{Chunks, Index};
-use super::entity::{below, plain};
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
+use super::markdown::plain;
 use super::palette::{self, color};
+use super::paths::{self, at};
 use crate::delay::{Check, Condition, Decision, FineDelay, Lag, LagPart, Outcome};
 use crate::delay::{Remedy, Settings, Verdict};
 use crate::experiment::Joint;
@@ -34,7 +35,7 @@ pub(super) fn add(
     let verdict = |(_, segment): &Placed<'_, '_>| segment.decision.verdict().to_string();
     let states: Vec<String> = segments.iter().map(verdict).collect();
     let states = StateChange::new().with_state(states).columns_of_unit_batches()?;
-    let entity = below(root, &["verdict"]);
+    let entity = at(root, paths::VERDICT);
     if segments.is_empty() {
         let name = plain(&joint.name);
         let text = format!("### {name}\n## nothing to decide: the input never changes\n");
@@ -70,7 +71,7 @@ fn add_log(
     let accepted = |segment: &SegmentLayout<'_>| segment.decision.verdict() == Verdict::Accepted;
     let levels = segments.iter().map(|(_, s)| if accepted(s) { "INFO" } else { "WARN" });
     let log = TextLog::update_fields().with_many_text(lines).with_many_level(levels);
-    chunks.push(below(root, &["verdict", "log"]), index, log.columns_of_unit_batches()?)
+    chunks.push(at(root, paths::VERDICT_LOG), index, log.columns_of_unit_batches()?)
 }
 
 fn log_line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
@@ -113,7 +114,7 @@ fn add_lanes(
         if n % 2 == 0 { Color::from_rgb(72, 84, 96) } else { Color::from_rgb(98, 110, 122) }
     });
     let style = StateConfiguration::new().with_values(names.clone()).with_colors(greys);
-    let entity = below(root, &["segment"]);
+    let entity = at(root, paths::SEGMENT);
     chunks.push_static(entity.clone(), &style)?;
     chunks.push(
         entity,
@@ -123,7 +124,7 @@ fn add_lanes(
     let starts = layout.trials.iter().filter_map(|trial| trial.moments(1).next());
     let labels: Vec<_> = layout.trials.iter().map(|trial| trial.trial.label().to_owned()).collect();
     let states = StateChange::new().with_state(labels).columns_of_unit_batches()?;
-    chunks.push(below(root, &["trial"]), starts.collect(), states)
+    chunks.push(at(root, paths::TRIAL), starts.collect(), states)
 }
 
 /// The page beside the drawing: verdict first, then what it was made of.

@@ -6,9 +6,9 @@ use super::quantity::Way;
 use crate::delay::{StepState, Verdict};
 use crate::experiment::Joint;
 use crate::recording::chunk::{Chunks, Index, fine_columns, integers, numbers};
-use crate::recording::entity::below;
 use crate::recording::error::RecordError;
 use crate::recording::layout::{JointLayout, SegmentLayout, TrialLayout};
+use crate::recording::paths::{self, at, child};
 use crate::wording::number;
 
 /// A segment, and its step among the accepted ones, with its place there.
@@ -104,7 +104,7 @@ pub(super) fn add_numbers(
         };
         let index: Index = measured().map(|(moment, _)| moment).collect();
         let values = Scalars::new(measured().map(|(_, value)| value));
-        let entity = below(entity, &["covariate", &signal.name]);
+        let entity = child(&at(entity, paths::COVARIATE), &signal.name);
         chunks.push(entity, index, values.columns_of_unit_batches()?)?;
     }
     Ok(())

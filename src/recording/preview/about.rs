@@ -4,17 +4,18 @@ use std::fmt::Write as _;
 
 use rerun::{EntityPath, TextDocument};
 
-use super::PreviewRecording;
-use crate::recording::about::made_from;
+use super::recorded::PreviewRecording;
 use crate::recording::chunk::Chunks;
-use crate::recording::entity::plain;
 use crate::recording::error::RecordError;
+use crate::recording::markdown::plain;
+use crate::recording::origin::made_from;
+use crate::recording::paths::ABOUT;
 use crate::report::design_sentences;
 
 /// Adds the page at `/about`.
 pub(super) fn add(chunks: &mut Chunks, preview: &PreviewRecording<'_>) -> Result<(), RecordError> {
     let document = TextDocument::from_markdown(page(preview).unwrap_or_default());
-    chunks.push_static(EntityPath::from("about"), &document)
+    chunks.push_static(EntityPath::from(ABOUT), &document)
 }
 
 fn page(preview: &PreviewRecording<'_>) -> Result<String, std::fmt::Error> {

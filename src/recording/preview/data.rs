@@ -3,11 +3,11 @@
 use rerun::components::InterpolationMode;
 use rerun::{EntityPath, Scalars, SeriesLines};
 
-use super::{Preview, unit_of};
+use super::expected::{Preview, unit_of};
 use crate::recording::chunk::Chunks;
-use crate::recording::entity::below;
 use crate::recording::error::RecordError;
 use crate::recording::palette::{self, Rgb, color, dimmed};
+use crate::recording::paths::{at, child, preview as preview_paths};
 
 /// How a signal is drawn in a plot over time.
 struct Style {
@@ -32,35 +32,35 @@ pub(super) fn add(
     let stand = &preview.joint.stand;
     let input = format!("input{}", unit_of(stand.input_unit.as_deref()));
     let held = Style { mode: InterpolationMode::StepAfter, ..Style::line(input, palette::INPUT) };
-    let entity = |parts: &[&str]| below(root, parts);
-    signal(chunks, preview, entity(&["input"]), held, &preview.joint.schedule.input())?;
+    signal(chunks, preview, at(root, preview_paths::INPUT), held, &preview.joint.schedule.input())?;
     let unit = unit_of(stand.output_unit.as_deref());
     for expected in &preview.expected {
         let name = expected.name;
+        let output = child(&at(root, preview_paths::EXPECTED), name);
         let prediction = expected.prediction;
         let with = |sign: f64| -> Vec<f64> {
             let both = prediction.output.iter().zip(&prediction.margin);
             both.map(|(output, margin)| output + sign * margin).collect()
         };
-        for (part, sign) in [("low", -1.0), ("high", 1.0)] {
+        for (part, sign) in [(preview_paths::LOW, -1.0), (preview_paths::HIGH, 1.0)] {
             let edge = Style::line(format!("{name}, {part}{unit}"), dimmed(expected.rgb));
             let edge = Style { width: 1.0, ..edge };
-            signal(chunks, preview, entity(&["expected", name, part]), edge, &with(sign))?;
+            signal(chunks, preview, at(&output, part), edge, &with(sign))?;
         }
         let line = Style::line(format!("{name}{unit}"), expected.rgb);
-        let output = entity(&["expected", name, "output"]);
-        signal(chunks, preview, output, line, &prediction.output)?;
+        signal(chunks, preview, at(&output, preview_paths::OUTPUT), line, &prediction.output)?;
     }
     if let Some((low, high)) = stand.range {
-        for (part, value) in [("low", low), ("high", high)] {
+        let range = at(root, preview_paths::RANGE);
+        for (part, value) in [(preview_paths::LOW, low), (preview_paths::HIGH, high)] {
             let limit = Style::line(format!("range, {part}{unit}"), palette::REJECTED);
             let all = vec![value; preview.joint.schedule.samples()];
-            signal(chunks, preview, entity(&["range", part]), limit, &all)?;
+            signal(chunks, preview, at(&range, part), limit, &all)?;
         }
     }
     let Some(apart) = &preview.apart else { return Ok(()) };
     let line = Style::line("difference over noise".to_owned(), palette::ERROR);
-    signal(chunks, preview, entity(&["apart"]), line, &apart.over_noise)
+    signal(chunks, preview, at(root, preview_paths::APART), line, &apart.over_noise)
 }
 
 fn signal(

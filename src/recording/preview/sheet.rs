@@ -4,34 +4,19 @@ use rerun::components::DrawOrder;
 use rerun::datatypes::Vec2D;
 use rerun::{Color, EntityPath, LineStrips2D};
 
-use super::{Expectation, Preview, unit_of};
+use super::expected::{Expectation, Preview, unit_of};
 use crate::design::HoldApart;
 use crate::recording::canvas::{Labels, Plot, SHEET, Span, simplified, thinned};
 use crate::recording::chunk::Chunks;
-use crate::recording::entity::below;
 use crate::recording::error::RecordError;
 use crate::recording::palette::{self, Rgb, between, color};
+use crate::recording::paths::{at, preview::sheet};
 use crate::recording::rows::Rows;
 use crate::recording::sheet::{Sheet, put_texts, strips};
 use crate::wording::{measure, number};
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1090.0);
-
-/// Entities of the page, from back to front.
-pub(in crate::recording) const PARTS: [&str; 11] = [
-    "band",
-    "grid",
-    "range",
-    "input",
-    "expected",
-    "apart",
-    "texts",
-    "legend",
-    "shares",
-    "here/frame",
-    "here/name",
-];
 
 /// Left and right ends of the plots: numbers stand on the left.
 const SIDES: (f32, f32) = (120.0, SHEET.0 - 30.0);
@@ -56,7 +41,7 @@ pub(super) fn add(
     root: &EntityPath,
     preview: &Preview<'_>,
 ) -> Result<(), RecordError> {
-    let root = below(root, &["sheet"]);
+    let root = at(root, sheet::ROOT);
     let page = Page::of(preview);
     page.add_bands(chunks, &root)?;
     page.sheet().push(chunks, &root)?;
@@ -154,7 +139,7 @@ impl<'p> Page<'p> {
         let radius = 0.5 * (SIDES.1 - SIDES.0) / count as f32 + 0.2;
         let bands = LineStrips2D::new(lines).with_colors(colors).with_radii([radius]);
         let bands = bands.with_draw_order(DrawOrder::from(-10.0));
-        chunks.push_static(below(root, &["band"]), &bands)
+        chunks.push_static(at(root, sheet::BAND), &bands)
     }
 
     /// Input, range, expected outputs and their difference.
@@ -165,7 +150,7 @@ impl<'p> Page<'p> {
         let input = holds
             .flat_map(|(hold, (start, end))| [corner(start, hold.level), corner(end, hold.level)]);
         let input = vec![input.collect()];
-        strips(chunks, below(root, &["input"]), palette::INPUT, 1.4, input)?;
+        strips(chunks, at(root, sheet::INPUT), palette::INPUT, 1.4, input)?;
         let curve = |plot: &Plot, values: &[f64]| {
             let place = |k: usize| {
                 plot.at(self.preview.seconds(k), values.get(k).copied().unwrap_or_default())
@@ -180,17 +165,17 @@ impl<'p> Page<'p> {
                 .filter(|limit| (low..high).contains(limit))
                 .map(|limit| plot.level(limit).to_vec())
                 .collect();
-            strips(chunks, below(root, &["range"]), palette::REJECTED, 1.0, limits)?;
+            strips(chunks, at(root, sheet::RANGE), palette::REJECTED, 1.0, limits)?;
             let outputs = self.preview.expected.iter();
             let (lines, colors): (Vec<_>, Vec<_>) =
                 outputs.map(|e| (curve(plot, &e.prediction.output), color(e.rgb))).unzip();
             let lines = LineStrips2D::new(lines).with_colors(colors).with_radii([1.5]);
             let lines = lines.with_draw_order(DrawOrder::from(40.0));
-            chunks.push_static(below(root, &["expected"]), &lines)?;
+            chunks.push_static(at(root, sheet::EXPECTED), &lines)?;
         }
         let (Some(plot), Some(apart)) = (&self.apart, &self.preview.apart) else { return Ok(()) };
         let line = vec![curve(plot, &apart.over_noise)];
-        strips(chunks, below(root, &["apart"]), palette::ERROR, 1.4, line)
+        strips(chunks, at(root, sheet::APART), palette::ERROR, 1.4, line)
     }
 
     /// What the colours mean.
@@ -215,7 +200,7 @@ impl<'p> Page<'p> {
             labels.put(Vec2D::new(first + DISTANCE * place as f32, ROW), text);
             colors.push(color(rgb));
         }
-        put_texts(chunks, below(root, &["legend"]), labels, &colors)
+        put_texts(chunks, at(root, sheet::LEGEND), labels, &colors)
     }
 
     /// The part of all squared differences that lies in each hold, where there is much of it.
@@ -232,12 +217,12 @@ impl<'p> Page<'p> {
             let middle = self.preview.seconds(start + hold.samples / 2);
             labels.put(plot.above(middle, 0.0), format!("{:.0} %", 100.0 * share));
         }
-        put_texts(chunks, below(root, &["shares"]), labels, &[color(palette::ERROR)])
+        put_texts(chunks, at(root, sheet::SHARES), labels, &[color(palette::ERROR)])
     }
 
     /// The hold under the cursor: a frame through all plots, and its level.
     fn add_here(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
-        let mut rows = Rows::new(chunks, below(root, &["here"]), self.preview.hold_rows());
+        let mut rows = Rows::new(chunks, root.clone(), self.preview.hold_rows());
         let holds = self.preview.holds();
         let frame = |(start, end): &(usize, usize)| {
             let [from, to] = [*start, *end].map(|sample| self.preview.seconds(sample));
@@ -248,7 +233,7 @@ impl<'p> Page<'p> {
             };
             self.plots().map(frame).collect()
         };
-        rows.strips("frame", palette::HERE, 1.2, holds.iter().map(frame))?;
+        rows.strips(sheet::HERE_FRAME, palette::HERE, 1.2, holds.iter().map(frame))?;
         let unit = self.preview.joint.stand.input_unit.as_deref();
         let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
         let names = holds.iter().zip(self.preview.joint.schedule.holds()).zip(1..);
@@ -260,6 +245,6 @@ impl<'p> Page<'p> {
                 labels.put_whole(self.input.above(self.preview.seconds(*start), 2.0 * TITLE), text);
                 labels
             };
-        rows.texts("name", palette::HERE, names.map(name))
+        rows.texts(sheet::HERE_NAME, palette::HERE, names.map(name))
     }
 }

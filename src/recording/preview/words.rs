@@ -4,11 +4,12 @@ use std::fmt::Write as _;
 
 use rerun::{EntityPath, TextDocument, TextLog};
 
-use super::Preview;
+use super::expected::Preview;
 use crate::design::Hold;
 use crate::recording::chunk::Chunks;
-use crate::recording::entity::{below, plain};
 use crate::recording::error::RecordError;
+use crate::recording::markdown::plain;
+use crate::recording::paths::{at, preview as paths};
 use crate::report::{SIDE_HEADER, design_sentences, side_rows};
 use crate::wording::measure;
 
@@ -19,7 +20,7 @@ pub(super) fn add(
     preview: &Preview<'_>,
 ) -> Result<(), RecordError> {
     let says = TextDocument::from_markdown(says(preview).unwrap_or_default());
-    chunks.push_static(below(root, &["says"]), &says)?;
+    chunks.push_static(at(root, paths::SAYS), &says)?;
     let holds = preview.joint.schedule.holds().iter().zip(preview.holds());
     let pages = holds.clone().enumerate().map(|(place, (hold, (start, end)))| {
         page(preview, place, *hold, (start, end)).unwrap_or_default()
@@ -28,11 +29,11 @@ pub(super) fn add(
     let media = std::iter::repeat_n("text/markdown", pages.len());
     let pages = TextDocument::update_fields().with_many_text(pages).with_many_media_type(media);
     let columns = pages.columns_of_unit_batches()?;
-    chunks.push(below(root, &["here"]), preview.hold_rows(), columns)?;
+    chunks.push(at(root, paths::HERE), preview.hold_rows(), columns)?;
     let lines = holds.enumerate().map(|(place, (hold, _))| line(preview, place, *hold));
     let lines = TextLog::update_fields().with_many_text(lines);
     let columns = lines.columns_of_unit_batches()?;
-    chunks.push(below(root, &["holds"]), preview.hold_rows(), columns)
+    chunks.push(at(root, paths::HOLDS), preview.hold_rows(), columns)
 }
 
 type Written = Result<String, std::fmt::Error>;

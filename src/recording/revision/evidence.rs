@@ -3,65 +3,34 @@
 //! Where a level is held, the measured output runs along a line: its slope is a speed that
 //! owes nothing to a model, but for when the level began to act. Against the level it shows
 //! a dead band, a saturation or a curve at a glance. What does not show there is in
-//! [`left`].
+//! [`residual`].
 
-use rerun::datatypes::Vec2D;
-
-use super::{Strips, left};
+use super::figure::{Figure, Held, Law};
+use super::residual;
 use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, Trial};
 use crate::fit::{FitRecord, Horizon, Split};
 use crate::model::{Arrivals, JointModel, Restart, Surroundings, simulate};
-use crate::recording::canvas::{Labels, Plot, Span};
+use crate::recording::canvas::Span;
 use crate::recording::error::RecordError;
 use crate::recording::error_share::short;
 use crate::recording::palette;
+use crate::recording::paths::revision::sheet;
 use crate::recording::rows::Rows;
 use crate::recording::sheet::Sheet;
 use crate::report::ImprovedJoint;
 
-/// Columns and rows of the plot on the sheet.
-const PLACE: ((f32, f32), (f32, f32)) = ((760.0, 1235.0), (48.0, 450.0));
-
 /// Fewest samples of a level whose speed is known.
 const SHORTEST: usize = 12;
 
-/// Points that are drawn; more hide one another.
-const POINTS: usize = 1500;
-
 /// Levels at which a law is computed.
 const LEVELS: u32 = 120;
-
-/// Width of an uncertainty in standard errors on each side: 95 %.
-const BAND: f64 = 1.96;
-
-/// The measured speed while one level of the input acted.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Held {
-    pub(super) level: f64,
-    pub(super) speed: f64,
-    pub(super) std_error: f64,
-}
-
-/// Level of the input, and the speed that a model makes of it.
-pub(super) type Law = Vec<(f64, f64)>;
 
 /// Speeds and laws of each revision, and what is drawn of them.
 pub(super) struct Evidence {
     pub(super) held: Vec<Vec<Held>>,
     pub(super) laws: Vec<Law>,
     figures: Vec<Figure>,
-}
-
-/// What shows the effect that comes next, of one revision.
-pub(super) struct Figure {
-    pub(super) title: String,
-    pub(super) x: Span,
-    pub(super) y: Span,
-    pub(super) points: Vec<Held>,
-    /// What the revision makes of it, the one before, and the candidate that comes next.
-    pub(super) laws: [Law; 3],
-    pub(super) names: [Option<String>; 3],
 }
 
 /// What is measured, and what the models of `improved` make of it.
@@ -80,7 +49,7 @@ pub(super) fn evidence(improved: &ImprovedJoint<'_>) -> Evidence {
         let proposed = improved.proposed(at);
         let next = proposed.map_or_else(Vec::new, |candidate| still.law(&candidate.fit.model));
         if let Some(candidate) = proposed.filter(|_| are_alike(&own, &next)) {
-            figures.push(left::figure(joint, &step.comparison, number, candidate));
+            figures.push(residual::figure(joint, &step.comparison, number, candidate));
             continue;
         }
         let before = at.checked_sub(1).and_then(|before| laws.get(before));
@@ -126,8 +95,8 @@ pub(super) fn add(rows: &mut Rows<'_>, evidence: &Evidence) -> Result<(), Record
     ] {
         rows.strips(name, rgb, radius, figures().map(|figure| figure.curve(which)))?;
     }
-    rows.strips("uncertain", palette::MEASURED, 0.8, figures().map(Figure::uncertain))?;
-    rows.points("points", palette::MEASURED, 4.0, figures().map(Figure::places))?;
+    rows.strips(sheet::UNCERTAIN, palette::MEASURED, 0.8, figures().map(Figure::uncertain))?;
+    rows.points(sheet::POINTS, palette::MEASURED, 4.0, figures().map(Figure::places))?;
     for (name, which, rgb) in [
         ("law_name", 0, palette::REVISION),
         ("before_name", 1, palette::BEFORE),
@@ -141,69 +110,18 @@ pub(super) fn add(rows: &mut Rows<'_>, evidence: &Evidence) -> Result<(), Record
 impl Evidence {
     /// Grid and title of the plot of the revision at `place`.
     pub(super) fn sheet(&self, place: usize) -> Sheet {
-        let mut sheet = Sheet::default();
+        let mut drawn = Sheet::default();
         if let Some(figure) = self.figures.get(place) {
             let plot = figure.plot();
             let ticks = |ticks: Vec<f64>| ticks.into_iter().map(|tick| (tick, short(tick)));
             let x_ticks = plot.x_span().ticks(5.0);
             let y_ticks: Vec<_> = ticks(plot.y_span().ticks(4.0)).collect();
-            sheet.frame(&plot, &x_ticks, &y_ticks, &figure.title);
+            drawn.frame(&plot, &x_ticks, &y_ticks, &figure.title);
             for (x, text) in ticks(x_ticks) {
-                sheet.put(plot.below(x, 2.0), text);
+                drawn.put(plot.below(x, 2.0), text);
             }
         }
-        sheet
-    }
-}
-
-impl Figure {
-    fn plot(&self) -> Plot {
-        let (columns, (top, bottom)) = PLACE;
-        Plot::within(columns, top..=bottom, self.x, self.y)
-    }
-
-    fn curve(&self, which: usize) -> Strips {
-        let plot = self.plot();
-        let law = self.laws.get(which).filter(|law| !law.is_empty());
-        let curve = |law: &Law| law.iter().map(|(x, y)| plot.at(*x, *y)).collect();
-        law.into_iter().map(curve).collect()
-    }
-
-    /// The points that are drawn.
-    fn drawn(&self) -> impl Iterator<Item = &Held> {
-        self.points.iter().step_by(self.points.len().div_ceil(POINTS).max(1))
-    }
-
-    fn places(&self) -> Vec<Vec2D> {
-        let plot = self.plot();
-        self.drawn().map(|held| plot.at(held.level, held.speed)).collect()
-    }
-
-    fn uncertain(&self) -> Strips {
-        let plot = self.plot();
-        let reach = |held: &Held| {
-            [-BAND, BAND].map(|k| plot.at(held.level, held.speed + k * held.std_error)).to_vec()
-        };
-        self.drawn().map(reach).collect()
-    }
-
-    /// The name of a law, in the corner that a rising one leaves free, or in the other one.
-    fn legend(&self, which: usize) -> Labels {
-        let mut labels = Labels::default();
-        let line = self.names.iter().take(which).flatten().count();
-        if let Some(name) = self.names.get(which).and_then(Option::as_ref) {
-            let half = 7.0 * (name.chars().count() + 2) as f32;
-            let ((left, right), (top, _)) = PLACE;
-            let x = if self.falls() { right - half - 6.0 } else { left + half + 6.0 };
-            labels.put(Vec2D::new(x, top + 22.0 + 36.0 * line as f32), name.clone());
-        }
-        labels
-    }
-
-    fn falls(&self) -> bool {
-        let law = self.laws.iter().rev().find(|law| !law.is_empty());
-        let ends = law.and_then(|law| law.first().zip(law.last()));
-        ends.is_some_and(|(first, last)| first.1 > last.1)
+        drawn
     }
 }
 

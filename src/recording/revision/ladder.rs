@@ -4,12 +4,13 @@ use rerun::Color;
 use rerun::datatypes::Vec2D;
 
 use super::bars::Bars;
-use super::{Strips, judged};
 use crate::diagnosis::Comparison;
-use crate::recording::canvas::Labels;
+use crate::figure::ladder::judged;
+use crate::recording::canvas::{Labels, Strips};
 use crate::recording::error::RecordError;
 use crate::recording::error_share::{HATCH, short};
 use crate::recording::palette::{self, color};
+use crate::recording::paths::revision::sheet;
 use crate::recording::rows::Rows;
 use crate::report::{ImprovedJoint, change_in_words};
 
@@ -20,9 +21,9 @@ const COLUMNS: (f32, f32, f32) = (0.0, 300.0, 630.0);
 pub(super) fn add(rows: &mut Rows<'_>, improved: &ImprovedJoint<'_>) -> Result<(), RecordError> {
     let ladder = Ladder::of(improved);
     let count = improved.revisions.len();
-    rows.colored("ladder", HATCH, (0..count).map(|at| ladder.bars(at)))?;
+    rows.colored(sheet::LADDER, HATCH, (0..count).map(|at| ladder.bars(at)))?;
     let marks = ladder.training();
-    rows.strips("training", palette::BORDER, 1.6, (0..count).map(|_| marks.clone()))
+    rows.strips(sheet::TRAINING, palette::BORDER, 1.6, (0..count).map(|_| marks.clone()))
 }
 
 /// The rungs and where they lie.

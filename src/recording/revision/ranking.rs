@@ -4,12 +4,13 @@ use rerun::Color;
 use rerun::datatypes::Vec2D;
 
 use super::bars::Bars;
-use super::{Strips, judged};
 use crate::explain::{Candidate, Revision};
-use crate::recording::canvas::Labels;
+use crate::figure::ladder::judged;
+use crate::recording::canvas::{Labels, Strips};
 use crate::recording::error::RecordError;
 use crate::recording::error_share::{HATCH, short};
 use crate::recording::palette::{self, color};
+use crate::recording::paths::revision::sheet;
 use crate::recording::rows::Rows;
 use crate::report::ImprovedJoint;
 
@@ -31,7 +32,7 @@ pub(super) fn add(rows: &mut Rows<'_>, improved: &ImprovedJoint<'_>) -> Result<(
             own.chain(candidates).enumerate().flat_map(bar).collect();
         all
     });
-    rows.colored("ranking", HATCH, of_each.collect::<Vec<_>>().into_iter())
+    rows.colored(sheet::RANKING, HATCH, of_each.collect::<Vec<_>>().into_iter())
 }
 
 /// The line of the noise and the texts of the ranking at a revision.

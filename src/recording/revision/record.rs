@@ -4,13 +4,14 @@ use std::ops::Range;
 
 use rerun::datatypes::Vec2D;
 
-use super::{Strips, judged};
 use crate::diagnosis::Comparison;
-use crate::recording::canvas::{Labels, Plot, SHEET, Span, simplified, thinned_to};
+use crate::figure::ladder::judged;
+use crate::recording::canvas::{Labels, Plot, SHEET, Span, Strips, simplified, thinned_to};
 use crate::recording::error::RecordError;
 use crate::recording::error_share::short;
 use crate::recording::layout::{JointLayout, TrialLayout};
 use crate::recording::palette;
+use crate::recording::paths::revision::record;
 use crate::recording::rows::Rows;
 use crate::recording::sheet::Sheet;
 use crate::report::{ImprovedJoint, change_in_words};
@@ -34,16 +35,21 @@ pub(super) fn add(
     let of_each = || improved.revisions.iter().map(|revision| &revision.comparison);
     let (grid, labels) = drawing.sheet(improved).into_parts();
     let count = improved.revisions.len();
-    rows.strips("grid", palette::GRID, 0.7, std::iter::repeat_n(grid, count))?;
-    rows.texts("texts", palette::BORDER, std::iter::repeat_n(labels, count))?;
+    rows.strips(record::GRID, palette::GRID, 0.7, std::iter::repeat_n(grid, count))?;
+    rows.texts(record::TEXTS, palette::BORDER, std::iter::repeat_n(labels, count))?;
     let window = std::iter::repeat_n(drawing.window_in_record(), count);
-    rows.strips("window", palette::BORDER, 0.9, window)?;
+    rows.strips(record::WINDOW, palette::BORDER, 0.9, window)?;
     let measured = drawing.outputs(|trial| trial.trial.output());
-    rows.strips("measured", palette::MEASURED, 3.0, std::iter::repeat_n(measured, count))?;
-    rows.strips("simulated", palette::REVISION, 1.2, of_each().map(|c| drawing.simulated(c)))?;
-    rows.strips("residual", palette::REVISION, 1.0, of_each().map(|c| drawing.left(c)))?;
-    rows.strips("noise", palette::NOISE, 1.0, of_each().map(|c| drawing.band(c)))?;
-    rows.texts("names", palette::REVISION, (0..count).map(|at| drawing.names(improved, at)))
+    rows.strips(record::MEASURED, palette::MEASURED, 3.0, std::iter::repeat_n(measured, count))?;
+    rows.strips(
+        record::SIMULATED,
+        palette::REVISION,
+        1.2,
+        of_each().map(|c| drawing.simulated(c)),
+    )?;
+    rows.strips(record::RESIDUAL, palette::REVISION, 1.0, of_each().map(|c| drawing.left(c)))?;
+    rows.strips(record::NOISE, palette::NOISE, 1.0, of_each().map(|c| drawing.band(c)))?;
+    rows.texts(record::NAMES, palette::REVISION, (0..count).map(|at| drawing.names(improved, at)))
 }
 
 /// Where the curves lie on the sheet.

@@ -2,11 +2,12 @@
 
 use std::fmt::Write as _;
 
-use super::judged;
-use crate::recording::entity::plain;
+use crate::figure::ladder::judged;
 use crate::recording::error_share::short;
+use crate::recording::markdown::plain;
+use crate::wording::certainty;
 use crate::report::{ImprovedJoint, change_in_words};
-use crate::wording::{certainty, number, parameter_units};
+use crate::wording::{number, parameter_units};
 
 /// The page of the revision at `place`.
 pub(super) fn page(improved: &ImprovedJoint<'_>, place: usize) -> String {

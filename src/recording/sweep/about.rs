@@ -4,19 +4,20 @@ use std::fmt::Write as _;
 
 use rerun::{EntityPath, TextDocument};
 
-use super::SweepRecording;
+use super::recorded::SweepRecording;
 use crate::delay::sweep::Factor;
-use crate::recording::about::made_from;
 use crate::recording::chunk::Chunks;
-use crate::recording::entity::plain;
 use crate::recording::error::RecordError;
+use crate::recording::markdown::plain;
+use crate::recording::origin::made_from;
+use crate::recording::paths::ABOUT;
 use crate::report::{level_text, settings_rows, sweep_sentences};
 use crate::wording::number;
 
 /// Adds the page at `/about`.
 pub(super) fn add(chunks: &mut Chunks, sweep: &SweepRecording<'_>) -> Result<(), RecordError> {
     let document = TextDocument::from_markdown(page(sweep).unwrap_or_default());
-    chunks.push_static(EntityPath::from("about"), &document)
+    chunks.push_static(EntityPath::from(ABOUT), &document)
 }
 
 fn page(sweep: &SweepRecording<'_>) -> Result<String, std::fmt::Error> {

@@ -2,12 +2,12 @@
 
 use rerun::EntityPath;
 
-use super::Swept;
+use super::swept::Swept;
 use crate::delay::Settings;
 use crate::delay::sweep::{Agreement, RunSummary, Spread, SweptStep};
 use crate::recording::chunk::{Chunks, integers, numbers, optional_lists, texts};
-use crate::recording::entity::below;
 use crate::recording::error::RecordError;
+use crate::recording::paths::{at, sweep as paths};
 use crate::units::signed;
 
 /// Adds `/sweep/setting` and `/sweep/step` below `root`.
@@ -16,8 +16,8 @@ pub(super) fn add(
     root: &EntityPath,
     swept: &Swept<'_>,
 ) -> Result<(), RecordError> {
-    add_settings(chunks, below(root, &["sweep", "setting"]), swept)?;
-    add_steps(chunks, below(root, &["sweep", "step"]), swept)
+    add_settings(chunks, at(root, paths::SETTING), swept)?;
+    add_steps(chunks, at(root, paths::STEP), swept)
 }
 
 fn add_settings(

@@ -5,7 +5,7 @@ use rerun::components::{DrawOrder, MagnificationFilter};
 use rerun::datatypes::Vec2D;
 use rerun::{Image, Transform3D};
 
-use super::{Cell, Swept};
+use super::swept::{Cell, Swept};
 use crate::delay::sweep::{Factor, Grid};
 use crate::recording::canvas::Plot;
 use crate::recording::palette::{self, Rgb};
@@ -13,6 +13,9 @@ use crate::report::level_text;
 
 /// Rows and columns that a picture may have; of those that share one, the farthest is seen.
 const MOST: usize = 2000;
+
+/// How high above its plot a title stands.
+pub(super) const TITLE: f32 = 44.0;
 
 /// Combinations that follow one another and have the same values of the slowest settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -114,11 +117,13 @@ fn shade(cell: Cell) -> Rgb {
     /// Samples that are half of the way to the strongest shade.
     const HALF: f64 = 4.0;
     match cell {
-        Cell::Silent => cell.rgb(),
+        Cell::Silent => cell.opinion().rgb(),
         Cell::Same => palette::SAME_GROUND,
-        Cell::Longer(by) | Cell::Shorter(by) => {
-            palette::between(palette::SAME_GROUND, cell.rgb(), 0.4 + 0.6 * by / (by + HALF))
-        }
+        Cell::Longer(by) | Cell::Shorter(by) => palette::between(
+            palette::SAME_GROUND,
+            cell.opinion().rgb(),
+            0.4 + 0.6 * by / (by + HALF),
+        ),
     }
 }
 

@@ -7,16 +7,15 @@ use rerun::components::{Color, DrawOrder};
 use rerun::datatypes::Vec2D;
 use rerun::{EntityPath, LineStrips2D, Points2D};
 
-use super::map::{Block, beside, blocks, named, picture, rows_of};
-use super::step::TITLE;
-use super::{Cell, Swept};
+use super::map::{Block, TITLE, beside, blocks, named, picture, rows_of};
+use super::swept::{Opinion, Swept};
 use crate::delay::sweep::{Factor, SweptStep};
 use crate::numerics::quantile;
 use crate::recording::canvas::{Labels, Plot, SHEET, Span};
 use crate::recording::chunk::Chunks;
-use crate::recording::entity::below;
 use crate::recording::error::RecordError;
 use crate::recording::palette::{self, Rgb, color};
+use crate::recording::paths::{at, sweep::sheet};
 use crate::recording::rows::Rows;
 use crate::recording::sheet::{Sheet, put_texts, strips};
 use crate::report::settings_in_words;
@@ -24,28 +23,6 @@ use crate::wording::number;
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1090.0);
-
-/// Entities of the page, from back to front.
-pub(in crate::recording) const PARTS: [&str; 18] = [
-    "map",
-    "grid",
-    "range",
-    "agreed",
-    "same",
-    "longer",
-    "shorter",
-    "hanging",
-    "blocks",
-    "texts",
-    "counts",
-    "rows",
-    "legend",
-    "setting/delays",
-    "setting/frame",
-    "setting/name",
-    "step/frame",
-    "step/name",
-];
 
 /// Left and right ends of the plots: names stand on the left, counts on the right.
 const SIDES: (f32, f32) = (150.0, SHEET.0 - 70.0);
@@ -60,7 +37,7 @@ pub(super) fn add(
     root: &EntityPath,
     swept: &Swept<'_>,
 ) -> Result<(), RecordError> {
-    let root = below(root, &["sheet"]);
+    let root = at(root, sheet::ROOT);
     let page = Page::of(swept);
     page.add_grid(chunks, &root)?;
     page.add_delays(chunks, &root)?;
@@ -184,23 +161,23 @@ impl<'s> Page<'s> {
                 agreed.push([x - 0.4, x + 0.4].map(|x| self.delays.at(x, y)).to_vec());
             }
         }
-        strips(chunks, below(root, &["range"]), palette::GRID, 1.0, ranges)?;
+        strips(chunks, at(root, sheet::RANGE), palette::GRID, 1.0, ranges)?;
         let dashes = LineStrips2D::new(agreed).with_colors([color(palette::ACCEPTED)]);
         let dashes = dashes.with_radii([1.8]).with_draw_order(DrawOrder::from(45.0));
-        chunks.push_static(below(root, &["agreed"]), &dashes)?;
+        chunks.push_static(at(root, sheet::AGREED), &dashes)?;
         let dots = self.dots();
-        for (name, cell, order) in [
-            ("same", Cell::Same, 30.0),
-            ("longer", Cell::Longer(0.0), 40.0),
-            ("shorter", Cell::Shorter(0.0), 40.0),
+        for (path, opinion, order) in [
+            (sheet::SAME, Opinion::Same, 30.0),
+            (sheet::LONGER, Opinion::Longer, 40.0),
+            (sheet::SHORTER, Opinion::Shorter, 40.0),
         ] {
-            let own: Vec<&Dot> = dots.iter().filter(|dot| dot.rgb == cell.rgb()).collect();
+            let own: Vec<&Dot> = dots.iter().filter(|dot| dot.opinion == opinion).collect();
             let points = Points2D::new(own.iter().map(|dot| dot.place));
             let points = points.with_radii(own.iter().map(|dot| dot.radius));
             let points = points.with_labels(own.iter().map(|dot| dot.name.as_str()));
-            let points = points.with_colors([color(cell.rgb())]).with_show_labels(false);
+            let points = points.with_colors([color(opinion.rgb())]).with_show_labels(false);
             let points = points.with_draw_order(DrawOrder::from(order));
-            chunks.push_static(below(root, &[name]), &points)?;
+            chunks.push_static(at(root, path), &points)?;
         }
         Ok(())
     }
@@ -220,7 +197,7 @@ impl<'s> Page<'s> {
             }
             Dot {
                 place: self.delays.at(*x, seconds),
-                rgb: group.rgb,
+                opinion: group.opinion,
                 radius: group.radius(step),
                 name,
             }
@@ -241,13 +218,13 @@ impl<'s> Page<'s> {
             marks.extend(places);
         }
         let points = Points2D::new(marks).with_colors(colors).with_radii([(0.5 * slot).min(7.0)]);
-        chunks.push_static(below(root, &["hanging"]), &points)?;
-        put_texts(chunks, below(root, &["counts"]), counts, &[color(palette::BORDER)])
+        chunks.push_static(at(root, sheet::SENSITIVE), &points)?;
+        put_texts(chunks, at(root, sheet::COUNTS), counts, &[color(palette::BORDER)])
     }
 
     /// The picture of all settings and steps, and what its rows are.
     fn add_map(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
-        let entity = below(root, &["map"]);
+        let entity = at(root, sheet::MAP);
         if let Some((image, place)) = picture(self.swept, &self.map) {
             chunks.push_static(entity.clone(), &image)?;
             chunks.push_static(entity, &place)?;
@@ -259,12 +236,12 @@ impl<'s> Page<'s> {
         let (lines, colors): (Vec<_>, Vec<_>) =
             thin.chain(thick).map(|(line, rgb)| (line, color(rgb))).unzip();
         let lines = LineStrips2D::new(lines).with_colors(colors).with_radii([0.8]);
-        chunks.push_static(below(root, &["blocks"]), &lines)?;
+        chunks.push_static(at(root, sheet::BLOCKS), &lines)?;
         let mut texts = Labels::default();
         for block in named(self.swept.grid) {
             texts.put(beside(&self.map, &block), block.label);
         }
-        put_texts(chunks, below(root, &["rows"]), texts, &[color(palette::BORDER)])
+        put_texts(chunks, at(root, sheet::ROWS), texts, &[color(palette::BORDER)])
     }
 
     /// The upper edge of a row.
@@ -275,14 +252,14 @@ impl<'s> Page<'s> {
     /// The setting under the cursor: its delays, its rows, its name.
     fn add_setting(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
         let runs = || 0..self.swept.names.len();
-        let mut rows = Rows::new(chunks, below(root, &["setting"]), self.swept.settings());
+        let mut rows = Rows::new(chunks, root.clone(), self.swept.settings());
         let delays = |run: usize| {
             let place = |(x, step): (f64, &SweptStep)| {
                 Some(self.delays.at(x, Swept::delay(step, run)? * step.period_s))
             };
             self.steps().filter_map(place).collect()
         };
-        rows.points("delays", palette::HERE, 4.0, runs().map(delays))?;
+        rows.points(sheet::SETTING_DELAYS, palette::HERE, 4.0, runs().map(delays))?;
         let frame = |run: usize| {
             let frame = |(first, last): (usize, usize)| {
                 let (top, bottom) = (self.map.y(self.row(first)), self.map.y(self.row(last + 1)));
@@ -290,7 +267,7 @@ impl<'s> Page<'s> {
             };
             rows_of(self.swept.grid, run).into_iter().map(frame).collect()
         };
-        rows.strips("frame", palette::HERE, 1.3, runs().map(frame))?;
+        rows.strips(sheet::SETTING_FRAME, palette::HERE, 1.3, runs().map(frame))?;
         let all = self.swept.names.len();
         let name = |run: usize| {
             let mut labels = Labels::default();
@@ -300,13 +277,13 @@ impl<'s> Page<'s> {
             labels.put(self.title(&self.map), text);
             labels
         };
-        rows.texts("name", palette::HERE, runs().map(name))
+        rows.texts(sheet::SETTING_NAME, palette::HERE, runs().map(name))
     }
 
     /// The step under the cursor: a frame through all plots.
     fn add_step(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
         let index = self.swept.index.clone();
-        let mut rows = Rows::new(chunks, below(root, &["step"]), index);
+        let mut rows = Rows::new(chunks, root.clone(), index);
         let frame = |(x, _): (f64, &SweptStep)| {
             let (left, right) = (self.map.x(x - 0.5), self.map.x(x + 0.5));
             let side = |plot: &Plot| {
@@ -315,33 +292,33 @@ impl<'s> Page<'s> {
             };
             [&self.delays, &self.hanging, &self.map].map(side).to_vec()
         };
-        rows.strips("frame", palette::HERE, 1.3, self.steps().map(frame))?;
+        rows.strips(sheet::STEP_FRAME, palette::HERE, 1.3, self.steps().map(frame))?;
         let name = |(x, step): (f64, &SweptStep)| {
             let mut labels = Labels::default();
             let text = format!("step {} at {:.2} s", step.number, step.time_s);
             labels.put_whole(self.map.above(x, TITLE), text);
             labels
         };
-        rows.texts("name", palette::HERE, self.steps().map(name))
+        rows.texts(sheet::STEP_NAME, palette::HERE, self.steps().map(name))
     }
 }
 
 /// Settings that tell the same of a step.
 struct Group {
     delay: f64,
-    rgb: Rgb,
+    opinion: Opinion,
     runs: Vec<usize>,
     votes: usize,
 }
 
 impl Group {
     fn all(swept: &Swept<'_>, step: &SweptStep) -> Vec<Self> {
-        let mut groups: BTreeMap<(u64, Rgb), Self> = BTreeMap::new();
+        let mut groups: BTreeMap<(u64, Opinion), Self> = BTreeMap::new();
         for run in 0..step.told.len() {
             let Some(delay) = Swept::delay(step, run) else { continue };
-            let rgb = Swept::cell(step, run).rgb();
-            let empty = Self { delay, rgb, runs: Vec::new(), votes: 0 };
-            let group = groups.entry((delay.to_bits(), rgb)).or_insert(empty);
+            let opinion = Swept::cell(step, run).opinion();
+            let empty = Self { delay, opinion, runs: Vec::new(), votes: 0 };
+            let group = groups.entry((delay.to_bits(), opinion)).or_insert(empty);
             group.runs.push(run);
             group.votes += swept.votes.get(run).copied().unwrap_or(0);
         }
@@ -351,7 +328,7 @@ impl Group {
     /// The more settings tell it, the larger it is; what disagrees is never small.
     fn radius(&self, step: &SweptStep) -> f32 {
         let share = self.votes as f32 / step.tried.max(1) as f32;
-        let least = if self.rgb == palette::SAME { 1.4 } else { 2.4 };
+        let least = if self.opinion == Opinion::Same { 1.4 } else { 2.4 };
         least + 3.0 * share.sqrt()
     }
 
@@ -374,7 +351,7 @@ impl Group {
 /// A point of the plot of delays.
 struct Dot {
     place: Vec2D,
-    rgb: Rgb,
+    opinion: Opinion,
     radius: f32,
     name: String,
 }
@@ -426,7 +403,7 @@ fn put_legend(
         labels.put(Vec2D::new(x, y), text);
         colors.push(color(rgb));
     }
-    put_texts(chunks, below(root, &["legend"]), labels, &colors)
+    put_texts(chunks, at(root, sheet::LEGEND), labels, &colors)
 }
 
 fn headline(swept: &Swept<'_>) -> String {

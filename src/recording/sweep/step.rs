@@ -3,36 +3,21 @@
 use rerun::EntityPath;
 use rerun::datatypes::Vec2D;
 
-use super::map::{Block, beside, blocks, named};
-use super::{Cell, Swept};
+use super::map::{Block, TITLE, beside, blocks, named};
+use super::swept::{Opinion, Swept};
 use crate::delay::sweep::SweptStep;
 use crate::experiment::{Joint, Trial};
 use crate::recording::canvas::{Labels, Plot, SHEET, Span, simplified, thinned};
 use crate::recording::chunk::{Chunks, Index};
-use crate::recording::entity::below;
 use crate::recording::error::RecordError;
-use crate::recording::palette::{self, Rgb, color, dimmed};
+use crate::recording::palette::{self, color, dimmed};
+use crate::recording::paths::{at, sweep::one};
 use crate::recording::rows::Rows;
 use crate::recording::sheet::{Sheet, put_texts, strips};
 use crate::wording::number as shown;
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1090.0);
-
-/// Entities of the page, from back to front.
-pub(in crate::recording) const PARTS: [&str; 11] = [
-    "grid",
-    "blocks",
-    "allowed",
-    "agreed",
-    "output",
-    "input_step",
-    "same",
-    "longer",
-    "shorter",
-    "texts",
-    "rows",
-];
 
 /// Left and right ends of the plots: names of settings stand on the left.
 const SIDES: (f32, f32) = (150.0, SHEET.0 - 40.0);
@@ -44,7 +29,7 @@ pub(super) fn add(
     root: &EntityPath,
     swept: &Swept<'_>,
 ) -> Result<(), RecordError> {
-    let root = below(root, &["one"]);
+    let root = at(root, one::ROOT);
     let (index, order) = worst_last(swept);
     let drawn = order.iter().filter_map(|place| swept.steps.get(*place));
     let drawings: Vec<_> = drawn.map(|(step, trial)| Drawing::of(swept, step, trial)).collect();
@@ -52,19 +37,21 @@ pub(super) fn add(
     let mut rows = Rows::new(chunks, root, index).back_to_front();
     let sheets: Vec<_> =
         drawings.iter().map(|drawing| drawing.sheet(swept.reported.joint).into_parts()).collect();
-    rows.strips("grid", palette::GRID, 0.7, sheets.iter().map(|(grid, _)| grid.clone()))?;
+    rows.strips(one::GRID, palette::GRID, 0.7, sheets.iter().map(|(grid, _)| grid.clone()))?;
     let green = dimmed(palette::ACCEPTED);
-    rows.strips("allowed", green, 1.0, drawings.iter().map(Drawing::allowed))?;
-    rows.strips("agreed", palette::ACCEPTED, 1.3, drawings.iter().map(Drawing::agreed))?;
-    rows.strips("output", palette::RAW, 1.6, drawings.iter().map(Drawing::output))?;
-    rows.strips("input_step", palette::INPUT, 1.3, drawings.iter().map(Drawing::input_step))?;
-    for (name, rgb) in
-        [("same", palette::SAME), ("longer", palette::LONGER), ("shorter", palette::SHORTER)]
-    {
-        let told = drawings.iter().map(|drawing| drawing.told(rgb));
-        rows.points(name, rgb, radius(swept), told)?;
+    rows.strips(one::ALLOWED, green, 1.0, drawings.iter().map(Drawing::allowed))?;
+    rows.strips(one::AGREED, palette::ACCEPTED, 1.3, drawings.iter().map(Drawing::agreed))?;
+    rows.strips(one::OUTPUT, palette::RAW, 1.6, drawings.iter().map(Drawing::output))?;
+    rows.strips(one::INPUT_STEP, palette::INPUT, 1.3, drawings.iter().map(Drawing::input_step))?;
+    for (path, opinion) in [
+        (one::SAME, Opinion::Same),
+        (one::LONGER, Opinion::Longer),
+        (one::SHORTER, Opinion::Shorter),
+    ] {
+        let delays = drawings.iter().map(|drawing| drawing.delays(opinion));
+        rows.points(path, opinion.rgb(), radius(swept), delays)?;
     }
-    rows.texts("texts", palette::BORDER, sheets.into_iter().map(|(_, labels)| labels))
+    rows.texts(one::TEXTS, palette::BORDER, sheets.into_iter().map(|(_, labels)| labels))
 }
 
 /// The steps in their order but for the one that hangs most, which is last; where they lie,
@@ -90,19 +77,16 @@ fn worst_last(swept: &Swept<'_>) -> (Index, Vec<usize>) {
     (index, order)
 }
 
-/// How high above its plot a title stands.
-pub(super) const TITLE: f32 = 44.0;
-
 /// Rows of the lower plot.
 fn rows_span(swept: &Swept<'_>) -> Span {
     Span::new(0.0, swept.grid.combinations().len().max(1) as f64)
 }
 
 /// Upper and lower end of the lower plot.
-const TOLD: (f32, f32) = (620.0, 1030.0);
+const ROWS: (f32, f32) = (620.0, 1030.0);
 
 fn radius(swept: &Swept<'_>) -> f32 {
-    let row = (TOLD.1 - TOLD.0) / swept.grid.combinations().len().max(1) as f32;
+    let row = (ROWS.1 - ROWS.0) / swept.grid.combinations().len().max(1) as f32;
     (0.7 * row).clamp(3.0, 6.0)
 }
 
@@ -112,15 +96,15 @@ fn add_row_names(
     root: &EntityPath,
     swept: &Swept<'_>,
 ) -> Result<(), RecordError> {
-    let plot = Plot::within(SIDES, TOLD.0..=TOLD.1, Span::new(0.0, 1.0), rows_span(swept));
+    let plot = Plot::within(SIDES, ROWS.0..=ROWS.1, Span::new(0.0, 1.0), rows_span(swept));
     let mut texts = Labels::default();
     for block in named(swept.grid) {
         texts.put(beside(&plot, &block), block.label);
     }
     let border = |block: &Block| plot.level(plot.y_span().high - block.first as f64).to_vec();
     let borders = blocks(swept.grid).0.iter().map(border).collect();
-    strips(chunks, below(root, &["blocks"]), palette::BORDER, 0.7, borders)?;
-    put_texts(chunks, below(root, &["rows"]), texts, &[color(palette::BORDER)])
+    strips(chunks, at(root, one::BLOCKS), palette::BORDER, 0.7, borders)?;
+    put_texts(chunks, at(root, one::ROWS), texts, &[color(palette::BORDER)])
 }
 
 /// One step on its sheet.
@@ -131,7 +115,7 @@ struct Drawing<'s> {
     /// The samples that are shown, 1-based.
     window: (usize, usize),
     output: Plot,
-    told: Plot,
+    delays: Plot,
 }
 
 impl<'s> Drawing<'s> {
@@ -142,8 +126,8 @@ impl<'s> Drawing<'s> {
         let values = trial.output().get(window.0 - 1..window.1).unwrap_or_default();
         let y = Span::around(values.iter().copied(), 0.06);
         let output = Plot::within(SIDES, 100.0..=520.0, x, y);
-        let told = Plot::within(SIDES, TOLD.0..=TOLD.1, x, rows_span(swept));
-        Self { swept, step, trial, window, output, told }
+        let delays = Plot::within(SIDES, ROWS.0..=ROWS.1, x, rows_span(swept));
+        Self { swept, step, trial, window, output, delays }
     }
 
     /// Grid, ticks and titles.
@@ -153,18 +137,18 @@ impl<'s> Drawing<'s> {
         let title = format!("{}; the output{unit} as measured", self.in_words(joint));
         let y_ticks = self.output.y_span().ticks(4.0).into_iter();
         let y_ticks: Vec<_> = y_ticks.map(|y| (y, shown(y))).collect();
-        let x_ticks = self.told.x_span().ticks(12.0);
+        let x_ticks = self.delays.x_span().ticks(12.0);
         sheet.outline(&self.output, &x_ticks, &y_ticks);
-        sheet.outline(&self.told, &x_ticks, &[]);
-        for plot in [&self.output, &self.told] {
+        sheet.outline(&self.delays, &x_ticks, &[]);
+        for plot in [&self.output, &self.delays] {
             for x in &x_ticks {
                 sheet.put(plot.below(*x, 2.0), shown(*x));
             }
         }
-        let Span { low, high } = self.told.x_span();
+        let Span { low, high } = self.delays.x_span();
         let middle = f64::midpoint(low, high);
         sheet.put(self.output.above(middle, TITLE), title);
-        sheet.put(self.told.above(middle, TITLE), "its delay in samples, with every setting");
+        sheet.put(self.delays.above(middle, TITLE), "its delay in samples, with every setting");
         sheet
     }
 
@@ -194,34 +178,30 @@ impl<'s> Drawing<'s> {
     }
 
     fn input_step(&self) -> Vec<Vec<Vec2D>> {
-        vec![self.output.through(&self.told, 0.0).to_vec()]
+        vec![self.output.through(&self.delays, 0.0).to_vec()]
     }
 
     /// The delay that most agree on, through both plots.
     fn agreed(&self) -> Vec<Vec<Vec2D>> {
         let agreed = self.step.agreement.iter();
-        agreed.map(|agreed| self.output.through(&self.told, agreed.delay).to_vec()).collect()
+        agreed.map(|agreed| self.output.through(&self.delays, agreed.delay).to_vec()).collect()
     }
 
     /// The ends of what all of them allow.
     fn allowed(&self) -> Vec<Vec<Vec2D>> {
         let ends = self.step.agreement.iter().flat_map(|agreed| [agreed.low, agreed.high]);
-        ends.map(|end| self.told.vertical(end).to_vec()).collect()
+        ends.map(|end| self.delays.vertical(end).to_vec()).collect()
     }
 
-    /// A point in the row of each combination whose delay is drawn in `rgb`.
-    fn told(&self, rgb: Rgb) -> Vec<Vec2D> {
+    /// A point in the row of each combination of this opinion.
+    fn delays(&self, opinion: Opinion) -> Vec<Vec2D> {
         let rows = self.swept.grid.combinations().iter().enumerate();
-        let own = rows.filter(|(_, one)| self.cell(one.run).rgb() == rgb);
+        let own = rows.filter(|(_, one)| Swept::cell(self.step, one.run).opinion() == opinion);
         let place = |(row, one): (usize, &crate::delay::sweep::Combination)| {
             let delay = Swept::delay(self.step, one.run)?;
-            Some(self.told.at(delay, self.told.y_span().high - row as f64 - 0.5))
+            Some(self.delays.at(delay, self.delays.y_span().high - row as f64 - 0.5))
         };
         own.filter_map(place).collect()
-    }
-
-    fn cell(&self, run: usize) -> Cell {
-        Swept::cell(self.step, run)
     }
 }
 

@@ -4,11 +4,12 @@ use std::fmt::Write as _;
 
 use rerun::{EntityPath, TextDocument, TextLog};
 
-use super::Swept;
+use super::swept::{Opinion, Swept};
 use crate::delay::sweep::{Factor, SweptStep};
 use crate::recording::chunk::{Chunks, Index};
-use crate::recording::entity::{below, plain};
 use crate::recording::error::RecordError;
+use crate::recording::markdown::plain;
+use crate::recording::paths::{at, sweep as paths};
 use crate::report::{hangs_on, level_cell, level_text, sweep_sentences};
 use crate::wording::number;
 
@@ -19,13 +20,13 @@ pub(super) fn add(
     swept: &Swept<'_>,
 ) -> Result<(), RecordError> {
     let found = TextDocument::from_markdown(found(swept).unwrap_or_default());
-    chunks.push_static(below(root, &["found"]), &found)?;
-    let here = below(root, &["here"]);
+    chunks.push_static(at(root, paths::FOUND), &found)?;
+    let here = at(root, paths::HERE);
     let settings = (0..swept.names.len()).map(|run| setting(swept, run).unwrap_or_default());
     add_pages(chunks, &here, swept.settings(), settings.collect())?;
     let steps = swept.steps.iter().map(|(step, _)| one_step(swept, step).unwrap_or_default());
     add_pages(chunks, &here, swept.index.clone(), steps.collect())?;
-    add_list(chunks, below(root, &["hanging", "log"]), swept)
+    add_list(chunks, at(root, paths::SENSITIVE_LOG), swept)
 }
 
 fn add_pages(
@@ -102,11 +103,9 @@ fn setting(swept: &Swept<'_>, run: usize) -> Written {
 /// A step on which a run differs, and what it says.
 fn differing(step: &SweptStep, run: usize) -> Option<String> {
     let delay = Swept::delay(step, run)? * step.period_s;
-    match Swept::cell(step, run) {
-        super::Cell::Longer(_) | super::Cell::Shorter(_) => {
-            Some(format!("{} ({delay:.3} s)", step.number))
-        }
-        super::Cell::Same | super::Cell::Silent => None,
+    match Swept::cell(step, run).opinion() {
+        Opinion::Longer | Opinion::Shorter => Some(format!("{} ({delay:.3} s)", step.number)),
+        Opinion::Same | Opinion::Silent => None,
     }
 }
 

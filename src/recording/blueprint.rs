@@ -18,9 +18,10 @@ use rerun::external::uuid::Uuid;
 use rerun::log::LogMsg;
 use rerun::{ApplicationId, AsComponents, EntityPath, StoreId, StoreKind};
 
-use crate::recording::chunk::Chunks;
-use crate::recording::error::RecordError;
-use crate::recording::message::{chunk_message, store_message};
+use super::chunk::Chunks;
+use super::error::RecordError;
+use super::message::{chunk_message, store_message};
+use super::paths::{ABOUT, at};
 
 /// Namespace of the blueprint's rows; it is a store of its own.
 const NAMESPACE: u64 = 1;
@@ -54,6 +55,17 @@ impl<'a> View<'a> {
     pub(super) fn new<S: AsRef<str>>(class: &'static str, name: &'a str, paths: &[S]) -> Self {
         let contents = paths.iter().map(|path| QueryExpression::from(path.as_ref())).collect();
         Self { class, name, contents, properties: Vec::new() }
+    }
+
+    /// A drawing: all of a sheet, whose parts lie below `root`, is in view.
+    pub(super) fn drawing(
+        name: &'a str,
+        root: &EntityPath,
+        parts: &[&str],
+        (width, height): (f32, f32),
+    ) -> Self {
+        let paths: Vec<_> = parts.iter().map(|part| at(root, part).to_string()).collect();
+        Self::new("2D", name, &paths).with("VisualBounds2D", bounds(width, height))
     }
 
     /// Sets a property, such as `VisualBounds2D`.
@@ -113,8 +125,23 @@ impl Builder {
         Ok(node)
     }
 
+    /// The messages of a blueprint of `tabs`, a page about it all being the last one, which
+    /// opens on a timeline.
+    pub(super) fn tabbed(
+        mut self,
+        mut tabs: Vec<Node>,
+        opening: (&str, PlayState),
+        application: &ApplicationId,
+        id: &str,
+    ) -> Result<Vec<LogMsg>, RecordError> {
+        let about = EntityPath::from(ABOUT).to_string();
+        tabs.push(self.view(View::new("TextDocument", "About", &[about]))?);
+        let root = self.container(ContainerKind::Tabs, "Joints", &tabs, &[])?;
+        self.finish(&root, opening, application, id)
+    }
+
     /// The messages of the whole blueprint, which opens on `timeline`.
-    pub(super) fn finish(
+    fn finish(
         mut self,
         root: &Node,
         (timeline, play): (&str, PlayState),

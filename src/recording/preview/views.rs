@@ -5,14 +5,15 @@ use rerun::external::re_sdk_types::blueprint::archetypes::TimeAxis;
 use rerun::external::re_sdk_types::blueprint::components::{ContainerKind, LinkAxis, PlayState};
 use rerun::log::LogMsg;
 
-use super::builder::{Builder, Node, View, bounds, clickable};
-use crate::recording::entity::{below, joint_root};
+use super::recorded::PreviewRecording;
+use super::sheet::SIZE;
+use crate::recording::blueprint::{Builder, Node, View, clickable};
 use crate::recording::error::RecordError;
-use crate::recording::preview::{PARTS, PreviewRecording, SIZE};
+use crate::recording::paths::{at, child, joint_root, preview as paths};
 use crate::report::DesignedJoint;
 
 /// The messages of the blueprint: a tab per joint, and one about it all.
-pub(in crate::recording) fn messages(
+pub(super) fn messages(
     preview: &PreviewRecording<'_>,
     application: &ApplicationId,
     id: &str,
@@ -22,45 +23,43 @@ pub(in crate::recording) fn messages(
     for joint in preview.joints {
         tabs.push(tab(&mut builder, joint)?);
     }
-    tabs.push(builder.view(View::new("TextDocument", "About", &["/about"]))?);
-    let root = builder.container(ContainerKind::Tabs, "Joints", &tabs, &[])?;
-    builder.finish(&root, ("time", PlayState::Paused), application, id)
+    builder.tabbed(tabs, ("time", PlayState::Paused), application, id)
 }
 
 /// The page of a joint and its signals; beside them what they tell, and the holds.
 fn tab(builder: &mut Builder, joint: &DesignedJoint) -> Result<Node, RecordError> {
     let name = joint.stand.name.as_str();
-    let path = |parts: &[&str]| below(&joint_root(name), parts).to_string();
-    let parts = PARTS.map(|part| {
-        let parts: Vec<&str> = std::iter::once("sheet").chain(part.split('/')).collect();
-        path(&parts)
-    });
-    let page = View::new("2D", "What is expected", &parts);
-    let page = builder.view(page.with("VisualBounds2D", bounds(SIZE.0, SIZE.1)))?;
+    let root = joint_root(name);
+    let path = |path: &str| at(&root, path).to_string();
+    let sheet = at(&root, paths::sheet::ROOT);
+    let page = View::drawing("What is expected", &sheet, &paths::sheet::PARTS, SIZE);
+    let page = builder.view(page)?;
     let plot = |name, paths: &[String]| {
         let axis = TimeAxis::new().with_link(LinkAxis::LinkToGlobal);
         View::new("TimeSeries", name, paths).with("TimeAxis", axis)
     };
-    let mut plots = vec![builder.view(plot("Input", &[path(&["input"])]))?];
+    let mut plots = vec![builder.view(plot("Input", &[path(paths::INPUT)]))?];
     let expected = joint.expected();
     if !expected.is_empty() {
-        let parts = ["output", "low", "high"];
-        let expected = expected.iter().flat_map(|(name, _)| parts.map(|part| (*name, part)));
-        let outputs = expected.map(|(name, part)| path(&["expected", name, part]));
-        let range = ["low", "high"].map(|part| path(&["range", part]));
-        let outputs: Vec<String> = outputs.chain(range).collect();
+        let expected = expected.iter().flat_map(|(name, _)| {
+            let output = child(&at(&root, paths::EXPECTED), name);
+            [paths::OUTPUT, paths::LOW, paths::HIGH].map(|part| at(&output, part).to_string())
+        });
+        let range = at(&root, paths::RANGE);
+        let range = [paths::LOW, paths::HIGH].map(|part| at(&range, part).to_string());
+        let outputs: Vec<String> = expected.chain(range).collect();
         plots.push(builder.view(plot("Expected output", &outputs))?);
     }
     if joint.told.is_some() {
-        plots.push(builder.view(plot("Difference over noise", &[path(&["apart"])]))?);
+        plots.push(builder.view(plot("Difference over noise", &[path(paths::APART)]))?);
     }
     let signals = builder.container(ContainerKind::Vertical, "Signals", &plots, &[])?;
     let left = [page, signals];
     let left = builder.container(ContainerKind::Tabs, "Drawings", &left, &[])?;
-    let text = |name, part| View::new("TextDocument", name, &[path(&[part])]);
-    let says = builder.view(text("What it tells, and how surely", "says"))?;
-    let here = builder.view(text("Under the cursor", "here"))?;
-    let holds = View::new("TextLog", "Holds: click a time", &[path(&["holds"])]);
+    let text = |name, part| View::new("TextDocument", name, &[path(part)]);
+    let says = builder.view(text("What it tells, and how surely", paths::SAYS))?;
+    let here = builder.view(text("Under the cursor", paths::HERE))?;
+    let holds = View::new("TextLog", "Holds: click a time", &[path(paths::HOLDS)]);
     let holds = builder.view(holds.with("TextLogColumns", clickable("time")))?;
     let words = [says, here, holds];
     let words = builder.container(ContainerKind::Vertical, "Words", &words, &[5.2, 2.3, 2.5])?;

@@ -3,7 +3,7 @@
 //! For effects that change no steady speed, such as a lag: the mean residual in bins of the
 //! variable that the effect's own share of it follows most, and that share.
 
-use super::evidence::{Figure, Held, Law};
+use super::figure::{Figure, Held, Law};
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::explain::Candidate;

@@ -1,5 +1,6 @@
 //! The views of one joint: its decisions, its record, its table.
 
+use rerun::EntityPath;
 use rerun::components::Visible;
 use rerun::datatypes::{TimeInt, TimeRange, TimeRangeBoundary, Utf8, VisibleTimeRange};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
@@ -12,14 +13,17 @@ use rerun::external::re_sdk_types::blueprint::datatypes::{
     ComponentColumnSelector, SelectedColumns,
 };
 
-use super::builder::{Builder, Node, View, bounds, clickable};
 use crate::experiment::Joint;
+use crate::recording::blueprint::{Builder, Node, View, bounds, clickable};
 use crate::recording::canvas::SHEET;
 use crate::recording::chunk::FINE;
-use crate::recording::entity::{below, joint_root};
 use crate::recording::error::RecordError;
 use crate::recording::overview::{MAP_HEIGHT, MAP_WIDTH};
-use crate::recording::{correlogram, delay_state, error_share, revision, scatter, segment_view};
+use crate::recording::paths::revision::{record, share, sheet};
+use crate::recording::paths::{
+    self, against, at, child, correlation, drawing, joint_root, map, of_model,
+};
+use crate::recording::{correlogram, delay_state, error_share, revision, scatter};
 use crate::report::{ComparedJoint, EstimatedJoint};
 
 /// What the lane of the worst segments is called.
@@ -59,25 +63,6 @@ struct Views<'b> {
     others: usize,
 }
 
-/// Entities of the drawing, from back to front. A pattern would not do: `*` inside an
-/// entity query does not match.
-const DRAWING: [&str; 12] = [
-    "grid",
-    "ticks",
-    "borders",
-    "input_step",
-    "measured",
-    "smoothed",
-    "sse",
-    "accepted",
-    "rejected",
-    "names",
-    "candidate",
-    "candidate/mark",
-];
-
-const MAP: [&str; 7] = ["grid", "ticks", "input", "output", "accepted", "rejected", "here"];
-
 /// Columns of the table of decisions, in the order of `--decisions`.
 const DECISION_COLUMNS: [&str; 13] = [
     "trial",
@@ -100,9 +85,14 @@ const CANDIDATE_COLUMNS: [&str; 8] =
     ["i", "j", "q", "delta", "sse", "slope_before", "slope_after", "f"];
 
 impl Views<'_> {
-    /// The entity below the joint, as a query.
-    fn path(&self, parts: &[&str]) -> String {
-        below(&joint_root(&self.joint.name), parts).to_string()
+    /// The entity at `path` below the joint.
+    fn at(&self, path: &str) -> EntityPath {
+        at(&joint_root(&self.joint.name), path)
+    }
+
+    /// The same entity as a query.
+    fn path(&self, path: &str) -> String {
+        self.at(path).to_string()
     }
 
     fn view(&mut self, view: View<'_>) -> Result<Node, RecordError> {
@@ -115,7 +105,7 @@ impl Views<'_> {
         let errors = self.view(self.errors())?;
         let map = self.view(self.map())?;
         let lanes = self.view(self.lanes())?;
-        let verdict = [self.path(&["verdict"])];
+        let verdict = [self.path(paths::VERDICT)];
         let verdict = self.view(View::new("TextDocument", "Verdict", &verdict))?;
         let list = self.view(self.list())?;
         let left = [drawing, errors, map, lanes];
@@ -135,33 +125,27 @@ impl Views<'_> {
     }
 
     fn drawing(&self) -> View<'static> {
-        let interval = self.fine.then(|| "interval".to_owned());
-        let others = (0..self.others).flat_map(segment_view::other_names);
-        let first = segment_view::FIRST.map(str::to_owned).into_iter();
+        let others: Vec<_> = (0..self.others).flat_map(drawing::of_method).collect();
+        let first = [drawing::FIRST_ACCEPTED, drawing::FIRST_REJECTED].into_iter();
         let first = first.filter(|_| self.others > 0);
-        let names = DRAWING.map(str::to_owned).into_iter().chain(others).chain(first);
-        let paths: Vec<_> = names
-            .chain(interval)
-            .map(|name| {
-                let parts: Vec<_> = std::iter::once("drawing").chain(name.split('/')).collect();
-                self.path(&parts)
-            })
-            .collect();
-        View::new("2D", "The segment, its candidates, their squared error", &paths)
-            .with("VisualBounds2D", bounds(SHEET.0, SHEET.1))
+        let interval = self.fine.then_some(drawing::INTERVAL);
+        let others = others.iter().map(String::as_str);
+        let parts: Vec<_> =
+            drawing::PARTS.into_iter().chain(others).chain(first).chain(interval).collect();
+        let name = "The segment, its candidates, their squared error";
+        View::drawing(name, &self.at(drawing::ROOT), &parts, SHEET)
     }
 
     fn map(&self) -> View<'static> {
-        let paths: Vec<_> = MAP.iter().map(|name| self.path(&["map", name])).collect();
-        View::new("2D", "Whole record: the framed segment is shown above", &paths)
-            .with("VisualBounds2D", bounds(MAP_WIDTH, MAP_HEIGHT))
+        let name = "Whole record: the framed segment is shown above";
+        View::drawing(name, &self.at(map::ROOT), &map::PARTS, (MAP_WIDTH, MAP_HEIGHT))
     }
 
     fn errors(&self) -> View<'static> {
         let paths = [
-            self.path(&["decision", "log10_sse"]),
-            self.path(&["decision", "minimum", "accepted"]),
-            self.path(&["decision", "minimum", "rejected"]),
+            self.path(paths::LOG10_SSE),
+            self.path(paths::MINIMUM_ACCEPTED),
+            self.path(paths::MINIMUM_REJECTED),
         ];
         let around = |timeline: &str, reach: i64| {
             let at = |offset| TimeRangeBoundary::CursorRelative(TimeInt(offset));
@@ -184,44 +168,44 @@ impl Views<'_> {
     }
 
     fn lanes(&self) -> View<'static> {
-        let mut paths = vec![self.path(&["verdict"]), self.path(&["segment"])];
+        let mut paths = vec![self.path(paths::VERDICT), self.path(paths::SEGMENT)];
         if self.joint.trials.len() > 1 {
-            paths.push(self.path(&["trial"]));
+            paths.push(self.path(paths::TRIAL));
         }
         View::new("StateTimeline", "Steps and verdicts", &paths)
     }
 
     fn list(&self) -> View<'static> {
-        let paths = [self.path(&["verdict", "log"])];
+        let paths = [self.path(paths::VERDICT_LOG)];
         View::new("TextLog", "All decisions: click a number on the left to go there", &paths)
             .with("TextLogColumns", clickable("decision"))
     }
 
     /// The whole record on the time axis.
     fn record(&mut self) -> Result<Node, RecordError> {
-        let input = self.plot("Input", &[&["input"]])?;
+        let input = self.plot("Input", &[self.at(paths::INPUT)])?;
         let output = self.plot(
             "Output, chosen lines, breakpoints",
             &[
-                &["output", "raw"],
-                &["output", "smoothed"],
-                &["line", "before"],
-                &["line", "after"],
-                &["breakpoint", "accepted"],
-                &["breakpoint", "rejected"],
-            ],
+                paths::OUTPUT_RAW,
+                paths::OUTPUT_SMOOTHED,
+                paths::LINE_BEFORE,
+                paths::LINE_AFTER,
+                paths::BREAKPOINT_ACCEPTED,
+                paths::BREAKPOINT_REJECTED,
+            ]
+            .map(|path| self.at(path)),
         )?;
         let delay = self.plot(
             "Delay [samples]",
-            &[&["delay", "tau"], &["delay", "accepted"], &["delay", "rejected"]],
+            &[paths::TAU, paths::DELAY_ACCEPTED, paths::DELAY_REJECTED].map(|path| self.at(path)),
         )?;
         let mut rows = vec![input, output, delay];
         let mut shares = vec![1.2, 3.5, 1.8];
         if !self.joint.covariates.is_empty() {
-            let names: Vec<[&str; 2]> =
-                self.joint.covariates.iter().map(|c| ["covariate", c.name.as_str()]).collect();
-            let paths: Vec<&[&str]> = names.iter().map(<[&str; 2]>::as_slice).collect();
-            rows.push(self.plot("Covariates", &paths)?);
+            let root = self.at(paths::COVARIATE);
+            let all = self.joint.covariates.iter().map(|signal| child(&root, &signal.name));
+            rows.push(self.plot("Covariates", &all.collect::<Vec<_>>())?);
             shares.push(1.5);
         }
         rows.push(self.view(self.lanes())?);
@@ -231,34 +215,22 @@ impl Views<'_> {
 
     /// The delay against what it may depend on.
     fn delay_state(&self) -> View<'static> {
-        let paths: Vec<_> =
-            delay_state::PARTS.iter().map(|name| self.path(&["against", name])).collect();
-        View::new("2D", "Delay", &paths)
-            .with("VisualBounds2D", bounds(SHEET.0, delay_state::HEIGHT))
+        let size = (SHEET.0, delay_state::HEIGHT);
+        View::drawing("Delay", &self.at(against::ROOT), &against::PARTS, size)
     }
 
     /// A model as it grows.
     fn revisions(&mut self) -> Result<Node, RecordError> {
-        let drawing = |name, part, parts: &[&str], (width, height)| {
-            let paths: Vec<_> =
-                parts.iter().map(|name| self.path(&["revision", part, name])).collect();
-            View::new("2D", name, &paths).with("VisualBounds2D", bounds(width, height))
-        };
-        let sheet = drawing(
-            "The error falls; what shows it; what was tried",
-            "sheet",
-            &revision::PARTS,
-            revision::SIZE,
-        );
-        let share = drawing(
-            "Where the error is: its share (bars), share of the time (white)",
-            "share",
-            &revision::SHARE_PARTS,
-            error_share::SIZE,
-        );
-        let record =
-            drawing("The whole record", "record", &revision::RECORD_PARTS, revision::RECORD_SIZE);
-        let words = [self.path(&["revision", "words"])];
+        let root = self.at(paths::revision::ROOT);
+        let drawing =
+            |name, path, parts: &[&str], size| View::drawing(name, &at(&root, path), parts, size);
+        let name = "The error falls; what shows it; what was tried";
+        let sheet = drawing(name, sheet::ROOT, &sheet::PARTS, revision::SIZE);
+        let name = "Where the error is: its share (bars), share of the time (white)";
+        let share = drawing(name, share::ROOT, &share::PARTS, error_share::SIZE);
+        let name = "The whole record";
+        let record = drawing(name, record::ROOT, &record::PARTS, revision::RECORD_SIZE);
+        let words = [at(&root, paths::revision::WORDS).to_string()];
         let words = self.view(View::new("TextDocument", "In words", &words))?;
         let tabs = [self.view(sheet)?, self.view(share)?];
         let record = self.view(record)?;
@@ -273,25 +245,25 @@ impl Views<'_> {
     /// Models beside the measurement, and what is left.
     fn models(&mut self, models: &[&ComparedJoint<'_>]) -> Result<Node, RecordError> {
         let names: Vec<&str> = models.iter().map(|model| model.model).collect();
-        let of_each = |part: &'static str| names.iter().map(move |name| ["model", *name, part]);
+        let root = self.at(paths::MODEL);
+        let of_each = |part| names.iter().map(|name| at(&child(&root, name), part)).collect();
         let horizon = models.first().map(|model| model.comparison.fit.evaluation.horizon);
         let horizon = horizon.unwrap_or_default();
-        let simulated: Vec<_> = of_each("simulated").collect();
-        let residuals: Vec<_> = of_each("residual").collect();
-        let mut measured: Vec<&[&str]> = vec![&["output", "raw"]];
-        measured.extend(simulated.iter().map(<[&str; 3]>::as_slice));
-        let mut left: Vec<&[&str]> = vec![&["noise", "upper"], &["noise", "lower"]];
-        left.extend(residuals.iter().map(<[&str; 3]>::as_slice));
+        let simulated: Vec<_> = of_each(paths::SIMULATED);
+        let residuals: Vec<_> = of_each(paths::RESIDUAL);
+        let outputs = [vec![self.at(paths::OUTPUT_RAW)], simulated].concat();
+        let noise = [paths::NOISE_UPPER, paths::NOISE_LOWER].map(|path| self.at(path));
+        let residuals = [noise.to_vec(), residuals].concat();
         let rows = [
-            self.plot(&format!("Measured and simulated ({horizon})"), &measured)?,
-            self.plot(&format!("Residual ({horizon}), and the band of the noise"), &left)?,
-            self.view(View::new("StateTimeline", WORST, &[self.path(&["worst"])]))?,
+            self.plot(&format!("Measured and simulated ({horizon})"), &outputs)?,
+            self.plot(&format!("Residual ({horizon}), and the band of the noise"), &residuals)?,
+            self.view(View::new("StateTimeline", WORST, &[self.path(paths::WORST)]))?,
             self.residuals(models.len())?,
         ];
         let builder = &mut *self.builder;
         let plots =
             builder.container(ContainerKind::Vertical, "Plots", &rows, &[3.0, 2.4, 1.1, 4.0])?;
-        let page = [self.path(&["model_page"])];
+        let page = [self.path(paths::MODEL_PAGE)];
         let page = self.view(View::new("TextDocument", "Models", &page))?;
         let columns = [plots, page];
         self.builder.container(ContainerKind::Horizontal, "Models", &columns, &[7.2, 2.8])
@@ -301,18 +273,18 @@ impl Views<'_> {
     fn residuals(&mut self, models: usize) -> Result<Node, RecordError> {
         let scatter = self.sheet(
             ("What the residual depends on: points, and their mean", scatter::SIZE),
-            ("scatter", &["grid", "points", "texts"]),
-            (&["curve"], models),
+            (paths::scatter::ROOT, &paths::scatter::PARTS),
+            (&[paths::scatter::CURVE], models),
         );
         let shares = self.sheet(
             ("Share of the error: bars; of the time: white", error_share::SIZE),
-            ("error_share", &["grid", "time", "texts"]),
-            (&["bars"], models),
+            (paths::error_share::ROOT, &paths::error_share::PARTS),
+            (&[paths::error_share::BARS], models),
         );
         let correlation = self.sheet(
             ("Correlation: chance stays between the lines (99 %)", correlogram::SIZE),
-            ("correlation", &["grid", "axes", "texts"]),
-            (&["band", "curve"], models),
+            (correlation::ROOT, &correlation::PARTS),
+            (&[correlation::BAND, correlation::CURVE], models),
         );
         let tabs = [self.view(scatter)?, self.view(shares)?, self.view(correlation)?];
         self.builder.container(ContainerKind::Tabs, "Residual", &tabs, &[])
@@ -325,16 +297,18 @@ impl Views<'_> {
         (root, parts): (&str, &[&str]),
         (of_models, models): (&[&str], usize),
     ) -> View<'static> {
-        let mut paths: Vec<_> = parts.iter().map(|part| self.path(&[root, part])).collect();
+        let root = self.at(root);
+        let mut paths: Vec<_> = parts.iter().map(|part| at(&root, part).to_string()).collect();
         for part in of_models {
-            paths.extend((0..models).map(|number| self.path(&[root, part, &format!("{number}")])));
+            let of_model = |number| of_model(&root, part, number).to_string();
+            paths.extend((0..models).map(of_model));
         }
         View::new("2D", name, &paths).with("VisualBounds2D", bounds(width, height))
     }
 
     /// A plot whose time axis moves with those of the other plots.
-    fn plot(&mut self, name: &str, parts: &[&[&str]]) -> Result<Node, RecordError> {
-        let paths: Vec<_> = parts.iter().map(|parts| self.path(parts)).collect();
+    fn plot(&mut self, name: &str, entities: &[EntityPath]) -> Result<Node, RecordError> {
+        let paths: Vec<_> = entities.iter().map(ToString::to_string).collect();
         let view = View::new("TimeSeries", name, &paths)
             .with("TimeAxis", TimeAxis::new().with_link(LinkAxis::LinkToGlobal))
             .with("PlotLegend", PlotLegend::new().with_corner(Corner2D::RightTop));
@@ -343,8 +317,8 @@ impl Views<'_> {
 
     /// Every number: a row per decision, and a row per candidate.
     fn table(&mut self) -> Result<Node, RecordError> {
-        let path = self.path(&["decision", "table"]);
-        let entity = below(&joint_root(&self.joint.name), &["decision", "table"]);
+        let entity = self.at(paths::DECISION_TABLE);
+        let path = entity.to_string();
         let verdicts = FilterIsNotNull::new(true, &entity, "accepted".to_owned());
         let query = |columns: &[&str]| {
             let select = |name: &&str| ComponentColumnSelector::new(&entity, (*name).to_owned());

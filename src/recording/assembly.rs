@@ -1,0 +1,106 @@
+//! A recording of decisions and models, joint by joint.
+
+use rerun::ApplicationId;
+use rerun::log::LogMsg;
+
+use super::chunk::Chunks;
+use super::content::{Content, Growth, Tab, hashed, name_of};
+use super::error::RecordError;
+use super::layout::{JointLayout, TrialStarts};
+use super::paths::joint_root;
+use super::recorded::Recording;
+use super::{
+    about, decisions, delay_state, model, overview, revision, segment_view, signals, verdict, views,
+};
+use crate::report::EstimatedJoint;
+
+impl<'a> Recording<'a> {
+    /// Each joint and where it lies on the timelines.
+    fn layouts(&self) -> impl Iterator<Item = (EstimatedJoint<'a>, JointLayout<'a>)> {
+        let starts = TrialStarts::of(self.joints.iter().map(|joint| joint.joint));
+        let layout = move |joint| (joint, JointLayout::of(joint, &starts, self.detail));
+        self.joints.iter().copied().map(layout)
+    }
+}
+
+impl<'a> Content for Recording<'a> {
+    fn name(&self) -> String {
+        name_of(self.sources)
+    }
+
+    fn id(&self) -> String {
+        recording_id(self)
+    }
+
+    fn add_about(&self, chunks: &mut Chunks) -> Result<(), RecordError> {
+        let layouts: Vec<_> = self.layouts().map(|(_, layout)| layout).collect();
+        about::add(chunks, self, &layouts)
+    }
+
+    fn tabs(&self) -> Vec<Tab<'_>> {
+        let tab = |(joint, layout): (EstimatedJoint<'a>, JointLayout<'a>)| {
+            let add = move |chunks: &mut Chunks| add_joint(chunks, self, joint, &layout);
+            Tab { joint: &joint.joint.name, add: Box::new(add) }
+        };
+        self.layouts().map(tab).collect()
+    }
+
+    fn views(
+        &self,
+        growth: Growth,
+        application: &ApplicationId,
+        id: &str,
+    ) -> Result<Vec<LogMsg>, RecordError> {
+        views::messages(self, growth, application, id)
+    }
+
+    fn views_in_words(&self, growth: Growth) -> String {
+        views::in_words(self, growth)
+    }
+}
+
+fn add_joint(
+    chunks: &mut Chunks,
+    recording: &Recording<'_>,
+    estimated: EstimatedJoint<'_>,
+    layout: &JointLayout<'_>,
+) -> Result<(), RecordError> {
+    let joint = estimated.joint;
+    let root = joint_root(&joint.name);
+    signals::add(chunks, &root, joint, layout)?;
+    decisions::add(chunks, &root, layout)?;
+    let others = recording.others(joint);
+    verdict::add(chunks, &root, joint, layout, (&estimated.estimate.settings, &others))?;
+    segment_view::add(chunks, &root, joint, layout, (recording.settings.method, &others))?;
+    overview::add(chunks, &root, layout)?;
+    delay_state::add(chunks, &root, estimated, layout)?;
+    let models = recording.models.iter().filter(|model| model.joint.name == joint.name);
+    model::add(chunks, &root, layout, &models.collect::<Vec<_>>())?;
+    match recording.revisions_of(joint) {
+        Some(improved) => revision::add(chunks, &root, layout, improved),
+        None => Ok(()),
+    }
+}
+
+/// Equal for equal logs, read in the same way, equal settings and version, so that two
+/// recordings of one experiment lie side by side when any of it differs.
+fn recording_id(recording: &Recording<'_>) -> String {
+    hashed(recording.sources, recording.joints.iter().map(|joint| joint.joint), |part| {
+        for model in recording.models {
+            let values: Vec<_> = model.comparison.fit.model.values();
+            part(&format!("{} {:?} {values:?}", model.model, model.comparison.fit.model.names()));
+        }
+        for improved in recording.revisions {
+            let changes: Vec<_> =
+                improved.revisions.iter().map(|revision| revision.change).collect();
+            part(&format!("{} {changes:?}", improved.first_revision));
+        }
+        part(&format!("{:?} {:?}", recording.settings, recording.detail));
+        for beside in recording.also {
+            part(&format!("{:?}", beside.settings));
+        }
+        for joint in recording.joints.iter().filter(|joint| joint.estimate.chosen.is_some()) {
+            part(&format!("{:?}", joint.estimate.settings));
+        }
+    })
+}

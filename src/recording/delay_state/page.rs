@@ -1,0 +1,303 @@
+//! The page of plots, and the cursor in it.
+
+use rerun::components::{Color, DrawOrder};
+use rerun::datatypes::Vec2D;
+use rerun::{EntityPath, LineStrips2D, Points2D};
+
+use super::placed::{Placed, add_numbers, placed};
+use super::quantity::{Quantity, Way};
+use super::trend;
+use crate::delay::{AgainstState, StepState};
+use crate::experiment::{Joint, Trial};
+use crate::recording::canvas::{Labels, Plot, SHEET, Span};
+use crate::recording::chunk::{Chunks, Index};
+use crate::recording::error::RecordError;
+use crate::recording::layout::JointLayout;
+use crate::recording::palette::{self, Rgb, color};
+use crate::recording::paths::{self, against, at};
+use crate::recording::rows::HIDDEN;
+use crate::recording::sheet::put_texts;
+use crate::report::EstimatedJoint;
+use crate::wording::number;
+use crate::units::SamplePeriod;
+
+/// Height of the sheet.
+pub(in crate::recording) const HEIGHT: f32 = 800.0;
+
+/// Plots that fit on the sheet; the weakest are left out.
+const PLOTS: usize = 12;
+
+/// Adds the page below `/against`, and its numbers at `/delay/state`.
+pub(in crate::recording) fn add(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    joint: EstimatedJoint<'_>,
+    layout: &JointLayout<'_>,
+) -> Result<(), RecordError> {
+    let found = joint.against_state();
+    let placed = placed(layout, &found.steps);
+    add_numbers(chunks, &at(root, paths::DELAY_STATE), joint.joint, &placed)?;
+    let page = Page::of(joint.joint, &found, &placed);
+    let root = at(root, against::ROOT);
+    page.add_plots(chunks, &root)?;
+    page.add_texts(chunks, &root, joint.joint)?;
+    page.add_cursor(chunks, &root, joint.joint, &placed)
+}
+
+/// All plots on their sheet.
+struct Page<'f> {
+    found: &'f AgainstState,
+    /// Each quantity that is drawn, with its plot.
+    plots: Vec<(Quantity, Plot)>,
+    /// Each accepted step in words, for the pointer.
+    names: Vec<String>,
+    /// Quantities there are.
+    quantities: usize,
+    /// Columns of plots.
+    columns: usize,
+    /// Seconds per sample, where all trials have the same.
+    period_s: Option<f64>,
+}
+
+impl<'f> Page<'f> {
+    fn of(joint: &Joint, found: &'f AgainstState, placed: &[Placed<'_, '_>]) -> Self {
+        let mut quantities = Quantity::of(found);
+        let count = quantities.len();
+        quantities.truncate(if found.steps.is_empty() { 0 } else { PLOTS });
+        let columns = (1..=PLOTS).find(|side| side * side >= quantities.len()).unwrap_or(1);
+        let y = Span::around(found.steps.iter().map(|step| step.delay_s), 0.06);
+        let grid = (columns, quantities.len().div_ceil(columns));
+        let place = |(place, quantity): (usize, Quantity)| {
+            let plot = plot(place, grid, quantity.x_span(), y);
+            (quantity, plot)
+        };
+        let mut periods = joint.trials.iter().map(Trial::period);
+        let first = periods.next();
+        let period_s = first.filter(|first| periods.all(|other| other == *first));
+        Self {
+            found,
+            plots: quantities.into_iter().enumerate().map(place).collect(),
+            names: placed.iter().filter_map(|placed| placed.name(joint)).collect(),
+            quantities: count,
+            columns,
+            period_s: period_s.map(SamplePeriod::seconds),
+        }
+    }
+
+    /// What stays: grid, points, medians.
+    fn add_plots(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+        let (mut grid, mut depends) = (Vec::new(), Vec::new());
+        let (mut bands, mut medians) = (Vec::new(), Vec::new());
+        for (quantity, plot) in &self.plots {
+            let x_ticks: Vec<_> = quantity.x_ticks().into_iter().map(|(x, _)| x).collect();
+            let y_ticks = plot.y_span().ticks(DELAY_TICKS).into_iter();
+            let y_ticks: Vec<_> = y_ticks.map(|y| (y, String::new())).collect();
+            grid.extend(plot.grid(&x_ticks, &y_ticks, &mut Labels::default()));
+            if quantity.depends {
+                depends.push(plot.frame());
+            }
+            for bins in quantity.courses(&self.found.steps) {
+                bands.push(trend::band(plot, &bins));
+                medians.push(trend::line(plot, &bins));
+            }
+        }
+        let mut add = |path, rgb, radius, order, strips: Vec<Vec<Vec2D>>| {
+            let style = LineStrips2D::new(strips).with_colors([color(rgb)]).with_radii([radius]);
+            let style = style.with_draw_order(DrawOrder::from(order));
+            chunks.push_static(at(root, path), &style)
+        };
+        add(against::BAND, palette::BAND, 0.6 * trend::STROKE, 5.0, bands)?;
+        add(against::GRID, palette::GRID, 0.7, 10.0, grid)?;
+        add(against::DEPENDS, palette::BORDER, 1.4, 15.0, depends)?;
+        add(against::MEDIAN, palette::BORDER, 2.0, 40.0, medians)?;
+        for (path, rgb, way) in
+            [(against::DOWN, palette::DOWN, Way::Down), (against::UP, palette::UP, Way::Up)]
+        {
+            let Labels { places, texts } = self.points(way);
+            let points = Points2D::new(places).with_colors([color(rgb)]).with_radii([3.0]);
+            let points = points.with_labels(texts).with_show_labels(false);
+            chunks.push_static(at(root, path), &points)?;
+        }
+        Ok(())
+    }
+
+    /// The points of all steps in one direction, plot by plot, and what they are.
+    fn points(&self, way: Way) -> Labels {
+        let mut points = Labels::default();
+        for (quantity, plot) in &self.plots {
+            let steps = self.found.steps.iter().zip(&self.names).enumerate();
+            for (number, (step, name)) in steps.filter(|(_, (step, _))| Way::of(step) == way) {
+                if let Some(place) = place_of(quantity, plot, number, step) {
+                    points.put(place, name.clone());
+                }
+            }
+        }
+        points
+    }
+
+    fn add_texts(
+        &self,
+        chunks: &mut Chunks,
+        root: &EntityPath,
+        joint: &Joint,
+    ) -> Result<(), RecordError> {
+        let (mut ticks, mut titles) = (Labels::default(), Labels::default());
+        let mut shades = Vec::new();
+        for (place, (quantity, plot)) in self.plots.iter().enumerate() {
+            for (x, text) in quantity.x_ticks() {
+                ticks.put(plot.below(x, 2.0), text);
+            }
+            self.delay_ticks(place, plot, &mut ticks);
+            let middle = f64::midpoint(plot.x_span().low, plot.x_span().high);
+            titles.put(plot.above(middle, 46.0), clipped(&quantity.title));
+            titles.put(plot.above(middle, 25.0), quantity.finding());
+            let shade = if quantity.depends { palette::BORDER } else { palette::RAW };
+            shades.extend([color(shade); 2]);
+        }
+        put_texts(chunks, at(root, against::TICKS), ticks, &[color(palette::RAW)])?;
+        put_texts(chunks, at(root, against::TITLES), titles, &shades)?;
+        let (legend, colors) = self.legend(joint);
+        put_texts(chunks, at(root, against::LEGEND), legend, &colors)
+    }
+
+    /// Seconds at the left of a row of plots, samples at its right.
+    fn delay_ticks(&self, place: usize, plot: &Plot, ticks: &mut Labels) {
+        let is_last = place + 1 == self.plots.len();
+        if place.is_multiple_of(self.columns) {
+            for y in plot.y_span().ticks(DELAY_TICKS) {
+                ticks.put(plot.left_of(y, 34.0), format!("{} s", number(y)));
+            }
+        }
+        if let Some(period_s) = self.period_s
+            && ((place + 1).is_multiple_of(self.columns) || is_last)
+        {
+            let Span { low, high } = plot.y_span();
+            for samples in Span::new(low / period_s, high / period_s).ticks(DELAY_TICKS) {
+                ticks.put(plot.right_of(samples * period_s, 26.0), number(samples));
+            }
+        }
+    }
+
+    fn legend(&self, joint: &Joint) -> (Labels, Vec<Color>) {
+        let axis = if self.period_s.is_some() {
+            "delay: seconds left, samples right; point at a dot for its step"
+        } else {
+            "delay in seconds; point at a dot for its step"
+        };
+        let entries: [(f32, f32, String, Rgb); 5] = [
+            (SHEET.0 / 2.0, 0.0, self.headline(joint), palette::BORDER),
+            (90.0, LEGEND, "● step up".to_owned(), palette::UP),
+            (215.0, LEGEND, "● step down".to_owned(), palette::DOWN),
+            (
+                430.0,
+                LEGEND,
+                "line: median; shaded: middle half of the steps".to_owned(),
+                palette::BORDER,
+            ),
+            (850.0, LEGEND, axis.to_owned(), palette::RAW),
+        ];
+        let mut labels = Labels::default();
+        let mut colors = Vec::new();
+        for (x, y, text, rgb) in entries {
+            labels.put(Vec2D::new(x, y), text);
+            colors.push(color(rgb));
+        }
+        (labels, colors)
+    }
+
+    /// The answer in a sentence.
+    fn headline(&self, joint: &Joint) -> String {
+        let name = &joint.name;
+        let steps = match self.found.steps.len() {
+            1 => "1 accepted step".to_owned(),
+            count => format!("{count} accepted steps"),
+        };
+        let quantities = || self.plots.iter().map(|(quantity, _)| quantity);
+        if quantities().all(|quantity| quantity.p_value.is_none()) {
+            return format!("{name}: {steps}, from which nothing can be told of the delay");
+        }
+        let rest = match self.quantities - self.plots.len() {
+            0 => String::new(),
+            weakest => format!("; the weakest {weakest} are not drawn"),
+        };
+        let basis = format!("{steps}, p ≤ 0.05 after Holm's correction{rest}");
+        let names: Vec<_> = quantities().filter(|q| q.depends).map(|q| q.name.as_str()).collect();
+        if names.is_empty() {
+            return format!("{name}: the delay is not shown to depend on any of these ({basis})");
+        }
+        let more = match names.len().saturating_sub(NAMED) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        let named = names.into_iter().take(NAMED).collect::<Vec<_>>().join(", ");
+        format!("{name}: the delay depends on {named}{more} ({basis})")
+    }
+
+    /// The step of each segment, in words and as a bright point in every plot.
+    fn add_cursor(
+        &self,
+        chunks: &mut Chunks,
+        root: &EntityPath,
+        joint: &Joint,
+        placed: &[Placed<'_, '_>],
+    ) -> Result<(), RecordError> {
+        let index: Index = placed.iter().map(|p| p.trial.opening(p.segment)).collect();
+        let (mut points, mut lengths) = (Vec::new(), Vec::new());
+        for placed in placed {
+            let before = points.len();
+            if let Some((number, step)) = placed.step {
+                points.extend(
+                    self.plots.iter().filter_map(|(q, plot)| place_of(q, plot, number, step)),
+                );
+            }
+            lengths.push(points.len() - before);
+        }
+        let entity = at(root, against::HERE);
+        let style = Points2D::update_fields().with_colors([color(palette::CANDIDATE)]);
+        let style = style.with_radii([8.0]).with_draw_order(DrawOrder::from(50.0));
+        chunks.push_static(entity.clone(), &style)?;
+        let points = Points2D::update_fields().with_positions(points).columns(lengths)?;
+        chunks.push(entity, index.clone(), points)?;
+        let entity = at(root, against::STEP);
+        let place = Vec2D::new(SHEET.0 - 280.0, LEGEND);
+        let style = Points2D::new([place]).with_colors([color(palette::CANDIDATE)]);
+        chunks.push_static(entity.clone(), &style.with_radii([HIDDEN]).with_show_labels(true))?;
+        let words = placed.iter().map(|placed| placed.sentence(joint));
+        let texts = Points2D::update_fields().with_labels(words);
+        chunks.push(entity, index, texts.columns_of_unit_batches()?)
+    }
+}
+
+/// Row of the legend on the sheet.
+const LEGEND: f32 = 24.0;
+
+/// Ticks of the delay, about.
+const DELAY_TICKS: f64 = 6.0;
+
+/// Quantities that the headline names.
+const NAMED: usize = 4;
+
+/// Letters of a quantity's name that fit over its plot.
+const NAME: usize = 40;
+
+fn clipped(name: &str) -> String {
+    if name.chars().count() <= NAME {
+        return name.to_owned();
+    }
+    name.chars().take(NAME - 1).chain(['…']).collect()
+}
+
+/// Where a step lies in a plot, where its value is known.
+fn place_of(quantity: &Quantity, plot: &Plot, number: usize, step: &StepState) -> Option<Vec2D> {
+    Some(plot.at((*quantity.values.get(number)?)?, step.delay_s))
+}
+
+/// The place of a plot in a grid of `columns` and `rows`; room for a title above each.
+fn plot(place: usize, (columns, rows): (usize, usize), x: Span, y: Span) -> Plot {
+    let part = |of: usize, low: f32, high: f32, n: usize| low + (high - low) * n as f32 / of as f32;
+    let column = |n| part(columns, 80.0, SHEET.0 - 30.0, n);
+    let row = |n| part(rows, 50.0, HEIGHT, n);
+    let (across, down) = (place % columns, place / columns);
+    let rows = row(down) + 48.0..=row(down + 1) - 30.0;
+    Plot::within((column(across), column(across + 1) - 30.0), rows, x, y)
+}

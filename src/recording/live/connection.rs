@@ -1,0 +1,233 @@
+//! A connection to a viewer, by which a recording is sent whenever it has grown.
+
+use std::net::{SocketAddr, TcpListener};
+use std::time::{Duration, Instant};
+
+use rerun::grpc_server::GrpcServerSink;
+use rerun::log::{Chunk, LogMsg};
+use rerun::sink::{GrpcSink, GrpcSinkConnectionState, LogSink as _};
+use rerun::{EntityPath, MemoryLimit, RecordingInfo, ServerOptions, StoreId, StoreKind};
+
+use super::address;
+use super::sent::Sent;
+use crate::recording::chunk::Chunks;
+use crate::recording::content::{Content, Growth, Part, for_each_chunk};
+use crate::recording::error::RecordError;
+use crate::recording::message::{APPLICATION, activation, chunk_message, store_message};
+use crate::recording::recorded::Recording;
+use crate::recording::sweep::SweepRecording;
+
+/// Longest time that a viewer may take to answer.
+const ANSWER: Duration = Duration::from_secs(5);
+
+/// Longest time that a viewer may take to read what it was sent.
+const READ: Duration = Duration::from_mins(2);
+
+/// Share of the memory in which a server keeps what viewers that come later are sent.
+const KEPT: f32 = 0.5;
+
+/// A recording on its way to a viewer.
+pub struct Live {
+    /// None once the viewer is lost.
+    sink: Option<Sink>,
+    url: String,
+    store: StoreId,
+    sent: Sent,
+    /// Namespaces of ids that were used: what is sent later has higher ones, and wins.
+    used: u64,
+    growth: Growth,
+    /// The views that the viewer was told last, in words.
+    views: Option<String>,
+}
+
+/// Where messages go.
+enum Sink {
+    /// To a viewer that listens.
+    Viewer(GrpcSink),
+    /// To all viewers that ask.
+    Server(GrpcServerSink),
+}
+
+impl std::fmt::Debug for Live {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Live").field("url", &self.url).finish_non_exhaustive()
+    }
+}
+
+impl Live {
+    /// Connects to the viewer at `address`: `HOST:PORT`, or a URL as viewers tell it.
+    ///
+    /// # Errors
+    /// [`RecordError::Address`] for what is no address, [`RecordError::NoViewer`] when none
+    /// answers there.
+    pub fn connect(address: &str) -> Result<Self, RecordError> {
+        let uri = address::parse(address)?;
+        let no_viewer = |why: &str| RecordError::NoViewer { url: uri.to_string(), why: why.into() };
+        address::reach(&uri, ANSWER).map_err(|error| no_viewer(&error.to_string()))?;
+        let viewer = GrpcSink::new(uri.clone());
+        if !connects(&viewer) {
+            give_up(Sink::Viewer(viewer));
+            return Err(no_viewer("what listens there is no viewer"));
+        }
+        Ok(Self::with(Sink::Viewer(viewer), uri.to_string()))
+    }
+
+    /// Serves viewers that connect to `address`, also those that come later.
+    ///
+    /// # Errors
+    /// [`RecordError::Listen`] when `address` is taken, or not of this machine.
+    pub fn serve(address: SocketAddr) -> Result<Self, RecordError> {
+        // The server itself would only log that it cannot listen.
+        let free = TcpListener::bind(address).and_then(|listener| listener.local_addr());
+        let address = free.map_err(|source| RecordError::Listen { address, source })?;
+        let options = ServerOptions {
+            memory_limit: MemoryLimit::from_fraction_of_total(KEPT),
+            ..ServerOptions::default()
+        };
+        let host = address::host(address.ip());
+        let server = GrpcServerSink::new(&host, address.port(), options)
+            .map_err(|_source| RecordError::NotServed { address })?;
+        let url = server.uri().to_string();
+        Ok(Self::with(Sink::Server(server), url))
+    }
+
+    fn with(sink: Sink, url: String) -> Self {
+        // A run of its own: two runs stand side by side in the viewer.
+        let store = StoreId::random(StoreKind::Recording, APPLICATION);
+        let (sent, growth) = (Sent::default(), Growth::Finished);
+        Self { sink: Some(sink), url, store, sent, used: 0, growth, views: None }
+    }
+
+    /// Shows a page of revisions for every joint, which are yet to come.
+    #[must_use]
+    pub fn expecting_revisions(self) -> Self {
+        Self { growth: Growth::Growing, ..self }
+    }
+
+    /// Where the viewer is, or where viewers are served.
+    pub fn url(&self) -> &str {
+        &self.url
+    }
+
+    /// Whether viewers connect to this program.
+    pub fn is_served(&self) -> bool {
+        matches!(self.sink, Some(Sink::Server(_)))
+    }
+
+    /// Sends what is new of `recording`: all of it at first.
+    ///
+    /// # Errors
+    /// [`RecordError::Chunk`] and [`RecordError::Serialize`], which would be bugs. Whether
+    /// it arrives, [`flush`](Self::flush) tells.
+    pub fn send(&mut self, recording: &Recording<'_>) -> Result<(), RecordError> {
+        self.send_part(recording, None)
+    }
+
+    /// Sends what is new of `joint` alone.
+    ///
+    /// # Errors
+    /// As [`send`](Self::send).
+    pub fn send_joint(
+        &mut self,
+        recording: &Recording<'_>,
+        joint: &str,
+    ) -> Result<(), RecordError> {
+        self.send_part(recording, Some(joint))
+    }
+
+    /// Sends delays over all settings.
+    ///
+    /// # Errors
+    /// As [`send`](Self::send).
+    pub fn send_sweep(&mut self, sweep: &SweepRecording<'_>) -> Result<(), RecordError> {
+        self.send_part(sweep, None)
+    }
+
+    fn send_part(&mut self, content: &dyn Content, joint: Option<&str>) -> Result<(), RecordError> {
+        if self.used == 0 {
+            self.open(content)?;
+        }
+        let part = Part { used: self.used, joint };
+        self.sent.begin();
+        self.used += for_each_chunk(content, part, &mut |chunk| match self.sent.news_of(chunk) {
+            Some(news) => self.send_chunk(&news),
+            None => Ok(()),
+        })?;
+        self.send_views(content)
+    }
+
+    /// What the recording is.
+    fn open(&self, content: &dyn Content) -> Result<(), RecordError> {
+        self.post(store_message(&self.store));
+        let mut chunks = Chunks::new(1);
+        let info = RecordingInfo::new().with_name(content.name());
+        chunks.push_static(EntityPath::properties(), &info)?;
+        chunks.into_chunks().iter().try_for_each(|chunk| self.send_chunk(chunk))
+    }
+
+    fn send_chunk(&self, chunk: &Chunk) -> Result<(), RecordError> {
+        self.post(chunk_message(&self.store, chunk)?);
+        Ok(())
+    }
+
+    fn post(&self, message: LogMsg) {
+        match &self.sink {
+            Some(Sink::Viewer(viewer)) => viewer.send(message),
+            Some(Sink::Server(server)) => server.send(message),
+            None => {}
+        }
+    }
+
+    /// Which view shows what, unless the viewer knows: being told again, it forgets where
+    /// its user is.
+    fn send_views(&mut self, content: &dyn Content) -> Result<(), RecordError> {
+        let views = content.views_in_words(self.growth);
+        if self.views.as_ref() == Some(&views) {
+            return Ok(());
+        }
+        let id = format!("{}-{}", self.store.recording_id().as_str(), self.used);
+        let messages = content.views(self.growth, &APPLICATION.into(), &id)?;
+        let blueprint = messages.first().map(|message| message.store_id().clone());
+        for message in messages {
+            self.post(message);
+        }
+        if let Some(blueprint) = blueprint {
+            self.post(activation(blueprint).into());
+        }
+        self.views = Some(views);
+        Ok(())
+    }
+
+    /// Waits until everything has gone out.
+    ///
+    /// # Errors
+    /// [`RecordError::Lost`] when the viewer went away.
+    pub fn flush(&mut self) -> Result<(), RecordError> {
+        let flushed = match &self.sink {
+            Some(Sink::Viewer(viewer)) => viewer.flush_blocking(READ),
+            Some(Sink::Server(server)) => server.flush_blocking(READ),
+            None => Ok(()),
+        };
+        let Err(source) = flushed else { return Ok(()) };
+        self.sink.take().into_iter().for_each(give_up);
+        Err(RecordError::Lost { url: self.url.clone(), source: Box::new(source) })
+    }
+}
+
+/// Whether `viewer` is reached in time.
+fn connects(viewer: &GrpcSink) -> bool {
+    let end = Instant::now() + ANSWER;
+    while viewer.status() != GrpcSinkConnectionState::Connected {
+        let is_over = matches!(viewer.status(), GrpcSinkConnectionState::Disconnected(_));
+        if is_over || Instant::now() > end {
+            return false;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    true
+}
+
+/// Leaves a sink as it is: being dropped, it would wait for a viewer that never answers.
+fn give_up(sink: Sink) {
+    std::mem::forget(sink);
+}

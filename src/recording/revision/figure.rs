@@ -1,0 +1,87 @@
+//! What shows the effect that comes next: points, and the laws of models through them.
+
+use rerun::datatypes::Vec2D;
+
+use crate::recording::canvas::{Labels, Plot, Span, Strips};
+
+/// Columns and rows of the plot on the sheet.
+const PLACE: ((f32, f32), (f32, f32)) = ((760.0, 1235.0), (48.0, 450.0));
+
+/// Points that are drawn; more hide one another.
+const POINTS: usize = 1500;
+
+/// Width of an uncertainty in standard errors on each side: 95 %.
+const BAND: f64 = 1.96;
+
+/// The measured speed while one level of the input acted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Held {
+    pub(super) level: f64,
+    pub(super) speed: f64,
+    pub(super) std_error: f64,
+}
+
+/// Level of the input, and the speed that a model makes of it.
+pub(super) type Law = Vec<(f64, f64)>;
+
+/// What shows the effect that comes next, of one revision.
+pub(super) struct Figure {
+    pub(super) title: String,
+    pub(super) x: Span,
+    pub(super) y: Span,
+    pub(super) points: Vec<Held>,
+    /// What the revision makes of it, the one before, and the candidate that comes next.
+    pub(super) laws: [Law; 3],
+    pub(super) names: [Option<String>; 3],
+}
+
+impl Figure {
+    pub(super) fn plot(&self) -> Plot {
+        let (columns, (top, bottom)) = PLACE;
+        Plot::within(columns, top..=bottom, self.x, self.y)
+    }
+
+    pub(super) fn curve(&self, which: usize) -> Strips {
+        let plot = self.plot();
+        let law = self.laws.get(which).filter(|law| !law.is_empty());
+        let curve = |law: &Law| law.iter().map(|(x, y)| plot.at(*x, *y)).collect();
+        law.into_iter().map(curve).collect()
+    }
+
+    /// The points that are drawn.
+    fn drawn(&self) -> impl Iterator<Item = &Held> {
+        self.points.iter().step_by(self.points.len().div_ceil(POINTS).max(1))
+    }
+
+    pub(super) fn places(&self) -> Vec<Vec2D> {
+        let plot = self.plot();
+        self.drawn().map(|held| plot.at(held.level, held.speed)).collect()
+    }
+
+    pub(super) fn uncertain(&self) -> Strips {
+        let plot = self.plot();
+        let reach = |held: &Held| {
+            [-BAND, BAND].map(|k| plot.at(held.level, held.speed + k * held.std_error)).to_vec()
+        };
+        self.drawn().map(reach).collect()
+    }
+
+    /// The name of a law, in the corner that a rising one leaves free, or in the other one.
+    pub(super) fn legend(&self, which: usize) -> Labels {
+        let mut labels = Labels::default();
+        let line = self.names.iter().take(which).flatten().count();
+        if let Some(name) = self.names.get(which).and_then(Option::as_ref) {
+            let half = 7.0 * (name.chars().count() + 2) as f32;
+            let ((left, right), (top, _)) = PLACE;
+            let x = if self.falls() { right - half - 6.0 } else { left + half + 6.0 };
+            labels.put(Vec2D::new(x, top + 22.0 + 36.0 * line as f32), name.clone());
+        }
+        labels
+    }
+
+    fn falls(&self) -> bool {
+        let law = self.laws.iter().rev().find(|law| !law.is_empty());
+        let ends = law.and_then(|law| law.first().zip(law.last()));
+        ends.is_some_and(|(first, last)| first.1 > last.1)
+    }
+}

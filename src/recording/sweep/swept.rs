@@ -1,0 +1,149 @@
+//! A joint over all settings, as it is recorded.
+
+use super::recorded::SweepRecording;
+use crate::delay::sweep::{Agreement, Grid, SweptStep, Told};
+use crate::experiment::Trial;
+use crate::recording::chunk::Index;
+use crate::recording::layout::TrialStarts;
+use crate::recording::palette::{self, Rgb};
+use crate::report::{ReportedSweep, run_text};
+
+/// A joint over all settings, as it is recorded.
+pub(super) struct Swept<'a> {
+    pub(super) grid: &'a Grid,
+    pub(super) reported: ReportedSweep<'a>,
+    /// Each run in words.
+    pub(super) names: Vec<String>,
+    /// For each run how many combinations it stands for.
+    pub(super) votes: Vec<usize>,
+    /// Each step, with the trial that it lies in.
+    pub(super) steps: Vec<(&'a SweptStep, &'a Trial)>,
+    /// Where the steps lie.
+    pub(super) index: Index,
+}
+
+impl<'a> Swept<'a> {
+    pub(super) fn of(
+        recording: &SweepRecording<'a>,
+        reported: ReportedSweep<'a>,
+        starts: &TrialStarts,
+    ) -> Self {
+        let grid = recording.grid;
+        let trials = &reported.joint.trials;
+        let trial_of = |step: &SweptStep| trials.iter().find(|trial| trial.label() == step.trial);
+        let steps = reported.sweep.steps.iter();
+        let steps: Vec<_> = steps.filter_map(|step| Some((step, trial_of(step)?))).collect();
+        let mut index = Index::default();
+        for ((step, trial), number) in steps.iter().zip(1..) {
+            let start = starts.of_trial(trial);
+            index.segment.push(number);
+            index.sample.push(start.sample(step.sample));
+            index.time_ns.push(start.time_ns(trial, step.sample));
+        }
+        let mut votes = vec![0; grid.runs().len()];
+        for one in grid.combinations() {
+            votes.get_mut(one.run).into_iter().for_each(|votes| *votes += 1);
+        }
+        let names = grid.runs().iter().map(run_text).collect();
+        Self { grid, reported, names, votes, steps, index }
+    }
+
+    /// A tick per run.
+    pub(super) fn settings(&self) -> Index {
+        Index::of_settings(self.names.len())
+    }
+
+    /// What a run tells of a step.
+    pub(super) fn cell(step: &SweptStep, run: usize) -> Cell {
+        let Some(told) = step.told.get(run).copied().flatten() else { return Cell::Silent };
+        step.agreement.map_or(Cell::Same, |agreed| Cell::of(&told, &agreed))
+    }
+
+    /// The delay that a run tells of a step; samples.
+    pub(super) fn delay(step: &SweptStep, run: usize) -> Option<f64> {
+        Some(step.told.get(run).copied().flatten()?.delay)
+    }
+}
+
+/// What a setting tells of a step, beside what most say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Cell {
+    /// Nothing: it did not accept it.
+    Silent,
+    /// What most say.
+    Same,
+    /// A longer delay, by so many samples more than it allows.
+    Longer(f64),
+    /// A shorter one.
+    Shorter(f64),
+}
+
+impl Cell {
+    fn of(told: &Told, agreed: &Agreement) -> Self {
+        let (longer, shorter) = (told.low - agreed.low, agreed.high - told.high);
+        if longer.max(shorter) <= 0.0 {
+            Self::Same
+        } else if longer >= shorter {
+            Self::Longer(longer)
+        } else {
+            Self::Shorter(shorter)
+        }
+    }
+
+    /// How far it is from what most say; what is not accepted is next to what agrees.
+    pub(super) fn weight(self) -> f64 {
+        match self {
+            Self::Same => -2.0,
+            Self::Silent => -1.0,
+            Self::Longer(by) | Self::Shorter(by) => by,
+        }
+    }
+
+    /// Which way it differs, if at all.
+    pub(super) fn opinion(self) -> Opinion {
+        match self {
+            Self::Silent => Opinion::Silent,
+            Self::Same => Opinion::Same,
+            Self::Longer(_) => Opinion::Longer,
+            Self::Shorter(_) => Opinion::Shorter,
+        }
+    }
+}
+
+/// A [`Cell`] without its distance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Opinion {
+    Silent,
+    Same,
+    Longer,
+    Shorter,
+}
+
+impl Opinion {
+    /// What it is drawn in.
+    pub(super) fn rgb(self) -> Rgb {
+        match self {
+            Self::Silent => palette::SILENT,
+            Self::Same => palette::SAME,
+            Self::Longer => palette::LONGER,
+            Self::Shorter => palette::SHORTER,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_delay_is_longer_or_shorter_than_what_most_allow() {
+        let agreed = Agreement { delay: 10.0, low: 9.5, high: 11.0, combinations: 3 };
+        let cell =
+            |low, high| Cell::of(&Told { delay: f64::midpoint(low, high), low, high }, &agreed);
+        assert_eq!(cell(9.0, 11.0), Cell::Same);
+        assert_eq!(cell(12.0, 14.0), Cell::Longer(2.5));
+        assert_eq!(cell(4.0, 6.0), Cell::Shorter(5.0));
+        assert!(cell(4.0, 6.0).weight() > Cell::Silent.weight());
+        assert!(Cell::Silent.weight() > Cell::Same.weight());
+    }
+}

@@ -1,0 +1,51 @@
+//! The views of a recording: a tab per joint, and the timeline the viewer opens on.
+
+use rerun::ApplicationId;
+use rerun::external::re_sdk_types::blueprint::components::PlayState;
+use rerun::log::LogMsg;
+
+use super::joint;
+use crate::recording::blueprint::Builder;
+use crate::recording::content::Growth;
+use crate::recording::error::RecordError;
+use crate::recording::recorded::Recording;
+
+/// What decides which views there are.
+pub(in crate::recording) fn in_words(recording: &Recording<'_>, growth: Growth) -> String {
+    let joints: Vec<_> = recording.joints.iter().map(|joint| &joint.joint.name).collect();
+    let models: Vec<_> = recording.models.iter().map(|m| (&m.joint.name, m.model)).collect();
+    let counted = recording.revisions.iter().map(|improved| improved.revisions.len().min(2));
+    match growth {
+        Growth::Growing => format!("{joints:?} {models:?}"),
+        Growth::Finished => format!("{joints:?} {models:?} {:?}", counted.collect::<Vec<_>>()),
+    }
+}
+
+/// The messages of the blueprint of `recording`: a tab per joint and one about it all.
+pub(in crate::recording) fn messages(
+    recording: &Recording<'_>,
+    growth: Growth,
+    application: &ApplicationId,
+    id: &str,
+) -> Result<Vec<LogMsg>, RecordError> {
+    let mut builder = Builder::new();
+    let mut tabs = Vec::new();
+    for joint in recording.joints {
+        let models = recording.models.iter().filter(|m| m.joint.name == joint.joint.name);
+        let models: Vec<_> = models.collect();
+        let improved = recording.revisions_of(joint.joint);
+        // The first one is on its way, at least.
+        let expected = usize::from(growth == Growth::Growing);
+        let revisions = improved.map_or(expected, |improved| improved.revisions.len());
+        let others = recording.others(joint.joint).len();
+        tabs.push(joint::tab(&mut builder, *joint, &models, revisions, others)?);
+    }
+    // One revision alone is there on every timeline.
+    let is_ladder = recording.revisions.iter().any(|improved| improved.revisions.len() > 1);
+    let opening = match growth {
+        Growth::Growing => ("revision", PlayState::Following),
+        Growth::Finished if is_ladder => ("revision", PlayState::Paused),
+        Growth::Finished => ("decision", PlayState::Paused),
+    };
+    builder.tabbed(tabs, opening, application, id)
+}
