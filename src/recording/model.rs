@@ -14,7 +14,7 @@ use super::paths::{self, at, child};
 use super::{correlogram, error_share, scatter};
 use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures};
-use crate::fit::{Horizon, Parameter, Status};
+use crate::fit::Horizon;
 use crate::report::ComparedJoint;
 use crate::wording::{
     certainty, correlation_sentences, failure_sentences, number, parameter_units,

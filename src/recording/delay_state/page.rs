@@ -18,8 +18,8 @@ use crate::recording::paths::{self, against, at};
 use crate::recording::rows::HIDDEN;
 use crate::recording::sheet::put_texts;
 use crate::report::EstimatedJoint;
-use crate::wording::number;
 use crate::units::SamplePeriod;
+use crate::wording::number;
 
 /// Height of the sheet.
 pub(in crate::recording) const HEIGHT: f32 = 800.0;

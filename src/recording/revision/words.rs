@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use crate::figure::ladder::judged;
 use crate::recording::error_share::short;
 use crate::recording::markdown::plain;
-use crate::wording::certainty;
 use crate::report::{ImprovedJoint, change_in_words};
+use crate::wording::certainty;
 use crate::wording::{number, parameter_units};
 
 /// The page of the revision at `place`.
