@@ -3,8 +3,6 @@
 //! Each accepted step is a point; each variable gets a rank correlation, which asks only
 //! whether the delay rises or falls with it.
 
-use serde::Serialize;
-
 use super::decision::{Breakpoint, Decision};
 use super::trial_estimate::TrialEstimate;
 use crate::experiment::{Joint, Trial};
@@ -17,7 +15,7 @@ const COVARIATE_SAMPLES: usize = 5;
 const LEVEL: f64 = 0.05;
 
 /// An accepted step: its delay, and the joint's state.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct StepState {
     /// Label of the trial.
     pub trial: String,
@@ -41,7 +39,7 @@ pub struct StepState {
 }
 
 /// How the delay goes with one variable.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Correlation {
     /// Its name.
     pub variable: String,
@@ -61,7 +59,7 @@ pub struct Correlation {
 }
 
 /// How the delay differs between steps up and steps down.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Direction {
     /// Accepted steps to a higher level.
     pub up: usize,
@@ -79,7 +77,7 @@ pub struct Direction {
 }
 
 /// The accepted delays of a joint against its state.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct AgainstState {
     /// The accepted steps of all trials, in their order.
     pub steps: Vec<StepState>,

@@ -39,8 +39,6 @@
 
 use std::f64::consts::{PI, TAU};
 
-use serde::Serialize;
-
 use super::chain::ceil;
 use super::decision::{Decision, Verdict};
 use super::hinge;
@@ -55,7 +53,7 @@ use crate::numerics::RunningLine;
 use crate::numerics::{autocovariances, median, quantile};
 
 /// Which settings are chosen from the record.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Automatic {
     /// α is.
     pub alpha: bool,
@@ -73,7 +71,7 @@ impl Automatic {
 }
 
 /// What settings were chosen from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Grounds {
     /// The delay that nine of ten exceed, samples.
     pub short_delay: Option<f64>,
@@ -86,7 +84,7 @@ pub struct Grounds {
 }
 
 /// Which settings of a joint were chosen, and from what.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chosen {
     /// Which settings.
     pub automatic: Automatic,

@@ -2,15 +2,12 @@
 
 use std::fmt;
 
-use serde::Serialize;
-
 use super::interval::FineDelay;
 use super::search::Candidate;
 use super::settings::Settings;
 
 /// What a decision may fail, in the paper's order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Condition {
     /// (1) The first and the last step of a trial have no neighbour to judge them by.
     FirstOrLast,
@@ -79,8 +76,7 @@ impl fmt::Display for Condition {
 }
 
 /// How a condition came out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// Met.
     Passed,

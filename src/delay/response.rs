@@ -16,8 +16,6 @@
 //!
 //! Whatever moved a joint before, what is left of it is a sum of the same modes.
 
-use serde::Serialize;
-
 use super::basis::Motion;
 use super::broken_line::floor;
 use crate::units::SamplePeriod;
@@ -26,7 +24,7 @@ use crate::units::SamplePeriod;
 pub(super) const MOST: usize = 3;
 
 /// A number that was estimated.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LagPart {
     /// Its value.
     pub value: f64,

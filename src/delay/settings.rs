@@ -1,13 +1,10 @@
 //! What is asked for: a method, and its settings.
 
-use serde::Serialize;
-
 use super::spec::Method;
 use crate::numerics::LowPass;
 
 /// How `τ_k` goes on between two steps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interpolation {
     /// `τ_k = δ_i` for `k = p_i … p_(i+1)`: the paper's.
     #[default]
@@ -18,7 +15,7 @@ pub enum Interpolation {
 }
 
 /// A method and its settings; the default is the paper's.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// How a delay is found.
     pub method: Method,

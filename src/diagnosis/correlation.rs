@@ -27,8 +27,6 @@
 
 use std::ops::Range;
 
-use serde::Serialize;
-
 use crate::numerics::{chi_square_tail, dot};
 
 /// Part of the correlations that chance keeps within the bands.
@@ -61,7 +59,7 @@ pub struct TrialSignals<'a> {
 }
 
 /// Whether the residual is white noise.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Whiteness {
     /// Ljung and Box's statistic of all lags together.
     pub statistic: f64,
@@ -81,7 +79,7 @@ pub struct Whiteness {
 }
 
 /// Whether the changes of the input move the residual.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct InputCorrelation {
     /// Part of the correlations of independent signals that lies within the band.
     pub confidence: f64,
@@ -96,7 +94,7 @@ pub struct InputCorrelation {
 }
 
 /// Correlations of the residual with one input, lag by lag.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CrossCorrelation {
     /// Part of the lags whose correlation is outside the band.
     pub share_outside: f64,

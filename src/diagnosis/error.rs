@@ -1,11 +1,9 @@
 //! How large the error of a model is.
 
-use serde::Serialize;
-
 use crate::fit::{Evaluation, FitRecord, Part};
 
 /// The error of a model on one part of a record.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorFigures {
     /// Root of the mean squared residual, output units.
     pub rmse: f64,

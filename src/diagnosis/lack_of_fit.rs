@@ -28,8 +28,6 @@
 //! T. Bohlin, "Practical Grey-box Process Identification", 2006, chapter 2 (falsification
 //! by alternative models). G. Schwarz, "Estimating the dimension of a model", 1978.
 
-use serde::Serialize;
-
 use super::local_misfit::LocalMisfit;
 use super::residual_size::{BEYOND_NOISE, ResidualSize, Says, independent, is_near_noise};
 use super::shown_by::ShownBy;
@@ -38,7 +36,7 @@ use crate::numerics::{Regression, residuals_of};
 use crate::numerics::{autoregression, whitened};
 
 /// Whether a model can be told from the truth.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LackOfFit {
     /// F of all shapes together.
     pub statistic: f64,

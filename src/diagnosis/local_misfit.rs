@@ -19,14 +19,12 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
-
 use super::residual_size::BEYOND_NOISE;
 use crate::numerics::dot;
 use crate::numerics::{autoregression, correlations};
 
 /// The part of a record in which a residual stands out most.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalMisfit {
     /// The probability that noise stands out as much anywhere.
     pub p_value: f64,

@@ -1,10 +1,7 @@
 //! What shows a lack of fit.
 
-use serde::Serialize;
-
 /// What shows that a model lacks something.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShownBy {
     /// Shapes that missing effects have explain more than noise would.
     Shapes,

@@ -1,13 +1,10 @@
 //! What is said of a model.
 
-use serde::Serialize;
-
 use super::candidate::Candidate;
 use crate::diagnosis::Comparison;
 
 /// What is to be said of a model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// No lack of fit is shown: no missing effect found.
     Adequate,

@@ -1,15 +1,13 @@
 //! Zero-phase low-pass filter: it smooths without adding a delay of its own.
 
+use crate::units::SamplePeriod;
 use sci_rs::signal::filter::design::{
     DigitalFilter, FilterBandType, FilterOutputType, Sos, butter_dyn,
 };
 use sci_rs::signal::filter::{sosfilt_dyn, sosfilt_zi_dyn};
-use serde::Serialize;
-
-use crate::units::SamplePeriod;
 
 /// A Butterworth low-pass, to be run forward and backward over a signal.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LowPass {
     /// Frequency in Hz at which one pass damps to 1/√2 (and two passes to 1/2).
     pub cutoff_hz: f64,

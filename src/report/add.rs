@@ -1,8 +1,6 @@
-//! `add` as text and JSON: the error before and after.
+//! `add` as text: the error before and after.
 
-use serde::Serialize;
-
-use super::compare::{ComparedJoint, ErrorJson, JointJson, compare_table};
+use super::compare::{ComparedJoint, compare_table};
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::explain::Addition;
@@ -22,57 +20,6 @@ pub struct AddedJoint<'a> {
     pub revision: u32,
     /// The model before and after.
     pub addition: &'a Addition,
-}
-
-/// The document of `add --format json`, schema `tauscope/add/1`.
-#[derive(Debug, Serialize)]
-pub struct AddJson<'a> {
-    schema: &'static str,
-    version: &'static str,
-    model_file: String,
-    joints: Vec<AddedJson<'a>>,
-    failures: &'a [String],
-}
-
-#[derive(Debug, Serialize)]
-struct AddedJson<'a> {
-    #[serde(flatten)]
-    joint: JointJson<'a>,
-    added: &'static str,
-    removed: Vec<&'static str>,
-    p_value: Option<f64>,
-    before: BeforeJson,
-}
-
-#[derive(Debug, Serialize)]
-struct BeforeJson {
-    revision: u32,
-    effects: Vec<&'static str>,
-    error: ErrorJson,
-}
-
-impl<'a> AddJson<'a> {
-    /// Collects the results; `failures` are messages on joints and files that failed.
-    pub fn new(model_file: String, joints: &[AddedJoint<'a>], failures: &'a [String]) -> Self {
-        let joint = |added: &AddedJoint<'a>| {
-            let [before, after] = added.compared();
-            let model = &before.comparison.fit.model;
-            AddedJson {
-                joint: JointJson::new(&after),
-                added: added.effect,
-                removed: gone(model, &after.comparison.fit.model),
-                p_value: added.addition.p_value,
-                before: BeforeJson {
-                    revision: before.revision,
-                    effects: effect_ids(model),
-                    error: ErrorJson::new(before.comparison),
-                },
-            }
-        };
-        let joints = joints.iter().map(joint).collect();
-        let version = env!("CARGO_PKG_VERSION");
-        Self { schema: "tauscope/add/1", version, model_file, joints, failures }
-    }
 }
 
 /// Ids of the effects that `after` has no more.

@@ -2,17 +2,8 @@
 
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
-use super::EstimatedJoint;
 use crate::delay::{AgainstState, Correlation, Direction};
 use crate::wording::{bracketed, p_cell};
-
-impl EstimatedJoint<'_> {
-    /// The joint's accepted delays against its state.
-    pub fn against_state(&self) -> AgainstState {
-        let estimates = self.estimate.trials.iter().map(|trial| trial.as_ref().ok());
-        AgainstState::of(self.joint, estimates)
-    }
-}
 
 /// A row per joint and variable; `joints` are names and what was found.
 pub fn against_table<'a>(joints: impl IntoIterator<Item = (&'a str, &'a AgainstState)>) -> String {

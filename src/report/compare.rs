@@ -1,18 +1,14 @@
-//! `compare` as text and JSON.
+//! `compare` as text.
 
 use std::ops::Range;
 
 use comfy_table::{CellAlignment, Table, presets};
-use serde::Serialize;
-use serde_json::{Map, Value, json};
 
-use crate::diagnosis::failure::{FailsWhere, Region, WorstSegment};
-use crate::diagnosis::{Comparison, ErrorFigures, InputCorrelation, LackOfFit, Whiteness};
+use crate::diagnosis::{Comparison, ErrorFigures};
 use crate::experiment::Joint;
-use crate::fit::{Assessment, Parameter, Status};
+use crate::fit::Parameter;
 use crate::wording::{
-    self, correlation_sentences, effect_ids, effects_text, number, parameter_units, with_remark,
-    with_unit,
+    self, correlation_sentences, effects_text, number, parameter_units, with_remark, with_unit,
 };
 
 /// A joint, its model, and how the two compare.
@@ -26,99 +22,6 @@ pub struct ComparedJoint<'a> {
     pub revision: u32,
     /// The figures.
     pub comparison: &'a Comparison,
-}
-
-/// The document of `compare --format json`, schema `tauscope/compare/1`.
-#[derive(Debug, Serialize)]
-pub struct CompareJson<'a> {
-    schema: &'static str,
-    version: &'static str,
-    joints: Vec<JointJson<'a>>,
-    failures: &'a [String],
-}
-
-/// A joint and its model, as every command that fits models shows them.
-#[derive(Debug, Serialize)]
-pub(super) struct JointJson<'a> {
-    joint: &'a str,
-    model: &'a str,
-    revision: u32,
-    effects: Vec<&'static str>,
-    parameters: Map<String, Value>,
-    error: ErrorJson,
-    lack_of_fit: Option<LackOfFit>,
-    whiteness: Option<&'a Whiteness>,
-    input_correlation: Option<&'a InputCorrelation>,
-    fails_where: &'a [FailsWhere],
-    worst_segments: &'a [WorstSegment],
-    regions: &'a [Region],
-    termination: String,
-}
-
-#[derive(Debug, Serialize)]
-pub(super) struct ErrorJson {
-    train: Option<ErrorFigures>,
-    validation: Option<ErrorFigures>,
-    noise_floor: Option<f64>,
-}
-
-impl<'a> CompareJson<'a> {
-    /// Collects the results; `failures` are messages on joints and files that failed.
-    pub fn new(joints: &[ComparedJoint<'a>], failures: &'a [String]) -> Self {
-        let joints = joints.iter().map(JointJson::new).collect();
-        let version = env!("CARGO_PKG_VERSION");
-        Self { schema: "tauscope/compare/1", version, joints, failures }
-    }
-}
-
-impl<'a> JointJson<'a> {
-    pub(super) fn new(compared: &ComparedJoint<'a>) -> Self {
-        let comparison = compared.comparison;
-        Self {
-            joint: &compared.joint.name,
-            model: compared.model,
-            revision: compared.revision,
-            effects: effect_ids(&comparison.fit.model),
-            parameters: parameters_json(compared.joint, &comparison.fit),
-            error: ErrorJson::new(comparison),
-            lack_of_fit: comparison.lack_of_fit,
-            whiteness: comparison.whiteness.as_ref(),
-            input_correlation: comparison.input_correlation.as_ref(),
-            fails_where: comparison.failure.as_ref().map_or(&[], |f| &f.fails_where),
-            worst_segments: comparison.failure.as_ref().map_or(&[], |f| &f.worst_segments),
-            regions: &comparison.regions,
-            termination: comparison.termination.to_string(),
-        }
-    }
-}
-
-impl ErrorJson {
-    pub(super) fn new(comparison: &Comparison) -> Self {
-        let Comparison { training, validation, noise_floor, .. } = comparison;
-        Self { train: *training, validation: *validation, noise_floor: *noise_floor }
-    }
-}
-
-/// Parameters by name, with their standard errors and units.
-pub(super) fn parameters_json(joint: &Joint, fit: &Assessment) -> Map<String, Value> {
-    let parameter = |(parameter, unit): (&Parameter, String)| {
-        let Parameter { name, value, std_error, status } = parameter;
-        let status = status_id(*status);
-        let value = json!({
-            "value": value, "std_error": std_error, "unit": unit, "status": status,
-        });
-        (name.clone(), value)
-    };
-    fit.parameters.iter().zip(parameter_units(joint, &fit.model)).map(parameter).collect()
-}
-
-fn status_id(status: Status) -> &'static str {
-    match status {
-        Status::Fitted => "fitted",
-        Status::Fixed => "fixed",
-        Status::AtBound => "at_bound",
-        Status::Undetermined => "undetermined",
-    }
 }
 
 /// A table of errors, one row per joint and model, and the parameters below it.

@@ -1,13 +1,9 @@
-//! The next experiment: what is to be played and what is expected of it, as JSON and CSV.
+//! The next experiment: what is to be played and what is expected of it, as CSV.
 
 use std::io::Write;
 
-use serde::Serialize;
-
 use super::decisions::tidy_seconds;
-use crate::design::{
-    Design, Expected, Hold, Open, Order, Prediction, Rehearsal, Schedule, Side, Stand, transitions,
-};
+use crate::design::{Design, Hold, Order, Prediction, Schedule, Stand};
 use crate::explain::Pattern;
 
 /// The input of one joint, and what is expected of it.
@@ -54,186 +50,23 @@ impl DesignedJoint {
     }
 }
 
-/// The document of `design --format json`, schema `tauscope/design/1`.
-#[derive(Debug, Serialize)]
-pub struct DesignJson<'a> {
-    schema: &'static str,
-    version: &'static str,
-    seed: u64,
-    joints: Vec<JointJson<'a>>,
-    failures: &'a [String],
-}
-
-#[derive(Debug, Serialize)]
-struct JointJson<'a> {
-    joint: &'a str,
-    input_unit: Option<&'a str>,
-    output_unit: Option<&'a str>,
-    sample_period_s: f64,
-    duration_s: f64,
-    steps: usize,
-    levels: Vec<f64>,
-    hold_s: Ends,
-    transitions: [usize; 2],
-    start: f64,
-    output_range: Option<Ends>,
-    predicted: Option<PredictedJson>,
-    separates: Option<ToldJson>,
-    notes: &'a [String],
-    holds: Vec<HoldJson>,
-}
-
-#[derive(Debug, Serialize)]
-struct Ends {
-    low: f64,
-    high: f64,
-}
-
-#[derive(Debug, Serialize)]
-struct PredictedJson {
-    low: f64,
-    high: f64,
-    largest_margin: f64,
-    kept_until_s: Option<f64>,
-}
-
-#[derive(Debug, Serialize)]
-pub(super) struct HoldJson {
-    start_s: f64,
-    pub(super) level: f64,
-    pub(super) hold_s: f64,
-}
-
-#[derive(Debug, Serialize)]
-struct ToldJson {
-    effects: [&'static str; 2],
-    order: &'static str,
-    noise: f64,
-    power_wanted: f64,
-    power: f64,
-    explores: Vec<OpenJson>,
-    if_there: Vec<SideJson>,
-}
-
-/// What an input that explores is to find.
-#[derive(Debug, Serialize)]
-struct OpenJson {
-    effect: &'static str,
-    parameter: &'static str,
-    low: f64,
-    high: f64,
-}
-
-#[derive(Debug, Serialize)]
-struct SideJson {
-    effect: &'static str,
-    told: bool,
-    excluded: bool,
-    power: f64,
-    noncentrality: f64,
-    noncentrality_training: f64,
-    noncentrality_validation: f64,
-    noncentrality_with_neither: f64,
-    rehearsed: usize,
-    rehearsed_told: usize,
-}
-
-impl<'a> DesignJson<'a> {
-    /// Collects the results; `failures` are messages on joints that failed.
-    pub fn new(seed: u64, joints: &'a [DesignedJoint], failures: &'a [String]) -> Self {
-        let version = env!("CARGO_PKG_VERSION");
-        let joints = joints.iter().map(JointJson::new).collect();
-        Self { schema: "tauscope/design/1", version, seed, joints, failures }
-    }
-}
-
-impl<'a> JointJson<'a> {
-    fn new(joint: &'a DesignedJoint) -> Self {
-        let DesignedJoint { stand, schedule, .. } = joint;
-        let ((shortest, longest), (least, most)) = (schedule.hold_range_s(), transitions(schedule));
-        Self {
-            joint: &stand.name,
-            input_unit: stand.input_unit.as_deref(),
-            output_unit: stand.output_unit.as_deref(),
-            sample_period_s: schedule.period().seconds(),
-            duration_s: schedule.duration_s(),
-            steps: schedule.steps(),
-            levels: schedule.levels(),
-            hold_s: Ends { low: shortest, high: longest },
-            transitions: [least, most],
-            start: stand.start,
-            output_range: stand.range.map(|(low, high)| Ends { low, high }),
-            predicted: joint.prediction.as_ref().map(|prediction| predicted(joint, prediction)),
-            separates: joint.told.as_ref().map(ToldJson::new),
-            notes: &joint.notes,
-            holds: holds(schedule),
-        }
-    }
-}
-
-fn predicted(joint: &DesignedJoint, prediction: &Prediction) -> PredictedJson {
-    let (low, high) = prediction.extent();
-    let largest_margin = prediction.largest_margin();
-    PredictedJson { low, high, largest_margin, kept_until_s: kept_until_s(joint, prediction) }
-}
-
 pub(super) fn kept_until_s(joint: &DesignedJoint, prediction: &Prediction) -> Option<f64> {
     let sample = prediction.kept_until(joint.stand.range?)?;
     Some(sample as f64 * joint.schedule.period().seconds())
 }
 
-pub(super) fn holds(schedule: &Schedule) -> Vec<HoldJson> {
+/// Start, level and duration of each hold, in seconds and input units.
+pub(super) fn holds(schedule: &Schedule) -> Vec<(f64, f64, f64)> {
     let period_s = schedule.period().seconds();
     let hold = |start: &mut usize, hold: &Hold| {
         let start_s = tidy_seconds(*start as f64 * period_s);
         *start += hold.samples;
-        let hold_s = tidy_seconds(hold.samples as f64 * period_s);
-        Some(HoldJson { start_s, level: hold.level, hold_s })
+        Some((start_s, hold.level, tidy_seconds(hold.samples as f64 * period_s)))
     };
     schedule.holds().iter().scan(0, hold).collect()
 }
 
-impl ToldJson {
-    fn new(told: &Told) -> Self {
-        let Told { ids, design, wanted, noise, .. } = told;
-        let sides = ids.iter().zip(&design.sides);
-        Self {
-            effects: *ids,
-            order: order(design.order),
-            noise: *noise,
-            power_wanted: *wanted,
-            power: design.power(),
-            explores: design.explores.iter().map(OpenJson::new).collect(),
-            if_there: sides.map(|(effect, side)| SideJson::new(effect, side)).collect(),
-        }
-    }
-}
-
-impl OpenJson {
-    fn new(Open { effect, parameter, low, high }: &Open) -> Self {
-        Self { effect, parameter, low: *low, high: *high }
-    }
-}
-
-impl SideJson {
-    fn new(effect: &'static str, side: &Side) -> Self {
-        let Expected { rival, neither, .. } = side.expected;
-        let Rehearsal { told, of } = side.rehearsal.unwrap_or_default();
-        Self {
-            effect,
-            told: side.is_told,
-            excluded: side.is_excluded,
-            power: side.expected.power(),
-            noncentrality: rival.noncentrality(),
-            noncentrality_training: rival.training,
-            noncentrality_validation: rival.validation,
-            noncentrality_with_neither: neither.noncentrality(),
-            rehearsed: of,
-            rehearsed_told: told,
-        }
-    }
-}
-
+/// What the order of the levels is called.
 pub(super) fn order(order: Order) -> &'static str {
     match order {
         Order::Pattern(Pattern::Ladder) => "ladder",

@@ -176,7 +176,8 @@ fn level_by_level(joint: &DesignedJoint) -> String {
     let holds = holds(&joint.schedule);
     let unit = joint.stand.input_unit.as_deref();
     let shown = holds.iter().take(SHOWN);
-    let shown = shown.map(|h| format!("{} for {} s", measure(h.level, unit), rounded(h.hold_s)));
+    let shown = shown
+        .map(|(_, level, hold_s)| format!("{} for {} s", measure(*level, unit), rounded(*hold_s)));
     let more = match holds.len().saturating_sub(SHOWN) {
         0 => String::new(),
         more => format!(", and {more} more"),

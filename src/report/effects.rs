@@ -1,6 +1,4 @@
-//! The catalogue as text for people and as data for programs.
-
-use serde::Serialize;
+//! The catalogue as text for people.
 
 use crate::effect::{Effect, Parameter, REGISTRY, Spec, UNLIMITED};
 
@@ -27,82 +25,6 @@ pub fn sheet(effect: &dyn Effect, width: usize) -> String {
     }
     lines.extend(wrapped(&format!("source: {}", spec.source), width));
     lines.join("\n") + "\n"
-}
-
-/// The catalogue as data, schema `tauscope/effects/1`.
-#[derive(Clone, Debug, Serialize)]
-pub struct EffectsJson {
-    schema: &'static str,
-    version: &'static str,
-    effects: Vec<EffectJson>,
-}
-
-#[derive(Clone, Debug, Serialize)]
-struct EffectJson {
-    id: &'static str,
-    summary: &'static str,
-    equation: &'static str,
-    source: &'static str,
-    stage: &'static str,
-    drawing: Option<&'static str>,
-    parameters: Vec<ParameterJson>,
-    memory: usize,
-    confused_with: &'static [&'static str],
-    absorbs: &'static [&'static str],
-    refines: Option<&'static str>,
-    acts_on_state: bool,
-    units: Vec<String>,
-}
-
-#[derive(Clone, Debug, Serialize)]
-struct ParameterJson {
-    name: &'static str,
-    meaning: &'static str,
-    dimension: &'static str,
-    neutral: f64,
-    min: f64,
-    max: f64,
-    typical: f64,
-    fitted: bool,
-}
-
-impl EffectsJson {
-    /// Collects `effects`; `units` are in the order of the parameters.
-    pub fn new(effects: &[&dyn Effect]) -> Self {
-        Self {
-            schema: "tauscope/effects/1",
-            version: env!("CARGO_PKG_VERSION"),
-            effects: effects.iter().map(|effect| effect.spec().into()).collect(),
-        }
-    }
-}
-
-impl From<&'static Spec> for EffectJson {
-    fn from(spec: &'static Spec) -> Self {
-        Self {
-            id: spec.id,
-            summary: spec.summary,
-            equation: spec.equation,
-            source: spec.source,
-            stage: spec.stage.id(),
-            drawing: spec.drawing,
-            parameters: spec.parameters.iter().map(ParameterJson::from).collect(),
-            memory: spec.memory,
-            confused_with: spec.confused_with,
-            absorbs: spec.absorbs,
-            refines: spec.refines,
-            acts_on_state: spec.acts_on_state,
-            units: spec.parameters.iter().map(unit).collect(),
-        }
-    }
-}
-
-impl From<&Parameter> for ParameterJson {
-    fn from(parameter: &Parameter) -> Self {
-        let Parameter { name, meaning, dimension, neutral, min, max, typical, fitted } = *parameter;
-        let dimension = dimension.id();
-        Self { name, meaning, dimension, neutral, min, max, typical, fitted }
-    }
 }
 
 fn lines_of(spec: &Spec, width: usize) -> Vec<String> {
@@ -221,15 +143,5 @@ input_saturation (input)
             assert!(text.lines().all(|line| line.chars().count() <= width), "{text}");
             assert!(REGISTRY.iter().all(|effect| text.contains(effect.spec().id)));
         }
-    }
-
-    #[test]
-    fn the_data_have_a_schema_and_units() {
-        let json = serde_json::to_value(EffectsJson::new(REGISTRY)).unwrap();
-        assert_eq!(json["schema"], "tauscope/effects/1");
-        assert_eq!(json["effects"][7]["id"], "variable_delay");
-        assert_eq!(json["effects"][7]["units"][0], "s/input unit");
-        assert_eq!(json["effects"][7]["parameters"][0]["dimension"], "seconds_per_input");
-        assert_eq!(json["effects"][17]["parameters"][1]["neutral"], 1e12);
     }
 }

@@ -1,12 +1,9 @@
-//! What `explain` and `improve` have found of a joint, as JSON and as a table.
+//! What `explain` and `improve` have found of a joint, as a table.
 
 use comfy_table::{Table, presets};
-use serde::Serialize;
-use serde_json::{Map, Value};
 
 use super::ComparedJoint;
-use super::compare::{align_right, parameters_json};
-use super::separation::SeparationJson;
+use super::compare::align_right;
 use crate::effect::Spec;
 use crate::experiment::Joint;
 use crate::explain::{Candidate, Verdict};
@@ -26,43 +23,6 @@ pub struct Finding<'a> {
     pub add_arguments: &'a str,
 }
 
-/// A candidate in a ranking.
-#[derive(Debug, Serialize)]
-pub(super) struct CandidateJson<'a> {
-    effect: String,
-    effects: &'a [&'static str],
-    equation: Vec<&'static str>,
-    train_rmse: Option<f64>,
-    validation_rmse: Option<f64>,
-    error_reduction_percent: f64,
-    p_value: f64,
-    share_of_misfit: f64,
-    parameters: Map<String, Value>,
-    indistinguishable_from: &'a [&'static str],
-    separated_by: Vec<SeparationJson<'a>>,
-    noise_floor: Option<f64>,
-}
-
-impl<'a> CandidateJson<'a> {
-    pub(super) fn new(joint: &Joint, candidate: &'a Candidate) -> Self {
-        let separations = candidate.separated_by.iter();
-        Self {
-            effect: candidate.name(),
-            effects: &candidate.effects,
-            equation: specs(candidate).map(|spec| spec.equation).collect(),
-            train_rmse: candidate.training.map(|error| error.rmse),
-            validation_rmse: candidate.validation.map(|error| error.rmse),
-            error_reduction_percent: candidate.error_reduction_percent,
-            p_value: candidate.p_value,
-            share_of_misfit: candidate.share_of_misfit,
-            parameters: own_parameters(joint, candidate),
-            indistinguishable_from: &candidate.indistinguishable_from,
-            separated_by: separations.map(|s| SeparationJson::new(joint, s)).collect(),
-            noise_floor: candidate.noise_floor,
-        }
-    }
-}
-
 /// The effects that a candidate added, in its order.
 pub(super) fn added(candidate: &Candidate) -> impl Iterator<Item = &Component> {
     let components = candidate.fit.model.components();
@@ -73,18 +33,6 @@ pub(super) fn added(candidate: &Candidate) -> impl Iterator<Item = &Component> {
 
 pub(super) fn specs(candidate: &Candidate) -> impl Iterator<Item = &'static Spec> {
     added(candidate).map(|component| component.effect().spec())
-}
-
-/// The parameters of what was added: `upper` of one effect, `dead_band.upper` of several.
-fn own_parameters(joint: &Joint, candidate: &Candidate) -> Map<String, Value> {
-    let own = |name: String| {
-        let (effect, short) = name.split_once('.')?;
-        let is_added = candidate.effects.contains(&effect);
-        let short = if candidate.effects.len() == 1 { short.to_owned() } else { name.clone() };
-        is_added.then_some(short)
-    };
-    let all = parameters_json(joint, &candidate.fit);
-    all.into_iter().filter_map(|(name, value)| Some((own(name)?, value))).collect()
 }
 
 /// The candidates, best first.

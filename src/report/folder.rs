@@ -1,6 +1,5 @@
 //! The results of many logs, each by itself, in one table.
 
-use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use comfy_table::{CellAlignment, Table, presets};
@@ -20,20 +19,8 @@ pub struct LogResult {
 /// The results of many logs, in the order of the logs' names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FolderReport {
-    command: String,
-    logs: Vec<LogResult>,
-}
-
-/// The document of `--results … --format json` and `merge`, schema `tauscope/folder/1`.
-#[derive(Debug, Serialize)]
-pub struct FolderJson {
-    schema: &'static str,
-    version: &'static str,
-    command: String,
-    logs: Vec<String>,
-    joints: Vec<Value>,
-    summary: Vec<Value>,
-    failures: Vec<String>,
+    pub(super) command: String,
+    pub(super) logs: Vec<LogResult>,
 }
 
 impl FolderReport {
@@ -66,8 +53,9 @@ impl FolderReport {
 
     /// The joints of all logs, each with its log.
     fn joints(&self) -> impl Iterator<Item = (&LogResult, &Value)> {
-        let joints = |log| array(log_document(log), "joints").map(move |joint| (log, joint));
-        self.logs.iter().flat_map(joints)
+        self.logs
+            .iter()
+            .flat_map(|log| array(&log.document, "joints").map(move |joint| (log, joint)))
     }
 
     /// The decisions of all logs: the columns of `--decisions` behind one for the log.
@@ -103,7 +91,7 @@ impl FolderReport {
         table
     }
 
-    fn summary_rows(&self) -> impl Iterator<Item = Map<String, Value>> {
+    pub(super) fn summary_rows(&self) -> impl Iterator<Item = Map<String, Value>> {
         let row = |(log, joint): (&LogResult, &Value)| {
             let at = |pointer: &str| joint.pointer(pointer).cloned().unwrap_or_default();
             let cells: Vec<(&str, Value)> = if self.command == "improve" {
@@ -132,7 +120,7 @@ impl FolderReport {
     }
 
     /// What each joint has in all its logs.
-    fn across(&self) -> Vec<Across> {
+    pub(super) fn across(&self) -> Vec<Across> {
         let mut across: Vec<Across> = Vec::new();
         for (_, joint) in self.joints() {
             let name = joint.get("joint").and_then(Value::as_str).unwrap_or_default();
@@ -197,10 +185,6 @@ const IMPROVED: [(&str, Kind); 8] = [
     ("noise_floor", Kind::Real),
 ];
 
-fn log_document(log: &LogResult) -> &Value {
-    &log.document
-}
-
 /// The elements of an array in a document; none where it has no such array.
 fn array<'a>(document: &'a Value, name: &str) -> impl Iterator<Item = &'a Value> + use<'a> {
     document.get(name).and_then(Value::as_array).into_iter().flatten()
@@ -212,17 +196,17 @@ fn texts(document: &Value, name: &str) -> Vec<String> {
 
 /// One joint in all its logs.
 #[derive(Debug, Default)]
-struct Across {
-    joint: String,
-    logs: usize,
-    steps: u64,
-    accepted: u64,
-    delays_s: Vec<f64>,
-    medians_s: Vec<f64>,
-    adequate: usize,
-    rmse: Vec<f64>,
+pub(super) struct Across {
+    pub(super) joint: String,
+    pub(super) logs: usize,
+    pub(super) steps: u64,
+    pub(super) accepted: u64,
+    pub(super) delays_s: Vec<f64>,
+    pub(super) medians_s: Vec<f64>,
+    pub(super) adequate: usize,
+    pub(super) rmse: Vec<f64>,
     /// Effects, and in how many logs they are in the model.
-    effects: Vec<(String, usize)>,
+    pub(super) effects: Vec<(String, usize)>,
 }
 
 impl Across {
@@ -265,18 +249,6 @@ impl Across {
         cells.push(effects.join(", "));
         cells
     }
-
-    fn json(&self) -> Value {
-        let range = |values: &[f64]| DelayRange::of(values.to_vec());
-        let effects: Map<String, Value> =
-            self.effects.iter().map(|(name, logs)| (name.clone(), (*logs).into())).collect();
-        json!({
-            "joint": self.joint, "logs": self.logs, "steps": self.steps,
-            "accepted": self.accepted, "delay_s": range(&self.delays_s),
-            "median_delay_s_of_logs": range(&self.medians_s), "adequate": self.adequate,
-            "validation_rmse": range(&self.rmse), "effects": effects,
-        })
-    }
 }
 
 fn range_cells(values: &[f64], unit: &str) -> [String; 3] {
@@ -284,19 +256,4 @@ fn range_cells(values: &[f64], unit: &str) -> [String; 3] {
     range.map_or_else(Default::default, |range| {
         [range.min, range.median, range.max].map(|value| format!("{value:.3}{unit}"))
     })
-}
-
-impl FolderJson {
-    /// Collects what `report` holds; `failures` are messages on logs that failed.
-    pub fn new(report: &FolderReport, failures: &[String]) -> Self {
-        Self {
-            schema: "tauscope/folder/1",
-            version: env!("CARGO_PKG_VERSION"),
-            command: report.command.clone(),
-            logs: report.logs.iter().map(|log| log.file.clone()).collect(),
-            joints: report.across().iter().map(Across::json).collect(),
-            summary: report.summary_rows().map(Value::Object).collect(),
-            failures: failures.to_vec(),
-        }
-    }
 }

@@ -1,19 +1,13 @@
-//! `improve` as text and JSON: the ladder of errors.
+//! `improve` as text: the ladder of errors.
 
 use comfy_table::{Table, presets};
-use serde::Serialize;
-use serde_json::{Map, Value};
 
-use super::compare::{
-    ComparedJoint, ErrorJson, JointJson, align_right, figures, parameters, parameters_json,
-};
-use super::explain::FindingJson;
+use super::compare::{ComparedJoint, align_right, figures, parameters};
 use super::finding::Finding;
 use super::words::{Words, printed};
-use crate::diagnosis::LackOfFit;
 use crate::experiment::Joint;
 use crate::explain::{Candidate, Change, Revision, Verdict};
-use crate::wording::{effect_ids, effects_text};
+use crate::wording::effects_text;
 
 /// A joint whose model was improved.
 #[derive(Clone, Copy, Debug)]
@@ -26,51 +20,6 @@ pub struct ImprovedJoint<'a> {
     pub first_revision: u32,
     /// Whether it was stopped before it came to an end.
     pub interrupted: bool,
-}
-
-/// The document of `improve --format json`, schema `tauscope/improve/1`.
-#[derive(Debug, Serialize)]
-pub struct ImproveJson<'a> {
-    schema: &'static str,
-    version: &'static str,
-    joints: Vec<ImprovedJson<'a>>,
-    failures: &'a [String],
-}
-
-#[derive(Debug, Serialize)]
-struct ImprovedJson<'a> {
-    #[serde(flatten)]
-    joint: JointJson<'a>,
-    revisions: Vec<RevisionJson>,
-    interrupted: bool,
-    #[serde(flatten)]
-    finding: FindingJson<'a>,
-}
-
-#[derive(Debug, Serialize)]
-struct RevisionJson {
-    revision: u32,
-    added: Option<&'static str>,
-    removed: Option<&'static str>,
-    effects: Vec<&'static str>,
-    parameters: Map<String, Value>,
-    error: ErrorJson,
-    lack_of_fit: Option<LackOfFit>,
-}
-
-impl<'a> ImproveJson<'a> {
-    /// Collects the results; `failures` are messages on joints and files that failed.
-    pub fn new(joints: &[ImprovedJoint<'a>], failures: &'a [String]) -> Self {
-        let joint = |improved: &ImprovedJoint<'a>| ImprovedJson {
-            joint: JointJson::new(&improved.finding.compared),
-            revisions: improved.numbered().map(|(n, r)| improved.revision_json(n, r)).collect(),
-            interrupted: improved.interrupted,
-            finding: FindingJson::new(&improved.finding),
-        };
-        let joints = joints.iter().map(joint).collect();
-        let version = env!("CARGO_PKG_VERSION");
-        Self { schema: "tauscope/improve/1", version, joints, failures }
-    }
 }
 
 impl<'a> ImprovedJoint<'a> {
@@ -125,25 +74,6 @@ impl<'a> ImprovedJoint<'a> {
                 commands: Vec::new(),
             },
             None => finding.words(),
-        }
-    }
-
-    fn revision_json(&self, number: u32, revision: &Revision) -> RevisionJson {
-        let (added, removed) = match revision.change {
-            Change::Start => (None, None),
-            Change::Added(id) => (Some(id), None),
-            Change::Removed(id) => (None, Some(id)),
-            Change::Replaced { old, new } => (Some(new), Some(old)),
-        };
-        let fit = &revision.comparison.fit;
-        RevisionJson {
-            revision: number,
-            added,
-            removed,
-            effects: effect_ids(&fit.model),
-            parameters: parameters_json(self.finding.compared.joint, fit),
-            error: ErrorJson::new(&revision.comparison),
-            lack_of_fit: revision.comparison.lack_of_fit,
         }
     }
 

@@ -1,54 +1,8 @@
-//! The experiment that would tell two effects apart, in words and as JSON.
-
-use serde::Serialize;
+//! The experiment that would tell two effects apart.
 
 use crate::experiment::Joint;
 use crate::explain::{Pattern, Proposal, Separation, Start};
 use crate::wording::{listed, measure, rounded, unit_suffix};
-
-/// A [`Separation`] in a document.
-#[derive(Debug, Serialize)]
-pub(super) struct SeparationJson<'a> {
-    other: &'static str,
-    experiment: Option<String>,
-    times_noise: f64,
-    after_s: f64,
-    pattern: &'static str,
-    levels: &'a [f64],
-    hold_s: f64,
-    duration_s: f64,
-    starts: Vec<StartJson>,
-}
-
-#[derive(Debug, Serialize)]
-struct StartJson {
-    output: f64,
-    others: f64,
-    worked_s: f64,
-}
-
-impl<'a> SeparationJson<'a> {
-    pub(super) fn new(joint: &Joint, separation: &'a Separation) -> Self {
-        let Separation { other, proposal, times_noise, after_s, is_clear } = separation;
-        let start =
-            |s: &Start| StartJson { output: s.angle, others: s.others, worked_s: s.worked_s };
-        Self {
-            other,
-            experiment: is_clear.then(|| experiment(joint, separation)),
-            times_noise: *times_noise,
-            after_s: *after_s,
-            pattern: match proposal.pattern {
-                Pattern::Ladder => "ladder",
-                Pattern::Pulses => "pulses",
-                Pattern::Reversals => "reversals",
-            },
-            levels: &proposal.levels,
-            hold_s: proposal.hold_s,
-            duration_s: proposal.duration_s(),
-            starts: proposal.starts.iter().map(start).collect(),
-        }
-    }
-}
 
 /// What would tell an effect from another, or that nothing would.
 pub(super) fn sentence(joint: &Joint, separation: &Separation) -> String {
@@ -68,7 +22,7 @@ pub(super) fn sentence(joint: &Joint, separation: &Separation) -> String {
 const UNSEEN: f64 = 0.1;
 
 /// `hold 0.3, 0.4, 0.5 V for 2 s each, …: after 6 s the two differ by 14 times the noise`.
-fn experiment(joint: &Joint, separation: &Separation) -> String {
+pub(super) fn experiment(joint: &Joint, separation: &Separation) -> String {
     let Separation { proposal, times_noise, after_s, .. } = separation;
     let (after, times) = (rounded(*after_s), rounded(*times_noise));
     let beyond = if is_beyond(joint, proposal) { " (more than in this record)" } else { "" };
@@ -175,8 +129,6 @@ mod tests {
         assert!(said.starts_with("No input that was tried") && said.ends_with("another gain."));
         let same = Separation { times_noise: 0.0, ..separation.clone() };
         assert!(sentence(&joint(), &same).ends_with("the two do the same."));
-        let json = serde_json::to_value(SeparationJson::new(&joint(), &separation)).unwrap();
-        assert_eq!((&json["other"], &json["experiment"]), (&"stiction".into(), &().into()));
     }
 
     #[test]

@@ -6,7 +6,7 @@ use super::{EstimatedJoint, decision_rows};
 use crate::delay::Condition;
 
 /// How many steps were accepted, why the others were not, and what the delays are.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct JointSummary {
     /// Input steps in all trials.
     pub steps: usize,

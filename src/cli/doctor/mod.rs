@@ -11,6 +11,7 @@ use serde::Serialize;
 use super::Completion;
 use super::fitting::Format;
 use super::terminal::{self, Tone};
+use crate::report::Header;
 
 /// Say what is missing to make recordings and to look at them
 ///
@@ -63,8 +64,8 @@ impl Check {
 /// JSON, schema `tauscope/doctor/1`.
 #[derive(Serialize)]
 struct DoctorJson<'a> {
-    schema: &'static str,
-    version: &'static str,
+    #[serde(flatten)]
+    header: Header,
     /// Nothing is missing.
     complete: bool,
     checks: &'a [Check],
@@ -78,8 +79,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Completion> {
     match args.format {
         Format::Text => terminal::print(&text(&checks))?,
         Format::Json => terminal::print_json(&DoctorJson {
-            schema: "tauscope/doctor/1",
-            version: env!("CARGO_PKG_VERSION"),
+            header: Header::of("tauscope/doctor/1"),
             complete,
             checks: &checks,
         })?,

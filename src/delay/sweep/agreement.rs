@@ -4,8 +4,6 @@
 //! distance of its candidates; both are widened by a tolerance. The delays that most
 //! ranges hold are those that most settings can agree on; who holds all of them, agrees.
 
-use serde::Serialize;
-
 use crate::delay::{Decision, Settings};
 
 /// What a run tells of a step that it accepted; samples.
@@ -38,7 +36,7 @@ impl Told {
 }
 
 /// What most combinations can agree on; samples.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Agreement {
     /// The median delay of those that agree.
     pub delay: f64,

@@ -1,7 +1,5 @@
 //! All steps of a joint over all settings: what most say, and what a delay hangs on.
 
-use serde::Serialize;
-
 use super::agreement::{Agreement, Told, gap};
 use super::grid::{Combination, Factor, Grid};
 use crate::delay::{Lag, Settings, TrialEstimate, input_steps};
@@ -85,7 +83,7 @@ pub struct SweptStep {
 }
 
 /// How far delays lie from each other.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
     /// The least.
     pub min: f64,
@@ -127,7 +125,7 @@ pub struct RunSummary {
 }
 
 /// All combinations with one value of a setting, over all steps of a joint.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LevelSummary {
     /// The part of the steps that is accepted.
     pub accepted: f64,

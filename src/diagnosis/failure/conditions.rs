@@ -2,8 +2,6 @@
 
 use std::fmt;
 
-use serde::Serialize;
-
 use super::axis::Axis;
 use super::feature::Feature;
 use super::grid::{Choice, Grid, Selection};
@@ -94,7 +92,7 @@ impl Clause {
 }
 
 /// A condition that holds more of the squared error than of the time.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FailsWhere {
     /// One clause, or two joined by `and`; numbers in the units of the log, seconds.
     pub condition: String,
@@ -108,10 +106,8 @@ pub struct FailsWhere {
     /// How often chance gives a condition as good, at most 0.01; see [`fails_where`].
     pub p_value: f64,
     /// The condition's clauses.
-    #[serde(skip)]
     pub clauses: Vec<Clause>,
     /// The samples for which it holds, counted from 0.
-    #[serde(skip)]
     pub samples: Vec<usize>,
 }
 

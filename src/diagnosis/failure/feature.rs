@@ -2,8 +2,6 @@
 
 use std::fmt;
 
-use serde::{Serialize, Serializer};
-
 use super::record::{Samples, Units};
 
 /// Something that is known of every sample.
@@ -114,12 +112,6 @@ impl Feature {
 /// -1, 0, 1, or NaN where the value is not known.
 fn sign(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value.signum() }
-}
-
-impl Serialize for Feature {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.id())
-    }
 }
 
 impl fmt::Display for Feature {

@@ -26,10 +26,8 @@ pub use record::{RecordError, ResidualRecord, Samples, Units};
 pub use regions::{Region, regions};
 pub use segments::{WorstSegment, worst_segments};
 
-use serde::Serialize;
-
 /// Where a model fails: what is named of it. All parts are [`regions`].
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Diagnosis {
     /// The conditions that hold most of the squared error, the best first.
     pub fails_where: Vec<FailsWhere>,

@@ -1,7 +1,5 @@
 //! The record cut by each feature, and the error in each part.
 
-use serde::Serialize;
-
 use super::axis::Axis;
 use super::feature::Feature;
 use super::record::ResidualRecord;
@@ -10,7 +8,7 @@ use super::record::ResidualRecord;
 const PARTS: usize = 10;
 
 /// A part of the record in which a feature is between two bounds.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Region {
     /// The feature.
     pub feature: Feature,

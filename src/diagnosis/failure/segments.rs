@@ -2,12 +2,10 @@
 
 use std::ops::Range;
 
-use serde::Serialize;
-
 use super::record::ResidualRecord;
 
 /// A segment with a larger share of the squared error than of the time.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct WorstSegment {
     /// Label of its trial.
     pub trial: String,
@@ -20,7 +18,6 @@ pub struct WorstSegment {
     /// Its share of the sum of squared residuals.
     pub share_of_squared_error: f64,
     /// Its samples, counted from 0 over all trials.
-    #[serde(skip)]
     pub samples: Range<usize>,
 }
 

@@ -1,10 +1,10 @@
 //! The delays of a joint: over time, and against its state.
 
 use super::document::Figure;
+use super::layout::{HALF, WIDTH};
 use super::palette::Role;
 use super::plot::{Axis, Mark, Panel, Place, PlotError, Shape, draw};
 use super::timeline::Timeline;
-use super::{HALF, WIDTH};
 use crate::delay::{AgainstState, Correlation, DelayProfile};
 use crate::report::EstimatedJoint;
 use crate::report::against::variable_text;

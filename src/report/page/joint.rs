@@ -2,7 +2,8 @@
 
 use super::document::{Block, Table};
 use super::plot::PlotError;
-use super::{Report, delays, model, record, segment};
+use super::report::Report;
+use super::{delays, model, record, segment};
 use crate::delay::{AgainstState, Condition};
 use crate::report::against::{AGAINST_HEADER, against_rows};
 use crate::report::decisions::detailed_rows;

@@ -1,7 +1,7 @@
 //! The ladder of errors: how the error falls from revision to revision.
 
-use super::WIDTH;
 use super::document::{Figure, Table};
+use super::layout::WIDTH;
 use super::palette::Role;
 use super::plot::{Axis, Mark, Panel, PlotError, Shape, draw};
 use crate::explain::Revision;

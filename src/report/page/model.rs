@@ -2,7 +2,8 @@
 
 use super::document::{Block, Table};
 use super::plot::PlotError;
-use super::{Report, ladder, share, simulated};
+use super::report::Report;
+use super::{ladder, share, simulated};
 use crate::diagnosis::Comparison;
 use crate::effect::Stage;
 use crate::explain::{Candidate, Revision, Verdict};

@@ -1,7 +1,7 @@
 //! What a report was made from and with, so that it can be made again.
 
 use super::document::{Attachment, Block, Table};
-use super::{RecordingFile, Report};
+use super::report::{RecordingFile, Report};
 use crate::report::chosen_line;
 use crate::report::settings::settings_rows;
 

@@ -1,10 +1,10 @@
 //! The whole record of a joint: its output with the breakpoints, and its input.
 
 use super::document::Figure;
+use super::layout::{WIDTH, values_of};
 use super::palette::Role;
 use super::plot::{Axis, Mark, Panel, Place, PlotError, Shape, draw};
 use super::timeline::Timeline;
-use super::{WIDTH, values_of};
 use crate::delay::{Decision, Verdict};
 use crate::experiment::Trial;
 use crate::report::EstimatedJoint;

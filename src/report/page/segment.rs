@@ -1,7 +1,7 @@
 //! Single decisions: the segment with both lines, and the error of every candidate.
 
-use super::NARROW;
 use super::document::Figure;
+use super::layout::NARROW;
 use super::palette::Role;
 use super::plot::{Axis, Mark, Panel, Place, PlotError, Shape, draw};
 use crate::delay::{Candidate, Condition, Decision, Line, Verdict};

@@ -1,7 +1,7 @@
 //! How a model's error is shared: by the feature that it goes with most.
 
-use super::HALF;
 use super::document::Figure;
+use super::layout::HALF;
 use super::palette::Role;
 use super::plot::{Axis, Mark, Panel, PlotError, Shape, draw};
 use crate::diagnosis::failure::{Feature, Region, Units};

@@ -1,10 +1,10 @@
 //! A model beside the measurement: what it simulates, what is left, and where that is most.
 
 use super::document::Figure;
+use super::layout::{HALF, WIDTH, values_of};
 use super::palette::Role;
 use super::plot::{Axis, Mark, Panel, Place, PlotError, Shape, draw};
 use super::timeline::Timeline;
-use super::{HALF, WIDTH, values_of};
 use crate::diagnosis::failure::WorstSegment;
 use crate::experiment::{Joint, Trial};
 use crate::fit::{FitRecord, Horizon, Part, Split, Window};

@@ -1,10 +1,8 @@
 //! How delays move with the settings, as text and JSON.
 
-mod json;
 mod sets;
 mod text;
 
-pub use json::SweepJson;
 pub use text::{StepsShown, sweep_text};
 #[cfg(feature = "rrd")]
 pub(crate) use text::{hangs_on, level_cell, settings_in_words, sweep_sentences};
@@ -46,7 +44,7 @@ pub(crate) fn run_text(settings: &Settings) -> String {
 }
 
 /// A value of a setting as an option takes it.
-fn value(grid: &Grid, factor: Factor, level: usize) -> String {
+pub(super) fn value(grid: &Grid, factor: Factor, level: usize) -> String {
     let found = match factor {
         Factor::Method => grid.bases().get(level).map(|base| base.settings.method.to_string()),
         Factor::Passband => grid.passbands().get(level).map(|low_pass| {

@@ -1,14 +1,15 @@
-//! What `report` prints: a line or two per joint.
+//! Schema `tauscope/report/1`.
 
 use serde::Serialize;
 
-use super::Report;
+use super::header::Header;
+use crate::report::page::Report;
 
-/// The document of `report --format json`, schema `tauscope/report/1`.
+/// The document of `report --format json`: a sentence or two per joint.
 #[derive(Debug, Serialize)]
 pub struct ReportJson<'a> {
-    schema: &'static str,
-    version: &'static str,
+    #[serde(flatten)]
+    header: Header,
     report: String,
     recording: Option<String>,
     joints: Vec<SentenceJson<'a>>,
@@ -26,18 +27,11 @@ impl<'a> ReportJson<'a> {
     pub fn new(report: &'a Report<'_>, path: String, recording: Option<String>) -> Self {
         let joints = report.sentences().into_iter();
         Self {
-            schema: "tauscope/report/1",
-            version: env!("CARGO_PKG_VERSION"),
+            header: Header::of("tauscope/report/1"),
             report: path,
             recording,
             joints: joints.map(|(joint, sentence)| SentenceJson { joint, sentence }).collect(),
             failures: report.failures,
         }
     }
-}
-
-/// What is said of each joint.
-pub fn report_text(report: &Report<'_>) -> String {
-    let lines = report.sentences().into_iter();
-    lines.map(|(joint, sentence)| [joint, ": ", &sentence, "\n"].concat()).collect()
 }

@@ -1,20 +1,25 @@
-//! `sweep` as JSON, numbers in full precision.
+//! Schema `tauscope/sweep/1`, numbers in full precision.
 
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use super::{ReportedSweep, value};
-use crate::delay::sweep::{Factor, Grid, Hanging, LevelSummary, RunSummary, SweptStep};
-use crate::delay::{LagPart, Settings};
+use super::estimate::LagPartJson;
+use super::header::Header;
+use super::settings::SettingsJson;
+use crate::delay::Settings;
+use crate::delay::sweep::{
+    Agreement, Factor, Grid, Hanging, LevelSummary, RunSummary, Spread, SweptStep,
+};
+use crate::report::sweep::{ReportedSweep, value};
 
-/// The document of `sweep --format json`, schema `tauscope/sweep/1`.
+/// The document of `sweep --format json`.
 #[derive(Debug, Serialize)]
 pub struct SweepJson<'a> {
-    schema: &'static str,
-    version: &'static str,
+    #[serde(flatten)]
+    header: Header,
     tolerance_samples: f64,
     combinations: usize,
-    settings: Vec<RunJson<'a>>,
+    settings: Vec<RunJson>,
     joints: Vec<JointJson<'a>>,
     notes: &'a [String],
     failures: &'a [String],
@@ -22,10 +27,10 @@ pub struct SweepJson<'a> {
 
 /// A run, and how many combinations it stands for.
 #[derive(Debug, Serialize)]
-struct RunJson<'a> {
+struct RunJson {
     combinations: usize,
     #[serde(flatten)]
-    settings: &'a Settings,
+    settings: SettingsJson,
 }
 
 #[derive(Debug, Serialize)]
@@ -48,7 +53,7 @@ struct SettingJson {
     median_delay_s: Option<f64>,
     disagreements: usize,
     agrees: Option<f64>,
-    lag_mean_s: Option<LagPart>,
+    lag_mean_s: Option<LagPartJson>,
 }
 
 /// A step over all runs; delays in samples.
@@ -65,7 +70,7 @@ struct StepJson<'a> {
     agreed: Value,
     settled: bool,
     delay_hangs_on: Option<Value>,
-    verdict_hangs_on: Option<Factor>,
+    verdict_hangs_on: Option<&'static str>,
     apart_samples: f64,
     delays: Vec<Option<f64>>,
 }
@@ -82,11 +87,10 @@ impl<'a> SweepJson<'a> {
     ) -> Self {
         let run = |(index, settings): (usize, &'a Settings)| {
             let combinations = grid.combinations().iter().filter(|one| one.run == index).count();
-            RunJson { combinations, settings }
+            RunJson { combinations, settings: settings.into() }
         };
         Self {
-            schema: "tauscope/sweep/1",
-            version: env!("CARGO_PKG_VERSION"),
+            header: Header::of("tauscope/sweep/1"),
             tolerance_samples,
             combinations: grid.combinations().len(),
             settings: grid.runs().iter().enumerate().map(run).collect(),
@@ -104,11 +108,12 @@ impl<'a> JointJson<'a> {
             let on = |step: &&SweptStep| {
                 step.delay_hangs_on.as_ref().is_some_and(|hanging| hanging.factor == factor)
             };
-            (id(factor), sweep.steps.iter().filter(on).count().into())
+            (id(factor).to_owned(), sweep.steps.iter().filter(on).count().into())
         };
         let agreeing = reported.agreeing().into_iter().enumerate();
         let levels = Factor::ALL.into_iter().zip(&sweep.levels);
-        let levels = levels.map(|(factor, levels)| (id(factor), levels_json(grid, factor, levels)));
+        let levels = levels
+            .map(|(factor, levels)| (id(factor).to_owned(), levels_json(grid, factor, levels)));
         Self {
             joint: &reported.joint.name,
             steps: sweep.steps.len(),
@@ -124,14 +129,13 @@ impl<'a> JointJson<'a> {
 }
 
 /// The name of a factor as a key.
-fn id(factor: Factor) -> String {
-    let id = match factor {
+fn id(factor: Factor) -> &'static str {
+    match factor {
         Factor::Method => "method",
         Factor::Passband => "passband",
         Factor::Alpha => "alpha",
         Factor::Beta => "beta",
-    };
-    id.to_owned()
+    }
 }
 
 fn levels_json(grid: &Grid, factor: Factor, levels: &[LevelSummary]) -> Value {
@@ -155,7 +159,7 @@ impl SettingJson {
             median_delay_s: run.median_s,
             disagreements: run.disagreements,
             agrees: run.agrees,
-            lag_mean_s: lag.map(crate::delay::Lag::mean_s),
+            lag_mean_s: lag.map(|lag| lag.mean_s().into()),
         }
     }
 }
@@ -170,15 +174,29 @@ impl<'a> StepJson<'a> {
             sample_period_s: step.period_s,
             tried: step.tried,
             accepted: step.accepted,
-            delay_samples: json!(step.spread),
-            agreed: json!(step.agreement),
+            delay_samples: step.spread.as_ref().map(spread_json).into(),
+            agreed: step.agreement.as_ref().map(agreement_json).into(),
             settled: step.is_settled(),
             delay_hangs_on: step.delay_hangs_on.as_ref().map(|found| hanging_json(grid, found)),
-            verdict_hangs_on: step.verdict_hangs_on,
+            verdict_hangs_on: step.verdict_hangs_on.map(id),
             apart_samples: step.apart,
             delays: step.told.iter().map(|told| told.map(|told| told.delay)).collect(),
         }
     }
+}
+
+fn spread_json(spread: &Spread) -> Value {
+    json!({
+        "min": spread.min, "lower_quartile": spread.lower_quartile, "median": spread.median,
+        "upper_quartile": spread.upper_quartile, "max": spread.max,
+    })
+}
+
+fn agreement_json(agreement: &Agreement) -> Value {
+    json!({
+        "delay": agreement.delay, "low": agreement.low, "high": agreement.high,
+        "combinations": agreement.combinations,
+    })
 }
 
 fn hanging_json(grid: &Grid, found: &Hanging) -> Value {

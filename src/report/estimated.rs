@@ -1,0 +1,27 @@
+//! A joint with its estimate.
+
+use crate::batch::JointEstimate;
+use crate::delay::{AgainstState, Lag};
+use crate::experiment::Joint;
+
+/// A joint as it was measured, and its delays.
+#[derive(Clone, Copy, Debug)]
+pub struct EstimatedJoint<'a> {
+    /// What was measured.
+    pub joint: &'a Joint,
+    /// What was estimated from it.
+    pub estimate: &'a JointEstimate,
+}
+
+impl EstimatedJoint<'_> {
+    /// The lag that its trials share, where the method looks for one.
+    pub fn lag(&self) -> Option<&Lag> {
+        self.estimate.estimated().find_map(|trial| trial.lag.as_ref())
+    }
+
+    /// The joint's accepted delays against its state.
+    pub fn against_state(&self) -> AgainstState {
+        let estimates = self.estimate.trials.iter().map(|trial| trial.as_ref().ok());
+        AgainstState::of(self.joint, estimates)
+    }
+}

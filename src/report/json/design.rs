@@ -1,0 +1,173 @@
+//! Schema `tauscope/design/1`.
+
+use serde::Serialize;
+
+use super::header::Header;
+use crate::design::{Expected, Open, Prediction, Rehearsal, Side, transitions};
+use crate::report::design::{DesignedJoint, Told, holds, kept_until_s, order};
+
+/// The document of `design --format json`.
+#[derive(Debug, Serialize)]
+pub struct DesignJson<'a> {
+    #[serde(flatten)]
+    header: Header,
+    seed: u64,
+    joints: Vec<JointJson<'a>>,
+    failures: &'a [String],
+}
+
+#[derive(Debug, Serialize)]
+struct JointJson<'a> {
+    joint: &'a str,
+    input_unit: Option<&'a str>,
+    output_unit: Option<&'a str>,
+    sample_period_s: f64,
+    duration_s: f64,
+    steps: usize,
+    levels: Vec<f64>,
+    hold_s: Ends,
+    transitions: [usize; 2],
+    start: f64,
+    output_range: Option<Ends>,
+    predicted: Option<PredictedJson>,
+    separates: Option<ToldJson>,
+    notes: &'a [String],
+    holds: Vec<HoldJson>,
+}
+
+#[derive(Debug, Serialize)]
+struct Ends {
+    low: f64,
+    high: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct PredictedJson {
+    low: f64,
+    high: f64,
+    largest_margin: f64,
+    kept_until_s: Option<f64>,
+}
+
+#[derive(Debug, Serialize)]
+struct HoldJson {
+    start_s: f64,
+    level: f64,
+    hold_s: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct ToldJson {
+    effects: [&'static str; 2],
+    order: &'static str,
+    noise: f64,
+    power_wanted: f64,
+    power: f64,
+    explores: Vec<OpenJson>,
+    if_there: Vec<SideJson>,
+}
+
+/// What an input that explores is to find.
+#[derive(Debug, Serialize)]
+struct OpenJson {
+    effect: &'static str,
+    parameter: &'static str,
+    low: f64,
+    high: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct SideJson {
+    effect: &'static str,
+    told: bool,
+    excluded: bool,
+    power: f64,
+    noncentrality: f64,
+    noncentrality_training: f64,
+    noncentrality_validation: f64,
+    noncentrality_with_neither: f64,
+    rehearsed: usize,
+    rehearsed_told: usize,
+}
+
+impl<'a> DesignJson<'a> {
+    /// Collects the results; `failures` are messages on joints that failed.
+    pub fn new(seed: u64, joints: &'a [DesignedJoint], failures: &'a [String]) -> Self {
+        let joints = joints.iter().map(JointJson::new).collect();
+        Self { header: Header::of("tauscope/design/1"), seed, joints, failures }
+    }
+}
+
+impl<'a> JointJson<'a> {
+    fn new(joint: &'a DesignedJoint) -> Self {
+        let DesignedJoint { stand, schedule, .. } = joint;
+        let ((shortest, longest), (least, most)) = (schedule.hold_range_s(), transitions(schedule));
+        Self {
+            joint: &stand.name,
+            input_unit: stand.input_unit.as_deref(),
+            output_unit: stand.output_unit.as_deref(),
+            sample_period_s: schedule.period().seconds(),
+            duration_s: schedule.duration_s(),
+            steps: schedule.steps(),
+            levels: schedule.levels(),
+            hold_s: Ends { low: shortest, high: longest },
+            transitions: [least, most],
+            start: stand.start,
+            output_range: stand.range.map(|(low, high)| Ends { low, high }),
+            predicted: joint.prediction.as_ref().map(|found| predicted(joint, found)),
+            separates: joint.told.as_ref().map(ToldJson::new),
+            notes: &joint.notes,
+            holds: holds(schedule)
+                .into_iter()
+                .map(|(start_s, level, hold_s)| HoldJson { start_s, level, hold_s })
+                .collect(),
+        }
+    }
+}
+
+fn predicted(joint: &DesignedJoint, prediction: &Prediction) -> PredictedJson {
+    let (low, high) = prediction.extent();
+    let largest_margin = prediction.largest_margin();
+    PredictedJson { low, high, largest_margin, kept_until_s: kept_until_s(joint, prediction) }
+}
+
+impl ToldJson {
+    fn new(told: &Told) -> Self {
+        let Told { ids, design, wanted, noise, .. } = told;
+        let sides = ids.iter().zip(&design.sides);
+        Self {
+            effects: *ids,
+            order: order(design.order),
+            noise: *noise,
+            power_wanted: *wanted,
+            power: design.power(),
+            explores: design.explores.iter().map(OpenJson::new).collect(),
+            if_there: sides.map(|(effect, side)| SideJson::new(effect, side)).collect(),
+        }
+    }
+}
+
+impl OpenJson {
+    fn new(Open { effect, parameter, low, high }: &Open) -> Self {
+        Self { effect, parameter, low: *low, high: *high }
+    }
+}
+
+impl SideJson {
+    fn new(effect: &'static str, side: &Side) -> Self {
+        let Expected { rival, neither, .. } = side.expected;
+        let Rehearsal { told, of } = side.rehearsal.unwrap_or_default();
+        Self {
+            effect,
+            told: side.is_told,
+            excluded: side.is_excluded,
+            power: side.expected.power(),
+            noncentrality: rival.noncentrality(),
+            noncentrality_training: rival.training,
+            noncentrality_validation: rival.validation,
+            noncentrality_with_neither: neither.noncentrality(),
+            rehearsed: of,
+            rehearsed_told: told,
+        }
+    }
+}

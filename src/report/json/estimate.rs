@@ -1,0 +1,300 @@
+//! Schema `tauscope/estimate/1`, numbers in full precision.
+
+use serde::Serialize;
+
+use super::header::Header;
+use super::settings::SettingsJson;
+use crate::delay::{AgainstState, Chosen, Condition, Correlation, Direction, Lag, LagPart};
+use crate::delay::{Settings, StepState};
+use crate::experiment::{Experiment, ReadOptions, Source};
+use crate::report::decisions::detailed_rows;
+use crate::report::{DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary};
+
+/// The document of `estimate --format json`.
+#[derive(Debug, Serialize)]
+pub struct EstimateJson<'a> {
+    #[serde(flatten)]
+    header: Header,
+    sources: Vec<SourceJson<'a>>,
+    reading: &'a ReadOptions,
+    #[serde(flatten)]
+    first: RunJson<'a>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    also: Vec<RunJson<'a>>,
+    notes: &'a [String],
+    failures: &'a [String],
+}
+
+#[derive(Debug, Serialize)]
+struct SourceJson<'a> {
+    path: String,
+    sha256: &'a str,
+    bytes: u64,
+}
+
+/// All joints by one method.
+#[derive(Debug, Serialize)]
+struct RunJson<'a> {
+    settings: SettingsJson,
+    joints: Vec<JointJson<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct JointJson<'a> {
+    joint: &'a str,
+    input_unit: Option<&'a str>,
+    output_unit: Option<&'a str>,
+    steps: usize,
+    accepted: usize,
+    rejected: serde_json::Map<String, serde_json::Value>,
+    delay_samples: Option<DelayRange>,
+    delay_s: Option<DelayRange>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    settings: Option<SettingsJson>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chosen: Option<ChosenJson>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lag: Option<LagJson>,
+    against_state: AgainstJson,
+    decisions: Vec<DecisionJson<'a>>,
+}
+
+/// Settings that were chosen, and from what.
+#[derive(Debug, Serialize)]
+struct ChosenJson {
+    automatic: AutomaticJson,
+    grounds: GroundsJson,
+}
+
+#[derive(Debug, Serialize)]
+struct AutomaticJson {
+    alpha: bool,
+    beta: bool,
+    passband: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct GroundsJson {
+    short_delay: Option<f64>,
+    noise: Option<f64>,
+    noise_correlation: Option<f64>,
+    motion_ends_hz: Option<f64>,
+}
+
+/// The lag that a method found, in seconds.
+#[derive(Debug, Serialize)]
+struct LagJson {
+    mean_s: LagPartJson,
+    time_constant_s: Option<LagPartJson>,
+    period_s: Option<LagPartJson>,
+    damping: Option<LagPartJson>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct LagPartJson {
+    value: f64,
+    std_error: f64,
+}
+
+/// The delay against the state of the joint.
+#[derive(Debug, Serialize)]
+struct AgainstJson {
+    steps: Vec<StepStateJson>,
+    correlations: Vec<CorrelationJson>,
+    direction: DirectionJson,
+}
+
+#[derive(Debug, Serialize)]
+struct StepStateJson {
+    trial: String,
+    number: usize,
+    delay_s: f64,
+    average_speed: f64,
+    input_change: f64,
+    dwell_s: Option<f64>,
+    angle: f64,
+    time_s: f64,
+    covariates: Vec<Option<f64>>,
+}
+
+#[derive(Debug, Serialize)]
+struct CorrelationJson {
+    variable: String,
+    unit: Option<String>,
+    steps: usize,
+    rho: Option<f64>,
+    p_value: Option<f64>,
+    p_holm: Option<f64>,
+    significant: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct DirectionJson {
+    up: usize,
+    down: usize,
+    median_difference_s: Option<f64>,
+    p_value: Option<f64>,
+    p_holm: Option<f64>,
+    significant: bool,
+}
+
+/// A decision with its details.
+#[derive(Debug, Serialize)]
+struct DecisionJson<'a> {
+    #[serde(flatten)]
+    row: DecisionRow<'a>,
+    #[serde(flatten)]
+    detail: DecisionDetail,
+}
+
+impl<'a> EstimateJson<'a> {
+    /// Collects the results of one or several runs, the first of which is the answer;
+    /// `failures` are messages on joints and files that failed.
+    pub fn new(
+        experiment: &'a Experiment,
+        runs: &[(&'a Settings, &'a [EstimatedJoint<'a>])],
+        failures: &'a [String],
+    ) -> Option<Self> {
+        let run = |(settings, joints): &(&Settings, &'a [EstimatedJoint<'a>])| RunJson {
+            settings: (*settings).into(),
+            joints: joints.iter().map(|joint| JointJson::new(*joint)).collect(),
+        };
+        let (first, others) = runs.split_first()?;
+        let source = |source: &'a Source| SourceJson {
+            path: source.path.display().to_string(),
+            sha256: &source.sha256,
+            bytes: source.bytes,
+        };
+        Some(Self {
+            header: Header::of("tauscope/estimate/1"),
+            sources: experiment.sources.iter().map(source).collect(),
+            reading: &experiment.options,
+            first: run(first),
+            also: others.iter().map(run).collect(),
+            notes: &experiment.notes,
+            failures,
+        })
+    }
+}
+
+impl<'a> JointJson<'a> {
+    fn new(joint: EstimatedJoint<'a>) -> Self {
+        let chosen = joint.estimate.chosen;
+        let JointSummary { steps, accepted, rejected, delay_samples, delay_s } =
+            JointSummary::of(joint);
+        let count = |(condition, count): (Condition, usize)| (condition.to_string(), count.into());
+        Self {
+            joint: &joint.joint.name,
+            input_unit: joint.joint.input_unit.as_deref(),
+            output_unit: joint.joint.output_unit.as_deref(),
+            steps,
+            accepted,
+            rejected: rejected.into_iter().map(count).collect(),
+            delay_samples,
+            delay_s,
+            settings: chosen.map(|_| (&joint.estimate.settings).into()),
+            chosen: chosen.map(Into::into),
+            lag: joint.lag().map(LagJson::new),
+            against_state: joint.against_state().into(),
+            decisions: detailed_rows(joint)
+                .map(|(row, detail)| DecisionJson { row, detail })
+                .collect(),
+        }
+    }
+}
+
+impl From<Chosen> for ChosenJson {
+    fn from(Chosen { automatic, grounds }: Chosen) -> Self {
+        Self {
+            automatic: AutomaticJson {
+                alpha: automatic.alpha,
+                beta: automatic.beta,
+                passband: automatic.passband,
+            },
+            grounds: GroundsJson {
+                short_delay: grounds.short_delay,
+                noise: grounds.noise,
+                noise_correlation: grounds.noise_correlation,
+                motion_ends_hz: grounds.motion_ends_hz,
+            },
+        }
+    }
+}
+
+impl LagJson {
+    fn new(lag: &Lag) -> Self {
+        Self {
+            mean_s: lag.mean_s().into(),
+            time_constant_s: lag.time_constant_s().map(Into::into),
+            period_s: lag.period_s().map(Into::into),
+            damping: lag.damping().map(Into::into),
+        }
+    }
+}
+
+impl From<LagPart> for LagPartJson {
+    fn from(LagPart { value, std_error }: LagPart) -> Self {
+        Self { value, std_error }
+    }
+}
+
+impl From<AgainstState> for AgainstJson {
+    fn from(AgainstState { steps, correlations, direction }: AgainstState) -> Self {
+        Self {
+            steps: steps.into_iter().map(Into::into).collect(),
+            correlations: correlations.into_iter().map(Into::into).collect(),
+            direction: direction.into(),
+        }
+    }
+}
+
+impl From<StepState> for StepStateJson {
+    fn from(step: StepState) -> Self {
+        Self {
+            trial: step.trial,
+            number: step.number,
+            delay_s: step.delay_s,
+            average_speed: step.average_speed,
+            input_change: step.input_change,
+            dwell_s: step.dwell_s,
+            angle: step.angle,
+            time_s: step.time_s,
+            covariates: step.covariates,
+        }
+    }
+}
+
+impl From<Correlation> for CorrelationJson {
+    fn from(found: Correlation) -> Self {
+        let Correlation { variable, unit, steps, rho, p_value, p_holm, significant } = found;
+        Self { variable, unit, steps, rho, p_value, p_holm, significant }
+    }
+}
+
+impl From<Direction> for DirectionJson {
+    fn from(found: Direction) -> Self {
+        let Direction { up, down, median_difference_s, p_value, p_holm, significant } = found;
+        Self { up, down, median_difference_s, p_value, p_holm, significant }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_correlation_is_written_with_all_fields() {
+        let correlation = Correlation {
+            variable: "average_speed".to_owned(),
+            unit: None,
+            steps: 0,
+            rho: None,
+            p_value: None,
+            p_holm: None,
+            significant: false,
+        };
+        let json = serde_json::to_value(CorrelationJson::from(correlation)).unwrap();
+        let keys: Vec<_> = json.as_object().unwrap().keys().cloned().collect();
+        assert_eq!(keys.join(" "), "variable unit steps rho p_value p_holm significant");
+    }
+}

@@ -1,0 +1,71 @@
+//! Schema `tauscope/explain/1`.
+
+use serde::Serialize;
+
+use super::candidate::CandidateJson;
+use super::header::Header;
+use super::joint::JointJson;
+use crate::explain::Verdict;
+use crate::report::finding::Finding;
+
+/// The document of `explain --format json`.
+#[derive(Debug, Serialize)]
+pub struct ExplainJson<'a> {
+    #[serde(flatten)]
+    header: Header,
+    joints: Vec<ExplainedJson<'a>>,
+    failures: &'a [String],
+}
+
+#[derive(Debug, Serialize)]
+struct ExplainedJson<'a> {
+    #[serde(flatten)]
+    joint: JointJson<'a>,
+    #[serde(flatten)]
+    finding: FindingJson<'a>,
+}
+
+/// Verdict, ranking and words.
+#[derive(Debug, Serialize)]
+pub(super) struct FindingJson<'a> {
+    verdict: &'static str,
+    ranking: Vec<CandidateJson<'a>>,
+    headline: String,
+    in_words: String,
+    commands: Vec<String>,
+}
+
+impl<'a> ExplainJson<'a> {
+    /// Collects the results; `failures` are messages on joints and files that failed.
+    pub fn new(findings: &[Finding<'a>], failures: &'a [String]) -> Self {
+        let joint = |finding: &Finding<'a>| ExplainedJson {
+            joint: JointJson::new(&finding.compared),
+            finding: FindingJson::new(finding),
+        };
+        let joints = findings.iter().map(joint).collect();
+        Self { header: Header::of("tauscope/explain/1"), joints, failures }
+    }
+}
+
+impl<'a> FindingJson<'a> {
+    pub(super) fn new(finding: &Finding<'a>) -> Self {
+        let joint = finding.compared.joint;
+        let words = finding.words();
+        let ranking = finding.ranking.iter();
+        Self {
+            verdict: verdict_id(finding.verdict),
+            ranking: ranking.map(|candidate| CandidateJson::new(joint, candidate)).collect(),
+            headline: words.headline,
+            in_words: words.paragraph,
+            commands: words.commands,
+        }
+    }
+}
+
+fn verdict_id(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Adequate => "adequate",
+        Verdict::MissingEffect => "missing_effect",
+        Verdict::Unexplained => "unexplained",
+    }
+}

@@ -1,0 +1,226 @@
+//! What tests and cuts of a residual found.
+
+use serde::Serialize;
+
+use crate::diagnosis::failure::{FailsWhere, Region, WorstSegment};
+use crate::diagnosis::{
+    CrossCorrelation, ErrorFigures, InputCorrelation, LackOfFit, LocalMisfit, ShownBy, Whiteness,
+};
+
+#[derive(Debug, Serialize)]
+pub(super) struct FiguresJson {
+    rmse: f64,
+    fit_percent: f64,
+    max: f64,
+}
+
+impl From<&ErrorFigures> for FiguresJson {
+    fn from(error: &ErrorFigures) -> Self {
+        let ErrorFigures { rmse, fit_percent, max } = *error;
+        Self { rmse, fit_percent, max }
+    }
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct LackOfFitJson {
+    statistic: f64,
+    p_value: f64,
+    misfit_share: f64,
+    times_noise: Option<f64>,
+    times_training: Option<f64>,
+    local: Option<LocalJson>,
+    shown_by: Option<&'static str>,
+    adequate: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct LocalJson {
+    p_value: f64,
+    times_noise: Option<f64>,
+}
+
+impl From<&LackOfFit> for LackOfFitJson {
+    fn from(test: &LackOfFit) -> Self {
+        let local =
+            |LocalMisfit { p_value, times_noise }: LocalMisfit| LocalJson { p_value, times_noise };
+        Self {
+            statistic: test.statistic,
+            p_value: test.p_value,
+            misfit_share: test.misfit_share,
+            times_noise: test.times_noise,
+            times_training: test.times_training,
+            local: test.local.map(local),
+            shown_by: test.shown_by.map(shown_by_id),
+            adequate: test.adequate,
+        }
+    }
+}
+
+fn shown_by_id(shown_by: ShownBy) -> &'static str {
+    match shown_by {
+        ShownBy::Shapes => "shapes",
+        ShownBy::Size => "size",
+        ShownBy::UnseenPart => "unseen_part",
+        ShownBy::FewWindows => "few_windows",
+    }
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct WhitenessJson<'a> {
+    statistic: f64,
+    p_value: f64,
+    correlated_s: f64,
+    confidence: f64,
+    band: f64,
+    lag_step_s: f64,
+    correlation: &'a [f64],
+}
+
+impl<'a> From<&'a Whiteness> for WhitenessJson<'a> {
+    fn from(test: &'a Whiteness) -> Self {
+        Self {
+            statistic: test.statistic,
+            p_value: test.p_value,
+            correlated_s: test.correlated_s,
+            confidence: test.confidence,
+            band: test.band,
+            lag_step_s: test.lag_step_s,
+            correlation: &test.correlation,
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct CorrelationJson<'a> {
+    confidence: f64,
+    lag_step_s: f64,
+    first_lag_s: f64,
+    acting: LagsJson<'a>,
+    raw: LagsJson<'a>,
+}
+
+#[derive(Debug, Serialize)]
+struct LagsJson<'a> {
+    share_outside: f64,
+    peak: f64,
+    peak_lag_s: f64,
+    p_value: f64,
+    band: f64,
+    correlation: &'a [f64],
+}
+
+impl<'a> From<&'a InputCorrelation> for CorrelationJson<'a> {
+    fn from(test: &'a InputCorrelation) -> Self {
+        let InputCorrelation { confidence, lag_step_s, first_lag_s, acting, raw } = test;
+        let (confidence, lag_step_s, first_lag_s) = (*confidence, *lag_step_s, *first_lag_s);
+        Self { confidence, lag_step_s, first_lag_s, acting: acting.into(), raw: raw.into() }
+    }
+}
+
+impl<'a> From<&'a CrossCorrelation> for LagsJson<'a> {
+    fn from(lags: &'a CrossCorrelation) -> Self {
+        Self {
+            share_outside: lags.share_outside,
+            peak: lags.peak,
+            peak_lag_s: lags.peak_lag_s,
+            p_value: lags.p_value,
+            band: lags.band,
+            correlation: &lags.correlation,
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct FailsWhereJson<'a> {
+    condition: &'a str,
+    share_of_time: f64,
+    share_of_squared_error: f64,
+    rmse: f64,
+    p_value: f64,
+}
+
+impl<'a> From<&'a FailsWhere> for FailsWhereJson<'a> {
+    fn from(found: &'a FailsWhere) -> Self {
+        let &FailsWhere { share_of_time, share_of_squared_error, rmse, p_value, .. } = found;
+        let condition = &found.condition;
+        Self { condition, share_of_time, share_of_squared_error, rmse, p_value }
+    }
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct WorstSegmentJson<'a> {
+    trial: &'a str,
+    start_s: f64,
+    end_s: f64,
+    rmse: f64,
+    share_of_squared_error: f64,
+}
+
+impl<'a> From<&'a WorstSegment> for WorstSegmentJson<'a> {
+    fn from(worst: &'a WorstSegment) -> Self {
+        let &WorstSegment { start_s, end_s, rmse, share_of_squared_error, .. } = worst;
+        Self { trial: &worst.trial, start_s, end_s, rmse, share_of_squared_error }
+    }
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct RegionJson<'a> {
+    feature: &'static str,
+    label: &'a str,
+    from: f64,
+    to: f64,
+    share_of_time: f64,
+    share_of_squared_error: f64,
+    rmse: f64,
+    mean_residual: f64,
+}
+
+impl<'a> From<&'a Region> for RegionJson<'a> {
+    fn from(region: &'a Region) -> Self {
+        Self {
+            feature: region.feature.id(),
+            label: &region.label,
+            from: region.from,
+            to: region.to,
+            share_of_time: region.share_of_time,
+            share_of_squared_error: region.share_of_squared_error,
+            rmse: region.rmse,
+            mean_residual: region.mean_residual,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn keys(item: impl Serialize) -> String {
+        let json = serde_json::to_value(item).unwrap();
+        json.as_object().unwrap().keys().cloned().collect::<Vec<_>>().join(" ")
+    }
+
+    #[test]
+    fn the_fields_are_those_of_the_interface() {
+        let found = FailsWhere {
+            condition: "|input| < 1.2".to_owned(),
+            share_of_time: 0.31,
+            share_of_squared_error: 0.88,
+            rmse: 1.3,
+            p_value: 0.001,
+            clauses: Vec::new(),
+            samples: Vec::new(),
+        };
+        let expected = "condition share_of_time share_of_squared_error rmse p_value";
+        assert_eq!(keys(FailsWhereJson::from(&found)), expected);
+        let worst = WorstSegment {
+            trial: "1".to_owned(),
+            start_s: 41.2,
+            end_s: 43.0,
+            rmse: 2.2,
+            share_of_squared_error: 0.12,
+            samples: 0..10,
+        };
+        let expected = "trial start_s end_s rmse share_of_squared_error";
+        assert_eq!(keys(WorstSegmentJson::from(&worst)), expected);
+    }
+}
