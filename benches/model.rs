@@ -8,7 +8,7 @@ use tauscope::effect::expression::define;
 use tauscope::effect::{Definition, OwnParameter, Stage, find};
 use tauscope::experiment::Joint;
 use tauscope::fit::{FitRecord, Horizon, Split, fit};
-use tauscope::model::{Component, JointModel, Surroundings, arrivals, simulate};
+use tauscope::model::{Commands, Component, JointModel, Surroundings, simulate};
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec};
 
 /// A joint at 100 Hz with holds of 1 to 2 s.
@@ -78,7 +78,7 @@ fn simulation(criterion: &mut Criterion) {
     for (name, model) in models() {
         group.bench_with_input(name, &model, |bencher, model| {
             bencher.iter(|| {
-                let arrivals = arrivals(model, trial, 0.0, None);
+                let arrivals = Commands::new(trial.input(), 0.01).arriving(model, 0.0, None);
                 simulate(black_box(model), &arrivals, samples, 0.01, &[], &Surroundings::default())
             });
         });

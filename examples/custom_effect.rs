@@ -12,7 +12,7 @@ use tauscope::diagnosis::ErrorFigures;
 use tauscope::effect::{Dimension, Effect, Moment, Parameter, Spec, Stage, contract};
 use tauscope::experiment::{Joint, Trial};
 use tauscope::fit::{Fit, FitRecord, Horizon, Part, Split, fit};
-use tauscope::model::{Component, JointModel, Restart, Surroundings, arrivals, simulate};
+use tauscope::model::{Component, JointModel, Surroundings, simulate_input};
 use tauscope::units::SamplePeriod;
 
 /// A small accumulator in front of the valve: the farther the joint has moved of late, the
@@ -61,11 +61,7 @@ fn record(model: &JointModel) -> anyhow::Result<Joint> {
     }
     input.truncate(SAMPLES);
     let period = SamplePeriod::from_seconds(PERIOD_S).context("a period is above zero")?;
-    let blank = Trial::new("made", 0.0, period, input.clone(), vec![0.0; SAMPLES])?;
-    let restarts = [Restart { sample: 0, output: 0.0, speed: None }];
-    let arriving = arrivals(model, &blank, 0.0, None);
-    let surroundings = Surroundings::default();
-    let made = simulate(model, &arriving, SAMPLES, PERIOD_S, &restarts, &surroundings);
+    let made = simulate_input(model, &input, PERIOD_S, 0.0, &Surroundings::default());
     let noise = Normal::new(0.0, 0.05)?;
     let output = made.output.iter().map(|angle| angle + noise.sample(&mut random)).collect();
     Ok(Joint {

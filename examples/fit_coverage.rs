@@ -14,7 +14,7 @@ use rand_distr::{Distribution as _, Normal};
 use tauscope::effect::{Effect, REGISTRY};
 use tauscope::experiment::{Joint, Trial};
 use tauscope::fit::{Fit, FitRecord, Horizon, Split, Status, fit};
-use tauscope::model::{Component, JointModel, Restart, Surroundings, Value, arrivals, simulate};
+use tauscope::model::{Component, JointModel, Surroundings, Value, simulate_input};
 use tauscope::units::SamplePeriod;
 
 /// Records per effect where no number is given.
@@ -113,13 +113,10 @@ fn measured(
     start_s: f64,
     random: &mut ChaCha8Rng,
 ) -> anyhow::Result<Vec<f64>> {
-    let blank = trial(start_s, input.to_vec(), vec![0.0; input.len()])?;
-    let arrivals = arrivals(model, &blank, start_s, None);
     let output = random.random_range(-10.0..10.0);
-    let restarts = [Restart { sample: 0, output, speed: None }];
     let surroundings =
         Surroundings { others, radians_per_output_unit: 1_f64.to_radians(), start_s };
-    let simulated = simulate(model, &arrivals, SAMPLES, PERIOD_S, &restarts, &surroundings);
+    let simulated = simulate_input(model, input, PERIOD_S, output, &surroundings);
     let noise = Normal::new(0.0, NOISE)?;
     Ok(simulated.output.iter().map(|y| y + noise.sample(random)).collect())
 }

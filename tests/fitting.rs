@@ -4,7 +4,7 @@
 use tauscope::effect::find;
 use tauscope::experiment::{Joint, Trial};
 use tauscope::fit::{Fit, FitError, FitRecord, Horizon, Parameter, Split, Status, fit};
-use tauscope::model::{Component, JointModel, Restart, Surroundings, Value, arrivals, simulate};
+use tauscope::model::{Component, JointModel, Surroundings, Value, simulate_input};
 use tauscope::units::SamplePeriod;
 
 const PERIOD_S: f64 = 0.02;
@@ -55,13 +55,10 @@ fn joint(model: &JointModel, starts_s: &[f64], seed: u64) -> Joint {
     let period = SamplePeriod::from_seconds(PERIOD_S).unwrap();
     let trial = |start_s: &f64| {
         let input = random.input(1500);
-        let blank = Trial::new("", *start_s, period, input.clone(), vec![0.0; 1500]).unwrap();
         let since = start_s - starts_s[0];
-        let arrivals = arrivals(model, &blank, since, None);
-        let restarts = [Restart { sample: 0, output: 4.0, speed: None }];
         let surroundings =
             Surroundings { start_s: since, radians_per_output_unit: 0.02, ..<_>::default() };
-        let simulated = simulate(model, &arrivals, 1500, PERIOD_S, &restarts, &surroundings);
+        let simulated = simulate_input(model, &input, PERIOD_S, 4.0, &surroundings);
         let output = simulated.output.iter().map(|y| y + 0.05 * 3f64.sqrt() * random.next());
         Trial::new(format!("at {start_s}"), *start_s, period, input, output.collect()).unwrap()
     };

@@ -8,9 +8,7 @@ use std::path::Path;
 use tauscope::effect::{Effect, contract};
 use tauscope::experiment::{Joint, Trial};
 use tauscope::fit::{FitRecord, Horizon, Split, Status, fit};
-use tauscope::model::{
-    Component, JointModel, ModelError, ModelFile, Restart, Surroundings, arrivals, simulate,
-};
+use tauscope::model::{Component, JointModel, ModelError, ModelFile, Surroundings, simulate_input};
 use tauscope::units::SamplePeriod;
 
 const PERIOD_S: f64 = 0.02;
@@ -60,11 +58,8 @@ fn trial() -> Trial {
 }
 
 fn simulated(model: &JointModel) -> Vec<f64> {
-    let trial = trial();
     let surroundings = Surroundings { radians_per_output_unit: 0.02, ..Surroundings::default() };
-    let restarts = [Restart { sample: 0, output: 4.0, speed: None }];
-    let arrivals = arrivals(model, &trial, 0.0, None);
-    simulate(model, &arrivals, SAMPLES, PERIOD_S, &restarts, &surroundings).output
+    simulate_input(model, trial().input(), PERIOD_S, 4.0, &surroundings).output
 }
 
 #[test]

@@ -6,9 +6,7 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use tauscope::effect::find;
-use tauscope::experiment::Trial;
-use tauscope::model::{Component, JointModel, Restart, Surroundings, arrivals, simulate};
-use tauscope::units::SamplePeriod;
+use tauscope::model::{Commands, Component, JointModel, Restart, Surroundings, simulate};
 
 /// Fine steps in a sample period.
 const FINE: usize = 100;
@@ -71,10 +69,8 @@ impl Case<'_> {
     }
 
     fn simulated(&self) -> Vec<f64> {
-        let period = SamplePeriod::from_seconds(PERIOD_S).unwrap();
-        let (input, output) = (self.input.clone(), vec![0.0; self.input.len()]);
-        let trial = Trial::new("trial", START_S, period, input, output).unwrap();
-        let arrivals = arrivals(&self.model(), &trial, START_S, self.delays.as_deref());
+        let commands = Commands::new(&self.input, PERIOD_S);
+        let arrivals = commands.arriving(&self.model(), START_S, self.delays.as_deref());
         let restart = |(sample, output): &(usize, f64)| Restart {
             sample: *sample,
             output: *output,
@@ -440,9 +436,7 @@ fn a_restart_with_a_speed_goes_on_at_it() {
     let lag =
         Component::new(find("coulomb_friction").unwrap(), vec![0.5.into(), 0.5.into(), 0.2.into()]);
     let model = JointModel::integrator(GAIN, 0.0).with(lag.unwrap());
-    let period = SamplePeriod::from_seconds(PERIOD_S).unwrap();
-    let trial = Trial::new("trial", 0.0, period, vec![1.0; 300], vec![0.0; 300]).unwrap();
-    let arrivals = arrivals(&model, &trial, 0.0, None);
+    let arrivals = Commands::new(&[1.0; 300], PERIOD_S).arriving(&model, 0.0, None);
     let restarts = [(0, 0.0), (100, -6.0)].map(|(sample, speed)| Restart {
         sample,
         output: 1.0,

@@ -4,7 +4,7 @@ use super::schedule::Schedule;
 use crate::effect::UNLIMITED;
 use crate::experiment::{Joint, Trial};
 use crate::fit::{FitRecord, Horizon, Split};
-use crate::model::{JointModel, Restart, Surroundings, arrivals, simulate};
+use crate::model::{JointModel, Surroundings, simulate_input};
 use crate::units::SamplePeriod;
 
 /// The joint on which an input is to be played.
@@ -69,16 +69,10 @@ impl Uncertain {
 impl Stand {
     /// What `model` does with `schedule`, output units at each sample.
     pub fn output(&self, model: &JointModel, schedule: &Schedule) -> Vec<f64> {
-        let input = schedule.input();
-        let samples = input.len();
-        let still = vec![0.0; samples];
-        let Ok(trial) = Trial::new("1", 0.0, self.period, input, still) else { return Vec::new() };
         let surroundings =
             Surroundings { radians_per_output_unit: self.radians(), ..Surroundings::default() };
-        let arriving = arrivals(model, &trial, 0.0, None);
-        let begin = [Restart { sample: 0, output: self.start, speed: None }];
         let period_s = self.period.seconds();
-        simulate(model, &arriving, samples, period_s, &begin, &surroundings).output
+        simulate_input(model, &schedule.input(), period_s, self.start, &surroundings).output
     }
 
     /// The same with its margin: what the models do that a record holds for as likely. Where

@@ -63,7 +63,7 @@ impl<'a> FitRecord<'a> {
             radians_per_output_unit,
             speeds_measured,
             starts_s: starts_s(&joint.trials),
-            commands: joint.trials.iter().map(Commands::of).collect(),
+            commands: joint.trials.iter().map(commands).collect(),
             spans: joint.trials.iter().map(span).collect(),
         }
     }
@@ -324,6 +324,10 @@ fn radians(unit: Option<&str>) -> f64 {
         Some("rev" | "turn") => std::f64::consts::TAU,
         _ => 1f64.to_radians(),
     }
+}
+
+fn commands(trial: &Trial) -> Commands {
+    Commands::new(trial.input(), trial.period().seconds())
 }
 
 #[cfg(test)]

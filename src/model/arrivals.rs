@@ -2,7 +2,6 @@
 
 use super::JointModel;
 use crate::effect::{InputChange, Stage};
-use crate::experiment::Trial;
 
 /// A level of the input and the time from which it acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,33 +21,40 @@ pub struct Arrivals {
     pub changes: Vec<Arrival>,
 }
 
-/// The changes of a trial's input, as they are commanded.
+/// The changes of an input, as they are commanded.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Commands {
+pub struct Commands {
     initial: f64,
     /// Seconds since the first sample, and the level from then on.
     changes: Vec<(f64, f64)>,
 }
 
 impl Commands {
-    /// The input of `trial`.
-    pub(crate) fn of(trial: &Trial) -> Self {
-        let period = trial.period().seconds();
-        let mut levels = trial.input().iter();
-        let initial = levels.next().copied().unwrap_or_default();
+    /// The changes of `input`, sampled every `period_s` seconds.
+    pub fn new(input: &[f64], period_s: f64) -> Self {
+        let mut levels = input.iter();
+        let initial = levels.next().copied().unwrap_or(0.0);
         let (mut before, mut changes) = (initial, Vec::new());
         for (&level, sample) in levels.zip(1..) {
             #[expect(clippy::float_cmp, reason = "a step is any change")]
             if level != before {
-                changes.push((f64::from(sample) * period, level));
+                changes.push((f64::from(sample) * period_s, level));
                 before = level;
             }
         }
         Self { initial, changes }
     }
 
-    /// The changes as they arrive: see [`arrivals`].
-    pub(crate) fn arriving(
+    /// The changes as they arrive at the joint: change `i` at `t_i + delay + extra_i`.
+    ///
+    /// `extra` comes from the effects of the transport stage. `per_step` holds delays in
+    /// seconds for each change of the input; the model's own delay is taken only for those
+    /// that are not known (`None`).
+    ///
+    /// A change that would act before an earlier one takes its place: an earlier level never
+    /// comes back. Delays are not below zero. `start_s` is the time of the record at the
+    /// first sample: effects may change with it.
+    pub fn arriving(
         &self,
         model: &JointModel,
         start_s: f64,
@@ -66,24 +72,6 @@ impl Commands {
         }
         arrivals
     }
-}
-
-/// The input of `trial` as it arrives at the joint: change `i` at `t_i + delay + extra_i`.
-///
-/// `extra` comes from the effects of the transport stage. With `per_step`, delays in
-/// seconds for each change of the input (`None` where it is not known), the model's own
-/// delay stands in only for those that are not known.
-///
-/// A change that would act before an earlier one takes its place: an earlier level never
-/// comes back. Delays are not below zero. `start_s` is the time of the record at the
-/// trial's first sample: effects may change with it.
-pub fn arrivals(
-    model: &JointModel,
-    trial: &Trial,
-    start_s: f64,
-    per_step: Option<&[Option<f64>]>,
-) -> Arrivals {
-    Commands::of(trial).arriving(model, start_s, per_step)
 }
 
 fn delay_of(model: &JointModel, change: &InputChange) -> f64 {

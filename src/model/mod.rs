@@ -7,6 +7,7 @@
 //! - [`JointModel`]: structure, effects, parameters
 //! - [`ModelFile`]: models in TOML, as users write them, and their revisions
 //! - [`simulate`]: what the model says the output is
+//! - [`simulate_input`]: that for an input of one trial, from an output to start at
 //! - [`Arrivals`]: when each level of the input begins to act
 
 mod arrivals;
@@ -15,9 +16,8 @@ mod joint_model;
 mod simulate;
 mod start;
 
-pub(crate) use arrivals::Commands;
-pub use arrivals::{Arrival, Arrivals, arrivals};
+pub use arrivals::{Arrival, Arrivals, Commands};
 pub use file::{ModelError, ModelFile, Revision};
 pub use joint_model::{Component, JointModel, Value};
-pub use simulate::{Restart, Simulated, Surroundings, simulate};
+pub use simulate::{Restart, Simulated, Surroundings, simulate, simulate_input};
 pub use start::integrators;

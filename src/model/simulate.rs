@@ -1,6 +1,6 @@
 //! What a model says the output is.
 
-use super::{Arrival, Arrivals, Component, JointModel};
+use super::{Arrival, Arrivals, Commands, Component, JointModel};
 use crate::effect::{Effect, Moment, Stage};
 
 /// Where the simulated output is set anew.
@@ -88,6 +88,21 @@ pub fn simulate(
         simulated.velocity.push((joint.angle - before) / period_s);
     }
     simulated
+}
+
+/// [Simulates](simulate) `input`, sampled every `period_s` seconds, from `output` on.
+///
+/// The first level has long been held; no step's delay is known but from the model.
+pub fn simulate_input(
+    model: &JointModel,
+    input: &[f64],
+    period_s: f64,
+    output: f64,
+    surroundings: &Surroundings<'_>,
+) -> Simulated {
+    let arrivals = Commands::new(input, period_s).arriving(model, surroundings.start_s, None);
+    let begin = [Restart { sample: 0, output, speed: None }];
+    simulate(model, &arrivals, input.len(), period_s, &begin, surroundings)
 }
 
 impl Simulated {

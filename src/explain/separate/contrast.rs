@@ -1,10 +1,8 @@
 //! How far apart two models are in an experiment.
 
 use super::space::ExperimentSpace;
-use crate::experiment::Trial;
 use crate::explain::separation::{Proposal, Start};
-use crate::model::{JointModel, Restart, Simulated, Surroundings, arrivals, simulate};
-use crate::units::SamplePeriod;
+use crate::model::{JointModel, Simulated, Surroundings, simulate_input};
 
 /// How far apart two models are in an experiment.
 pub(super) struct Contrast {
@@ -38,7 +36,7 @@ impl ExperimentSpace {
         let (mut differences, mut motions) = (Vec::new(), Vec::new());
         for start in &proposal.starts {
             let [one, other] = models.map(|model| self.simulated(model, &input, start));
-            let (one, other) = (one?.output, other?.output);
+            let (one, other) = (one.output, other.output);
             if one.iter().chain(&other).any(|angle| !inside.contains(angle)) {
                 return None;
             }
@@ -57,19 +55,14 @@ impl ExperimentSpace {
     }
 
     /// What `model` does with `input` from `start`.
-    fn simulated(&self, model: &JointModel, input: &[f64], start: &Start) -> Option<Simulated> {
-        let period = SamplePeriod::from_seconds(self.period_s)?;
-        let nothing = vec![0.0; input.len()];
-        let trial = Trial::new("", 0.0, period, input.to_vec(), nothing).ok()?;
+    fn simulated(&self, model: &JointModel, input: &[f64], start: &Start) -> Simulated {
         let others = vec![start.others; input.len()];
         let surroundings = Surroundings {
             others: &others,
             radians_per_output_unit: self.radians_per_output_unit,
             start_s: start.worked_s,
         };
-        let arriving = arrivals(model, &trial, start.worked_s, None);
-        let begin = [Restart { sample: 0, output: start.angle, speed: None }];
-        Some(simulate(model, &arriving, input.len(), self.period_s, &begin, &surroundings))
+        simulate_input(model, input, self.period_s, start.angle, &surroundings)
     }
 }
 

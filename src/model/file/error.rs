@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::SCHEMA;
+use super::schema::SCHEMA;
 use crate::effect::UnknownEffect;
 use crate::effect::expression::DefinitionError;
 

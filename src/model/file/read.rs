@@ -102,13 +102,13 @@ fn own_parameter(name: &str, given: TableToml, start: Start) -> OwnParameter {
 }
 
 /// A joint of a file, for messages.
-pub(super) struct Place<'a> {
+pub(super) struct JointReader<'a> {
     pub(super) path: &'a Path,
     pub(super) joint: &'a str,
     pub(super) candidates: &'a [&'static dyn Effect],
 }
 
-impl Place<'_> {
+impl JointReader<'_> {
     pub(super) fn joint(&self, joint: &JointToml) -> Result<JointModel, ModelError> {
         if joint.structure != "integrator" {
             let (path, name) = (self.path.to_owned(), self.joint.to_owned());

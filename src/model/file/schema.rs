@@ -9,6 +9,9 @@ use super::Revision;
 use crate::effect::{Dimension, Stage};
 use crate::model::Value;
 
+/// The schema of a model file.
+pub(super) const SCHEMA: &str = "tauscope/model/1";
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileToml {

@@ -1,0 +1,107 @@
+//! A model file: its text, and the models in it.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use super::read::{self, JointReader};
+use super::schema::{FileToml, SCHEMA};
+use super::{ModelError, Revision};
+use crate::effect::Effect;
+use crate::model::JointModel;
+
+/// The models of several joints, read from a file.
+///
+/// ```toml
+/// schema = "tauscope/model/1"
+/// [joint.boom]
+/// structure = "integrator"
+/// parameters = { gain = 11.9, delay = { value = 0.15, min = 0.0, max = 1.0 } }
+/// [[joint.boom.effect]]
+/// kind = "dead_band"
+/// parameters = { lower = -0.6, upper = 0.6 }
+/// ```
+///
+/// It keeps its text, so that a [revision](Self::revised) leaves as it is whatever a user
+/// wrote.
+#[derive(Clone, Debug, Default)]
+pub struct ModelFile {
+    pub(super) path: PathBuf,
+    pub(super) text: String,
+    pub(super) candidates: Vec<&'static dyn Effect>,
+    joints: BTreeMap<String, Revised>,
+}
+
+/// A model and how it came about.
+#[derive(Clone, Debug)]
+struct Revised {
+    model: JointModel,
+    history: Vec<Revision>,
+}
+
+impl ModelFile {
+    /// Reads a model file.
+    ///
+    /// # Errors
+    /// [`ModelError`], with the file and, where there is one, the joint.
+    pub fn read(path: &Path) -> Result<Self, ModelError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| ModelError::Read { path: path.to_owned(), source })?;
+        Self::parse(&text, path)
+    }
+
+    /// Reads the text of a model file; `path` is its name in messages.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn parse(text: &str, path: &Path) -> Result<Self, ModelError> {
+        let file: FileToml = toml::from_str(text)
+            .map_err(|e| ModelError::Parse { path: path.to_owned(), source: Box::new(e) })?;
+        if file.schema != SCHEMA {
+            return Err(ModelError::Schema { path: path.to_owned(), found: file.schema });
+        }
+        let candidates = read::candidates(path, file.candidate)?;
+        let mut joints = BTreeMap::new();
+        for (name, joint) in file.joint {
+            let reader = JointReader { path, joint: &name, candidates: &candidates };
+            let model = reader.joint(&joint)?;
+            joints.insert(name, Revised { model, history: joint.history });
+        }
+        Ok(Self { path: path.to_owned(), text: text.to_owned(), candidates, joints })
+    }
+
+    /// One without joints, which has this name in messages.
+    pub fn new(path: &Path) -> Self {
+        Self { path: path.to_owned(), ..Self::default() }
+    }
+
+    /// Its text, to be written.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The effects that it offers besides those of the catalogue.
+    pub fn candidates(&self) -> &[&'static dyn Effect] {
+        &self.candidates
+    }
+
+    /// The model of `joint`.
+    pub fn joint(&self, joint: &str) -> Option<&JointModel> {
+        self.joints.get(joint).map(|revised| &revised.model)
+    }
+
+    /// The number of its last revision; 0 for one that was never revised.
+    pub fn revision(&self, joint: &str) -> Option<u32> {
+        let revised = self.joints.get(joint)?;
+        Some(revised.history.iter().map(|entry| entry.revision).max().unwrap_or(0))
+    }
+
+    /// Its revisions, in the order of the file.
+    pub fn history(&self, joint: &str) -> &[Revision] {
+        self.joints.get(joint).map_or(&[], |revised| revised.history.as_slice())
+    }
+
+    /// Names of the joints, in order.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.joints.keys().map(String::as_str)
+    }
+}
