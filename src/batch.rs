@@ -10,7 +10,7 @@ use crate::delay::{
     Automatic, Chosen, Decision, EstimateError, Estimator, Settings, TrialEstimate, choose,
 };
 use crate::design::{
-    Design, DesignError, Limits, Stand, Suspects, SuspectsError, Uncertain, shortest,
+    Design, DesignError, Limits, Suspects, SuspectsError, TestRig, Uncertain, shortest,
 };
 use crate::diagnosis::{Comparison, compare, compare_unfitted, floor_of};
 use crate::effect::{Effect, RecordRange};
@@ -323,11 +323,11 @@ pub fn suspect_joints(
 /// [`DesignError`] where no input will do.
 pub fn design_separation(
     suspects: &Suspects,
-    stand: &Stand,
+    rig: &TestRig,
     limits: &Limits,
     tried: impl Fn(f64) + Sync,
 ) -> Result<Design, DesignError> {
-    shortest(suspects, stand, limits, &Threads(&()), &tried)
+    shortest(suspects, rig, limits, &Threads(&()), &tried)
 }
 
 /// Prepares the model of each joint from its starts, and does `work` with what comes of it.

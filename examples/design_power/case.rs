@@ -8,7 +8,7 @@ use tauscope::batch::{
 };
 use tauscope::delay::Settings;
 use tauscope::design::{
-    Design, Hold, Limits, RandomSteps, Schedule, Stand, Suspects, random_steps,
+    Design, Hold, Limits, RandomSteps, Schedule, Suspects, TestRig, random_steps,
 };
 use tauscope::effect::{Effect, by_id};
 use tauscope::experiment::Joint;
@@ -116,19 +116,19 @@ pub(crate) fn examine(case: &Case) -> anyhow::Result<Outcome> {
     if first.verdict == Verdict::Adequate {
         return Err(Unsuspected.into());
     }
-    let stand = stand(&log)?;
+    let rig = rig(&log)?;
     let suspects = suspects(&log, case)?;
     let largest = levels.iter().fold(0.0, |most: f64, level| most.max(level.abs()));
     let rehearsals = case.rehearsals;
     let limits = Limits { largest, hold_s: None, longest_s: 60.0, power: 0.95, rehearsals };
-    let mut design = design_separation(&suspects, &stand, &limits, |_| ())?;
+    let mut design = design_separation(&suspects, &rig, &limits, |_| ())?;
     let mut explored_s = Vec::new();
     while !design.explores.is_empty() && explored_s.len() < EXPLORATIONS {
         explored_s.push(design.schedule.duration_s());
         // What is found out is known of the next one.
         let seed = 3000 + explored_s.len() as u64;
         log.trials.extend(played(&plant, &design.schedule, seed)?.trials);
-        design = design_separation(&self::suspects(&log, case)?, &stand, &limits, |_| ())?;
+        design = design_separation(&self::suspects(&log, case)?, &rig, &limits, |_| ())?;
     }
     let after = explained(&played(&plant, &design.schedule, 1000)?, case)?;
     let duration_s = design.schedule.duration_s() + explored_s.iter().sum::<f64>();
@@ -136,7 +136,7 @@ pub(crate) fn examine(case: &Case) -> anyhow::Result<Outcome> {
         let duration_s = f64::from(times) * duration_s;
         let steps =
             RandomSteps { levels: levels.clone(), hold_s: (0.5, 3.0), duration_s, seed: case.seed };
-        (duration_s <= LONGEST_S).then(|| by_chance(case, &plant, &steps, (&stand, &suspects)))
+        (duration_s <= LONGEST_S).then(|| by_chance(case, &plant, &steps, (&rig, &suspects)))
     });
     let mut told = [None; TIMES.len()];
     for (told, random) in told.iter_mut().zip(random) {
@@ -147,7 +147,7 @@ pub(crate) fn examine(case: &Case) -> anyhow::Result<Outcome> {
 
 fn outcome(case: &Case, first: &Explanation, design: &Design, after: &Explanation) -> Outcome {
     // What the log excludes wrongly counts: it will not be told.
-    let aimed = design.sides.get(case.truth).is_some_and(|side| side.is_told || side.is_excluded);
+    let aimed = design.sides.get(case.truth).is_some_and(|side| side.is_target || side.is_excluded);
     let ranking = after
         .ranking
         .iter()
@@ -162,7 +162,7 @@ fn outcome(case: &Case, first: &Explanation, design: &Design, after: &Explanatio
         random: [None; TIMES.len()],
         said: format!(
             "{:?} rehearsed, {:?} {:?} {:?}, {:?} {}",
-            design.sides.map(|side| side.rehearsal.map(|found| (found.told, found.of))),
+            design.sides.map(|side| side.rehearsal.map(|found| (found.successes, found.runs))),
             design.order,
             design.schedule.levels(),
             design.schedule.hold_range_s(),
@@ -188,8 +188,8 @@ fn shorten(plant: &mut PlantSpec) -> anyhow::Result<Vec<f64>> {
     Ok(levels)
 }
 
-fn stand(log: &Joint) -> anyhow::Result<Stand> {
-    Ok(Stand {
+fn rig(log: &Joint) -> anyhow::Result<TestRig> {
+    Ok(TestRig {
         name: log.name.clone(),
         input_unit: log.input_unit.clone(),
         output_unit: log.output_unit.clone(),
@@ -238,10 +238,10 @@ fn by_chance(
     case: &Case,
     plant: &PlantSpec,
     steps: &RandomSteps,
-    (stand, suspects): (&Stand, &Suspects),
+    (rig, suspects): (&TestRig, &Suspects),
 ) -> anyhow::Result<bool> {
     let model = suspects.models.get(case.truth).ok_or_else(|| anyhow!("two suspects"))?;
-    let schedule = random_steps(steps, stand, Some(model), 0);
+    let schedule = random_steps(steps, rig, Some(model), 0);
     Ok(is_told(&explained(&played(plant, &schedule, 2000)?, case)?, case))
 }
 

@@ -1,6 +1,6 @@
 //! Where two outputs are apart, as a fit sees it.
 
-use super::glance::{centred, windows};
+use super::linear_screen::{centred, windows};
 use super::schedule::{Hold, Schedule};
 
 /// How far two outputs are apart along an input.
@@ -52,13 +52,13 @@ pub fn apart(schedule: &Schedule, one: &[f64], other: &[f64], noise: f64) -> Apa
 
 #[cfg(test)]
 mod tests {
-    use super::super::predict::tests::stand;
+    use super::super::predict::tests::rig;
     use super::*;
 
     #[test]
     fn what_was_gained_before_a_step_does_not_count_after_it() {
         let hold = |level, samples| Hold { level, samples };
-        let schedule = Schedule::new(stand(None).period, vec![hold(1.0, 3), hold(0.0, 2)]);
+        let schedule = Schedule::new(rig(None).period, vec![hold(1.0, 3), hold(0.0, 2)]);
         let one = [0.0, 1.0, 2.0, 2.0, 2.0];
         let found = apart(&schedule, &one, &[0.0; 5], 0.5);
         assert_eq!(found.over_noise, [-2.0, 0.0, 2.0, 0.0, 0.0]);

@@ -1,7 +1,7 @@
 //! How far the best fit of a rival stays from what a model does.
 
 use super::power::{Distance, Expected};
-use super::predict::Stand;
+use super::predict::TestRig;
 use super::schedule::Schedule;
 use super::suspects::Suspects;
 use crate::effect::RecordRange;
@@ -16,12 +16,12 @@ pub(super) fn expected(
     suspects: &Suspects,
     truth: usize,
     model: &JointModel,
-    (stand, schedule): (&Stand, &Schedule),
+    (rig, schedule): (&TestRig, &Schedule),
 ) -> Option<Expected> {
-    let clean = stand.output(model, schedule);
+    let clean = rig.output(model, schedule);
     let carrier: Vec<f64> = (0..clean.len()).map(|k| carrier(k, suspects.noise)).collect();
     let output = clean.iter().zip(&carrier).map(|(y, c)| y + c).collect();
-    let joint = stand.log(schedule, output)?;
+    let joint = rig.log(schedule, output)?;
     let record = FitRecord::new(&joint, Split::of(&joint), Horizon::Steps);
     let levels = record.input_levels();
     let top = levels.last().copied().unwrap_or(1.0);

@@ -1,33 +1,22 @@
 //! An input that explores: where a record leaves a level of the input open at which an effect
-//! switches, no input suits all that is possible, and what tells where that level lies comes
-//! first.
+//! switches, no input suits all that is possible, and the input that shows where that level lies
+//! comes first.
 
 use super::family::{holds_s, kept};
-use super::predict::Stand;
+use super::limits::Limits;
+use super::predict::TestRig;
+use super::result::OpenThreshold;
 use super::schedule::{Hold, Schedule, samples_in};
-use super::search::Limits;
 use super::suspects::Suspects;
 use crate::effect::Dimension;
 use crate::explain::two_digits;
 
-/// A level of the input at which an effect switches, and where a record allows it to be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Open {
-    /// Id of the effect.
-    pub effect: &'static str,
-    /// Id of its parameter.
-    pub parameter: &'static str,
-    /// The lowest magnitude that is likely, input units.
-    pub low: f64,
-    /// The highest.
-    pub high: f64,
-}
-
 /// A threshold is open where the highest level that is likely is so many times the lowest.
+/// Chosen: below it, levels 20 % below and above cross it for sure.
 const OPEN: f64 = 1.25;
 
 /// What the record leaves open of the suspects `aims`, up to the level `largest`.
-pub(super) fn open(suspects: &Suspects, aims: [bool; 2], largest: f64) -> Vec<Open> {
+pub(super) fn open(suspects: &Suspects, aims: [bool; 2], largest: f64) -> Vec<OpenThreshold> {
     /// Lower levels, in parts of the largest, are none.
     const LEAST: f64 = 0.02;
     let mut all = Vec::new();
@@ -35,18 +24,18 @@ pub(super) fn open(suspects: &Suspects, aims: [bool; 2], largest: f64) -> Vec<Op
         let spec = effect.spec();
         let levels = spec.parameters.iter().enumerate();
         let levels = levels.filter(|(_, p)| aim && p.dimension == Dimension::Input);
-        for (place, parameter) in levels {
+        for (index, parameter) in levels {
             let drawn = known.draws.iter().filter_map(|model| {
                 let mut own = model.components().iter();
                 let own = own.find(|component| component.effect().spec().id == spec.id)?;
-                let level = own.parameters().get(place)?.value.abs();
+                let level = own.parameters()[index].value.abs();
                 Some(level.clamp(LEAST * largest, largest))
             });
             let none = (f64::INFINITY, 0.0);
             let (low, high) =
                 drawn.fold(none, |(low, high): (f64, f64), x| (low.min(x), high.max(x)));
             if high > OPEN * low {
-                all.push(Open { effect: spec.id, parameter: parameter.name, low, high });
+                all.push(OpenThreshold { effect: spec.id, parameter: parameter.name, low, high });
             }
         }
     }
@@ -60,34 +49,34 @@ pub(super) fn open(suspects: &Suspects, aims: [bool; 2], largest: f64) -> Vec<Op
 /// `None` where nothing is open, or the joint would leave its range.
 pub(super) fn exploring(
     suspects: &Suspects,
-    stand: &Stand,
+    rig: &TestRig,
     limits: &Limits,
-    open: &[Open],
+    open: &[OpenThreshold],
 ) -> Option<Schedule> {
     /// Levels that are played.
     const MOST: u32 = 8;
     const FEWEST: u32 = 4;
     let none = (f64::INFINITY, 0.0);
-    let ends = |(low, high): (f64, f64), open: &Open| (low.min(open.low), high.max(open.high));
+    let ends =
+        |(low, high): (f64, f64), open: &OpenThreshold| (low.min(open.low), high.max(open.high));
     let (low, high) = open.iter().fold(none, ends);
     if low >= high {
         return None;
     }
-    let hold_s = hold_s(suspects, stand, limits, low)?;
+    let hold_s = hold_s(suspects, rig, limits, low)?;
     let schedules = (FEWEST..=MOST).rev().map(|count| {
-        let schedule =
-            Schedule::new(stand.period, holds((low, high), count, hold_s, stand, limits));
-        let whole = kept(&schedule, suspects, stand) == schedule.holds().len();
+        let schedule = Schedule::new(rig.period, holds((low, high), count, hold_s, rig, limits));
+        let whole = kept(&schedule, suspects, rig) == schedule.holds().len();
         (whole && schedule.duration_s() <= limits.longest_s).then_some(schedule)
     });
     schedules.flatten().next()
 }
 
 /// The shortest hold that a fit can use, and in which the lowest level shows.
-fn hold_s(suspects: &Suspects, stand: &Stand, limits: &Limits, low: f64) -> Option<f64> {
+fn hold_s(suspects: &Suspects, rig: &TestRig, limits: &Limits, low: f64) -> Option<f64> {
     /// Deviations of the noise by which a joint that moves does so at least.
     const SHOWS: f64 = 10.0;
-    let usual = holds_s(suspects, stand, limits);
+    let usual = holds_s(suspects, rig, limits);
     let (shortest, longest) = (*usual.first()?, *usual.last()?);
     let speed = suspects.base.gain.value.abs() * low;
     let delay_s = suspects.base.delay.value;
@@ -101,7 +90,7 @@ fn holds(
     (low, high): (f64, f64),
     count: u32,
     hold_s: f64,
-    stand: &Stand,
+    rig: &TestRig,
     limits: &Limits,
 ) -> Vec<Hold> {
     /// So far beyond both ends the levels reach.
@@ -121,7 +110,7 @@ fn holds(
         let down = up.iter().rev().skip(1).copied().collect::<Vec<_>>();
         up.into_iter().chain(down).map(move |level| sign * level).collect::<Vec<_>>()
     };
-    let samples = samples_in(hold_s, stand.period);
+    let samples = samples_in(hold_s, rig.period);
     let all = std::iter::once(0.0).chain(side(0, 1.0)).chain(side(1, -1.0));
     all.map(|level| Hold { level, samples }).collect()
 }
@@ -129,7 +118,7 @@ fn holds(
 #[cfg(test)]
 mod tests {
     use super::super::predict::Uncertain;
-    use super::super::predict::tests::stand;
+    use super::super::predict::tests::rig;
     use super::*;
     use crate::effect::{DeadBand, Stiction};
     use crate::model::{Component, JointModel};
@@ -153,13 +142,14 @@ mod tests {
     fn what_is_open_is_crossed_both_ways_and_in_both_directions() {
         let suspects = suspects();
         let found = open(&suspects, [true, true], 2.0);
-        let expected = Open { effect: "stiction", parameter: "start", low: 0.2, high: 0.8 };
+        let expected =
+            OpenThreshold { effect: "stiction", parameter: "start", low: 0.2, high: 0.8 };
         assert_eq!(found, [expected]);
         assert_eq!(open(&suspects, [true, false], 2.0), []);
         let limits =
             Limits { largest: 2.0, hold_s: None, longest_s: 60.0, power: 0.95, rehearsals: 40 };
-        let stand = stand(Some((-20.0, 20.0)));
-        let schedule = exploring(&suspects, &stand, &limits, &found).unwrap();
+        let rig = rig(Some((-20.0, 20.0)));
+        let schedule = exploring(&suspects, &rig, &limits, &found).unwrap();
         let levels = schedule.levels();
         for sign in [1.0, -1.0] {
             let side = levels.iter().map(|level| sign * level).filter(|level| *level > 0.0);
@@ -168,8 +158,8 @@ mod tests {
             assert!(inside >= 1 && side.iter().any(|level| *level > 0.8), "{side:?}");
         }
         // The joint moves at every level that lies above where it starts, and comes back.
-        let output = stand.output(&suspects.models[1].model, &schedule);
+        let output = rig.output(&suspects.models[1].model, &schedule);
         assert!(output.iter().all(|angle| angle.abs() < 20.0));
-        assert_eq!(exploring(&suspects, &stand, &limits, &[]), None);
+        assert_eq!(exploring(&suspects, &rig, &limits, &[]), None);
     }
 }

@@ -1,24 +1,13 @@
-//! Inputs that may tell two suspects apart, each as long as the joint stays in its range.
+//! Inputs that may separate two suspects, each as long as the joint stays in its range.
 
-use super::predict::Stand;
+use super::limits::Limits;
+use super::predict::TestRig;
 use super::random::{RandomSteps, random_steps};
 use super::response::response_s;
+use super::result::Order;
 use super::schedule::{Hold, Schedule, samples_in};
-use super::search::Limits;
 use super::suspects::Suspects;
 use crate::explain::{Pattern, level_sets, thresholds, two_digits};
-
-/// How the levels of an input follow one another.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Order {
-    /// As in an experiment that `explain` proposes, again and again, with the other direction
-    /// first every other time.
-    Pattern(Pattern),
-    /// Random levels with random holds.
-    Random,
-    /// All levels at which an effect may switch: see [`Design::explores`](super::Design).
-    Exploring,
-}
 
 /// An input that is tried, as long as it may become.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,27 +16,27 @@ pub(super) struct Family {
     pub(super) schedule: Schedule,
 }
 
-/// Shortest hold in which the noise of a joint is seen: it is looked for behind what may be a
-/// transient, in stretches of some samples.
+/// Shortest hold in which the noise of a joint is seen: it is looked for after what may be a
+/// transient, in runs of some samples.
 fn shortest_hold_s(period_s: f64) -> f64 {
-    const SETTLING_S: f64 = 0.3;
-    const STRETCH: f64 = 25.0;
-    SETTLING_S + STRETCH * period_s
+    const TRANSIENT_S: f64 = 0.3;
+    const RUN_SAMPLES: f64 = 25.0;
+    TRANSIENT_S + RUN_SAMPLES * period_s
 }
 
 /// All inputs that are tried.
-pub(super) fn families(suspects: &Suspects, stand: &Stand, limits: &Limits) -> Vec<Family> {
-    let holds = holds_s(suspects, stand, limits);
+pub(super) fn families(suspects: &Suspects, rig: &TestRig, limits: &Limits) -> Vec<Family> {
+    let holds = holds_s(suspects, rig, limits);
     let mut families = Vec::new();
     for (levels, patterns) in sets(suspects, limits.largest) {
         for (pattern, hold_s) in patterns.iter().flat_map(|p| holds.iter().map(|h| (*p, *h))) {
-            let holds = repeated(pattern, &levels, hold_s, stand, limits.longest_s);
-            families.push((Order::Pattern(pattern), Schedule::new(stand.period, holds)));
+            let holds = repeated(pattern, &levels, hold_s, rig, limits.longest_s);
+            families.push((Order::Pattern(pattern), Schedule::new(rig.period, holds)));
         }
     }
-    families.extend(random(suspects, stand, limits, &holds));
+    families.extend(random(suspects, rig, limits, &holds));
     let kept = families.into_iter().filter_map(|(order, schedule)| {
-        let count = kept(&schedule, suspects, stand);
+        let count = kept(&schedule, suspects, rig);
         (count > 2).then(|| Family { order, schedule: schedule.first(count) })
     });
     kept.collect()
@@ -55,11 +44,11 @@ pub(super) fn families(suspects: &Suspects, stand: &Stand, limits: &Limits) -> V
 
 /// Holds that are worth a trial: from the time in which the joint responds to that in which a
 /// fit starts anew.
-pub(super) fn holds_s(suspects: &Suspects, stand: &Stand, limits: &Limits) -> Vec<f64> {
+pub(super) fn holds_s(suspects: &Suspects, rig: &TestRig, limits: &Limits) -> Vec<f64> {
     const WINDOW: f64 = 200.0;
     const COUNT: i32 = 5;
-    let period_s = stand.period.seconds();
-    let responses = suspects.models.iter().map(|m| response_s(&m.model, stand, limits.largest));
+    let period_s = rig.period.seconds();
+    let responses = suspects.models.iter().map(|m| response_s(&m.model, rig, limits.largest));
     let response = responses.fold(0.0, f64::max);
     let (lowest, highest) = limits.hold_s.unwrap_or_else(|| {
         let least = shortest_hold_s(period_s) + suspects.base.delay.value.min(response);
@@ -74,7 +63,7 @@ pub(super) fn holds_s(suspects: &Suspects, stand: &Stand, limits: &Limits) -> Ve
 }
 
 /// Sets of magnitudes and the patterns to try them in: those that `explain` proposes, and
-/// levels about and between the thresholds of both effects beside the largest.
+/// levels near and between the thresholds of both effects beside the largest.
 fn sets(suspects: &Suspects, largest: f64) -> Vec<(Vec<f64>, &'static [Pattern])> {
     const ALL: &[Pattern] = &[Pattern::Ladder, Pattern::Pulses, Pattern::Reversals];
     const LEAST: f64 = 0.1;
@@ -85,9 +74,9 @@ fn sets(suspects: &Suspects, largest: f64) -> Vec<(Vec<f64>, &'static [Pattern])
     let mut sets = level_sets((LEAST * largest, largest), &thresholds);
     thresholds.sort_by(f64::total_cmp);
     let between = thresholds.windows(2).map(|pair| pair.iter().sum::<f64>() / 2.0);
-    let about = thresholds.iter().flat_map(|t| [0.7 * t, 1.3 * t]);
+    let near = thresholds.iter().flat_map(|t| [0.7 * t, 1.3 * t]);
     let known = [0.25, 0.5].map(|part| part * largest);
-    let single: Vec<f64> = between.chain(about).chain(known).map(two_digits).collect();
+    let single: Vec<f64> = between.chain(near).chain(known).map(two_digits).collect();
     sets.extend(single.iter().map(|level| (vec![*level, largest], ALL)));
     sets.extend(single.iter().map(|level| (vec![*level], &ALL[1..])));
     sets.push((vec![largest], &ALL[1..]));
@@ -100,13 +89,13 @@ fn repeated(
     pattern: Pattern,
     levels: &[f64],
     hold_s: f64,
-    stand: &Stand,
+    rig: &TestRig,
     longest_s: f64,
 ) -> Vec<Hold> {
-    let samples = samples_in(hold_s, stand.period);
-    let rest = samples_in(shortest_hold_s(stand.period.seconds()), stand.period);
+    let samples = samples_in(hold_s, rig.period);
+    let rest = samples_in(shortest_hold_s(rig.period.seconds()), rig.period);
     let cycle: Vec<f64> = pattern.sequence(levels).into_iter().skip(1).collect();
-    let most = samples_in(longest_s, stand.period);
+    let most = samples_in(longest_s, rig.period);
     let mut holds = vec![Hold { level: 0.0, samples: rest }];
     let signs = (0..).flat_map(|_: usize| [1.0, -1.0]);
     let all = signs.flat_map(|sign| cycle.iter().map(move |level| sign * level));
@@ -125,7 +114,7 @@ fn repeated(
 /// small ones.
 fn random(
     suspects: &Suspects,
-    stand: &Stand,
+    rig: &TestRig,
     limits: &Limits,
     holds: &[f64],
 ) -> Vec<(Order, Schedule)> {
@@ -138,17 +127,17 @@ fn random(
         let levels = grid(part * limits.largest);
         let hold_s = (*shortest, *longest);
         let steps = RandomSteps { levels, hold_s, duration_s: limits.longest_s, seed };
-        let plain = suspects.models.first().filter(|_| stand.range.is_some());
-        all.push((Order::Random, random_steps(&steps, stand, plain, 0)));
+        let plain = suspects.models.first().filter(|_| rig.range.is_some());
+        all.push((Order::Random, random_steps(&steps, rig, plain, 0)));
     }
     all
 }
 
 /// Holds of `schedule` until the joint may leave its range, whichever suspect is there.
-pub(super) fn kept(schedule: &Schedule, suspects: &Suspects, stand: &Stand) -> usize {
-    let Some(range) = stand.range else { return schedule.holds().len() };
+pub(super) fn kept(schedule: &Schedule, suspects: &Suspects, rig: &TestRig) -> usize {
+    let Some(range) = rig.range else { return schedule.holds().len() };
     let until = suspects.models.iter().filter_map(|uncertain| {
-        let predicted = stand.prediction(uncertain, schedule);
+        let predicted = rig.prediction(uncertain, schedule);
         predicted.kept_until(range)
     });
     let Some(until) = until.min() else { return schedule.holds().len() };
@@ -157,6 +146,6 @@ pub(super) fn kept(schedule: &Schedule, suspects: &Suspects, stand: &Stand) -> u
         Some(*end)
     });
     // What was commanded acts on after its hold, until the next arrives.
-    let delay = samples_in(suspects.base.delay.value, stand.period);
+    let delay = samples_in(suspects.base.delay.value, rig.period);
     ends.take_while(|end| end + delay <= until).count()
 }

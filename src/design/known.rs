@@ -227,7 +227,7 @@ fn with(model: &JointModel, place: usize, value: f64) -> JointModel {
 
 #[cfg(test)]
 mod tests {
-    use super::super::predict::tests::stand;
+    use super::super::predict::tests::rig;
     use super::super::random::{RandomSteps, random_steps};
     use super::*;
     use crate::effect::Stiction;
@@ -238,11 +238,11 @@ mod tests {
     fn a_level_between_two_of_the_input_is_anywhere_between() {
         let levels = vec![-2.0, -1.0, -0.5, 0.5, 1.0, 2.0];
         let steps = RandomSteps { levels, hold_s: (0.5, 1.5), duration_s: 30.0, seed: 1 };
-        let stand = stand(None);
-        let schedule = random_steps(&steps, &stand, None, 0);
+        let rig = rig(None);
+        let schedule = random_steps(&steps, &rig, None, 0);
         let effect = Component::new(&Stiction, vec![0.7.into(), 0.6.into()]).unwrap();
         let model = JointModel::integrator(10.0, 0.1).with(effect);
-        let joint = stand.log(&schedule, stand.output(&model, &schedule)).unwrap();
+        let joint = rig.log(&schedule, rig.output(&model, &schedule)).unwrap();
         let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::Steps);
         let levels = record.input_levels();
         let fit = assess(&record, &model, &record.range(&levels, 20.0)).unwrap();

@@ -1,6 +1,6 @@
 //! Levels and holds that suit a joint.
 
-use super::predict::Stand;
+use super::predict::TestRig;
 use super::response::{response_s, resting_band};
 use crate::explain::two_digits;
 use crate::model::JointModel;
@@ -19,17 +19,17 @@ const LARGEST: f64 = 2.0;
 
 /// The largest level for a joint: three times the end of its dead band, and no less than for a
 /// joint of which nothing is known.
-pub fn default_largest(model: Option<&JointModel>, stand: &Stand) -> f64 {
+pub fn default_largest(model: Option<&JointModel>, rig: &TestRig) -> f64 {
     const TIMES_EDGE: f64 = 3.0;
-    let band = model.and_then(|model| resting_band(model, stand, 2.0 * LARGEST));
+    let band = model.and_then(|model| resting_band(model, rig, 2.0 * LARGEST));
     let edge = band.map_or(0.0, |(lower, upper)| upper.max(-lower));
     two_digits(LARGEST.max(TIMES_EDGE * edge))
 }
 
 /// Rest, a full and a middle level of either sign: with a model the middle lies between the end
 /// of its dead band and the full level.
-pub fn default_levels(model: Option<&JointModel>, stand: &Stand, largest: f64) -> Vec<f64> {
-    let band = model.and_then(|model| resting_band(model, stand, largest));
+pub fn default_levels(model: Option<&JointModel>, rig: &TestRig, largest: f64) -> Vec<f64> {
+    let band = model.and_then(|model| resting_band(model, rig, largest));
     let (lower, upper) = band.unwrap_or((0.0, 0.0));
     let middle = |edge: f64| two_digits(0.5 * (edge + largest));
     vec![-largest, -middle(-lower), 0.0, middle(upper), largest]
@@ -37,13 +37,13 @@ pub fn default_levels(model: Option<&JointModel>, stand: &Stand, largest: f64) -
 
 /// Shortest and longest hold: with a model longer than it takes the joint to respond, so that
 /// no level overtakes the one before and each is seen for as long again.
-pub fn default_hold_s(model: Option<&JointModel>, stand: &Stand, largest: f64) -> (f64, f64) {
+pub fn default_hold_s(model: Option<&JointModel>, rig: &TestRig, largest: f64) -> (f64, f64) {
     /// As in the paper's records.
     const USUAL: (f64, f64) = (1.0, 2.5);
     /// Shorter holds leave too few samples for two lines.
     const SHORTEST: f64 = 0.5;
     let Some(model) = model else { return USUAL };
-    let shortest = two_digits((2.0 * response_s(model, stand, largest)).max(SHORTEST));
+    let shortest = two_digits((2.0 * response_s(model, rig, largest)).max(SHORTEST));
     (shortest, two_digits(USUAL.1 / USUAL.0 * shortest))
 }
 
@@ -67,7 +67,7 @@ impl Band {
 
 #[cfg(test)]
 mod tests {
-    use super::super::predict::tests::stand;
+    use super::super::predict::tests::rig;
     use super::*;
     use crate::effect::{ActuatorLag, DeadBand};
     use crate::model::Component;
@@ -79,20 +79,20 @@ mod tests {
 
     #[test]
     fn levels_lie_beyond_the_dead_band() {
-        let stand = stand(None);
-        assert_eq!(default_levels(None, &stand, 2.0), [-2.0, -1.0, 0.0, 1.0, 2.0]);
-        let largest = default_largest(Some(&banded()), &stand);
+        let rig = rig(None);
+        assert_eq!(default_levels(None, &rig, 2.0), [-2.0, -1.0, 0.0, 1.0, 2.0]);
+        let largest = default_largest(Some(&banded()), &rig);
         assert!((2.9..3.3).contains(&largest), "{largest}");
-        let levels = default_levels(Some(&banded()), &stand, 3.0);
+        let levels = default_levels(Some(&banded()), &rig, 3.0);
         assert_eq!(levels, [-3.0, -1.9, 0.0, 2.0, 3.0]);
     }
 
     #[test]
     fn holds_are_longer_than_the_response() {
-        let stand = stand(None);
-        assert_eq!(default_hold_s(None, &stand, 2.0), (1.0, 2.5));
+        let rig = rig(None);
+        assert_eq!(default_hold_s(None, &rig, 2.0), (1.0, 2.5));
         let lag = Component::new(&ActuatorLag, vec![0.3.into()]).unwrap();
-        let (shortest, longest) = default_hold_s(Some(&banded().with(lag)), &stand, 3.0);
+        let (shortest, longest) = default_hold_s(Some(&banded().with(lag)), &rig, 3.0);
         assert!(shortest > 2.0 * (0.2 + 0.9) - 0.1 && longest > 2.0 * shortest);
     }
 

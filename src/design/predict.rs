@@ -9,7 +9,7 @@ use crate::units::SamplePeriod;
 
 /// The joint on which an input is to be played.
 #[derive(Clone, Debug)]
-pub struct Stand {
+pub struct TestRig {
     /// Its name.
     pub name: String,
     /// Unit of the input.
@@ -66,7 +66,7 @@ impl Uncertain {
     }
 }
 
-impl Stand {
+impl TestRig {
     /// What `model` does with `schedule`, output units at each sample.
     pub fn output(&self, model: &JointModel, schedule: &Schedule) -> Vec<f64> {
         let surroundings =
@@ -167,8 +167,8 @@ pub(super) mod tests {
     use crate::effect::DeadBand;
     use crate::model::Component;
 
-    pub(crate) fn stand(range: Option<(f64, f64)>) -> Stand {
-        Stand {
+    pub(crate) fn rig(range: Option<(f64, f64)>) -> TestRig {
+        TestRig {
             name: "boom".to_owned(),
             input_unit: Some("V".to_owned()),
             output_unit: Some("deg".to_owned()),
@@ -181,12 +181,12 @@ pub(super) mod tests {
     #[test]
     fn the_margin_is_what_each_parameter_adds() {
         let holds = vec![Hold { level: 0.0, samples: 10 }, Hold { level: 2.0, samples: 101 }];
-        let schedule = Schedule::new(stand(None).period, holds);
+        let schedule = Schedule::new(rig(None).period, holds);
         let band = vec![(-0.5).into(), 0.5.into()];
         let band = Component::new(&DeadBand, band).unwrap();
         let model = JointModel::integrator(10.0, 0.0).with(band);
         let uncertain = Uncertain::by_share(model, 0.1);
-        let found = stand(None).prediction(&uncertain, &schedule);
+        let found = rig(None).prediction(&uncertain, &schedule);
         // After one second at 1.5 V beyond the band: 15 deg; a tenth of the gain is 1.5 deg,
         // a tenth of the upper end 0.5 deg.
         let last = found.output.len() - 1;

@@ -3,7 +3,7 @@
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
-use super::predict::{Stand, Uncertain};
+use super::predict::{TestRig, Uncertain};
 use super::schedule::{Hold, Schedule, samples_in};
 
 /// What is drawn.
@@ -28,24 +28,24 @@ pub struct RandomSteps {
 /// all of them are, the shortest hold at the level that leaves it least is taken.
 pub fn random_steps(
     steps: &RandomSteps,
-    stand: &Stand,
+    rig: &TestRig,
     model: Option<&Uncertain>,
     index: usize,
 ) -> Schedule {
-    let mut drawing = Drawing::new(steps, stand, model, index);
+    let mut drawing = Drawing::new(steps, rig, model, index);
     let (shortest, _) = steps.hold_s;
-    drawing.push(Hold { level: 0.0, samples: samples_in(shortest, stand.period) });
+    drawing.push(Hold { level: 0.0, samples: samples_in(shortest, rig.period) });
     while drawing.left() > 0 {
         let hold = drawing.next();
         drawing.push(hold);
     }
-    Schedule::new(stand.period, drawing.holds)
+    Schedule::new(rig.period, drawing.holds)
 }
 
 /// An input that is being drawn.
 struct Drawing<'a> {
     steps: &'a RandomSteps,
-    stand: &'a Stand,
+    rig: &'a TestRig,
     model: Option<&'a Uncertain>,
     random: ChaCha8Rng,
     samples: usize,
@@ -55,14 +55,14 @@ struct Drawing<'a> {
 impl<'a> Drawing<'a> {
     fn new(
         steps: &'a RandomSteps,
-        stand: &'a Stand,
+        rig: &'a TestRig,
         model: Option<&'a Uncertain>,
         index: usize,
     ) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(steps.seed);
         random.set_stream(index as u64);
-        let samples = samples_in(steps.duration_s, stand.period);
-        Self { steps, stand, model, random, samples, holds: Vec::new() }
+        let samples = samples_in(steps.duration_s, rig.period);
+        Self { steps, rig, model, random, samples, holds: Vec::new() }
     }
 
     /// Samples that are not drawn yet.
@@ -79,13 +79,13 @@ impl<'a> Drawing<'a> {
     fn next(&mut self) -> Hold {
         let (shortest, longest) = self.steps.hold_s;
         let seconds = shortest + (longest - shortest) * self.random.random::<f64>();
-        let samples = samples_in(seconds, self.stand.period);
+        let samples = samples_in(seconds, self.rig.period);
         let levels = self.by_rarity();
         let kept = levels.iter().find(|level| self.excess(**level, samples) <= 0.0);
         if let Some(level) = kept {
             return Hold { level: *level, samples };
         }
-        let samples = samples_in(shortest, self.stand.period);
+        let samples = samples_in(shortest, self.rig.period);
         let excess = |level: &&f64| self.excess(**level, samples);
         let least = levels.iter().min_by(|a, b| excess(a).total_cmp(&excess(b)));
         Hold { level: least.copied().unwrap_or(0.0), samples }
@@ -118,13 +118,13 @@ impl<'a> Drawing<'a> {
 
     /// How far the joint may leave its range while `level` acts, if held for so long.
     fn excess(&self, level: f64, samples: usize) -> f64 {
-        let (Some(range), Some(uncertain)) = (self.stand.range, self.model) else { return 0.0 };
-        let delay = samples_in(uncertain.model.delay.value, self.stand.period);
+        let (Some(range), Some(uncertain)) = (self.rig.range, self.model) else { return 0.0 };
+        let delay = samples_in(uncertain.model.delay.value, self.rig.period);
         let mut holds = self.holds.clone();
         let from = holds.iter().map(|hold| hold.samples).sum();
         holds.push(Hold { level, samples: samples + delay });
-        let schedule = Schedule::new(self.stand.period, holds);
-        self.stand.prediction(uncertain, &schedule).excess(range, from)
+        let schedule = Schedule::new(self.rig.period, holds);
+        self.rig.prediction(uncertain, &schedule).excess(range, from)
     }
 }
 
@@ -151,7 +151,7 @@ fn differ(a: f64, b: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::predict::tests::stand;
+    use super::super::predict::tests::rig;
     use super::*;
     use crate::model::JointModel;
 
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn levels_are_held_as_long_as_asked_and_change_every_time() {
-        let made = random_steps(&steps(120.0), &stand(None), None, 0);
+        let made = random_steps(&steps(120.0), &rig(None), None, 0);
         assert_eq!(made.samples(), 12_000);
         let (shortest, longest) = made.hold_range_s();
         assert!(shortest >= 0.9 && longest <= 2.0 && longest - shortest > 0.8);
@@ -174,7 +174,7 @@ mod tests {
     #[test]
     fn transitions_are_balanced() {
         for seed in 0..5 {
-            let made = random_steps(&RandomSteps { seed, ..steps(200.0) }, &stand(None), None, 0);
+            let made = random_steps(&RandomSteps { seed, ..steps(200.0) }, &rig(None), None, 0);
             let (least, most) = transitions(&made);
             assert!(least >= 5 && most - least <= 2, "{least} to {most}");
         }
@@ -183,7 +183,7 @@ mod tests {
     #[test]
     fn seeds_and_joints_are_drawn_apart() {
         let draw = |seed, index| {
-            random_steps(&RandomSteps { seed, ..steps(20.0) }, &stand(None), None, index)
+            random_steps(&RandomSteps { seed, ..steps(20.0) }, &rig(None), None, index)
         };
         assert_eq!(draw(1, 0), draw(1, 0));
         assert_ne!(draw(1, 0), draw(2, 0));
@@ -194,12 +194,12 @@ mod tests {
     fn the_range_is_kept_with_its_margin() {
         let model = Uncertain::by_share(JointModel::integrator(10.0, 0.2), 0.1);
         for seed in 0..5 {
-            let stand = stand(Some((-40.0, 40.0)));
+            let rig = rig(Some((-40.0, 40.0)));
             let steps = RandomSteps { seed, ..steps(60.0) };
-            let free = random_steps(&steps, &stand, None, 0);
-            let made = random_steps(&steps, &stand, Some(&model), 0);
-            assert_eq!(stand.prediction(&model, &made).kept_until((-40.0, 40.0)), None);
-            assert!(stand.prediction(&model, &free).kept_until((-40.0, 40.0)).is_some());
+            let free = random_steps(&steps, &rig, None, 0);
+            let made = random_steps(&steps, &rig, Some(&model), 0);
+            assert_eq!(rig.prediction(&model, &made).kept_until((-40.0, 40.0)), None);
+            assert!(rig.prediction(&model, &free).kept_until((-40.0, 40.0)).is_some());
         }
     }
 }

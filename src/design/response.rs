@@ -1,6 +1,6 @@
 //! What a model says of the joint's response: how long it takes, and where it rests.
 
-use super::predict::Stand;
+use super::predict::TestRig;
 use super::schedule::{Hold, Schedule, samples_in};
 use crate::effect::Stage;
 use crate::model::{Component, JointModel};
@@ -12,32 +12,32 @@ const SETTLED_S: f64 = 3.0;
 /// what it comes to, the delay included.
 ///
 /// Effects of load and output, which change the speed as the joint moves, are left out.
-pub fn response_s(model: &JointModel, stand: &Stand, level: f64) -> f64 {
+pub fn response_s(model: &JointModel, rig: &TestRig, level: f64) -> f64 {
     /// A speed that is as near is settled.
     const NEAR: f64 = 0.05;
-    let speeds = speeds(&driven(model), stand, level);
+    let speeds = speeds(&driven(model), rig, level);
     let end = speeds.last().copied().unwrap_or_default();
     let settled = |speed: &f64| (speed - end).abs() <= NEAR * end.abs();
     let last = speeds.iter().rposition(|speed| !settled(speed)).map_or(0, |last| last + 1);
-    (last as f64 * stand.period.seconds()).max(model.delay.value)
+    (last as f64 * rig.period.seconds()).max(model.delay.value)
 }
 
 /// The inputs between which the joint rests, where that is more than `largest / 100` wide.
-pub fn resting_band(model: &JointModel, stand: &Stand, largest: f64) -> Option<(f64, f64)> {
+pub fn resting_band(model: &JointModel, rig: &TestRig, largest: f64) -> Option<(f64, f64)> {
     /// A narrower band is none.
     const LEAST: f64 = 0.01;
     let model = driven(model);
-    let edge = |largest: f64| edge(&model, stand, largest);
+    let edge = |largest: f64| edge(&model, rig, largest);
     let (lower, upper) = (-edge(-largest), edge(largest));
     (upper - lower > LEAST * largest).then_some((lower, upper))
 }
 
 /// The largest magnitude of the input in the direction of `largest` at which the joint rests.
-fn edge(model: &JointModel, stand: &Stand, largest: f64) -> f64 {
+fn edge(model: &JointModel, rig: &TestRig, largest: f64) -> f64 {
     /// Of the speed at the largest input: less is rest.
     const REST: f64 = 0.01;
     const HALVINGS: usize = 12;
-    let speed = |level: f64| speeds(model, stand, level).last().copied().unwrap_or_default();
+    let speed = |level: f64| speeds(model, rig, level).last().copied().unwrap_or_default();
     let at_most = REST * speed(largest).abs();
     let (mut rests, mut moves) = (0.0, 1.0);
     for _ in 0..HALVINGS {
@@ -49,11 +49,11 @@ fn edge(model: &JointModel, stand: &Stand, largest: f64) -> f64 {
 }
 
 /// The speed at each sample after a step from rest to `level`.
-fn speeds(model: &JointModel, stand: &Stand, level: f64) -> Vec<f64> {
-    let samples = samples_in(SETTLED_S + model.delay.value, stand.period);
+fn speeds(model: &JointModel, rig: &TestRig, level: f64) -> Vec<f64> {
+    let samples = samples_in(SETTLED_S + model.delay.value, rig.period);
     let holds = vec![Hold { level: 0.0, samples: 1 }, Hold { level, samples }];
-    let output = stand.output(model, &Schedule::new(stand.period, holds));
-    let period_s = stand.period.seconds();
+    let output = rig.output(model, &Schedule::new(rig.period, holds));
+    let period_s = rig.period.seconds();
     let speed = |pair: &[f64]| match pair {
         [a, b] => (b - a) / period_s,
         _ => 0.0,
@@ -72,7 +72,7 @@ fn driven(model: &JointModel) -> JointModel {
 
 #[cfg(test)]
 mod tests {
-    use super::super::predict::tests::stand;
+    use super::super::predict::tests::rig;
     use super::*;
     use crate::effect::{ActuatorLag, DeadBand, EndStop};
 
@@ -81,8 +81,8 @@ mod tests {
         let lag = Component::new(&ActuatorLag, vec![0.2.into()]).unwrap();
         let stops = Component::new(&EndStop, vec![(-1.0).into(), 1.0.into()]).unwrap();
         let plain = JointModel::integrator(10.0, 0.15).with(stops);
-        assert!((response_s(&plain, &stand(None), 1.0) - 0.15).abs() < 0.011);
-        let found = response_s(&plain.with(lag), &stand(None), 1.0);
+        assert!((response_s(&plain, &rig(None), 1.0) - 0.15).abs() < 0.011);
+        let found = response_s(&plain.with(lag), &rig(None), 1.0);
         // ln 20 = 2.996 time constants.
         assert!((found - 0.15 - 0.6).abs() < 0.02, "{found}");
     }
@@ -91,8 +91,8 @@ mod tests {
     fn a_joint_rests_in_its_dead_band() {
         let band = Component::new(&DeadBand, vec![(-0.4).into(), 0.6.into()]).unwrap();
         let model = JointModel::integrator(10.0, 0.15).with(band);
-        let (lower, upper) = resting_band(&model, &stand(None), 2.0).unwrap();
+        let (lower, upper) = resting_band(&model, &rig(None), 2.0).unwrap();
         assert!((lower + 0.4).abs() < 0.03 && (upper - 0.6).abs() < 0.03, "{lower} {upper}");
-        assert_eq!(resting_band(&JointModel::integrator(10.0, 0.1), &stand(None), 2.0), None);
+        assert_eq!(resting_band(&JointModel::integrator(10.0, 0.1), &rig(None), 2.0), None);
     }
 }

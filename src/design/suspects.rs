@@ -4,7 +4,7 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal};
 
-use super::predict::{Stand, Uncertain};
+use super::predict::{TestRig, Uncertain};
 use super::random::{RandomSteps, random_steps};
 use crate::diagnosis::floor_of;
 use crate::effect::Effect;
@@ -77,13 +77,13 @@ impl Suspects {
         effects: [&'static dyn Effect; 2],
         noise: f64,
         share: f64,
-        (stand, steps): (&Stand, &RandomSteps),
+        (rig, steps): (&TestRig, &RandomSteps),
     ) -> Result<Self, SuspectsError> {
         let known = Uncertain::by_share(model.clone(), share);
-        let schedule = random_steps(steps, stand, Some(&known), 0);
+        let schedule = random_steps(steps, rig, Some(&known), 0);
         let mut random = ChaCha8Rng::seed_from_u64(steps.seed);
-        let output = noisy(stand.output(model, &schedule), noise, &mut random);
-        let Some(joint) = stand.log(&schedule, output) else { return Err(SuspectsError::NoNoise) };
+        let output = noisy(rig.output(model, &schedule), noise, &mut random);
+        let Some(joint) = rig.log(&schedule, output) else { return Err(SuspectsError::NoNoise) };
         let record = FitRecord::new(&joint, Split::of(&joint), Horizon::Steps);
         let base = model.without(effects[0].spec().id);
         let of_record = Self::of_record(&record, &base, effects, Some(noise), share)?;

@@ -3,14 +3,14 @@
 use std::io::Write;
 
 use super::decisions::tidy_seconds;
-use crate::design::{Design, Hold, Order, Prediction, Schedule, Stand};
+use crate::design::{Design, Hold, Order, Prediction, Schedule, TestRig};
 use crate::explain::Pattern;
 
 /// The input of one joint, and what is expected of it.
 #[derive(Clone, Debug)]
 pub struct DesignedJoint {
     /// Where it is played.
-    pub stand: Stand,
+    pub rig: TestRig,
     /// The input.
     pub schedule: Schedule,
     /// What the joint will do, where a model says so: for two suspects the first's.
@@ -51,7 +51,7 @@ impl DesignedJoint {
 }
 
 pub(super) fn kept_until_s(joint: &DesignedJoint, prediction: &Prediction) -> Option<f64> {
-    let sample = prediction.kept_until(joint.stand.range?)?;
+    let sample = prediction.kept_until(joint.rig.range?)?;
     Some(sample as f64 * joint.schedule.period().seconds())
 }
 
@@ -84,7 +84,7 @@ pub(super) fn order(order: Order) -> &'static str {
 /// When `out` cannot be written.
 pub fn write_input(joints: &[DesignedJoint], out: impl Write) -> csv::Result<()> {
     let columns = joints.iter().map(|joint| {
-        let name = format!("{}.input", joint.stand.name);
+        let name = format!("{}.input", joint.rig.name);
         (name, joint.schedule.input(), 0.0)
     });
     write_columns(joints, &columns.collect::<Vec<_>>(), out)
@@ -99,7 +99,7 @@ pub fn write_preview(joints: &[DesignedJoint], out: impl Write) -> csv::Result<(
     let mut columns = Vec::new();
     for joint in joints {
         let mut add = |name: &str, values: Vec<f64>, after: f64| {
-            columns.push((format!("{}.{name}", joint.stand.name), values, after));
+            columns.push((format!("{}.{name}", joint.rig.name), values, after));
         };
         add("input", joint.schedule.input(), 0.0);
         let Some(Prediction { output, margin }) = &joint.prediction else { continue };

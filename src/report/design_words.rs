@@ -3,7 +3,7 @@
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
 use super::design::{DesignedJoint, Told, holds, kept_until_s, order};
-use crate::design::{Expected, Open, Prediction, Rehearsal, Schedule, transitions};
+use crate::design::{Expected, OpenThreshold, Prediction, Rehearsal, Schedule, transitions};
 use crate::wording::{listed, measure, rounded, unit_suffix, wrapped};
 
 /// What is to be played on each joint, and what is expected of it.
@@ -34,13 +34,13 @@ pub fn design_sentences(joint: &DesignedJoint) -> Vec<String> {
 
 /// What is played, in a sentence.
 fn headline(joint: &DesignedJoint) -> String {
-    let DesignedJoint { stand, schedule, .. } = joint;
-    let unit = stand.input_unit.as_deref();
+    let DesignedJoint { rig, schedule, .. } = joint;
+    let unit = rig.input_unit.as_deref();
     let levels: Vec<String> = schedule.levels().iter().map(|level| rounded(*level)).collect();
     let levels = listed(&levels, "and") + &unit_suffix(unit);
     let (hold, steps) = (hold_text(schedule), schedule.steps());
     let duration = measure(schedule.duration_s(), Some("s"));
-    let name = &stand.name;
+    let name = &rig.name;
     if let Some(Told { ids: [one, other], design, .. }) = &joint.told {
         if !design.explores.is_empty() {
             return format!(
@@ -79,10 +79,11 @@ pub fn side_rows(told: &Told) -> [[String; 5]; 2] {
     let [first, second] = told.ids;
     [(first, one), (second, other)].map(|(id, side)| {
         let Expected { rival, neither, .. } = side.expected;
-        let power = if side.is_told { format!("{:.3}", side.expected.power()) } else { "-".into() };
+        let power =
+            if side.is_target { format!("{:.3}", side.expected.power()) } else { "-".into() };
         let rehearsed = side.rehearsal.map_or_else(
             || "-".to_owned(),
-            |Rehearsal { told, of }| format!("{told} of {of} told"),
+            |Rehearsal { successes, runs }| format!("{successes} of {runs} told"),
         );
         let far = |noncentrality: f64| format!("λ = {}", rounded(noncentrality));
         let (rival, neither) = (far(rival.noncentrality()), far(neither.noncentrality()));
@@ -110,13 +111,13 @@ fn side_table(told: &Told) -> Table {
 /// What the figures are about.
 fn explanation(joint: &DesignedJoint, told: &Told) -> Vec<String> {
     let Told { ids, design, wanted, noise, .. } = told;
-    let noise = measure(*noise, joint.stand.output_unit.as_deref());
+    let noise = measure(*noise, joint.rig.output_unit.as_deref());
     let mut sentences = vec![format!(
         "Power: the probability that explain names the effect that is there and excludes the \
          other, with noise of {noise}; {wanted} was wanted. λ: squared distance to the best fit \
          with the other effect and with neither, in variances of the noise."
     )];
-    for (place, side) in design.sides.iter().enumerate().filter(|(_, side)| !side.is_told) {
+    for (place, side) in design.sides.iter().enumerate().filter(|(_, side)| !side.is_target) {
         let (is, other) = (ids.get(place), ids.get(1 - place));
         if let (Some(is), Some(other), true) = (is, other, side.is_excluded) {
             sentences.push(format!(
@@ -132,8 +133,8 @@ fn explanation(joint: &DesignedJoint, told: &Told) -> Vec<String> {
         }
     }
     if !design.explores.is_empty() {
-        let unit = joint.stand.input_unit.as_deref();
-        let open = design.explores.iter().map(|Open { effect, parameter, low, high }| {
+        let unit = joint.rig.input_unit.as_deref();
+        let open = design.explores.iter().map(|OpenThreshold { effect, parameter, low, high }| {
             format!("{effect}.{parameter} from {} to {}", rounded(*low), measure(*high, unit))
         });
         sentences.push(format!(
@@ -147,21 +148,21 @@ fn explanation(joint: &DesignedJoint, told: &Told) -> Vec<String> {
 
 /// Where the joint will be, whichever suspect is there.
 fn foreseen(joint: &DesignedJoint, prediction: &Prediction) -> String {
-    let unit = joint.stand.output_unit.as_deref();
+    let unit = joint.rig.output_unit.as_deref();
     let expected = joint.expected();
     let ends = expected.iter().map(|(_, prediction)| prediction.extent());
     let none = (f64::INFINITY, f64::NEG_INFINITY);
     let (low, high) = ends.fold(none, |(low, high), (l, h)| (low.min(l), high.max(h)));
     let margins = expected.iter().map(|(_, prediction)| prediction.largest_margin());
     let margin = measure(margins.fold(0.0, f64::max), unit);
-    let start = measure(joint.stand.start, unit);
+    let start = measure(joint.rig.start, unit);
     let from = format!(
         "From {start} the joint is expected within {} to {}, a margin of up to {margin} \
          (two standard deviations) included.",
         rounded(low),
         measure(high, unit)
     );
-    match (joint.stand.range, kept_until_s(joint, prediction)) {
+    match (joint.rig.range, kept_until_s(joint, prediction)) {
         (Some(_), Some(until)) => format!(
             "{from} After {} the model cannot promise that it stays in its range.",
             measure(until, Some("s"))
@@ -174,7 +175,7 @@ fn foreseen(joint: &DesignedJoint, prediction: &Prediction) -> String {
 fn level_by_level(joint: &DesignedJoint) -> String {
     const SHOWN: usize = 24;
     let holds = holds(&joint.schedule);
-    let unit = joint.stand.input_unit.as_deref();
+    let unit = joint.rig.input_unit.as_deref();
     let shown = holds.iter().take(SHOWN);
     let shown = shown
         .map(|(_, level, hold_s)| format!("{} for {} s", measure(*level, unit), rounded(*hold_s)));

@@ -2,7 +2,7 @@
 
 use crate::batch::{Mode, Protocol, estimate_joints};
 use crate::delay::Settings;
-use crate::design::Stand;
+use crate::design::TestRig;
 use crate::experiment::{Experiment, Joint, ReadOptions, Trial, expand_folders};
 use crate::fit::{Horizon, Split};
 use crate::model::{JointModel, ModelFile};
@@ -67,12 +67,12 @@ impl Desk {
     }
 
     /// Where `name` is played, within `range`.
-    pub(super) fn stand(&self, args: &Args, name: &str, range: Option<(f64, f64)>) -> Stand {
+    pub(super) fn rig(&self, args: &Args, name: &str, range: Option<(f64, f64)>) -> TestRig {
         let joint = self.joint(name);
         let unit = |of: fn(&Joint) -> Option<&String>| joint.and_then(of).cloned();
         let is_inside = |(low, high): (f64, f64)| low <= 0.0 && high >= 0.0;
         let middle = range.filter(|range| !is_inside(*range)).map(|(low, high)| 0.5 * (low + high));
-        Stand {
+        TestRig {
             name: name.to_owned(),
             input_unit: unit(|joint| joint.input_unit.as_ref()),
             output_unit: unit(|joint| joint.output_unit.as_ref()),

@@ -2,7 +2,7 @@
 
 use crate::batch::{OfJoints, know_joints};
 use crate::design::{
-    Band, RandomSteps, Stand, Uncertain, default_hold_s, default_largest, default_levels,
+    Band, RandomSteps, TestRig, Uncertain, default_hold_s, default_largest, default_levels,
     random_steps, response_s, resting_band,
 };
 use crate::experiment::Joint;
@@ -29,8 +29,8 @@ pub(super) fn designed(args: &Args, desk: &Desk) -> Vec<anyhow::Result<DesignedJ
                 model.map(|model| Uncertain::by_share(model.clone(), args.uncertainty))
             }
         };
-        let stand = desk.stand(args, name, args.output_range);
-        steps_of(args, desk, stand, uncertain.as_ref(), index)
+        let rig = desk.rig(args, name, args.output_range);
+        steps_of(args, desk, rig, uncertain.as_ref(), index)
     };
     desk.names.iter().enumerate().map(one).collect()
 }
@@ -46,7 +46,7 @@ fn known(args: &Args, desk: &Desk) -> OfJoints<Uncertain> {
 fn steps_of(
     args: &Args,
     desk: &Desk,
-    stand: Stand,
+    rig: TestRig,
     uncertain: Option<&Uncertain>,
     index: usize,
 ) -> anyhow::Result<DesignedJoint> {
@@ -56,31 +56,31 @@ fn steps_of(
             "--output-range: where the joint goes is known from a model only; give --model or a log"
         );
     }
-    let logged = desk.joint(&stand.name).map(largest).filter(|largest| *largest > 0.0);
+    let logged = desk.joint(&rig.name).map(largest).filter(|largest| *largest > 0.0);
     let given = args.levels.as_ref().map(super::values::Levels::largest);
     let largest = given.or(args.largest).or(logged);
-    let largest = largest.unwrap_or_else(|| default_largest(model, &stand));
+    let largest = largest.unwrap_or_else(|| default_largest(model, &rig));
     let levels = match &args.levels {
         Some(levels) => levels.0.clone(),
-        None => default_levels(model, &stand, largest),
+        None => default_levels(model, &rig, largest),
     };
     let levels = match args.dead_band {
-        Some(choice) => band(choice, uncertain, &stand, largest)?.applied(&levels),
+        Some(choice) => band(choice, uncertain, &rig, largest)?.applied(&levels),
         None => levels,
     };
     if levels.len() < 2 {
         bail!("--levels: fewer than two are left; an input needs two different levels or more");
     }
-    let hold_s = args.hold.unwrap_or_else(|| default_hold_s(model, &stand, largest));
+    let hold_s = args.hold.unwrap_or_else(|| default_hold_s(model, &rig, largest));
     let duration_s = args.duration.unwrap_or(DURATION_S);
     if hold_s.0 > duration_s {
         bail!("--hold {}: longer than the whole input of {duration_s} s", hold_s.0);
     }
     let steps = RandomSteps { levels, hold_s, duration_s, seed: args.seed };
-    let schedule = random_steps(&steps, &stand, uncertain, index);
-    let prediction = uncertain.map(|uncertain| stand.prediction(uncertain, &schedule));
+    let schedule = random_steps(&steps, &rig, uncertain, index);
+    let prediction = uncertain.map(|uncertain| rig.prediction(uncertain, &schedule));
     let notes = model.and_then(|model| {
-        let response = response_s(model, &stand, largest);
+        let response = response_s(model, &rig, largest);
         (hold_s.0 < response).then(|| {
             format!(
                 "Holds from {} s are shorter than the {response:.2} s in which the model responds: \
@@ -90,19 +90,19 @@ fn steps_of(
         })
     });
     let notes = notes.into_iter().collect();
-    Ok(DesignedJoint { stand, schedule, prediction, told: None, notes })
+    Ok(DesignedJoint { rig, schedule, prediction, told: None, notes })
 }
 
 /// What is to become of which dead band.
 fn band(
     choice: BandChoice,
     uncertain: Option<&Uncertain>,
-    stand: &Stand,
+    rig: &TestRig,
     largest: f64,
 ) -> anyhow::Result<Band> {
     let of_model = || {
         let model = uncertain.map(|uncertain| &uncertain.model);
-        let band = model.and_then(|model| resting_band(model, stand, largest));
+        let band = model.and_then(|model| resting_band(model, rig, largest));
         band.ok_or_else(|| match model {
             Some(_) => anyhow!("--dead-band: the model has none; give its ends, as in -0.4,0.4"),
             None => {

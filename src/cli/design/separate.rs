@@ -2,7 +2,7 @@
 
 use crate::batch::{design_separation, suspect_joints};
 use crate::design::{
-    Limits, RandomSteps, Stand, Suspects, default_hold_s, default_largest, default_levels,
+    Limits, RandomSteps, Suspects, TestRig, default_hold_s, default_largest, default_levels,
 };
 use crate::effect::Effect;
 use crate::experiment::Joint;
@@ -39,14 +39,14 @@ pub(super) fn designed(
     };
     let mut suspected = suspected.into_iter();
     let one = |name: &String| {
-        let stand = desk.stand(args, name, range(args, desk, name));
+        let rig = desk.rig(args, name, range(args, desk, name));
         let suspects = match suspected.next() {
             Some(Some(Ok(suspects))) => suspects,
             Some(Some(Err(error))) => bail!("{}", with_causes(&error)),
             Some(None) => bail!("it has no model"),
-            None => of_model(args, desk, &stand, effects)?,
+            None => of_model(args, desk, &rig, effects)?,
         };
-        told(args, desk, stand, &suspects, bar)
+        told(args, desk, rig, &suspects, bar)
     };
     Ok(desk.names.iter().map(one).collect())
 }
@@ -84,10 +84,10 @@ fn range(args: &Args, desk: &Desk, name: &str) -> Option<(f64, f64)> {
 fn of_model(
     args: &Args,
     desk: &Desk,
-    stand: &Stand,
+    rig: &TestRig,
     effects: [&'static dyn Effect; 2],
 ) -> anyhow::Result<Suspects> {
-    let name = &stand.name;
+    let name = &rig.name;
     let model = desk.model(name).ok_or_else(|| {
         anyhow!("--separate: give a log, or --model with a file that has one of the two effects")
     })?;
@@ -118,44 +118,44 @@ fn of_model(
     let noise = noise.filter(|noise| *noise > 0.0).context(
         "--noise: the model file has no history with an error, so the noise is not known; give it",
     )?;
-    let largest = args.largest.unwrap_or_else(|| default_largest(Some(model), stand));
+    let largest = args.largest.unwrap_or_else(|| default_largest(Some(model), rig));
     let steps = RandomSteps {
-        levels: default_levels(Some(model), stand, largest),
-        hold_s: default_hold_s(Some(model), stand, largest),
+        levels: default_levels(Some(model), rig, largest),
+        hold_s: default_hold_s(Some(model), rig, largest),
         duration_s: LOG_S,
         seed: args.seed,
     };
-    Ok(Suspects::of_model(model, effects, noise, args.uncertainty, (stand, &steps))?)
+    Ok(Suspects::of_model(model, effects, noise, args.uncertainty, (rig, &steps))?)
 }
 
 /// The input that tells the suspects apart, and what is expected of it.
 fn told(
     args: &Args,
     desk: &Desk,
-    stand: Stand,
+    rig: TestRig,
     suspects: &Suspects,
     bar: &Bar,
 ) -> anyhow::Result<DesignedJoint> {
     let [one, other] = &suspects.models;
-    let logged = desk.joint(&stand.name).map(largest).filter(|largest| *largest > 0.0);
+    let logged = desk.joint(&rig.name).map(largest).filter(|largest| *largest > 0.0);
     let largest = args.largest.or(logged);
     let limits = Limits {
-        largest: largest.unwrap_or_else(|| default_largest(Some(&one.model), &stand)),
+        largest: largest.unwrap_or_else(|| default_largest(Some(&one.model), &rig)),
         hold_s: args.hold,
         longest_s: args.duration.unwrap_or(LONGEST_S),
         power: args.power,
         rehearsals: args.rehearsals,
     };
-    let (name, longest_s) = (&stand.name, limits.longest_s);
+    let (name, longest_s) = (&rig.name, limits.longest_s);
     let tried = |seconds: f64| {
         bar.say(format!(
             "designing for {name}: inputs of {seconds:.1} s, of {longest_s} s at most"
         ));
     };
-    let design = design_separation(suspects, &stand, &limits, tried)?;
+    let design = design_separation(suspects, &rig, &limits, tried)?;
     let schedule = design.schedule.clone();
-    let prediction = Some(stand.prediction(one, &schedule));
-    let other = stand.prediction(other, &schedule);
+    let prediction = Some(rig.prediction(one, &schedule));
+    let other = rig.prediction(other, &schedule);
     let (ids, noise, wanted) = (suspects.ids(), suspects.noise, args.power);
     let effects = ids.join(",");
     let (doubt, next) = if design.explores.is_empty() {
@@ -178,5 +178,5 @@ fn told(
     };
     let notes = doubt.into_iter().chain([next]).collect();
     let told = Some(Told { ids, design, wanted, noise, other });
-    Ok(DesignedJoint { stand, schedule, prediction, told, notes })
+    Ok(DesignedJoint { rig, schedule, prediction, told, notes })
 }

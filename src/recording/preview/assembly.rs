@@ -27,8 +27,8 @@ impl Content for PreviewRecording<'_> {
 
     fn id(&self) -> String {
         hashed(self.sources, std::iter::empty(), |part| {
-            for DesignedJoint { stand, schedule, prediction, .. } in self.joints {
-                part(&format!("preview {stand:?} {:?}", schedule.holds()));
+            for DesignedJoint { rig, schedule, prediction, .. } in self.joints {
+                part(&format!("preview {rig:?} {:?}", schedule.holds()));
                 part(&format!("{:?}", prediction.as_ref().map(Prediction::extent)));
             }
         })
@@ -41,7 +41,7 @@ impl Content for PreviewRecording<'_> {
     fn tabs(&self) -> Vec<Tab<'_>> {
         let tab = |joint| {
             let add = move |chunks: &mut Chunks| add(chunks, &Preview::of(joint));
-            Tab { joint: &joint.stand.name, add: Box::new(add) }
+            Tab { joint: &joint.rig.name, add: Box::new(add) }
         };
         self.joints.iter().map(tab).collect()
     }
@@ -56,13 +56,13 @@ impl Content for PreviewRecording<'_> {
     }
 
     fn views_in_words(&self, _: Growth) -> String {
-        let joints: Vec<_> = self.joints.iter().map(|joint| &joint.stand.name).collect();
+        let joints: Vec<_> = self.joints.iter().map(|joint| &joint.rig.name).collect();
         format!("preview {joints:?}")
     }
 }
 
 fn add(chunks: &mut Chunks, preview: &Preview<'_>) -> Result<(), RecordError> {
-    let root = joint_root(&preview.joint.stand.name);
+    let root = joint_root(&preview.joint.rig.name);
     data::add(chunks, &root, preview)?;
     sheet::add(chunks, &root, preview)?;
     words::add(chunks, &root, preview)

@@ -29,11 +29,11 @@ pub(super) fn add(
     root: &EntityPath,
     preview: &Preview<'_>,
 ) -> Result<(), RecordError> {
-    let stand = &preview.joint.stand;
-    let input = format!("input{}", unit_of(stand.input_unit.as_deref()));
+    let rig = &preview.joint.rig;
+    let input = format!("input{}", unit_of(rig.input_unit.as_deref()));
     let held = Style { mode: InterpolationMode::StepAfter, ..Style::line(input, palette::INPUT) };
     signal(chunks, preview, at(root, preview_paths::INPUT), held, &preview.joint.schedule.input())?;
-    let unit = unit_of(stand.output_unit.as_deref());
+    let unit = unit_of(rig.output_unit.as_deref());
     for expected in &preview.expected {
         let name = expected.name;
         let output = child(&at(root, preview_paths::EXPECTED), name);
@@ -50,7 +50,7 @@ pub(super) fn add(
         let line = Style::line(format!("{name}{unit}"), expected.rgb);
         signal(chunks, preview, at(&output, preview_paths::OUTPUT), line, &prediction.output)?;
     }
-    if let Some((low, high)) = stand.range {
+    if let Some((low, high)) = rig.range {
         let range = at(root, preview_paths::RANGE);
         for (part, value) in [(preview_paths::LOW, low), (preview_paths::HIGH, high)] {
             let limit = Style::line(format!("range, {part}{unit}"), palette::REJECTED);

@@ -68,7 +68,7 @@ impl<'p> Page<'p> {
         // A limit that is far off would flatten the curves.
         let height = own.high - own.low;
         let is_near = |limit: &f64| (own.low - height..own.high + height).contains(limit);
-        let range = preview.joint.stand.range.into_iter();
+        let range = preview.joint.rig.range.into_iter();
         let limits = range.flat_map(|(low, high)| [low, high]).filter(is_near);
         let angles = Span::around([own.low, own.high].into_iter().chain(limits), MARGIN);
         let input = plot(90.0, 260.0, levels);
@@ -86,7 +86,7 @@ impl<'p> Page<'p> {
 
     /// Frames, ticks and titles.
     fn sheet(&self) -> Sheet {
-        let stand = &self.preview.joint.stand;
+        let rig = &self.preview.joint.rig;
         let mut sheet = Sheet::default();
         let mut draw = |plot: &Plot, title: String| {
             let y_ticks = plot.y_span().ticks(4.0).into_iter().map(|y| (y, number(y)));
@@ -95,9 +95,9 @@ impl<'p> Page<'p> {
             let middle = f64::midpoint(plot.x_span().low, plot.x_span().high);
             sheet.put(plot.above(middle, TITLE), title);
         };
-        draw(&self.input, format!("input{}", unit_of(stand.input_unit.as_deref())));
+        draw(&self.input, format!("input{}", unit_of(rig.input_unit.as_deref())));
         if let Some(plot) = &self.output {
-            let unit = unit_of(stand.output_unit.as_deref());
+            let unit = unit_of(rig.output_unit.as_deref());
             draw(plot, format!("expected output{unit}, with its margin"));
         }
         if let Some(plot) = &self.apart {
@@ -158,7 +158,7 @@ impl<'p> Page<'p> {
             simplified(thinned(values).into_iter().map(place).collect())
         };
         if let Some(plot) = &self.output {
-            let range = self.preview.joint.stand.range.into_iter();
+            let range = self.preview.joint.rig.range.into_iter();
             let Span { low, high } = plot.y_span();
             let limits = range.flat_map(|(low, high)| [low, high]);
             let limits = limits
@@ -189,8 +189,8 @@ impl<'p> Page<'p> {
             Some(_) => (format!("– if it is {}", e.name), e.rgb),
             None => (format!("– {}", e.name), e.rgb),
         }));
-        if let (Some(_), Some((low, high))) = (&self.output, self.preview.joint.stand.range) {
-            let unit = self.preview.joint.stand.output_unit.as_deref();
+        if let (Some(_), Some((low, high))) = (&self.output, self.preview.joint.rig.range) {
+            let unit = self.preview.joint.rig.output_unit.as_deref();
             let text = format!("– range: {} to {}", measure(low, None), measure(high, unit));
             entries.push((text, palette::REJECTED));
         }
@@ -234,7 +234,7 @@ impl<'p> Page<'p> {
             self.plots().map(frame).collect()
         };
         rows.strips(sheet::HERE_FRAME, palette::HERE, 1.2, holds.iter().map(frame))?;
-        let unit = self.preview.joint.stand.input_unit.as_deref();
+        let unit = self.preview.joint.rig.input_unit.as_deref();
         let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
         let names = holds.iter().zip(self.preview.joint.schedule.holds()).zip(1..);
         let name =

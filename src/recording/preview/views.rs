@@ -28,7 +28,7 @@ pub(super) fn messages(
 
 /// The page of a joint and its signals; beside them what they tell, and the holds.
 fn tab(builder: &mut Builder, joint: &DesignedJoint) -> Result<Node, RecordError> {
-    let name = joint.stand.name.as_str();
+    let name = joint.rig.name.as_str();
     let root = joint_root(name);
     let path = |path: &str| at(&root, path).to_string();
     let sheet = at(&root, paths::sheet::ROOT);

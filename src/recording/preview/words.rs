@@ -41,7 +41,7 @@ type Written = Result<String, std::fmt::Error>;
 /// What the input is, what it tells, and how surely.
 fn says(preview: &Preview<'_>) -> Written {
     let mut page = String::new();
-    writeln!(page, "## {}\n", plain(&preview.joint.stand.name))?;
+    writeln!(page, "## {}\n", plain(&preview.joint.rig.name))?;
     let mut sentences = design_sentences(preview.joint).into_iter();
     if let Some(first) = sentences.next() {
         writeln!(page, "**{}**\n", plain(&first))?;
@@ -62,14 +62,14 @@ fn says(preview: &Preview<'_>) -> Written {
 /// A hold in numbers: what is expected at its end, and how far the suspects are apart.
 fn page(preview: &Preview<'_>, place: usize, hold: Hold, (start, end): (usize, usize)) -> Written {
     let mut page = String::new();
-    let stand = &preview.joint.stand;
-    let level = measure(hold.level, stand.input_unit.as_deref());
+    let rig = &preview.joint.rig;
+    let level = measure(hold.level, rig.input_unit.as_deref());
     let [from, to] = [start, end].map(|sample| measure(preview.seconds(sample), Some("s")));
     let all = preview.joint.schedule.holds().len();
     writeln!(page, "## {}\n", plain(&level))?;
     writeln!(page, "| hold {} of {all} | |\n|---|---|", place + 1)?;
     writeln!(page, "| from, to | {from}, {to} |")?;
-    let unit = stand.output_unit.as_deref();
+    let unit = rig.output_unit.as_deref();
     for expected in &preview.expected {
         let (output, margin) = (&expected.prediction.output, &expected.prediction.margin);
         let last = end.saturating_sub(1);
@@ -89,8 +89,8 @@ fn page(preview: &Preview<'_>, place: usize, hold: Hold, (start, end): (usize, u
 
 /// A hold in a line.
 fn line(preview: &Preview<'_>, place: usize, hold: Hold) -> String {
-    let stand = &preview.joint.stand;
-    let level = measure(hold.level, stand.input_unit.as_deref());
+    let rig = &preview.joint.rig;
+    let level = measure(hold.level, rig.input_unit.as_deref());
     let seconds = hold.samples as f64 * preview.joint.schedule.period().seconds();
     let line = format!("hold {}: {level} for {}", place + 1, measure(seconds, Some("s")));
     let own = preview.apart.as_ref().and_then(|apart| apart.holds.get(place));

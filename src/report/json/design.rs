@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::header::Header;
-use crate::design::{Expected, Open, Prediction, Rehearsal, Side, transitions};
+use crate::design::{Expected, OpenThreshold, Prediction, Rehearsal, Side, transitions};
 use crate::report::design::{DesignedJoint, Told, holds, kept_until_s, order};
 
 /// The document of `design --format json`.
@@ -100,20 +100,20 @@ impl<'a> DesignJson<'a> {
 
 impl<'a> JointJson<'a> {
     fn new(joint: &'a DesignedJoint) -> Self {
-        let DesignedJoint { stand, schedule, .. } = joint;
+        let DesignedJoint { rig, schedule, .. } = joint;
         let ((shortest, longest), (least, most)) = (schedule.hold_range_s(), transitions(schedule));
         Self {
-            joint: &stand.name,
-            input_unit: stand.input_unit.as_deref(),
-            output_unit: stand.output_unit.as_deref(),
+            joint: &rig.name,
+            input_unit: rig.input_unit.as_deref(),
+            output_unit: rig.output_unit.as_deref(),
             sample_period_s: schedule.period().seconds(),
             duration_s: schedule.duration_s(),
             steps: schedule.steps(),
             levels: schedule.levels(),
             hold_s: Ends { low: shortest, high: longest },
             transitions: [least, most],
-            start: stand.start,
-            output_range: stand.range.map(|(low, high)| Ends { low, high }),
+            start: rig.start,
+            output_range: rig.range.map(|(low, high)| Ends { low, high }),
             predicted: joint.prediction.as_ref().map(|found| predicted(joint, found)),
             separates: joint.told.as_ref().map(ToldJson::new),
             notes: &joint.notes,
@@ -148,7 +148,7 @@ impl ToldJson {
 }
 
 impl OpenJson {
-    fn new(Open { effect, parameter, low, high }: &Open) -> Self {
+    fn new(OpenThreshold { effect, parameter, low, high }: &OpenThreshold) -> Self {
         Self { effect, parameter, low: *low, high: *high }
     }
 }
@@ -156,18 +156,18 @@ impl OpenJson {
 impl SideJson {
     fn new(effect: &'static str, side: &Side) -> Self {
         let Expected { rival, neither, .. } = side.expected;
-        let Rehearsal { told, of } = side.rehearsal.unwrap_or_default();
+        let Rehearsal { successes, runs } = side.rehearsal.unwrap_or_default();
         Self {
             effect,
-            told: side.is_told,
+            told: side.is_target,
             excluded: side.is_excluded,
             power: side.expected.power(),
             noncentrality: rival.noncentrality(),
             noncentrality_training: rival.training,
             noncentrality_validation: rival.validation,
             noncentrality_with_neither: neither.noncentrality(),
-            rehearsed: of,
-            rehearsed_told: told,
+            rehearsed: runs,
+            rehearsed_told: successes,
         }
     }
 }

@@ -1,7 +1,14 @@
-//! A glance at an input: how far a rival stays at its known numbers, but for what small changes
-//! of them would mend.
+//! A linear screen of an input: how far a rival at its known numbers stays from the truth, but
+//! for what its sensitivities explain, that is what small changes of its numbers would mend.
+//!
+//! With the difference `d` of the two outputs and the rival's sensitivities `J`, each window
+//! without its mean, and noise of variance `σ²`, the noncentrality is
+//!
+//! ```text
+//! λ ≈ |d − J (JᵀJ)⁻¹ Jᵀ d|² / σ²
+//! ```
 
-use super::predict::Stand;
+use super::predict::TestRig;
 use super::schedule::Schedule;
 use super::suspects::Suspects;
 use crate::model::JointModel;
@@ -11,39 +18,39 @@ const LONGEST_WINDOW: usize = 200;
 
 /// Differences of two models along an input, for several numbers of the first that are likely,
 /// and what each parameter of the second does.
-pub(super) struct Glance {
+pub(super) struct LinearScreen {
     here: Vec<f64>,
     differences: Vec<Vec<f64>>,
     slopes: Vec<Vec<f64>>,
 }
 
-impl Glance {
+impl LinearScreen {
     /// What suspect number `truth` does with `schedule`, seen by `rival`.
-    pub(super) fn at(
+    pub(super) fn of(
         suspects: &Suspects,
         truth: usize,
         rival: &JointModel,
-        (stand, schedule): (&Stand, &Schedule),
+        (rig, schedule): (&TestRig, &Schedule),
     ) -> Option<Self> {
-        /// Further numbers of the truth that are looked at.
+        /// Further numbers of the truth. Chosen: each costs a simulation of every input.
         const DRAWS: usize = 5;
-        let here = stand.output(rival, schedule);
-        let slopes = free(rival).map(|place| {
-            let moved = stand.output(&moved(rival, place), schedule);
+        let here = rig.output(rival, schedule);
+        let slopes = free(rival).map(|index| {
+            let moved = rig.output(&moved(rival, index), schedule);
             moved.iter().zip(&here).map(|(a, b)| a - b).collect()
         });
         let slopes = slopes.collect();
         let truth = suspects.models.get(truth)?;
         let models = std::iter::once(&truth.model).chain(truth.draws.iter().take(DRAWS));
         let differences = models.map(|model| {
-            let there = stand.output(model, schedule);
+            let there = rig.output(model, schedule);
             there.iter().zip(&here).map(|(a, b)| a - b).collect()
         });
         let differences = differences.collect();
         Some(Self { here, differences, slopes })
     }
 
-    /// Looks at one more output of the truth, too.
+    /// Includes one more output of the truth.
     pub(super) fn add(&mut self, there: &[f64]) {
         let difference = there.iter().zip(&self.here).map(|(a, b)| a - b);
         self.differences.push(difference.collect());
@@ -87,20 +94,15 @@ fn free(model: &JointModel) -> impl Iterator<Item = usize> {
     let effects = specs.flat_map(|spec| spec.parameters.iter().map(|p| p.fitted));
     let fitted: Vec<bool> = [true, true].into_iter().chain(effects).collect();
     let values = model.values();
-    (0..values.len()).filter(move |place| {
-        let fixed = values.get(*place).is_none_or(|value| value.fixed);
-        !fixed && fitted.get(*place).copied().unwrap_or_default()
-    })
+    (0..values.len()).filter(move |index| !values[*index].fixed && fitted[*index])
 }
 
-/// `model` with the parameter at `place` moved a little.
-fn moved(model: &JointModel, place: usize) -> JointModel {
+/// `model` with one parameter moved a little.
+fn moved(model: &JointModel, index: usize) -> JointModel {
     /// In parts of the value, or of one.
     const PART: f64 = 1e-4;
     let mut values: Vec<f64> = model.values().iter().map(|value| value.value).collect();
-    if let Some(value) = values.get_mut(place) {
-        *value += PART * value.abs().max(0.01);
-    }
+    values[index] += PART * values[index].abs().max(0.01);
     model.with_values(&values)
 }
 
