@@ -205,6 +205,40 @@ fn a_circle_is_seen_wherever_it_runs() {
     assert_eq!(circles(&facade), [""; 0]);
 }
 
+/// What ties the maker of test data to what is tested with it, as sentences: it may use only
+/// validated scalars and logs, and of the library only the command line may use it.
+fn ties_of_test_data(house: &House) -> Vec<String> {
+    let first = |module: &Module| module.first().map_or("", String::as_str).to_owned();
+    let ties = |import: &Import| match (first(&import.from).as_str(), first(&import.to).as_str()) {
+        ("synthetic", to) => !["synthetic", "units", "experiment"].contains(&to),
+        (from, "synthetic") => from != "cli",
+        _ => false,
+    };
+    house.imports().iter().filter(|import| ties(import)).map(told).collect()
+}
+
+#[test]
+fn the_maker_of_test_data_stands_apart() {
+    assert_eq!(ties_of_test_data(&project()), [""; 0]);
+}
+
+#[test]
+fn a_tie_of_the_maker_of_test_data_is_seen() {
+    for (path, fault) in [
+        ("synthetic/drive.rs", "use crate::numerics::mean;"),
+        ("synthetic/drive.rs", "fn f() { crate::effect::by_id() }"),
+        ("fit/mod.rs", "use crate::synthetic::simulate;"),
+    ] {
+        let others = [
+            ("numerics/mod.rs", "pub fn mean() {}"),
+            ("effect/mod.rs", "pub fn by_id() {}"),
+            ("synthetic/mod.rs", "mod drive; pub fn simulate() {}"),
+        ];
+        let seen = house(&[&others[..], &[(path, fault)]].concat());
+        assert_eq!(ties_of_test_data(&seen).len(), 1, "{fault}");
+    }
+}
+
 #[test]
 fn each_library_is_named_in_its_own_place_only() {
     for (library, place) in [

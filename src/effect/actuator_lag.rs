@@ -12,7 +12,7 @@
 //! ```
 //!
 //! The joint is late by the time constant in the long run. A log sampled more slowly than
-//! that cannot tell the lag from a delay. Where friction stops the joint, the lag belongs
+//! that cannot separate the lag from a delay. Where friction stops the joint, the lag belongs
 //! into [`CoulombFriction`](super::CoulombFriction).
 //!
 //! # References

@@ -13,7 +13,7 @@
 //! `v` is the speed in input units (the gain follows), `in` the driving force in units of
 //! the input that makes it. With `time_constant = 0` there is no inertia, and what is
 //! left is exactly a [dead band](super::DeadBand) from `−negative` to `positive`: only
-//! inertia tells the two apart, since a joint that coasts is braked to a stop, and does
+//! inertia separates the two, since a joint that coasts is braked to a stop, and does
 //! not fade out.
 //!
 //! The inertia is therefore part of this effect, and it contains

@@ -25,7 +25,7 @@ impl Decay {
         Self { left: (-ratio).exp(), mean: -(-ratio).exp_m1() / ratio }
     }
 
-    /// The same as [`over`](Self::over), taken from `memory` where it was last computed
+    /// [`over`](Self::over), taken from `memory` where it was last computed
     /// for the same two numbers.
     pub(super) fn recall(memory: &mut [f64], dt_s: f64, time_constant: f64) -> Self {
         let [known_dt, known_constant, left, mean] = memory else {

@@ -73,7 +73,7 @@ impl RecordRange<'_> {
         }
     }
 
-    /// Lowest and highest value of this dimension that the record can tell from others.
+    /// Lowest and highest value of this dimension that the record can distinguish from others.
     pub fn extent(&self, dimension: Dimension) -> (f64, f64) {
         let size = self.size(dimension);
         match dimension {
@@ -105,10 +105,10 @@ impl RecordRange<'_> {
         }
         let last = gaps.len() - 1;
         let steps = count.saturating_sub(1).min(last).max(1);
-        let mut places: Vec<_> = (0..=steps).map(|i| i * last / steps).collect();
-        places.dedup();
-        places.truncate(count);
-        places.into_iter().filter_map(|place| gaps.get(place).copied()).collect()
+        let mut chosen: Vec<_> = (0..=steps).map(|i| i * last / steps).collect();
+        chosen.dedup();
+        chosen.truncate(count);
+        chosen.into_iter().map(|gap| gaps[gap]).collect()
     }
 }
 

@@ -12,7 +12,7 @@
 //!
 //! A `stop` above `start` acts as `start`. An input that turns its sign at a level above
 //! `start` moves on at once. It is a switch: as a function of its parameters the output
-//! jumps, and an input held at few levels only tells between which levels they lie. A
+//! jumps, and an input held at few levels only shows between which levels they lie. A
 //! fit starts once in each of these gaps, and its result holds for the whole gap.
 //!
 //! # References

@@ -40,7 +40,7 @@ impl Swing {
         Self { state, rate, mean: mean(state, rate, omega, a, dt_s) }
     }
 
-    /// The same, taken from `memory` where it was last computed for these numbers.
+    /// This step, taken from `memory` where it was last computed for these numbers.
     pub(super) fn recall(memory: &mut [f64], omega: f64, damping: f64, dt_s: f64) -> Self {
         let [key @ .., a, b, c, d, e, f] = memory else {
             return Self::over(omega, damping, dt_s);
@@ -55,7 +55,7 @@ impl Swing {
         Self { state: [*a, *b], rate: [*c, *d], mean: [*e, *f] }
     }
 
-    /// Moves `state` and `rate` on, toward `signal`, and tells the mean of the state.
+    /// Moves `state` and `rate` on, toward `signal`; returns the mean of the state.
     pub(super) fn advance(&self, signal: f64, state: &mut f64, rate: &mut f64) -> f64 {
         let (deviation, before) = (*state - signal, *rate);
         *state = signal + self.state[0] * deviation + self.state[1] * before;

@@ -28,7 +28,7 @@ pub(super) fn assert_close(found: &[f64], expected: &[f64]) {
     assert_close_to(found, expected, 1e-12);
 }
 
-/// The same with another tolerance.
+/// Panics unless both have the same length and agree to `tolerance` of the larger, or of 1.
 #[track_caller]
 pub(super) fn assert_close_to(found: &[f64], expected: &[f64], tolerance: f64) {
     assert_eq!(found.len(), expected.len());

@@ -130,7 +130,7 @@ impl Effect for VariableDelay {
 /// The last parameter.
 const PER_STEP: &str = "per_step";
 
-/// Range of the scales in a fit, in parts of what is typical: from what can still be told
+/// Range of the scales in a fit, in parts of what is typical: from what can still be distinguished
 /// from a constant to what is straight to some percent.
 const FITTED_SCALES: (f64, f64) = (0.3, 20.0);
 

@@ -79,7 +79,7 @@ pub fn simulate(
         while let Some(restart) = restarts.next_if(|restart| restart.sample <= sample) {
             joint.restart(restart, start, period_s);
         }
-        joint.others = surroundings.others.get(sample).copied().unwrap_or_default();
+        joint.others = surroundings.others.get(sample).copied().unwrap_or(0.0);
         input.advance(start);
         simulated.output.push(joint.measured);
         simulated.acting.push(input.level);
@@ -249,8 +249,8 @@ impl<'a> Joint<'a> {
 
     /// Sets the output anew, and the speed where it is known.
     ///
-    /// The joint keeps its place in the play between angle and sensor: the sensor settles
-    /// at the output, and then the joint moves to that place.
+    /// The joint keeps its position in the play between angle and sensor: the sensor settles
+    /// at the output, and then the joint moves to that position.
     fn restart(&mut self, restart: &Restart, time_s: f64, period_s: f64) {
         let play = self.angle - self.measured;
         let mut at = self.moment(restart.output, time_s, period_s);

@@ -2,6 +2,12 @@
 
 use crate::units::SamplePeriod;
 
+/// Fewest time steps in a lag: the error of one step is then below 1e-5.
+pub(super) const MIN_STEPS_PER_LAG: f64 = 4.0;
+
+/// Fewest time steps in a period of ringing: the error of one step is below 1e-6.
+pub(super) const MIN_STEPS_PER_PERIOD: f64 = 40.0;
+
 /// The times of a record.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clock {

@@ -20,7 +20,7 @@ use super::error::{Place, PlantError, above_zero};
 #[serde(tag = "law", rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum DelayLaw {
-    /// The same for all steps.
+    /// One delay for all steps.
     Constant {
         /// Delay of each step.
         seconds: f64,

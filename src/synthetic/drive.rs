@@ -93,13 +93,13 @@ impl Drive {
     /// `changes`, each with the number of its step, in the order of the steps; none for the
     /// others.
     pub(super) fn by_step(&self, changes: impl Iterator<Item = (usize, f64)>) -> Vec<Option<f64>> {
-        let mut told = vec![None; self.steps.len()];
+        let mut by_step = vec![None; self.steps.len()];
         for (index, change) in changes {
-            if let Some(slot) = told.get_mut(index) {
+            if let Some(slot) = by_step.get_mut(index) {
                 *slot = Some(change);
             }
         }
-        told
+        by_step
     }
 
     /// The level after the last step so far.
@@ -381,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn given_steps_stand_where_they_are_given() {
+    fn given_steps_are_where_they_are_given() {
         let input = InputSpec::Steps { steps: vec![(3, 1.0), (5, -1.0)], initial: 0.5 };
         let joint = JointSpec::new("a", input, DelayLaw::Constant { seconds: 0.15 });
         let drive = Drive::of(&joint, 0, 0, clock(6)).unwrap();

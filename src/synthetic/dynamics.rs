@@ -1,7 +1,7 @@
 //! From steady speed to angle, in time steps finer than a sample.
 //!
 //! Runge and Kutta's method of order four over the pieces in which the command
-//! stands still: a time step is split where a level begins to act. No fitted model
+//! is constant: a time step is split where a level begins to act. No fitted model
 //! uses this code, so that data and model cannot share a mistake.
 
 use std::f64::consts::TAU;

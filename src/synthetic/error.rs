@@ -31,7 +31,7 @@ pub enum PlantError {
         source: Box<toml::ser::Error>,
     },
     /// The file follows another schema.
-    #[error("the schema is `{found}`, not `{expected}`", expected = super::SCHEMA)]
+    #[error("the schema is `{found}`, not `{expected}`", expected = super::schema::SCHEMA)]
     Schema {
         /// The schema it names.
         found: String,
@@ -39,7 +39,7 @@ pub enum PlantError {
     /// A key has a value that is not allowed.
     #[error("{place}: `{key}` is {value}; allowed: {allowed}")]
     Value {
-        /// Where the key stands.
+        /// What the key belongs to.
         place: Place,
         /// The key, with that of its table before a dot.
         key: &'static str,

@@ -1,7 +1,7 @@
 //! Test data whose truth is known: hydraulic joints driven by steps of voltage.
 //!
-//! A [`PlantSpec`], usually a TOML file, tells the joints and what drives them;
-//! [`simulate`] makes their logs and tells the delay of each step; [`write_log`] and
+//! A [`PlantSpec`], usually a TOML file, names the joints and what drives them;
+//! [`simulate`] makes their logs and states the delay of each step; [`write_log`] and
 //! [`write_truth`] make files of both. A [`scenario`] is a plant with something to find.
 //! Per joint,
 //!
@@ -47,281 +47,30 @@ mod clock;
 mod cylinder;
 mod delay_law;
 mod drive;
+mod driven;
 mod dynamics;
 pub mod effects;
 mod error;
 mod input;
 mod motion;
 mod random;
+mod rig;
 pub mod scenario;
+mod schema;
 mod sensor;
+mod simulate;
 mod spec;
 mod statics;
 mod together;
 mod truth;
 mod write;
 
-use crate::experiment::{Joint, Trial};
-
-use clock::Clock;
-use random::{Purpose, stream};
-use together::Driven;
-
 pub use cylinder::{CylinderSpec, Part};
 pub use delay_law::DelayLaw;
 pub use error::{Place, PlantError};
 pub use input::InputSpec;
-pub use spec::{JointSpec, PlantSpec, Ringing, SCHEMA, Spikes};
+pub use schema::SCHEMA;
+pub use simulate::{Synthetic, simulate};
+pub use spec::{JointSpec, PlantSpec, Ringing, Spikes};
 pub use truth::StepTruth;
 pub use write::{write_log, write_truth};
-
-/// Label of the only trial.
-const TRIAL: &str = "1";
-
-/// Simulated joints and the truth about them.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Synthetic {
-    /// The joints in the order of the plant, each with one trial labelled `1`.
-    pub joints: Vec<Joint>,
-    /// The steps of the first joint in the order of time, those of the second, …
-    pub truth: Vec<StepTruth>,
-}
-
-/// Drives the joints of `spec` and records them.
-///
-/// The same `spec` gives the same numbers. Other platforms agree as far as their `exp`
-/// and `ln` do, which serve the law `step_size` and the tails of the noise.
-///
-/// # Errors
-/// Those of [`PlantSpec::check`]; [`PlantError::Range`] when no level keeps a joint in
-/// its range; [`PlantError::ListedDelays`] when a drawn input has more steps than
-/// delays are listed; [`PlantError::Runaway`] when the equations of a cylinder do not
-/// hold together; [`PlantError::Trial`] when an angle grows beyond all numbers.
-pub fn simulate(spec: &PlantSpec) -> Result<Synthetic, PlantError> {
-    spec.check()?;
-    let clock = spec.clock()?;
-    let (mut joints, mut truth) = (Vec::new(), Vec::new());
-    let driven = together::drive(spec, clock)?;
-    for (index, (joint, Driven { drive, speed_changes, angles })) in
-        spec.joints.iter().zip(driven).enumerate()
-    {
-        truth.extend(truth::truth_of(&joint.name, TRIAL, drive.steps(), speed_changes, &clock));
-        let mut noise = stream(spec.seed, index, Purpose::Noise);
-        let mut output = sensor::measure(joint, angles, &mut noise);
-        sensor::spike(joint, &mut output, &mut stream(spec.seed, index, Purpose::Spikes));
-        joints.push(recorded(joint, &clock, drive.input(clock.samples()), output)?);
-    }
-    Ok(Synthetic { joints, truth })
-}
-
-/// The log of one joint.
-fn recorded(
-    spec: &JointSpec,
-    clock: &Clock,
-    input: Vec<f64>,
-    output: Vec<f64>,
-) -> Result<Joint, PlantError> {
-    let trial = Trial::new(TRIAL, 0.0, clock.period(), input, output)
-        .map_err(|source| PlantError::Trial { place: Place::joint(&spec.name), source })?;
-    Ok(Joint {
-        name: spec.name.clone(),
-        input_unit: Some(spec.input_unit.clone()),
-        output_unit: Some(spec.output_unit.clone()),
-        covariates: Vec::new(),
-        trials: vec![trial],
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const PERIOD_S: f64 = 0.01;
-
-    /// A joint of gain 10 with `steps`, all delayed by `delay_s`.
-    fn stepped(steps: &[(usize, f64)], delay_s: f64) -> JointSpec {
-        let input = InputSpec::Steps { steps: steps.to_vec(), initial: 0.0 };
-        JointSpec::new("a", input, DelayLaw::Constant { seconds: delay_s })
-    }
-
-    /// A joint that wanders between whole volts.
-    fn wandering(name: &str) -> JointSpec {
-        let input = InputSpec::Levels { levels: vec![-1.0, 0.0, 1.0], hold_s: [0.9, 2.0] };
-        JointSpec::new(name, input, DelayLaw::Uniform { min: 0.01, max: 0.8 })
-    }
-
-    /// What 2 s of `joint` look like.
-    fn short(joint: JointSpec) -> Synthetic {
-        simulate(&PlantSpec::new(1, 2.0, vec![joint])).unwrap()
-    }
-
-    /// What 60 s of `joints` look like.
-    fn long(seed: u64, joints: &[JointSpec]) -> Synthetic {
-        simulate(&PlantSpec::new(seed, 60.0, joints.to_vec())).unwrap()
-    }
-
-    fn output(made: &Synthetic) -> &[f64] {
-        made.joints[0].trials[0].output()
-    }
-
-    fn inputs(made: &Synthetic) -> Vec<&[f64]> {
-        made.joints.iter().map(|joint| joint.trials[0].input()).collect()
-    }
-
-    /// Time at which the lines through two pairs of samples around a kink cross.
-    fn kink_s(output: &[f64], before: usize, after: usize) -> f64 {
-        let line = |k: usize| {
-            let slope = (output[k + 1] - output[k]) / PERIOD_S;
-            (slope, output[k] - slope * k as f64 * PERIOD_S)
-        };
-        let ((slope_1, offset_1), (slope_2, offset_2)) = (line(before), line(after));
-        (offset_1 - offset_2) / (slope_2 - slope_1)
-    }
-
-    #[test]
-    fn the_kink_is_exactly_one_delay_after_the_step() {
-        // The second is no whole number of samples or time steps.
-        for delay_s in [0.15, 0.123_456_789] {
-            let made = short(stepped(&[(40, 1.0), (89, -1.0)], delay_s));
-            for p in [40, 89] {
-                let expected = (p as f64 - 1.0) * PERIOD_S + delay_s;
-                let found = kink_s(output(&made), p, p + 30);
-                assert!((found - expected).abs() < 1e-9, "{found} s, not {expected} s");
-            }
-        }
-    }
-
-    #[test]
-    fn dead_band_and_saturation_give_the_angle_computed_by_hand() {
-        let steps = [(11, 0.1), (61, 1.2), (111, 3.0), (161, -1.0)];
-        let joint = JointSpec {
-            start: 5.0,
-            dead_band: Some([-0.3, 0.2]),
-            saturation: Some(1.5),
-            ..stepped(&steps, 0.1)
-        };
-        let made = short(joint);
-        // Acting at 0.2, 0.7, 1.2 and 1.7 s: 0, 1.0, 1.5 and -0.7 V after the statics.
-        let cases = [(71, 5.0), (121, 10.0), (171, 17.5), (181, 16.8), (200, 15.47)];
-        for (sample, angle) in cases {
-            let found = output(&made)[sample - 1];
-            assert!((found - angle).abs() < 1e-9, "{found} at sample {sample}");
-        }
-        let changes: Vec<f64> = made.truth.iter().map(|step| step.slope_change).collect();
-        for (found, expected) in changes.iter().zip([0.0, 0.1, 0.05, -0.22]) {
-            assert!((found - expected).abs() < 1e-12, "{changes:?}");
-        }
-    }
-
-    #[test]
-    fn an_overtaken_step_leaves_no_trace_in_the_output() {
-        let law = DelayLaw::Listed { seconds: vec![0.1, 0.8, 0.1] };
-        let steps = [(11, 1.0), (51, 2.0), (101, -1.0)];
-        let with = short(JointSpec { delay: law, ..stepped(&steps, 0.0) });
-        let without = short(stepped(&[(11, 1.0), (101, -1.0)], 0.1));
-        assert_eq!(output(&with), output(&without));
-        let overtaken: Vec<bool> = with.truth.iter().map(|step| step.overtaken).collect();
-        assert_eq!(overtaken, [false, true, false]);
-        let changes: Vec<f64> = with.truth.iter().map(|step| step.slope_change).collect();
-        for (found, expected) in changes.iter().zip([0.1, 0.0, -0.2]) {
-            assert!((found - expected).abs() < 1e-12, "{changes:?}");
-        }
-    }
-
-    #[test]
-    fn the_truth_tells_each_step() {
-        let made = short(stepped(&[(40, 1.0), (89, -1.0)], 0.15));
-        let second = &made.truth[1];
-        assert_eq!((second.i, second.p, second.hold_samples), (2, 89, 112));
-        assert_eq!((second.joint.as_str(), second.trial.as_str()), ("a", "1"));
-        assert_eq!(made.truth[0].hold_samples, 49);
-        assert!((second.delay_samples - 15.0).abs() < 1e-9);
-        assert!((second.slope_change + 0.2).abs() < 1e-12);
-    }
-
-    #[test]
-    fn the_same_seed_gives_the_same_data_and_another_one_does_not() {
-        let joints = [JointSpec { noise: 0.05, ..wandering("a") }];
-        assert_eq!(long(1, &joints), long(1, &joints));
-        assert_ne!(long(1, &joints), long(2, &joints));
-    }
-
-    #[test]
-    fn joints_are_driven_apart() {
-        let made = long(1, &[wandering("a"), wandering("b")]);
-        assert_ne!(made.joints[0].trials[0].input(), made.joints[1].trials[0].input());
-    }
-
-    #[test]
-    fn noise_and_further_joints_change_neither_input_nor_delays() {
-        let quiet = long(1, &[wandering("a")]);
-        let noisy = long(1, &[JointSpec { noise: 0.1, ..wandering("a") }, wandering("b")]);
-        assert_eq!(inputs(&quiet)[0], inputs(&noisy)[0]);
-        assert_eq!(quiet.truth, noisy.truth[..quiet.truth.len()]);
-    }
-
-    #[test]
-    fn another_law_of_delay_leaves_the_input_as_it_was() {
-        let law = DelayLaw::Constant { seconds: 0.1 };
-        let other = long(1, &[JointSpec { delay: law, ..wandering("a") }]);
-        assert_eq!(inputs(&other), inputs(&long(1, &[wandering("a")])));
-    }
-
-    #[test]
-    fn the_range_is_kept_in_the_log() {
-        let joint = JointSpec { range: Some([-30.0, 40.0]), ..wandering("a") };
-        for seed in 0..10 {
-            let made = long(seed, std::slice::from_ref(&joint));
-            // 1e-9: what the sum of the time steps may round.
-            let inside = |y: &f64| (-30.0 - 1e-9..=40.0 + 1e-9).contains(y);
-            assert!(output(&made).iter().all(inside), "seed {seed}");
-        }
-    }
-
-    #[test]
-    fn an_angle_beyond_all_numbers_is_an_error() {
-        let joint = JointSpec { gain: f64::MAX, ..stepped(&[(2, 100.0)], 0.0) };
-        let found = simulate(&PlantSpec::new(1, 2.0, vec![joint]));
-        assert!(matches!(found, Err(PlantError::Trial { .. })));
-    }
-
-    #[test]
-    fn odd_numbers_give_data_or_an_error_but_no_panic() {
-        const ODD: [f64; 9] =
-            [0.0, -1.0, 1e300, -1e300, 5e-324, 1e-9, f64::NAN, f64::INFINITY, f64::MAX];
-        let changes: [fn(&mut PlantSpec, f64); 12] = [
-            |spec, odd| spec.sample_period_s = odd,
-            |spec, odd| spec.duration_s = odd,
-            |spec, odd| (spec.sample_period_s, spec.duration_s) = (odd / 10.0, odd),
-            |spec, odd| spec.joints[0].gain = odd,
-            |spec, odd| spec.joints[0].start = odd,
-            |spec, odd| spec.joints[0].range = Some([-odd, odd]),
-            |spec, odd| spec.joints[0].dead_band = Some([-odd, odd]),
-            |spec, odd| spec.joints[0].saturation = Some(odd),
-            |spec, odd| spec.joints[0].lag_s = Some(odd),
-            |spec, odd| {
-                let (period_s, damping) = (odd, 0.1);
-                spec.joints[0].ringing = Some(Ringing { period_s, damping });
-            },
-            |spec, odd| spec.joints[0].delay = DelayLaw::Constant { seconds: odd },
-            |spec, odd| {
-                let (levels, hold_s) = (vec![odd, -odd, 1.0], [odd, odd]);
-                spec.joints[0].input = InputSpec::Levels { levels, hold_s };
-            },
-        ];
-        for (change, odd) in changes.iter().flat_map(|change| ODD.map(|odd| (change, odd))) {
-            let mut spec = PlantSpec::new(1, 2.0, vec![wandering("a")]);
-            change(&mut spec, odd);
-            let finite = |made: Synthetic| output(&made).iter().all(|y| y.is_finite());
-            assert!(simulate(&spec).map_or(true, finite));
-        }
-    }
-
-    #[test]
-    fn first_numbers_of_a_seed_stay_the_same() {
-        let made = long(1, &[JointSpec { noise: 0.1, ..wandering("a") }]);
-        let step = &made.truth[0];
-        let found = (step.p, format!("{:.9} {:.9}", step.delay_s, output(&made)[0]));
-        assert_eq!(found, (133, "0.091791180 -0.010836652".to_owned()));
-    }
-}

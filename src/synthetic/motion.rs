@@ -81,7 +81,7 @@ pub(super) struct Motion<'a> {
 impl<'a> Motion<'a> {
     /// The joint at the first sample; its first level has long been held.
     pub(super) fn new(joint: &'a JointSpec, clock: Clock) -> Self {
-        let (chain, valve) = (StaticChain::of(joint), Valve::of(joint));
+        let (chain, valve) = (StaticChain::of(joint), joint.valve());
         let radians = radians(&joint.output_unit);
         let mut motion = Self {
             joint,
@@ -313,7 +313,7 @@ fn share(opening: f64, chain: &StaticChain<'_>, joint: &JointSpec) -> f64 {
     if full > 0.0 { (opening.abs() / full).min(1.0) } else { 0.0 }
 }
 
-/// The same for a joint without effects, at each sample.
+/// The demand of a joint without effects, at each sample.
 pub(super) fn demands(joint: &JointSpec, drive: &Drive, clock: &Clock) -> Vec<f64> {
     let chain = StaticChain::of(joint);
     let mut pending = drive.arrivals().later().iter().peekable();

@@ -5,36 +5,24 @@ use std::fmt::Debug;
 
 use serde::{Deserialize, Serialize};
 
-use super::clock::{Clock, whole};
+use super::clock::{Clock, MIN_STEPS_PER_LAG, MIN_STEPS_PER_PERIOD, whole};
 use super::cylinder::CylinderSpec;
 use super::delay_law::{DelayLaw, Occasion};
-use super::effects::{self, Change, Effects, Outside};
+use super::effects::{self, Change, Effects, Outside, Valve};
 use super::error::{Allowed, Place, PlantError, above_zero};
 use super::input::InputSpec;
+use super::schema::SCHEMA;
 use crate::units::SamplePeriod;
-
-/// The schema of a plant file.
-pub const SCHEMA: &str = "tauscope/plant/1";
 
 /// Samples of all joints together: 14 hours of a joint at 100 Hz. Keeps a slip of
 /// the pen from filling the memory.
 const MAX_SAMPLES: f64 = 5e7;
 
-/// Shortest sample period in seconds: a log tells the time to a nanosecond.
+/// Shortest sample period in seconds: a log has the time to a nanosecond.
 const MIN_SAMPLE_PERIOD_S: f64 = 1e-6;
-
-/// Time steps per sample: enough for a lag of a fifth of a sample, and for ringing
-/// with a period of two samples, the shortest that sampling can show.
-const DEFAULT_SUBSTEPS: u32 = 20;
 
 /// Most time steps per sample.
 const MAX_SUBSTEPS: u32 = 1000;
-
-/// Fewest time steps in a lag: the error of one step is then below 1e-5.
-pub(super) const MIN_STEPS_PER_LAG: f64 = 4.0;
-
-/// Fewest time steps in a period of ringing: the error of one step is below 1e-6.
-pub(super) const MIN_STEPS_PER_PERIOD: f64 = 40.0;
 
 /// Joints to simulate, as a plant file holds them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -136,14 +124,18 @@ pub struct Ringing {
     pub damping: f64,
 }
 
-/// What a file need not tell.
+/// What a file may leave out.
 mod default {
+    /// Time steps per sample: enough for a lag of a fifth of a sample, and for ringing
+    /// with a period of two samples, the shortest that sampling can show.
+    const SUBSTEPS: u32 = 20;
+
     pub(super) fn sample_period_s() -> f64 {
         0.01
     }
 
     pub(super) fn substeps() -> u32 {
-        super::DEFAULT_SUBSTEPS
+        SUBSTEPS
     }
 
     pub(super) fn gain() -> f64 {
@@ -160,8 +152,8 @@ mod default {
 }
 
 impl PlantSpec {
-    /// `joints` recorded for `duration_s` seconds; the rest as in a file that does
-    /// not tell it.
+    /// `joints` recorded for `duration_s` seconds; the rest as in a file that
+    /// leaves it out.
     pub fn new(seed: u64, duration_s: f64, joints: Vec<JointSpec>) -> Self {
         Self {
             schema: SCHEMA.to_owned(),
@@ -260,7 +252,7 @@ impl PlantSpec {
 
 impl JointSpec {
     /// A joint with neither dead band, saturation, lag, ringing nor noise; the rest
-    /// as in a file that does not tell it.
+    /// as in a file that leaves it out.
     pub fn new(name: &str, input: InputSpec, delay: DelayLaw) -> Self {
         Self {
             name: name.to_owned(),
@@ -312,6 +304,11 @@ impl JointSpec {
     /// Whether its motion is that of valve, lag and ringing alone.
     pub(super) fn is_plain(&self) -> bool {
         self.effect.only_delay() && self.outside.is_empty()
+    }
+
+    /// Its valve.
+    pub(super) fn valve(&self) -> Valve<'_> {
+        Valve::new(&self.effect, &self.outside, self.input.largest())
     }
 
     /// Delay of one step in seconds; `None` where the list of delays is too short.

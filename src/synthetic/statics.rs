@@ -23,7 +23,7 @@ pub(super) struct StaticChain<'a> {
 impl<'a> StaticChain<'a> {
     /// The chain of one joint. What it does not have has no effect.
     pub(super) fn of(joint: &'a JointSpec) -> Self {
-        let valve = (!joint.is_plain()).then(|| Valve::of(joint));
+        let valve = (!joint.is_plain()).then(|| joint.valve());
         let dead_band = joint.dead_band.unwrap_or([0.0; 2]);
         let limit = joint.saturation.unwrap_or(f64::INFINITY);
         Self { valve, dead_band, limit, gain: joint.gain }

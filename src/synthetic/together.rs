@@ -2,30 +2,13 @@
 //! cylinders, each of which has a pump of its own.
 
 use super::clock::Clock;
-use super::cylinder;
 use super::drive::{Drive, Driver};
+use super::driven::Driven;
 use super::dynamics;
 use super::error::PlantError;
 use super::motion::{self, Motion};
+use super::rig;
 use super::spec::{JointSpec, PlantSpec};
-
-/// What became of one joint.
-#[derive(Clone, Debug)]
-pub(super) struct Driven {
-    pub(super) drive: Drive,
-    /// Change of speed that each step caused, in output units per second; none for one
-    /// that was overtaken.
-    pub(super) speed_changes: Vec<Option<f64>>,
-    /// What an ideal sensor shows at each sample.
-    pub(super) angles: Vec<f64>,
-}
-
-impl Driven {
-    /// A joint that each step gives another steady speed.
-    fn steadily(drive: Drive, angles: Vec<f64>) -> Self {
-        Self { speed_changes: drive.speed_changes(), drive, angles }
-    }
-}
 
 /// Drives all joints of `spec`, in their order.
 ///
@@ -39,7 +22,7 @@ pub(super) fn drive(spec: &PlantSpec, clock: Clock) -> Result<Vec<Driven>, Plant
     let sharing = spec.joints.iter().filter(|joint| joint.cylinder.is_none()).count();
     if spec.joints.iter().any(|joint| joint.effect.supply_droop.is_some()) {
         for (actor, joint) in actors.iter_mut().zip(&spec.joints) {
-            actor.tell_demands(joint, &clock);
+            actor.keep_demands(joint, &clock);
         }
     }
     let mut demands = vec![0.0; actors.len()];
@@ -82,7 +65,7 @@ impl<'a> Actor<'a> {
         clock: Clock,
     ) -> Result<Self, PlantError> {
         if let Some(cylinder) = &joint.cylinder {
-            return Ok(Self::Cylinder(cylinder::ride(joint, cylinder, index, seed, clock)?));
+            return Ok(Self::Cylinder(rig::ride(joint, cylinder, index, seed, clock)?));
         }
         if joint.is_plain() {
             let drive = Drive::of(joint, index, seed, clock)?;
@@ -96,7 +79,7 @@ impl<'a> Actor<'a> {
     }
 
     /// Keeps the demands of a joint that has run already, which only a shared pump needs.
-    fn tell_demands(&mut self, joint: &JointSpec, clock: &Clock) {
+    fn keep_demands(&mut self, joint: &JointSpec, clock: &Clock) {
         if let Self::Plain { driven, demands } = self {
             *demands = motion::demands(joint, &driven.drive, clock);
         }

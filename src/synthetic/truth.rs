@@ -20,13 +20,13 @@ pub struct StepTruth {
     pub input_after: f64,
     /// Time from sample `p` to the moment the level begins to act, in seconds.
     pub delay_s: f64,
-    /// The same time in sample periods, not rounded.
+    /// That time in sample periods, not rounded.
     pub delay_samples: f64,
     /// Samples at the new level: up to the next step or the end of the record.
     pub hold_samples: usize,
     /// Change of the steady slope of the output that this step causes, in output
     /// units per sample, from the level that acted before it: 0 inside a dead band
-    /// and for a step that was overtaken. Also told for a step whose delay reaches
+    /// and for a step that was overtaken. Also given for a step whose delay reaches
     /// beyond the end of the record. Of a cylinder, the change that came about until
     /// the next step began to act.
     pub slope_change: f64,

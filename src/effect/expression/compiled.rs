@@ -78,8 +78,8 @@ impl Expression {
         let names = Names { signals, parameters: &parameters };
         let node = grammar::parse(&definition.expression, names)?;
         let is_unused =
-            |place: usize| !node.has(&|node| matches!(node, Node::Parameter(p) if *p == place));
-        if let Some((_, name)) = (0..).zip(&parameters).find(|(place, _)| is_unused(*place)) {
+            |index: usize| !node.has(&|node| matches!(node, Node::Parameter(p) if *p == index));
+        if let Some((_, name)) = (0..).zip(&parameters).find(|(index, _)| is_unused(*index)) {
             return Err(DefinitionError::Unused { parameter: (*name).to_owned() });
         }
         let spec = Box::leak(Box::new(specified(&definition)));
@@ -144,7 +144,7 @@ impl Effect for Expression {
 
     fn depends_on_angle(&self) -> bool {
         let names = signals(self.spec.stage);
-        let is_position = |place: usize| names.get(place) == Some(&POSITION);
+        let is_position = |index: usize| names.get(index) == Some(&POSITION);
         let by_stage = matches!(self.spec.stage, Stage::Load | Stage::Output);
         by_stage || self.node.has(&|node| matches!(node, Node::Signal(p) if is_position(*p)))
     }
@@ -181,7 +181,7 @@ impl OwnParameter {
 
     /// As the specification has it: its range holds the neutral value, too.
     pub(super) fn specified(&self) -> Parameter {
-        let neutral = self.neutral.unwrap_or_default();
+        let neutral = self.neutral.unwrap_or(0.0);
         let (min, max) = self.bounds();
         Parameter {
             neutral,
@@ -195,7 +195,7 @@ impl OwnParameter {
     /// What is wrong with its numbers.
     pub(super) fn fault(&self) -> Option<DefinitionError> {
         let (min, max) = self.bounds();
-        let neutral = self.neutral.unwrap_or_default();
+        let neutral = self.neutral.unwrap_or(0.0);
         let is_finite = [min, max, neutral].iter().all(|number| number.is_finite());
         let value = self.start.unwrap_or(min);
         let holds = is_finite && min <= max && (min..=max).contains(&value);
@@ -223,8 +223,8 @@ fn check_names(definition: &Definition, signals: &[&str]) -> Result<(), Definiti
     if by_id(id).is_some() || id == KIND {
         return Err(DefinitionError::TakenId { id: id.clone() });
     }
-    for (place, OwnParameter { name, .. }) in parameters.iter().enumerate() {
-        let mut before = parameters.iter().take(place);
+    for (index, OwnParameter { name, .. }) in parameters.iter().enumerate() {
+        let mut before = parameters.iter().take(index);
         let is_taken = signals.contains(&name.as_str()) || grammar::is_taken(name);
         if is_taken || before.any(|other| other.name == *name) {
             return Err(DefinitionError::TakenName { parameter: name.clone() });
@@ -244,13 +244,13 @@ fn specified(definition: &Definition) -> Spec {
 }
 
 /// Moments at which an effect without an effect is seen to have one: signals of either
-/// sign up to 1000, at several places and times.
+/// sign up to 1000, at several angles and times.
 fn samples() -> impl Iterator<Item = Moment> {
     let sizes = [0.0, 0.01, 0.7, 3.0, 45.0, 1000.0];
     let signals = sizes.into_iter().flat_map(|size| [size, -size]);
-    let places = [(0.0, 0.0, 0.0, 0.0), (30.0, -2.0, 12.0, 0.4), (-170.0, 25.0, 3600.0, 1.0)];
+    let states = [(0.0, 0.0, 0.0, 0.0), (30.0, -2.0, 12.0, 0.4), (-170.0, 25.0, 3600.0, 1.0)];
     signals.flat_map(move |signal| {
-        places.map(|(position, velocity, time_s, others)| {
+        states.map(|(position, velocity, time_s, others)| {
             let radians_per_output_unit = 1_f64.to_radians();
             let dt_s = 0.01;
             Moment { signal, position, velocity, time_s, dt_s, others, radians_per_output_unit }

@@ -87,11 +87,11 @@ pub struct SyntaxError {
     pub problem: Problem,
 }
 
-/// What is wrong at a place of an expression.
+/// What is wrong at a column of an expression.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Problem {
-    /// Something else must stand there.
+    /// Something else must be there.
     #[error("expected {0}")]
     Expected(&'static str),
     /// There is no signal, parameter, constant or function of this name.

@@ -10,9 +10,9 @@ pub(super) type Binary = fn(f64, f64) -> f64;
 #[derive(Clone, Debug)]
 pub(super) enum Node {
     Number(f64),
-    /// A signal, by its place in the list of the stage.
+    /// A signal, by its index in the list of the stage.
     Signal(usize),
-    /// A parameter, by its place in the definition.
+    /// A parameter, by its index in the definition.
     Parameter(usize),
     Unary(Unary, Box<Self>),
     Binary(Binary, Box<[Self; 2]>),
@@ -34,8 +34,8 @@ impl Node {
         let of = |node: &Self| node.value(signals, parameters);
         match self {
             Self::Number(number) => *number,
-            Self::Signal(place) => at(signals, *place),
-            Self::Parameter(place) => at(parameters, *place),
+            Self::Signal(index) => at(signals, *index),
+            Self::Parameter(index) => at(parameters, *index),
             Self::Unary(function, argument) => function(of(argument)),
             Self::Binary(function, arguments) => {
                 let [left, right] = arguments.as_ref();
@@ -61,8 +61,8 @@ impl Node {
     }
 }
 
-fn at(values: &[f64], place: usize) -> f64 {
-    values.get(place).copied().unwrap_or(f64::NAN)
+fn at(values: &[f64], index: usize) -> f64 {
+    values.get(index).copied().unwrap_or(f64::NAN)
 }
 
 /// What counts as true: every number but zero.

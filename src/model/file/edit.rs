@@ -33,12 +33,12 @@ pub(super) fn entries(item: &mut Item) -> Option<Vec<&mut dyn TableLike>> {
     }
 }
 
-/// Drops all entries but those at `places`.
-pub(super) fn retain(item: &mut Item, places: &[usize]) {
-    let mut place = 0;
+/// Drops all entries but those with these `indices`.
+pub(super) fn retain(item: &mut Item, indices: &[usize]) {
+    let mut index = 0;
     let mut is_kept = || {
-        place += 1;
-        places.contains(&(place - 1))
+        index += 1;
+        indices.contains(&(index - 1))
     };
     match item {
         Item::ArrayOfTables(tables) => tables.retain(|_| is_kept()),
@@ -80,7 +80,7 @@ pub(super) fn write_number(table: &mut dyn TableLike, key: &str, value: Option<f
     }
 }
 
-/// Puts a value under `key`, or takes away what stands there.
+/// Puts a value under `key`, or removes the one there.
 pub(super) fn write(table: &mut dyn TableLike, key: &str, value: Option<toml_edit::Value>) {
     let Some(mut value) = value else {
         table.remove(key);

@@ -9,7 +9,7 @@ use crate::model::{Component, Value};
 /// Writes the parameters of `component` into its `entry`.
 pub(super) fn write_component(entry: &mut dyn TableLike, component: &Component) -> Option<()> {
     let effect = component.effect();
-    // Where the file refers to a definition, the limits of the definition stand there.
+    // Where the file refers to a definition, the limits are in the definition.
     let is_defined_here = entry.contains_key("expression");
     let own = effect.definition().filter(|_| is_defined_here).map(|own| own.parameters.as_slice());
     let own = own.unwrap_or_default().iter().map(Some).chain(std::iter::repeat(None));
@@ -22,7 +22,7 @@ pub(super) fn write_component(entry: &mut dyn TableLike, component: &Component) 
     write_parameters(entry, all.map(written))
 }
 
-/// A parameter as it stands in a file.
+/// A parameter as it is written in a file.
 #[derive(Clone, Debug)]
 pub(super) struct Written {
     value: f64,
@@ -67,7 +67,7 @@ impl Written {
         table.into()
     }
 
-    /// Replaces what stands in `item` where it says something else.
+    /// Replaces `item` where it says something else.
     fn replace(&self, item: &mut Item) {
         if let Some(table) = item.as_table_like_mut() {
             write_number(table, "value", Some(self.value));

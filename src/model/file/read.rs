@@ -1,4 +1,4 @@
-//! From what stands in a file to models.
+//! From the tables of a file to models.
 
 use std::path::Path;
 
@@ -26,7 +26,7 @@ pub(super) fn candidates(
 /// Where the start values of a definition come from.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Start {
-    /// From the values that stand in it: it is not part of a model yet.
+    /// From the values in it: it is not part of a model yet.
     Given,
     /// From the model that it is a part of, whose values are not part of the definition:
     /// it stays the same effect when they change.

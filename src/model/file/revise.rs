@@ -123,16 +123,16 @@ impl Writer<'_> {
 
     fn effects(&self, joint: &mut dyn TableLike, components: &[Component]) -> Option<()> {
         let mut entries = joint.get_mut("effect").map_or_else(|| Some(Vec::new()), entries)?;
-        let places = self.places(&entries, components);
-        let (kept, new) = components.split_at(places.len());
+        let known = self.indices(&entries, components);
+        let (kept, new) = components.split_at(known.len());
         let mut kept = kept.iter();
-        for (place, entry) in entries.iter_mut().enumerate() {
-            if places.contains(&place) {
+        for (index, entry) in entries.iter_mut().enumerate() {
+            if known.contains(&index) {
                 write_component(*entry, kept.next()?)?;
             }
         }
         if let Some(effects) = joint.get_mut("effect") {
-            retain(effects, &places);
+            retain(effects, &known);
         }
         for component in new {
             let mut entry = self.header(component.effect());
@@ -145,21 +145,21 @@ impl Writer<'_> {
         Some(())
     }
 
-    /// The places in the file of the first components, in their order; those behind them
-    /// have none.
-    fn places(&self, entries: &[&mut dyn TableLike], components: &[Component]) -> Vec<usize> {
+    /// The indices in the file of the first components, in their order; those behind them
+    /// are not in it.
+    fn indices(&self, entries: &[&mut dyn TableLike], components: &[Component]) -> Vec<usize> {
         let mut next = 0;
-        let mut place = |component: &Component| {
+        let mut index_of = |component: &Component| {
             let wanted = self.header(component.effect());
             let is_it = |entry: &&mut dyn TableLike| has_all_of(*entry, &wanted);
-            let place = next + entries.iter().skip(next).position(is_it)?;
-            next = place + 1;
-            Some(place)
+            let index = next + entries.iter().skip(next).position(is_it)?;
+            next = index + 1;
+            Some(index)
         };
-        components.iter().map_while(&mut place).collect()
+        components.iter().map_while(&mut index_of).collect()
     }
 
-    /// What tells an effect of a joint from others.
+    /// The keys by which an effect of a joint is recognised.
     fn header(&self, effect: &'static dyn Effect) -> Table {
         let mut table = Table::new();
         let spec = effect.spec();

@@ -1,4 +1,4 @@
-//! What stands in a model file, as TOML.
+//! The tables of a model file, as TOML.
 
 use std::collections::BTreeMap;
 

@@ -2,8 +2,9 @@
 
 use std::f64::consts::FRAC_PI_4;
 
+use super::si::{LITRE, LITRE_PER_MINUTE, PASCAL_PER_BAR};
 use super::valve::{Ports, Valve, root};
-use super::{CylinderSpec, LITRE, LITRE_PER_MINUTE, PASCAL_PER_BAR, Part};
+use super::{CylinderSpec, Part};
 
 /// Size of the make-up valves, in fully open ports.
 const MAKE_UP: f64 = 4.0;
@@ -14,12 +15,12 @@ const RELIEF_FLOW: f64 = 100.0 * LITRE_PER_MINUTE;
 
 /// Pressures above that of the air, in pascal.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pressures {
-    pub(super) supply: f64,
+pub(in crate::synthetic) struct Pressures {
+    pub(in crate::synthetic) supply: f64,
     /// On the side of the piston.
-    pub(super) piston: f64,
+    pub(in crate::synthetic) piston: f64,
     /// On the side of the rod.
-    pub(super) rod: f64,
+    pub(in crate::synthetic) rod: f64,
 }
 
 /// Flows in cubic metres per second.

@@ -15,7 +15,7 @@ fn with(parts: &[Part]) -> CylinderSpec {
     CylinderSpec { only: Some(parts.to_vec()), ..CylinderSpec::default() }
 }
 
-/// The same, so viscous that the oil does not swing.
+/// A cylinder so viscous that the oil does not swing.
 fn damped(parts: &[Part]) -> CylinderSpec {
     CylinderSpec { viscous_n_s_m: 4e5, ..with(parts) }
 }

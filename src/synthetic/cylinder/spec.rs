@@ -2,17 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::clock::Clock;
-use super::super::error::{Place, PlantError};
-use super::Machine;
-
-/// Steps of time in a record: a minute of work.
-const MAX_TIME_STEPS: f64 = 5e7;
-
-/// Largest product of the time step and the fastest rate. The method stays stable up
-/// to 2.8; the rest keeps it accurate.
-const MAX_STEP_TIMES_RATE: f64 = 1.5;
-
 /// A hydraulic cylinder that moves a joint: the table `cylinder` of a plant file.
 ///
 /// What is left out makes the boom of an excavator of some eight tonnes. All keys, with
@@ -34,11 +23,11 @@ pub struct CylinderSpec {
     /// Longest step of the integration.
     pub time_step_s: f64,
 
-    /// How much later than the law of delay tells a very small step acts.
+    /// How much later than by the law of delay a very small step acts.
     pub pilot_small_s: f64,
     /// Size of step, in input units, that leaves 37 % of it.
     pub pilot_small_input: f64,
-    /// How much later than the law of delay tells a falling step acts.
+    /// How much later than by the law of delay a falling step acts.
     pub pilot_falling_s: f64,
 
     /// Input that opens the valve fully, in input units.
@@ -199,115 +188,5 @@ impl CylinderSpec {
     /// Seconds that it adds at most.
     pub(in super::super) fn longest_pilot_s(&self) -> f64 {
         if self.has(Part::Pilot) { self.pilot_small_s + self.pilot_falling_s } else { 0.0 }
-    }
-
-    /// Refuses numbers that no cylinder has, and a time step that is too long for them.
-    pub(in super::super) fn check(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
-        for (key, value) in self.above_zero() {
-            let fits = |value: &f64| value.is_finite() && *value > 0.0;
-            place.require(key, value, "finite, above zero", fits)?;
-        }
-        for (key, value) in self.not_negative() {
-            let fits = |value: &f64| value.is_finite() && *value >= 0.0;
-            place.require(key, value, "finite, not negative", fits)?;
-        }
-        self.check_valve(place)?;
-        self.check_piston(place)?;
-        self.check_load(place)?;
-        self.check_linkage(place)?;
-        self.check_time_step(clock, place)
-    }
-
-    fn above_zero(&self) -> [(&'static str, f64); 23] {
-        [
-            ("cylinder.pilot_small_input", self.pilot_small_input),
-            ("cylinder.time_step_s", self.time_step_s),
-            ("cylinder.full_input", self.full_input),
-            ("cylinder.spool_hz", self.spool_hz),
-            ("cylinder.spool_damping", self.spool_damping),
-            ("cylinder.full_stroke_s", self.full_stroke_s),
-            ("cylinder.rated_flow_l_min", self.rated_flow_l_min),
-            ("cylinder.supply_bar", self.supply_bar),
-            ("cylinder.pump_flow_l_min", self.pump_flow_l_min),
-            ("cylinder.pump_control_bar", self.pump_control_bar),
-            ("cylinder.supply_volume_l", self.supply_volume_l),
-            ("cylinder.bore_mm", self.bore_mm),
-            ("cylinder.bulk_modulus_mpa", self.bulk_modulus_mpa),
-            ("cylinder.hose_volume_l", self.hose_volume_l),
-            ("cylinder.relief_bar", self.relief_bar),
-            ("cylinder.stribeck_m_s", self.stribeck_m_s),
-            ("cylinder.mass_kg", self.mass_kg),
-            ("cylinder.centre_m", self.centre_m),
-            ("cylinder.inertia_kg_m2", self.inertia_kg_m2),
-            ("cylinder.foot_m", self.foot_m),
-            ("cylinder.eye_m", self.eye_m),
-            ("cylinder.cushion_mm", self.cushion_mm),
-            ("cylinder.linkage_deg", self.linkage_deg),
-        ]
-    }
-
-    fn not_negative(&self) -> [(&'static str, f64); 8] {
-        [
-            ("cylinder.pilot_small_s", self.pilot_small_s),
-            ("cylinder.pilot_falling_s", self.pilot_falling_s),
-            ("cylinder.tank_bar", self.tank_bar),
-            ("cylinder.rod_mm", self.rod_mm),
-            ("cylinder.leakage_l_min", self.leakage_l_min),
-            ("cylinder.coulomb_n", self.coulomb_n),
-            ("cylinder.static_n", self.static_n),
-            ("cylinder.viscous_n_s_m", self.viscous_n_s_m),
-        ]
-    }
-
-    fn check_valve(&self, place: &Place) -> Result<(), PlantError> {
-        place.require("cylinder.overlap", self.overlap, "0 or more, below 0.9", |overlap| {
-            (0.0..0.9).contains(overlap)
-        })?;
-        let allowed = "between -0.5 and 0.5";
-        place.require("cylinder.null_offset", self.null_offset, allowed, |offset| {
-            offset.abs() <= 0.5
-        })?;
-        let allowed = "a pressure between those of tank and relief";
-        place.require("cylinder.supply_bar", self.supply_bar, allowed, |supply| {
-            *supply > self.tank_bar && *supply <= self.relief_bar
-        })
-    }
-
-    fn check_piston(&self, place: &Place) -> Result<(), PlantError> {
-        place.require("cylinder.rod_mm", self.rod_mm, "thinner than the bore", |rod| {
-            *rod < self.bore_mm
-        })?;
-        let allowed = "the Coulomb friction or more";
-        place.require("cylinder.static_n", self.static_n, allowed, |most| *most >= self.coulomb_n)
-    }
-
-    fn check_load(&self, place: &Place) -> Result<(), PlantError> {
-        let allowed = "mass_kg × centre_m² or more: no body has less";
-        place.require("cylinder.inertia_kg_m2", self.inertia_kg_m2, allowed, |inertia| {
-            *inertia >= self.mass_kg * self.centre_m * self.centre_m
-        })
-    }
-
-    fn check_linkage(&self, place: &Place) -> Result<(), PlantError> {
-        let limits = self.angle_limits_deg;
-        let allowed = "[lowest, highest] with `linkage_deg` added between 5 and 175: beyond, the \
-                       cylinder has no lever arm";
-        place.require("cylinder.angle_limits_deg", limits, allowed, |[lowest, highest]| {
-            let inside = |angle: f64| (5.0..=175.0).contains(&(angle + self.linkage_deg));
-            lowest < highest && inside(*lowest) && inside(*highest)
-        })
-    }
-
-    fn check_time_step(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
-        let key = "cylinder.time_step_s";
-        let duration_s = clock.time_s(clock.samples());
-        let allowed = "longer: the record has more than fifty million steps";
-        place.require(key, self.time_step_s, allowed, |step_s| {
-            duration_s / step_s <= MAX_TIME_STEPS
-        })?;
-        let rate = Machine::of(self).fastest_rate();
-        let allowed = "shorter, for oil, seals and spool as fast as these; or larger volumes, less \
-                       friction, more inertia";
-        place.require(key, self.time_step_s, allowed, |step_s| step_s * rate <= MAX_STEP_TIMES_RATE)
     }
 }

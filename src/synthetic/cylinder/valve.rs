@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::{CylinderSpec, LITRE_PER_MINUTE, PASCAL_PER_BAR, Part};
+use super::si::{LITRE_PER_MINUTE, PASCAL_PER_BAR};
+use super::{CylinderSpec, Part};
 
 /// Drop at which the flow of a port is rated.
 const RATED_DROP: f64 = 5.0 * PASCAL_PER_BAR;

@@ -4,10 +4,9 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use super::super::clock::Clock;
+use super::super::clock::{Clock, MIN_STEPS_PER_LAG, MIN_STEPS_PER_PERIOD};
 use super::super::error::{Allowed, Place, PlantError};
-use super::super::spec::{MIN_STEPS_PER_LAG, MIN_STEPS_PER_PERIOD};
-use super::Part;
+use super::part::Part;
 
 /// The spool has a largest speed.
 ///

@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::super::clock::Clock;
 use super::super::error::{Allowed, Place, PlantError};
-use super::{Part, window};
+use super::part::Part;
+use super::shapes::window;
 
 /// A cylinder that turns the joint by a lever.
 ///

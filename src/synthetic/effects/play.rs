@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::super::clock::Clock;
 use super::super::error::{Allowed, Place, PlantError};
-use super::Part;
+use super::part::Part;
 
 /// Stops that the joint runs into, as stiff springs: it gives by its speed times one
 /// time step.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::super::clock::Clock;
 use super::super::error::{Allowed, Place, PlantError};
-use super::Part;
+use super::part::Part;
 
 /// What is added to the delay of each step. What is left out is zero.
 ///

@@ -6,11 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::super::clock::Clock;
 use super::super::error::{Allowed, Place, PlantError};
-use super::super::spec::JointSpec;
-use super::{Part, ramp, rise, window};
-
-/// Width of the corners, as a part of the largest level of the input.
-const EDGE: f64 = 0.004;
+use super::part::Part;
+use super::shapes::{ramp, rise, window};
 
 /// Sharpness of a saturation with a hard corner: within 2 % of the limit.
 const HARD: f64 = 40.0;
@@ -87,88 +84,38 @@ pub struct InputNotch {
     pub share: f64,
 }
 
-/// The valve of a joint: from the delayed level to its opening, in input units.
-///
-/// With `e` the edge and `ramp` a rounded `max(x, 0)`, one after the other:
-///
-/// ```text
-/// offset      u + offset
-/// dead band   ramp(u - upper) - ramp(lower - u)
-/// flow curve  u ((u² + e²) / (1 + e²))^((exponent - 1) / 2)
-/// direction   u (1 + (negative_factor - 1) rise(-u))
-/// notch       u (1 - (1 - share) window(u))
-/// saturation  u (1 + abs(u / limit)^p)^(-1/p),   p: sharpness
-/// ```
-#[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Valve<'a> {
-    joint: &'a JointSpec,
-    edge: f64,
-}
-
-impl<'a> Valve<'a> {
-    pub(in super::super) fn of(joint: &'a JointSpec) -> Self {
-        Self { joint, edge: EDGE * joint.input.largest().max(f64::MIN_POSITIVE) }
-    }
-
-    /// Width of the rounded corners, in input units.
-    pub(in super::super) fn edge(&self) -> f64 {
-        self.edge
-    }
-
-    /// Opening at a held `level` of a valve that does not stick.
-    pub(in super::super) fn opening(&self, level: f64) -> f64 {
-        let (effect, edge) = (&self.joint.effect, self.edge);
-        let mut u = level + effect.input_offset.map_or(0.0, |part| part.offset);
-        u = effect.dead_band.map_or(u, |part| part.opening(u, edge));
-        u = effect.flow_curve.map_or(u, |part| part.opening(u, edge));
-        u = effect.direction_gain.map_or(u, |part| part.opening(u, edge));
-        u = self.joint.outside.input_notch.map_or(u, |part| part.opening(u, edge));
-        effect.input_saturation.map_or(u, |part| part.opening(u))
-    }
-
-    /// Direction of motion at `level`, 0 at rest, where it was `before`.
-    pub(in super::super) fn direction(&self, level: f64, before: f64) -> f64 {
-        let u = level + self.joint.effect.input_offset.map_or(0.0, |part| part.offset);
-        let Some(Stiction { start, stop }) = self.joint.effect.stiction else {
-            return u.signum();
-        };
-        let needed = if u * before > 0.0 { stop } else { start };
-        if u.abs() > needed { u.signum() } else { 0.0 }
-    }
-}
-
 impl DeadBand {
-    fn opening(self, u: f64, edge: f64) -> f64 {
+    pub(super) fn opening(self, u: f64, edge: f64) -> f64 {
         ramp(u - self.upper, edge) - ramp(self.lower - u, edge)
     }
 }
 
 impl FlowCurve {
-    fn opening(self, u: f64, edge: f64) -> f64 {
+    pub(super) fn opening(self, u: f64, edge: f64) -> f64 {
         let square = edge * edge;
         u * ((u * u + square) / (1.0 + square)).powf(0.5 * (self.exponent - 1.0))
     }
 }
 
 impl DirectionGain {
-    fn opening(self, u: f64, edge: f64) -> f64 {
+    pub(super) fn opening(self, u: f64, edge: f64) -> f64 {
         u * (1.0 + (self.negative_factor - 1.0) * rise(-u, edge))
     }
 }
 
 impl InputNotch {
-    fn opening(self, u: f64, edge: f64) -> f64 {
+    pub(super) fn opening(self, u: f64, edge: f64) -> f64 {
         u * (1.0 - (1.0 - self.share) * window(u, self.from, self.to, edge))
     }
 }
 
 impl InputSaturation {
-    fn opening(self, u: f64) -> f64 {
+    pub(super) fn opening(self, u: f64) -> f64 {
         let (ratio, power) = (u.abs() / self.limit, self.sharpness);
         if ratio <= 1.0 {
             return u * (1.0 + ratio.powf(power)).powf(-1.0 / power);
         }
-        // The same with what could overflow taken out.
+        // Multiplied out, so that no power overflows.
         (self.limit * (1.0 + ratio.powf(-power)).powf(-1.0 / power)).copysign(u)
     }
 }

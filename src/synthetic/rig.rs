@@ -1,11 +1,11 @@
-//! A machine on its way through a record: its time, its state, the level that acts.
+//! The cylinder of a joint on its way through a record: its time, its state, the level that acts.
 
-use super::super::clock::Clock;
-use super::super::drive::{Drive, Foresight, Intent, beyond};
-use super::super::error::{Place, PlantError};
-use super::super::spec::JointSpec;
-use super::CylinderSpec;
-use super::machine::{Machine, State};
+use super::clock::Clock;
+use super::cylinder::{CylinderSpec, Machine, State};
+use super::drive::{Drive, Driver, Foresight, Intent, beyond};
+use super::driven::Driven;
+use super::error::{Place, PlantError};
+use super::spec::JointSpec;
 
 /// Sound of an integration that is still well: no pressure beyond this, in pascal.
 const ABSURD_PRESSURE: f64 = 1e10;
@@ -14,9 +14,34 @@ const ABSURD_PRESSURE: f64 = 1e10;
 /// then a swing of the oil.
 const SETTLING_S: f64 = 0.3;
 
+/// Drives `joint`, which has the number `index`, by its `cylinder`.
+///
+/// # Errors
+/// [`PlantError::Range`], [`PlantError::ListedDelays`] and [`PlantError::Runaway`].
+pub(super) fn ride(
+    joint: &JointSpec,
+    cylinder: &CylinderSpec,
+    index: usize,
+    seed: u64,
+    clock: Clock,
+) -> Result<Driven, PlantError> {
+    let mut driver = Driver::new(joint, index, seed, clock);
+    let mut rig = Rig::new(joint, cylinder, clock);
+    let mut angles = Vec::new();
+    for sample in 1..=clock.samples() {
+        rig.run(clock.time_s(sample), driver.drive())?;
+        angles.push(joint.outside.shown(rig.angle()));
+        if driver.due() == Some(sample) {
+            driver.act(sample, &rig)?;
+        }
+    }
+    let speed_changes = rig.speed_changes(driver.drive());
+    Ok(Driven { drive: driver.into_drive(), speed_changes, angles })
+}
+
 /// A running machine.
 #[derive(Clone, Debug)]
-pub(super) struct Rig<'a> {
+struct Rig<'a> {
     joint: &'a JointSpec,
     clock: Clock,
     machine: Machine,
@@ -32,7 +57,7 @@ pub(super) struct Rig<'a> {
 
 impl<'a> Rig<'a> {
     /// The cylinder of `joint` at the first sample, at rest.
-    pub(super) fn new(joint: &'a JointSpec, cylinder: &CylinderSpec, clock: Clock) -> Self {
+    fn new(joint: &'a JointSpec, cylinder: &CylinderSpec, clock: Clock) -> Self {
         let machine = Machine::of(cylinder);
         let radians = radians_per_output_unit(joint);
         let level = joint.input.initial();
@@ -50,15 +75,15 @@ impl<'a> Rig<'a> {
     }
 
     /// Angle in output units.
-    pub(super) fn angle(&self) -> f64 {
+    fn angle(&self) -> f64 {
         self.state.angle / self.radians
     }
 
-    /// Runs until `until_s`, told by `drive` what acts.
+    /// Runs until `until_s`, with the levels of `drive`.
     ///
     /// # Errors
     /// [`PlantError::Runaway`].
-    pub(super) fn run(&mut self, until_s: f64, drive: &Drive) -> Result<(), PlantError> {
+    fn run(&mut self, until_s: f64, drive: &Drive) -> Result<(), PlantError> {
         while let Some((index, arrival)) = drive.arrivals().later().get(self.speeds.len()) {
             if arrival.time_s >= until_s {
                 break;
@@ -73,7 +98,7 @@ impl<'a> Rig<'a> {
     /// Change of speed from the moment each step of `drive` acts to the one the next does,
     /// in output units per second; zero for a step on its way, none for one that was
     /// overtaken.
-    pub(super) fn speed_changes(&self, drive: &Drive) -> Vec<Option<f64>> {
+    fn speed_changes(&self, drive: &Drive) -> Vec<Option<f64>> {
         let ends = self.speeds.iter().skip(1).chain([&self.state.speed]);
         let moved = self.speeds.iter().zip(ends).map(|(from, to)| (to - from) / self.radians);
         let indices = drive.arrivals().later().iter().map(|(index, _)| *index);
