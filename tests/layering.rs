@@ -249,7 +249,7 @@ fn each_library_is_named_in_its_own_place_only() {
         ("levenberg_marquardt", "src/fit"),
         ("winnow", "src/effect/expression"),
         ("toml_edit", "src/model/file"),
-        ("ctrlc", "src/cli/interrupt.rs"),
+        ("ctrlc", "src/cli/console/interrupt.rs"),
         ("plotters", "src/report/page/plot.rs"),
         ("flate2", "src/experiment/format/mat"),
         ("hdf5_pure", "src/experiment/format/mat"),

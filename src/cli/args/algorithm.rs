@@ -1,0 +1,125 @@
+//! How delays are found: the options of `estimate` and `report`.
+
+use clap::{Args as ClapArgs, ValueEnum};
+
+use super::conditions::{ConditionArgs, Passband, ids_with, method, passband};
+use super::number::at_least_one;
+use crate::delay::{Automatic, Interpolation, Method, Settings};
+
+/// The settings of the algorithm.
+#[derive(ClapArgs, Debug)]
+#[command(next_help_heading = "Algorithm")]
+pub(crate) struct AlgorithmArgs {
+    /// How a breakpoint is found. May be repeated: the first one is the answer, the others
+    /// are told beside it
+    #[arg(long, default_values_t = [Method::default()], value_parser = method())]
+    method: Vec<Method>,
+
+    /// Samples that a segment reaches beyond its input steps; `auto` chooses this and the
+    /// next two from the record of each joint [default: 10]
+    #[arg(long, value_name = "N|auto", value_parser = or_auto(at_least_one), allow_negative_numbers = true)]
+    alpha: Option<OrAuto<usize>>,
+
+    /// Samples between two candidate breakpoints [default: 5]
+    #[arg(long, value_name = "N|auto", value_parser = or_auto(at_least_one), allow_negative_numbers = true)]
+    beta: Option<OrAuto<usize>>,
+
+    #[arg(long, help = passband_help(), value_name = "HZ|none|auto", value_parser = or_auto(passband), allow_negative_numbers = true)]
+    passband: Option<OrAuto<Passband>>,
+
+    #[command(flatten)]
+    conditions: ConditionArgs,
+
+    /// The delay between two steps
+    #[arg(long, value_enum, default_value_t = Between::Hold)]
+    interpolate: Between,
+}
+
+fn passband_help() -> String {
+    let smoothed = ids_with(|spec| spec.low_pass.is_some());
+    format!(
+        "Zero-phase low-pass on the output: its cutoff, or `none` [default: 5 for {smoothed}, \
+         else none]"
+    )
+}
+
+/// A value, or one that the record is to tell.
+#[derive(Clone, Copy, Debug)]
+enum OrAuto<T> {
+    Given(T),
+    Auto,
+}
+
+/// What `one` understands, and `auto`.
+fn or_auto<T: 'static>(
+    one: fn(&str) -> Result<T, String>,
+) -> impl Fn(&str) -> Result<OrAuto<T>, String> + Clone {
+    move |text| match text {
+        "auto" => Ok(OrAuto::Auto),
+        _ => one(text).map(OrAuto::Given).map_err(|expected| format!("{expected}, or `auto`")),
+    }
+}
+
+fn given<T>(value: Option<OrAuto<T>>) -> Option<T> {
+    match value {
+        Some(OrAuto::Given(value)) => Some(value),
+        Some(OrAuto::Auto) | None => None,
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Between {
+    /// Keep the delay until the next step
+    Hold,
+    /// Go in a line to the next accepted delay
+    Linear,
+}
+
+impl AlgorithmArgs {
+    /// The settings of each method that was asked for, each once.
+    pub(crate) fn runs(&self) -> Vec<Settings> {
+        let mut runs: Vec<Settings> = Vec::new();
+        for method in self.method.iter().copied() {
+            if runs.iter().all(|run| run.method != method) {
+                runs.push(self.settings(method));
+            }
+        }
+        runs
+    }
+
+    /// The settings of the only method.
+    ///
+    /// # Errors
+    /// When several were asked for.
+    pub(crate) fn only(&self) -> anyhow::Result<Settings> {
+        let mut runs = self.runs();
+        match (runs.pop(), runs.is_empty()) {
+            (Some(settings), true) => Ok(settings),
+            _ => anyhow::bail!("--method: only one method at a time can be used here"),
+        }
+    }
+
+    fn settings(&self, method: Method) -> Settings {
+        let base = self.conditions.settings(method);
+        let (alpha, beta) = (given(self.alpha), given(self.beta));
+        let (alpha, beta) = (alpha.unwrap_or(base.alpha), beta.unwrap_or(base.beta));
+        let low_pass = match given(self.passband) {
+            Some(passband) => passband.low_pass(self.conditions.filter_order),
+            None => base.low_pass,
+        };
+        let interpolation = match self.interpolate {
+            Between::Hold => Interpolation::Hold,
+            Between::Linear => Interpolation::Linear,
+        };
+        Settings { alpha, beta, low_pass, interpolation, ..base }
+    }
+
+    /// Which settings are to be chosen from the record.
+    pub(crate) fn automatic(&self) -> Automatic {
+        Automatic {
+            alpha: matches!(self.alpha, Some(OrAuto::Auto)),
+            beta: matches!(self.beta, Some(OrAuto::Auto)),
+            passband: matches!(self.passband, Some(OrAuto::Auto)),
+        }
+    }
+}

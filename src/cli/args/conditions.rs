@@ -1,0 +1,148 @@
+//! The settings that every command takes whose delays are asked for.
+
+use super::number::{at_least_one, probability, threshold};
+use crate::delay::{Method, MethodSpec, Settings};
+use crate::numerics::LowPass;
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+
+/// The settings that are no part of how a breakpoint is searched.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Algorithm")]
+pub(crate) struct ConditionArgs {
+    #[arg(long, help = confidence_help(), value_name = "X|none", value_parser = confidence, allow_negative_numbers = true)]
+    confidence: Option<Confidence>,
+
+    /// How often the interval of a delay is to hold the true one
+    #[arg(long, value_name = "X", default_value_t = 0.95, value_parser = probability, allow_negative_numbers = true)]
+    interval: f64,
+
+    /// Order of the low-pass
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = at_least_one, allow_negative_numbers = true)]
+    pub(crate) filter_order: usize,
+
+    /// Reject a step that is held for fewer samples (`τ_min`)
+    #[arg(long, value_name = "SAMPLES", default_value_t = 0, allow_negative_numbers = true)]
+    min_delay: usize,
+
+    /// Look for delays up to this many samples only: for holds so long that the output
+    /// meets an end stop on its way
+    #[arg(long, value_name = "SAMPLES", value_parser = at_least_one, allow_negative_numbers = true)]
+    max_delay: Option<usize>,
+
+    /// Reject a step when the output touches a limit
+    #[arg(long, value_name = "LO,HI", value_parser = limits, allow_hyphen_values = true)]
+    output_limits: Option<(f64, f64)>,
+
+    /// Reject a step when the slope changes by less, in output units per sample
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = threshold, allow_negative_numbers = true)]
+    min_slope_change: f64,
+
+    /// Reject a step unless the squared error of its lines is below this
+    #[arg(long, value_name = "X", value_parser = threshold, allow_negative_numbers = true)]
+    max_sse: Option<f64>,
+
+    /// Judge the first and the last step like the others
+    #[arg(long)]
+    keep_first_last: bool,
+
+    /// Count a change of the input as a step when it is more than this: for an input
+    /// that was measured
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = threshold, allow_negative_numbers = true)]
+    min_step: f64,
+}
+
+/// The methods that say so of themselves.
+pub(crate) fn ids_with(says: impl Fn(&MethodSpec) -> bool) -> String {
+    let methods = Method::all().filter(|method| says(method.spec()));
+    methods.map(Method::id).collect::<Vec<_>>().join(", ")
+}
+
+fn confidence_help() -> String {
+    let untested = ids_with(|spec| spec.confidence.is_none());
+    format!(
+        "Reject a step as `nothing_happened` unless its change of slope is this unlikely to be \
+         noise, or `none` [default: 0.99; `none` for {untested}]"
+    )
+}
+
+/// Names of methods, with their help.
+pub(crate) fn method() -> impl TypedValueParser<Value = Method> {
+    let known = |method: Method| PossibleValue::new(method.id()).help(method.spec().summary);
+    let ids = PossibleValuesParser::new(Method::all().map(known));
+    ids.try_map(|id| Method::find(&id).ok_or("no method has this name"))
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Confidence {
+    Of(f64),
+    None,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Passband {
+    Hz(f64),
+    None,
+}
+
+pub(crate) fn passband(text: &str) -> Result<Passband, String> {
+    if text == "none" {
+        return Ok(Passband::None);
+    }
+    let hz = text.parse().ok().filter(|hz: &f64| hz.is_finite() && *hz > 0.0);
+    hz.map(Passband::Hz).ok_or_else(|| "expected a frequency in Hz, or `none`".to_owned())
+}
+
+fn confidence(text: &str) -> Result<Confidence, String> {
+    if text == "none" {
+        return Ok(Confidence::None);
+    }
+    let found = probability(text).map(Confidence::Of);
+    found.map_err(|expected| format!("{expected}, or `none`"))
+}
+
+fn limits(text: &str) -> Result<(f64, f64), String> {
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| !x.is_nan());
+    let pair = text.split_once(',').and_then(|(low, high)| Some((number(low)?, number(high)?)));
+    match pair {
+        Some((low, high)) if low < high => Ok((low, high)),
+        Some(_) => Err("the lower limit comes first".to_owned()),
+        None => Err("expected two numbers, as in -40,40".to_owned()),
+    }
+}
+
+impl Passband {
+    /// The low-pass of `order` that it stands for.
+    pub(crate) fn low_pass(self, order: usize) -> Option<LowPass> {
+        match self {
+            Self::Hz(cutoff_hz) => Some(LowPass { cutoff_hz, order }),
+            Self::None => None,
+        }
+    }
+}
+
+impl ConditionArgs {
+    /// The settings of `method` with these conditions; all else is as usual.
+    pub(crate) fn settings(&self, method: Method) -> Settings {
+        let usual = Settings::of(method);
+        let order = self.filter_order;
+        let confidence = match self.confidence {
+            Some(Confidence::Of(confidence)) => Some(confidence),
+            Some(Confidence::None) => None,
+            None => usual.confidence,
+        };
+        Settings {
+            low_pass: usual.low_pass.map(|usual| LowPass { order, ..usual }),
+            min_delay: self.min_delay,
+            max_delay: self.max_delay,
+            output_limits: self.output_limits,
+            min_slope_change: self.min_slope_change,
+            max_sse: self.max_sse,
+            keep_first_last: self.keep_first_last,
+            min_step: self.min_step,
+            confidence,
+            interval: self.interval,
+            ..usual
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! The options of every command that reads logs.
+
+use std::path::{Path, PathBuf};
+
+use super::number;
+use crate::cli::failure::said;
+use crate::experiment::{ColumnMap, Experiment, JointColumns, ReadOptions, Repair, expand_folders};
+use crate::units::SamplePeriod;
+use anyhow::{Context as _, bail};
+use clap::Args;
+
+/// Where the logs are and how they are read.
+#[derive(Args, Debug)]
+pub(crate) struct DataArgs {
+    /// Logs (CSV, Parquet, MATLAB, MCAP), or folders of logs
+    #[arg(required = true, value_name = "DATA")]
+    data: Vec<PathBuf>,
+
+    /// A joint to use, by name; or `NAME=INPUT_COLUMN:OUTPUT_COLUMN` in a foreign log.
+    /// May be repeated
+    #[arg(long, value_name = "NAME[=IN:OUT]", help_heading = "Reading logs")]
+    joint: Vec<String>,
+
+    /// Column of the time in seconds
+    #[arg(long, value_name = "COLUMN", help_heading = "Reading logs")]
+    time: Option<String>,
+
+    /// Column that names the trial of a row, or `none`
+    #[arg(long, value_name = "COLUMN", help_heading = "Reading logs")]
+    trial: Option<String>,
+
+    /// Seconds between samples, for a log without a time column
+    #[arg(
+        long, value_name = "SECONDS", value_parser = number::period, allow_negative_numbers = true,
+        help_heading = "Reading logs"
+    )]
+    sample_period: Option<SamplePeriod>,
+
+    /// A TOML file that maps the columns of a foreign log
+    #[arg(long, value_name = "FILE", help_heading = "Reading logs")]
+    columns: Option<PathBuf>,
+
+    /// Put unevenly sampled logs on a grid of this period: output linear, input held
+    #[arg(
+        long, value_name = "SECONDS", value_parser = number::period, allow_negative_numbers = true,
+        help_heading = "Reading logs"
+    )]
+    resample: Option<SamplePeriod>,
+
+    /// Fill gaps of the output up to this long; longer ones split the trial in two. An
+    /// input that is missing is held
+    #[arg(
+        long, value_name = "SECONDS", value_parser = number::seconds, allow_negative_numbers = true,
+        help_heading = "Reading logs"
+    )]
+    fill: Option<f64>,
+}
+
+impl DataArgs {
+    /// Reads all logs. Failures of single files and joints are in the result.
+    ///
+    /// # Errors
+    /// When no joint at all can be read.
+    pub(crate) fn read(&self) -> anyhow::Result<Experiment> {
+        let (files, unlisted) = expand_folders(&self.data);
+        let mut experiment = Experiment::read(&files, &self.options()?);
+        experiment.failures.splice(0..0, unlisted);
+        if !experiment.joints.is_empty() {
+            return Ok(experiment);
+        }
+        let others = experiment.failures.len().saturating_sub(1);
+        let first = experiment.failures.drain(..).next().context("no joint in the logs")?;
+        let error = anyhow::Error::from(first.error);
+        Err(match others {
+            0 => error,
+            1 => error.context("nothing could be read (and one more failed)"),
+            _ => error.context(format!("nothing could be read (and {others} more failed)")),
+        })
+    }
+
+    /// The logs by their names, each once; and messages on folders without any.
+    pub(crate) fn logs(&self) -> (Vec<PathBuf>, Vec<String>) {
+        let (mut files, unlisted) = expand_folders(&self.data);
+        files.sort();
+        files.dedup();
+        (files, unlisted.iter().map(|failure| said(&failure.error)).collect())
+    }
+
+    /// The only log, which need not be there yet.
+    ///
+    /// # Errors
+    /// When there are several, or when gaps are to be filled: trials get new names at each.
+    pub(crate) fn only_file(&self) -> anyhow::Result<PathBuf> {
+        let [path] = self.data.as_slice() else {
+            bail!("expected one log, and {} are given", self.data.len());
+        };
+        if path.is_dir() {
+            bail!("{}: expected a log, and this is a folder", path.display());
+        }
+        if self.fill.is_some() {
+            bail!("`--fill` names trials anew at each gap; leave it out until the log has ended");
+        }
+        Ok(path.clone())
+    }
+
+    /// Reads `path` in place of all logs.
+    pub(crate) fn read_only(&self, path: &Path) -> anyhow::Result<Experiment> {
+        Ok(Experiment::read(&[path.to_owned()], &self.options()?))
+    }
+
+    /// The files that are read, where they really are.
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
+        let (files, _) = expand_folders(&self.data);
+        let files = files.iter().chain(&self.columns);
+        files.filter_map(|file| file.canonicalize().ok()).collect()
+    }
+
+    /// These options as they are typed, for one joint of several where it is named.
+    pub(crate) fn typed(&self, joint: Option<&str>) -> Vec<String> {
+        let is_mapped = |given: &&String| {
+            joint.is_none_or(|name| given.split_once('=').is_some_and(|(own, _)| own == name))
+        };
+        let mut joints: Vec<String> = self.joint.iter().filter(is_mapped).cloned().collect();
+        if joints.is_empty() {
+            joints.extend(joint.map(str::to_owned));
+        }
+        let path = |path: &PathBuf| path.display().to_string();
+        let seconds = |period: SamplePeriod| period.seconds().to_string();
+        let options = [
+            ("--time", self.time.clone()),
+            ("--trial", self.trial.clone()),
+            ("--sample-period", self.sample_period.map(seconds)),
+            ("--columns", self.columns.as_ref().map(path)),
+            ("--resample", self.resample.map(seconds)),
+            ("--fill", self.fill.map(|fill| fill.to_string())),
+        ];
+        let joints = joints.into_iter().map(|joint| ("--joint", Some(joint)));
+        let given = joints.chain(options).filter_map(|(name, value)| Some((name, value?)));
+        let options = given.flat_map(|(name, value)| [name.to_owned(), value]);
+        self.data.iter().map(path).chain(options).collect()
+    }
+
+    /// How logs are read.
+    pub(crate) fn options(&self) -> anyhow::Result<ReadOptions> {
+        let mut columns = match &self.columns {
+            Some(path) => ColumnMap::read(path)?,
+            None => ColumnMap::default(),
+        };
+        columns.time = self.time.clone().or(columns.time);
+        columns.trial = self.trial.clone().or(columns.trial);
+        let period = self.sample_period.map(SamplePeriod::seconds);
+        columns.sample_period_s = period.or(columns.sample_period_s);
+        let (mapped, named): (Vec<_>, Vec<_>) =
+            self.joint.iter().partition(|joint| joint.contains('='));
+        let mut joints: Vec<String> = named.into_iter().cloned().collect();
+        for text in mapped {
+            let joint: JointColumns = text.parse().context("--joint")?;
+            joints.push(joint.name.clone());
+            columns.joints.push(joint);
+        }
+        // Beside mapped joints, a native one is known by its columns' names.
+        if !columns.joints.is_empty() {
+            for name in &joints {
+                if columns.joints.iter().all(|joint| &joint.name != name) {
+                    let (input, output) = (format!("{name}.input"), format!("{name}.output"));
+                    columns.joints.push(JointColumns::new(name, &input, &output));
+                }
+            }
+        }
+        let repair = Repair { resample: self.resample, fill_s: self.fill };
+        Ok(ReadOptions { columns, joints, repair })
+    }
+}

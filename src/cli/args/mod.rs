@@ -1,0 +1,20 @@
+//! Options that several commands have, in groups.
+
+mod algorithm;
+mod conditions;
+mod data;
+mod effects;
+mod model_file;
+pub(crate) mod number;
+mod protocol;
+mod results;
+mod typed;
+
+pub(crate) use algorithm::AlgorithmArgs;
+pub(crate) use conditions::{ConditionArgs, Passband, ids_with, passband};
+pub(crate) use data::DataArgs;
+pub(crate) use effects::{EffectArgs, find};
+pub(crate) use model_file::{ModelFileArgs, fresh_name, name_of, note_missing};
+pub(crate) use protocol::ProtocolArgs;
+pub(crate) use results::{Format, ResultArgs, RunArgs};
+pub(crate) use typed::quoted;

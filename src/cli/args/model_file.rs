@@ -1,0 +1,143 @@
+//! The model file that `explain`, `add` and `improve` start from, and where it goes.
+
+use std::path::{Path, PathBuf};
+
+use crate::model::ModelFile;
+use anyhow::{Context as _, bail};
+use clap::Args;
+
+use crate::cli::console::{Verbosity, message};
+use crate::cli::output::{target_of, write_file};
+use crate::cli::similar::nearest;
+use crate::experiment::Joint;
+
+/// The name of a model file where none is given.
+const DEFAULT: &str = "model.toml";
+
+/// Where a model comes from and where its next revision goes.
+#[derive(Args, Debug)]
+pub(crate) struct ModelFileArgs {
+    /// The model file (TOML, schema `tauscope/model/1`). It is revised in place: values
+    /// change, comments and whatever else was written by hand stay. Where it is not there
+    /// yet, it is made; joints that it has not start as plain integrators
+    #[arg(short, long, value_name = "MODEL.toml", help_heading = "Model")]
+    model: Option<PathBuf>,
+
+    /// Where the revised file goes instead [default: the model file, or a new model.toml]
+    #[arg(short, long, value_name = "FILE.toml", help_heading = "Model")]
+    write: Option<PathBuf>,
+}
+
+impl ModelFileArgs {
+    /// The model file as it is; an empty one where there is none.
+    pub(crate) fn read(&self) -> anyhow::Result<ModelFile> {
+        match &self.model {
+            Some(path) if path.exists() || self.write.is_some() => Ok(ModelFile::read(path)?),
+            Some(path) => Ok(ModelFile::new(path)),
+            None if self.write.is_none() && Path::new(DEFAULT).exists() => bail!(
+                "{DEFAULT} is there already: `--model {DEFAULT}` goes on with it, `--write FILE` \
+                 starts another"
+            ),
+            None => Ok(ModelFile::new(self.target())),
+        }
+    }
+
+    /// Whether the revised file is to go elsewhere than where it came from.
+    pub(crate) fn is_written_elsewhere(&self) -> bool {
+        self.write.is_some()
+    }
+
+    /// Where the revised file goes.
+    pub(crate) fn target(&self) -> &Path {
+        self.write.as_ref().or(self.model.as_ref()).map_or(Path::new(DEFAULT), PathBuf::as_path)
+    }
+
+    /// Writes `revised` unless it is what was `read`.
+    pub(crate) fn write(
+        &self,
+        read: &ModelFile,
+        revised: &ModelFile,
+        verbosity: Verbosity,
+    ) -> anyhow::Result<()> {
+        let target = self.target();
+        let is_model =
+            |path: &PathBuf| self.model.as_ref().is_some_and(|m| target_of(m) == target_of(path));
+        let is_in_place = self.write.as_ref().is_none_or(is_model);
+        if is_in_place {
+            check_unchanged(target, read.text())?;
+        }
+        if is_in_place && read.text() == revised.text() {
+            return Ok(());
+        }
+        write_file(target, |file| {
+            use std::io::Write as _;
+            Ok(file.write_all(revised.text().as_bytes())?)
+        })?;
+        if verbosity == Verbosity::Normal {
+            message("model", &target.display().to_string());
+        }
+        Ok(())
+    }
+}
+
+/// Refuses to replace a file that somebody has edited since it was read.
+fn check_unchanged(path: &Path, read: &str) -> anyhow::Result<()> {
+    let name = path.display();
+    let now = match std::fs::read_to_string(path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
+        now => now.with_context(|| format!("{name}: cannot be read"))?,
+    };
+    if now != read {
+        bail!("{name}: it was changed meanwhile and is left as it is; run the command again");
+    }
+    Ok(())
+}
+
+/// The name of a model in the output: that of its file.
+pub(crate) fn name_of(path: Option<&Path>) -> String {
+    let stem = path.and_then(Path::file_stem);
+    stem.map_or_else(|| "integrator".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// The name of a model file that is not there yet.
+pub(crate) fn fresh_name() -> String {
+    let numbered = (2..).map(|number| format!("model-{number}.toml"));
+    let mut names = std::iter::once(DEFAULT.to_owned()).chain(numbered);
+    names.find(|name| !Path::new(name).exists()).unwrap_or_else(|| DEFAULT.to_owned())
+}
+
+/// Says which joints a file that has some does not have.
+pub(crate) fn note_missing(file: &ModelFile, joints: &[Joint], verbosity: Verbosity) {
+    if verbosity == Verbosity::Quiet || file.names().next().is_none() {
+        return;
+    }
+    for joint in joints.iter().filter(|joint| file.joint(&joint.name).is_none()) {
+        let name = &joint.name;
+        // A name of the file that the log does not have may be a slip of the pen.
+        let is_in_log = |name: &str| joints.iter().any(|joint| joint.name == name);
+        let near = nearest(name, file.names().filter(|name| !is_in_log(name)));
+        let near = near.map_or_else(String::new, |near| format!(", which has `{near}`"));
+        message(
+            "note",
+            &format!("joint `{name}`: not in the model file{near}; a plain integrator"),
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_was_edited_meanwhile_is_not_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("boom.toml");
+        assert!(check_unchanged(&path, "").is_ok(), "there is none yet");
+        std::fs::write(&path, "one").unwrap();
+        assert!(check_unchanged(&path, "one").is_ok());
+        for read in ["", "another"] {
+            let refused = check_unchanged(&path, read).unwrap_err().to_string();
+            assert!(refused.contains("boom.toml") && refused.contains("changed"), "{refused}");
+        }
+    }
+}

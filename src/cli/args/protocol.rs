@@ -1,0 +1,77 @@
+//! By what rules models are judged.
+
+use clap::Args;
+
+use crate::batch::{Mode, Protocol};
+use crate::fit::{Horizon, Split};
+
+/// By what rules models are judged.
+#[derive(Args, Debug)]
+pub(crate) struct ProtocolArgs {
+    /// How long a simulation runs before its angle is set to the measured one: `free`
+    /// (never), `steps` (at every step of the input, in long holds every 200 samples), or
+    /// seconds [default: free to compare, else steps, where an error counts where it is made]
+    #[arg(long, value_name = "free|steps|SECONDS", value_parser = horizon, help_heading = "Model")]
+    horizon: Option<Horizon>,
+
+    /// Share of each trial's time that is for training, or `trials`: every third trial is
+    /// for validation [default: trials from six on, else 0.7]
+    #[arg(long, value_name = "SHARE|trials", value_parser = split, help_heading = "Model")]
+    split: Option<Split>,
+}
+
+impl ProtocolArgs {
+    /// The rules, `default` being the horizon where none is asked for.
+    pub(crate) fn with(&self, mode: Mode, default: Horizon) -> Protocol {
+        Protocol { mode, split: self.split, horizon: self.horizon.unwrap_or(default) }
+    }
+
+    /// How training and validation are told apart, where that was said.
+    pub(crate) fn split(&self) -> Option<Split> {
+        self.split
+    }
+
+    /// The horizon in words.
+    pub(crate) fn horizon(&self, default: Horizon) -> String {
+        self.horizon.unwrap_or(default).to_string()
+    }
+
+    /// These options as they are typed.
+    pub(crate) fn typed(&self) -> Vec<String> {
+        let horizon = self.horizon.map(|horizon| match horizon {
+            Horizon::FreeRun => "free".to_owned(),
+            Horizon::Steps => "steps".to_owned(),
+            Horizon::Seconds(seconds) => seconds.to_string(),
+        });
+        let split = self.split.map(|split| match split {
+            Split::Time(share) => share.to_string(),
+            Split::Trials => "trials".to_owned(),
+        });
+        let options = [("--horizon", horizon), ("--split", split)].into_iter();
+        let given = options.filter_map(|(name, value)| Some([name.to_owned(), value?]));
+        given.flatten().collect()
+    }
+}
+
+fn horizon(text: &str) -> Result<Horizon, String> {
+    match text {
+        "free" => Ok(Horizon::FreeRun),
+        "steps" => Ok(Horizon::Steps),
+        _ => {
+            let seconds = text.parse().ok().filter(|s: &f64| s.is_finite() && *s > 0.0);
+            seconds
+                .map(Horizon::Seconds)
+                .ok_or_else(|| "expected free, steps, or seconds".to_owned())
+        }
+    }
+}
+
+fn split(text: &str) -> Result<Split, String> {
+    if text == "trials" {
+        return Ok(Split::Trials);
+    }
+    let share = text.parse().ok().filter(|share: &f64| *share > 0.0 && *share <= 1.0);
+    share
+        .map(Split::Time)
+        .ok_or_else(|| "expected a share above 0 and up to 1, or trials".to_owned())
+}

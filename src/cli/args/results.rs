@@ -1,0 +1,84 @@
+//! Where results go, and how the work is done.
+
+use std::path::PathBuf;
+
+use anyhow::anyhow;
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+
+use super::number::threads;
+use crate::batch::with_threads;
+use crate::cli::console::{self, Verbosity};
+use crate::cli::viewer::StreamArgs;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// For people
+    Text,
+    /// JSON, schema `tauscope/<command>/1`
+    Json,
+}
+
+/// How a command works and prints.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Output")]
+pub(crate) struct RunArgs {
+    /// How results are printed
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(crate) format: Format,
+
+    /// Threads to use [default: all processors]
+    #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
+    pub(crate) threads: Option<usize>,
+
+    /// No progress, no notices
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+impl RunArgs {
+    /// Whether progress and notices are shown.
+    pub(crate) fn verbosity(&self) -> Verbosity {
+        if self.quiet { Verbosity::Quiet } else { Verbosity::Normal }
+    }
+
+    /// Does `work` with as many threads as are to be used.
+    pub(crate) fn in_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> anyhow::Result<T> {
+        with_threads(self.threads, work)
+            .map_err(|error| anyhow!("threads cannot be started: {error}"))
+    }
+
+    /// Prints `text`, or JSON.
+    pub(crate) fn print<J: Serialize>(
+        &self,
+        text: impl FnOnce() -> String,
+        json: impl FnOnce() -> J,
+    ) -> anyhow::Result<()> {
+        match self.format {
+            Format::Text => console::print(&text()),
+            Format::Json => console::print_json(&json()),
+        }
+    }
+}
+
+/// Where the results of a command that fits models go.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Output")]
+pub(crate) struct ResultArgs {
+    /// Record models and decisions for the Rerun viewer
+    #[arg(short = 'o', long = "output", value_name = "FILE.rrd")]
+    pub(crate) recording: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) stream: StreamArgs,
+
+    #[command(flatten)]
+    pub(crate) run: RunArgs,
+}
+
+impl ResultArgs {
+    /// Whether anything is made for a viewer.
+    pub(crate) fn is_recorded(&self) -> bool {
+        self.recording.is_some() || self.stream.is_asked()
+    }
+}

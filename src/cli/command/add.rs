@@ -1,0 +1,132 @@
+//! `tauscope add`: one effect more in a model.
+
+use crate::batch::{Mode, add_to_joints};
+use crate::delay::Settings;
+use crate::diagnosis::Comparison;
+use crate::experiment::Joint;
+use crate::explain::{Addition, Change, Revision as Step, Verdict};
+use crate::fit::Horizon;
+use crate::model::{ModelFile, Revision};
+use crate::report::{AddJson, AddedJoint, ComparedJoint, Finding, ImprovedJoint};
+use crate::report::{add_text, gone};
+use clap::Args as ClapArgs;
+
+use crate::cli::args::{
+    DataArgs, ModelFileArgs, ProtocolArgs, ResultArgs, find, name_of, note_missing,
+};
+use crate::cli::exit::Completion;
+use crate::cli::output::check_outputs;
+use crate::cli::run::{Session, Study, outcomes};
+
+/// Add an effect to a model, and write its next revision
+///
+/// The model is fitted without the effect and with it, and the errors are printed. The
+/// model file gets the fitted values, the effect, and an entry in its history.
+#[derive(ClapArgs, Debug)]
+pub(crate) struct Args {
+    /// The effect, one of the catalogue or of the candidates of the model file
+    #[arg(value_name = "EFFECT")]
+    effect: String,
+
+    #[command(flatten)]
+    data: DataArgs,
+
+    #[command(flatten)]
+    model: ModelFileArgs,
+
+    #[command(flatten)]
+    protocol: ProtocolArgs,
+
+    #[command(flatten)]
+    output: ResultArgs,
+}
+
+pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
+    let file = args.model.read()?;
+    let effect = find(&args.effect, file.candidates())?;
+    let target = args.model.target();
+    let outputs: Vec<_> = std::iter::once(target).chain(args.output.recording.as_deref()).collect();
+    check_outputs(&outputs, &args.data.files())?;
+    let stream = args.output.stream.open(args.output.run.verbosity())?;
+    let session = Session::begin(&args.data, &args.output.run, stream)?;
+    let starts = |joint: &Joint| file.joint(&joint.name).cloned();
+    let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
+    let study = Study::of(session, Settings::default(), |begun| {
+        let bar = begun.bar("fitting");
+        add_to_joints(begun.joints, begun.estimates, starts, protocol.watched(&bar), effect)
+    })?;
+    note_missing(&file, &study.experiment().joints, study.verbosity());
+    let name = name_of(Some(target));
+    let added = |_, joint, addition| added(&file, &name, effect.spec().id, joint, addition);
+    let (joints, failures) = outcomes(study.experiment(), &study.result, added)?;
+    let mut revised = file.clone();
+    for joint in &joints {
+        revised = with_revision(&revised, joint)?;
+    }
+    if args.output.is_recorded() {
+        let names: Vec<_> = joints.iter().map(revision_names).collect();
+        let named = joints.iter().zip(&names);
+        let models: Vec<_> = named.flat_map(|(joint, names)| as_models(joint, names)).collect();
+        let revisions: Vec<[Step; 2]> = joints.iter().map(steps).collect();
+        let grown = joints.iter().zip(&revisions).map(|(joint, steps)| grown(joint, steps));
+        let path = args.output.recording.as_deref();
+        study.record(path, &models, &grown.collect::<Vec<_>>())?;
+    }
+    args.model.write(&file, &revised, study.verbosity())?;
+    let text = || add_text(&joints, &args.protocol.horizon(Horizon::Steps));
+    study.end(&failures, text, || AddJson::new(target.display().to_string(), &joints, &failures))
+}
+
+fn added<'a>(
+    file: &ModelFile,
+    model: &'a str,
+    effect: &'static str,
+    joint: &'a Joint,
+    addition: &'a Addition,
+) -> AddedJoint<'a> {
+    let revision = file.revision(&joint.name).unwrap_or(0) + 1;
+    AddedJoint { joint, model, effect, revision, addition }
+}
+
+/// Names of both models, as `improve` gives them.
+fn revision_names(added: &AddedJoint<'_>) -> [String; 2] {
+    added.compared().map(|compared| format!("revision {}", compared.revision))
+}
+
+/// Both models under these names.
+fn as_models<'a>(added: &AddedJoint<'a>, names: &'a [String; 2]) -> [ComparedJoint<'a>; 2] {
+    let ([before, after], [first, second]) = (added.compared(), names);
+    [ComparedJoint { model: first, ..before }, ComparedJoint { model: second, ..after }]
+}
+
+/// Both models as revisions.
+fn steps(added: &AddedJoint<'_>) -> [Step; 2] {
+    let step = |change, comparison: &Comparison| Step {
+        change,
+        comparison: comparison.clone(),
+        ranking: Vec::new(),
+    };
+    let Addition { before, after, .. } = added.addition;
+    [step(Change::Start, before), step(Change::Added(added.effect), after)]
+}
+
+fn grown<'a>(added: &AddedJoint<'a>, revisions: &'a [Step]) -> ImprovedJoint<'a> {
+    let [_, compared] = added.compared();
+    let is_adequate = compared.comparison.lack_of_fit.is_none_or(|test| test.adequate);
+    // What the model still lacks was not looked for.
+    let verdict = if is_adequate { Verdict::Adequate } else { Verdict::MissingEffect };
+    let finding = Finding { compared, verdict, ranking: &[], add_arguments: "" };
+    ImprovedJoint::of(finding, revisions)
+}
+
+fn with_revision(file: &ModelFile, added: &AddedJoint<'_>) -> anyhow::Result<ModelFile> {
+    let Addition { before, after, .. } = added.addition;
+    let model = &after.fit.model;
+    let revision = Revision {
+        revision: added.revision,
+        added: Some(added.effect.to_owned()),
+        removed: gone(&before.fit.model, model).first().map(|id| (*id).to_owned()),
+        validation_rmse: after.validation.map(|error| error.rmse),
+    };
+    Ok(file.revised(&added.joint.name, model, &revision)?)
+}

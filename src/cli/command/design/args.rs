@@ -1,0 +1,139 @@
+//! The arguments of `tauscope design`.
+
+use std::path::PathBuf;
+
+use clap::Args as ClapArgs;
+
+use super::values::{self, BandChoice, Levels};
+use crate::cli::args::RunArgs;
+
+/// Design the next experiment: an input to play
+///
+/// Random steps, as Albrecht and Taylor advise: a finite set of levels, repeated, held for
+/// random times, from each level to each other about as often. With a model the joint stays in
+/// the range that it may have. `--separate A,B` makes the shortest input that tells two effects
+/// apart, and says how surely.
+#[derive(ClapArgs, Debug)]
+pub(crate) struct Args {
+    /// Logs of earlier experiments (CSV): what they tell of the joints is used
+    #[arg(value_name = "DATA")]
+    pub(super) data: Vec<PathBuf>,
+
+    /// The model file (TOML, schema `tauscope/model/1`)
+    #[arg(short, long, value_name = "MODEL.toml", help_heading = "Model")]
+    pub(super) model: Option<PathBuf>,
+
+    /// How far the numbers of a model may be off that no log confirms, in parts
+    #[arg(
+        long, value_name = "SHARE", value_parser = values::share, default_value_t = 0.1,
+        allow_negative_numbers = true, help_heading = "Model"
+    )]
+    pub(super) uncertainty: f64,
+
+    /// A joint that is driven, by name. May be repeated [default: those of the logs or of the
+    /// model file]
+    #[arg(long, value_name = "NAME", help_heading = "Input")]
+    pub(super) joint: Vec<String>,
+
+    /// The levels: a list, or a range with its step, as in -2,-1,0,1,2 or -2..2:0.5
+    #[arg(
+        long, value_name = "LIST", value_parser = values::levels, allow_hyphen_values = true,
+        help_heading = "Input"
+    )]
+    pub(super) levels: Option<Levels>,
+
+    /// Largest magnitude of the input, where levels are not given [default: that of the logs,
+    /// else what suits the model, else 2]
+    #[arg(
+        long, value_name = "X", value_parser = values::above_zero, allow_negative_numbers = true,
+        help_heading = "Input"
+    )]
+    pub(super) largest: Option<f64>,
+
+    /// Shortest and longest hold in seconds [default: longer than the model takes to respond,
+    /// else 1,2.5]
+    #[arg(
+        long, value_name = "MIN,MAX", value_parser = values::ascending,
+        allow_hyphen_values = true, help_heading = "Input"
+    )]
+    pub(super) hold: Option<(f64, f64)>,
+
+    /// Length in seconds; with `--separate` the longest that is tried [default: 120, or 60]
+    #[arg(
+        long, value_name = "SECONDS", value_parser = values::above_zero,
+        allow_negative_numbers = true, help_heading = "Input"
+    )]
+    pub(super) duration: Option<f64>,
+
+    /// Samples per second [default: as the logs, else 100]
+    #[arg(
+        long, value_name = "HZ", value_parser = values::above_zero,
+        allow_negative_numbers = true, help_heading = "Input"
+    )]
+    pub(super) rate: Option<f64>,
+
+    /// Seed of everything random
+    #[arg(long, value_name = "N", default_value_t = 1, help_heading = "Input")]
+    pub(super) seed: u64,
+
+    /// Lowest and highest output that the joint may come to; needs a model or a log [default
+    /// with `--separate` and a log: where the log has been]
+    #[arg(
+        long, value_name = "LO,HI", value_parser = values::ascending,
+        allow_hyphen_values = true, help_heading = "Input"
+    )]
+    pub(super) output_range: Option<(f64, f64)>,
+
+    /// The output at which it starts [default: 0, or the middle of the range]
+    #[arg(long, value_name = "X", allow_negative_numbers = true, help_heading = "Input")]
+    pub(super) start: Option<f64>,
+
+    /// `cross`: a level lies in the model's dead band; `avoid`: none does; or the ends of a
+    /// band in which none is to lie
+    #[arg(
+        long, value_name = "cross|avoid|LO,HI", value_parser = values::band,
+        allow_hyphen_values = true, help_heading = "Input"
+    )]
+    pub(super) dead_band: Option<BandChoice>,
+
+    /// Two effects to tell apart. The model has one of them, or a log is given
+    #[arg(
+        long, value_name = "EFFECT,EFFECT", value_delimiter = ',',
+        conflicts_with_all = ["levels", "dead_band"], help_heading = "Telling effects apart"
+    )]
+    pub(super) separate: Vec<String>,
+
+    /// The probability of success that is wanted
+    #[arg(
+        long, value_name = "SHARE", value_parser = values::power, default_value_t = 0.95,
+        allow_negative_numbers = true, help_heading = "Telling effects apart"
+    )]
+    pub(super) power: f64,
+
+    /// Standard deviation of the measurement noise [default: that of the log, else the error
+    /// in the model file's history]
+    #[arg(
+        long, value_name = "X", value_parser = values::above_zero, allow_negative_numbers = true,
+        help_heading = "Telling effects apart"
+    )]
+    pub(super) noise: Option<f64>,
+
+    /// How often the experiment is rehearsed with either effect, in simulation
+    #[arg(
+        long, value_name = "N", value_parser = values::rehearsals, default_value_t = 40,
+        help_heading = "Telling effects apart"
+    )]
+    pub(super) rehearsals: usize,
+
+    /// Where the input goes: `time_s`, and `<joint>.input` of each joint
+    #[arg(short, long, value_name = "INPUT.csv", help_heading = "Output")]
+    pub(super) output: Option<PathBuf>,
+
+    /// Where the input goes with what is expected of it: a table (.csv), or a recording for the
+    /// Rerun viewer (.rrd)
+    #[arg(long, value_name = "FILE.csv|FILE.rrd", help_heading = "Output")]
+    pub(super) preview: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(super) run: RunArgs,
+}

@@ -1,0 +1,100 @@
+//! `tauscope design`: the next experiment.
+
+mod args;
+mod known;
+mod random;
+mod separate;
+mod values;
+
+use std::path::{Path, PathBuf};
+
+use crate::experiment::ReadOptions;
+use crate::report::{DesignJson, DesignedJoint, design_text, write_input, write_preview};
+
+use crate::cli::console::{Bar, Verbosity, message, warn};
+use crate::cli::exit::Completion;
+use crate::cli::failure::{nothing_usable, read_failures, said};
+use crate::cli::output::{PreviewContents, check_outputs, check_recordings, write_file};
+
+use known::Known;
+
+pub(crate) use args::Args;
+
+impl Args {
+    /// Writes the preview recording to `path`.
+    fn record(&self, known: &Known, joints: &[DesignedJoint], path: &Path) -> anyhow::Result<()> {
+        let usual = ReadOptions::default();
+        let read = known.experiment.as_ref();
+        let contents = PreviewContents {
+            joints,
+            sources: read.map_or(&[][..], |experiment| &experiment.sources),
+            reading: read.map_or(&usual, |experiment| &experiment.options),
+            model: self.model.as_deref(),
+        };
+        contents.record(path, self.run.verbosity())
+    }
+
+    /// Says which file was written.
+    fn say_written(&self, kind: &str, path: &Path) {
+        if self.run.verbosity() == Verbosity::Normal {
+            message(kind, &path.display().to_string());
+        }
+    }
+}
+
+pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
+    let outputs: Vec<_> = args.output.iter().chain(&args.preview).map(PathBuf::as_path).collect();
+    let inputs = args.data.iter().chain(&args.model).filter_map(|path| path.canonicalize().ok());
+    check_outputs(&outputs, &inputs.collect::<Vec<_>>())?;
+    if args.preview.as_deref().is_some_and(is_recording) {
+        check_recordings()?;
+    }
+    let (known, joints, failures) = args.run.in_threads(|| {
+        let known = Known::new(args)?;
+        let (joints, failures) = designed(args, &known)?;
+        anyhow::Ok((known, joints, failures))
+    })??;
+    if let Some(path) = &args.output {
+        write_file(path, |file| Ok(write_input(&joints, file)?))?;
+        args.say_written("input", path);
+    }
+    match args.preview.as_deref() {
+        Some(path) if is_recording(path) => args.record(&known, &joints, path)?,
+        Some(path) => {
+            write_file(path, |file| Ok(write_preview(&joints, file)?))?;
+            args.say_written("preview", path);
+        }
+        None => {}
+    }
+    warn(&failures);
+    let json = || DesignJson::new(args.seed, &joints, &failures);
+    args.run.print(|| design_text(&joints), json)?;
+    Ok(Completion::without(&failures))
+}
+
+/// Whether a preview of this name is a recording.
+fn is_recording(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("rrd"))
+}
+
+/// The inputs of all joints, and messages on those that have none.
+fn designed(args: &Args, known: &Known) -> anyhow::Result<(Vec<DesignedJoint>, Vec<String>)> {
+    let bar = Bar::spinner(args.run.verbosity(), "designing");
+    let results = if args.separate.is_empty() {
+        random::designed(args, known)
+    } else {
+        separate::designed(args, known, &bar)?
+    };
+    let mut failures = known.experiment.as_ref().map(read_failures).unwrap_or_default();
+    let mut joints = Vec::new();
+    for (name, result) in known.names.iter().zip(results) {
+        match result {
+            Ok(joint) => joints.push(joint),
+            Err(error) => failures.push(format!("joint `{name}`: {}", said(error.as_ref()))),
+        }
+    }
+    match failures.first() {
+        Some(first) if joints.is_empty() => Err(nothing_usable(Some(first))),
+        _ => Ok((joints, failures)),
+    }
+}

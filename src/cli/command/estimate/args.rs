@@ -1,0 +1,81 @@
+//! The arguments of `tauscope estimate`.
+
+use std::path::PathBuf;
+
+use clap::Args as ClapArgs;
+
+use crate::cli::args::{AlgorithmArgs, DataArgs, RunArgs, number};
+use crate::cli::each_log::FolderArgs;
+use crate::cli::output::Detail;
+use crate::cli::viewer::StreamArgs;
+
+/// Estimate the delay of every input step of every joint
+///
+/// Each step of the input is decided by the pair of regression lines that fits the
+/// output around it best (Albrecht and Taylor's Algorithm 1).
+#[derive(ClapArgs, Debug)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    pub(super) data: DataArgs,
+    #[command(flatten)]
+    pub(crate) algorithm: AlgorithmArgs,
+    #[command(flatten)]
+    pub(crate) follow: FollowArgs,
+    #[command(flatten)]
+    pub(crate) output: OutputArgs,
+    #[command(flatten)]
+    pub(crate) folder: FolderArgs,
+}
+
+/// A log that still grows.
+#[derive(ClapArgs, Debug)]
+#[command(next_help_heading = "Reading logs")]
+pub(crate) struct FollowArgs {
+    /// Follow a log that is still written: each decision is told as soon as its step is
+    /// complete. Ctrl-C ends it; then all is done as for any log
+    #[arg(long = "follow")]
+    pub(crate) is_on: bool,
+
+    /// End, too, when the log has not grown for so long
+    #[arg(
+        long, value_name = "SECONDS", value_parser = number::threshold, requires = "is_on",
+        allow_negative_numbers = true
+    )]
+    pub(crate) idle: Option<f64>,
+}
+
+/// What is written where.
+#[derive(ClapArgs, Debug)]
+#[command(next_help_heading = "Output")]
+pub(crate) struct OutputArgs {
+    /// Record every decision for the Rerun viewer
+    #[arg(short = 'o', long = "output", value_name = "FILE.rrd")]
+    pub(crate) recording: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) stream: StreamArgs,
+
+    /// Candidates in the recording: all, or fewer of accepted segments
+    #[arg(long, value_enum, default_value_t = Detail::Full)]
+    pub(crate) detail: Detail,
+
+    /// Write the table of decisions, as CSV or Parquet by the name's ending
+    #[arg(long, value_name = "FILE.csv|FILE.parquet")]
+    pub(crate) decisions: Option<PathBuf>,
+
+    /// Write the delay of every sample, as CSV or Parquet
+    #[arg(long, value_name = "FILE.csv|FILE.parquet")]
+    pub(crate) delays: Option<PathBuf>,
+
+    /// Show every step: its delay with the interval, and how near the verdict was
+    #[arg(long)]
+    pub(crate) steps: bool,
+
+    /// Show what the delays depend on: speed, step size, direction, dwell, angle, time and
+    /// further signals
+    #[arg(long)]
+    pub(crate) against_state: bool,
+
+    #[command(flatten)]
+    pub(super) run: RunArgs,
+}

@@ -1,0 +1,388 @@
+//! `estimate --follow`: decisions on a log that still grows, as its steps complete.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, Read as _, Seek as _, SeekFrom, Write as _};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use crate::batch::{JointEstimate, estimate_joints};
+use crate::delay::{Settings, check_growing, settled};
+use crate::experiment::{Experiment, GrowingLog, Joint};
+use crate::report::{DecisionRow, EstimatedJoint, decision_rows, step_line};
+use anyhow::{Context as _, bail};
+use serde::Serialize;
+
+use super::args::{Args, FollowArgs};
+use crate::cli::args::Format;
+use crate::cli::console::{self, Interrupt, Verbosity, message};
+use crate::cli::failure::said;
+use crate::cli::output::Contents;
+use crate::cli::viewer::Stream;
+
+/// Shortest time between two looks at the log.
+const PAUSE: Duration = Duration::from_millis(200);
+
+/// Rest after each look, as a multiple of the time it took: so much of the processor is left
+/// to others, however long the log is.
+const REST: u32 = 4;
+
+/// Follows the log until it rests or somebody presses Ctrl-C; what was reported of it.
+pub(crate) fn follow(args: &Args, runs: &[Settings], stream: &Stream) -> anyhow::Result<Reported> {
+    let [settings] = runs else { bail!("--method: only one method at a time can be followed") };
+    check_growing(settings).context("--follow")?;
+    if args.algorithm.automatic().any() {
+        bail!("--follow: `auto` looks at the whole record; give a number");
+    }
+    let path = args.data.only_file().context("--follow")?;
+    let mut log = Followed::of(&path, args);
+    let interrupt = Interrupt::watch("at the log's end; Ctrl-C again ends at once");
+    let mut reported = Reported::default();
+    let work = || watch(args, settings, stream, &mut log, interrupt, &mut reported);
+    args.output.run.in_threads(work)??;
+    Ok(reported)
+}
+
+fn watch(
+    args: &Args,
+    settings: &Settings,
+    stream: &Stream,
+    log: &mut Followed<'_>,
+    interrupt: Interrupt,
+    reported: &mut Reported,
+) -> anyhow::Result<()> {
+    let FollowArgs { idle, .. } = args.follow;
+    let mut rests_since = Instant::now();
+    loop {
+        let start = Instant::now();
+        if log.catch_up()? {
+            rests_since = start;
+            reported.report(args, settings, stream, log)?;
+        } else if idle.is_some_and(|idle| rests_since.elapsed().as_secs_f64() >= idle) {
+            return Ok(());
+        }
+        if interrupt.sleep(PAUSE.max(REST * start.elapsed())) {
+            return Ok(());
+        }
+    }
+}
+
+/// A log that somebody else still writes.
+struct Followed<'a> {
+    args: &'a Args,
+    path: PathBuf,
+    /// Bytes of the log that were read.
+    read: u64,
+    kept: Kept,
+}
+
+/// What is kept of what was read.
+enum Kept {
+    /// Nothing was read yet.
+    Nothing,
+    /// What the text says.
+    Text(Box<GrowingLog>),
+    /// A copy, which is read whole at each look.
+    Copy(Copied),
+}
+
+/// The whole lines of a log that is no text.
+struct Copied {
+    /// What was read behind the last whole line.
+    rest: Vec<u8>,
+    /// Holds the whole lines, in a file with the log's name.
+    _folder: tempfile::TempDir,
+    file: PathBuf,
+}
+
+impl Copied {
+    fn of(path: &Path) -> anyhow::Result<Self> {
+        let folder = tempfile::tempdir().context("no temporary folder can be made")?;
+        let file = folder.path().join(path.file_name().unwrap_or_default());
+        Ok(Self { rest: Vec::new(), _folder: folder, file })
+    }
+
+    /// Takes in what has come; whether that made a line whole.
+    fn push(&mut self, bytes: &[u8]) -> anyhow::Result<bool> {
+        self.rest.extend_from_slice(bytes);
+        let whole = self.rest.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
+        if whole == 0 {
+            return Ok(false);
+        }
+        let mut lines = File::options().create(true).append(true).open(&self.file)?;
+        lines.write_all(self.rest.get(..whole).unwrap_or_default())?;
+        self.rest.drain(..whole);
+        Ok(true)
+    }
+}
+
+impl<'a> Followed<'a> {
+    fn of(path: &Path, args: &'a Args) -> Self {
+        Self { args, path: path.to_owned(), read: 0, kept: Kept::Nothing }
+    }
+
+    /// Takes in what has come since; whether that made a line whole. A log that is not there
+    /// yet may come.
+    fn catch_up(&mut self) -> anyhow::Result<bool> {
+        let Some(bytes) = self.news()? else { return Ok(false) };
+        if let Kept::Nothing = self.kept {
+            self.kept = if GrowingLog::is_text(&self.path, &bytes) {
+                let options = self.args.data.options()?;
+                Kept::Text(Box::new(GrowingLog::new(&self.path, options)))
+            } else {
+                Kept::Copy(Copied::of(&self.path)?)
+            };
+        }
+        match &mut self.kept {
+            Kept::Nothing => Ok(false),
+            Kept::Text(log) => Ok(log.push(&bytes)),
+            Kept::Copy(copy) => copy.push(&bytes),
+        }
+    }
+
+    /// What was appended since the last look; nothing else is read.
+    fn news(&mut self) -> anyhow::Result<Option<Vec<u8>>> {
+        let name = self.path.display();
+        let mut file = match File::open(&self.path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound && self.read == 0 => {
+                return Ok(None);
+            }
+            opened => opened.with_context(|| format!("{name}: cannot be read"))?,
+        };
+        let length = file.metadata().with_context(|| format!("{name}: cannot be read"))?.len();
+        if length < self.read {
+            bail!("{name}: it became shorter while it was followed; run the command again");
+        }
+        let mut bytes = Vec::new();
+        file.seek(SeekFrom::Start(self.read))
+            .and_then(|_| file.take(length - self.read).read_to_end(&mut bytes))
+            .with_context(|| format!("{name}: cannot be read"))?;
+        self.read += bytes.len() as u64;
+        Ok((!bytes.is_empty()).then_some(bytes))
+    }
+
+    /// What its whole lines say; joints that say nothing yet are left out.
+    fn experiment(&mut self) -> anyhow::Result<Experiment> {
+        match &mut self.kept {
+            Kept::Nothing => Ok(Experiment::default()),
+            Kept::Text(log) => Ok(log.experiment()),
+            Kept::Copy(copy) => {
+                let mut experiment = self.args.data.read_only(&copy.file)?;
+                for source in &mut experiment.sources {
+                    source.path.clone_from(&self.path);
+                }
+                Ok(experiment)
+            }
+        }
+    }
+
+    /// An error on a copy, as one on the log.
+    fn named(&self, error: &str) -> String {
+        let Kept::Copy(copy) = &self.kept else { return error.to_owned() };
+        error.replace(&copy.file.display().to_string(), &self.path.display().to_string())
+    }
+}
+
+type DelayAndVerdict = (Option<f64>, String);
+
+/// What was reported of a log so far.
+#[derive(Default)]
+pub(crate) struct Reported {
+    /// Per joint and trial, the delay and the verdict of each step.
+    steps: BTreeMap<(String, String), Vec<DelayAndVerdict>>,
+    /// What could not be read, last time.
+    failures: Vec<String>,
+}
+
+/// A decision on a line of its own.
+#[derive(Serialize)]
+struct StepJson<'a> {
+    schema: &'static str,
+    #[serde(flatten)]
+    row: &'a DecisionRow<'a>,
+}
+
+impl Reported {
+    /// Reports what is new.
+    fn report(
+        &mut self,
+        args: &Args,
+        settings: &Settings,
+        stream: &Stream,
+        log: &mut Followed<'_>,
+    ) -> anyhow::Result<()> {
+        let experiment = log.experiment()?;
+        self.say_failures(args, &experiment, log);
+        let estimates = estimate_joints(&experiment.joints, settings, || ());
+        let pairs = experiment.joints.iter().zip(&estimates);
+        let pairs = pairs.filter_map(|(joint, estimate)| Some((joint, estimate.as_ref().ok()?)));
+        let settled: Vec<(Joint, JointEstimate)> = pairs
+            .filter_map(|(joint, estimate)| settled_joint(joint, estimate, settings))
+            .collect();
+        for (joint, estimate) in &settled {
+            self.report_joint(args.output.run.format, EstimatedJoint { joint, estimate })?;
+        }
+        let joints: Vec<_> =
+            settled.iter().map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect();
+        if joints.is_empty() {
+            return Ok(());
+        }
+        let contents = Contents {
+            also: &[],
+            joints: &joints,
+            settings,
+            sources: &experiment.sources,
+            reading: &experiment.options,
+            models: &[],
+            revisions: &[],
+            detail: args.output.detail,
+        };
+        stream.send(&contents, None)
+    }
+
+    fn report_joint(
+        &mut self,
+        format: Format,
+        estimated: EstimatedJoint<'_>,
+    ) -> anyhow::Result<()> {
+        let EstimatedJoint { joint, estimate } = estimated;
+        let trials = joint.trials.iter().zip(estimate.estimated());
+        let decisions = trials.flat_map(|(t, found)| found.decisions.iter().map(move |d| (t, d)));
+        for ((trial, decision), (_, row)) in decisions.zip(decision_rows(estimated)) {
+            let key = (joint.name.clone(), trial.label().to_owned());
+            let steps = self.steps.entry(key).or_default();
+            if decision.number <= steps.len() {
+                continue;
+            }
+            steps.push((row.delta, row.verdict.clone()));
+            match format {
+                Format::Text => {
+                    console::print(&(step_line(joint, trial, decision) + "\n"))?;
+                }
+                Format::Json => {
+                    console::print_json(&StepJson { schema: "tauscope/step/1", row: &row })?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Says what cannot be read, when that has changed: more of the log may mend it.
+    fn say_failures(&mut self, args: &Args, experiment: &Experiment, log: &Followed<'_>) {
+        let failures = experiment.failures.iter();
+        let failures: Vec<_> = failures.map(|f| log.named(&said(&f.error))).collect();
+        if args.output.run.verbosity() == Verbosity::Normal && failures != self.failures {
+            for failure in &failures {
+                message("waiting", failure);
+            }
+        }
+        self.failures = failures;
+    }
+
+    /// Says which decisions the whole log changes.
+    pub(crate) fn say_changes(&self, joints: &[EstimatedJoint<'_>]) {
+        for (_, row) in joints.iter().flat_map(|joint| decision_rows(*joint)) {
+            let key = (row.joint.to_owned(), row.trial.to_owned());
+            let before = self.steps.get(&key).and_then(|steps| steps.get(row.i.checked_sub(1)?));
+            let Some((delta, verdict)) = before else { continue };
+            if (*delta, verdict) != (row.delta, &row.verdict) {
+                let (name, step, now) = (row.joint, row.i, &row.verdict);
+                message("note", &format!("{name}, step {step}: the whole log changes it to {now}"));
+            }
+        }
+    }
+}
+
+/// What of a joint stays as it is; `None` where nothing does yet.
+fn settled_joint(
+    joint: &Joint,
+    estimate: &JointEstimate,
+    settings: &Settings,
+) -> Option<(Joint, JointEstimate)> {
+    let last = joint.trials.len().checked_sub(1)?;
+    let (mut trials, mut estimates) = (Vec::new(), Vec::new());
+    for (index, (trial, found)) in joint.trials.iter().zip(&estimate.trials).enumerate() {
+        let Ok(found) = found else { continue };
+        // A trial that another one follows has come whole.
+        let kept = match index {
+            _ if index < last => Some((trial.clone(), found.clone())),
+            _ => settled(trial, found, settings).ok()?,
+        };
+        if let Some((trial, found)) = kept {
+            trials.push(trial);
+            estimates.push(Ok(found));
+        }
+    }
+    let is_there = !trials.is_empty();
+    let estimate = JointEstimate { trials: estimates, ..estimate.clone() };
+    is_there.then(|| (Joint { trials, ..joint.clone() }, estimate))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What `estimate` is asked with this log.
+    fn asked(log: &Path) -> Args {
+        #[derive(clap::Parser)]
+        struct Line {
+            #[command(flatten)]
+            args: Args,
+        }
+        let line: Line = clap::Parser::parse_from(["estimate".as_ref(), log.as_os_str()]);
+        line.args
+    }
+
+    /// A log with its header alone, and who follows it.
+    fn begun(name: &str, start: &str) -> (tempfile::TempDir, File, Args, PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        let args = asked(&path);
+        assert!(!Followed::of(&path, &args).catch_up().unwrap(), "there is no log yet");
+        let mut file = File::create(&path).unwrap();
+        file.write_all(start.as_bytes()).unwrap();
+        (folder, file, args, path)
+    }
+
+    #[test]
+    fn a_look_reads_what_was_appended_and_no_more() {
+        let (_folder, mut file, args, path) = begun("log.csv", "t,a.input,a.output\n");
+        let mut log = Followed::of(&path, &args);
+        assert!(log.catch_up().unwrap());
+        let mut samples = 0_u32;
+        for rows in [20_000, 1, 0, 3] {
+            let before = log.read;
+            let rows_of = samples..samples + rows;
+            let lines: Vec<_> = rows_of.map(|k| format!("{k},{},{k}.5\n", k / 50)).collect();
+            let text = lines.concat();
+            // The last line is not whole yet.
+            let (whole, rest) = text.split_at(text.len().saturating_sub(3));
+            file.write_all(whole.as_bytes()).unwrap();
+            assert_eq!(log.catch_up().unwrap(), rows > 1);
+            assert_eq!(log.read - before, whole.len() as u64);
+            file.write_all(rest.as_bytes()).unwrap();
+            assert_eq!(log.catch_up().unwrap(), rows > 0);
+            assert_eq!(log.read - before, text.len() as u64);
+            samples += rows;
+            assert_eq!(log.experiment().unwrap().joints[0].trials[0].len(), samples as usize);
+            let Kept::Text(text) = &log.kept else { panic!("a text") };
+            assert_eq!(text.waiting(), 0, "none of it is parsed again");
+        }
+        std::fs::write(&path, "a").unwrap();
+        assert!(log.catch_up().unwrap_err().to_string().contains("became shorter"));
+    }
+
+    #[test]
+    fn what_is_no_text_is_read_from_a_copy() {
+        let (_folder, mut file, args, path) = begun("log.mcap", "a");
+        let mut log = Followed::of(&path, &args);
+        assert!(!log.catch_up().unwrap());
+        file.write_all(b"b\nc").unwrap();
+        assert!(log.catch_up().unwrap());
+        let Kept::Copy(copy) = &log.kept else { panic!("no text") };
+        assert_eq!(std::fs::read(&copy.file).unwrap(), b"ab\n");
+        let failures = log.experiment().unwrap().failures;
+        let told = log.named(&failures[0].error.to_string());
+        assert!(told.starts_with(&path.display().to_string()), "{told}");
+    }
+}

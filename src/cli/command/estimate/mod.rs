@@ -1,0 +1,86 @@
+//! `tauscope estimate`: read, estimate, write, print.
+
+mod args;
+mod estimated;
+mod files;
+mod follow;
+
+use crate::cli::each_log::Each;
+use crate::cli::exit::Completion;
+use crate::cli::failure::nothing_usable;
+use crate::cli::run::{Session, estimated, failures, notes};
+use crate::report::{EstimateJson, against_table, estimate_table, steps_table};
+use estimated::{Estimated, Run};
+use files::Files;
+
+pub(crate) use args::Args;
+
+/// Estimates the delays of the logs; `program` is what its options are read by.
+pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Completion> {
+    if args.folder.is_asked_for() {
+        return each_log(args, program);
+    }
+    let verbosity = args.output.run.verbosity();
+    let settings = args.algorithm.runs();
+    let files = Files::check(&args.output, &args.data.files())?;
+    let stream = args.output.stream.open(verbosity)?;
+    let followed =
+        args.follow.is_on.then(|| follow::follow(args, &settings, &stream)).transpose()?;
+    let session = Session::begin(&args.data, &args.output.run, stream)?;
+    let experiment = &session.experiment;
+    let work = || session.estimates_by_each(&settings, args.algorithm.automatic());
+    let results = session.in_threads(work)?;
+    let failures = results.first().map_or_else(Vec::new, |first| failures(experiment, first));
+    let joints: Vec<_> = results.iter().map(|results| estimated(experiment, results)).collect();
+    let runs: Vec<Run<'_>> =
+        settings.iter().zip(&joints).map(|(settings, joints)| (settings, &**joints)).collect();
+    let Some((answer, first_joints)) = runs.first().filter(|(_, joints)| !joints.is_empty()) else {
+        return Err(nothing_usable(failures.last()));
+    };
+    if let Some(followed) = followed {
+        followed.say_changes(first_joints);
+    }
+    session.warn(&failures, &notes(first_joints));
+    let result = Estimated { experiment, joints: first_joints, settings: answer, runs: &runs };
+    files.write(&result, &session.stream, verbosity)?;
+    let json = || EstimateJson::new(experiment, &runs, &failures);
+    session.end(Completion::without(&failures), || text(&args.output, &result), json)
+}
+
+/// Estimates each log by itself.
+fn each_log(args: &Args, program: &clap::Command) -> anyhow::Result<Completion> {
+    let output = &args.output;
+    args.folder.run(&Each {
+        program,
+        command: "estimate",
+        data: &args.data,
+        decisions: output.decisions.as_deref(),
+        refused: &[
+            ("--output", output.recording.is_some()),
+            ("--connect, --spawn or --serve", output.stream.is_asked()),
+            ("--follow", args.follow.is_on),
+            ("--delays", output.delays.is_some()),
+            ("--steps", output.steps),
+            ("--against-state", output.against_state),
+        ],
+        run: &output.run,
+    })
+}
+
+/// The results for people.
+fn text(args: &args::OutputArgs, result: &Estimated<'_>) -> String {
+    let mut text = String::new();
+    for (settings, joints) in result.runs {
+        text += &estimate_table(joints, settings);
+        if args.steps {
+            text += &steps_table(joints);
+        }
+    }
+    if args.against_state {
+        let found = result.joints.iter().map(|j| (j.joint.name.as_str(), j.against_state()));
+        let found: Vec<_> = found.collect();
+        text += "\n";
+        text += &against_table(found.iter().map(|(name, found)| (*name, found)));
+    }
+    text
+}

@@ -1,0 +1,137 @@
+//! `tauscope explain`: what a model lacks.
+
+use std::path::PathBuf;
+
+use crate::batch::{Mode, OfJoints, compare_joints, explain_joints};
+use crate::delay::Settings;
+use crate::diagnosis::Comparison;
+use crate::experiment::Joint;
+use crate::explain::{Change, Explanation, Options, Revision};
+use crate::fit::Horizon;
+use crate::model::ModelFile;
+use crate::report::{ComparedJoint, ExplainJson, Finding, ImprovedJoint, explain_text};
+use clap::Args as ClapArgs;
+
+use crate::cli::args::{
+    DataArgs, EffectArgs, ProtocolArgs, ResultArgs, fresh_name, name_of, note_missing,
+};
+use crate::cli::exit::Completion;
+use crate::cli::output::check_outputs;
+use crate::cli::run::{Estimates, Session, Study, add_arguments, outcomes};
+
+/// Say which physical effect a model lacks
+///
+/// The model is fitted. If its misfit is more than noise, every effect of the catalogue is
+/// added to it in turn and fitted, and they are ranked by the error on data that were not
+/// fitted. Without a model file each joint starts as a plain integrator.
+#[derive(ClapArgs, Debug)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    data: DataArgs,
+
+    /// The model file (TOML, schema `tauscope/model/1`). Joints that it has not start as
+    /// plain integrators; its candidates are tried, too
+    #[arg(short, long, value_name = "MODEL.toml", help_heading = "Model")]
+    model: Option<PathBuf>,
+
+    #[command(flatten)]
+    effects: EffectArgs,
+
+    #[command(flatten)]
+    protocol: ProtocolArgs,
+
+    #[command(flatten)]
+    output: ResultArgs,
+}
+
+pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
+    let file = args.model.as_deref().map(ModelFile::read).transpose()?.unwrap_or_default();
+    let effects = args.effects.effects(file.candidates())?;
+    let options = Options { effects, ..Options::default() };
+    if let Some(path) = &args.output.recording {
+        check_outputs(&[path.as_path()], &args.data.files())?;
+    }
+    let stream = args.output.stream.open(args.output.run.verbosity())?;
+    let session = Session::begin(&args.data, &args.output.run, stream)?;
+    let starts = |joint: &Joint| file.joint(&joint.name).cloned();
+    let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
+    let study = Study::of(session, Settings::default(), |begun| {
+        let (joints, estimates, bar) = (begun.joints, begun.estimates, begun.bar("explaining"));
+        let explained = explain_joints(joints, estimates, starts, protocol.watched(&bar), &options);
+        let bests = args.output.is_recorded().then(|| args.bests(joints, estimates, &explained));
+        (explained, bests.unwrap_or_default())
+    })?;
+    let joints = &study.experiment().joints;
+    note_missing(&file, joints, study.verbosity());
+    let arguments = args.add_arguments(joints);
+    let name = name_of(args.model.as_deref());
+    let finding = |index: usize, joint, explanation| {
+        finding(&file, &name, joint, explanation, arguments.get(index).map_or("", String::as_str))
+    };
+    let (explained, bests) = &study.result;
+    let (findings, failures) = outcomes(study.experiment(), explained, finding)?;
+    if args.output.is_recorded() {
+        let bests = joints.iter().zip(bests).filter_map(|(joint, best)| {
+            let (model, comparison) = best.as_ref()?;
+            Some(ComparedJoint { joint, model, revision: 0, comparison })
+        });
+        let models: Vec<_> = findings.iter().map(|f| f.compared).chain(bests).collect();
+        let revisions: Vec<[Revision; 1]> = findings.iter().map(as_revision).collect();
+        let revisions = findings.iter().zip(&revisions);
+        let revisions: Vec<_> = revisions.map(|(f, one)| ImprovedJoint::of(*f, one)).collect();
+        study.record(args.output.recording.as_deref(), &models, &revisions)?;
+    }
+    let text = || explain_text(&findings, &args.protocol.horizon(Horizon::Steps));
+    study.end(&failures, text, || ExplainJson::new(&findings, &failures))
+}
+
+fn finding<'a>(
+    file: &ModelFile,
+    model: &'a str,
+    joint: &'a Joint,
+    explanation: &'a Explanation,
+    add_arguments: &'a str,
+) -> Finding<'a> {
+    let revision = file.revision(&joint.name).unwrap_or(0);
+    let Explanation { base, verdict, ranking } = explanation;
+    let compared = ComparedJoint { joint, model, revision, comparison: base };
+    Finding { compared, verdict: *verdict, ranking, add_arguments }
+}
+
+/// The model as the only one of its revisions.
+fn as_revision(finding: &Finding<'_>) -> [Revision; 1] {
+    let (comparison, ranking) = (finding.compared.comparison.clone(), finding.ranking.to_vec());
+    [Revision { change: Change::Start, comparison, ranking }]
+}
+
+impl Args {
+    /// What follows the effect in the command that adds it, for each joint.
+    fn add_arguments(&self, joints: &[Joint]) -> Vec<String> {
+        let given = self.model.as_ref().map(|model| model.display().to_string());
+        add_arguments(&self.data, &self.protocol, &given.unwrap_or_else(fresh_name), joints)
+    }
+
+    /// The best candidate of each joint beside the measurement, and its name.
+    fn bests(
+        &self,
+        joints: &[Joint],
+        estimates: &Estimates,
+        explained: &OfJoints<Explanation>,
+    ) -> Vec<Option<(String, Comparison)>> {
+        let best = |joint: &Joint| {
+            let index = joints.iter().position(|other| other.name == joint.name)?;
+            explained.get(index)?.as_ref()?.as_ref().ok()?.ranking.first()
+        };
+        let model = |joint: &Joint| Some(best(joint)?.fit.model.clone());
+        let compared = compare_joints(
+            joints,
+            estimates,
+            model,
+            self.protocol.with(Mode::AsItIs, Horizon::Steps),
+        );
+        let named = |(joint, compared): (&Joint, Option<Result<Comparison, _>>)| {
+            Some((format!("with {}", best(joint)?.name()), compared?.ok()?))
+        };
+        joints.iter().zip(compared).map(named).collect()
+    }
+}

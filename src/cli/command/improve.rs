@@ -1,0 +1,182 @@
+//! `tauscope improve`: explain and add until nothing significant is left.
+
+use std::sync::Mutex;
+
+use crate::batch::{Mode, improve_joints};
+use crate::delay::Settings;
+use crate::experiment::Joint;
+use crate::explain::{Improvement, MAX_EFFECTS, Options, Revision as Step, Verdict};
+use crate::fit::Horizon;
+use crate::model::ModelFile;
+use crate::report::{ImproveJson, improve_text};
+use clap::Args as ClapArgs;
+
+use crate::cli::args::{
+    DataArgs, EffectArgs, ModelFileArgs, ProtocolArgs, ResultArgs, name_of, note_missing,
+};
+use crate::cli::console::{Interrupt, message};
+use crate::cli::each_log::{Each, FolderArgs};
+use crate::cli::exit::Completion;
+use crate::cli::output::check_outputs;
+use crate::cli::run::{
+    Begun, Progress, Session, Study, add_arguments, improved, models, outcomes, revised,
+    revision_names,
+};
+
+/// Add to a model what it lacks, effect by effect
+///
+/// After each effect, those that were added before and have become useless are removed
+/// again; effects that the model file had stay. It ends when no lack of fit is shown, or
+/// when no effect accounts for it. Ctrl-C ends it after the revision at hand.
+#[derive(ClapArgs, Debug)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    data: DataArgs,
+
+    #[command(flatten)]
+    model: ModelFileArgs,
+
+    #[command(flatten)]
+    effects: EffectArgs,
+
+    /// How many effects are added at most
+    #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS, help_heading = "Model")]
+    max_effects: usize,
+
+    #[command(flatten)]
+    protocol: ProtocolArgs,
+
+    #[command(flatten)]
+    output: ResultArgs,
+
+    #[command(flatten)]
+    folder: FolderArgs,
+}
+
+/// Improves a model of each log by itself.
+fn each_log(args: &Args, program: &clap::Command) -> anyhow::Result<Completion> {
+    args.folder.run(&Each {
+        program,
+        command: "improve",
+        data: &args.data,
+        decisions: None,
+        refused: &[
+            ("--output", args.output.recording.is_some()),
+            ("--connect, --spawn or --serve", args.output.stream.is_asked()),
+            ("--write", args.model.is_written_elsewhere()),
+        ],
+        run: &args.output.run,
+    })
+}
+
+pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Completion> {
+    if args.folder.is_asked_for() {
+        return each_log(args, program);
+    }
+    let file = args.model.read()?;
+    let effects = args.effects.effects(file.candidates())?;
+    let options = Options { effects, max_effects: args.max_effects };
+    let target = args.model.target();
+    let recording = args.output.recording.as_deref();
+    let outputs: Vec<_> = std::iter::once(target).chain(recording).collect();
+    check_outputs(&outputs, &args.data.files())?;
+    let stream = args.output.stream.open(args.output.run.verbosity())?.expecting_revisions()?;
+    let interrupt = Interrupt::watch(STOPPING);
+    let session = Session::begin(&args.data, &args.output.run, stream)?;
+    let name = name_of(Some(target));
+    let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
+    let study = Study::of(session, Settings::default(), |begun| {
+        let (joints, estimates, bar) = (begun.joints, begun.estimates, begun.bar("improving"));
+        let progress = Progress::new(&file, joints, begun.verbosity(), Some(interrupt));
+        let arguments = args.add_arguments(joints);
+        let stage = Stage::new(begun, &file, &name, &arguments);
+        let starts = |joint: &Joint| file.joint(&joint.name).cloned();
+        let done = |index, revision: &Step| {
+            stage.show(index, revision);
+            progress.done(index, revision)
+        };
+        let improved =
+            improve_joints(joints, estimates, starts, protocol.watched(&bar), &options, done);
+        (improved, progress.stopped())
+    })?;
+    let joints = &study.experiment().joints;
+    note_missing(&file, joints, study.verbosity());
+    let (results, stopped) = &study.result;
+    let arguments = args.add_arguments(joints);
+    let improved = |index: usize, joint, improvement| {
+        let stopped = stopped.get(index).copied().unwrap_or(false);
+        let add_arguments = arguments.get(index).map_or("", String::as_str);
+        let mut improved = improved(&file, &name, joint, improvement, add_arguments)?;
+        improved.interrupted = stopped && improved.finding.verdict != Verdict::Adequate;
+        Some(improved)
+    };
+    let (improved, failures) = outcomes(study.experiment(), results, improved)?;
+    let improved: Vec<_> = improved.into_iter().flatten().collect();
+    if args.output.is_recorded() {
+        let names = revision_names(&improved);
+        let models: Vec<_> = improved.iter().flat_map(|joint| models(joint, &names)).collect();
+        study.record(recording, &models, &improved)?;
+    }
+    args.model.write(&file, &revised(&file, &improved)?, study.verbosity())?;
+    let text = || improve_text(&improved, &args.protocol.horizon(Horizon::Steps));
+    let completion = study.end(&failures, text, || ImproveJson::new(&improved, &failures))?;
+    let is_cut_short = improved.iter().any(|joint| joint.interrupted);
+    Ok(if is_cut_short { Completion::Partial } else { completion })
+}
+
+/// What is said when somebody presses Ctrl-C.
+const STOPPING: &str = "after this revision; Ctrl-C again ends at once, without results";
+
+impl Args {
+    /// What follows the effect in the command that adds one more, for each joint.
+    fn add_arguments(&self, joints: &[Joint]) -> Vec<String> {
+        let model = self.model.target().display().to_string();
+        add_arguments(&self.data, &self.protocol, &model, joints)
+    }
+}
+
+/// The revisions so far, shown to whoever looks on.
+struct Stage<'a> {
+    begun: Begun<'a>,
+    file: &'a ModelFile,
+    name: &'a str,
+    arguments: &'a [String],
+    /// Per joint.
+    steps: Vec<Mutex<Vec<Step>>>,
+}
+
+impl<'a> Stage<'a> {
+    fn new(begun: Begun<'a>, file: &'a ModelFile, name: &'a str, arguments: &'a [String]) -> Self {
+        let steps = begun.joints.iter().map(|_| Mutex::default()).collect();
+        Self { begun, file, name, arguments, steps }
+    }
+
+    /// Shows one more revision of a joint. What goes wrong is told, and is no reason to stop:
+    /// the results do not hang on the viewer.
+    fn show(&self, index: usize, revision: &Step) {
+        if !self.begun.is_shown() {
+            return;
+        }
+        let of_joint = self.begun.joints.get(index).zip(self.steps.get(index));
+        let Some((joint, steps)) = of_joint else { return };
+        let Ok(mut steps) = steps.lock() else { return };
+        steps.push(revision.clone());
+        let improvement = Improvement { revisions: steps.clone(), verdict: so_far(revision) };
+        let arguments = self.arguments.get(index).map_or("", String::as_str);
+        let improved = improved(self.file, self.name, joint, &improvement, arguments);
+        let revisions: Vec<_> = improved.into_iter().collect();
+        if let Err(error) = self.begun.show(&[], &revisions, Some(&joint.name)) {
+            message("warning", &format!("{error:#}"));
+        }
+    }
+}
+
+/// What is to be said of a revision that may not be the last.
+fn so_far(revision: &Step) -> Verdict {
+    let lack_of_fit = revision.comparison.lack_of_fit;
+    match (lack_of_fit.is_none_or(|test| test.adequate), revision.ranking.is_empty()) {
+        (true, _) => Verdict::Adequate,
+        (false, true) => Verdict::Unexplained,
+        (false, false) => Verdict::MissingEffect,
+    }
+}

@@ -1,0 +1,383 @@
+//! `tauscope report`: a page with figures and numbers.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use crate::batch::{Mode, OfJoints, explain_joints, improve_joints};
+use crate::effect::Effect;
+use crate::experiment::Joint;
+use crate::explain::{Change, Explanation, Improvement, MAX_EFFECTS, Options, Revision};
+use crate::fit::Horizon;
+use crate::model::ModelFile;
+use crate::report::{
+    Document, EstimatedJoint, ImprovedJoint, RecordingFile, Report, ReportJson, report_text,
+};
+use anyhow::{Context as _, bail};
+use clap::Args as ClapArgs;
+
+use crate::cli::args::{
+    AlgorithmArgs, DataArgs, EffectArgs, ProtocolArgs, RunArgs, name_of, note_missing, quoted,
+};
+use crate::cli::console::{Bar, Verbosity, message};
+use crate::cli::exit::Completion;
+use crate::cli::failure::{nothing_usable, said};
+use crate::cli::output::{check_outputs, write_file};
+use crate::cli::run::{
+    self, Begun, Progress, Session, Study, add_arguments, estimated, improved, revised,
+};
+use crate::cli::viewer::StreamArgs;
+
+/// Bytes of a recording up to which it is put into the page.
+const EMBEDDED: u64 = 8 * 1024 * 1024;
+
+/// Write a report: one page with figures and numbers to attach to an experiment
+///
+/// Per joint: the record, single decisions, delays, the table of decisions; with a model
+/// also what it simulates, where it fails, and what it lacks. The page needs no network.
+#[derive(ClapArgs, Debug)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    data: DataArgs,
+
+    #[command(flatten)]
+    algorithm: AlgorithmArgs,
+
+    #[command(flatten)]
+    model: ModelArgs,
+
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+/// Which model is reported.
+#[derive(ClapArgs, Debug)]
+struct ModelArgs {
+    /// Report this model, too (TOML, schema `tauscope/model/1`): fitted, starting at its
+    /// values. Joints that it has not start as plain integrators
+    #[arg(short, long, value_name = "MODEL.toml", help_heading = "Model")]
+    model: Option<PathBuf>,
+
+    /// Add to the model what it lacks, and report the ladder of errors. Without a model
+    /// each joint starts as a plain integrator; no model file is written
+    #[arg(long, help_heading = "Model")]
+    improve: bool,
+
+    #[command(flatten)]
+    effects: EffectArgs,
+
+    /// How many effects `--improve` adds at most
+    #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS, help_heading = "Model")]
+    max_effects: usize,
+
+    #[command(flatten)]
+    protocol: ProtocolArgs,
+}
+
+/// What is written where.
+#[derive(ClapArgs, Debug)]
+#[command(next_help_heading = "Output")]
+struct OutputArgs {
+    /// The report: a page, or Markdown with its drawings in a folder `FILE_files` beside it.
+    /// The recording goes beside it as `FILE.rrd`
+    #[arg(short = 'o', long = "output", value_name = "FILE.html|FILE.md", required = true)]
+    report: PathBuf,
+
+    /// Put the recording into the page, if it has no more than 8 MiB
+    #[arg(long, conflicts_with = "no_recording")]
+    embed: bool,
+
+    /// Write no recording
+    #[arg(long)]
+    no_recording: bool,
+
+    #[command(flatten)]
+    stream: StreamArgs,
+
+    #[command(flatten)]
+    run: RunArgs,
+}
+
+pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
+    let settings = args.algorithm.only()?;
+    let file = args.model.file()?;
+    let effects = args.model.effects.effects(file.candidates())?;
+    let target = args.output.target()?;
+    target.check(&args.data.files())?;
+    let stream = args.output.stream.open(args.output.run.verbosity())?;
+    let session = Session::begin(&args.data, &args.output.run, stream)?;
+    let study = Study::of(session, settings, |begun| args.model.improved(&file, begun, effects))?;
+    if study.result.is_some() {
+        note_missing(&file, &study.experiment().joints, study.verbosity());
+    }
+    Reported { args, file: &file, study: &study }.report(&target)
+}
+
+impl ModelArgs {
+    /// The model file; an empty one where there is none.
+    fn file(&self) -> anyhow::Result<ModelFile> {
+        Ok(self.model.as_deref().map(ModelFile::read).transpose()?.unwrap_or_default())
+    }
+
+    /// The model of each joint with what it lacks; none where no model is asked for.
+    fn improved(
+        &self,
+        file: &ModelFile,
+        begun: Begun<'_>,
+        effects: Vec<&'static dyn Effect>,
+    ) -> Option<OfJoints<Improvement>> {
+        let (joints, estimates) = (begun.joints, begun.estimates);
+        let options = Options { effects, max_effects: self.max_effects };
+        let starts = |joint: &Joint| file.joint(&joint.name).cloned();
+        let protocol = self.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
+        if self.improve {
+            let bar = begun.bar("improving");
+            let progress = Progress::new(file, joints, begun.verbosity(), None);
+            let done = |index, revision: &Revision| progress.done(index, revision);
+            let protocol = protocol.watched(&bar);
+            return Some(improve_joints(joints, estimates, starts, protocol, &options, done));
+        }
+        self.model.as_ref()?;
+        let bar = begun.bar("explaining");
+        let protocol = protocol.watched(&bar);
+        let explained = explain_joints(joints, estimates, starts, protocol, &options);
+        let one = |found: Option<Result<_, _>>| Some(found?.map(as_it_is));
+        Some(explained.into_iter().map(one).collect())
+    }
+}
+
+/// A model and what it lacks, as the only revision.
+fn as_it_is(Explanation { base, verdict, ranking }: Explanation) -> Improvement {
+    let revisions = vec![Revision { change: Change::Start, comparison: base, ranking }];
+    Improvement { revisions, verdict }
+}
+
+impl OutputArgs {
+    fn target(&self) -> anyhow::Result<Target> {
+        let path = self.report.clone();
+        let kind = match path.extension().and_then(OsStr::to_str) {
+            Some("html" | "htm") => Kind::Page,
+            Some("md") => Kind::Markdown,
+            _ => bail!("{}: a report is called FILE.html or FILE.md", path.display()),
+        };
+        let has_recordings = cfg!(feature = "rrd");
+        if self.embed && kind == Kind::Markdown {
+            bail!("--embed needs a page: Markdown cannot hold a file; use `-o FILE.html`");
+        }
+        if self.embed && !has_recordings {
+            bail!("this program was built without recordings: build it with feature `rrd`");
+        }
+        let recording = has_recordings && !self.no_recording;
+        let recording = recording.then(|| path.with_extension("rrd"));
+        Ok(Target { path, kind, recording })
+    }
+}
+
+/// Where the report and its recording go.
+struct Target {
+    path: PathBuf,
+    kind: Kind,
+    recording: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Page,
+    Markdown,
+}
+
+impl Target {
+    /// Refuses what cannot be written.
+    fn check(&self, inputs: &[PathBuf]) -> anyhow::Result<()> {
+        let outputs = [self.path.as_path()].into_iter().chain(self.recording.as_deref());
+        check_outputs(&outputs.collect::<Vec<_>>(), inputs)?;
+        let folder = self.folder();
+        if self.kind == Kind::Markdown && folder.exists() && !folder.is_dir() {
+            bail!("{}: the drawings need a folder of this name", folder.display());
+        }
+        Ok(())
+    }
+
+    /// Where the drawings of Markdown go.
+    fn folder(&self) -> PathBuf {
+        let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
+        self.path.with_file_name(format!("{stem}_files"))
+    }
+
+    fn write(&self, document: &Document) -> anyhow::Result<()> {
+        let text = match self.kind {
+            Kind::Page => document.html(),
+            Kind::Markdown => {
+                let folder = self.folder();
+                let markdown = document.markdown(&file_name(&folder));
+                fs::create_dir_all(&folder)
+                    .with_context(|| format!("{}: cannot be made", folder.display()))?;
+                for (name, drawing) in &markdown.files {
+                    write_text(&folder.join(name), drawing)?;
+                }
+                markdown.text
+            }
+        };
+        write_text(&self.path, &text)
+    }
+}
+
+fn write_text(path: &Path, text: &str) -> anyhow::Result<()> {
+    write_file(path, |file| Ok(file.write_all(text.as_bytes())?))
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// What is asked, and what came of it.
+struct Reported<'a> {
+    args: &'a Args,
+    file: &'a ModelFile,
+    study: &'a Study<'a, Option<OfJoints<Improvement>>>,
+}
+
+impl Reported<'_> {
+    /// Writes the report of what was found.
+    fn report(&self, target: &Target) -> anyhow::Result<Completion> {
+        let Self { args, file, study } = *self;
+        let experiment = study.experiment();
+        let name = name_of(args.model.model.as_deref());
+        let mut failures = run::failures(experiment, &study.estimates);
+        let joints = estimated(experiment, &study.estimates);
+        if joints.is_empty() {
+            return Err(nothing_usable(failures.last()));
+        }
+        let model = args.model.model.as_ref();
+        let model =
+            model.map_or_else(|| "model.toml".to_owned(), |path| path.display().to_string());
+        let protocol = &args.model.protocol;
+        let arguments = add_arguments(&args.data, protocol, &model, &experiment.joints);
+        let mut models = Vec::new();
+        let joints_of_models = experiment.joints.iter().zip(&arguments);
+        for ((joint, arguments), result) in joints_of_models.zip(study.result.iter().flatten()) {
+            match result {
+                Some(Ok(found)) => models.extend(improved(file, &name, joint, found, arguments)),
+                Some(Err(error)) => {
+                    failures.push(format!("joint `{}`: no model: {}", joint.name, said(error)));
+                }
+                None => {}
+            }
+        }
+        self.write(&joints, &models, &failures, target)
+    }
+
+    fn write(
+        &self,
+        joints: &[EstimatedJoint<'_>],
+        models: &[ImprovedJoint<'_>],
+        failures: &[String],
+        target: &Target,
+    ) -> anyhow::Result<Completion> {
+        let Self { args, file, study } = *self;
+        let experiment = study.experiment();
+        let notes: Vec<String> =
+            experiment.notes.iter().cloned().chain(run::notes(joints)).collect();
+        let revised = (!models.is_empty()).then(|| self.revised(models)).transpose()?;
+        let embedded = self.record(models, target)?;
+        let recording_name = target.recording.as_deref().map(file_name);
+        let recording = recording_name
+            .as_deref()
+            .map(|name| RecordingFile { name, bytes: embedded.as_deref() });
+        let report = Report {
+            experiment,
+            joints,
+            settings: &study.settings,
+            models,
+            model: args.model.model.as_ref().map(|_| file),
+            revised: revised.as_ref().map(ModelFile::text),
+            horizon: &args.model.protocol.horizon(Horizon::Steps),
+            split: args.model.protocol.split(),
+            command: &command(),
+            recording,
+            notes: &notes,
+            failures,
+        };
+        {
+            let _bar = Bar::spinner(study.verbosity(), "writing the report");
+            target.write(&report.document()?)?;
+        }
+        if study.verbosity() == Verbosity::Normal {
+            for note in &notes {
+                message("note", note);
+            }
+            message("report", &target.path.display().to_string());
+        }
+        let path = |path: &Path| path.display().to_string();
+        let recording = target.recording.as_deref().map(path);
+        let json = || ReportJson::new(&report, path(&target.path), recording);
+        study.end(failures, || report_text(&report), json)
+    }
+
+    /// Writes the recording; its bytes, where they are to be in the page.
+    fn record(
+        &self,
+        models: &[ImprovedJoint<'_>],
+        target: &Target,
+    ) -> anyhow::Result<Option<Vec<u8>>> {
+        let names = run::revision_names(models);
+        let compared: Vec<_> = models.iter().flat_map(|joint| run::models(joint, &names)).collect();
+        self.study.record(target.recording.as_deref(), &compared, models)?;
+        let Some(path) = target.recording.as_ref().filter(|_| self.args.output.embed) else {
+            return Ok(None);
+        };
+        let size = fs::metadata(path).map_or(u64::MAX, |file| file.len());
+        if size > EMBEDDED {
+            let name = path.display();
+            message("note", &format!("{name}: too large for the page; it stands beside it"));
+            return Ok(None);
+        }
+        let bytes = fs::read(path);
+        Ok(Some(bytes.with_context(|| format!("{}: cannot be read", path.display()))?))
+    }
+
+    /// The model file with the fitted models in it.
+    fn revised(&self, models: &[ImprovedJoint<'_>]) -> anyhow::Result<ModelFile> {
+        let mut file = revised(self.file, models)?;
+        for joint in models.iter().filter(|joint| joint.revisions.len() == 1) {
+            let compared = &joint.finding.compared;
+            file = file.refitted(&compared.joint.name, &compared.comparison.fit.model)?;
+        }
+        Ok(file)
+    }
+}
+
+/// The command as it was typed, but for what changes nothing of the report.
+fn command() -> String {
+    let typed = std::env::args_os().skip(1);
+    let typed = typed.map(|word| word.to_string_lossy().into_owned());
+    quoted(&["tauscope".to_owned()].into_iter().chain(telling(typed)).collect::<Vec<_>>())
+}
+
+/// The words that say what is in the report.
+fn telling(words: impl Iterator<Item = String>) -> Vec<String> {
+    let mut kept = Vec::new();
+    let mut words = words;
+    while let Some(word) = words.next() {
+        match word.as_str() {
+            "-q" | "--quiet" => {}
+            "--threads" | "--format" => drop(words.next()),
+            _ if word.starts_with("--threads=") || word.starts_with("--format=") => {}
+            _ => kept.push(word),
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_tells_what_is_in_the_report() {
+        let typed = "report log.csv --threads 3 -o r.html --quiet --format=json --beta 2";
+        let kept = telling(typed.split(' ').map(str::to_owned));
+        assert_eq!(kept.join(" "), "report log.csv -o r.html --beta 2");
+    }
+}

@@ -1,0 +1,172 @@
+//! `tauscope sweep`: every delay with every setting.
+
+mod values;
+
+use std::path::{Path, PathBuf};
+
+use crate::batch::{SweptJoint, sweep_joints};
+use crate::delay::sweep::{Base, Grid};
+use crate::delay::{EstimateError, Method};
+use crate::experiment::Experiment;
+use crate::report::{ReportedSweep, StepsShown, SweepJson, sweep_text};
+use anyhow::bail;
+use clap::Args as ClapArgs;
+
+use crate::cli::args::{ConditionArgs, DataArgs, Passband, RunArgs, ids_with, number};
+use crate::cli::console::Bar;
+use crate::cli::exit::Completion;
+use crate::cli::failure::{joint_left_out, nothing_usable, read_failures};
+use crate::cli::output::{SweepContents, check_outputs};
+use crate::cli::run::Session;
+use crate::cli::viewer::StreamArgs;
+use values::{Values, methods, passbands, whole};
+
+/// Estimate every delay with many settings, and say which of them it hangs on
+///
+/// Every combination of the values is tried on every joint. A list is `1,2,5`; a range, with
+/// both ends, is `1..10` or `2..20:2`.
+#[derive(ClapArgs, Debug)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    data: DataArgs,
+
+    /// How a breakpoint is found
+    #[arg(long, value_name = "NAMES", default_value_t = Values::all(), value_parser = methods, help_heading = "Settings that are varied")]
+    method: Values<Method>,
+
+    /// Samples that a segment reaches beyond its input steps
+    #[arg(long, value_name = "LIST", default_value = "5,10,20", value_parser = whole, allow_hyphen_values = true, help_heading = "Settings that are varied")]
+    alpha: Values<usize>,
+
+    #[arg(long, help = format!("Samples between two candidate breakpoints; for `{}` alone", ids_with(|spec| spec.has_rows)), value_name = "LIST", default_value = "1,2,5,10", value_parser = whole, allow_hyphen_values = true, help_heading = "Settings that are varied")]
+    beta: Values<usize>,
+
+    #[arg(long, help = format!("Cutoffs of the low-pass in Hz, and `none` [default: 2,5,10,none for {}, else none]", ids_with(|spec| spec.low_pass.is_some())), value_name = "LIST", value_parser = passbands, allow_hyphen_values = true, help_heading = "Settings that are varied")]
+    passband: Option<Values<Passband>>,
+
+    /// Delays that differ by so many samples more than β or their intervals allow still agree
+    #[arg(long, value_name = "SAMPLES", default_value_t = 2.0, value_parser = number::threshold, allow_negative_numbers = true, help_heading = "Settings that are varied")]
+    tolerance: f64,
+
+    #[command(flatten)]
+    conditions: ConditionArgs,
+
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+/// What is printed and recorded.
+#[derive(ClapArgs, Debug)]
+#[command(next_help_heading = "Output")]
+struct OutputArgs {
+    /// Record how every delay moves with the settings, for the Rerun viewer
+    #[arg(short = 'o', long = "output", value_name = "FILE.rrd")]
+    recording: Option<PathBuf>,
+
+    #[command(flatten)]
+    stream: StreamArgs,
+
+    /// Show all steps that hang on a setting, not only those that most do
+    #[arg(long)]
+    steps: bool,
+
+    #[command(flatten)]
+    run: RunArgs,
+}
+
+type JointResult = Result<SweptJoint, EstimateError>;
+
+pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
+    let verbosity = args.output.run.verbosity();
+    let grid = args.grid()?;
+    let recording = args.output.recording.as_deref();
+    check_outputs(&recording.into_iter().collect::<Vec<&Path>>(), &args.data.files())?;
+    let stream = args.output.stream.open(verbosity)?;
+    let session = Session::begin(&args.data, &args.output.run, stream)?;
+    let experiment = &session.experiment;
+    let joints = &experiment.joints;
+    let runs = (joints.len() * grid.runs().len()) as u64;
+    let bar = Bar::new(verbosity, "sweeping", "runs", runs);
+    let work = || sweep_joints(joints, &grid, args.tolerance, || bar.step());
+    let results = session.in_threads(work)?;
+    drop(bar);
+    let failures = failures(experiment, &grid, &results);
+    let swept = joints.iter().zip(&results);
+    let swept = swept.filter_map(|(joint, result)| Some((joint, result.as_ref().ok()?)));
+    let swept: Vec<_> =
+        swept.map(|(joint, swept)| ReportedSweep { joint, sweep: &swept.sweep }).collect();
+    if swept.is_empty() {
+        return Err(nothing_usable(failures.last()));
+    }
+    session.warn(&failures, &[]);
+    let contents = SweepContents {
+        joints: &swept,
+        grid: &grid,
+        tolerance: args.tolerance,
+        sources: &experiment.sources,
+        reading: &experiment.options,
+    };
+    if let Some(path) = recording {
+        contents.record(path, verbosity)?;
+    }
+    session.stream.send_sweep(&contents)?;
+    let shown = if args.output.steps { StepsShown::All } else { StepsShown::Worst };
+    session.end(
+        Completion::without(&failures),
+        || sweep_text(&grid, args.tolerance, &swept, shown),
+        || SweepJson::new(&grid, args.tolerance, &swept, &experiment.notes, &failures),
+    )
+}
+
+/// A message on each file, joint and setting that failed.
+fn failures(experiment: &Experiment, grid: &Grid, results: &[JointResult]) -> Vec<String> {
+    let of_joint = |(joint, result): (&crate::experiment::Joint, &JointResult)| {
+        let name = &joint.name;
+        match result {
+            Err(error) => vec![joint_left_out(name, error)],
+            Ok(swept) => {
+                let mut different: Vec<&EstimateError> = Vec::new();
+                for (_, error) in &swept.failed {
+                    if !different.contains(&error) {
+                        different.push(error);
+                    }
+                }
+                let count = |error| swept.failed.iter().filter(|(_, other)| other == error).count();
+                let all = grid.runs().len();
+                let why = |error| {
+                    let count = count(error);
+                    format!("joint `{name}`, {count} of {all} settings are left out: {error}")
+                };
+                different.into_iter().map(why).collect()
+            }
+        }
+    };
+    let of_joints = experiment.joints.iter().zip(results).flat_map(of_joint);
+    read_failures(experiment).into_iter().chain(of_joints).collect()
+}
+
+impl Args {
+    /// Every combination of the values.
+    fn grid(&self) -> anyhow::Result<Grid> {
+        /// More would take days, and no memory holds them.
+        const MOST: usize = 20_000;
+        let order = self.conditions.filter_order;
+        let usual = [Passband::Hz(2.0), Passband::Hz(5.0), Passband::Hz(10.0), Passband::None];
+        let passbands = self.passband.as_ref().map_or(usual.as_slice(), |given| &given.0);
+        let base = |method: &Method| {
+            let settings = self.conditions.settings(*method);
+            // Who looks at the output as it was measured is not smoothed unasked.
+            let keeps_low_pass = self.passband.is_none() && settings.low_pass.is_none();
+            Base { settings, keeps_low_pass }
+        };
+        let bases: Vec<Base> = self.method.0.iter().map(base).collect();
+        let (alphas, betas) = (self.alpha.0.clone(), self.beta.0.clone());
+        let counts = [bases.len(), passbands.len(), alphas.len(), betas.len()];
+        let combinations = counts.into_iter().fold(1, usize::saturating_mul);
+        if combinations > MOST {
+            bail!("{combinations} combinations of settings are more than {MOST}; try fewer values");
+        }
+        let passbands = passbands.iter().map(|passband| passband.low_pass(order)).collect();
+        Ok(Grid::new(bases, passbands, alphas, betas))
+    }
+}

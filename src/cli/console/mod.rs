@@ -1,0 +1,9 @@
+//! What people see on a terminal: messages, results, progress; and Ctrl-C.
+
+mod interrupt;
+mod progress;
+mod terminal;
+
+pub(crate) use interrupt::Interrupt;
+pub(crate) use progress::{Bar, Verbosity};
+pub(crate) use terminal::{Tone, has_colors, message, print, print_json, print_with, toned, warn};

@@ -1,0 +1,108 @@
+//! Progress on stderr, where a person looks at it.
+
+use std::sync::LazyLock;
+use std::time::Duration;
+
+use crate::batch::Watch;
+use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// Whether progress and notices are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Verbosity {
+    Normal,
+    Quiet,
+}
+
+/// All bars there are. It draws nothing where stderr is no terminal.
+static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
+
+/// Does `write` while no bar is in its way.
+pub(crate) fn aside(write: impl FnOnce()) {
+    BARS.suspend(write);
+}
+
+/// A bar that is gone when it is dropped.
+#[derive(Debug)]
+pub(crate) struct Bar(ProgressBar);
+
+impl Bar {
+    /// A bar for `length` steps of `what`, with its rate and the time left; of an unknown
+    /// number of steps where that is 0. `units` are what is counted.
+    pub(crate) fn new(
+        verbosity: Verbosity,
+        what: &'static str,
+        units: &'static str,
+        length: u64,
+    ) -> Self {
+        let bar = match verbosity {
+            Verbosity::Quiet => ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()),
+            Verbosity::Normal => BARS.add(ProgressBar::new(length)),
+        };
+        bar.set_prefix(units);
+        bar.set_style(style(length));
+        bar.set_message(what);
+        bar.enable_steady_tick(Duration::from_millis(100));
+        Self(bar)
+    }
+
+    /// A sign of life for work that cannot be counted.
+    pub(crate) fn spinner(verbosity: Verbosity, what: &'static str) -> Self {
+        Self::new(verbosity, what, "", 0)
+    }
+
+    /// Says what is being done.
+    pub(crate) fn say(&self, what: String) {
+        self.0.set_message(what);
+    }
+
+    /// One step is done.
+    pub(crate) fn step(&self) {
+        self.0.inc(1);
+    }
+}
+
+fn style(length: u64) -> ProgressStyle {
+    let style = match length {
+        0 => ProgressStyle::with_template("{spinner} {msg} {elapsed}"),
+        _ => ProgressStyle::with_template(
+            "{msg} {wide_bar} {pos}/{len} {prefix}, {per_sec}, {eta} left",
+        ),
+    };
+    style.unwrap_or_else(|_| ProgressStyle::default_bar())
+}
+
+impl Watch for Bar {
+    fn more(&self, pieces: usize) {
+        let before = self.0.length().unwrap_or(0);
+        let length = before + pieces as u64;
+        self.0.set_length(length);
+        if before == 0 {
+            self.0.set_style(style(length));
+        }
+    }
+
+    fn done(&self) {
+        self.step();
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+        BARS.remove(&self.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn work_that_comes_up_makes_the_bar_longer() {
+        let bar = Bar::new(Verbosity::Quiet, "fitting", "fits", 0);
+        bar.more(3);
+        bar.done();
+        bar.more(2);
+        assert_eq!((bar.0.position(), bar.0.length()), (1, Some(5)));
+    }
+}

@@ -1,0 +1,190 @@
+//! `--results FOLDER`: each log an experiment of its own, whose result is kept.
+//!
+//! A log is worked on by this program itself, called for that log alone, so that its result
+//! is what anybody gets who calls it so.
+
+mod each;
+mod store;
+mod typed;
+mod work;
+
+use std::path::{Path, PathBuf};
+
+use crate::report::{FolderJson, FolderReport};
+use anyhow::{Context as _, bail};
+use clap::Args;
+
+use crate::cli::args::Format;
+use crate::cli::console::{self, Verbosity, message, warn};
+use crate::cli::exit::Completion;
+use crate::cli::output::{check_outputs, check_tables, write_table};
+
+pub(crate) use each::Each;
+pub(crate) use store::read_folders;
+
+/// Many logs, each by itself.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Folders of logs")]
+pub(crate) struct FolderArgs {
+    /// Take each log as an experiment of its own, and keep its result in this folder. A log
+    /// whose result is there already, from the same bytes by the same settings and version,
+    /// is not worked on again
+    #[arg(long, value_name = "FOLDER")]
+    results: Option<PathBuf>,
+
+    /// Work on the K-th of N parts of the logs only; `tauscope merge` makes the tables
+    #[arg(long, value_name = "K/N", requires = "results")]
+    shard: Option<Shard>,
+
+    /// Write a row per log and joint, as CSV or Parquet
+    #[arg(long, value_name = "FILE", requires = "results")]
+    summary: Option<PathBuf>,
+}
+
+/// A part of the logs: every `of`-th, from the `number`-th on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Shard {
+    number: usize,
+    of: usize,
+}
+
+impl std::str::FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let parts = text.split_once('/');
+        let parts = parts.and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
+        let shard = parts.map(|(number, of)| Self { number, of });
+        let shard = shard.filter(|shard| (1..=shard.of).contains(&shard.number));
+        shard.ok_or_else(|| "expected K/N, with K from 1 to N: 3/16".to_owned())
+    }
+}
+
+impl Shard {
+    fn has(self, index: usize) -> bool {
+        index % self.of + 1 == self.number
+    }
+}
+
+/// Where the tables of all logs go.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Tables<'a> {
+    pub(crate) decisions: Option<&'a Path>,
+    pub(crate) summary: Option<&'a Path>,
+}
+
+impl FolderArgs {
+    /// Whether each log is an experiment of its own.
+    pub(crate) fn is_asked_for(&self) -> bool {
+        self.results.is_some()
+    }
+
+    /// Runs the command for each log that has no result yet.
+    pub(crate) fn run(&self, each: &Each<'_>) -> anyhow::Result<Completion> {
+        let results = self.results.as_deref().unwrap_or(Path::new("."));
+        if let Some((name, _)) = each.refused.iter().find(|(_, given)| *given) {
+            bail!("{name}: it is for one log; leave it out, or leave out `--results`");
+        }
+        let tables = Tables { decisions: each.decisions, summary: self.summary.as_deref() };
+        if self.shard.is_some() && tables.files().next().is_some() {
+            bail!(
+                "--shard: a part of the logs makes no table of all; leave out `--decisions` and \
+                 `--summary`, and give them to `tauscope merge` when all parts are done"
+            );
+        }
+        tables.check(&each.data.files())?;
+        std::fs::create_dir_all(results)
+            .with_context(|| format!("{}: cannot be made", results.display()))?;
+        let (all, mut failures) = each.data.logs();
+        if all.is_empty() {
+            bail!(failures.into_iter().next().unwrap_or_else(|| "no log is given".to_owned()));
+        }
+        let typed = typed::options(each.program, each.command)?;
+        let part =
+            |(index, _): &(usize, &PathBuf)| self.shard.is_none_or(|shard| shard.has(*index));
+        let logs: Vec<&PathBuf> = all.iter().enumerate().filter(part).map(|(_, log)| log).collect();
+        let work = work::Work { each, results, typed: &typed, of: all.len() };
+        let done = work.run(&logs)?;
+        failures.extend(done.failures);
+        if let Some(Shard { number, of }) = self.shard {
+            return Ok(finish_part(&failures, &format!("part {number} of {of}"), results, each));
+        }
+        let report = FolderReport::new(each.command, done.results);
+        present(&report, &failures, tables, each.run.format, each.run.verbosity())
+    }
+}
+
+/// Ends the work on a part of the logs.
+fn finish_part(failures: &[String], part: &str, results: &Path, each: &Each<'_>) -> Completion {
+    warn(failures);
+    if each.run.verbosity() == Verbosity::Normal {
+        let folder = results.display();
+        message("done", &format!("{part}; `tauscope merge {folder}` makes the tables of all"));
+    }
+    Completion::without(failures)
+}
+
+impl Tables<'_> {
+    fn files(&self) -> impl Iterator<Item = PathBuf> {
+        [self.decisions, self.summary].into_iter().flatten().map(Path::to_owned)
+    }
+
+    /// Refuses what cannot be written, or would replace an input or another table.
+    pub(crate) fn check(&self, inputs: &[PathBuf]) -> anyhow::Result<()> {
+        let files: Vec<PathBuf> = self.files().collect();
+        check_outputs(&files.iter().map(PathBuf::as_path).collect::<Vec<_>>(), inputs)?;
+        check_tables(&files)
+    }
+}
+
+/// Writes the tables of all logs and prints what they have in common.
+pub(crate) fn present(
+    report: &FolderReport,
+    failures: &[String],
+    tables: Tables<'_>,
+    format: Format,
+    verbosity: Verbosity,
+) -> anyhow::Result<Completion> {
+    let failures: Vec<String> = failures.iter().cloned().chain(report.failures()).collect();
+    warn(&failures);
+    if report.is_empty() {
+        bail!("no log has a result");
+    }
+    if verbosity == Verbosity::Normal && tables.files().next().is_none() && format == Format::Text {
+        message("note", "`--summary FILE` writes a row per log and joint");
+    }
+    if let Some(path) = tables.decisions {
+        write_table(&report.decisions(), path)?;
+    }
+    if let Some(path) = tables.summary {
+        write_table(&report.summary(), path)?;
+    }
+    match format {
+        Format::Text => console::print(&report.text())?,
+        Format::Json => console::print_json(&FolderJson::new(report, &failures))?,
+    }
+    Ok(Completion::without(&failures))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_log_is_in_one_part() {
+        for of in 1..6 {
+            for index in 0..20 {
+                let parts = (1..=of).filter(|&number| Shard { number, of }.has(index));
+                assert_eq!(parts.count(), 1, "{index} of {of}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_part_is_written_as_its_number_of_all() {
+        assert_eq!("3/16".parse(), Ok(Shard { number: 3, of: 16 }));
+        for bad in ["0/4", "5/4", "3", "a/b", "1/0", "-1/2"] {
+            assert!(bad.parse::<Shard>().is_err(), "{bad}");
+        }
+    }
+}

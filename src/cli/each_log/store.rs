@@ -1,0 +1,136 @@
+//! The folder of results: a file per log, written when the log is done.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use crate::report::LogResult;
+use anyhow::{Context as _, bail};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sha2::{Digest as _, Sha256};
+
+use crate::cli::output::write_file;
+
+const SCHEMA: &str = "tauscope/result/1";
+
+/// What is kept of a log.
+#[derive(Debug, Deserialize, Serialize)]
+pub(crate) struct Kept {
+    schema: String,
+    version: String,
+    pub(crate) command: String,
+    /// The log, as it was given.
+    pub(crate) file: String,
+    /// Logs that were given in all.
+    pub(crate) of: usize,
+    /// The options, as they were given.
+    pub(crate) settings: String,
+    /// Stands for the bytes of the log, the settings and the version.
+    pub(crate) key: String,
+    /// What the command said in JSON.
+    pub(crate) document: Value,
+}
+
+impl Kept {
+    pub(crate) fn new(
+        command: &str,
+        log: &Path,
+        of: usize,
+        settings: String,
+        key: String,
+        document: Value,
+    ) -> Self {
+        let (schema, version) = (SCHEMA.to_owned(), env!("CARGO_PKG_VERSION").to_owned());
+        let (command, file) = (command.to_owned(), log.display().to_string());
+        Self { schema, version, command, file, of, settings, key, document }
+    }
+
+    /// The result of a log, where there is one.
+    pub(crate) fn read(path: &Path) -> anyhow::Result<Self> {
+        let name = path.display();
+        let text = std::fs::read(path).with_context(|| format!("{name}: cannot be read"))?;
+        let kept: Self = serde_json::from_slice(&text)
+            .with_context(|| format!("{name}: not a result of tauscope; remove it"))?;
+        if kept.schema != SCHEMA {
+            bail!("{name}: not a result of tauscope ({}); remove it", kept.schema);
+        }
+        Ok(kept)
+    }
+
+    pub(crate) fn write(&self, path: &Path) -> anyhow::Result<()> {
+        write_file(path, |file| Ok(serde_json::to_writer(file, self)?))
+    }
+
+    /// The result, for the tables.
+    pub(crate) fn result(self) -> LogResult {
+        LogResult { file: self.file, document: self.document }
+    }
+}
+
+/// The name of a log's file in the folder, without its ending: readable, and its own also
+/// where logs of several folders have one name.
+pub(crate) fn name_of(log: &Path) -> String {
+    let stem = log.file_name().unwrap_or_default().to_string_lossy();
+    let hash = base16ct::lower::encode_string(&Sha256::digest(log.display().to_string()));
+    format!("{stem}-{}", hash.get(..12).unwrap_or_default())
+}
+
+/// All results of some folders, by the names of their logs; and what is not as it should be.
+pub(crate) fn read_folders(
+    folders: &[PathBuf],
+) -> anyhow::Result<(String, Vec<LogResult>, Vec<String>)> {
+    let mut found: BTreeMap<String, (PathBuf, Kept)> = BTreeMap::new();
+    for path in results_in(folders)? {
+        let kept = Kept::read(&path)?;
+        let different = found.values().next().filter(|(_, first)| !first.is_like(&kept));
+        if let Some((other, _)) = different {
+            bail!(
+                "{}: its command, settings or version differ from those of {}; merge results of \
+                 one kind only",
+                path.display(),
+                other.display()
+            );
+        }
+        let twice = found.get(&kept.file).filter(|(_, other)| other.key != kept.key);
+        if let Some((other, _)) = twice {
+            bail!(
+                "{}: another result of {} is in {}; remove the older one",
+                path.display(),
+                kept.file,
+                other.display()
+            );
+        }
+        found.insert(kept.file.clone(), (path, kept));
+    }
+    let of = found.values().map(|(_, kept)| kept.of).max().unwrap_or_default();
+    let Some(command) = found.values().next().map(|(_, kept)| kept.command.clone()) else {
+        bail!("no result in these folders; give those of `--results`");
+    };
+    let missing = of.saturating_sub(found.len());
+    let missing = (missing > 0).then(|| {
+        format!("{missing} of {of} logs have no result yet; run the command again for them")
+    });
+    let results = found.into_values().map(|(_, kept)| kept.result()).collect();
+    Ok((command, results, missing.into_iter().collect()))
+}
+
+impl Kept {
+    fn is_like(&self, other: &Self) -> bool {
+        self.command == other.command
+            && self.settings == other.settings
+            && self.version == other.version
+    }
+}
+
+fn results_in(folders: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    for folder in folders {
+        let unread = || format!("{}: cannot be read as a folder of results", folder.display());
+        for entry in folder.read_dir().with_context(unread)? {
+            files.push(entry.with_context(unread)?.path());
+        }
+    }
+    files.retain(|file| file.extension().is_some_and(|ending| ending == "json"));
+    files.sort();
+    Ok(files)
+}

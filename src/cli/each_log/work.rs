@@ -1,0 +1,158 @@
+//! The work on the logs: which are done, and this program on each of the others.
+
+use std::ffi::OsString;
+use std::fs::File;
+use std::io::{BufRead as _, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use crate::report::LogResult;
+use anyhow::{Context as _, anyhow};
+use sha2::{Digest as _, Sha256};
+
+use super::each::Each;
+use super::store::{Kept, name_of};
+use super::typed::Typed;
+use crate::cli::console::{Bar, Verbosity, message};
+
+/// What is to be done, and where results are kept.
+pub(crate) struct Work<'a> {
+    pub(crate) each: &'a Each<'a>,
+    pub(crate) results: &'a Path,
+    pub(crate) typed: &'a Typed,
+    /// Logs in all, those of other parts included.
+    pub(crate) of: usize,
+}
+
+/// What came of it, in the order of the logs.
+pub(crate) struct Done {
+    pub(crate) results: Vec<LogResult>,
+    pub(crate) failures: Vec<String>,
+}
+
+impl Work<'_> {
+    /// Works on each log that has no result yet.
+    pub(crate) fn run(&self, logs: &[&PathBuf]) -> anyhow::Result<Done> {
+        let keys = logs.iter().map(|log| self.key(log)).collect::<Vec<_>>();
+        let open: Vec<usize> =
+            (0..logs.len()).filter(|index| !self.is_done(logs, &keys, *index)).collect();
+        let (left, all) = (open.len(), logs.len());
+        if left < all && self.each.run.verbosity() == Verbosity::Normal {
+            message("note", &format!("{} of {all} logs are done already", all - left));
+        }
+        let bar = Bar::new(self.each.run.verbosity(), "working", "logs", open.len() as u64);
+        let failures = Mutex::new(Vec::new());
+        let next = AtomicUsize::new(0);
+        let processors = std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = self.each.run.threads.unwrap_or(processors);
+        let workers = threads.min(open.len());
+        let work = || {
+            while let Some(&index) = open.get(next.fetch_add(1, Ordering::Relaxed)) {
+                let (Some(log), Some(key)) = (logs.get(index), keys.get(index)) else { continue };
+                let done = key
+                    .as_ref()
+                    .map_err(|error| anyhow!("{error:#}"))
+                    .and_then(|key| self.work_on(log, key, (threads / workers.max(1)).max(1)));
+                if let Err(error) = done {
+                    // What an earlier version of the log gave is no result of this one.
+                    std::fs::remove_file(self.place(log)).unwrap_or_default();
+                    let failure = (index, format!("left out: {error:#}"));
+                    failures.lock().unwrap_or_else(PoisonError::into_inner).push(failure);
+                }
+                bar.step();
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 0..workers {
+                scope.spawn(work);
+            }
+        });
+        let mut failures = failures.into_inner().unwrap_or_else(PoisonError::into_inner);
+        failures.sort();
+        let left_out: Vec<usize> = failures.iter().map(|(index, _)| *index).collect();
+        let kept = logs.iter().enumerate().filter(|(index, _)| !left_out.contains(index));
+        let results = kept.map(|(_, log)| Ok(Kept::read(&self.place(log))?.result()));
+        let results = results.collect::<anyhow::Result<_>>()?;
+        Ok(Done { results, failures: failures.into_iter().map(|(_, text)| text).collect() })
+    }
+
+    /// Where the result of a log is kept.
+    fn place(&self, log: &Path) -> PathBuf {
+        self.results.join(format!("{}.json", name_of(log)))
+    }
+
+    fn is_done(&self, logs: &[&PathBuf], keys: &[anyhow::Result<String>], index: usize) -> bool {
+        let (Some(log), Some(Ok(key))) = (logs.get(index), keys.get(index)) else { return false };
+        let kept = Kept::read(&self.place(log));
+        kept.is_ok_and(|kept| kept.key == *key && kept.file == log.display().to_string())
+    }
+
+    fn settings(&self) -> String {
+        let words: Vec<_> = self.typed.words.iter().map(|word| word.to_string_lossy()).collect();
+        words.join(" ")
+    }
+
+    /// Stands for all that the result of a log depends on.
+    fn key(&self, log: &Path) -> anyhow::Result<String> {
+        let mut hash = Sha256::new();
+        for part in [env!("CARGO_PKG_VERSION"), self.each.command] {
+            hash.update(part);
+            hash.update([0]);
+        }
+        for word in &self.typed.words {
+            hash.update(word.as_encoded_bytes());
+            hash.update([0]);
+        }
+        // A model file that is not there yet is made, and counts as empty.
+        for file in self.typed.files.iter().filter(|file| file.exists()) {
+            hash.update(hash_of(file)?);
+        }
+        hash.update(hash_of(log)?);
+        Ok(base16ct::lower::encode_string(&hash.finalize()))
+    }
+
+    /// Runs this program on one log and keeps what it says.
+    fn work_on(&self, log: &Path, key: &str, threads: usize) -> anyhow::Result<()> {
+        let program = std::env::current_exe().context("this program cannot be found")?;
+        let mut command = Command::new(program);
+        command.arg(self.each.command).args(&self.typed.words);
+        command.args(["--format=json", "--quiet"]).arg(format!("--threads={threads}"));
+        if self.each.command == "improve" {
+            let mut write = OsString::from("--write=");
+            write.push(self.place(log).with_extension("toml"));
+            command.arg(write);
+        }
+        let output = command.arg("--").arg(log).output().context("this program cannot be run")?;
+        let said = String::from_utf8_lossy(&output.stderr);
+        if !matches!(output.status.code(), Some(0 | 1)) {
+            let error = said.lines().find_map(|line| line.strip_prefix("error: "));
+            let error =
+                error.map_or_else(|| format!("it ended with {}", output.status), str::to_owned);
+            let name = log.display().to_string();
+            let named = error.contains(&name);
+            return Err(if named { anyhow!(error) } else { anyhow!("{name}: {error}") });
+        }
+        let document = serde_json::from_slice(&output.stdout)
+            .with_context(|| format!("{}: its result is not JSON", log.display()))?;
+        let key = key.to_owned();
+        Kept::new(self.each.command, log, self.of, self.settings(), key, document)
+            .write(&self.place(log))
+    }
+}
+
+fn hash_of(path: &Path) -> anyhow::Result<[u8; 32]> {
+    let unread = || format!("{}: cannot be read", path.display());
+    let mut hash = Sha256::new();
+    let mut file = BufReader::new(File::open(path).with_context(unread)?);
+    loop {
+        let bytes = file.fill_buf().with_context(unread)?;
+        if bytes.is_empty() {
+            return Ok(hash.finalize().into());
+        }
+        hash.update(bytes);
+        let count = bytes.len();
+        file.consume(count);
+    }
+}

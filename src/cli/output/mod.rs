@@ -1,0 +1,11 @@
+//! What is written to files: whole or not at all, tables by the name's ending, recordings.
+
+mod file;
+mod recording;
+mod table;
+
+pub(crate) use file::{OutputFile, check_outputs, target_of, write_file};
+#[cfg(not(feature = "rrd"))]
+pub(crate) use recording::left_out;
+pub(crate) use recording::{Contents, Detail, PreviewContents, SweepContents, check_recordings};
+pub(crate) use table::{FileKind, check_tables, write_parquet, write_table};

@@ -1,0 +1,63 @@
+//! Delays of joints: those that have one, and what is said of them.
+
+use crate::batch::JointEstimate;
+use crate::cli::failure::read_failures;
+use crate::delay::{Condition, EstimateError};
+use crate::experiment::{Experiment, Trial};
+use crate::report::{EstimatedJoint, JointSummary};
+
+/// The delays of each joint.
+pub(crate) type Estimates = Vec<Result<JointEstimate, EstimateError>>;
+
+/// The joints that have an estimate, in the order of the log.
+pub(crate) fn estimated<'a>(
+    experiment: &'a Experiment,
+    results: &'a Estimates,
+) -> Vec<EstimatedJoint<'a>> {
+    let joints = experiment.joints.iter().zip(results);
+    let estimated = joints.filter_map(|(joint, result)| Some((joint, result.as_ref().ok()?)));
+    estimated.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect()
+}
+
+/// A message on each file, joint and trial that failed.
+pub(crate) fn failures(experiment: &Experiment, results: &Estimates) -> Vec<String> {
+    // With several files a trial's name tells which one it is from.
+    let file = match experiment.sources.as_slice() {
+        [source] => format!("{}: ", source.path.display()),
+        _ => String::new(),
+    };
+    let joints = experiment.joints.iter().zip(results);
+    let unestimated = joints.flat_map(|(joint, result)| {
+        let name = &joint.name;
+        let whole = result.as_ref().err();
+        let whole = whole.map(|error| format!("joint `{name}` is left out: {file}{error}"));
+        let parts = result.iter().flat_map(JointEstimate::failed);
+        let part = |error| format!("joint `{name}`, one trial is left out: {file}{error}");
+        whole.into_iter().chain(parts.map(part)).collect::<Vec<_>>()
+    });
+    read_failures(experiment).into_iter().chain(unestimated).collect()
+}
+
+/// What a person should know who looks at the numbers.
+pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
+    let mut notes = Vec::new();
+    for EstimatedJoint { joint, estimate } in joints {
+        let name = &joint.name;
+        let steps: usize = estimate.estimated().map(|trial| trial.decisions.len()).sum();
+        let samples: usize = joint.trials.iter().map(Trial::len).sum();
+        let summary = JointSummary::of(EstimatedJoint { joint, estimate });
+        if steps > 0 && summary.rejected == [(Condition::FirstOrLast, steps)] {
+            notes.push(format!(
+                "joint `{name}`: every step is the first or the last of its trial; \
+                 `--keep-first-last` judges them like the others"
+            ));
+        }
+        if 2 * steps > samples {
+            notes.push(format!(
+                "joint `{name}`: the input changes at {steps} of {samples} samples, so it is \
+                 hardly held; `--min-step X` counts only changes above X"
+            ));
+        }
+    }
+    notes
+}

@@ -1,0 +1,15 @@
+//! What commands on logs share: read, estimate, use threads, report.
+
+mod add_command;
+mod estimates;
+mod outcomes;
+mod revisions;
+mod session;
+mod study;
+
+pub(crate) use add_command::add_arguments;
+pub(crate) use estimates::{Estimates, estimated, failures, notes};
+pub(crate) use outcomes::outcomes;
+pub(crate) use revisions::{Progress, improved, models, revised, revision_names};
+pub(crate) use session::Session;
+pub(crate) use study::{Begun, Study};

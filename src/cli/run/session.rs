@@ -1,0 +1,83 @@
+//! A command on logs, from reading them to its exit status.
+
+use serde::Serialize;
+
+use super::estimates::Estimates;
+use crate::batch::{estimate_joints, estimate_joints_with};
+use crate::cli::args::{DataArgs, RunArgs};
+use crate::cli::console::{Bar, Verbosity, message, warn};
+use crate::cli::exit::Completion;
+use crate::cli::viewer::Stream;
+use crate::delay::{Automatic, Settings};
+use crate::experiment::Experiment;
+
+/// Logs that were read, and where what becomes of them goes.
+pub(crate) struct Session<'a> {
+    pub(crate) experiment: Experiment,
+    pub(crate) stream: Stream,
+    run: &'a RunArgs,
+}
+
+impl<'a> Session<'a> {
+    /// Reads `data`.
+    pub(crate) fn begin(data: &DataArgs, run: &'a RunArgs, stream: Stream) -> anyhow::Result<Self> {
+        let _bar = Bar::spinner(run.verbosity(), "reading");
+        Ok(Self { experiment: data.read()?, stream, run })
+    }
+
+    pub(crate) fn verbosity(&self) -> Verbosity {
+        self.run.verbosity()
+    }
+
+    /// Does `work` with as many threads as are to be used.
+    pub(crate) fn in_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> anyhow::Result<T> {
+        self.run.in_threads(work)
+    }
+
+    /// The delays of each joint.
+    pub(crate) fn estimates(&self, settings: &Settings) -> Estimates {
+        let bar = self.estimating(1);
+        estimate_joints(&self.experiment.joints, settings, || bar.step())
+    }
+
+    /// The delays of each joint with each of the settings, of which some are chosen for each
+    /// joint from its own record.
+    pub(crate) fn estimates_by_each(
+        &self,
+        settings: &[Settings],
+        automatic: Automatic,
+    ) -> Vec<Estimates> {
+        let bar = self.estimating(settings.len());
+        let joints = &self.experiment.joints;
+        let one = |settings| estimate_joints_with(joints, settings, automatic, || bar.step());
+        settings.iter().map(one).collect()
+    }
+
+    /// A bar for all trials, each estimated `times` times.
+    fn estimating(&self, times: usize) -> Bar {
+        let trials: usize = self.experiment.joints.iter().map(|joint| joint.trials.len()).sum();
+        Bar::new(self.verbosity(), "estimating", "trials", (trials * times) as u64)
+    }
+
+    /// Warns of what failed, and says what a person should know: `notes` beside those on the
+    /// logs themselves.
+    pub(crate) fn warn(&self, failures: &[String], notes: &[String]) {
+        warn(failures);
+        if self.verbosity() == Verbosity::Normal {
+            for note in self.experiment.notes.iter().chain(notes) {
+                message("note", note);
+            }
+        }
+    }
+
+    /// Prints the results, and ends what viewers are sent.
+    pub(crate) fn end<J: Serialize>(
+        &self,
+        completion: Completion,
+        text: impl FnOnce() -> String,
+        json: impl FnOnce() -> J,
+    ) -> anyhow::Result<Completion> {
+        self.run.print(text, json)?;
+        self.stream.close(completion, self.run.verbosity())
+    }
+}

@@ -1,0 +1,142 @@
+//! Models fitted to the joints of logs: with the delays, in threads, shown and recorded.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::estimates::{Estimates, estimated};
+use super::session::Session;
+use crate::cli::console::{Bar, Verbosity, warn};
+use crate::cli::exit::Completion;
+use crate::cli::output::{Contents, Detail};
+use crate::delay::Settings;
+use crate::experiment::{Experiment, Joint};
+use crate::report::{ComparedJoint, ImprovedJoint};
+
+/// Logs, the delays in them, and what came of the joints.
+pub(crate) struct Study<'a, T> {
+    session: Session<'a>,
+    pub(crate) estimates: Estimates,
+    pub(crate) settings: Settings,
+    pub(crate) result: T,
+}
+
+/// What work on the joints begins with.
+#[derive(Clone, Copy)]
+pub(crate) struct Begun<'a> {
+    session: &'a Session<'a>,
+    pub(crate) joints: &'a [Joint],
+    pub(crate) estimates: &'a Estimates,
+    settings: &'a Settings,
+}
+
+impl<'a, T: Send> Study<'a, T> {
+    /// Estimates the delays by `settings`, shows them, and does `work` with them.
+    pub(crate) fn of(
+        session: Session<'a>,
+        settings: Settings,
+        work: impl FnOnce(Begun<'_>) -> T + Send,
+    ) -> anyhow::Result<Self> {
+        let (estimates, result) = session.in_threads(|| {
+            let estimates = session.estimates(&settings);
+            let result = {
+                let begun = Begun::of(&session, &estimates, &settings);
+                begun.show(&[], &[], None)?;
+                work(begun)
+            };
+            anyhow::Ok((estimates, result))
+        })??;
+        Ok(Self { session, estimates, settings, result })
+    }
+}
+
+impl<'a> Begun<'a> {
+    fn of(session: &'a Session<'a>, estimates: &'a Estimates, settings: &'a Settings) -> Self {
+        Self { session, joints: &session.experiment.joints, estimates, settings }
+    }
+
+    /// A bar that counts the fits of what is being done.
+    pub(crate) fn bar(&self, what: &'static str) -> Bar {
+        Bar::new(self.verbosity(), what, "fits", 0)
+    }
+
+    pub(crate) fn verbosity(&self) -> Verbosity {
+        self.session.verbosity()
+    }
+
+    /// Whether a viewer shows it.
+    pub(crate) fn is_shown(&self) -> bool {
+        self.session.stream.is_open()
+    }
+
+    /// Shows `models` and `revisions` beside the decisions, in a viewer; of one joint alone
+    /// where it is named.
+    pub(crate) fn show(
+        &self,
+        models: &[ComparedJoint<'_>],
+        revisions: &[ImprovedJoint<'_>],
+        joint: Option<&str>,
+    ) -> anyhow::Result<()> {
+        if !self.is_shown() {
+            return Ok(());
+        }
+        let stream = &self.session.stream;
+        self.with_contents(models, revisions, |contents| stream.send(contents, joint))
+    }
+
+    fn with_contents(
+        &self,
+        models: &[ComparedJoint<'_>],
+        revisions: &[ImprovedJoint<'_>],
+        take: impl FnOnce(&Contents<'_>) -> anyhow::Result<()>,
+    ) -> anyhow::Result<()> {
+        let Self { session: Session { experiment, .. }, estimates, settings, .. } = *self;
+        take(&Contents {
+            joints: &estimated(experiment, estimates),
+            settings,
+            also: &[],
+            sources: &experiment.sources,
+            reading: &experiment.options,
+            models,
+            revisions,
+            detail: Detail::Full,
+        })
+    }
+}
+
+impl<T> Study<'_, T> {
+    /// The logs.
+    pub(crate) fn experiment(&self) -> &Experiment {
+        &self.session.experiment
+    }
+
+    pub(crate) fn verbosity(&self) -> Verbosity {
+        self.session.verbosity()
+    }
+
+    /// Records `models` and `revisions` beside the decisions, and shows them.
+    pub(crate) fn record(
+        &self,
+        path: Option<&Path>,
+        models: &[ComparedJoint<'_>],
+        revisions: &[ImprovedJoint<'_>],
+    ) -> anyhow::Result<()> {
+        let begun = Begun::of(&self.session, &self.estimates, &self.settings);
+        if let Some(path) = path {
+            let verbosity = self.verbosity();
+            begun.with_contents(models, revisions, |contents| contents.record(path, verbosity))?;
+        }
+        begun.show(models, revisions, None)
+    }
+
+    /// Says what failed, prints the results, and ends what viewers are sent.
+    pub(crate) fn end<J: Serialize>(
+        &self,
+        failures: &[String],
+        text: impl FnOnce() -> String,
+        json: impl FnOnce() -> J,
+    ) -> anyhow::Result<Completion> {
+        warn(failures);
+        self.session.end(Completion::without(failures), text, json)
+    }
+}

@@ -1,0 +1,9 @@
+//! Recordings shown while they are made, by the Rerun viewer.
+
+mod program;
+#[cfg(feature = "rrd")]
+mod start;
+mod stream;
+
+pub(crate) use program::{PORT, VERSION, is_listening, on_path};
+pub(crate) use stream::{Stream, StreamArgs};
