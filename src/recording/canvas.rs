@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 
 use rerun::datatypes::Vec2D;
 
-pub(super) use crate::report::{Span, thinned_to};
+pub(super) use crate::figure::{Place, Span, thinned_to};
 
 /// Lines of one drawing.
 pub(super) type Strips = Vec<Vec<Vec2D>>;
@@ -76,9 +76,14 @@ impl Plot {
         Vec2D::new(self.x(x), self.y(y))
     }
 
-    /// Down through this plot and the one `under` it.
-    pub(super) fn through(&self, under: &Self, x: f64) -> [Vec2D; 2] {
-        [Vec2D::new(self.x(x), self.top), Vec2D::new(self.x(x), under.bottom)]
+    /// Data as places on the sheet.
+    pub(super) fn places(&self, data: impl IntoIterator<Item = Place>) -> Vec<Vec2D> {
+        data.into_iter().map(|(x, y)| self.at(x, y)).collect()
+    }
+
+    /// Down through this plot and the one `below` it.
+    pub(super) fn through(&self, below: &Self, x: f64) -> [Vec2D; 2] {
+        [Vec2D::new(self.x(x), self.top), Vec2D::new(self.x(x), below.bottom)]
     }
 
     /// A line from edge to edge at `x`.
@@ -159,7 +164,7 @@ impl Labels {
 }
 
 /// At most this many points of one curve: a screen has no more columns.
-const CURVE_POINTS: usize = 2000;
+pub(super) const CURVE_POINTS: usize = 2000;
 
 /// Indices that keep the shape of `values`: all of them, or of each of a thousand parts
 /// the lowest and the highest.

@@ -11,6 +11,7 @@ use super::paths::{at, error_share, of_model};
 use super::sheet::Sheet;
 use crate::diagnosis::failure::{Feature, Region, Units};
 use crate::experiment::Joint;
+use crate::figure::error_share::{FeatureShares, Share, is_level};
 use crate::report::ComparedJoint;
 use crate::wording::number;
 
@@ -45,15 +46,15 @@ impl Drawing {
         let mut sheet = Sheet::default();
         let mut bars = vec![Bars::default(); models.len()];
         let mut marks = Vec::new();
-        let features = models.first().map(|first| (first.joint, by_feature(first)));
-        let (joint, features) = features.unzip();
-        for (place, of_first) in features.into_iter().flatten().enumerate() {
-            let named = of_first.first().map(|region| region.feature).zip(joint);
-            let Some((feature, joint)) = named else { continue };
+        let features = models.iter().take(1).flat_map(|first| {
+            FeatureShares::all(&first.comparison.regions).map(|shares| (first.joint, shares))
+        });
+        for (place, (joint, shares)) in features.enumerate() {
+            let (Some(feature), of_first) = (shares.feature(), shares.regions) else { continue };
             let alike = models.iter().map(|model| alike(model, feature, of_first.len()));
-            let of_each: Vec<Vec<&Region>> = alike.collect();
+            let of_each: Vec<&[Region]> = alike.collect();
             let plot = plot(place, &of_each);
-            draw_frame(&mut sheet, &plot, &title(feature, joint), &of_first);
+            draw_frame(&mut sheet, &plot, &title(feature, joint), of_first);
             for ((bars, regions), number) in bars.iter_mut().zip(&of_each).zip(0..) {
                 bars.add(&plot, regions, (number, models.len()));
             }
@@ -92,34 +93,27 @@ pub(super) fn add(
     chunks.push_static(at(root, error_share::TIME), &marks.with_draw_order(100.0))
 }
 
-/// The regions of a model, feature by feature.
-fn by_feature<'a>(model: &ComparedJoint<'a>) -> Vec<Vec<&'a Region>> {
-    let regions: Vec<&Region> = model.comparison.regions.iter().collect();
-    regions.chunk_by(|a, b| a.feature == b.feature).map(<[&Region]>::to_vec).collect()
-}
-
 /// The regions of one feature, where there are `parts` of them.
-fn alike<'a>(model: &ComparedJoint<'a>, feature: Feature, parts: usize) -> Vec<&'a Region> {
-    let regions = model.comparison.regions.iter().filter(|region| region.feature == feature);
-    let regions: Vec<_> = regions.collect();
-    if regions.len() == parts { regions } else { Vec::new() }
+fn alike<'a>(model: &ComparedJoint<'a>, feature: Feature, parts: usize) -> &'a [Region] {
+    let mut all = FeatureShares::all(&model.comparison.regions);
+    let found = all.find(|shares| shares.feature() == Some(feature));
+    found.map(|shares| shares.regions).filter(|regions| regions.len() == parts).unwrap_or(&[])
 }
 
 /// One of eight places on the sheet, with a slot for each part.
-fn plot(place: usize, of_each: &[Vec<&Region>]) -> Plot {
+fn plot(place: usize, of_each: &[&[Region]]) -> Plot {
     let rows = if place < COLUMNS { 36.0..=190.0 } else { 282.0..=436.0 };
     let width = SIZE.0 / COLUMNS as f32;
     let left = (place % COLUMNS) as f32 * width;
-    let slots = of_each.iter().map(Vec::len).max().unwrap_or(1);
-    let shares = of_each.iter().flatten();
-    let most = shares.flat_map(|r| [r.share_of_squared_error, r.share_of_time]).fold(0.0, f64::max);
+    let slots = of_each.iter().map(|regions| regions.len()).max().unwrap_or(1);
+    let highest = of_each.iter().map(|regions| FeatureShares { regions }.largest());
     // Room for the title above the highest bar.
-    let y = Span::new(0.0, 125.0 * most);
+    let y = Span::new(0.0, 1.25 * highest.fold(0.0, f64::max));
     Plot::within((left + 95.0, left + width - 20.0), rows, Span::new(0.0, slots as f64), y)
 }
 
 /// Frame, percentages, and what the parts are.
-fn draw_frame(sheet: &mut Sheet, plot: &Plot, title: &str, regions: &[&Region]) {
+fn draw_frame(sheet: &mut Sheet, plot: &Plot, title: &str, regions: &[Region]) {
     // Zero would stand where the names of the parts begin.
     let ticks = plot.y_span().ticks(3.0).into_iter().filter(|share| *share > 0.0);
     let ticks: Vec<_> = ticks.map(|share| (share, format!("{} %", number(share)))).collect();
@@ -135,11 +129,9 @@ fn draw_frame(sheet: &mut Sheet, plot: &Plot, title: &str, regions: &[&Region]) 
 }
 
 /// The name of each slot, or of each border between two, and where it stands.
-fn names(regions: &[&Region]) -> Vec<(f64, String)> {
-    #[expect(clippy::float_cmp, reason = "a level is both of its bounds")]
-    let are_levels = regions.iter().all(|region| region.from == region.to);
-    if are_levels {
-        let named = |(region, slot): (&&Region, u32)| (f64::from(slot) + 0.5, name(region));
+fn names(regions: &[Region]) -> Vec<(f64, String)> {
+    if regions.iter().all(is_level) {
+        let named = |(region, slot): (&Region, u32)| (f64::from(slot) + 0.5, name(region));
         return regions.iter().zip(0..).map(named).collect();
     }
     let first = regions.first().map(|region| (0.0, short(region.from)));
@@ -195,19 +187,19 @@ impl Bars {
     }
 
     /// A bar for each of `regions`, of the model `number` among so many.
-    fn add(&mut self, plot: &Plot, regions: &[&Region], (number, models): (u32, usize)) {
+    fn add(&mut self, plot: &Plot, regions: &[Region], (number, models): (u32, usize)) {
         let width = FILLED / models as f64;
         for (region, slot) in regions.iter().zip(0_u32..) {
             let left = f64::from(slot) + (1.0 - FILLED) / 2.0 + width * f64::from(number);
-            let [low, high] = [0.0, 100.0 * region.share_of_squared_error].map(|y| plot.y(y));
+            let share = Share::of(region);
+            let [low, high] = [0.0, share.error].map(|y| plot.y(y));
             let high = (high + HATCH).min(low - HATCH);
             let places = hatched(plot.x(left), plot.x(left + width));
             let lines = places.map(|x| [Vec2D::new(x, low - HATCH), Vec2D::new(x, high)]);
             let before = self.strips.len();
             self.strips.extend(lines);
-            let too_much = region.share_of_squared_error > region.share_of_time;
             let added = self.strips.len() - before;
-            self.too_much.extend(std::iter::repeat_n(too_much, added));
+            self.too_much.extend(std::iter::repeat_n(share.error > share.time, added));
         }
     }
 }
@@ -222,8 +214,7 @@ pub(super) fn hatched(left: f32, right: f32) -> impl Iterator<Item = f32> {
 
 /// A line across a slot at its share of the time.
 fn mark(plot: &Plot, region: &Region, slot: u32) -> Vec<Vec2D> {
-    let share = 100.0 * region.share_of_time;
-    [0.04, 0.96].map(|x| plot.at(f64::from(slot) + x, share)).to_vec()
+    [0.04, 0.96].map(|x| plot.at(f64::from(slot) + x, Share::of(region).time)).to_vec()
 }
 
 #[cfg(test)]
@@ -248,11 +239,11 @@ mod tests {
     #[test]
     fn levels_are_named_in_their_middle_and_ranges_at_their_ends() {
         let levels = [-1.5, 2.0].map(|level| region(Feature::Input, "", level, level));
-        let named = names(&levels.iter().collect::<Vec<_>>());
+        let named = names(&levels);
         assert_eq!(named, [(0.5, "-1.5".to_owned()), (1.5, "2".to_owned())]);
         let ranges = [(0.0, 0.123_456), (0.123_456, 7.0)];
         let ranges = ranges.map(|(from, to)| region(Feature::Hold, "", from, to));
-        let named = names(&ranges.iter().collect::<Vec<_>>());
+        let named = names(&ranges);
         let expected = [(0.0, "0"), (1.0, "0.123"), (2.0, "7")];
         assert_eq!(named, expected.map(|(x, name)| (x, name.to_owned())));
     }

@@ -10,7 +10,7 @@ use rerun::datatypes::Vec2D;
 use rerun::{EntityPath, LineStrips2D, Points2D};
 
 use super::beside::{Other, in_short};
-use super::canvas::{Labels, Plot, SHEET, Span, simplified, thinned};
+use super::canvas::{CURVE_POINTS, Labels, Plot, SHEET, Span, simplified};
 use super::chunk::{Chunks, Index};
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
@@ -19,6 +19,8 @@ use super::paths::{at, drawing};
 use super::rows::Rows;
 use crate::delay::{Candidate, Decision, Line, Method, Verdict};
 use crate::experiment::Joint;
+use crate::figure::Role;
+use crate::figure::segment::SegmentFigure;
 use crate::units::signed;
 use crate::wording::number;
 
@@ -47,13 +49,13 @@ pub(super) fn add(
         drawing::ACCEPTED,
         palette::ACCEPTED,
         2.4,
-        rows().map(|d| d.chosen(Chosen::Accepted)),
+        rows().map(|d| d.chosen(Role::Accepted)),
     )?;
     sheet.strips(
         drawing::REJECTED,
         palette::REJECTED,
         2.4,
-        rows().map(|d| d.chosen(Chosen::Rejected)),
+        rows().map(|d| d.chosen(Role::Rejected)),
     )?;
     sheet.texts(drawing::NAMES, palette::BORDER, rows().map(|d| d.names(joint)))?;
     if layout.is_fine() {
@@ -119,82 +121,48 @@ impl Legend {
     }
 }
 
-/// Whether the best pair of lines was accepted.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Chosen {
-    Accepted,
-    Rejected,
-}
-
 /// One segment on its sheet: the output above, the error curve below.
 struct Drawing<'l, 'a> {
     trial: &'l TrialLayout<'a>,
     segment: &'l SegmentLayout<'a>,
-    /// First and last sample that are drawn.
-    window: (usize, usize),
+    figure: SegmentFigure<'l>,
     output: Plot,
     error: Plot,
-    error_span: Span,
 }
-
-/// Errors less than this part of the largest are drawn at it: the fit is exact there.
-const EXACT: f64 = 1e-9;
 
 impl<'l, 'a> Drawing<'l, 'a> {
     fn new(trial: &'l TrialLayout<'a>, segment: &'l SegmentLayout<'a>) -> Self {
-        let decision = segment.decision;
-        let margin = (decision.segment.len() / 12).max(3);
-        let first = decision.segment.first.min(decision.input_step.sample);
-        let first = first.saturating_sub(margin).max(1);
-        let last = (decision.segment.last + margin).min(trial.trial.len());
+        let figure = SegmentFigure::new(trial.trial, segment.decision);
+        let (first, last) = figure.window;
         let x = Span::new(first as f64, last as f64);
-        let measured = trial.trial.output().get(first - 1..last).unwrap_or_default();
-        let smoothed = trial.output().get(first - 1..last).unwrap_or_default();
-        let values = measured.iter().chain(smoothed).copied();
+        let measured = figure.visible(trial.trial.output());
+        let values = measured.iter().chain(figure.visible(trial.output())).copied();
         let y = Span::around(values, 0.06);
-        let sse = decision.candidates.sse();
-        let highest = sse.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        let logs = sse.iter().map(|sse| sse.max(EXACT * highest).log10());
-        let error_span = Span::around(logs, 0.12);
         Self {
             trial,
             segment,
-            window: (first, last),
+            figure,
             output: Plot::new(64.0..=400.0, x, y),
-            error: Plot::new(474.0..=598.0, x, error_span),
-            error_span,
-        }
-    }
-
-    fn samples(&self) -> impl Fn(&[f64]) -> Vec<Vec2D> + '_ {
-        let (first, last) = self.window;
-        move |values: &[f64]| {
-            let window = values.get(first - 1..last).unwrap_or_default();
-            let place = |index: usize| {
-                let y = window.get(index).copied().unwrap_or_default();
-                self.output.at((first + index) as f64, y)
-            };
-            thinned(window).into_iter().map(place).collect()
+            error: Plot::new(474.0..=598.0, x, figure.error_span()),
         }
     }
 
     fn measured(&self) -> Vec<Vec2D> {
-        self.samples()(self.trial.trial.output())
+        self.output.places(self.figure.signal(self.trial.trial.output(), CURVE_POINTS))
     }
 
     fn smoothed(&self) -> Vec<Vec2D> {
-        simplified(self.samples()(self.trial.output()))
+        simplified(self.output.places(self.figure.signal(self.trial.output(), CURVE_POINTS)))
     }
 
     fn grid(&self) -> (Vec<Vec<Vec2D>>, Labels) {
-        let (first, last) = self.window;
-        let x_ticks = Span::new(first as f64, last as f64).ticks(9.0);
+        let x_ticks = self.output.x_span().ticks(9.0);
         let x_ticks: Vec<f64> = x_ticks.into_iter().filter(|k| k.fract() == 0.0).collect();
         let mut labels = Labels::default();
         let named = |ticks: Vec<f64>| ticks.into_iter().map(|y| (y, number(y))).collect::<Vec<_>>();
         let y_ticks = named(self.output.y_span().ticks(5.0));
         let mut strips = self.output.grid(&x_ticks, &y_ticks, &mut labels);
-        let errors = self.error_span.ticks(3.0);
+        let errors = self.error.y_span().ticks(3.0);
         let errors: Vec<_> = errors.into_iter().map(|e| (e, number(10f64.powf(e)))).collect();
         strips.extend(self.error.grid(&x_ticks, &errors, &mut labels));
         for k in x_ticks {
@@ -215,24 +183,17 @@ impl<'l, 'a> Drawing<'l, 'a> {
     }
 
     fn errors(&self) -> Vec<Vec2D> {
-        let candidates = &self.segment.decision.candidates;
-        let places =
-            thinned(candidates.sse()).into_iter().filter_map(|index| candidates.get(index));
-        places.map(|candidate| self.error_at(&candidate)).collect()
+        self.error.places(self.figure.errors(CURVE_POINTS))
     }
 
     fn error_at(&self, candidate: &Candidate) -> Vec2D {
-        let log = candidate.sse.max(f64::MIN_POSITIVE).log10().max(self.error_span.low);
-        self.error.at(candidate.breakpoint as f64, log)
+        let (q, error) = self.figure.error(candidate);
+        self.error.at(q, error)
     }
 
     /// Both lines of a candidate, and a line down through its breakpoint `q`.
     fn pair(&self, candidate: &Candidate, q: f64) -> [Vec<Vec2D>; PAIR_STRIPS] {
-        let segment = self.segment.decision.segment;
-        let at = |line: &Line, k: f64| self.output.at(k, line.at(k));
-        let first = segment.first as f64;
-        let before = vec![at(&candidate.before, first), at(&candidate.before, q)];
-        let after = vec![at(&candidate.after, q), at(&candidate.after, segment.last as f64)];
+        let [before, after] = self.figure.lines(candidate, q).map(|line| self.output.places(line));
         [before, after, self.output.through(&self.error, q).to_vec()]
     }
 
@@ -289,12 +250,8 @@ impl<'l, 'a> Drawing<'l, 'a> {
     }
 
     /// The chosen pair if its verdict is the wanted one.
-    fn chosen(&self, wanted: Chosen) -> Vec<Vec<Vec2D>> {
-        let verdict = match self.segment.decision.verdict() {
-            Verdict::Accepted => Chosen::Accepted,
-            Verdict::Rejected(_) => Chosen::Rejected,
-        };
-        if verdict == wanted { self.best() } else { Vec::new() }
+    fn chosen(&self, wanted: Role) -> Vec<Vec<Vec2D>> {
+        if self.figure.verdict() == wanted { self.best() } else { Vec::new() }
     }
 
     fn names(&self, joint: &Joint) -> Labels {

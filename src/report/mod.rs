@@ -18,7 +18,6 @@ mod json;
 mod page;
 mod separation;
 mod settings;
-mod span;
 mod steps;
 mod summary;
 mod sweep;
@@ -52,8 +51,6 @@ pub use json::{
 pub use page::{Document, Markdown, PlotError, RecordingFile, Report, report_text};
 #[cfg(feature = "rrd")]
 pub(crate) use settings::settings_rows;
-#[cfg(feature = "rrd")]
-pub(crate) use span::{Span, thinned_to};
 pub use steps::{step_line, steps_table};
 pub use summary::{DelayRange, JointSummary};
 pub use sweep::{ReportedSweep, StepsShown, sweep_text};

@@ -5,10 +5,11 @@ use rerun::datatypes::Vec2D;
 use rerun::{EntityPath, LineStrips2D, Points2D};
 
 use super::placed::{Placed, add_numbers, placed};
-use super::quantity::{Quantity, Way};
+use super::quantity::Quantity;
 use super::trend;
 use crate::delay::{AgainstState, StepState};
 use crate::experiment::{Joint, Trial};
+use crate::figure::delay_against::Way;
 use crate::recording::canvas::{Labels, Plot, SHEET, Span};
 use crate::recording::chunk::{Chunks, Index};
 use crate::recording::error::RecordError;

@@ -2,41 +2,12 @@
 
 use std::f64::consts::GOLDEN_RATIO;
 
-use super::trend::{self, Bin};
 use crate::delay::{AgainstState, Correlation, Direction, StepState};
-use crate::recording::canvas::Span;
+use crate::figure::Span;
+use crate::figure::course::{Bin, course};
+use crate::figure::delay_against::Way;
 use crate::report::variable_text;
 use crate::wording::{number, p_cell};
-
-/// Where a step of the input goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
-    Down,
-    Up,
-}
-
-impl Way {
-    pub(super) const BOTH: [Self; 2] = [Self::Down, Self::Up];
-
-    pub(super) fn of(step: &StepState) -> Self {
-        if step.input_change > 0.0 { Self::Up } else { Self::Down }
-    }
-
-    pub(super) fn word(self) -> &'static str {
-        match self {
-            Self::Down => "down",
-            Self::Up => "up",
-        }
-    }
-
-    /// Its place on an axis.
-    fn place(self) -> f64 {
-        match self {
-            Self::Down => 0.0,
-            Self::Up => 1.0,
-        }
-    }
-}
 
 /// Something the delay may depend on.
 #[derive(Debug)]
@@ -60,6 +31,14 @@ enum Axis {
     Number,
     /// Steps down about 0, steps up about 1.
     Direction,
+}
+
+/// The place of a direction on an axis.
+fn place_of(way: Way) -> f64 {
+    match way {
+        Way::Down => 0.0,
+        Way::Up => 1.0,
+    }
 }
 
 /// Half the width over which the points of a direction are spread.
@@ -96,7 +75,7 @@ impl Quantity {
         // Points of one direction side by side: the golden ratio spreads any number evenly.
         let spread = |number: usize| (0.5 + number as f64 * GOLDEN_RATIO).fract();
         let side = |number| SPREAD * (2.0 * spread(number) - 1.0);
-        let place = |(number, step): (usize, &StepState)| Way::of(step).place() + side(number);
+        let place = |(number, step): (usize, &StepState)| place_of(Way::of(step)) + side(number);
         Self {
             name: "direction".to_owned(),
             title: "direction of the step".to_owned(),
@@ -121,7 +100,7 @@ impl Quantity {
     pub(super) fn x_ticks(&self) -> Vec<(f64, String)> {
         match self.axis {
             Axis::Number => self.x_span().ticks(5.0).into_iter().map(|x| (x, number(x))).collect(),
-            Axis::Direction => Way::BOTH.map(|way| (way.place(), way.word().to_owned())).to_vec(),
+            Axis::Direction => Way::BOTH.map(|way| (place_of(way), way.word().to_owned())).to_vec(),
         }
     }
 
@@ -129,13 +108,13 @@ impl Quantity {
     pub(super) fn courses(&self, steps: &[StepState]) -> Vec<Vec<Bin>> {
         let known = || self.values.iter().zip(steps).filter_map(|(x, step)| Some(((*x)?, step)));
         match self.axis {
-            Axis::Number => trend::course(known().map(|(x, s)| (x, s.delay_s)).collect()),
+            Axis::Number => course(known().map(|(x, s)| (x, s.delay_s)).collect()),
             Axis::Direction => Way::BOTH
                 .into_iter()
                 .filter_map(|way| {
                     let same = known().filter(|(_, step)| Way::of(step) == way);
                     let bin = Bin::of(&same.map(|(x, s)| (x, s.delay_s)).collect::<Vec<_>>())?;
-                    Some(bin.level(way.place() - SPREAD, way.place() + SPREAD))
+                    Some(bin.level(place_of(way) - SPREAD, place_of(way) + SPREAD))
                 })
                 .collect(),
         }

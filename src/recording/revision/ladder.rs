@@ -4,8 +4,7 @@ use rerun::Color;
 use rerun::datatypes::Vec2D;
 
 use super::bars::Bars;
-use crate::diagnosis::Comparison;
-use crate::figure::ladder::judged;
+use crate::figure::ladder::{self, Rung};
 use crate::recording::canvas::{Labels, Strips};
 use crate::recording::error::RecordError;
 use crate::recording::error_share::{HATCH, short};
@@ -27,32 +26,35 @@ pub(super) fn add(rows: &mut Rows<'_>, improved: &ImprovedJoint<'_>) -> Result<(
 }
 
 /// The rungs and where they lie.
-struct Ladder<'a> {
-    improved: &'a ImprovedJoint<'a>,
+struct Ladder<'r> {
+    rungs: Vec<Rung<'r>>,
     bars: Bars,
 }
 
-impl<'a> Ladder<'a> {
-    fn of(improved: &'a ImprovedJoint<'a>) -> Self {
-        let most = comparisons(improved).map(judged).fold(0.0, f64::max);
-        Self { improved, bars: Bars::new(COLUMNS, improved.revisions.len(), most) }
+impl<'r> Ladder<'r> {
+    fn of(improved: &'r ImprovedJoint<'_>) -> Self {
+        let rungs = ladder::rungs(&improved.revisions);
+        let bars = Bars::new(COLUMNS, rungs.len(), ladder::largest(&rungs));
+        Self { rungs, bars }
     }
 
     fn bars(&self, at: usize) -> Vec<(Vec<Vec2D>, Color)> {
-        let rungs = comparisons(self.improved).enumerate();
-        let bar = |(row, comparison)| {
+        let bar = |(row, rung): (usize, &Rung<'_>)| {
             let rgb = palette::REVISION;
             let shade = if row == at { rgb } else { palette::dimmed(rgb) };
-            self.bars.bar(row, judged(comparison), color(shade))
+            self.bars.bar(row, rung.error, color(shade))
         };
-        rungs.flat_map(bar).collect()
+        self.rungs.iter().enumerate().flat_map(bar).collect()
     }
 
     /// A mark at the training error of each revision.
     fn training(&self) -> Strips {
-        let rungs = comparisons(self.improved).enumerate();
-        let marks = rungs.filter_map(|(row, c)| Some(self.bars.mark(row, c.training?.rmse)));
-        marks.collect()
+        let rungs = self.rungs.iter().enumerate();
+        rungs
+            .filter_map(|(row, rung)| {
+                Some(self.bars.mark(row, rung.revision.comparison.training?.rmse))
+            })
+            .collect()
     }
 }
 
@@ -63,23 +65,19 @@ pub(super) fn around(
     labels: &mut Labels,
     floor: &mut Labels,
 ) -> Strips {
-    let Ladder { bars, .. } = Ladder::of(improved);
+    let Ladder { rungs, bars } = Ladder::of(improved);
     let unit = improved.finding.compared.joint.output_unit.as_deref().unwrap_or("");
     let title = "error of each revision: validation (bar), training (white)";
     bars.title(labels, title);
-    for (row, (revision, step)) in improved.numbered().enumerate() {
+    for (row, ((revision, step), rung)) in improved.numbered().zip(&rungs).enumerate() {
         let here = if row == at { "▶ " } else { "" };
         bars.name(labels, row, &format!("{here}{revision}: {}", change_in_words(step)));
-        let comparison = &step.comparison;
-        let end = comparison.training.map_or(0.0, |error| error.rmse).max(judged(comparison));
-        bars.value(labels, row, end, format!("{} {unit}", short(judged(comparison))));
+        let training = step.comparison.training.map_or(0.0, |error| error.rmse);
+        let end = training.max(rung.error);
+        bars.value(labels, row, end, format!("{} {unit}", short(rung.error)));
     }
-    let noise = improved.revisions.get(at).and_then(|step| step.comparison.noise_floor);
+    let noise = rungs.get(at).and_then(|rung| rung.revision.comparison.noise_floor);
     let Some(noise) = noise else { return Vec::new() };
     bars.below(floor, noise, format!("noise {} {unit}", short(noise)));
     vec![bars.line(noise)]
-}
-
-fn comparisons<'a>(improved: &ImprovedJoint<'a>) -> impl Iterator<Item = &'a Comparison> {
-    improved.revisions.iter().map(|revision| &revision.comparison)
 }

@@ -2,13 +2,15 @@
 
 use super::document::Figure;
 use super::layout::{HALF, WIDTH};
-use super::palette::Role;
-use super::plot::{Axis, Mark, Panel, Place, PlotError, Shape, draw};
+use super::plot::{PlotError, draw};
 use super::timeline::Timeline;
 use crate::delay::{AgainstState, Correlation, DelayProfile};
+use crate::figure::Role;
+use crate::figure::delay_against::{self, Way};
+use crate::figure::{Axis, Mark, Panel, Place, Shape};
+use crate::figure::{Span, thinned_to};
 use crate::report::EstimatedJoint;
 use crate::report::against::variable_text;
-use crate::report::span::{Span, thinned_to};
 use crate::wording::p_cell;
 
 /// Steps between which the delay is drawn.
@@ -136,12 +138,8 @@ fn scatter(
     file: &str,
 ) -> Result<Option<Figure>, PlotError> {
     let Some(correlation) = found.correlations.get(variable) else { return Ok(None) };
-    let steps = found.steps.iter();
-    let place = |up: bool| {
-        let same = steps.clone().filter(move |step| (step.input_change > 0.0) == up);
-        same.filter_map(|step| Some((step.value(variable)?, step.delay_s))).collect::<Vec<Place>>()
-    };
-    let (up, down) = (place(true), place(false));
+    let [down, up] =
+        Way::BOTH.map(|way| delay_against::points(&found.steps, way, |step| step.value(variable)));
     if up.is_empty() && down.is_empty() {
         return Ok(None);
     }
@@ -154,8 +152,9 @@ fn scatter(
         y: Axis::new(y, "delay [s]", 5.0),
         height: 190,
         marks: vec![
-            Mark::new(Role::Smoothed, Shape::Dots(up)).named("step up"),
-            Mark::new(Role::Model, Shape::Crosses(down)).named("step down"),
+            Mark::new(Role::Smoothed, Shape::Dots(up)).named(format!("step {}", Way::Up.word())),
+            Mark::new(Role::Model, Shape::Crosses(down))
+                .named(format!("step {}", Way::Down.word())),
         ],
     };
     let svg = draw(&[panel], HALF, &format!("Delay of {joint} against {name}"))?;

@@ -2,11 +2,12 @@
 
 use super::document::{Figure, Table};
 use super::layout::WIDTH;
-use super::palette::Role;
-use super::plot::{Axis, Mark, Panel, PlotError, Shape, draw};
-use crate::explain::Revision;
+use super::plot::{PlotError, draw};
+use crate::figure::Role;
+use crate::figure::Span;
+use crate::figure::ladder::{self, Rung};
+use crate::figure::{Axis, Mark, Panel, Shape};
 use crate::report::compare::figures;
-use crate::report::span::Span;
 use crate::report::{ImprovedJoint, change_in_words};
 use crate::wording::bracketed;
 use crate::wording::number;
@@ -14,17 +15,18 @@ use crate::wording::number;
 /// A bar for the error of each revision, and the noise as a line.
 pub(super) fn figure(improved: &ImprovedJoint<'_>, file: String) -> Result<Figure, PlotError> {
     let joint = improved.finding.compared.joint;
-    let names: Vec<String> = improved
-        .numbered()
-        .map(|(number, revision)| format!("{number}: {}", change_in_words(revision)))
-        .collect();
-    let errors: Vec<f64> = improved.revisions.iter().map(error).collect();
-    let bar =
-        |(row, error): (u32, &f64)| ((0.0, -f64::from(row) - 0.3), (*error, 0.3 - f64::from(row)));
-    let words = |(row, error): (u32, &f64)| ((*error, -f64::from(row)), number(*error));
-    let largest = errors.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    let rungs = ladder::rungs(&improved.revisions);
+    let numbered = (improved.first_revision..).zip(&rungs);
+    let name =
+        |(number, rung): (u32, &Rung<'_>)| format!("{number}: {}", change_in_words(rung.revision));
+    let names: Vec<String> = numbered.map(name).collect();
+    let bar = |(row, rung): (u32, &Rung<'_>)| {
+        ((0.0, -f64::from(row) - 0.3), (rung.error, 0.3 - f64::from(row)))
+    };
+    let words = |(row, rung): (u32, &Rung<'_>)| ((rung.error, -f64::from(row)), number(rung.error));
+    let largest = ladder::largest(&rungs).max(f64::MIN_POSITIVE);
     let noise = improved.finding.compared.comparison.noise_floor;
-    let rows = || (0..).zip(&errors);
+    let rows = || (0..).zip(&rungs);
     let mut marks = vec![
         Mark::new(Role::Model, Shape::Bars(rows().map(bar).collect())).named(judged_on(improved)),
         Mark::new(Role::Ink, Shape::Words(rows().map(words).collect())),
@@ -55,13 +57,6 @@ pub(super) fn table(improved: &ImprovedJoint<'_>) -> Table {
         table.row([number.to_string(), change, training, validation, fit, noise, lack]);
     }
     table
-}
-
-/// The error by which a revision is judged.
-fn error(revision: &Revision) -> f64 {
-    let comparison = &revision.comparison;
-    let judged = comparison.validation.or(comparison.training);
-    judged.map_or(0.0, |error| error.rmse).max(0.0)
 }
 
 fn judged_on(improved: &ImprovedJoint<'_>) -> &'static str {

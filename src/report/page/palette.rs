@@ -8,51 +8,9 @@
 
 use std::fmt::Write as _;
 
-/// What a line, a point or a text means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Role {
-    /// Text and axes.
-    Ink,
-    /// Axes' numbers, remarks.
-    Faint,
-    /// Grid lines.
-    Grid,
-    /// What drove the joint.
-    Input,
-    /// What was measured.
-    Measured,
-    /// What the lines were fitted to.
-    Smoothed,
-    /// Accepted.
-    Accepted,
-    /// Rejected.
-    Rejected,
-    /// Squared errors.
-    Error,
-    /// A model.
-    Model,
-    /// What noise alone would leave.
-    Noise,
-    /// A stretch of the record that is worth a look.
-    Stretch,
-}
+use crate::figure::Role;
 
 impl Role {
-    const ALL: [Self; 12] = [
-        Self::Ink,
-        Self::Faint,
-        Self::Grid,
-        Self::Input,
-        Self::Measured,
-        Self::Smoothed,
-        Self::Accepted,
-        Self::Rejected,
-        Self::Error,
-        Self::Model,
-        Self::Noise,
-        Self::Stretch,
-    ];
-
     /// Its shades on light and on dark ground, as `0xRRGGBB`.
     const fn shades(self) -> (u32, u32) {
         match self {
@@ -67,7 +25,7 @@ impl Role {
             Self::Error => (0xA8_4F87, 0xD9_8CB8),
             Self::Model => (0xC4_7A00, 0xE6_9F00),
             Self::Noise => (0x2F_8FCB, 0x57_B5EA),
-            Self::Stretch => (0xCC_79A7, 0xCC_79A8),
+            Self::Attention => (0xCC_79A7, 0xCC_79A8),
         }
     }
 
@@ -123,7 +81,7 @@ mod tests {
         let contrast = |a: f64, b: f64| (a.max(b) + 0.05) / (a.min(b) + 0.05);
         for role in Role::ALL {
             let least = match role {
-                Role::Grid | Role::Stretch => 1.2,
+                Role::Grid | Role::Attention => 1.2,
                 Role::Ink | Role::Faint => 5.0,
                 _ => 3.0,
             };

@@ -1,4 +1,4 @@
-//! Drawings as SVG: panels above one another with axes, grid and a legend.
+//! Figures as SVG: panels above one another with axes, grid and a legend.
 //!
 //! Coordinates of the drawing library are whole numbers, so that a figure is drawn
 //! [`FINE`] times as large as it is shown.
@@ -11,9 +11,7 @@ use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::palette::Role;
-use crate::report::span::Span;
-use crate::wording::number;
+use crate::figure::{Axis, Mark, Panel, Place, Role, Shape};
 
 /// Parts of a pixel that a coordinate tells.
 const FINE: u32 = 4;
@@ -45,84 +43,7 @@ type Svg<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Axes = Cartesian2d<Axis, Axis>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Axes>;
 
-/// An axis: its range, its name with the unit, and its ticks.
-#[derive(Clone, Debug)]
-pub(super) struct Axis {
-    span: Span,
-    name: String,
-    ticks: Vec<(f64, String)>,
-}
-
-/// A place in a panel.
-pub(super) type Place = (f64, f64);
-
-/// What is drawn.
-#[derive(Clone, Debug)]
-pub(super) enum Shape {
-    /// Lines through places, and their width in pixels.
-    Lines(Vec<Vec<Place>>, f64),
-    /// Filled circles.
-    Dots(Vec<Place>),
-    /// Crosses.
-    Crosses(Vec<Place>),
-    /// Lines from the lower to the upper edge, and their width in pixels.
-    Verticals(Vec<f64>, f64),
-    /// Between two values, from the left to the right edge.
-    Band(f64, f64),
-    /// Between two values of the horizontal axis, from edge to edge; and how dense.
-    Stretches(Vec<(f64, f64)>, f64),
-    /// Filled between two corners.
-    Bars(Vec<(Place, Place)>),
-    /// Words that start beside a place.
-    Words(Vec<(Place, String)>),
-}
-
-/// Something drawn, what it means, and its name in the legend.
-#[derive(Clone, Debug)]
-pub(super) struct Mark {
-    role: Role,
-    name: Option<String>,
-    shape: Shape,
-}
-
-/// One pair of axes.
-#[derive(Clone, Debug)]
-pub(super) struct Panel {
-    pub(super) x: Axis,
-    pub(super) y: Axis,
-    /// Height of the part within the axes, in pixels.
-    pub(super) height: u32,
-    pub(super) marks: Vec<Mark>,
-}
-
 impl Axis {
-    /// An axis with about so many round numbers at it.
-    pub(super) fn new(span: Span, name: impl Into<String>, ticks: f64) -> Self {
-        let ticks = span.ticks(ticks).into_iter().map(|tick| (tick, number(tick))).collect();
-        Self { span, name: name.into(), ticks }
-    }
-
-    /// An axis of numbers whose logarithms to base ten are drawn.
-    pub(super) fn logarithmic(span: Span, name: impl Into<String>, ticks: f64) -> Self {
-        // Two digits are enough at an axis.
-        let power = |tick: f64| format!("{:.1e}", 10f64.powf(tick)).parse().map_or(0.0, |p: f64| p);
-        let ticks = span.ticks(ticks).into_iter().map(|tick| (tick, number(power(tick)))).collect();
-        Self { span, name: name.into(), ticks }
-    }
-
-    /// An axis of names, one at each whole number from 0, from the top down.
-    pub(super) fn of_names(names: &[String], name: impl Into<String>) -> Self {
-        let ticks = (0..).zip(names).map(|(row, name)| (-f64::from(row), name.clone()));
-        let span = Span::new(0.6 - names.len() as f64, 0.6);
-        Self { span, name: name.into(), ticks: ticks.collect() }
-    }
-
-    /// The same without numbers and name: those of the panel below hold for it.
-    pub(super) fn bare(&self) -> Self {
-        let ticks = self.ticks.iter().map(|(tick, _)| (*tick, String::new())).collect();
-        Self { name: String::new(), ticks, span: self.span }
-    }
-
     fn is_bare(&self) -> bool {
         self.ticks.iter().all(|(_, text)| text.is_empty()) && self.name.is_empty()
     }
@@ -169,17 +90,6 @@ impl Ranged for Axis {
 
     fn range(&self) -> Range<f64> {
         self.span.low..self.span.high
-    }
-}
-
-impl Mark {
-    pub(super) fn new(role: Role, shape: Shape) -> Self {
-        Self { role, name: None, shape }
-    }
-
-    /// The same with a name in the legend.
-    pub(super) fn named(self, name: impl Into<String>) -> Self {
-        Self { name: Some(name.into()), ..self }
     }
 }
 
@@ -341,7 +251,7 @@ impl Panel {
 impl Mark {
     /// Whether the grid is drawn over it.
     fn is_ground(&self) -> bool {
-        matches!(self.shape, Shape::Band(..) | Shape::Stretches(..))
+        matches!(self.shape, Shape::Band(..) | Shape::Spans(..))
     }
 
     fn swatch(
@@ -361,7 +271,7 @@ impl Mark {
             }
             Shape::Dots(_) => area.draw(&dot((middle, y), self.role)),
             Shape::Crosses(_) => area.draw(&cross((middle, y), self.role)),
-            Shape::Band(..) | Shape::Stretches(..) => {
+            Shape::Band(..) | Shape::Spans(..) => {
                 area.draw(&Rectangle::new(block, filled(self.role, 0.3)))
             }
             Shape::Bars(_) => area.draw(&Rectangle::new(block, filled(self.role, 1.0))),
@@ -395,7 +305,7 @@ impl Mark {
                 let corners = [(x.low, *low), (x.high, *high)];
                 area.draw(&Rectangle::new(corners, filled(role, 0.18)))
             }
-            Shape::Stretches(places, density) => places.iter().try_for_each(|(from, to)| {
+            Shape::Spans(places, density) => places.iter().try_for_each(|(from, to)| {
                 let corners = [(*from, y.low), (*to, y.high)];
                 area.draw(&Rectangle::new(corners, filled(role, *density)))
             }),
@@ -436,6 +346,7 @@ fn cross<P>(place: P, role: Role) -> Cross<P, i32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figure::Span;
 
     fn panel(marks: Vec<Mark>) -> Panel {
         let axis = |name: &str| Axis::new(Span::new(0.0, 10.0), name, 5.0);
@@ -483,12 +394,5 @@ mod tests {
         };
         assert!((40..70).contains(&at(1.0)), "{}", at(1.0));
         assert_eq!(at(0.0), 1);
-    }
-
-    #[test]
-    fn numbers_at_an_axis_of_logarithms_are_those_themselves() {
-        let axis = Axis::logarithmic(Span::new(-2.0, 2.0), "SSE", 4.0);
-        let texts: Vec<_> = axis.ticks.iter().map(|(_, text)| text.as_str()).collect();
-        assert_eq!(texts, ["0.01", "0.1", "1", "10", "100"]);
     }
 }

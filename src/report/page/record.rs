@@ -2,13 +2,14 @@
 
 use super::document::Figure;
 use super::layout::{WIDTH, values_of};
-use super::palette::Role;
-use super::plot::{Axis, Mark, Panel, Place, PlotError, Shape, draw};
+use super::plot::{PlotError, draw};
 use super::timeline::Timeline;
 use crate::delay::{Decision, Verdict};
 use crate::experiment::Trial;
+use crate::figure::Role;
+use crate::figure::Span;
+use crate::figure::{Axis, Mark, Panel, Place, Shape};
 use crate::report::EstimatedJoint;
-use crate::report::span::Span;
 use crate::wording::bracketed;
 
 /// Input and output over time.

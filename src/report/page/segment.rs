@@ -2,18 +2,17 @@
 
 use super::document::Figure;
 use super::layout::NARROW;
-use super::palette::Role;
-use super::plot::{Axis, Mark, Panel, Place, PlotError, Shape, draw};
-use crate::delay::{Candidate, Condition, Decision, Line, Verdict};
+use super::plot::{PlotError, draw};
+use crate::delay::{Condition, Decision, Verdict};
 use crate::experiment::{Joint, Trial};
+use crate::figure::Role;
+use crate::figure::Span;
+use crate::figure::segment::SegmentFigure;
+use crate::figure::{Axis, Mark, Panel, Place, Shape};
 use crate::report::EstimatedJoint;
-use crate::report::span::{Span, thinned_to};
 use crate::wording::bracketed;
 use crate::wording::number;
 use crate::wording::rounded;
-
-/// Errors less than this part of the largest are drawn at it: the fit is exact there.
-const EXACT: f64 = 1e-9;
 
 /// A decision that is worth a look, and why.
 struct Choice<'a> {
@@ -117,17 +116,13 @@ impl Choice<'_> {
         format!("delay {} s{ends}", seconds(delay))
     }
 
-    /// First and last sample that are drawn.
-    fn window(&self) -> (usize, usize) {
-        let segment = self.decision.segment;
-        let margin = (segment.len() / 12).max(3);
-        let first = segment.first.min(self.decision.input_step.sample);
-        let first = first.saturating_sub(margin).max(1);
-        (first, (segment.last + margin).min(self.trial.len()))
+    /// What is drawn of it.
+    fn drawn(&self) -> SegmentFigure<'_> {
+        SegmentFigure::new(self.trial, self.decision)
     }
 
     fn window_s(&self) -> Span {
-        let (first, last) = self.window();
+        let (first, last) = self.drawn().window;
         Span::new(self.trial.time_s(first), self.trial.time_s(last))
     }
 
@@ -136,34 +131,30 @@ impl Choice<'_> {
         self.trial.time_s(1) + (sample - 1.0) * self.trial.period().seconds()
     }
 
-    fn signal(&self, values: &[f64]) -> Vec<Place> {
-        let (first, last) = self.window();
-        let window = values.get(first - 1..last).unwrap_or_default();
-        let kept = thinned_to(window, 600);
-        let place = |k: usize| Some((self.at((first + k) as f64), *window.get(k)?));
-        kept.into_iter().filter_map(place).collect()
-    }
-
-    /// The sample at which the lines break.
-    fn broken_at(&self) -> Option<f64> {
-        Some(self.decision.input_step.sample as f64 + self.decision.delay()?)
+    /// Places by time instead of by sample.
+    fn timed(&self, places: impl IntoIterator<Item = Place>) -> Vec<Place> {
+        places.into_iter().map(|(sample, y)| (self.at(sample), y)).collect()
     }
 
     /// The output with both lines.
     fn lines(&self, joint: &Joint, x: Axis) -> Panel {
-        let measured = self.signal(self.trial.output());
-        let smoothed = self.smoothed.map(|values| self.signal(values));
-        let chosen = self.decision.breakpoint().map(|best| self.both(&best.candidate));
+        /// Points of a signal: about two for each column that is seen.
+        const POINTS: usize = 600;
+        let drawn = self.drawn();
+        let signal = |values: &[f64]| self.timed(drawn.signal(values, POINTS));
+        let measured = signal(self.trial.output());
+        let smoothed = self.smoothed.map(signal);
+        let chosen = self.decision.breakpoint().map(|best| {
+            let q = drawn.breakpoint().unwrap_or(best.candidate.breakpoint as f64);
+            drawn.lines(&best.candidate, q).map(|line| self.timed(line)).to_vec()
+        });
         let chosen = chosen.unwrap_or_default();
         let values =
             measured.iter().chain(smoothed.iter().flatten()).chain(chosen.iter().flatten());
         let y = Span::around(values.map(|place| place.1), 0.08);
-        let role = match self.decision.verdict() {
-            Verdict::Accepted => Role::Accepted,
-            Verdict::Rejected(_) => Role::Rejected,
-        };
+        let role = drawn.verdict();
         let step = vec![self.at(self.decision.input_step.sample as f64)];
-        let q: Vec<f64> = self.broken_at().map(|q| self.at(q)).into_iter().collect();
+        let q: Vec<f64> = drawn.breakpoint().map(|q| self.at(q)).into_iter().collect();
         let mut marks = vec![
             Mark::new(role, Shape::Lines(chosen, 4.0)).named("lines"),
             Mark::new(Role::Measured, Shape::Lines(vec![measured], 1.2)).named("output"),
@@ -177,33 +168,17 @@ impl Choice<'_> {
         Panel { x, y, height: 170, marks }
     }
 
-    /// Both lines of a candidate.
-    fn both(&self, best: &Candidate) -> Vec<Vec<Place>> {
-        let segment = self.decision.segment;
-        let q = self.broken_at().unwrap_or(best.breakpoint as f64);
-        let ends = |line: Line, from: f64, to: f64| {
-            [from, to].map(|sample| (self.at(sample), line.at(sample))).to_vec()
-        };
-        let before = ends(best.before, segment.first as f64, q);
-        vec![before, ends(best.after, q, segment.last as f64)]
-    }
-
     /// The squared error of every candidate.
     fn errors(&self, joint: &Joint, x: Axis) -> Panel {
+        let drawn = self.drawn();
         let candidates = &self.decision.candidates;
-        let highest = candidates.sse().iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        let place = |candidate: Candidate| {
-            let sse = candidate.sse.max(EXACT * highest).log10();
-            (self.at(candidate.breakpoint as f64), sse)
-        };
-        let curve: Vec<Place> = candidates.iter().map(place).collect();
-        let best: Vec<Place> = candidates.best().map(place).into_iter().collect();
-        let y = Span::around(curve.iter().map(|place| place.1), 0.12);
+        let curve = self.timed(drawn.errors(candidates.len()));
+        let best = self.timed(candidates.best().map(|best| drawn.error(&best)));
         let unit = joint.output_unit.as_ref().map(|unit| format!("{unit}²"));
         let curve = Mark::new(Role::Error, Shape::Lines(vec![curve], 1.6));
         Panel {
             x,
-            y: Axis::logarithmic(y, bracketed("SSE", unit.as_deref()), 3.0),
+            y: Axis::logarithmic(drawn.error_span(), bracketed("SSE", unit.as_deref()), 3.0),
             height: 76,
             marks: vec![
                 curve.named("error of each candidate"),

@@ -2,14 +2,15 @@
 
 use super::document::Figure;
 use super::layout::{HALF, WIDTH, values_of};
-use super::palette::Role;
-use super::plot::{Axis, Mark, Panel, Place, PlotError, Shape, draw};
+use super::plot::{PlotError, draw};
 use super::timeline::Timeline;
 use crate::diagnosis::failure::WorstSegment;
 use crate::experiment::{Joint, Trial};
+use crate::figure::Role;
+use crate::figure::{Axis, Mark, Panel, Place, Shape};
+use crate::figure::{Span, thinned_to};
 use crate::fit::{FitRecord, Horizon, Part, Split, Window};
 use crate::report::ComparedJoint;
-use crate::report::span::{Span, thinned_to};
 use crate::wording::bracketed;
 use crate::wording::percent;
 
@@ -24,8 +25,7 @@ pub(super) fn figure(
 ) -> Result<Figure, PlotError> {
     let joint = compared.joint;
     let timeline = Timeline::of(joint);
-    let unfitted =
-        Mark::new(Role::Faint, Shape::Stretches(unfitted(joint, split, &timeline), 0.13));
+    let unfitted = Mark::new(Role::Faint, Shape::Spans(unfitted(joint, split, &timeline), 0.13));
     let borders = timeline.borders();
     let worst = worst_stretches(compared, &timeline);
     let output = Panel {
@@ -46,7 +46,7 @@ pub(super) fn figure(
     };
     let mut marks = vec![unfitted, borders];
     if !worst.is_empty() {
-        marks.push(Mark::new(Role::Stretch, Shape::Stretches(worst, 0.3)).named("worst segments"));
+        marks.push(Mark::new(Role::Attention, Shape::Spans(worst, 0.3)).named("worst segments"));
     }
     marks.extend(noise(compared).map(|mark| mark.named("95 % of the noise")));
     let left = timeline.lines(|index, _| residual(compared, index));
@@ -84,7 +84,7 @@ pub(super) fn worst(
         y: Axis::new(y, bracketed("output", joint.output_unit.as_deref()), 5.0),
         height: 190,
         marks: vec![
-            Mark::new(Role::Stretch, Shape::Stretches(vec![(worst.start_s, worst.end_s)], 0.22)),
+            Mark::new(Role::Attention, Shape::Spans(vec![(worst.start_s, worst.end_s)], 0.22)),
             Mark::new(Role::Measured, Shape::Lines(vec![measured], 3.0)).named("measured"),
             Mark::new(Role::Model, Shape::Lines(vec![simulated], 1.4)).named("simulated"),
         ],

@@ -1,9 +1,9 @@
 //! Trials on one time axis, and signals as lines along it.
 
-use super::palette::Role;
-use super::plot::{Axis, Mark, Place, Shape};
 use crate::experiment::{Joint, Trial};
-use crate::report::span::{Span, thinned_to};
+use crate::figure::Role;
+use crate::figure::{Axis, Mark, Place, Shape};
+use crate::figure::{Span, thinned_to};
 
 /// Points of a line over the whole width: two for each column that is seen.
 const POINTS: f64 = 1500.0;
