@@ -17,7 +17,7 @@ pub(crate) struct Correlogram<'a> {
     first_lag_s: f64,
     lag_step_s: f64,
     correlation: &'a [f64],
-    /// Chance keeps correlations between this and its negative.
+    /// Correlations of noise stay between this and its negative.
     pub(crate) band: f64,
 }
 

@@ -32,7 +32,7 @@ impl Bin {
         Some(Self { x: median(&x)?, lower, median: median(&y)?, upper })
     }
 
-    /// The same, level from `left` to `right`.
+    /// This bin twice: level from `left` to `right`.
     pub(crate) fn level(self, left: f64, right: f64) -> Vec<Self> {
         vec![Self { x: left, ..self }, Self { x: right, ..self }]
     }

@@ -70,7 +70,7 @@ fn plot(place: usize, correlograms: &[Correlogram<'_>]) -> Plot {
     Plot::within((left, left + 510.0), 36.0..=430.0, x, y)
 }
 
-/// The two lines between which chance keeps the correlations.
+/// The two lines between which correlations of noise stay.
 fn band(plot: &Plot, band: f64) -> [Vec<Vec2D>; 2] {
     [band, -band].map(|y| plot.level(y).to_vec())
 }

@@ -39,7 +39,7 @@ pub(super) struct Drawing {
 }
 
 impl Drawing {
-    /// A plot per feature, a slot per part, a bar per model. What the parts are is told of
+    /// A plot per feature, a slot per part, a bar per model. The parts are those of
     /// the first model; a model that has another number of them, as its speeds may, has no
     /// bars there.
     pub(super) fn of(models: &[&ComparedJoint<'_>]) -> Self {
@@ -114,7 +114,7 @@ fn plot(place: usize, of_each: &[&[Region]]) -> Plot {
 
 /// Frame, percentages, and what the parts are.
 fn draw_frame(sheet: &mut Sheet, plot: &Plot, title: &str, regions: &[Region]) {
-    // Zero would stand where the names of the parts begin.
+    // Zero would be where the names of the parts begin.
     let ticks = plot.y_span().ticks(3.0).into_iter().filter(|share| *share > 0.0);
     let ticks: Vec<_> = ticks.map(|share| (share, format!("{} %", number(share)))).collect();
     sheet.frame(plot, &[], &ticks, title);
@@ -128,7 +128,7 @@ fn draw_frame(sheet: &mut Sheet, plot: &Plot, title: &str, regions: &[Region]) {
     }
 }
 
-/// The name of each slot, or of each border between two, and where it stands.
+/// The name of each slot, or of each border between two, and where it is put.
 fn names(regions: &[Region]) -> Vec<(f64, String)> {
     if regions.iter().all(is_level) {
         let named = |(region, slot): (&Region, u32)| (f64::from(slot) + 0.5, name(region));

@@ -1,6 +1,6 @@
 //! Results as a Rerun recording: the only folder that names `rerun`.
 //!
-//! What a reader of the file may rely on is told in `docs/recording.md`. In short: each
+//! What a reader of the file may rely on is in `docs/recording.md`. In short: each
 //! joint has its signals, its decisions and a drawing of every segment; four timelines
 //! (`decision`, `segment`, `sample`, `time`) move through all of them together. A fifth one,
 //! `revision`, runs along a model that grows. In a recording of a sweep `setting` goes through

@@ -1,4 +1,4 @@
-//! Models beside the measurement: what they simulate, what is left, how large it is.
+//! Models beside the measurement: what they simulate, and the residual.
 
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
@@ -213,9 +213,9 @@ fn page(
         }
     }
     for compared in models {
-        let left = correlation_sentences(compared.comparison).join("; ");
-        if !left.is_empty() {
-            writeln!(page, "\n**What is left** ({}): {}", compared.model, plain(&left))?;
+        let residual = correlation_sentences(compared.comparison).join("; ");
+        if !residual.is_empty() {
+            writeln!(page, "\n**Residual** ({}): {}", compared.model, plain(&residual))?;
         }
     }
     if let Some(failure) = &first.comparison.failure {

@@ -1,4 +1,4 @@
-//! Colours: one meaning each, told apart by colour-blind readers too.
+//! Colours: one meaning each, distinct for colour-blind readers too.
 //!
 //! Taken from Okabe and Ito's set, on the viewer's dark ground.
 
@@ -65,13 +65,13 @@ pub(super) fn color((r, g, b): Rgb) -> Color {
     Color::from_rgb(r, g, b)
 }
 
-/// A setting that tells what most do.
+/// A setting whose delay is that of most.
 pub(super) const SAME: Rgb = rgb(105, 112, 120);
-/// The same in a picture of all settings, where it is the ground.
+/// Such a setting in a picture of all settings, where it is the ground.
 pub(super) const SAME_GROUND: Rgb = rgb(58, 64, 71);
-/// A setting that tells a longer delay.
+/// A setting with a longer delay.
 pub(super) const LONGER: Rgb = rgb(240, 140, 30);
-/// A setting that tells a shorter delay.
+/// A setting with a shorter delay.
 pub(super) const SHORTER: Rgb = rgb(70, 170, 240);
 /// A setting that does not accept a step.
 pub(super) const SILENT: Rgb = rgb(0, 0, 0);

@@ -347,8 +347,8 @@ impl Facts<'_, '_> {
                 format!("≥ {not_set} rows"),
             ),
             Condition::NothingHappened => {
-                let chance = value.map_or_else(missing, |chance| format!("chance {chance}"));
-                (chance, format!("≤ {not_set}"))
+                let p_value = value.map_or_else(missing, |p_value| format!("p = {p_value}"));
+                (p_value, format!("≤ {not_set}"))
             }
         }
     }

@@ -25,7 +25,7 @@ use crate::wording::number;
 /// Height of the sheet.
 pub(in crate::recording) const HEIGHT: f32 = 800.0;
 
-/// Plots that fit on the sheet; the weakest are left out.
+/// Plots that fit on the sheet; the weakest are not drawn.
 const PLOTS: usize = 12;
 
 /// Adds the page below `/against`, and its numbers at `/delay/state`.
@@ -215,7 +215,7 @@ impl<'f> Page<'f> {
         };
         let quantities = || self.plots.iter().map(|(quantity, _)| quantity);
         if quantities().all(|quantity| quantity.p_value.is_none()) {
-            return format!("{name}: {steps}, from which nothing can be told of the delay");
+            return format!("{name}: {steps}, too few to test what the delay depends on");
         }
         let rest = match self.quantities - self.plots.len() {
             0 => String::new(),

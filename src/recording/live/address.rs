@@ -8,7 +8,7 @@ use rerun::external::re_uri::{ProxyUri, RedapUri, Scheme};
 
 use crate::recording::error::RecordError;
 
-/// The viewer at `address`: `HOST:PORT`, or a URL as viewers tell it.
+/// The viewer at `address`: `HOST:PORT`, or a URL as viewers show it.
 pub(super) fn parse(address: &str) -> Result<ProxyUri, RecordError> {
     let url = if address.contains("://") {
         address.to_owned()
@@ -42,7 +42,7 @@ pub(super) fn reach(uri: &ProxyUri, patience: Duration) -> io::Result<()> {
 fn greet(stream: &mut TcpStream, patience: Duration) -> io::Result<()> {
     const PREFACE: &[u8] = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n";
     const EMPTY_SETTINGS: [u8; 9] = [0, 0, 0, SETTINGS, 0, 0, 0, 0, 0];
-    /// The type of a frame of settings, and where in a frame the type stands.
+    /// The type of a frame of settings, and where in a frame the type is.
     const SETTINGS: u8 = 4;
     const TYPE: usize = 3;
     stream.set_read_timeout(Some(patience))?;
@@ -56,7 +56,7 @@ fn greet(stream: &mut TcpStream, patience: Duration) -> io::Result<()> {
     Err(io::Error::other("what listens there is no viewer"))
 }
 
-/// An address as it stands before a port.
+/// An address as it is written before a port.
 pub(super) fn host(ip: IpAddr) -> String {
     match ip {
         IpAddr::V4(ip) => ip.to_string(),

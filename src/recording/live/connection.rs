@@ -36,7 +36,7 @@ pub struct Live {
     /// Namespaces of ids that were used: what is sent later has higher ones, and wins.
     used: u64,
     growth: Growth,
-    /// The views that the viewer was told last, in words.
+    /// The views that the viewer was sent last, in words.
     views: Option<String>,
 }
 
@@ -55,7 +55,7 @@ impl std::fmt::Debug for Live {
 }
 
 impl Live {
-    /// Connects to the viewer at `address`: `HOST:PORT`, or a URL as viewers tell it.
+    /// Connects to the viewer at `address`: `HOST:PORT`, or a URL as viewers show it.
     ///
     /// # Errors
     /// [`RecordError::Address`] for what is no address, [`RecordError::NoViewer`] when none
@@ -92,7 +92,7 @@ impl Live {
     }
 
     fn with(sink: Sink, url: String) -> Self {
-        // A run of its own: two runs stand side by side in the viewer.
+        // A run of its own: two runs are side by side in the viewer.
         let store = StoreId::random(StoreKind::Recording, APPLICATION);
         let (sent, growth) = (Sent::default(), Growth::Finished);
         Self { sink: Some(sink), url, store, sent, used: 0, growth, views: None }
@@ -118,7 +118,7 @@ impl Live {
     ///
     /// # Errors
     /// [`RecordError::Chunk`] and [`RecordError::Serialize`], which would be bugs. Whether
-    /// it arrives, [`flush`](Self::flush) tells.
+    /// it arrives, [`flush`](Self::flush) reports.
     pub fn send(&mut self, recording: &Recording<'_>) -> Result<(), RecordError> {
         self.send_part(recording, None)
     }
@@ -178,7 +178,7 @@ impl Live {
         }
     }
 
-    /// Which view shows what, unless the viewer knows: being told again, it forgets where
+    /// Which view shows what, unless the viewer knows: when it is sent again, the viewer forgets where
     /// its user is.
     fn send_views(&mut self, content: &dyn Content) -> Result<(), RecordError> {
         let views = content.views_in_words(self.growth);

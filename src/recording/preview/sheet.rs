@@ -18,10 +18,10 @@ use crate::wording::{measure, number};
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1090.0);
 
-/// Left and right ends of the plots: numbers stand on the left.
+/// Left and right ends of the plots: numbers are on the left.
 const SIDES: (f32, f32) = (120.0, SHEET.0 - 30.0);
 
-/// How high above its plot a title stands.
+/// How high above its plot a title is put.
 const TITLE: f32 = 34.0;
 
 /// What the viewer's ground is drawn in, behind the shade of a band.
@@ -205,15 +205,15 @@ impl<'p> Page<'p> {
 
     /// The part of all squared differences that lies in each hold, where there is much of it.
     fn add_shares(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
-        /// Holds that are told.
-        const TOLD: usize = 6;
-        /// Smaller parts are not told.
+        /// Holds that are named.
+        const NAMED: usize = 6;
+        /// Smaller parts are not named.
         const LEAST: f64 = 0.02;
         let (Some(plot), Some(apart)) = (&self.apart, &self.preview.apart) else { return Ok(()) };
         let mut holds: Vec<&HoldApart> = apart.holds.iter().filter(|h| h.share >= LEAST).collect();
         holds.sort_by(|a, b| b.share.total_cmp(&a.share));
         let mut labels = Labels::default();
-        for HoldApart { start, hold, share, .. } in holds.into_iter().take(TOLD) {
+        for HoldApart { start, hold, share, .. } in holds.into_iter().take(NAMED) {
             let middle = self.preview.seconds(start + hold.samples / 2);
             labels.put(plot.above(middle, 0.0), format!("{:.0} %", 100.0 * share));
         }

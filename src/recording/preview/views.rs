@@ -26,7 +26,7 @@ pub(super) fn messages(
     builder.tabbed(tabs, ("time", PlayState::Paused), application, id)
 }
 
-/// The page of a joint and its signals; beside them what they tell, and the holds.
+/// The page of a joint and its signals; beside them what they distinguish, and the holds.
 fn tab(builder: &mut Builder, joint: &DesignedJoint) -> Result<Node, RecordError> {
     let name = joint.rig.name.as_str();
     let root = joint_root(name);
@@ -57,7 +57,7 @@ fn tab(builder: &mut Builder, joint: &DesignedJoint) -> Result<Node, RecordError
     let left = [page, signals];
     let left = builder.container(ContainerKind::Tabs, "Drawings", &left, &[])?;
     let text = |name, part| View::new("TextDocument", name, &[path(part)]);
-    let says = builder.view(text("What it tells, and how surely", paths::SAYS))?;
+    let says = builder.view(text("What it distinguishes, and how surely", paths::SAYS))?;
     let here = builder.view(text("Under the cursor", paths::HERE))?;
     let holds = View::new("TextLog", "Holds: click a time", &[path(paths::HOLDS)]);
     let holds = builder.view(holds.with("TextLogColumns", clickable("time")))?;

@@ -1,4 +1,4 @@
-//! What an input tells and how surely, in words; the hold under the cursor; all holds.
+//! What an input distinguishes and how surely, in words; the hold under the cursor; all holds.
 
 use std::fmt::Write as _;
 
@@ -38,7 +38,7 @@ pub(super) fn add(
 
 type Written = Result<String, std::fmt::Error>;
 
-/// What the input is, what it tells, and how surely.
+/// What the input is, what it distinguishes, and how surely.
 fn says(preview: &Preview<'_>) -> Written {
     let mut page = String::new();
     writeln!(page, "## {}\n", plain(&preview.joint.rig.name))?;

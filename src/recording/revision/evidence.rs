@@ -2,7 +2,7 @@
 //!
 //! Where a level is held, the measured output runs along a line: its slope is a speed that
 //! owes nothing to a model, but for when the level began to act. Against the level it shows
-//! a dead band, a saturation or a curve at a glance. What does not show there is in
+//! a dead band, a saturation or a curve. What does not show there is in
 //! [`residual`].
 
 use super::figure::{Figure, Held, Law};
@@ -197,7 +197,7 @@ impl Still {
     }
 
     fn speed(&self, model: &JointModel, level: f64) -> f64 {
-        /// Seconds after which what the effects remember has settled.
+        /// Seconds after which the memories of effects no longer change.
         const SETTLED_S: f64 = 2.0;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in bounds")]
         let samples = (SETTLED_S / self.period_s).clamp(2.0, 400.0) as usize;

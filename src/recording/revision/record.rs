@@ -1,4 +1,4 @@
-//! The whole record: what was measured, what a revision simulates, and what is left.
+//! The whole record: what was measured, what a revision simulates, and the residual.
 
 use std::ops::Range;
 
@@ -47,7 +47,7 @@ pub(super) fn add(
         1.2,
         of_each().map(|c| drawing.simulated(c)),
     )?;
-    rows.strips(record::RESIDUAL, palette::REVISION, 1.0, of_each().map(|c| drawing.left(c)))?;
+    rows.strips(record::RESIDUAL, palette::REVISION, 1.0, of_each().map(|c| drawing.residual(c)))?;
     rows.strips(record::NOISE, palette::NOISE, 1.0, of_each().map(|c| drawing.band(c)))?;
     rows.texts(record::NAMES, palette::REVISION, (0..count).map(|at| drawing.names(improved, at)))
 }
@@ -177,7 +177,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         })
     }
 
-    fn left(&self, comparison: &Comparison) -> Strips {
+    fn residual(&self, comparison: &Comparison) -> Strips {
         let all = &comparison.fit.evaluation.residuals;
         self.curves(&self.residual, |trial| all.get(trial.index).map_or(&[], Vec::as_slice))
     }

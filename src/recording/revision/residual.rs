@@ -1,4 +1,4 @@
-//! What a revision leaves, against what the next effect depends on most.
+//! The residual of a revision, against what the next effect depends on most.
 //!
 //! For effects that change no steady speed, such as a lag: the mean residual in bins of the
 //! variable that the effect's own share of it follows most, and that share.
@@ -14,15 +14,15 @@ use crate::recording::scatter::since_step;
 /// Bins with as many samples each.
 const BINS: usize = 40;
 
-/// A sample: the variable, what is left, and what the effect takes of it.
+/// A sample: the variable, the residual, and the part of it that the effect explains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sample {
     x: f64,
-    left: f64,
-    taken: f64,
+    residual: f64,
+    explained: f64,
 }
 
-/// What revision `number` leaves of `joint`, and what `candidate` takes of that.
+/// The residual of revision `number` of `joint`, and the part of it that `candidate` explains.
 pub(super) fn figure(
     joint: &Joint,
     comparison: &Comparison,
@@ -36,22 +36,22 @@ pub(super) fn figure(
     let noise = comparison.noise_floor.unwrap_or(0.0);
     let point = |(mean, count): &(Sample, f64)| Held {
         level: mean.x,
-        speed: mean.left,
+        speed: mean.residual,
         std_error: noise / count.sqrt(),
     };
-    let taken: Law = bins.iter().map(|(mean, _)| (mean.x, mean.taken)).collect();
+    let explained: Law = bins.iter().map(|(mean, _)| (mean.x, mean.explained)).collect();
     let unit = joint.output_unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}]"));
-    let heights = bins.iter().flat_map(|(mean, _)| [mean.left, mean.taken, 0.0]);
+    let heights = bins.iter().flat_map(|(mean, _)| [mean.residual, mean.explained, 0.0]);
     Figure {
-        title: format!("left{unit} against {name}"),
+        title: format!("residual{unit} against {name}"),
         x: Span::around(bins.iter().map(|(mean, _)| mean.x), 0.03),
         y: Span::around(heights, 0.3),
         points: bins.iter().map(point).collect(),
-        laws: [Law::new(), Law::new(), taken],
+        laws: [Law::new(), Law::new(), explained],
         names: [
-            Some(format!("revision {number} leaves the points")),
+            Some(format!("residual of revision {number}: points")),
             None,
-            Some(format!("{} takes", candidate.name())),
+            Some(format!("explained by {}", candidate.name())),
         ],
     }
 }
@@ -66,14 +66,14 @@ fn variables(
     let mut all = names.map(|name| (name, Vec::new()));
     let trials = joint.trials.iter().zip(&own.simulated);
     let residuals = own.residuals.iter().zip(&next.residuals);
-    for ((trial, simulated), (left, after)) in trials.zip(residuals) {
+    for ((trial, simulated), (residual, after)) in trials.zip(residuals) {
         let period = trial.period().seconds();
         let directions = directions(&simulated.acting);
         let since = since_step(&simulated.acting, period);
         let start = trial.time_s(1);
-        let times: Vec<f64> = (0..left.len()).map(|k| start + k as f64 * period).collect();
+        let times: Vec<f64> = (0..residual.len()).map(|k| start + k as f64 * period).collect();
         // A step down turns what follows it over.
-        let plain = vec![1.0; left.len()];
+        let plain = vec![1.0; residual.len()];
         let columns: [(&[f64], &[f64]); 4] = [
             (&simulated.acting, &plain),
             (trial.output(), &plain),
@@ -81,12 +81,12 @@ fn variables(
             (&since, &directions),
         ];
         for ((_, samples), (x, signs)) in all.iter_mut().zip(columns) {
-            let rows = x.iter().zip(signs).zip(left.iter().zip(after));
+            let rows = x.iter().zip(signs).zip(residual.iter().zip(after));
             let known = rows.filter(|((_, sign), _)| **sign != 0.0);
-            samples.extend(known.map(|((x, sign), (left, after))| Sample {
+            samples.extend(known.map(|((x, sign), (residual, after))| Sample {
                 x: *x,
-                left: sign * left,
-                taken: sign * (left - after),
+                residual: sign * residual,
+                explained: sign * (residual - after),
             }));
         }
     }
@@ -115,16 +115,17 @@ fn bins(mut samples: Vec<Sample>) -> Vec<(Sample, f64)> {
     let mean = |bin: &[Sample]| {
         let n = bin.len() as f64;
         let of = |value: fn(&Sample) -> f64| bin.iter().map(value).sum::<f64>() / n;
-        let (x, left, taken) = (of(|s| s.x), of(|s| s.left), of(|s| s.taken));
-        (Sample { x, left, taken }, n)
+        let (x, residual, explained) = (of(|s| s.x), of(|s| s.residual), of(|s| s.explained));
+        (Sample { x, residual, explained }, n)
     };
     samples.chunks(size).map(mean).collect()
 }
 
-/// The square of what the effect takes that the means of bins hold, per sample.
+/// The mean square of the means of bins of what the effect explains.
 fn followed(bins: &[(Sample, f64)]) -> f64 {
     let all: f64 = bins.iter().map(|(_, count)| count).sum();
-    let squares: f64 = bins.iter().map(|(mean, count)| count * mean.taken * mean.taken).sum();
+    let squares: f64 =
+        bins.iter().map(|(mean, count)| count * mean.explained * mean.explained).sum();
     squares / all.max(1.0)
 }
 
@@ -140,10 +141,11 @@ mod tests {
 
     #[test]
     fn bins_hold_means_in_order_of_the_variable() {
-        let sample = |k: u32| Sample { x: 79.0 - f64::from(k), left: f64::from(k), taken: 1.0 };
+        let sample =
+            |k: u32| Sample { x: 79.0 - f64::from(k), residual: f64::from(k), explained: 1.0 };
         let found = bins((0..80).map(sample).collect());
         assert_eq!(found.len(), BINS);
-        assert_eq!(found[0], (Sample { x: 0.5, left: 78.5, taken: 1.0 }, 2.0));
+        assert_eq!(found[0], (Sample { x: 0.5, residual: 78.5, explained: 1.0 }, 2.0));
         assert!((followed(&found) - 1.0).abs() < 1e-12);
     }
 }

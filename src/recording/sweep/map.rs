@@ -14,7 +14,7 @@ use crate::report::level_text;
 /// Rows and columns that a picture may have; of those that share one, the farthest is seen.
 const MOST: usize = 2000;
 
-/// How high above its plot a title stands.
+/// How high above its plot a title is put.
 pub(super) const TITLE: f32 = 44.0;
 
 /// Combinations that follow one another and have the same values of the slowest settings.
@@ -63,7 +63,7 @@ pub(super) fn named(grid: &Grid) -> Vec<Block> {
     low_passes.iter().map(with_method).chain(whole).collect()
 }
 
-/// Where the name of a block stands: left of the middle of its rows.
+/// Where the name of a block is put: left of the middle of its rows.
 pub(super) fn beside(plot: &Plot, block: &Block) -> Vec2D {
     let middle = block.first as f64 + 0.5 * block.count as f64;
     plot.left_of(plot.y_span().high - middle, 74.0)

@@ -1,5 +1,5 @@
-//! All steps of a joint at all settings: their delays, what they hang on, and which settings
-//! tell the same.
+//! All steps of a joint at all settings: their delays, which setting they are sensitive to, and
+//! which settings agree.
 
 use std::collections::BTreeMap;
 
@@ -27,8 +27,8 @@ pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1090.0);
 /// Left and right ends of the plots: names stand on the left, counts on the right.
 const SIDES: (f32, f32) = (150.0, SHEET.0 - 70.0);
 
-/// Points times combinations up to which the pointer tells settings in words, which takes
-/// time; with more it tells how many they are.
+/// Points times combinations up to which the pointer names settings in words, which takes
+/// time; with more it counts them.
 const NAMED: usize = 20_000_000;
 
 /// Draws the page below `root`.
@@ -41,7 +41,7 @@ pub(super) fn add(
     let page = Page::of(swept);
     page.add_grid(chunks, &root)?;
     page.add_delays(chunks, &root)?;
-    page.add_hanging(chunks, &root)?;
+    page.add_sensitive(chunks, &root)?;
     page.add_map(chunks, &root)?;
     put_legend(chunks, &root, swept)?;
     page.add_setting(chunks, &root)?;
@@ -52,13 +52,13 @@ pub(super) fn add(
 struct Page<'s> {
     swept: &'s Swept<'s>,
     delays: Plot,
-    hanging: Plot,
+    sensitive: Plot,
     map: Plot,
-    /// What delays may hang on.
+    /// What delays may be sensitive to.
     causes: Vec<(String, Cause)>,
 }
 
-/// What it is that a step hangs on.
+/// What a step is sensitive to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Cause {
     /// Its delay moves with this setting.
@@ -106,13 +106,13 @@ impl<'s> Page<'s> {
         Self {
             swept,
             delays: Plot::within(SIDES, 100.0..=424.0, x, delay_span(swept)),
-            hanging: Plot::within(SIDES, 494.0..=674.0, x, rows),
+            sensitive: Plot::within(SIDES, 494.0..=674.0, x, rows),
             map: Plot::within(SIDES, 744.0..=1030.0, x, combinations),
             causes,
         }
     }
 
-    /// Where the title of a plot stands.
+    /// Where the title of a plot is put.
     fn title(&self, plot: &Plot) -> Vec2D {
         plot.above(middle(self.map.x_span()), TITLE)
     }
@@ -131,23 +131,23 @@ impl<'s> Page<'s> {
         let seconds = self.delays.y_span().ticks(TICKS).into_iter();
         let seconds: Vec<_> = seconds.map(|y| (y, format!("{} s", number(y)))).collect();
         sheet.outline(&self.delays, &ticks, &seconds);
-        sheet.outline(&self.hanging, &ticks, &[]);
+        sheet.outline(&self.sensitive, &ticks, &[]);
         sheet.outline(&self.map, &[], &[]);
         sheet.put(self.title(&self.delays), "delay of each step, with every setting");
-        sheet.put(self.title(&self.hanging), "steps that hang on");
+        sheet.put(self.title(&self.sensitive), "steps sensitive to");
         for x in ticks {
             sheet.put(self.map.below(x, 2.0), number(x));
         }
         let end = Vec2D::new(SIDES.1 + 34.0, self.map.below(1.0, 2.0).y());
         sheet.put(end, "step");
         for ((name, _), row) in self.causes.iter().zip(0_u32..) {
-            let y = self.hanging.y_span().high - f64::from(row) - 0.5;
-            sheet.put(self.hanging.left_of(y, 74.0), name);
+            let y = self.sensitive.y_span().high - f64::from(row) - 0.5;
+            sheet.put(self.sensitive.left_of(y, 74.0), name);
         }
         sheet.push(chunks, root)
     }
 
-    /// Every delay that is told, and what is agreed on.
+    /// Every delay that is reported, and what is agreed on.
     fn add_delays(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
         let (mut ranges, mut agreed) = (Vec::new(), Vec::new());
         for (x, step) in self.steps() {
@@ -182,7 +182,7 @@ impl<'s> Page<'s> {
         Ok(())
     }
 
-    /// A point for all settings that tell the same delay of a step.
+    /// A point for all settings that report one delay of a step.
     fn dots(&self) -> Vec<Dot> {
         let mut groups: Vec<(f64, &SweptStep, Group)> = Vec::new();
         for (x, step) in self.steps() {
@@ -205,15 +205,15 @@ impl<'s> Page<'s> {
         groups.iter().map(dot).collect()
     }
 
-    /// A mark for each step below what it hangs on, and how many they are.
-    fn add_hanging(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+    /// A mark for each step beside what it is sensitive to, and how many they are.
+    fn add_sensitive(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
         let (mut counts, mut marks, mut colors) = (Labels::default(), Vec::new(), Vec::new());
-        let slot = self.hanging.x(2.0) - self.hanging.x(1.0);
+        let slot = self.sensitive.x(2.0) - self.sensitive.x(1.0);
         for ((_, cause), row) in self.causes.iter().zip(0_u32..) {
-            let y = self.hanging.y_span().high - f64::from(row) - 0.5;
-            let hanging = self.steps().filter(|(_, step)| cause.moves(step));
-            let places: Vec<_> = hanging.map(|(x, _)| self.hanging.at(x, y)).collect();
-            counts.put(self.hanging.right_of(y, 30.0), places.len().to_string());
+            let y = self.sensitive.y_span().high - f64::from(row) - 0.5;
+            let sensitive = self.steps().filter(|(_, step)| cause.moves(step));
+            let places: Vec<_> = sensitive.map(|(x, _)| self.sensitive.at(x, y)).collect();
+            counts.put(self.sensitive.right_of(y, 30.0), places.len().to_string());
             colors.extend(std::iter::repeat_n(color(cause.rgb()), places.len()));
             marks.extend(places);
         }
@@ -272,8 +272,7 @@ impl<'s> Page<'s> {
         let name = |run: usize| {
             let mut labels = Labels::default();
             let name = self.swept.names.get(run).map_or("", String::as_str);
-            let text =
-                format!("which settings tell the same; framed: {name} ({} of {all})", run + 1);
+            let text = format!("which settings agree; framed: {name} ({} of {all})", run + 1);
             labels.put(self.title(&self.map), text);
             labels
         };
@@ -290,7 +289,7 @@ impl<'s> Page<'s> {
                 let Span { low, high } = plot.y_span();
                 rectangle((left, right), (plot.y(high), plot.y(low)))
             };
-            [&self.delays, &self.hanging, &self.map].map(side).to_vec()
+            [&self.delays, &self.sensitive, &self.map].map(side).to_vec()
         };
         rows.strips(sheet::STEP_FRAME, palette::HERE, 1.3, self.steps().map(frame))?;
         let name = |(x, step): (f64, &SweptStep)| {
@@ -303,7 +302,7 @@ impl<'s> Page<'s> {
     }
 }
 
-/// Settings that tell the same of a step.
+/// Settings that report one delay of a step.
 struct Group {
     delay: f64,
     opinion: Opinion,
@@ -325,14 +324,14 @@ impl Group {
         groups.into_values().collect()
     }
 
-    /// The more settings tell it, the larger it is; what disagrees is never small.
+    /// The more settings report it, the larger it is; what disagrees is never small.
     fn radius(&self, step: &SweptStep) -> f32 {
         let share = self.votes as f32 / step.tried.max(1) as f32;
         let least = if self.opinion == Opinion::Same { 1.4 } else { 2.4 };
         least + 3.0 * share.sqrt()
     }
 
-    /// What the pointer tells of it.
+    /// What the pointer shows of it.
     fn name(&self, step: &SweptStep) -> String {
         let (seconds, votes) = (self.delay * step.period_s, self.votes);
         format!("step {}: {seconds:.3} s with {votes} of {} settings", step.number, step.tried)
@@ -363,11 +362,11 @@ fn delay_span(swept: &Swept<'_>) -> Span {
     const BEYOND: f64 = 0.005;
     let steps = || swept.steps.iter().map(|(step, _)| *step);
     let of_step = |step: &SweptStep| {
-        let told = step.told.iter().flatten();
-        told.map(|told| told.delay * step.period_s).collect::<Vec<_>>()
+        let known = step.told.iter().flatten();
+        known.map(|known| known.delay * step.period_s).collect::<Vec<_>>()
     };
-    let told: Vec<f64> = steps().flat_map(of_step).collect();
-    let ends = [BEYOND, 1.0 - BEYOND].into_iter().filter_map(|part| quantile(&told, part));
+    let delays: Vec<f64> = steps().flat_map(of_step).collect();
+    let ends = [BEYOND, 1.0 - BEYOND].into_iter().filter_map(|part| quantile(&delays, part));
     let agreed = steps().filter_map(|step| Some(step.agreement?.delay * step.period_s));
     Span::around(ends.chain(agreed), 0.06)
 }
@@ -414,10 +413,12 @@ fn headline(swept: &Swept<'_>) -> String {
         (0, _) => format!("{name}: no step is accepted with any of the settings"),
         (_, 0) => format!("{name}: all {judged} delays are the same whatever the settings"),
         (_, 1) => {
-            format!("{name}: {settled} of {judged} delays are the same, 1 hangs on a setting")
+            format!(
+                "{name}: {settled} of {judged} delays are the same, 1 is sensitive to a setting"
+            )
         }
-        (_, hanging) => format!(
-            "{name}: {settled} of {judged} delays are the same, {hanging} hang on a setting"
+        (_, sensitive) => format!(
+            "{name}: {settled} of {judged} delays are the same, {sensitive} are sensitive to a setting"
         ),
     }
 }

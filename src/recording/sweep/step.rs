@@ -19,11 +19,11 @@ use crate::wording::number as shown;
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1090.0);
 
-/// Left and right ends of the plots: names of settings stand on the left.
+/// Left and right ends of the plots: names of settings are on the left.
 const SIDES: (f32, f32) = (150.0, SHEET.0 - 40.0);
 
 /// Draws each step below `root`. On the timeline of settings, where one step is all that can
-/// be seen, it is the one that hangs on a setting most.
+/// be seen, it is the one that is most sensitive to a setting.
 pub(super) fn add(
     chunks: &mut Chunks,
     root: &EntityPath,
@@ -54,7 +54,7 @@ pub(super) fn add(
     rows.texts(one::TEXTS, palette::BORDER, sheets.into_iter().map(|(_, labels)| labels))
 }
 
-/// The steps in their order but for the one that hangs most, which is last; where they lie,
+/// The steps in their order but for the most sensitive one, which is last; where they lie,
 /// at the first tick of the settings, too.
 fn worst_last(swept: &Swept<'_>) -> (Index, Vec<usize>) {
     let mut order: Vec<usize> = (0..swept.steps.len()).collect();
@@ -208,7 +208,7 @@ impl<'s> Drawing<'s> {
 /// The samples around a step: a little before it, and so far behind it that all delays are
 /// seen.
 fn window(step: &SweptStep, trial: &Trial) -> (usize, usize) {
-    /// Least samples that are shown behind a step, and how many where no delay is told.
+    /// Least samples that are shown behind a step, and how many where no delay is known.
     const REACH: (usize, usize) = (20, 100);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "samples")]
     let longest = step.spread.map(|spread| (1.4 * spread.max.max(0.0)) as usize);

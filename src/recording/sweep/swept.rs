@@ -14,7 +14,7 @@ pub(super) struct Swept<'a> {
     pub(super) reported: ReportedSweep<'a>,
     /// Each run in words.
     pub(super) names: Vec<String>,
-    /// For each run how many combinations it stands for.
+    /// For each run how many combinations it represents.
     pub(super) votes: Vec<usize>,
     /// Each step, with the trial that it lies in.
     pub(super) steps: Vec<(&'a SweptStep, &'a Trial)>,
@@ -53,19 +53,19 @@ impl<'a> Swept<'a> {
         Index::of_settings(self.names.len())
     }
 
-    /// What a run tells of a step.
+    /// What a run reports of a step.
     pub(super) fn cell(step: &SweptStep, run: usize) -> Cell {
         let Some(told) = step.told.get(run).copied().flatten() else { return Cell::Silent };
         step.agreement.map_or(Cell::Same, |agreed| Cell::of(&told, &agreed))
     }
 
-    /// The delay that a run tells of a step; samples.
+    /// The delay that a run reports of a step; samples.
     pub(super) fn delay(step: &SweptStep, run: usize) -> Option<f64> {
         Some(step.told.get(run).copied().flatten()?.delay)
     }
 }
 
-/// What a setting tells of a step, beside what most say.
+/// What a setting reports of a step, beside what most report.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Cell {
     /// Nothing: it did not accept it.

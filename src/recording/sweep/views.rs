@@ -39,7 +39,7 @@ fn tab(builder: &mut Builder, joint: &str) -> Result<Node, RecordError> {
     let text = |name, part| View::new("TextDocument", name, &[path(part)]);
     let found = builder.view(text("What is found", paths::FOUND))?;
     let here = builder.view(text("Under the cursor", paths::HERE))?;
-    let list = "Steps that hang on a setting: click a number on the left";
+    let list = "Steps sensitive to a setting: click a number on the left";
     let list = View::new("TextLog", list, &[path(paths::SENSITIVE_LOG)]);
     let list = builder.view(list.with("TextLogColumns", clickable("segment")))?;
     let words = [found, here, list];

@@ -64,7 +64,7 @@ fn found(swept: &Swept<'_>) -> Written {
 const HOW_TO_READ: &str = "\
 *Each column of the lowest picture is a step, each row a combination of settings, by method, \
 low-pass, α and β from top to bottom. A row with much orange or blue is a setting that differs; \
-such a column is a delay that hangs on a setting. Right and left arrow go from setting to setting; \
+such a column is a delay that is sensitive to a setting. Right and left arrow go from setting to setting; \
 on the timeline `segment` from step to step, and the page* One step *has its output.*";
 
 fn capitalised(sentence: &str) -> String {
@@ -79,7 +79,7 @@ fn setting(swept: &Swept<'_>, run: usize) -> Written {
     writeln!(page, "## {name}\n")?;
     writeln!(page, "| setting {} of {} | |\n|---|---|", run + 1, swept.names.len())?;
     let votes = swept.votes.get(run).copied().unwrap_or(0);
-    writeln!(page, "| combinations that it stands for | {votes} |")?;
+    writeln!(page, "| combinations that it represents | {votes} |")?;
     let Some(summary) = swept.reported.sweep.runs.get(run).and_then(Option::as_ref) else {
         writeln!(page, "| | **it cannot be used on this record** |")?;
         return Ok(page);
@@ -135,7 +135,7 @@ fn one_step(swept: &Swept<'_>, step: &SweptStep) -> Written {
     }
     let on = hangs_on(swept.grid, step);
     let on = if on.is_empty() { "no setting".to_owned() } else { on };
-    writeln!(page, "| hangs on | {} |", plain(&on))?;
+    writeln!(page, "| sensitive to | {} |", plain(&on))?;
     let Some(hanging) = &step.delay_hangs_on else { return Ok(page) };
     writeln!(page, "\n| {} | median delay | agree with most |\n|---|---|---|", hanging.factor)?;
     for (level, told) in hanging.levels.iter().enumerate() {
@@ -148,7 +148,7 @@ fn one_step(swept: &Swept<'_>, step: &SweptStep) -> Written {
     Ok(page)
 }
 
-/// A line for each step that hangs on a setting, in the order of the record.
+/// A line for each step that is sensitive to a setting, in the order of the record.
 fn add_list(chunks: &mut Chunks, entity: EntityPath, swept: &Swept<'_>) -> Result<(), RecordError> {
     let (mut index, mut lines) = (Index::default(), Vec::new());
     let places = &swept.index;

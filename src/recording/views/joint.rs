@@ -242,7 +242,7 @@ impl Views<'_> {
         builder.container(ContainerKind::Horizontal, "Revisions", &columns, &[7.3, 2.7])
     }
 
-    /// Models beside the measurement, and what is left.
+    /// Models beside the measurement, and their residuals.
     fn models(&mut self, models: &[&ComparedJoint<'_>]) -> Result<Node, RecordError> {
         let names: Vec<&str> = models.iter().map(|model| model.model).collect();
         let root = self.at(paths::MODEL);
@@ -282,7 +282,7 @@ impl Views<'_> {
             (&[paths::error_share::BARS], models),
         );
         let correlation = self.sheet(
-            ("Correlation: chance stays between the lines (99 %)", correlogram::SIZE),
+            ("Correlation: that of noise stays between the lines (99 %)", correlogram::SIZE),
             (correlation::ROOT, &correlation::PARTS),
             (&[correlation::BAND, correlation::CURVE], models),
         );
