@@ -124,20 +124,24 @@ pub(super) struct Intent {
     speed: f64,
 }
 
+/// A step to be tried out in advance.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Attempt {
+    pub(super) intent: Intent,
+    /// Lowest and highest angle allowed from when it acts, in output units.
+    pub(super) range: [f64; 2],
+    /// Until when, in seconds.
+    pub(super) end_s: f64,
+}
+
 /// How an experimenter knows where a joint will be.
 pub(super) trait Foresight {
-    /// How far the joint, driven by `drive`, goes beyond `range` from when `intent` acts
-    /// until `end_s`, in output units.
+    /// How far the joint, driven by `drive` and then by `attempt`, goes beyond its range, in
+    /// output units.
     ///
     /// # Errors
     /// [`PlantError::Runaway`].
-    fn excess(
-        &self,
-        drive: &Drive,
-        intent: Intent,
-        range: [f64; 2],
-        end_s: f64,
-    ) -> Result<f64, PlantError>;
+    fn excess(&self, drive: &Drive, attempt: &Attempt) -> Result<f64, PlantError>;
 
     /// Draws after which the level with the least excess is taken, if there is one.
     fn patience(&self) -> Option<usize>;
@@ -147,13 +151,8 @@ pub(super) trait Foresight {
 pub(super) struct Unhindered;
 
 impl Foresight for Unhindered {
-    fn excess(
-        &self,
-        drive: &Drive,
-        intent: Intent,
-        range: [f64; 2],
-        end_s: f64,
-    ) -> Result<f64, PlantError> {
+    fn excess(&self, drive: &Drive, attempt: &Attempt) -> Result<f64, PlantError> {
+        let Attempt { intent, range, end_s } = *attempt;
         let from = drive.arrivals.angle_at(intent.acts_s);
         let to = from + intent.speed * (end_s - intent.acts_s).max(0.0);
         Ok(beyond(from, range).max(beyond(to, range)))
@@ -300,7 +299,7 @@ impl<'a> Driver<'a> {
         let intent = self.intent(sample, level, chance)?;
         let next = self.clock.time_s(sample.saturating_add(hold)) + self.joint.longest_delay_s();
         let end_s = next.min(self.clock.time_s(self.clock.samples()));
-        foresight.excess(&self.drive, intent, range, end_s)
+        foresight.excess(&self.drive, &Attempt { intent, range, end_s })
     }
 
     /// The step to `level` at `sample`.

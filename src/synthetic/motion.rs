@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use super::clock::Clock;
-use super::drive::{Drive, Foresight, Intent, beyond};
+use super::drive::{Attempt, Drive, Foresight, beyond};
 use super::effects::{CreepMemory, MEMORIES, SupplyDroop, Valve};
 use super::error::PlantError;
 use super::spec::{JointSpec, Ringing};
@@ -275,13 +275,8 @@ impl<'a> Motion<'a> {
 /// What no level can help does not count: only how far it goes beyond where it is when
 /// the level begins to act.
 impl Foresight for Motion<'_> {
-    fn excess(
-        &self,
-        drive: &Drive,
-        intent: Intent,
-        range: [f64; 2],
-        end_s: f64,
-    ) -> Result<f64, PlantError> {
+    fn excess(&self, drive: &Drive, attempt: &Attempt) -> Result<f64, PlantError> {
+        let Attempt { intent, range, end_s } = *attempt;
         let mut drive = drive.clone();
         drive.push(intent);
         let mut ahead = self.clone();

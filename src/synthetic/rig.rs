@@ -2,7 +2,7 @@
 
 use super::clock::Clock;
 use super::cylinder::{CylinderSpec, Machine, State};
-use super::drive::{Drive, Driver, Foresight, Intent, beyond};
+use super::drive::{Attempt, Drive, Driver, Foresight, beyond};
 use super::driven::Driven;
 use super::error::{Place, PlantError};
 use super::spec::JointSpec;
@@ -132,13 +132,8 @@ impl<'a> Rig<'a> {
 /// Where the level before leads out of the range, this one must not lead further.
 impl Foresight for Rig<'_> {
     /// That of the first sample outside, which is enough as there is no patience.
-    fn excess(
-        &self,
-        drive: &Drive,
-        intent: Intent,
-        range: [f64; 2],
-        end_s: f64,
-    ) -> Result<f64, PlantError> {
+    fn excess(&self, drive: &Drive, attempt: &Attempt) -> Result<f64, PlantError> {
+        let Attempt { intent, range, end_s } = *attempt;
         let mut drive = drive.clone();
         drive.push(intent);
         let mut ahead = self.clone();
