@@ -9,7 +9,7 @@ use std::process::Command;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Words of which a message needs one to tell what to do.
+/// Words of which a message needs one to say what to do.
 const REMEDIES: [&str; 12] = [
     "`--", "remove", "rename", "mend", "correct", "give", "mark", "choose", "check", "write",
     "expected", "needs",
@@ -94,11 +94,11 @@ fn seconds(time: f64) -> String {
 }
 
 /// A folder of its own, in which the program runs.
-struct Desk {
+struct Workspace {
     folder: TempDir,
 }
 
-impl Desk {
+impl Workspace {
     fn new() -> Self {
         Self { folder: tempfile::tempdir().unwrap() }
     }
@@ -188,9 +188,9 @@ impl Outcome {
         self
     }
 
-    fn tells_what_to_do(&self) {
-        let tells = REMEDIES.iter().any(|word| self.stderr.contains(word));
-        assert!(tells, "no remedy in: {}", self.stderr);
+    fn says_what_to_do(&self) {
+        let says = REMEDIES.iter().any(|word| self.stderr.contains(word));
+        assert!(says, "no remedy in: {}", self.stderr);
     }
 
     fn lines(&self, start: &str) -> usize {
@@ -209,7 +209,7 @@ fn boom() -> Log {
 
 #[test]
 fn the_log_of_these_tests_is_good() {
-    let outcome = Desk::new().with_log(&boom()).estimate("log.csv --format json");
+    let outcome = Workspace::new().with_log(&boom()).estimate("log.csv --format json");
     outcome.is_whole();
     assert_eq!(outcome.joints()[0]["accepted"], 3, "{}", outcome.stdout);
     assert_eq!(outcome.stderr, "");
@@ -217,49 +217,49 @@ fn the_log_of_these_tests_is_good() {
 
 #[test]
 fn a_missing_file_is_named() {
-    Desk::new().estimate("absent.csv").is_refused().says(&["absent.csv"]);
+    Workspace::new().estimate("absent.csv").is_refused().says(&["absent.csv"]);
 }
 
 #[test]
 fn a_file_with_nothing_in_it_is_refused() {
     for text in ["", "\n", "\n\n\n", "\u{feff}", "# only a comment\n"] {
-        let desk = Desk::new().with("log.csv", text);
-        desk.estimate("log.csv").is_refused().says(&["log.csv", "empty"]).tells_what_to_do();
+        let workspace = Workspace::new().with("log.csv", text);
+        workspace.estimate("log.csv").is_refused().says(&["log.csv", "empty"]).says_what_to_do();
     }
 }
 
 #[test]
 fn a_header_without_samples_is_refused() {
     for text in ["time_s,boom.input,boom.output", "time_s,boom.input,boom.output\n# end\n\n"] {
-        let desk = Desk::new().with("log.csv", text);
-        desk.estimate("log.csv").is_refused().says(&["log.csv", "header", "sample"]);
+        let workspace = Workspace::new().with("log.csv", text);
+        workspace.estimate("log.csv").is_refused().says(&["log.csv", "header", "sample"]);
     }
 }
 
 #[test]
 fn a_single_sample_is_refused() {
-    let outcome = Desk::new().with_log(&boom().samples(1)).estimate("log.csv");
-    outcome.is_refused().says(&["log.csv", "row 2", "one row"]).tells_what_to_do();
+    let outcome = Workspace::new().with_log(&boom().samples(1)).estimate("log.csv");
+    outcome.is_refused().says(&["log.csv", "row 2", "one row"]).says_what_to_do();
 }
 
 #[test]
 fn a_signal_that_is_missing_is_named() {
     for column in ["boom.input", "boom.output"] {
-        let outcome = Desk::new().with_log(&boom().without(column)).estimate("log.csv");
+        let outcome = Workspace::new().with_log(&boom().without(column)).estimate("log.csv");
         outcome.is_refused().says(&["log.csv", "row 1", &format!("`{column}`")]);
     }
 }
 
 #[test]
 fn a_misspelt_signal_is_offered_in_its_right_spelling() {
-    let desk = Desk::new().with_log(&boom().renamed("boom.output", "boom.outptu"));
+    let workspace = Workspace::new().with_log(&boom().renamed("boom.output", "boom.outptu"));
     let says = ["log.csv", "row 1", "`boom.output`", "did you mean `boom.outptu`?"];
-    desk.estimate("log.csv").is_refused().says(&says);
+    workspace.estimate("log.csv").is_refused().says(&says);
 }
 
 #[test]
 fn a_log_without_time_is_refused_with_both_remedies() {
-    let outcome = Desk::new().with_log(&boom().without("time_s")).estimate("log.csv");
+    let outcome = Workspace::new().with_log(&boom().without("time_s")).estimate("log.csv");
     outcome.is_refused().says(&[
         "log.csv",
         "row 1",
@@ -272,26 +272,26 @@ fn a_log_without_time_is_refused_with_both_remedies() {
 fn a_log_without_joints_is_refused_with_its_columns() {
     let log = boom().renamed("boom.input", "u").renamed("boom.output", "y");
     let says = ["log.csv", "row 1", "no joint", "time_s, u, y", "`--joint NAME="];
-    Desk::new().with_log(&log).estimate("log.csv").is_refused().says(&says);
+    Workspace::new().with_log(&log).estimate("log.csv").is_refused().says(&says);
 }
 
 #[test]
 fn a_mapped_column_that_is_missing_is_named() {
-    let desk = Desk::new().with_log(&boom());
+    let workspace = Workspace::new().with_log(&boom());
     for (option, column) in [
         ("--joint arm=boom.input:angle", "angle"),
         ("--joint arm=valve:boom.output", "valve"),
         ("--time clock", "clock"),
         ("--trial repetition", "repetition"),
     ] {
-        let outcome = desk.estimate(&format!("log.csv {option}"));
+        let outcome = workspace.estimate(&format!("log.csv {option}"));
         outcome.is_refused().says(&["log.csv", "row 1", &format!("`{column}`"), "boom.input"]);
     }
 }
 
 #[test]
 fn an_unknown_joint_is_refused_with_those_that_are_there() {
-    let outcome = Desk::new().with_log(&boom()).estimate("log.csv --joint bom");
+    let outcome = Workspace::new().with_log(&boom()).estimate("log.csv --joint bom");
     outcome.is_refused().says(&["log.csv", "`bom`", "did you mean `boom`?"]);
 }
 
@@ -300,9 +300,9 @@ fn text_in_a_number_cell_is_named_with_its_place() {
     for (column, text) in
         [("boom.input", "n/a"), ("boom.output", "12.x"), ("time_s", "noon"), ("time_s", "")]
     {
-        let desk = Desk::new().with_log(&boom().cell(17, column, text));
+        let workspace = Workspace::new().with_log(&boom().cell(17, column, text));
         let says = ["log.csv", "row 17", &format!("`{column}`")];
-        desk.estimate("log.csv").is_refused().says(&says).tells_what_to_do();
+        workspace.estimate("log.csv").is_refused().says(&says).says_what_to_do();
     }
 }
 
@@ -310,39 +310,40 @@ fn text_in_a_number_cell_is_named_with_its_place() {
 fn a_decimal_comma_gets_the_advice_to_write_a_point() {
     let text = boom().text().replace(',', ";").replace('.', ",").replace("boom,", "boom.");
     let says = ["log.csv", "row 2", "`time_s`", "0,0000", "with a point"];
-    Desk::new().with("log.csv", text).estimate("log.csv").is_refused().says(&says);
+    Workspace::new().with("log.csv", text).estimate("log.csv").is_refused().says(&says);
 }
 
 #[test]
 fn a_cell_without_a_finite_number_is_named_with_its_place() {
     for text in ["NaN", "nan", "", "inf", "-inf", "Infinity", "1e999"] {
         for column in ["boom.input", "boom.output"] {
-            let desk = Desk::new().with_log(&boom().cell(17, column, text));
+            let workspace = Workspace::new().with_log(&boom().cell(17, column, text));
             let says = ["log.csv", "row 17", &format!("`{column}`")];
-            desk.estimate("log.csv").is_refused().says(&says).tells_what_to_do();
+            workspace.estimate("log.csv").is_refused().says(&says).says_what_to_do();
         }
     }
 }
 
 #[test]
 fn an_input_that_was_never_measured_is_named_even_when_gaps_may_be_filled() {
-    let desk = Desk::new().with_log(&boom().column("boom.input", |_| String::new()));
-    let outcome = desk.estimate("log.csv --fill 1");
+    let workspace = Workspace::new().with_log(&boom().column("boom.input", |_| String::new()));
+    let outcome = workspace.estimate("log.csv --fill 1");
     outcome.is_refused().says(&["log.csv", "`boom.input`"]);
 }
 
 #[test]
 fn a_row_of_another_length_is_named() {
     for count in [1, 2, 4, 9] {
-        let outcome = Desk::new().with_log(&boom().cells(17, count)).estimate("log.csv");
+        let outcome = Workspace::new().with_log(&boom().cells(17, count)).estimate("log.csv");
         let says = ["log.csv", "row 17", &format!("{count} cells"), "has 3"];
-        outcome.is_refused().says(&says).tells_what_to_do();
+        outcome.is_refused().says(&says).says_what_to_do();
     }
 }
 
 #[test]
 fn a_quotation_mark_that_is_never_closed_is_named_where_it_opens() {
-    let outcome = Desk::new().with_log(&boom().cell(17, "boom.input", "\"1")).estimate("log.csv");
+    let outcome =
+        Workspace::new().with_log(&boom().cell(17, "boom.input", "\"1")).estimate("log.csv");
     outcome.is_refused().says(&["log.csv", "row 17"]);
 }
 
@@ -350,72 +351,72 @@ fn a_quotation_mark_that_is_never_closed_is_named_where_it_opens() {
 fn two_columns_of_one_name_are_refused() {
     let log = Log::of(&["boom", "arm"]);
     let log = log.renamed("arm.input", "boom.input").renamed("arm.output", "boom.output");
-    let outcome = Desk::new().with_log(&log).estimate("log.csv");
+    let outcome = Workspace::new().with_log(&log).estimate("log.csv");
     outcome.is_refused().says(&["log.csv", "row 1", "`boom.input`", "rename"]);
 }
 
 #[test]
 fn two_joints_of_one_name_are_refused() {
     let joint = "--joint boom=boom.input:boom.output";
-    let outcome = Desk::new().with_log(&boom()).estimate(&format!("log.csv {joint} {joint}"));
-    outcome.is_refused().says(&["`boom`"]).tells_what_to_do();
+    let outcome = Workspace::new().with_log(&boom()).estimate(&format!("log.csv {joint} {joint}"));
+    outcome.is_refused().says(&["`boom`"]).says_what_to_do();
 }
 
 #[test]
 fn time_that_goes_backwards_is_refused_where_it_does() {
-    let outcome = Desk::new().with_log(&boom().cell(17, "time_s", "0.01")).estimate("log.csv");
+    let outcome = Workspace::new().with_log(&boom().cell(17, "time_s", "0.01")).estimate("log.csv");
     outcome.is_refused().says(&["log.csv", "row 17", "0.14 s to 0.01 s", "`trial`"]);
 }
 
 #[test]
 fn time_that_stands_still_is_refused_where_it_does() {
-    let outcome = Desk::new().with_log(&boom().cell(17, "time_s", "0.14")).estimate("log.csv");
-    outcome.is_refused().says(&["log.csv", "row 17", "0.14 s"]).tells_what_to_do();
+    let outcome = Workspace::new().with_log(&boom().cell(17, "time_s", "0.14")).estimate("log.csv");
+    outcome.is_refused().says(&["log.csv", "row 17", "0.14 s"]).says_what_to_do();
 }
 
 #[test]
 fn two_time_steps_are_refused_where_the_second_begins() {
     let time = |k: usize| seconds(0.01 * k as f64 + 0.01 * k.saturating_sub(200) as f64);
-    let outcome = Desk::new().with_log(&boom().column("time_s", time)).estimate("log.csv");
+    let outcome = Workspace::new().with_log(&boom().column("time_s", time)).estimate("log.csv");
     outcome.is_refused().says(&["log.csv", "row 203", "0.02", "0.01 s", "`--resample 0.01`"]);
 }
 
 #[test]
 fn a_constant_input_gives_an_empty_result_that_says_so() {
     let log = boom().column("boom.input", |_| "1.5".to_owned());
-    let desk = Desk::new().with_log(&log);
-    let outcome = desk.estimate("log.csv --decisions d.csv --delays t.csv");
+    let workspace = Workspace::new().with_log(&log);
+    let outcome = workspace.estimate("log.csv --decisions d.csv --delays t.csv");
     outcome.is_whole();
     assert!(outcome.stdout.contains("the input never changes"), "{}", outcome.stdout);
-    assert_eq!(desk.text("d.csv").lines().count(), 1);
-    let delays = desk.text("t.csv");
+    assert_eq!(workspace.text("d.csv").lines().count(), 1);
+    let delays = workspace.text("t.csv");
     assert_eq!(delays.lines().count(), 301);
     assert!(delays.lines().skip(1).all(|line| line.ends_with(',')), "{delays}");
-    let joint = &desk.estimate("log.csv --format json").joints()[0];
+    let joint = &workspace.estimate("log.csv --format json").joints()[0];
     assert_eq!((&joint["steps"], &joint["accepted"]), (&0.into(), &0.into()));
     assert_eq!((&joint["delay_s"], &joint["decisions"]), (&Value::Null, &Value::Array(vec![])));
 }
 
 #[test]
 fn an_input_that_changes_at_every_sample_works_with_a_note() {
-    let desk = Desk::new().with_log(&boom().column("boom.input", |k| k.to_string()));
-    let outcome = desk.estimate("log.csv --format json");
+    let workspace = Workspace::new().with_log(&boom().column("boom.input", |k| k.to_string()));
+    let outcome = workspace.estimate("log.csv --format json");
     outcome.is_whole().says(&["note: ", "`boom`", "299 of 300", "`--min-step X`"]);
     assert_eq!(outcome.joints()[0]["steps"], 299);
-    assert_eq!(desk.estimate("log.csv --quiet").is_whole().stderr, "");
+    assert_eq!(workspace.estimate("log.csv --quiet").is_whole().stderr, "");
 }
 
 #[test]
 fn fewer_samples_than_two_rows_are_refused() {
-    let desk = Desk::new().with_log(&boom().samples(9));
+    let workspace = Workspace::new().with_log(&boom().samples(9));
     let says = ["log.csv", "9 samples", "10", "`--beta`"];
-    desk.estimate("log.csv").is_refused().says(&says);
-    desk.estimate("log.csv --beta 4").is_whole();
+    workspace.estimate("log.csv").is_refused().says(&says);
+    workspace.estimate("log.csv --beta 4").is_whole();
 }
 
 #[test]
 fn settings_out_of_range_are_refused_with_their_name() {
-    let desk = Desk::new().with_log(&boom());
+    let workspace = Workspace::new().with_log(&boom());
     for (setting, name) in [
         ("--alpha 0", "--alpha"),
         ("--beta 0", "--beta"),
@@ -440,35 +441,35 @@ fn settings_out_of_range_are_refused_with_their_name() {
         ("--fill=-1", "--fill"),
         ("--sample-period 0", "--sample-period"),
     ] {
-        desk.estimate(&format!("log.csv {setting}")).is_refused().says(&[name]);
+        workspace.estimate(&format!("log.csv {setting}")).is_refused().says(&[name]);
     }
 }
 
 #[test]
 fn a_row_of_more_samples_than_can_be_counted_is_refused() {
-    let outcome = Desk::new().with_log(&boom()).estimate("log.csv --beta 9223372036854775808");
+    let outcome = Workspace::new().with_log(&boom()).estimate("log.csv --beta 9223372036854775808");
     outcome.is_refused().says(&["`--beta`"]);
 }
 
 #[test]
 fn a_negative_number_is_refused_with_the_name_of_its_option() {
-    let desk = Desk::new().with_log(&boom());
+    let workspace = Workspace::new().with_log(&boom());
     for name in ["--alpha", "--beta", "--passband", "--min-slope-change", "--fill", "--resample"] {
-        desk.estimate(&format!("log.csv {name} -1")).is_refused().says(&[name]);
+        workspace.estimate(&format!("log.csv {name} -1")).is_refused().says(&[name]);
     }
 }
 
 #[test]
 fn a_grid_of_more_samples_than_can_be_counted_is_refused() {
-    let outcome = Desk::new().with_log(&boom()).estimate("log.csv --resample 1e-300");
+    let outcome = Workspace::new().with_log(&boom()).estimate("log.csv --resample 1e-300");
     outcome.is_refused().says(&["log.csv", "resample"]);
 }
 
 #[test]
 fn a_smoothing_that_cannot_be_designed_is_refused() {
-    let desk = Desk::new().with_log(&boom());
+    let workspace = Workspace::new().with_log(&boom());
     for setting in ["--passband 1e-320", "--passband 1e-9", "--sample-period 1e-320"] {
-        desk.estimate(&format!("log.csv {setting}")).is_refused().says(&["passband"]);
+        workspace.estimate(&format!("log.csv {setting}")).is_refused().says(&["passband"]);
     }
 }
 
@@ -477,8 +478,9 @@ fn numbers_whose_squares_are_no_numbers_are_refused_or_judged_like_others() {
     let good = boom();
     let angle = |k: usize| good.lines[k + 1][2].clone();
     for exponent in ["e200", "e-200"] {
-        let desk = Desk::new().with_log(&boom().column("boom.output", |k| angle(k) + exponent));
-        let outcome = desk.estimate("log.csv --format json");
+        let workspace =
+            Workspace::new().with_log(&boom().column("boom.output", |k| angle(k) + exponent));
+        let outcome = workspace.estimate("log.csv --format json");
         if outcome.status == Some(0) {
             assert_eq!(outcome.joints()[0]["accepted"], 3, "{exponent}: {}", outcome.stdout);
         } else {
@@ -489,31 +491,34 @@ fn numbers_whose_squares_are_no_numbers_are_refused_or_judged_like_others() {
 
 #[test]
 fn a_filter_order_that_is_too_high_is_refused_with_its_name() {
-    let outcome = Desk::new().with_log(&boom()).estimate("log.csv --filter-order 13");
+    let outcome = Workspace::new().with_log(&boom()).estimate("log.csv --filter-order 13");
     outcome.is_refused().says(&["filter order", "13", "12"]);
 }
 
 #[test]
 fn a_smoothing_that_the_log_is_too_slow_for_says_what_it_allows() {
-    let outcome = Desk::new().with_log(&boom()).estimate("log.csv --passband 50");
+    let outcome = Workspace::new().with_log(&boom()).estimate("log.csv --passband 50");
     outcome.is_refused().says(&["50 Hz", "Nyquist", "`--passband none`"]);
 }
 
 #[test]
 fn an_output_folder_that_is_missing_is_named() {
-    let desk = Desk::new().with_log(&boom());
+    let workspace = Workspace::new().with_log(&boom());
     for option in ["--decisions", "--delays", "-o"] {
-        let outcome = desk.estimate(&format!("log.csv {option} absent/out.csv"));
+        let outcome = workspace.estimate(&format!("log.csv {option} absent/out.csv"));
         outcome.is_refused().says(&["absent"]);
     }
 }
 
 #[test]
 fn an_output_below_a_file_or_on_a_folder_is_refused() {
-    let desk = Desk::new().with_log(&boom());
-    desk.estimate("log.csv --decisions log.csv/out.csv").is_refused().says(&["log.csv/out.csv"]);
-    fs::create_dir(desk.path("folder")).unwrap();
-    desk.estimate("log.csv --decisions folder").is_refused().says(&["folder"]);
+    let workspace = Workspace::new().with_log(&boom());
+    workspace
+        .estimate("log.csv --decisions log.csv/out.csv")
+        .is_refused()
+        .says(&["log.csv/out.csv"]);
+    fs::create_dir(workspace.path("folder")).unwrap();
+    workspace.estimate("log.csv --decisions folder").is_refused().says(&["folder"]);
 }
 
 #[cfg(unix)]
@@ -521,23 +526,23 @@ fn an_output_below_a_file_or_on_a_folder_is_refused() {
 fn an_output_folder_that_cannot_be_written_to_is_named() {
     use std::os::unix::fs::PermissionsExt as _;
 
-    let desk = Desk::new().with_log(&boom());
-    let locked = desk.path("locked");
+    let workspace = Workspace::new().with_log(&boom());
+    let locked = workspace.path("locked");
     fs::create_dir(&locked).unwrap();
     fs::set_permissions(&locked, fs::Permissions::from_mode(0o555)).unwrap();
     if fs::write(locked.join("probe"), "").is_ok() {
         eprintln!("skipped: this user may write to every folder");
         return;
     }
-    desk.estimate("log.csv --decisions locked/out.csv").is_refused().says(&["locked/out.csv"]);
+    workspace.estimate("log.csv --decisions locked/out.csv").is_refused().says(&["locked/out.csv"]);
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_told_with_the_name_of_the_file() {
-    let desk = Desk::new().with_log(&boom());
+    let workspace = Workspace::new().with_log(&boom());
     for option in ["--decisions", "--delays"] {
-        let outcome = desk.estimate(&format!("log.csv {option} /dev/full"));
+        let outcome = workspace.estimate(&format!("log.csv {option} /dev/full"));
         outcome.is_refused().says(&["No space left", "/dev/full"]);
     }
 }
@@ -547,12 +552,12 @@ fn a_full_disk_is_told_with_the_name_of_the_file() {
 fn a_full_disk_leaves_the_other_output_as_it_was_or_whole() {
     for other in ["--delays", "--decisions"] {
         let full = if other == "--delays" { "--decisions" } else { "--delays" };
-        let desk = Desk::new().with_log(&boom()).with("old.csv", "old");
-        let whole = Desk::new().with_log(&boom());
+        let workspace = Workspace::new().with_log(&boom()).with("old.csv", "old");
+        let whole = Workspace::new().with_log(&boom());
         whole.estimate(&format!("log.csv {other} new.csv")).is_whole();
-        let outcome = desk.estimate(&format!("log.csv {full} /dev/full {other} old.csv"));
+        let outcome = workspace.estimate(&format!("log.csv {full} /dev/full {other} old.csv"));
         assert_eq!(outcome.status, Some(2), "{outcome:#?}");
-        let found = desk.text("old.csv");
+        let found = workspace.text("old.csv");
         assert!(found == "old" || found == whole.text("new.csv"), "{found}");
     }
 }
@@ -560,46 +565,47 @@ fn a_full_disk_leaves_the_other_output_as_it_was_or_whole() {
 #[test]
 fn an_output_that_exists_stands_when_the_run_fails() {
     let bad = boom().cell(200, "boom.output", "x");
-    let desk = Desk::new().with_log(&bad).with("d.csv", "old decisions").with("t.csv", "old");
+    let workspace =
+        Workspace::new().with_log(&bad).with("d.csv", "old decisions").with("t.csv", "old");
     for arguments in [
         "log.csv --decisions d.csv --delays t.csv",
         "absent.csv --decisions d.csv --delays t.csv",
         "log.csv --decisions d.csv --delays absent/t.csv",
         "log.csv --beta 0 --decisions d.csv --delays t.csv",
     ] {
-        desk.estimate(arguments).is_refused();
+        workspace.estimate(arguments).is_refused();
     }
-    let outcome = desk.with_log(&boom());
+    let outcome = workspace.with_log(&boom());
     outcome.estimate("log.csv --passband 60 --decisions d.csv --delays t.csv").is_refused();
 }
 
 #[test]
 fn an_output_that_exists_is_replaced_when_the_new_one_is_whole() {
-    let desk = Desk::new().with_log(&boom()).with("d.csv", "old\n".repeat(9999));
-    desk.estimate("log.csv --decisions d.csv").is_whole();
-    let found = desk.text("d.csv");
+    let workspace = Workspace::new().with_log(&boom()).with("d.csv", "old\n".repeat(9999));
+    workspace.estimate("log.csv --decisions d.csv").is_whole();
+    let found = workspace.text("d.csv");
     assert!(found.starts_with("joint,trial,i,p,"), "{found}");
     assert!(!found.contains("old"));
 }
 
 #[test]
 fn an_output_never_replaces_the_log_it_is_made_from() {
-    let desk = Desk::new().with_log(&boom());
+    let workspace = Workspace::new().with_log(&boom());
     for option in ["--decisions", "--delays"] {
-        desk.estimate(&format!("log.csv {option} ./log.csv")).is_refused().says(&["log.csv"]);
+        workspace.estimate(&format!("log.csv {option} ./log.csv")).is_refused().says(&["log.csv"]);
     }
 }
 
 #[test]
 fn two_outputs_of_one_name_are_refused() {
-    let desk = Desk::new().with_log(&boom());
-    desk.estimate("log.csv --decisions a.csv --delays a.csv").is_refused().says(&["a.csv"]);
+    let workspace = Workspace::new().with_log(&boom());
+    workspace.estimate("log.csv --decisions a.csv --delays a.csv").is_refused().says(&["a.csv"]);
 }
 
 #[test]
 fn a_bad_joint_does_not_change_the_good_one_beside_it() {
     let all = "log.csv --decisions d.csv --delays t.csv --format json";
-    let good = Desk::new().with_log(&boom());
+    let good = Workspace::new().with_log(&boom());
     let expected = good.estimate(all).is_whole().joints();
     let pair = Log::of(&["boom", "arm"]);
     for (bad, place) in [
@@ -611,30 +617,30 @@ fn a_bad_joint_does_not_change_the_good_one_beside_it() {
         (pair.clone().without("arm.output"), "row 1: column `arm.output`"),
         (pair.clone().without("arm.input"), "row 1: column `arm.input`"),
     ] {
-        let desk = Desk::new().with_log(&bad);
-        let outcome = desk.estimate(all);
+        let workspace = Workspace::new().with_log(&bad);
+        let outcome = workspace.estimate(all);
         outcome.is_partial(1).says(&["joint `arm`", "log.csv", place]);
         assert_eq!(outcome.joints(), expected);
-        assert_eq!(desk.text("d.csv"), good.text("d.csv"));
-        assert_eq!(desk.text("t.csv"), good.text("t.csv"));
+        assert_eq!(workspace.text("d.csv"), good.text("d.csv"));
+        assert_eq!(workspace.text("t.csv"), good.text("t.csv"));
         let json: Value = serde_json::from_str(&outcome.stdout).unwrap();
         let failure = json["failures"][0].as_str().unwrap();
         assert!(failure.contains(place), "{failure}");
-        let table = desk.estimate("log.csv");
+        let table = workspace.estimate("log.csv");
         assert!(table.is_partial(1).stdout.contains("boom"), "{}", table.stdout);
     }
 }
 
 #[test]
 fn a_joint_that_was_asked_for_and_is_not_there_leaves_the_others() {
-    let outcome = Desk::new().with_log(&boom()).estimate("log.csv --joint boom --joint arm");
+    let outcome = Workspace::new().with_log(&boom()).estimate("log.csv --joint boom --joint arm");
     outcome.is_partial(1).says(&["`arm`", "log.csv"]);
     assert!(outcome.stdout.contains("boom"), "{}", outcome.stdout);
 }
 
 #[test]
 fn a_bad_file_beside_a_good_one_is_left_out() {
-    let good = Desk::new().with("good.csv", boom().text());
+    let good = Workspace::new().with("good.csv", boom().text());
     good.estimate("good.csv --decisions d.csv").is_whole();
     // With several files a trial is named after its file.
     let expected = good.text("d.csv").replace("boom,1,", "boom,good,");
@@ -645,12 +651,12 @@ fn a_bad_file_beside_a_good_one_is_left_out() {
         (boom().cell(17, "boom.output", "x").text(), "bad.csv, row 17, column `boom.output`"),
         (boom().cell(17, "time_s", "0").text(), "bad.csv, row 17"),
     ] {
-        let desk = Desk::new().with("good.csv", boom().text()).with("bad.csv", bad);
+        let workspace = Workspace::new().with("good.csv", boom().text()).with("bad.csv", bad);
         for files in ["good.csv bad.csv", "bad.csv good.csv", "."] {
-            let outcome = desk.estimate(&format!("{files} --decisions d.csv"));
+            let outcome = workspace.estimate(&format!("{files} --decisions d.csv"));
             outcome.is_partial(1).says(&[place]);
-            assert_eq!(desk.text("d.csv"), expected, "{files}");
-            fs::remove_file(desk.path("d.csv")).unwrap();
+            assert_eq!(workspace.text("d.csv"), expected, "{files}");
+            fs::remove_file(workspace.path("d.csv")).unwrap();
         }
     }
     let outcome = good.estimate("good.csv absent.csv");
@@ -663,10 +669,10 @@ fn steps_of_a_trial_that_is_too_short_are_rejected_beside_good_ones() {
     let trial = |k: usize| if k < 296 { "long" } else { "short" }.to_owned();
     let log = Log::of(&["boom", "x"]).renamed("x.input", "trial").without("x.output");
     let log = log.cell(300, "boom.input", "9").cell(301, "boom.input", "9");
-    let desk = Desk::new().with_log(&log.column("trial", trial));
-    let outcome = desk.estimate("log.csv --decisions steps.csv");
+    let workspace = Workspace::new().with_log(&log.column("trial", trial));
+    let outcome = workspace.estimate("log.csv --decisions steps.csv");
     outcome.is_whole();
-    let rows = desk.text("steps.csv");
+    let rows = workspace.text("steps.csv");
     let short: Vec<_> = rows.lines().filter(|row| row.contains(",short,")).collect();
     assert_eq!(short.len(), 1, "{rows}");
     assert!(short[0].ends_with("first_or_last,first_or_last too_short"), "{rows}");
@@ -674,18 +680,18 @@ fn steps_of_a_trial_that_is_too_short_are_rejected_beside_good_ones() {
 
 #[test]
 fn a_folder_without_logs_is_named() {
-    let desk = Desk::new().with_log(&boom());
-    fs::create_dir(desk.path("folder")).unwrap();
-    desk.estimate("folder").is_refused().says(&["folder", ".csv"]);
-    desk.estimate("log.csv folder").is_partial(1).says(&["folder", ".csv"]);
+    let workspace = Workspace::new().with_log(&boom());
+    fs::create_dir(workspace.path("folder")).unwrap();
+    workspace.estimate("folder").is_refused().says(&["folder", ".csv"]);
+    workspace.estimate("log.csv folder").is_partial(1).says(&["folder", ".csv"]);
 }
 
 #[test]
 fn a_column_mapping_that_cannot_be_used_is_named() {
-    let desk = Desk::new().with_log(&boom()).with("map.toml", "tiem = 't'\n");
-    desk.estimate("log.csv --columns map.toml").is_refused().says(&["map.toml", "tiem"]);
-    desk.estimate("log.csv --columns absent.toml").is_refused().says(&["absent.toml"]);
-    desk.estimate("log.csv --joint =a:b").is_refused().says(&["`=a:b`", "NAME="]);
+    let workspace = Workspace::new().with_log(&boom()).with("map.toml", "tiem = 't'\n");
+    workspace.estimate("log.csv --columns map.toml").is_refused().says(&["map.toml", "tiem"]);
+    workspace.estimate("log.csv --columns absent.toml").is_refused().says(&["absent.toml"]);
+    workspace.estimate("log.csv --joint =a:b").is_refused().says(&["`=a:b`", "NAME="]);
 }
 
 #[test]
@@ -693,14 +699,14 @@ fn bytes_that_are_no_text_are_refused_with_their_place() {
     let header = b"time_s,boom.input,boom.output [\xb0]\n0,0,0\n0.01,0,0\n".as_slice();
     let cell = b"time_s,boom.input,boom.output\n0,0,0\n0.01,0,\xff\xfe\n".as_slice();
     for (bytes, row) in [(header, "row 1"), (cell, "row 3")] {
-        let outcome = Desk::new().with("log.csv", bytes).estimate("log.csv");
+        let outcome = Workspace::new().with("log.csv", bytes).estimate("log.csv");
         outcome.is_refused().says(&["log.csv", row]);
     }
 }
 
 /// `bad` is named in line 17, however its lines end.
 fn is_named_in_line_17(bad: &str) {
-    let outcome = Desk::new().with("log.csv", bad).estimate("log.csv");
+    let outcome = Workspace::new().with("log.csv", bad).estimate("log.csv");
     outcome.is_refused().says(&["row 17, column `boom.output`"]);
 }
 

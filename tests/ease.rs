@@ -157,7 +157,7 @@ fn doctor_asks_the_viewer_for_its_version() {
     let answers = [
         ("echo rerun-cli 0.36.3 '(base map_view)'", "ok", "rerun 0.36.3"),
         ("echo rerun-cli 0.35.0", "missing", "recordings are made for 0.36.3"),
-        ("exit 1", "missing", "does not tell its version"),
+        ("exit 1", "missing", "does not report its version"),
     ];
     for (answer, state, found) in answers {
         let folder = tempfile::tempdir().unwrap();

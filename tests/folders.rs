@@ -10,19 +10,19 @@ use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate, w
 use tempfile::TempDir;
 
 /// A folder with a folder of logs.
-struct Desk {
+struct Workspace {
     folder: TempDir,
 }
 
-impl Desk {
+impl Workspace {
     /// Logs of two joints, a third of a minute each, no two alike.
     fn with_logs(count: u64) -> Self {
-        let desk = Self { folder: tempfile::tempdir().unwrap() };
-        fs::create_dir(desk.path("logs")).unwrap();
+        let workspace = Self { folder: tempfile::tempdir().unwrap() };
+        fs::create_dir(workspace.path("logs")).unwrap();
         for seed in 0..count {
-            desk.write_log(&format!("logs/run_{seed:02}.csv"), seed);
+            workspace.write_log(&format!("logs/run_{seed:02}.csv"), seed);
         }
-        desk
+        workspace
     }
 
     fn write_log(&self, name: &str, seed: u64) {
@@ -90,65 +90,70 @@ impl Outcome {
 
 #[test]
 fn the_table_of_all_decisions_is_that_of_each_log_behind_its_name() {
-    let desk = Desk::with_logs(3);
+    let workspace = Workspace::with_logs(3);
     for method in ["two-line", "hinge"] {
         let all = format!("estimate logs --results {method} --decisions all.csv --method {method}");
-        desk.run(&all).is_whole();
+        workspace.run(&all).is_whole();
         let mut expected = Vec::new();
         for number in 0..3 {
             let log = format!("logs/run_{number:02}.csv");
-            desk.run(&format!("estimate {log} --decisions one.csv --method {method}")).is_whole();
-            let one = desk.read("one.csv");
+            workspace
+                .run(&format!("estimate {log} --decisions one.csv --method {method}"))
+                .is_whole();
+            let one = workspace.read("one.csv");
             let mut lines = one.lines();
             let header = format!("file,{}", lines.next().unwrap());
             expected.extend((number == 0).then_some(header));
             expected.extend(lines.map(|line| format!("{log},{line}")));
         }
-        let found = desk.read("all.csv");
+        let found = workspace.read("all.csv");
         assert!(found.lines().eq(expected.iter()), "{method}:\n{found}\n{}", expected.join("\n"));
     }
 }
 
 #[test]
 fn what_is_done_and_unchanged_is_not_done_again() {
-    let desk = Desk::with_logs(3);
-    let first = desk.run("estimate logs --results kept --summary all.csv");
-    let table = desk.read("all.csv");
-    let again = desk.run("estimate logs --results kept --summary all.csv");
+    let workspace = Workspace::with_logs(3);
+    let first = workspace.run("estimate logs --results kept --summary all.csv");
+    let table = workspace.read("all.csv");
+    let again = workspace.run("estimate logs --results kept --summary all.csv");
     again.is_whole().says("3 of 3 logs are done already");
-    assert_eq!((again.out.as_str(), desk.read("all.csv")), (first.out.as_str(), table));
+    assert_eq!((again.out.as_str(), workspace.read("all.csv")), (first.out.as_str(), table));
 
-    desk.write_log("logs/run_01.csv", 40);
-    desk.run("estimate logs --results kept").is_whole().says("2 of 3 logs are done already");
-    let other = desk.run("estimate logs --results kept --beta 2");
+    workspace.write_log("logs/run_01.csv", 40);
+    workspace.run("estimate logs --results kept").is_whole().says("2 of 3 logs are done already");
+    let other = workspace.run("estimate logs --results kept --beta 2");
     assert!(!other.is_whole().error.contains("already"), "{}", other.error);
-    fs::write(desk.path("map.toml"), "time = \"time_s\"").unwrap();
+    fs::write(workspace.path("map.toml"), "time = \"time_s\"").unwrap();
     let map = "estimate logs --results kept --columns map.toml";
-    desk.run(map).is_whole();
-    desk.run(map).says("3 of 3 logs are done already");
-    fs::write(desk.path("map.toml"), "# changed\ntime = \"time_s\"").unwrap();
-    assert!(!desk.run(map).is_whole().error.contains("already"));
+    workspace.run(map).is_whole();
+    workspace.run(map).says("3 of 3 logs are done already");
+    fs::write(workspace.path("map.toml"), "# changed\ntime = \"time_s\"").unwrap();
+    assert!(!workspace.run(map).is_whole().error.contains("already"));
 }
 
 #[test]
 fn parts_merge_to_the_bytes_of_one_run() {
-    let desk = Desk::with_logs(5);
+    let workspace = Workspace::with_logs(5);
     let ending = if cfg!(feature = "parquet") { "parquet" } else { "summary.csv" };
     let tables = |name: &str| format!("--decisions {name}.csv --summary {name}.{ending}");
-    let one = desk.run(&format!("estimate logs --results one --threads 1 {}", tables("one")));
+    let one = workspace.run(&format!("estimate logs --results one --threads 1 {}", tables("one")));
     one.is_whole();
     for part in [3, 1, 2] {
         let command = format!("estimate logs --results parts_{part} --shard {part}/3 --threads 2");
-        desk.run(&command).is_whole().says(&format!("part {part} of 3"));
+        workspace.run(&command).is_whole().says(&format!("part {part} of 3"));
     }
-    let merged = desk.run(&format!("merge parts_2 parts_1 parts_3 {}", tables("merged")));
+    let merged = workspace.run(&format!("merge parts_2 parts_1 parts_3 {}", tables("merged")));
     assert_eq!(merged.is_whole().out, one.out);
     let mut compared = 0;
-    for entry in fs::read_dir(desk.folder.path()).unwrap() {
+    for entry in fs::read_dir(workspace.folder.path()).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
         if let Some(rest) = name.strip_prefix("one.") {
-            let merged = desk.path(&format!("merged.{rest}"));
-            assert!(fs::read(desk.path(&name)).unwrap() == fs::read(merged).unwrap(), "{name}");
+            let merged = workspace.path(&format!("merged.{rest}"));
+            assert!(
+                fs::read(workspace.path(&name)).unwrap() == fs::read(merged).unwrap(),
+                "{name}"
+            );
             compared += 1;
         }
     }
@@ -157,41 +162,41 @@ fn parts_merge_to_the_bytes_of_one_run() {
 
 #[test]
 fn a_part_that_is_missing_is_told() {
-    let desk = Desk::with_logs(4);
-    desk.run("estimate logs --results parts --shard 1/2").is_whole();
-    let merged = desk.run("merge parts --summary all.csv");
+    let workspace = Workspace::with_logs(4);
+    workspace.run("estimate logs --results parts --shard 1/2").is_whole();
+    let merged = workspace.run("merge parts --summary all.csv");
     assert_eq!(merged.status, Some(1));
     merged.says("2 of 4 logs have no result yet");
-    assert_eq!(desk.read("all.csv").lines().count(), 1 + 2 * 2);
+    assert_eq!(workspace.read("all.csv").lines().count(), 1 + 2 * 2);
 }
 
 #[test]
 fn a_log_that_fails_is_named_and_tried_again() {
-    let desk = Desk::with_logs(3);
-    fs::write(desk.path("logs/run_01.csv"), "time_s,boom.input\n0,1\n").unwrap();
+    let workspace = Workspace::with_logs(3);
+    fs::write(workspace.path("logs/run_01.csv"), "time_s,boom.input\n0,1\n").unwrap();
     for _ in 0..2 {
-        let found = desk.run("estimate logs --results kept --summary all.csv");
+        let found = workspace.run("estimate logs --results kept --summary all.csv");
         assert_eq!(found.status, Some(1));
         found.says("logs/run_01.csv, row 1: column `boom.output` is missing");
-        assert_eq!(desk.read("all.csv").lines().count(), 1 + 2 * 2);
+        assert_eq!(workspace.read("all.csv").lines().count(), 1 + 2 * 2);
     }
-    desk.write_log("logs/run_01.csv", 1);
-    desk.run("estimate logs --results kept").is_whole().says("2 of 3 logs are done already");
-    fs::write(desk.path("logs/run_01.csv"), "time_s,boom.input\n0,1\n").unwrap();
-    assert_eq!(desk.run("estimate logs --results kept").status, Some(1));
-    let merged = desk.run("merge kept");
+    workspace.write_log("logs/run_01.csv", 1);
+    workspace.run("estimate logs --results kept").is_whole().says("2 of 3 logs are done already");
+    fs::write(workspace.path("logs/run_01.csv"), "time_s,boom.input\n0,1\n").unwrap();
+    assert_eq!(workspace.run("estimate logs --results kept").status, Some(1));
+    let merged = workspace.run("merge kept");
     assert_eq!(merged.status, Some(1));
     merged.says("1 of 3 logs have no result yet");
 }
 
 #[test]
 fn a_joint_that_fails_is_told_by_the_run_and_by_the_merge() {
-    let desk = Desk::with_logs(2);
-    let log = desk.read("logs/run_01.csv");
+    let workspace = Workspace::with_logs(2);
+    let log = workspace.read("logs/run_01.csv");
     let broken = log.replacen("arm.output", "arm.outptu", 1);
-    fs::write(desk.path("logs/run_01.csv"), broken).unwrap();
+    fs::write(workspace.path("logs/run_01.csv"), broken).unwrap();
     for command in ["estimate logs --results kept", "estimate logs --results kept", "merge kept"] {
-        let found = desk.run(command);
+        let found = workspace.run(command);
         assert_eq!(found.status, Some(1), "{command}");
         found.says("joint `arm` is left out: logs/run_01.csv");
     }
@@ -199,8 +204,8 @@ fn a_joint_that_fails_is_told_by_the_run_and_by_the_merge() {
 
 #[test]
 fn joints_are_held_together_across_the_logs() {
-    let desk = Desk::with_logs(4);
-    let found = desk.run("estimate logs --results kept --format json");
+    let workspace = Workspace::with_logs(4);
+    let found = workspace.run("estimate logs --results kept --format json");
     let json: Value = serde_json::from_str(&found.is_whole().out).unwrap();
     assert_eq!(json["schema"], "tauscope/folder/1");
     assert_eq!(json["logs"].as_array().unwrap().len(), 4);
@@ -217,38 +222,39 @@ fn joints_are_held_together_across_the_logs() {
 
 #[test]
 fn improve_keeps_a_model_of_each_log() {
-    let desk = Desk::with_logs(2);
+    let workspace = Workspace::with_logs(2);
     let command = "improve logs --results kept --summary all.csv --effects dead_band,stiction";
-    desk.run(command).is_whole();
-    desk.run(command).is_whole().says("2 of 2 logs are done already");
-    let table = desk.read("all.csv");
+    workspace.run(command).is_whole();
+    workspace.run(command).is_whole().says("2 of 2 logs are done already");
+    let table = workspace.read("all.csv");
     assert!(table.starts_with("file,joint,verdict,revision,effects,train_rmse,validation_rmse"));
     assert_eq!(table.lines().count(), 1 + 2 * 2, "{table}");
-    let models = fs::read_dir(desk.path("kept")).unwrap().map(|entry| entry.unwrap().path());
+    let models = fs::read_dir(workspace.path("kept")).unwrap().map(|entry| entry.unwrap().path());
     let models: Vec<_> = models.filter(|path| path.extension().unwrap() == "toml").collect();
     assert_eq!(models.len(), 2);
     assert!(fs::read_to_string(&models[0]).unwrap().contains("[joint.boom]"));
-    assert!(!desk.path("model.toml").exists());
-    desk.run("merge kept --decisions all.csv").is_refused_with("makes no decisions");
+    assert!(!workspace.path("model.toml").exists());
+    workspace.run("merge kept --decisions all.csv").is_refused_with("makes no decisions");
 }
 
 #[test]
 fn what_makes_no_sense_is_refused_with_the_remedy() {
-    let desk = Desk::with_logs(2);
-    desk.run("estimate logs --shard 1/2").says("--results");
-    desk.run("estimate logs --results r --shard 3/2").says("expected K/N");
-    desk.run("estimate logs --results r --delays d.csv").is_refused_with("it is for one log");
-    desk.run("estimate logs --results r --shard 1/2 --summary s.csv")
+    let workspace = Workspace::with_logs(2);
+    workspace.run("estimate logs --shard 1/2").says("--results");
+    workspace.run("estimate logs --results r --shard 3/2").says("expected K/N");
+    workspace.run("estimate logs --results r --delays d.csv").is_refused_with("it is for one log");
+    workspace
+        .run("estimate logs --results r --shard 1/2 --summary s.csv")
         .is_refused_with("give them to `tauscope merge`");
-    desk.run("estimate nowhere --results r").says("nowhere");
-    fs::create_dir(desk.path("empty")).unwrap();
-    desk.run("merge empty").is_refused_with("give those of `--results`");
-    desk.run("merge absent").is_refused_with("cannot be read as a folder of results");
-    desk.run("estimate logs --results one").is_whole();
-    desk.run("estimate logs --results two --beta 2").is_whole();
-    desk.run("merge one two").is_refused_with("merge results of one kind only");
-    fs::write(desk.path("one/other.json"), "{}").unwrap();
-    desk.run("merge one").is_refused_with("other.json: not a result of tauscope; remove it");
+    workspace.run("estimate nowhere --results r").says("nowhere");
+    fs::create_dir(workspace.path("empty")).unwrap();
+    workspace.run("merge empty").is_refused_with("give those of `--results`");
+    workspace.run("merge absent").is_refused_with("cannot be read as a folder of results");
+    workspace.run("estimate logs --results one").is_whole();
+    workspace.run("estimate logs --results two --beta 2").is_whole();
+    workspace.run("merge one two").is_refused_with("merge results of one kind only");
+    fs::write(workspace.path("one/other.json"), "{}").unwrap();
+    workspace.run("merge one").is_refused_with("other.json: not a result of tauscope; remove it");
 }
 
 /// The interpreter for the example, where it has what the example needs.
@@ -265,18 +271,18 @@ fn dask_makes_the_bytes_of_one_process() {
         return;
     };
     // Four logs for each of two workers.
-    let desk = Desk::with_logs(8);
-    desk.run("estimate logs --results one --decisions one.csv --beta 2").is_whole();
+    let workspace = Workspace::with_logs(8);
+    workspace.run("estimate logs --results one --decisions one.csv --beta 2").is_whole();
     let script = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("examples/dask/estimate_folder.py");
     let output = Command::new(python)
-        .current_dir(desk.folder.path())
+        .current_dir(workspace.folder.path())
         .arg(script)
         .args(["logs", "--results", "many", "--decisions", "many.csv", "--workers", "2"])
         .args(["--tauscope", env!("CARGO_BIN_EXE_tauscope"), "--", "--beta", "2"])
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    assert!(desk.read("many.csv") == desk.read("one.csv"));
+    assert!(workspace.read("many.csv") == workspace.read("one.csv"));
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(said.contains("8 logs, each by itself"), "{said}");
 }

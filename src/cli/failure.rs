@@ -2,12 +2,14 @@
 
 use anyhow::anyhow;
 
+use crate::cli::advice::advice;
 use crate::experiment::{Experiment, Failure};
 
-/// An error with its causes, in one line.
+/// An error with its causes and the option to use, in one line.
 pub(crate) fn said(error: &(dyn std::error::Error + 'static)) -> String {
     let causes = std::iter::successors(Some(error), |error| error.source());
-    causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
+    let advice: String = causes.clone().map(advice).collect();
+    causes.map(ToString::to_string).collect::<Vec<_>>().join(": ") + &advice
 }
 
 /// A message on a joint that failed.

@@ -7,8 +7,10 @@
 //! - `args`: options that several commands have
 //! - `viewer`: recordings shown while they are made
 //! - `output`: files, tables and recordings
+//! - `failure`, `advice`: what is said of errors, and the option to use
 //! - `console`: messages, results and progress on the terminal
 
+mod advice;
 mod args;
 mod command;
 mod console;

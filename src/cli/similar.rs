@@ -1,20 +1,10 @@
 //! The name that was probably meant.
 
-/// The one of `names` that is like `wanted`, where one is.
-pub(crate) fn nearest<'a>(
-    wanted: &str,
-    names: impl IntoIterator<Item = &'a str>,
-) -> Option<&'a str> {
-    /// Jaro-Winkler similarity from which a name is offered; clap uses the same.
-    const SIMILAR: f64 = 0.7;
-    let score = |name: &'a str| (strsim::jaro_winkler(wanted, name), name);
-    let best = names.into_iter().map(score).max_by(|a, b| a.0.total_cmp(&b.0));
-    best.filter(|(likeness, _)| *likeness > SIMILAR).map(|(_, name)| name)
-}
+use crate::experiment::nearest_name;
 
 /// `; did you mean …`, where one of `names` is like `wanted`; else nothing.
 pub(crate) fn did_you_mean<'a>(wanted: &str, names: impl IntoIterator<Item = &'a str>) -> String {
-    let near = nearest(wanted, names);
+    let near = nearest_name(wanted, names);
     near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"))
 }
 

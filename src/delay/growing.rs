@@ -15,15 +15,13 @@ use crate::numerics::FilterError;
 #[non_exhaustive]
 pub enum Growing {
     /// The method looks at the whole record before it decides on any step.
-    #[error("`{method}` looks at the whole record before it decides; expected `--method two-line`")]
+    #[error("`{method}` looks at the whole record before it decides")]
     Method {
         /// Its id.
         method: &'static str,
     },
     /// The chance of noise alone is judged by the noise of the whole record.
-    #[error(
-        "`--confidence` is judged by the noise of the whole record; expected `--confidence none`"
-    )]
+    #[error("the confidence is judged by the noise of the whole record")]
     Confidence,
 }
 

@@ -17,10 +17,7 @@ pub enum EstimateError {
     #[error(transparent)]
     Filter(#[from] FilterError),
     /// Every trial of a joint is shorter than two rows of β samples.
-    #[error(
-        "the longest trial has {samples} samples, but two lines need at least 2β = {needed}; \
-         choose a smaller `--beta`"
-    )]
+    #[error("the longest trial has {samples} samples, but two lines need at least 2β = {needed}")]
     TooFewSamples {
         /// Samples of the longest trial.
         samples: usize,

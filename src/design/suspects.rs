@@ -35,7 +35,7 @@ pub enum SuspectsError {
     #[error(transparent)]
     Fit(#[from] FitError),
     /// The noise of the record is not known.
-    #[error("no noise can be seen in the record: give it with --noise")]
+    #[error("no noise can be seen in the record")]
     NoNoise,
 }
 

@@ -1,6 +1,6 @@
 //! How much the other joints of a log do: what a shared pump feels.
 
-use super::{Joint, Trial};
+use super::joint::{Joint, Trial};
 
 /// The activity of all joints but the one at `index`, for each of its trials a value per
 /// sample, from 0 (all at rest) to 1 (all driven as hard as ever in the log).

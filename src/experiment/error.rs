@@ -1,8 +1,9 @@
-//! Why a log could not be read, with the place and the remedy.
+//! Why a log could not be read: the row, the column, what was found and what is expected.
 
 use std::path::PathBuf;
 
-use super::TrialError;
+use super::joint::TrialError;
+use super::names::shown;
 
 /// Why a log, or one joint of it, could not be read.
 ///
@@ -95,12 +96,12 @@ pub enum ReadError {
         path: PathBuf,
     },
     /// A folder holds no log.
-    #[error(
-        "{}: no log in this folder; logs end in {}", path.display(), super::format::endings()
-    )]
+    #[error("{}: no log in this folder; logs end in {endings}", path.display())]
     EmptyFolder {
         /// The folder.
         path: PathBuf,
+        /// How the names of logs end.
+        endings: String,
     },
     /// A row has more or fewer cells than the header.
     #[error(
@@ -187,8 +188,7 @@ pub enum ReadError {
     /// No column belongs to a joint.
     #[error(
         "{}{}: no joint found; a joint needs the columns `<joint>.input` and \
-         `<joint>.output`, or `--joint NAME=INPUT_COLUMN:OUTPUT_COLUMN`; the columns are: \
-         {available}", path.display(), header(*row)
+         `<joint>.output`; the columns are: {available}", path.display(), header(*row)
     )]
     NoJoints {
         /// The log.
@@ -215,9 +215,7 @@ pub enum ReadError {
     },
     /// The log has no time, and no sample period was given.
     #[error(
-        "{}{}: no time column (`time_s`, `t_s`, `time` or `t`); name one with \
-         `--time COLUMN`, or give the period with `--sample-period SECONDS`",
-        path.display(), header(*row)
+        "{}{}: no time column (`time_s`, `t_s`, `time` or `t`)", path.display(), header(*row)
     )]
     NoTime {
         /// The log.
@@ -257,8 +255,7 @@ pub enum ReadError {
     },
     /// A cell is empty or NaN.
     #[error(
-        "{}, row {row}, column `{column}`: the cell is empty or NaN; `--fill SECONDS` fills \
-         gaps up to that length and splits the trial at longer ones", path.display()
+        "{}, row {row}, column `{column}`: the cell is empty or NaN", path.display()
     )]
     Missing {
         /// The log.
@@ -286,8 +283,7 @@ pub enum ReadError {
     /// A time step differs from the median by more than 1 %.
     #[error(
         "{}, row {row}: this sample comes {step} s after the one before, but the period is \
-         {period} s (median); `--resample {period}` puts the log on a uniform grid{}",
-        path.display(), gap_hint(*step, *period)
+         {period} s (median)", path.display()
     )]
     NotUniform {
         /// The log.
@@ -302,7 +298,7 @@ pub enum ReadError {
     /// The rows of one trial are not together.
     #[error(
         "{}, row {row}: trial `{trial}` starts again here after another one; keep the rows of a \
-         trial together, or choose `--trial none` if the column does not name trials", path.display()
+         trial together", path.display()
     )]
     TrialNotContiguous {
         /// The log.
@@ -345,8 +341,8 @@ pub enum ReadError {
     },
     /// A trial would have more samples than can be handled.
     #[error(
-        "{}: trial `{trial}` would have {samples:e} samples on a grid of {period} s; choose a \
-         longer `--resample`, or check the times", path.display()
+        "{}: trial `{trial}` would have {samples:e} samples on a grid of {period} s; \
+         check the times", path.display()
     )]
     TooManySamples {
         /// The log.
@@ -409,43 +405,4 @@ fn number_hint(text: &str) -> &'static str {
 
 fn quotation_hint(lines: u64) -> &'static str {
     if lines > 1 { "; is a quotation mark never closed?" } else { "" }
-}
-
-/// The start of a cell, without characters that a terminal obeys.
-fn shown(text: &str) -> String {
-    /// Characters that tell a cell from another.
-    const ENOUGH: usize = 40;
-    let start: String = text.chars().take(ENOUGH).flat_map(char::escape_debug).collect();
-    if text.chars().count() > ENOUGH { format!("{start}…") } else { start }
-}
-
-/// A step of several periods looks like lost rows, which `--fill` mends.
-fn gap_hint(step: f64, period: f64) -> &'static str {
-    let periods = step / period;
-    let lost_rows = periods > 1.5 && (periods - periods.round()).abs() < 0.01;
-    if lost_rows { ", `--fill SECONDS` fills lost rows" } else { "" }
-}
-
-/// Names as a list, cut where nobody reads on.
-pub(super) fn listed<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
-    /// Names that are shown.
-    const SHOWN: usize = 30;
-    let all = names.len();
-    let mut list = names.take(SHOWN).map(shown).collect::<Vec<_>>().join(", ");
-    if all > SHOWN {
-        list += " and more";
-    }
-    list
-}
-
-/// The name among `names` that `wanted` was probably meant to be.
-pub(super) fn nearest_name<'a>(
-    wanted: &str,
-    names: impl IntoIterator<Item = &'a str>,
-) -> Option<String> {
-    /// Jaro-Winkler similarity from which a name is offered; clap uses the same.
-    const SIMILAR: f64 = 0.7;
-    let score = |name: &'a str| (strsim::jaro_winkler(wanted, name), name);
-    let best = names.into_iter().map(score).max_by(|a, b| a.0.total_cmp(&b.0));
-    best.filter(|(similarity, _)| *similarity > SIMILAR).map(|(_, name)| name.to_owned())
 }

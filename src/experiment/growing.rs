@@ -4,10 +4,12 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest as _, Sha256};
 
+use super::error::ReadError;
 use super::format::{GrowingRows, is_text};
-use super::read::{Log, laid_out};
-use super::table::{Head, Wanted, hashed};
-use super::{Experiment, Failure, ReadError, ReadOptions, Source};
+use super::log::Log;
+use super::read::{Experiment, Failure, ReadOptions, laid_out};
+use super::source::{Source, hashed};
+use super::table::{Head, Wanted};
 
 /// A log of text that grows at its end.
 pub struct GrowingLog {

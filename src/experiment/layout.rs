@@ -1,10 +1,13 @@
 //! Which column of a table is time, trial, and which signal of which joint.
 
 use std::collections::HashSet;
+use std::path::Path;
 
-use super::error::nearest_name;
+use super::columns::{ColumnMap, JointColumns};
+use super::error::ReadError;
+use super::joint::Signal;
+use super::names::{listed, nearest_name};
 use super::table::{Head, Header};
-use super::{ColumnMap, JointColumns, ReadError, Signal};
 use crate::units::SamplePeriod;
 
 /// Names of a time column, the preferred first.
@@ -109,6 +112,39 @@ impl Layout {
             Self { time: self.time, trial: self.trial, joints, incomplete: Vec::new() }
         };
         clocks.into_iter().map(of).collect()
+    }
+
+    /// Keeps the joints named in `wanted`; those that are not there come back as errors.
+    pub(super) fn keep(&mut self, path: &Path, wanted: &[String]) -> Vec<(String, ReadError)> {
+        if wanted.is_empty() {
+            return Vec::new();
+        }
+        let names: Vec<String> = self.joints.iter().map(|joint| joint.name.clone()).collect();
+        self.joints.retain(|joint| wanted.contains(&joint.name));
+        self.incomplete.retain(|(name, _)| wanted.contains(name));
+        let incomplete = &self.incomplete;
+        let known = |name: &String| {
+            names.contains(name) || incomplete.iter().any(|(incomplete, _)| incomplete == name)
+        };
+        let error = |name: &String| ReadError::UnknownJoint {
+            path: path.to_owned(),
+            joint: name.clone(),
+            nearest: nearest_name(name, names.iter().map(String::as_str)).map(str::to_owned),
+            available: listed(names.iter().map(String::as_str)),
+        };
+        wanted.iter().filter(|name| !known(name)).map(|name| (name.clone(), error(name))).collect()
+    }
+
+    /// Indices of all columns that hold numbers, each once.
+    pub(super) fn numeric_columns(&self) -> Vec<usize> {
+        let mut columns: Vec<usize> = self.time.column().into_iter().collect();
+        for joint in &self.joints {
+            columns.extend([joint.input.column, joint.output.column]);
+            columns.extend(joint.covariates.iter().map(|covariate| covariate.column));
+        }
+        columns.sort_unstable();
+        columns.dedup();
+        columns
     }
 
     fn add_mapped_joints(&mut self, head: &Head, joints: &[JointColumns]) -> Result<(), ReadError> {
@@ -246,7 +282,8 @@ fn find(head: &Head, wanted: &str) -> Result<usize, ReadError> {
         [_, ..] => Err(ReadError::DuplicateColumn { path, row, column }),
         [] => {
             let names = head.headers.iter().map(|header| header.name.as_str());
-            let (nearest, available) = (nearest_name(wanted, names), head.names());
+            let nearest = nearest_name(wanted, names).map(str::to_owned);
+            let available = head.names();
             Err(ReadError::MissingColumn { path, row, column, nearest, available })
         }
     }

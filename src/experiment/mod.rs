@@ -9,208 +9,21 @@ mod columns;
 mod error;
 mod format;
 mod growing;
+mod joint;
 mod layout;
+mod log;
+mod names;
 mod read;
 mod sampling;
+mod source;
 mod table;
-
-use std::path::PathBuf;
-
-use crate::units::SamplePeriod;
 
 pub use activity::activity;
 pub use columns::{ColumnMap, ColumnMapError, JointColumns};
 pub use error::ReadError;
 pub use growing::GrowingLog;
+pub use joint::{Joint, Signal, Trial, TrialError};
+pub(crate) use names::nearest_name;
 pub use read::{Experiment, Failure, ReadOptions, expand_folders};
 pub use sampling::Repair;
-
-/// A file that an experiment was read from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Source {
-    /// Where it was read.
-    pub path: PathBuf,
-    /// SHA-256 of its bytes, as lower-case hexadecimal.
-    pub sha256: String,
-    /// Its length in bytes.
-    pub bytes: u64,
-}
-
-/// One joint: what drove it and what it did, in every trial.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Joint {
-    /// Name, as in the log.
-    pub name: String,
-    /// Unit of the input, where the log tells it.
-    pub input_unit: Option<String>,
-    /// Unit of the output, where the log tells it.
-    pub output_unit: Option<String>,
-    /// Name and unit of further signals; each trial holds them in this order.
-    pub covariates: Vec<Signal>,
-    /// The uninterrupted runs, in the order of the log.
-    pub trials: Vec<Trial>,
-}
-
-/// Name and unit of a further measured signal.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Signal {
-    /// Name, without the joint's.
-    pub name: String,
-    /// Unit, where the log tells it.
-    pub unit: Option<String>,
-}
-
-/// One uninterrupted, uniformly sampled run of one joint.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Trial {
-    label: String,
-    start_s: f64,
-    period: SamplePeriod,
-    input: Vec<f64>,
-    output: Vec<f64>,
-    covariates: Vec<Vec<f64>>,
-}
-
-/// Why samples do not make a [`Trial`].
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum TrialError {
-    /// There is not one sample.
-    #[error("trial `{label}` has no samples")]
-    Empty {
-        /// The trial's label.
-        label: String,
-    },
-    /// Input and output differ in length.
-    #[error("trial `{label}` has {input} input samples and {output} output samples")]
-    UnequalLengths {
-        /// The trial's label.
-        label: String,
-        /// Samples of the input.
-        input: usize,
-        /// Samples of the output.
-        output: usize,
-    },
-    /// A sample is NaN or infinite.
-    #[error("trial `{label}` has a sample that is not finite: number {sample}")]
-    NotFinite {
-        /// The trial's label.
-        label: String,
-        /// Its 1-based number in the trial.
-        sample: usize,
-    },
-}
-
-impl Trial {
-    /// A trial of `input` and `output`, sample for sample, from `start_s` on.
-    ///
-    /// # Errors
-    /// [`TrialError`] when there is no sample, when the lengths differ, or when a
-    /// sample is not finite.
-    pub fn new(
-        label: impl Into<String>,
-        start_s: f64,
-        period: SamplePeriod,
-        input: Vec<f64>,
-        output: Vec<f64>,
-    ) -> Result<Self, TrialError> {
-        let label = label.into();
-        if input.len() != output.len() {
-            let (input, output) = (input.len(), output.len());
-            return Err(TrialError::UnequalLengths { label, input, output });
-        }
-        if input.is_empty() {
-            return Err(TrialError::Empty { label });
-        }
-        let finite = |(u, y): (&f64, &f64)| u.is_finite() && y.is_finite();
-        if let Some(index) = input.iter().zip(&output).position(|pair| !finite(pair)) {
-            return Err(TrialError::NotFinite { label, sample: index + 1 });
-        }
-        Ok(Self { label, start_s, period, input, output, covariates: Vec::new() })
-    }
-
-    /// This trial with further signals. Where one was not measured it holds NaN.
-    ///
-    /// # Errors
-    /// [`TrialError::UnequalLengths`] when one is not as long as the output.
-    pub fn with_covariates(mut self, covariates: Vec<Vec<f64>>) -> Result<Self, TrialError> {
-        if let Some(odd) = covariates.iter().find(|signal| signal.len() != self.len()) {
-            let (input, output) = (odd.len(), self.len());
-            return Err(TrialError::UnequalLengths { label: self.label, input, output });
-        }
-        self.covariates = covariates;
-        Ok(self)
-    }
-
-    /// The first `samples` of it; none where there would be no sample.
-    #[must_use]
-    pub fn beginning(&self, samples: usize) -> Option<Self> {
-        let cut = |signal: &[f64]| signal.iter().copied().take(samples).collect::<Vec<_>>();
-        let covariates = self.covariates.iter().map(|signal| cut(signal)).collect();
-        let (input, output) = (cut(&self.input), cut(&self.output));
-        let label = self.label.clone();
-        (samples > 0).then_some(Self { label, input, output, covariates, ..*self })
-    }
-
-    /// Name of the trial.
-    pub fn label(&self) -> &str {
-        &self.label
-    }
-
-    /// Seconds between samples.
-    pub fn period(&self) -> SamplePeriod {
-        self.period
-    }
-
-    /// What drove the joint, a value per sample.
-    pub fn input(&self) -> &[f64] {
-        &self.input
-    }
-
-    /// What the joint did, a value per sample.
-    pub fn output(&self) -> &[f64] {
-        &self.output
-    }
-
-    /// Further signals, in the order of [`Joint::covariates`].
-    pub fn covariates(&self) -> &[Vec<f64>] {
-        &self.covariates
-    }
-
-    /// Number of samples; never zero.
-    #[expect(clippy::len_without_is_empty, reason = "a trial is never empty")]
-    pub fn len(&self) -> usize {
-        self.output.len()
-    }
-
-    /// Time of the sample with the 1-based number `sample`, in seconds of the log.
-    pub fn time_s(&self, sample: usize) -> f64 {
-        self.start_s + (sample as f64 - 1.0) * self.period.seconds()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn period() -> SamplePeriod {
-        SamplePeriod::from_seconds(0.01).unwrap()
-    }
-
-    #[test]
-    fn a_trial_is_finite_and_rectangular() {
-        let trial = |u: &[f64], y: &[f64]| Trial::new("a", 0.0, period(), u.to_vec(), y.to_vec());
-        assert!(trial(&[1.0, 2.0], &[1.0, 2.0]).is_ok());
-        assert!(matches!(trial(&[], &[]), Err(TrialError::Empty { .. })));
-        assert!(matches!(trial(&[1.0], &[]), Err(TrialError::UnequalLengths { .. })));
-        let not_finite = trial(&[1.0, 1.0], &[0.0, f64::NAN]);
-        assert!(matches!(not_finite, Err(TrialError::NotFinite { sample: 2, .. })));
-    }
-
-    #[test]
-    fn sample_one_is_the_start() {
-        let trial = Trial::new("a", 2.5, period(), vec![0.0; 3], vec![0.0; 3]).unwrap();
-        assert!((trial.time_s(1) - 2.5).abs() < 1e-15);
-        assert!((trial.time_s(3) - 2.52).abs() < 1e-12);
-    }
-}
+pub use source::Source;

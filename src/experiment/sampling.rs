@@ -134,7 +134,7 @@ fn measured_rows(signals: &Signals) -> Vec<usize> {
     rows.map(|(row, _)| row).collect()
 }
 
-/// Places on the grid that are still told apart by their number.
+/// Places on the grid that are still distinct as floating-point numbers.
 const MOST_PLACES: f64 = 1e12;
 
 /// Samples of one trial that are still handled: 8 GB as numbers.

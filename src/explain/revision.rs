@@ -60,7 +60,7 @@ pub struct Addition {
 #[non_exhaustive]
 pub enum AddError {
     /// The model has it.
-    #[error("`{effect}` is in the model already; `tauscope compare --fit` fits it again")]
+    #[error("`{effect}` is in the model already")]
     AlreadyThere {
         /// Its id.
         effect: &'static str,

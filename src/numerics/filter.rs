@@ -27,10 +27,7 @@ const LOWEST_CUTOFF: f64 = 1e-4;
 #[non_exhaustive]
 pub enum FilterError {
     /// The cutoff is at or above half the sample rate.
-    #[error(
-        "a passband of {cutoff_hz} Hz is not below the Nyquist frequency of {nyquist_hz} Hz; \
-         choose a lower `--passband`, or `--passband none`"
-    )]
+    #[error("a passband of {cutoff_hz} Hz is not below the Nyquist frequency of {nyquist_hz} Hz")]
     AboveNyquist {
         /// What was asked for.
         cutoff_hz: f64,
@@ -40,7 +37,7 @@ pub enum FilterError {
     /// The cutoff is so low that the filter cannot be computed with enough digits.
     #[error(
         "a passband of {cutoff_hz:e} Hz is too low for this sample rate; choose {lowest_hz:e} Hz \
-         or more, or `--passband none`"
+         or more"
     )]
     TooLow {
         /// What was asked for.

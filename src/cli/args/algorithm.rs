@@ -11,7 +11,7 @@ use crate::delay::{Automatic, Interpolation, Method, Settings};
 #[command(next_help_heading = "Algorithm")]
 pub(crate) struct AlgorithmArgs {
     /// How a breakpoint is found. May be repeated: the first one is the answer, the others
-    /// are told beside it
+    /// are reported beside it
     #[arg(long, default_values_t = [Method::default()], value_parser = method())]
     method: Vec<Method>,
 
@@ -43,7 +43,7 @@ fn passband_help() -> String {
     )
 }
 
-/// A value, or one that the record is to tell.
+/// A value, or one that is chosen from the record.
 #[derive(Clone, Copy, Debug)]
 enum OrAuto<T> {
     Given(T),

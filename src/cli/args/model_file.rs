@@ -8,8 +8,7 @@ use clap::Args;
 
 use crate::cli::console::{Verbosity, message};
 use crate::cli::output::{target_of, write_file};
-use crate::cli::similar::nearest;
-use crate::experiment::Joint;
+use crate::experiment::{Joint, nearest_name};
 
 /// The name of a model file where none is given.
 const DEFAULT: &str = "model.toml";
@@ -115,7 +114,7 @@ pub(crate) fn note_missing(file: &ModelFile, joints: &[Joint], verbosity: Verbos
         let name = &joint.name;
         // A name of the file that the log does not have may be a slip of the pen.
         let is_in_log = |name: &str| joints.iter().any(|joint| joint.name == name);
-        let near = nearest(name, file.names().filter(|name| !is_in_log(name)));
+        let near = nearest_name(name, file.names().filter(|name| !is_in_log(name)));
         let near = near.map_or_else(String::new, |near| format!(", which has `{near}`"));
         message(
             "note",

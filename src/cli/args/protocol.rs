@@ -26,7 +26,7 @@ impl ProtocolArgs {
         Protocol { mode, split: self.split, horizon: self.horizon.unwrap_or(default) }
     }
 
-    /// How training and validation are told apart, where that was said.
+    /// How training and validation are divided, where that was said.
     pub(crate) fn split(&self) -> Option<Split> {
         self.split
     }

@@ -151,8 +151,8 @@ impl<'a> Stage<'a> {
         Self { begun, file, name, arguments, steps }
     }
 
-    /// Shows one more revision of a joint. What goes wrong is told, and is no reason to stop:
-    /// the results do not hang on the viewer.
+    /// Shows one more revision of a joint. What goes wrong is reported, and is no reason to stop:
+    /// the results do not depend on the viewer.
     fn show(&self, index: usize, revision: &Step) {
         if !self.begun.is_shown() {
             return;

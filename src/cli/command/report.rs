@@ -330,7 +330,7 @@ impl Reported<'_> {
         let size = fs::metadata(path).map_or(u64::MAX, |file| file.len());
         if size > EMBEDDED {
             let name = path.display();
-            message("note", &format!("{name}: too large for the page; it stands beside it"));
+            message("note", &format!("{name}: too large for the page; it is beside it"));
             return Ok(None);
         }
         let bytes = fs::read(path);
@@ -352,11 +352,11 @@ impl Reported<'_> {
 fn command() -> String {
     let typed = std::env::args_os().skip(1);
     let typed = typed.map(|word| word.to_string_lossy().into_owned());
-    quoted(&["tauscope".to_owned()].into_iter().chain(telling(typed)).collect::<Vec<_>>())
+    quoted(&["tauscope".to_owned()].into_iter().chain(in_the_report(typed)).collect::<Vec<_>>())
 }
 
 /// The words that say what is in the report.
-fn telling(words: impl Iterator<Item = String>) -> Vec<String> {
+fn in_the_report(words: impl Iterator<Item = String>) -> Vec<String> {
     let mut kept = Vec::new();
     let mut words = words;
     while let Some(word) = words.next() {
@@ -377,7 +377,7 @@ mod tests {
     #[test]
     fn the_command_tells_what_is_in_the_report() {
         let typed = "report log.csv --threads 3 -o r.html --quiet --format=json --beta 2";
-        let kept = telling(typed.split(' ').map(str::to_owned));
+        let kept = in_the_report(typed.split(' ').map(str::to_owned));
         assert_eq!(kept.join(" "), "report log.csv -o r.html --beta 2");
     }
 }

@@ -14,9 +14,9 @@ use crate::cli::output::{OutputFile, check_outputs};
 
 /// Make a log of joints whose truth is known
 ///
-/// A plant file tells each joint's gain, delay law, effects and noise, and what drives it;
+/// A plant file states each joint's gain, delay law, effects and noise, and what drives it;
 /// `data/manipulator.plant.toml` is an example. Without one, a joint of random gain, delay
-/// and levels is driven for two minutes, another one beside it, and `--effect` tells what
+/// and levels is driven for two minutes, another one beside it, and `--effect` names what
 /// it hides. The truth goes to files of its own, so that it can stay hidden.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct Args {

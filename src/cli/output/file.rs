@@ -39,7 +39,7 @@ fn folder_of(path: &Path) -> &Path {
 
 impl OutputFile {
     /// Whether `path` can be written to, found out by trying: a folder that is missing is
-    /// told before the work is done.
+    /// reported before the work is done.
     pub(crate) fn probe(path: &Path) -> anyhow::Result<()> {
         Self::create(path).map(drop)
     }

@@ -1,7 +1,7 @@
 //! Delays of joints: those that have one, and what is said of them.
 
 use crate::batch::JointEstimate;
-use crate::cli::failure::read_failures;
+use crate::cli::failure::{read_failures, said};
 use crate::delay::{Condition, EstimateError};
 use crate::experiment::{Experiment, Trial};
 use crate::report::{EstimatedJoint, JointSummary};
@@ -21,7 +21,7 @@ pub(crate) fn estimated<'a>(
 
 /// A message on each file, joint and trial that failed.
 pub(crate) fn failures(experiment: &Experiment, results: &Estimates) -> Vec<String> {
-    // With several files a trial's name tells which one it is from.
+    // With several files a trial's name says which one it is from.
     let file = match experiment.sources.as_slice() {
         [source] => format!("{}: ", source.path.display()),
         _ => String::new(),
@@ -30,9 +30,12 @@ pub(crate) fn failures(experiment: &Experiment, results: &Estimates) -> Vec<Stri
     let unestimated = joints.flat_map(|(joint, result)| {
         let name = &joint.name;
         let whole = result.as_ref().err();
-        let whole = whole.map(|error| format!("joint `{name}` is left out: {file}{error}"));
+        let whole = whole.map(|e| format!("joint `{name}` is left out: {file}{}", said(e)));
         let parts = result.iter().flat_map(JointEstimate::failed);
-        let part = |error| format!("joint `{name}`, one trial is left out: {file}{error}");
+        let part = |error| {
+            let why = said(error);
+            format!("joint `{name}`, one trial is left out: {file}{why}")
+        };
         whole.into_iter().chain(parts.map(part)).collect::<Vec<_>>()
     });
     read_failures(experiment).into_iter().chain(unestimated).collect()

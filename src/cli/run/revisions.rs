@@ -8,7 +8,7 @@ use crate::explain::{Change, Improvement, Revision as Step};
 use crate::model::{ModelFile, Revision};
 use crate::report::{ComparedJoint, Finding, ImprovedJoint, gone, revision_line};
 
-/// Which revisions there are so far, told as they come.
+/// Which revisions there are so far, reported as they come.
 pub(crate) struct Progress<'a> {
     joints: &'a [Joint],
     /// Per joint, the number of its next revision, and whether it was stopped.
@@ -30,7 +30,7 @@ impl<'a> Progress<'a> {
         Self { joints, next, verbosity, interrupt }
     }
 
-    /// Tells of a revision; whether to go on.
+    /// Reports a revision; whether to go on.
     pub(crate) fn done(&self, index: usize, revision: &Step) -> bool {
         let Some((joint, (next, stopped))) = self.joints.get(index).zip(self.next.get(index))
         else {

@@ -9,7 +9,7 @@ use std::time::Duration;
 /// other minor versions for certain.
 pub(crate) const VERSION: &str = "0.36.3";
 
-/// Where the viewer listens unless it is told otherwise.
+/// Where the viewer listens unless another port is given.
 pub(crate) const PORT: u16 = 9876;
 
 /// Whether `address` takes connections.

@@ -29,7 +29,7 @@ fn started(address: SocketAddr) -> anyhow::Result<()> {
     while !is_listening(address) {
         if let Some(status) = child.try_wait().ok().flatten() {
             bail!(
-                "the viewer ended at once ({status}); `tauscope doctor` tells what it lacks, and \
+                "the viewer ended at once ({status}); `tauscope doctor` says what it lacks, and \
                  `-o FILE.rrd` needs none"
             );
         }
@@ -45,7 +45,7 @@ fn started(address: SocketAddr) -> anyhow::Result<()> {
 fn start() -> anyhow::Result<Child> {
     let path = on_path("rerun", std::env::var_os("PATH").as_deref());
     let path = path.context(
-        "there is no viewer `rerun` on PATH; `tauscope doctor` tells how to get it, and \
+        "there is no viewer `rerun` on PATH; `tauscope doctor` says how to get it, and \
          `-o FILE.rrd` needs none",
     )?;
     let mut command = Command::new(&path);

@@ -24,7 +24,7 @@ pub(crate) struct StreamArgs {
     )]
     connect: Option<String>,
 
-    /// The same in a viewer that is started, unless one runs
+    /// Show the recording while it is made, in a viewer that is started unless one runs
     #[arg(long, group = "viewer")]
     spawn: bool,
 
@@ -37,7 +37,7 @@ pub(crate) struct StreamArgs {
     serve: Option<SocketAddr>,
 }
 
-/// An address as it is typed, so that a file in its place is told from it.
+/// An address as it is typed, so that a file in its place is distinguished from it.
 fn address(text: &str) -> Result<String, String> {
     let port = text.rsplit_once(':').map(|(_, port)| port.parse::<u16>());
     if text.contains("://") || matches!(port, Some(Ok(_))) {

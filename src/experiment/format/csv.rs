@@ -6,10 +6,11 @@ use std::io::{self, Cursor, Read};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use super::super::table::{
-    BadCell, Column, Hashing, Head, Header, Labels, OpenTable, RowNumbers, Rows, Table, Wanted,
+use crate::experiment::error::ReadError;
+use crate::experiment::source::{Hashing, Source};
+use crate::experiment::table::{
+    BadCell, Column, Head, Header, Labels, OpenTable, RowNumbers, Rows, Table, Wanted,
 };
-use super::super::{ReadError, Source};
 
 /// Bytes, and a line ending behind the last line, so that every line has one and lines can
 /// be counted.
@@ -215,7 +216,7 @@ fn check_width(wanted: &Wanted<'_>, place: &Place, found: usize) -> Result<(), R
     Err(ReadError::UnequalRow { path, row, found, expected, lines })
 }
 
-/// Bytes that are looked at to tell the delimiter.
+/// Bytes that are looked at to find the delimiter.
 const SNIFFED_BYTES: usize = 64 * 1024;
 
 /// The delimiter that is most frequent in the first line that is no comment, units and
@@ -243,7 +244,7 @@ fn sniff_delimiter(start: &[u8]) -> u8 {
     counts.into_iter().max_by_key(|(_, count)| *count).map_or(b',', |(delimiter, _)| delimiter)
 }
 
-/// Where a record stands in the file.
+/// Where a record is in the file.
 struct Place {
     /// Its first line, counted from 1.
     row: u64,

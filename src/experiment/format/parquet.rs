@@ -13,8 +13,8 @@ use parquet::file::metadata::RowGroupMetaData;
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
-use super::super::ReadError;
-use super::super::table::{Column, Head, Header, Labels, OpenTable, Rows, Table, Wanted};
+use crate::experiment::error::ReadError;
+use crate::experiment::table::{Column, Head, Header, Labels, OpenTable, Rows, Table, Wanted};
 
 /// A file whose footer was read.
 struct Unread {

@@ -11,11 +11,11 @@ use crate::cli::args::RunArgs;
 ///
 /// Random steps, as Albrecht and Taylor advise: a finite set of levels, repeated, held for
 /// random times, from each level to each other about as often. With a model the joint stays in
-/// the range that it may have. `--separate A,B` makes the shortest input that tells two effects
-/// apart, and says how surely.
+/// the range that it may have. `--separate A,B` makes the shortest input that separates two
+/// effects, and says how surely.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct Args {
-    /// Logs of earlier experiments (CSV): what they tell of the joints is used
+    /// Logs of earlier experiments (CSV): what they show of the joints is used
     #[arg(value_name = "DATA")]
     pub(super) data: Vec<PathBuf>,
 
@@ -96,17 +96,17 @@ pub(crate) struct Args {
     )]
     pub(super) dead_band: Option<BandChoice>,
 
-    /// Two effects to tell apart. The model has one of them, or a log is given
+    /// Two effects to separate. The model has one of them, or a log is given
     #[arg(
         long, value_name = "EFFECT,EFFECT", value_delimiter = ',',
-        conflicts_with_all = ["levels", "dead_band"], help_heading = "Telling effects apart"
+        conflicts_with_all = ["levels", "dead_band"], help_heading = "Separating effects"
     )]
     pub(super) separate: Vec<String>,
 
     /// The probability of success that is wanted
     #[arg(
         long, value_name = "SHARE", value_parser = values::power, default_value_t = 0.95,
-        allow_negative_numbers = true, help_heading = "Telling effects apart"
+        allow_negative_numbers = true, help_heading = "Separating effects"
     )]
     pub(super) power: f64,
 
@@ -114,14 +114,14 @@ pub(crate) struct Args {
     /// in the model file's history]
     #[arg(
         long, value_name = "X", value_parser = values::above_zero, allow_negative_numbers = true,
-        help_heading = "Telling effects apart"
+        help_heading = "Separating effects"
     )]
     pub(super) noise: Option<f64>,
 
     /// How often the experiment is rehearsed with either effect, in simulation
     #[arg(
         long, value_name = "N", value_parser = values::rehearsals, default_value_t = 40,
-        help_heading = "Telling effects apart"
+        help_heading = "Separating effects"
     )]
     pub(super) rehearsals: usize,
 

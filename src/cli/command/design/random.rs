@@ -106,7 +106,7 @@ fn band(
         band.ok_or_else(|| match model {
             Some(_) => anyhow!("--dead-band: the model has none; give its ends, as in -0.4,0.4"),
             None => {
-                anyhow!("--dead-band: no model tells it; give --model, or its ends, as in -0.4,0.4")
+                anyhow!("--dead-band: no model has it; give --model, or its ends, as in -0.4,0.4")
             }
         })
     };

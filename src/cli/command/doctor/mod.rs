@@ -19,7 +19,7 @@ use crate::report::Header;
 /// Say what is missing to make recordings and to look at them
 ///
 /// It looks for the Rerun viewer and its version, for a screen, and at this program and the
-/// terminal; each line that is not `ok` tells the remedy. Exit status 1 when something is
+/// terminal; each line that is not `ok` names the remedy. Exit status 1 when something is
 /// missing.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct Args {

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use super::check::Check;
 use crate::cli::viewer::{PORT, VERSION, is_listening, on_path};
 
-/// Longest time that a program may take to tell its version.
+/// Longest time that a program may take to report its version.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// What puts the right viewer on a machine.
@@ -25,10 +25,10 @@ fn viewer() -> Check {
     const NAME: &str = "viewer";
     if let Some(path) = on_path("rerun", std::env::var_os("PATH").as_deref()) {
         let place = path.display();
-        let told = output(Command::new(&path).arg("--version").env("RERUN_ANALYTICS", "0"));
-        return match told.as_deref().and_then(version_in) {
+        let answer = output(Command::new(&path).arg("--version").env("RERUN_ANALYTICS", "0"));
+        return match answer.as_deref().and_then(version_in) {
             None => {
-                let found = format!("{place} does not tell its version");
+                let found = format!("{place} does not report its version");
                 Check::missing(NAME, found, remedy())
             }
             Some(version) => judged(NAME, version, &format!("rerun {version}, {place}")),
@@ -36,8 +36,8 @@ fn viewer() -> Check {
     }
     let ask = "import importlib.metadata as m; print(m.version('rerun-sdk'))";
     for python in ["python3", "python"] {
-        let told = output(Command::new(python).args(["-c", ask]));
-        if let Some(version) = told.as_deref().and_then(version_in) {
+        let answer = output(Command::new(python).args(["-c", ask]));
+        if let Some(version) = answer.as_deref().and_then(version_in) {
             let found = format!("rerun-sdk {version} of {python}, not on PATH");
             let check = judged(NAME, version, &found);
             let remedy = format!("start it with: {python} -m rerun FILE.rrd");

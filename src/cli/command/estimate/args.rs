@@ -31,7 +31,7 @@ pub(crate) struct Args {
 #[derive(ClapArgs, Debug)]
 #[command(next_help_heading = "Reading logs")]
 pub(crate) struct FollowArgs {
-    /// Follow a log that is still written: each decision is told as soon as its step is
+    /// Follow a log that is still written: each decision is reported as soon as its step is
     /// complete. Ctrl-C ends it; then all is done as for any log
     #[arg(long = "follow")]
     pub(crate) is_on: bool,

@@ -15,13 +15,13 @@ use clap::Args as ClapArgs;
 use crate::cli::args::{ConditionArgs, DataArgs, Passband, RunArgs, ids_with, number};
 use crate::cli::console::Bar;
 use crate::cli::exit::Completion;
-use crate::cli::failure::{joint_left_out, nothing_usable, read_failures};
+use crate::cli::failure::{joint_left_out, nothing_usable, read_failures, said};
 use crate::cli::output::{SweepContents, check_outputs};
 use crate::cli::run::Session;
 use crate::cli::viewer::StreamArgs;
 use values::{Values, methods, passbands, whole};
 
-/// Estimate every delay with many settings, and say which of them it hangs on
+/// Estimate every delay with many settings, and say which of them it depends on
 ///
 /// Every combination of the values is tried on every joint. A list is `1,2,5`; a range, with
 /// both ends, is `1..10` or `2..20:2`.
@@ -66,7 +66,7 @@ struct OutputArgs {
     #[command(flatten)]
     stream: StreamArgs,
 
-    /// Show all steps that hang on a setting, not only those that most do
+    /// Show all steps that depend on a setting, not only those that do most
     #[arg(long)]
     steps: bool,
 
@@ -133,9 +133,9 @@ fn failures(experiment: &Experiment, grid: &Grid, results: &[JointResult]) -> Ve
                 }
                 let count = |error| swept.failed.iter().filter(|(_, other)| other == error).count();
                 let all = grid.runs().len();
-                let why = |error| {
-                    let count = count(error);
-                    format!("joint `{name}`, {count} of {all} settings are left out: {error}")
+                let why = |error: &EstimateError| {
+                    let (count, why) = (count(error), said(error));
+                    format!("joint `{name}`, {count} of {all} settings are left out: {why}")
                 };
                 different.into_iter().map(why).collect()
             }

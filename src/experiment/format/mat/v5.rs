@@ -8,8 +8,8 @@ use std::path::Path;
 
 use flate2::read::ZlibDecoder;
 
-use super::super::super::ReadError;
-use super::{Content, Numbers, Variable, damaged};
+use super::variable::{Content, Numbers, Variable, damaged};
+use crate::experiment::error::ReadError;
 
 /// Structures may lie in structures, but not without end.
 const DEEPEST: usize = 32;

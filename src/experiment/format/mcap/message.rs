@@ -56,7 +56,7 @@ impl Decoder {
         Ok(Self { message: schema.spec, types: Types(types) })
     }
 
-    /// The fields of a message. Its first bytes tell the order of the others.
+    /// The fields of a message. Its first bytes give the order of the others.
     pub(super) fn decode(&self, data: &[u8]) -> Result<Value, String> {
         let Some(([_, kind, _, _], content)) = data.split_first_chunk::<4>() else {
             return Err("it is too short".to_owned());

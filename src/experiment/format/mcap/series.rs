@@ -2,9 +2,10 @@
 
 use re_ros_msg::deserialize::Value;
 
-use super::super::super::table::Column;
+use super::clock::Clock;
+use super::fault::Fault;
 use super::message::Field;
-use super::{Clock, Fault};
+use crate::experiment::table::Column;
 
 /// The times and values of the messages of one topic.
 #[derive(Debug)]

@@ -11,7 +11,7 @@ use mcap::sans_io::{
     SummaryReaderOptions,
 };
 
-use super::Fault;
+use super::fault::Fault;
 
 /// A record larger than this is a sign of damage: memory is not asked for it.
 const LARGEST_RECORD: usize = 1 << 30;
@@ -52,7 +52,7 @@ fn damaged(error: &McapError) -> Fault {
     Fault { reason: error.to_string(), remedy }
 }
 
-/// What a file tells at its end of all its messages.
+/// What a file says at its end of all its messages.
 pub(super) struct Summary {
     /// Messages of each channel that has any.
     pub(super) counts: BTreeMap<u16, u64>,

@@ -1,0 +1,84 @@
+//! What to do on the command line about an error: the library speaks of values, and the option
+//! to use is said here.
+
+use std::error::Error;
+
+use crate::delay::{EstimateError, Growing};
+use crate::design::SuspectsError;
+use crate::experiment::ReadError;
+use crate::explain::AddError;
+use crate::numerics::FilterError;
+
+/// What follows the message of `error`, where an option helps; else nothing.
+pub(crate) fn advice(error: &(dyn Error + 'static)) -> String {
+    if let Some(error) = error.downcast_ref::<ReadError>() {
+        return on_reading(error);
+    }
+    let text = match error.downcast_ref::<EstimateError>() {
+        Some(EstimateError::Filter(error)) => on_filter(error),
+        Some(EstimateError::TooFewSamples { .. }) => "; choose a smaller `--beta`",
+        _ => "",
+    };
+    let text = match error.downcast_ref::<Growing>() {
+        Some(Growing::Method { .. }) => "; expected `--method two-line`",
+        Some(Growing::Confidence) => "; expected `--confidence none`",
+        None => text,
+    };
+    let text = match error.downcast_ref::<AddError>() {
+        Some(AddError::AlreadyThere { .. }) => "; `tauscope compare --fit` fits it again",
+        _ => text,
+    };
+    match error.downcast_ref::<SuspectsError>() {
+        Some(SuspectsError::NoNoise) => "; give it with `--noise`",
+        _ => text,
+    }
+    .to_owned()
+}
+
+fn on_reading(error: &ReadError) -> String {
+    let text = match error {
+        ReadError::NoJoints { .. } => {
+            "; `--joint NAME=INPUT_COLUMN:OUTPUT_COLUMN` says which are those of a joint"
+        }
+        ReadError::NoTime { .. } => {
+            "; name one with `--time COLUMN`, or give the period with `--sample-period SECONDS`"
+        }
+        ReadError::Missing { .. } => {
+            "; `--fill SECONDS` fills gaps up to that length and splits the trial at longer ones"
+        }
+        ReadError::NotUniform { step, period, .. } => return on_uneven_times(*step, *period),
+        ReadError::TrialNotContiguous { .. } => {
+            ", or choose `--trial none` if the column does not name trials"
+        }
+        ReadError::TooManySamples { .. } => ", or choose a longer `--resample`",
+        _ => "",
+    };
+    text.to_owned()
+}
+
+/// A step of several periods looks like lost rows, which `--fill` mends.
+fn on_uneven_times(step: f64, period: f64) -> String {
+    let periods = step / period;
+    let lost_rows = periods > 1.5 && (periods - periods.round()).abs() < 0.01;
+    let fill = if lost_rows { ", `--fill SECONDS` fills lost rows" } else { "" };
+    format!("; `--resample {period}` puts the log on a uniform grid{fill}")
+}
+
+fn on_filter(error: &FilterError) -> &'static str {
+    match error {
+        FilterError::AboveNyquist { .. } => "; choose a lower `--passband`, or `--passband none`",
+        FilterError::TooLow { .. } => ", or `--passband none`",
+        _ => "",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lost_rows_can_be_filled_and_a_jitter_cannot() {
+        assert!(on_uneven_times(0.03, 0.01).contains("--fill"));
+        assert!(!on_uneven_times(0.013, 0.01).contains("--fill"));
+    }
+}

@@ -1,0 +1,61 @@
+//! The variables of a file, and their shape as columns.
+
+use std::path::Path;
+
+use crate::experiment::error::ReadError;
+use crate::experiment::table::Header;
+
+/// A variable, or a field of one.
+pub(super) struct Variable {
+    pub(super) name: String,
+    /// Rows, columns, and so on.
+    pub(super) dims: Vec<usize>,
+    pub(super) content: Content,
+}
+
+pub(super) enum Content {
+    Numbers(Numbers),
+    /// One text per row.
+    Texts(Vec<String>),
+    /// What is neither.
+    Other(&'static str),
+}
+
+/// Numbers, column after column.
+pub(super) enum Numbers {
+    Read(Vec<f64>),
+    Stored(hdf5_pure::Dataset),
+}
+
+impl Variable {
+    /// Rows and columns; nothing where it is a number alone.
+    pub(super) fn shape(&self) -> (usize, usize) {
+        /// A log has fewer columns; a matrix that lies on its side has more.
+        const MOST_COLUMNS: usize = 1000;
+        match (&self.content, self.dims.as_slice()) {
+            (Content::Texts(texts), _) => (texts.len(), 1),
+            (Content::Other(_), _) => (0, 1),
+            (_, [1, 1] | []) => (0, 0),
+            (_, [1, length] | [length, 1] | [length]) => (*length, 1),
+            (_, [rows, columns]) if *columns <= MOST_COLUMNS => (*rows, *columns),
+            _ => (0, 1),
+        }
+    }
+
+    pub(super) fn header(&self, column: usize, columns: usize) -> Header {
+        let name = match columns {
+            1 => self.name.clone(),
+            _ => format!("{}({})", self.name, column + 1),
+        };
+        Header { text: name.clone(), name, unit: None, clock: 0 }
+    }
+}
+
+pub(super) fn damaged(path: &Path, reason: &impl ToString) -> ReadError {
+    ReadError::Format {
+        path: path.to_owned(),
+        format: "MATLAB",
+        reason: reason.to_string(),
+        remedy: "save it again, with `save -v7` if it is of another version",
+    }
+}

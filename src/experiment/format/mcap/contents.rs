@@ -1,0 +1,183 @@
+//! What is known of a file before its messages are read: topics, their fields, times.
+
+use std::collections::HashMap;
+use std::ops::ControlFlow;
+
+use mcap::records::{MessageHeader, Record};
+
+use super::clock::Clock;
+use super::fault::Fault;
+use super::message::{self, Decoder, Field};
+use super::stream::Summary;
+use crate::experiment::names::listed;
+use crate::experiment::table::Header;
+
+/// A topic, what its messages hold, and how many of them were looked at.
+#[derive(Debug)]
+pub(super) struct Topic {
+    pub(super) name: String,
+    pub(super) fields: Vec<Field>,
+}
+
+/// What a header stands for.
+#[derive(Clone, Debug)]
+pub(super) enum Place {
+    Time(Clock),
+    Field { topic: usize, field: Field },
+}
+
+/// What is known of a file before its messages are read.
+#[derive(Debug, Default)]
+pub(super) struct Contents {
+    pub(super) topics: Vec<Topic>,
+    /// Topic and decoder of each channel that can be read.
+    pub(super) channels: HashMap<u16, (usize, Decoder)>,
+    pub(super) schemas: HashMap<u16, (String, String, Vec<u8>)>,
+    /// Topics that cannot be read, and why.
+    pub(super) left: Vec<String>,
+    /// The earliest time by each clock.
+    pub(super) zero: [Option<i64>; 3],
+    /// Messages that were looked at, by channel.
+    pub(super) seen: HashMap<u16, u64>,
+}
+
+impl Contents {
+    /// Learns from a record; ends when each topic is known, where the file says how many
+    /// messages it has.
+    pub(super) fn look_at(
+        &mut self,
+        record: Record<'_>,
+        summary: Option<&Summary>,
+    ) -> Result<ControlFlow<()>, Fault> {
+        /// Messages of a topic that show what it holds. Nodes that take turns on one topic
+        /// name their own joints.
+        const ENOUGH: u64 = 20;
+        let known = |(channel, count): (&u16, &u64)| {
+            self.seen.get(channel).copied().unwrap_or_default() >= ENOUGH.min(*count)
+        };
+        if summary.is_some_and(|summary| summary.counts.iter().all(known)) {
+            return Ok(ControlFlow::Break(()));
+        }
+        if let Record::Message { header, data } = record {
+            let seen = self.seen.entry(header.channel_id).or_default();
+            *seen += 1;
+            if *seen <= ENOUGH {
+                self.learn(&header, &data)?;
+            }
+        } else {
+            self.register(record)?;
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// Keeps definitions and channels.
+    pub(super) fn register(&mut self, record: Record<'_>) -> Result<(), Fault> {
+        match record {
+            Record::Schema { header, data } => {
+                self.schemas.insert(header.id, (header.name, header.encoding, data.into_owned()));
+            }
+            Record::Channel(channel) if !self.channels.contains_key(&channel.id) => {
+                let schema = self.schemas.get(&channel.schema_id);
+                let (name, encoding) = schema.map_or(("", ""), |(name, e, _)| (name, e));
+                if (encoding, channel.message_encoding.as_str()) != ("ros2msg", "cdr") {
+                    let what = format!("{} ({} {name})", channel.topic, channel.message_encoding);
+                    if !self.left.contains(&what) {
+                        self.left.push(what);
+                    }
+                    return Ok(());
+                }
+                let definition = schema.map(|(_, _, text)| text.as_slice()).unwrap_or_default();
+                let decoder = Decoder::new(name, definition).map_err(|reason| Fault {
+                    reason: format!("topic `{}`: definition of {name}: {reason}", channel.topic),
+                    remedy: "record it again with the definitions of its messages",
+                })?;
+                let topic = self.topic(channel.topic);
+                self.channels.insert(channel.id, (topic, decoder));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// The place of the topic with this name, which may be new.
+    pub(super) fn topic(&mut self, name: String) -> usize {
+        let known = self.topics.iter().position(|topic| topic.name == name);
+        known.unwrap_or_else(|| {
+            self.topics.push(Topic { name, fields: Vec::new() });
+            self.topics.len() - 1
+        })
+    }
+
+    /// Learns the fields and the times of a message.
+    pub(super) fn learn(&mut self, header: &MessageHeader, data: &[u8]) -> Result<(), Fault> {
+        let Some((topic, decoder)) = self.channels.get(&header.channel_id) else { return Ok(()) };
+        let Some(topic) = self.topics.get_mut(*topic) else { return Ok(()) };
+        let value = decoder.decode(data).map_err(|reason| broken(&topic.name, header, &reason))?;
+        for field in message::fields(&value) {
+            if !topic.fields.contains(&field) {
+                topic.fields.push(field);
+            }
+        }
+        for (clock, zero) in Clock::ALL.into_iter().zip(&mut self.zero) {
+            let time = clock.time(header, &value);
+            *zero = [*zero, time].into_iter().flatten().min();
+        }
+        Ok(())
+    }
+
+    /// No message can be read.
+    pub(super) fn nothing(&self) -> Fault {
+        let reason = match self.left.as_slice() {
+            [] => "it holds no message with a number in it".to_owned(),
+            left => format!(
+                "no topic has messages of ROS 2 (ros2msg, cdr) with numbers; it holds {}",
+                listed(left.iter().map(String::as_str))
+            ),
+        };
+        Fault { reason, remedy: "record topics of ROS 2 with `ros2 bag record -s mcap`" }
+    }
+
+    /// The times, and the fields of all topics.
+    pub(super) fn places(&self) -> Vec<Place> {
+        let clocks = Clock::ALL.into_iter().zip(&self.zero).filter(|(_, zero)| zero.is_some());
+        let mut places: Vec<_> = clocks.map(|(clock, _)| Place::Time(clock)).collect();
+        for (topic, known) in self.topics.iter().enumerate() {
+            let place = |field: &Field| Place::Field { topic, field: field.clone() };
+            places.extend(known.fields.iter().map(place));
+        }
+        places
+    }
+
+    /// The recorded time is `time`, so that it is found where none is named.
+    pub(super) fn header(&self, place: &Place) -> Header {
+        let header = |name: String, text: String, clock| Header { name, text, unit: None, clock };
+        match place {
+            Place::Time(Clock::Log) => header("time".to_owned(), "log_time".to_owned(), 0),
+            Place::Time(clock) => header(clock.name().to_owned(), clock.name().to_owned(), 0),
+            Place::Field { topic, field } => {
+                let name = format!("{}.{}", self.name(*topic), field.text);
+                header(name.clone(), name, *topic)
+            }
+        }
+    }
+
+    pub(super) fn name(&self, topic: usize) -> &str {
+        self.topics.get(topic).map_or("", |topic| &topic.name)
+    }
+
+    pub(super) fn zero(&self, clock: Clock) -> i64 {
+        let place = Clock::ALL.iter().position(|other| *other == clock);
+        place.and_then(|place| *self.zero.get(place)?).unwrap_or_default()
+    }
+}
+
+pub(super) fn broken(topic: &str, header: &MessageHeader, reason: &str) -> Fault {
+    let number = header.sequence;
+    Fault {
+        reason: format!(
+            "the message of `{topic}` with the sequence number {number}, logged at {} ns: {reason}",
+            header.log_time
+        ),
+        remedy: "check that it was recorded with the definition that the file holds",
+    }
+}

@@ -1,0 +1,134 @@
+//! The list of formats, and what opens a log.
+
+use std::path::Path;
+
+use super::csv;
+use super::first_bytes::{is_matlab, start_of};
+#[cfg(feature = "mat")]
+use super::mat;
+#[cfg(feature = "mcap")]
+use super::mcap;
+#[cfg(feature = "parquet")]
+use super::parquet;
+use crate::experiment::error::ReadError;
+use crate::experiment::table::OpenTable;
+
+/// A format of logs.
+struct Format {
+    /// What it is called.
+    name: &'static str,
+    /// How its files' names end.
+    endings: &'static [&'static str],
+    /// Whether the first bytes of a file are those of this format.
+    starts: fn(&[u8]) -> bool,
+    /// What to do with a file that is named so but does not start so.
+    remedy: &'static str,
+    open: fn(&Path) -> Result<OpenTable, ReadError>,
+}
+
+/// All formats. The last one is text, which any bytes may be.
+const FORMATS: [Format; 4] = [
+    Format {
+        name: "Parquet",
+        endings: &[".parquet", ".pq"],
+        starts: |start| start.starts_with(b"PAR1"),
+        remedy: "write it again, or rename it if it is of another format",
+        #[cfg(feature = "parquet")]
+        open: parquet::open,
+        #[cfg(not(feature = "parquet"))]
+        open: |path| left_out(path, "Parquet", "parquet"),
+    },
+    Format {
+        name: "MATLAB",
+        endings: &[".mat"],
+        starts: is_matlab,
+        remedy: "save it with `save -v7`, or rename it if it is of another format",
+        #[cfg(feature = "mat")]
+        open: mat::open,
+        #[cfg(not(feature = "mat"))]
+        open: |path| left_out(path, "MATLAB", "mat"),
+    },
+    Format {
+        name: "MCAP",
+        endings: &[".mcap"],
+        starts: |start| start.starts_with(b"\x89MCAP0\r\n"),
+        remedy: "record it again, or rename it if it is of another format",
+        #[cfg(feature = "mcap")]
+        open: mcap::open,
+        #[cfg(not(feature = "mcap"))]
+        open: |path| left_out(path, "MCAP", "mcap"),
+    },
+    Format {
+        name: "CSV",
+        endings: &[".csv", ".tsv", ".txt"],
+        starts: |_| true,
+        remedy: "write it as text",
+        open: csv::open,
+    },
+];
+
+#[cfg(not(all(feature = "mat", feature = "mcap", feature = "parquet")))]
+fn left_out(
+    path: &Path,
+    format: &'static str,
+    feature: &'static str,
+) -> Result<OpenTable, ReadError> {
+    Err(ReadError::FormatLeftOut { path: path.to_owned(), format, feature })
+}
+
+/// Opens a log. Its first bytes identify the format, so that a name may be anything; but a name
+/// that promises a format is kept to it.
+pub(in crate::experiment) fn open(path: &Path) -> Result<OpenTable, ReadError> {
+    // A pipe gives its bytes once: it is taken for text.
+    if path.metadata().is_ok_and(|metadata| !metadata.is_file()) {
+        return csv::open(path);
+    }
+    let start = start_of(path)?;
+    if start.is_empty() {
+        return Err(ReadError::Empty { path: path.to_owned() });
+    }
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    let named = FORMATS.iter().find(|format| format.ends(&name));
+    match FORMATS.iter().find(|format| (format.starts)(&start)) {
+        Some(found) => match named.filter(|named| !(named.starts)(&start)) {
+            Some(named) if (found.starts)(b"") => Err(named.refuse(path)),
+            _ => (found.open)(path),
+        },
+        None => csv::open(path),
+    }
+}
+
+/// Whether a log that begins like this, or will be called so, is text.
+pub(in crate::experiment) fn is_text(path: &Path, start: &[u8]) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    let is_text = |format: &Format| (format.starts)(b"");
+    let other = |format: &&Format| format.ends(&name) || (format.starts)(start);
+    FORMATS.iter().filter(other).all(is_text)
+}
+
+impl Format {
+    fn ends(&self, name: &str) -> bool {
+        self.endings.iter().any(|ending| name.ends_with(ending))
+    }
+
+    /// The file is named like this format and does not start like it.
+    fn refuse(&self, path: &Path) -> ReadError {
+        ReadError::Format {
+            path: path.to_owned(),
+            format: self.name,
+            reason: "its first bytes are not those of this format".to_owned(),
+            remedy: self.remedy,
+        }
+    }
+}
+
+/// Whether a file's name, in lower case, is that of a log.
+pub(in crate::experiment) fn is_named_like_a_log(name: &str) -> bool {
+    FORMATS.iter().any(|format| format.ends(name))
+}
+
+/// How the names of logs end, for messages.
+pub(in crate::experiment) fn endings() -> String {
+    let endings: Vec<_> = FORMATS.iter().flat_map(|format| format.endings).copied().collect();
+    endings.join(", ")
+}
