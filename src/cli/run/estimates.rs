@@ -32,7 +32,7 @@ pub(crate) fn failures(experiment: &Experiment, results: &Estimates) -> Vec<Stri
         let whole = result.as_ref().err();
         let whole = whole.map(|e| format!("joint `{name}` is left out: {file}{}", said(e)));
         let parts = result.iter().flat_map(JointEstimate::failed);
-        let part = |error| {
+        let part = |error: &EstimateError| {
             let why = said(error);
             format!("joint `{name}`, one trial is left out: {file}{why}")
         };

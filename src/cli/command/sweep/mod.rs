@@ -131,7 +131,9 @@ fn failures(experiment: &Experiment, grid: &Grid, results: &[JointResult]) -> Ve
                         different.push(error);
                     }
                 }
-                let count = |error| swept.failed.iter().filter(|(_, other)| other == error).count();
+                let count = |error: &EstimateError| {
+                    swept.failed.iter().filter(|(_, other)| other == error).count()
+                };
                 let all = grid.runs().len();
                 let why = |error: &EstimateError| {
                     let (count, why) = (count(error), said(error));
