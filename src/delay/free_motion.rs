@@ -5,7 +5,7 @@
 //! once; a piece costs a product per column and sample.
 
 use super::response::{Response, Shape};
-use crate::numerics::DEPENDENT;
+use crate::numerics::rank::PIVOT;
 
 /// Most columns: the line, and the modes of three poles.
 const MOST: usize = 5;
@@ -89,7 +89,7 @@ impl Factors {
             let pivot_row = left.get(column).copied().unwrap_or_default();
             let pivot = pivot_row.get(column).copied().unwrap_or_default();
             let whole = products.get(column).and_then(|row| row.get(column)).copied();
-            if pivot <= DEPENDENT * whole.unwrap_or_default() {
+            if pivot <= PIVOT * whole.unwrap_or_default() {
                 continue;
             }
             if let Some(slot) = factors.per_square.get_mut(column) {

@@ -8,10 +8,13 @@
 //! λ ≈ |d − J (JᵀJ)⁻¹ Jᵀ d|² / σ²
 //! ```
 
+use nalgebra::{DMatrix, DVector};
+
 use super::predict::TestRig;
 use super::schedule::Schedule;
 use super::suspects::Suspects;
 use crate::model::JointModel;
+use crate::numerics::{Basis, rank};
 
 /// Samples of a window between steps of the input, at most: as of a fit.
 const LONGEST_WINDOW: usize = 200;
@@ -65,26 +68,15 @@ impl LinearScreen {
         noise: f64,
     ) -> Vec<f64> {
         let windows = windows(schedule, count);
-        let mut basis: Vec<Vec<f64>> = Vec::new();
-        for slope in &self.slopes {
-            let mut column = centred(slope, &windows);
-            let before = dot(&column, &column);
-            for known in &basis {
-                take_off(&mut column, known);
-            }
-            // What others do already is left out.
-            if dot(&column, &column) > 1e-8 * before {
-                basis.push(column);
-            }
+        let column = |values: &Vec<f64>| DVector::from_vec(centred(values, &windows));
+        let mut slopes = DMatrix::zeros(column(&self.here).len(), self.slopes.len());
+        for (index, slope) in self.slopes.iter().enumerate() {
+            slopes.set_column(index, &column(slope));
         }
-        let left = self.differences.iter().map(|difference| {
-            let mut rest = centred(difference, &windows);
-            for column in &basis {
-                take_off(&mut rest, column);
-            }
-            dot(&rest, &rest) / (noise * noise)
-        });
-        left.collect()
+        let basis = Basis::of(slopes, rank::COARSELY_DIFFERENCED);
+        let residual = |difference| basis.residual(&column(difference));
+        let differences = self.differences.iter().map(residual);
+        differences.map(|residual| residual.norm_squared() / (noise * noise)).collect()
     }
 }
 
@@ -127,16 +119,4 @@ pub(super) fn centred(values: &[f64], windows: &[(usize, usize)]) -> Vec<f64> {
         part.iter().map(|value| value - mean).collect::<Vec<_>>()
     };
     windows.iter().flat_map(window).collect()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// Takes off `values` what `column` explains of them.
-fn take_off(values: &mut [f64], column: &[f64]) {
-    let share = dot(values, column) / dot(column, column).max(f64::MIN_POSITIVE);
-    for (value, column) in values.iter_mut().zip(column) {
-        *value -= share * column;
-    }
 }

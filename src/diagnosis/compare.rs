@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::failure::{self, Diagnosis, Region, Samples, diagnose, regions};
 use super::local_misfit::local_misfit;
-use super::noise::part_left;
+use super::noise::share_not_followed;
 use super::residual_size::{ResidualSize, clipped};
 use super::shapes::shapes;
 use super::speed_error::speed_error;
@@ -97,10 +97,10 @@ pub(crate) fn floor_of(record: &FitRecord<'_>, fit: &Assessment) -> Option<f64> 
     let arriving: Vec<_> = arriving.collect();
     let arrived = || trials.iter().zip(&arriving);
     let shown = noise_floor(arrived())?;
-    Some(shown * part_left(arrived(), &fit.evaluation.simulated))
+    Some(shown * share_not_followed(arrived(), &fit.evaluation.simulated))
 }
 
-/// Whether `fit` leaves more than noise on the training part of `record`.
+/// Whether the residual of `fit` is more than noise on the training part of `record`.
 pub(crate) fn lack_of(record: &FitRecord<'_>, fit: &Assessment) -> Option<LackOfFit> {
     let floor = floor_of(record, fit);
     let residuals = |part| record.cut(&fit.evaluation.residuals, part);
@@ -195,13 +195,10 @@ fn sensitivities(record: &FitRecord<'_>, fit: &Assessment) -> Vec<Vec<Vec<f64>>>
     let record = record.for_training();
     let values: Vec<f64> = fit.model.values().iter().map(|value| value.value).collect();
     let column = |index: usize| {
-        let value = values.get(index).copied().unwrap_or_default();
-        let step = STEP * value.abs().max(0.1);
+        let step = STEP * values[index].abs().max(0.1);
         let [above, below] = [step, -step].map(|shift| {
             let mut values = values.clone();
-            if let Some(value) = values.get_mut(index) {
-                *value += shift;
-            }
+            values[index] += shift;
             let model: JointModel = fit.model.with_values(&values);
             record.cut(&record.evaluate(&model).residuals, Part::Training)
         });

@@ -1,4 +1,4 @@
-//! Is what a model leaves more than noise?
+//! Is the residual of a model more than noise?
 //!
 //! The residual of an integrating joint is correlated, and so may its noise be; a test
 //! that takes it for white calls every model bad. Here the residual is regressed on what a
@@ -9,7 +9,7 @@
 //!    direction, the angle, the time, their products with the speed), integrated; and
 //!    transients behind each change of the input.
 //! 2. Noise: an autoregression is fitted to what the residual keeps after all shapes are
-//!    taken off, so that a misfit is not mistaken for noise, and another to the residual as
+//!    subtracted, so that a misfit is not mistaken for noise, and another to the residual as
 //!    it is, since the shapes also take some slow noise with them, though only so much. Orders
 //!    are Schwarz's.
 //! 3. Test: residual, shapes and the sensitivities of the model's own parameters are
@@ -19,9 +19,9 @@
 //!    the first where the residual is too large for noise, or the shapes take more of it than
 //!    of any noise.
 //! 4. Size: the test holds all that changes slowly for noise, and finds every trace in a long
-//!    record. Up to 1.15 times the noise of the measurement nothing is left that is worth an
-//!    effect, unless the shapes leave less than half of that noise; beyond three times it is
-//!    no noise. Nor is it where it is larger on the part that was not fitted.
+//!    record. Up to 1.15 times the noise of the measurement it is negligible, unless what the
+//!    shapes do not explain is less than half of that noise; beyond three times it is no
+//!    noise. Nor is it noise where it is larger on the part that was not fitted.
 //! 5. Evenness: nor is it where it stands out in a few windows ([`LocalMisfit`]).
 //!
 //! # References
@@ -31,11 +31,11 @@
 use super::local_misfit::LocalMisfit;
 use super::residual_size::{BEYOND_NOISE, ResidualSize, Says, independent, is_near_noise};
 use super::shown_by::ShownBy;
+use crate::numerics::NoiseModel;
 use crate::numerics::fisher_tail;
 use crate::numerics::{Regression, residuals_of};
-use crate::numerics::{autoregression, whitened};
 
-/// Whether a model can be told from the truth.
+/// Whether the residual shows that a model lacks something.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LackOfFit {
     /// F of all shapes together.
@@ -62,14 +62,14 @@ pub struct LackOfFit {
 /// Probability of calling a model bad that is not.
 pub const SIGNIFICANCE: f64 = 0.001;
 
-/// A misfit that explains a smaller part of the squared residual than this is of no
-/// consequence, however sure it is: without it the error would be 1 % less.
+/// A misfit that explains a smaller part of the squared residual than this is negligible,
+/// however significant: without it the error would be 1 % less.
 pub const NEGLIGIBLE: f64 = 0.02;
 
 /// The columns of the test, one window below the other.
 #[derive(Clone, Debug, Default)]
 pub struct TestColumns {
-    /// What the model leaves, per window.
+    /// The residual of the model, per window.
     pub residuals: Vec<Vec<f64>>,
     /// Derivatives of the residual to the model's own parameters: column, window, sample.
     pub own: Vec<Vec<Vec<f64>>>,
@@ -91,10 +91,10 @@ pub fn lack_of_fit(columns: &TestColumns) -> Option<LackOfFit> {
     let after_shapes = residuals_of(&columns.residuals, &all)?;
     let [whole, rest] = [&before_shapes, &after_shapes].map(|r| square(r));
     let misfit_share = if whole > 0.0 { (1.0 - rest / whole).max(0.0) } else { 0.0 };
-    let mut judged = vec![test(columns, &autoregression(&after_shapes))?];
+    let mut judged = vec![test(columns, &NoiseModel::of_centred(&after_shapes))?];
     let is_small = columns.size.times_noise.is_none_or(|times| times <= BEYOND_NOISE);
     if is_small && misfit_share <= most_by_chance(columns) {
-        judged.push(test(columns, &autoregression(&before_shapes))?);
+        judged.push(test(columns, &NoiseModel::of_centred(&before_shapes))?);
     }
     let (statistic, p_value) = judged.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let by_shapes = p_value < SIGNIFICANCE && misfit_share >= NEGLIGIBLE;
@@ -131,10 +131,10 @@ fn most_by_chance(columns: &TestColumns) -> f64 {
     TIMES * columns.shapes.len() as f64 / independent(samples)
 }
 
-/// Whether what is held for the noise can be it: noise is no larger than what is left when all
-/// shapes are taken off. Where a joint rings through its holds, the noise found there is motion.
+/// Whether what is held for the noise can be it: noise is no larger than the residual that the
+/// shapes do not explain. Where a joint rings through its holds, the noise found there is motion.
 fn is_noise(times_noise: Option<f64>, misfit_share: f64) -> bool {
-    /// Part of the noise that is left at least: shapes take some of a slow one with them.
+    /// Part of the noise that remains at least: shapes explain some of a slow one, too.
     const LEFT: f64 = 0.5;
     times_noise.is_none_or(|times| times * (1.0 - misfit_share).max(0.0).sqrt() > LEFT)
 }
@@ -151,8 +151,8 @@ fn square(windows: &[Vec<f64>]) -> f64 {
 }
 
 /// Statistic and p-value, with the noise given.
-fn test(columns: &TestColumns, noise: &[f64]) -> Option<(f64, f64)> {
-    let whiten = |column: &Vec<Vec<f64>>| whitened(column, noise);
+fn test(columns: &TestColumns, noise: &NoiseModel) -> Option<(f64, f64)> {
+    let whiten = |column: &Vec<Vec<f64>>| noise.whitened(column);
     let residuals = whiten(&columns.residuals);
     let own: Vec<_> = columns.own.iter().map(whiten).collect();
     let shapes: Vec<_> = columns.shapes.iter().map(whiten).collect();
@@ -232,12 +232,6 @@ mod tests {
         for rho in [0.0, 0.9, 0.95] {
             assert!((0..20).all(|seed| verdict(noise(seed, rho, 4000)).adequate), "{rho}");
         }
-    }
-
-    #[test]
-    fn the_memory_of_noise_is_found() {
-        let found = autoregression(&[noise(3, 0.8, 20_000)]);
-        assert!((found[0] - 0.8).abs() < 0.03, "{found:?}");
     }
 
     #[test]

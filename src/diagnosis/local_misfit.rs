@@ -20,8 +20,8 @@
 use std::collections::BTreeMap;
 
 use super::residual_size::BEYOND_NOISE;
+use crate::numerics::NoiseModel;
 use crate::numerics::dot;
-use crate::numerics::{autoregression, correlations};
 
 /// The part of a record in which a residual stands out most.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +62,7 @@ pub(super) fn local_misfit(windows: &[Vec<f64>], floor: Option<f64>) -> Option<L
     if stretches.len() < FEWEST {
         return None;
     }
-    let correlations = correlations(&autoregression(windows), LONGEST);
+    let correlations = NoiseModel::of_centred(windows).correlations(LONGEST);
     let mut usual: BTreeMap<usize, (Shapes, [f64; 2])> = BTreeMap::new();
     let mut energies = Vec::with_capacity(stretches.len());
     let mut largest = (0.0, 0.0);
@@ -96,8 +96,8 @@ fn stretches(window: &[f64]) -> impl Iterator<Item = &[f64]> {
 
 /// Line and parabola over `count` samples, orthogonal to a constant and to each other.
 fn shapes(count: usize) -> Shapes {
-    let places = || (0..count).map(|k| k as f64 - (count as f64 - 1.0) / 2.0);
-    let mean_square = places().map(|x| x * x).sum::<f64>() / count as f64;
+    let times = || (0..count).map(|k| k as f64 - (count as f64 - 1.0) / 2.0);
+    let mean_square = times().map(|x| x * x).sum::<f64>() / count as f64;
     let of_length_one = |mut shape: Vec<f64>| {
         let length = dot(&shape, &shape).sqrt();
         for value in &mut shape {
@@ -106,7 +106,7 @@ fn shapes(count: usize) -> Shapes {
         shape
     };
     let [line, parabola] =
-        [places().collect(), places().map(|x| x * x - mean_square).collect()].map(of_length_one);
+        [times().collect(), times().map(|x| x * x - mean_square).collect()].map(of_length_one);
     [line, parabola]
 }
 

@@ -1,34 +1,35 @@
 //! Is a model good enough, and if not, where does it fail?
 //!
-//! - [`compare`]: all figures of one model on one record
-//! - [`noise_floor`]: what the measurement itself cannot tell
-//! - [`lack_of_fit`]: whether the residual is more than noise
-//! - [`whiteness`], [`input_correlation`]: how the residual is correlated, with itself and
+//! - [`compare()`]: all figures of one model on one record
+//! - [`noise_floor`]: the noise of the measurement
+//! - [`lack_of_fit()`]: whether the residual is more than noise
+//! - [`whiteness()`], [`input_correlation()`]: how the residual is correlated, with itself and
 //!   with the input
 //! - [`failure`]: where the error is
 
 mod compare;
-mod correlation;
 mod error;
 pub mod failure;
+mod input_correlation;
 mod lack_of_fit;
+mod lags;
 mod local_misfit;
 mod noise;
 mod residual_size;
 mod shapes;
 mod shown_by;
 mod speed_error;
+mod whiteness;
 
 pub use compare::{Comparison, compare, compare_unfitted};
 pub(crate) use compare::{compare_knowing, floor_of, lack_of};
-pub use correlation::{
-    CONFIDENCE, CrossCorrelation, InputCorrelation, TrialSignals, Whiteness, input_correlation,
-    whiteness,
-};
 pub use error::ErrorFigures;
+pub use input_correlation::{CrossCorrelation, InputCorrelation, input_correlation};
 pub use lack_of_fit::{LackOfFit, NEGLIGIBLE, SIGNIFICANCE, TestColumns, lack_of_fit};
+pub use lags::{CONFIDENCE, TrialSignals};
 pub use local_misfit::LocalMisfit;
 pub use noise::noise_floor;
 pub use residual_size::ResidualSize;
 pub(crate) use residual_size::{BEYOND_NOISE, NEAR_NOISE};
 pub use shown_by::ShownBy;
+pub use whiteness::{Whiteness, whiteness};

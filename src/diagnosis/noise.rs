@@ -28,28 +28,29 @@ pub fn noise_floor<'a>(trials: impl Iterator<Item = (&'a Trial, &'a Arrivals)>) 
     of_stretches(trials.flat_map(values))
 }
 
-/// The part of that noise which a model does not follow: the same of the output less the
+/// The part of [`noise_floor`] that a model does not follow: that of the output less the
 /// motion that was simulated, over that of the output. At most 1; 1 where there is too little.
 ///
-/// A swing in the output is not in what is left by a model that swings alike. Noise is in
-/// both, with the same memory, so that parabolas take the same of it.
-pub(crate) fn part_left<'a>(
+/// A swing in the output is not in the residual of a model that swings alike. Noise is in
+/// both, with the same memory, so that parabolas explain the same part of it.
+pub(crate) fn share_not_followed<'a>(
     trials: impl Iterator<Item = (&'a Trial, &'a Arrivals)>,
     simulated: &[Simulated],
 ) -> f64 {
     let pairs = trials.zip(simulated).flat_map(|((trial, arrivals), simulated)| {
         let pair = |stretch: Range<usize>| {
             let output = trial.output().get(stretch.clone())?;
-            let left = without(output, simulated.velocity.get(stretch)?, trial.period().seconds());
-            Some((output, left))
+            let residual =
+                without(output, simulated.velocity.get(stretch)?, trial.period().seconds());
+            Some((output, residual))
         };
         steady(trial, arrivals).into_iter().filter_map(pair).collect::<Vec<_>>()
     });
     let pairs: Vec<(&[f64], Vec<f64>)> =
-        pairs.filter(|(_, left)| left.iter().all(|value| value.is_finite())).collect();
+        pairs.filter(|(_, residual)| residual.iter().all(|value| value.is_finite())).collect();
     let shown = of_stretches(pairs.iter().map(|pair| pair.0));
-    let left = of_stretches(pairs.iter().map(|pair| pair.1.as_slice()));
-    let part = shown.zip(left).map(|(shown, left)| left / shown);
+    let residual = of_stretches(pairs.iter().map(|pair| pair.1.as_slice()));
+    let part = shown.zip(residual).map(|(shown, residual)| residual / shown);
     part.filter(|part| part.is_finite()).map_or(1.0, |part| part.min(1.0))
 }
 
@@ -80,18 +81,18 @@ fn steady(trial: &Trial, arrivals: &Arrivals) -> Vec<Range<usize>> {
     starts.zip(ends).map(|(start, end)| index(start + SETTLING_S)..index(end)).collect()
 }
 
-/// Residual variance of `values` about the best parabola.
+/// Residual variance of the regression of `values` on a parabola.
 ///
 /// By discrete Legendre polynomials `1, x, x² − mean(x²)` on a symmetric grid, which are
 /// orthogonal, so that each coefficient stands alone.
 fn about_parabola(values: &[f64]) -> f64 {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
-    let places = || (0..values.len()).map(|k| k as f64 - (n - 1.0) / 2.0);
-    let mean_square = places().map(|x| x * x).sum::<f64>() / n;
+    let times = || (0..values.len()).map(|k| k as f64 - (n - 1.0) / 2.0);
+    let mean_square = times().map(|x| x * x).sum::<f64>() / n;
     let project = |shape: &dyn Fn(f64) -> f64| {
-        let with = places().zip(values).map(|(x, y)| shape(x) * (y - mean)).sum::<f64>();
-        with * with / places().map(|x| shape(x) * shape(x)).sum::<f64>()
+        let with = times().zip(values).map(|(x, y)| shape(x) * (y - mean)).sum::<f64>();
+        with * with / times().map(|x| shape(x) * shape(x)).sum::<f64>()
     };
     let total: f64 = values.iter().map(|y| (y - mean) * (y - mean)).sum();
     let explained = project(&|x| x) + project(&|x| x * x - mean_square);
@@ -106,14 +107,14 @@ mod tests {
     use crate::units::SamplePeriod;
 
     #[test]
-    fn a_parabola_leaves_nothing() {
+    fn a_parabola_has_no_residual() {
         let parabola: Vec<f64> =
             (0..50).map(|k| 1e3 + 2.0 * f64::from(k) - 0.1 * f64::from(k * k)).collect();
         assert!(about_parabola(&parabola) < 1e-12);
     }
 
     #[test]
-    fn noise_on_a_moving_joint_is_told_from_its_motion() {
+    fn noise_on_a_moving_joint_is_separated_from_its_motion() {
         let period = SamplePeriod::from_seconds(0.01).unwrap();
         let noise = |k: usize| if k * 7919 % 13 < 6 { 0.05 } else { -0.05 };
         let input: Vec<f64> = (0..2000).map(|k| f64::from(k / 200 % 3)).collect();
@@ -143,7 +144,7 @@ mod tests {
         let part = |share: f64| {
             let velocity = (0..2000).map(|k| share * (swing(k + 1) - swing(k)) / 0.01);
             let simulated = Simulated { velocity: velocity.collect(), ..Simulated::default() };
-            part_left(trials(), &[simulated]) * noise_floor(trials()).unwrap()
+            share_not_followed(trials(), &[simulated]) * noise_floor(trials()).unwrap()
         };
         assert!(part(0.0) > 0.6 && (part(0.5) / part(0.0) - 0.5).abs() < 0.02);
         // Parabolas take some of a noise with a memory of 10 samples.

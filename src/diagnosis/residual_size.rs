@@ -8,14 +8,13 @@ use crate::numerics::{fisher_tail, robust_scale};
 /// would pass for one that changes slowly.
 pub(crate) const BEYOND_NOISE: f64 = 3.0;
 
-/// A residual no more than so many times the noise leaves nothing that is worth an effect,
-/// however sure it is that something is left.
+/// A residual no more than so many times the noise is negligible, however significant.
 pub(crate) const NEAR_NOISE: f64 = 1.15;
 
 /// What the size of a residual says of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Says {
-    /// Nothing is left that is worth an effect.
+    /// It is negligible.
     Noise,
     /// It is no noise.
     Misfit(ShownBy),

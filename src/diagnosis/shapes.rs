@@ -4,12 +4,12 @@ use crate::fit::{Evaluation, FitRecord, Part, Window};
 use crate::model::Simulated;
 
 /// Levels of the input that get a shape of their own.
-const MOST_LEVELS: usize = 10;
+const MAX_LEVELS: usize = 10;
 
 /// Parts of the record that get a shape of their own.
 const TIME_PARTS: usize = 8;
 
-/// Places on the angle's range at which a sensor's error gets a shape of its own.
+/// Knots on the angle's range at which a sensor's error gets a shape of its own.
 const ANGLE_KNOTS: usize = 24;
 
 /// Time constants of transients behind a step, in seconds.
@@ -17,8 +17,8 @@ const TRANSIENTS_S: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
 
 /// The columns of [`super::lack_of_fit`]: for each shape, window and sample its value.
 ///
-/// Shapes of the velocity are integrated over the window; all have their mean in the
-/// window taken off, as the residual has.
+/// Shapes of the velocity are integrated over the window; all are less their mean in the
+/// window, as the residual is.
 pub(super) fn shapes(
     record: &FitRecord<'_>,
     evaluation: &Evaluation,
@@ -52,8 +52,8 @@ impl Scales {
             evaluation.simulated.iter().flat_map(|s| s.acting.iter().copied()).collect();
         levels.sort_by(f64::total_cmp);
         let count = levels.len();
-        let quantile = |part: usize| levels.get(part * (count - 1) / MOST_LEVELS).copied();
-        let mut edges: Vec<f64> = (0..=MOST_LEVELS).filter_map(quantile).collect();
+        let quantile = |part: usize| levels.get(part * (count - 1) / MAX_LEVELS).copied();
+        let mut edges: Vec<f64> = (0..=MAX_LEVELS).filter_map(quantile).collect();
         edges.dedup();
         let outputs = || record.joint().trials.iter().flat_map(|t| t.output().iter().copied());
         let (low, high) =
@@ -79,10 +79,10 @@ fn of_window(
     let period = trial.period().seconds();
     let cut = |values: &[f64]| values.get(window.start..window.end).unwrap_or_default().to_vec();
     let (acting, speed) = (cut(&simulated.acting), cut(&simulated.velocity));
-    let places = |angles: &[f64]| -> Vec<f64> {
+    let scaled = |angles: &[f64]| -> Vec<f64> {
         cut(angles).iter().map(|y| (y - scales.middle) / scales.half_span).collect()
     };
-    let angle = places(trial.output());
+    let angle = scaled(trial.output());
     let first = trial.time_s(window.start + 1);
     let time: Vec<f64> =
         (0..acting.len()).map(|k| (first + k as f64 * period) / scales.duration_s).collect();
@@ -98,7 +98,7 @@ fn of_window(
         velocities.into_iter().map(|velocity| integrated(&velocity, period)).collect();
     shapes.extend(transients(&acting, period));
     // Of the simulated angle: the measured one has the noise in it that is tested.
-    shapes.extend(tents(&places(&simulated.output)));
+    shapes.extend(tents(&scaled(&simulated.output)));
     shapes.push(speed);
     for shape in &mut shapes {
         centre(shape);
@@ -125,13 +125,13 @@ fn edges(speed: &[f64], angle: &[f64]) -> Vec<Vec<f64>> {
     vec![where_(|y| y > END), where_(|y| y < -END)]
 }
 
-/// What a sensor may add at each angle: a tent about each of some places, which overlap
+/// What a sensor may add at each angle: a tent over each of some knots, which overlap
 /// half, so that together they make any broken line.
 fn tents(angle: &[f64]) -> Vec<Vec<f64>> {
     let last = (ANGLE_KNOTS - 1) as f64;
     let tent = |knot: usize| {
-        let place = |y: &f64| f64::midpoint(1.0, *y) * last - knot as f64;
-        angle.iter().map(|y| (1.0 - place(y).abs()).max(0.0)).collect()
+        let distance = |y: &f64| f64::midpoint(1.0, *y) * last - knot as f64;
+        angle.iter().map(|y| (1.0 - distance(y).abs()).max(0.0)).collect()
     };
     (0..ANGLE_KNOTS).map(tent).collect()
 }

@@ -37,14 +37,14 @@
 
 use crate::diagnosis::{BEYOND_NOISE, ErrorFigures, floor_of};
 use crate::fit::{Fit, FitRecord, Part, Status};
+use crate::numerics::NoiseModel;
 use crate::numerics::fisher_tail;
-use crate::numerics::{autoregression, whitened};
 
 /// The memory of a record's noise, as the residual of the best model shows it.
 #[derive(Clone, Debug)]
 pub(super) struct NoiseMemory {
-    /// Coefficients of an autoregression; none where the noise is taken to be white.
-    coefficients: Vec<f64>,
+    /// White where the residual is a misfit.
+    model: NoiseModel,
 }
 
 /// One model's residuals.
@@ -76,14 +76,15 @@ impl NoiseMemory {
         let is_misfit = error
             .zip(floor_of(record, fit))
             .is_some_and(|(error, floor)| error.rmse > BEYOND_NOISE * floor);
-        Self { coefficients: if is_misfit { Vec::new() } else { autoregression(&windows) } }
+        let white = NoiseModel::white;
+        Self { model: if is_misfit { white() } else { NoiseModel::of_centred(&windows) } }
     }
 
     /// The evidence of the model of `fit`.
     pub(super) fn evidence(&self, record: &FitRecord<'_>, fit: &Fit) -> Evidence {
         let cut = |part| record.cut(&fit.evaluation.residuals, part);
         let squares = |windows: &[Vec<f64>]| {
-            let windows = whitened(windows, &self.coefficients);
+            let windows = self.model.whitened(windows);
             let sum: f64 = windows.iter().flatten().map(|e| e * e).sum();
             Squares { sum, samples: windows.iter().map(Vec::len).sum() }
         };

@@ -48,7 +48,7 @@ impl Bounds {
         signed.filter(|value| (self.low..=self.high).contains(value)).collect()
     }
 
-    /// Whether `value` lies on a bound, as far as its standard error tells.
+    /// Whether `value` lies on a bound, as far as its standard error allows to say.
     pub(super) fn is_at(self, value: f64, std_error: f64) -> bool {
         let room = (ON_BOUND * std_error).max(f64::EPSILON * (self.high - self.low));
         self.is_bounded() && self.distance(value) <= room
@@ -70,7 +70,7 @@ impl Bounds {
         outward > 0.0 && self.is_at(value, 0.5 * std_error * slope.abs())
     }
 
-    /// Two values about `value` for a difference, within the bounds.
+    /// Two values on either side of `value` for a difference, within the bounds.
     pub(super) fn around(self, value: f64) -> (f64, f64) {
         /// Large against rounding, small against what curves.
         const PART: f64 = 1e-5;

@@ -17,6 +17,7 @@ use super::bounds::Bounds;
 use super::evaluation::{Evaluation, Weights};
 use super::record::FitRecord;
 use crate::model::JointModel;
+use crate::numerics::{PseudoInverse, rank};
 
 /// The covariance of fitted parameters.
 #[derive(Clone, Debug)]
@@ -42,12 +43,10 @@ impl Covariance {
             roots.as_ref().map_or_else(|| residuals.clone(), |roots| residuals.component_mul(roots))
         };
         let column = |(index, bounds): (&usize, &Bounds)| {
-            let (low, high) = bounds.around(values.get(*index).copied().unwrap_or_default());
+            let (low, high) = bounds.around(values[*index]);
             let at = |there: f64| {
                 let mut values = values.clone();
-                if let Some(value) = values.get_mut(*index) {
-                    *value = there;
-                }
+                values[*index] = there;
                 weighted(&record.residuals_near(&model.with_values(&values), weights, here))
             };
             (at(low) - at(high)) / (high - low)
@@ -56,20 +55,19 @@ impl Covariance {
         let residuals = weighted(&here.residuals);
         let noise = residuals.norm() / (residuals.len() as f64).sqrt();
         let at_bound = free.iter().zip(bounds).zip(&columns).map(|((index, bounds), column)| {
-            let value = values.get(*index).copied().unwrap_or_default();
-            bounds.is_at(value, noise / column.norm().max(f64::MIN_POSITIVE))
+            bounds.is_at(values[*index], noise / column.norm().max(f64::MIN_POSITIVE))
         });
         let at_bound: Vec<bool> = at_bound.collect();
         Self { std_errors: with_bounds(&columns, &residuals, &at_bound), at_bound }
     }
 
     /// Whether a parameter has come to lie on a bound.
-    pub(super) fn is_at_bound(&self, place: usize) -> bool {
-        self.at_bound.get(place).copied().unwrap_or_default()
+    pub(super) fn is_at_bound(&self, free: usize) -> bool {
+        self.at_bound[free]
     }
 
-    pub(super) fn std_error(&self, place: usize) -> Option<f64> {
-        self.std_errors.get(place).copied().flatten()
+    pub(super) fn std_error(&self, free: usize) -> Option<f64> {
+        self.std_errors[free]
     }
 }
 
@@ -91,39 +89,29 @@ fn with_bounds(
     pairs.map(|(all, at_bound)| if *at_bound { all } else { inside.next().flatten() }).collect()
 }
 
-/// Singular values below this part of the largest, columns being of length one, mean
-/// that a combination of parameters changes nothing.
-const RANK: f64 = 1e-5;
+/// The part of a parameter, squared, that may lie in undetermined directions.
+const UNDETERMINED: f64 = 1e-3;
 
 fn std_errors(columns: &[DVector<f64>], residuals: &DVector<f64>) -> Vec<Option<f64>> {
-    let lengths: Vec<f64> = columns.iter().map(DVector::norm).collect();
-    let scaled =
-        columns.iter().zip(&lengths).map(|(c, n)| if *n > 0.0 { c / *n } else { c.clone() });
-    let scaled: Vec<_> = scaled.collect();
-    if scaled.is_empty() {
+    if columns.is_empty() {
         return Vec::new();
     }
+    // Columns of length one, so that units do not matter to the rank.
+    let lengths: Vec<f64> = columns.iter().map(DVector::norm).collect();
+    let scaled = columns.iter().zip(&lengths);
+    let scaled: Vec<_> = scaled.map(|(c, n)| if *n > 0.0 { c / *n } else { c.clone() }).collect();
     let jacobian = DMatrix::from_columns(&scaled);
-    let decomposed = jacobian.tr_mul(&jacobian).symmetric_eigen();
-    let largest = decomposed.eigenvalues.max();
-    let inverses =
-        decomposed.eigenvalues.map(|v| if v > RANK * RANK * largest { 1.0 / v } else { 0.0 });
-    let vectors = &decomposed.eigenvectors;
-    let inverse = vectors * DMatrix::from_diagonal(&inverses) * vectors.transpose();
-    let middle = long_run(&jacobian, residuals);
-    let covariance = &inverse * middle * &inverse;
-    let freedom =
-        residuals.len() as f64 / (residuals.len().saturating_sub(columns.len()).max(1)) as f64;
-    let determined = |index: usize| {
-        // Its share in directions that change nothing.
-        let row = vectors.row(index);
-        let lost = row.iter().zip(inverses.iter()).filter(|(_, inverse)| **inverse == 0.0);
-        lost.map(|(v, _)| v * v).sum::<f64>() < 1e-3
-    };
+    let pseudo_inverse = PseudoInverse::of(jacobian.tr_mul(&jacobian), rank::SENSITIVITIES);
+    // (JᵀJ)⁻¹ S (JᵀJ)⁻¹.
+    let inverse = pseudo_inverse.matrix();
+    let covariance = &inverse * long_run(&jacobian, residuals) * &inverse;
+    let freedom = residuals.len().saturating_sub(columns.len()).max(1);
+    let correction = residuals.len() as f64 / freedom as f64;
     let error = |(index, length): (usize, &f64)| {
-        let variance = covariance.get((index, index)).copied().unwrap_or(f64::NAN) * freedom;
+        let variance = covariance[(index, index)] * correction;
         let error = variance.max(0.0).sqrt() / length;
-        (determined(index) && error.is_finite()).then_some(error)
+        let is_determined = pseudo_inverse.undetermined(index) < UNDETERMINED;
+        (is_determined && error.is_finite()).then_some(error)
     };
     lengths.iter().enumerate().map(error).collect()
 }

@@ -66,14 +66,12 @@ impl Problem<'_, '_> {
     }
 
     /// The slope of the residuals, which are `here` now, to one variable.
-    fn slope(&self, place: usize, here: &DVector<f64>) -> DVector<f64> {
+    fn slope(&self, index: usize, here: &DVector<f64>) -> DVector<f64> {
         /// A step in an angle, or in parts of a value.
         const STEP: f64 = 1e-6;
         let mut variables = self.variables.clone();
-        let step = variables.get(place).map_or(STEP, |v| STEP * v.abs().max(0.1));
-        if let Some(variable) = variables.get_mut(place) {
-            *variable += step;
-        }
+        let step = STEP * variables[index].abs().max(0.1);
+        variables[index] += step;
         let (model, weights) = (self.model_at(&variables), self.weights.as_ref());
         (self.weighted(&self.record.residuals_near(&model, weights, self.here())) - here) / step
     }
@@ -94,31 +92,31 @@ impl Problem<'_, '_> {
         huber_cost(&self.record.training(&self.here().residuals))
     }
 
-    /// Moves a variable on whose small changes nothing depends to the best of the values
+    /// Moves a variable on whose small changes the error does not depend to the best of the values
     /// between which it matters; whether that is another one.
-    pub(super) fn cross_flat(&mut self, place: usize) -> bool {
-        let values = self.space.flats.get(place).map_or(&[][..], Vec::as_slice);
+    pub(super) fn cross_flat(&mut self, variable: usize) -> bool {
+        let values = self.space.flats.get(variable).map_or(&[][..], Vec::as_slice);
         let (cost, start) = (self.cost(), self.variables.clone());
-        let best = self.best_within(place, values).filter(|(least, _)| *least < cost);
+        let best = self.best_within(variable, values).filter(|(least, _)| *least < cost);
         self.set_params(&start);
         let Some(value) = best.and_then(|(_, index)| values.get(index)) else { return false };
-        self.set_value(place, *value);
+        self.set_value(variable, *value);
         true
     }
 
-    /// The same for two of the variables at `places`, where neither gains by itself: a valve
+    /// Does so for two of the variables `flats`, where neither gains by itself: a valve
     /// that stops at a higher level than it starts at stops where it starts, whatever the one
     /// that is lower.
-    pub(super) fn cross_two_flats(&mut self, places: &[usize]) -> bool {
-        let pairs = places.iter().enumerate();
-        let pairs = pairs.flat_map(|(n, one)| places.iter().skip(n + 1).map(|two| [*one, *two]));
+    pub(super) fn cross_two_flats(&mut self, flats: &[usize]) -> bool {
+        let pairs = flats.iter().enumerate();
+        let pairs = pairs.flat_map(|(n, one)| flats.iter().skip(n + 1).map(|two| [*one, *two]));
         let (cost, start) = (self.cost(), self.variables.clone());
         let best = pairs.filter_map(|pair| self.best_of_two(pair)).collect::<Vec<_>>();
         let best = best.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
         self.set_params(&start);
         let Some((_, values)) = best.filter(|(least, _)| *least < cost) else { return false };
-        for (place, value) in values {
-            self.set_value(place, value);
+        for (variable, value) in values {
+            self.set_value(variable, value);
         }
         true
     }
@@ -141,16 +139,16 @@ impl Problem<'_, '_> {
     }
 
     /// The least error with one of `values` for a variable, and its index: some of them are
-    /// tried, then those about the best of these, ever closer.
-    fn best_within(&mut self, place: usize, values: &[f64]) -> Option<(f64, usize)> {
+    /// tried, then those near the best of these, ever closer.
+    fn best_within(&mut self, variable: usize, values: &[f64]) -> Option<(f64, usize)> {
         /// Values that are tried at a time.
         const COARSE: usize = 24;
         let mut stride = values.len().div_ceil(COARSE).max(1);
-        let mut best = self.best_of(place, values, (0..values.len()).step_by(stride))?;
+        let mut best = self.best_of(variable, values, (0..values.len()).step_by(stride))?;
         while stride > 1 {
-            let about = best.1.saturating_sub(stride)..(best.1 + stride).min(values.len());
+            let near = best.1.saturating_sub(stride)..(best.1 + stride).min(values.len());
             stride = (2 * stride).div_ceil(COARSE);
-            best = self.best_of(place, values, about.step_by(stride))?;
+            best = self.best_of(variable, values, near.step_by(stride))?;
         }
         Some(best)
     }
@@ -158,23 +156,20 @@ impl Problem<'_, '_> {
     /// The least error with one of `values` for a variable, and its index.
     fn best_of(
         &mut self,
-        place: usize,
+        variable: usize,
         values: &[f64],
         indices: impl IntoIterator<Item = usize>,
     ) -> Option<(f64, usize)> {
         let costs = indices.into_iter().filter_map(|index| {
-            self.set_value(place, *values.get(index)?);
+            self.set_value(variable, *values.get(index)?);
             Some((self.cost(), index))
         });
         costs.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Sets one variable to that of `value`.
-    fn set_value(&mut self, place: usize, value: f64) {
-        let pair = self.variables.get_mut(place).zip(self.space.bounds.get(place));
-        if let Some((variable, bounds)) = pair {
-            *variable = bounds.free(value);
-        }
+    fn set_value(&mut self, variable: usize, value: f64) {
+        self.variables[variable] = self.space.bounds[variable].free(value);
         self.here.take();
     }
 }
@@ -203,10 +198,10 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, '_> {
     fn jacobian(&self) -> Option<DMatrix<f64>> {
         let here = self.weighted(&self.here().residuals);
         let noise = here.norm() / (here.len() as f64).sqrt();
-        let column = |(place, bounds): (usize, &Bounds)| {
-            let mut column = self.slope(place, &here);
+        let column = |(index, bounds): (usize, &Bounds)| {
+            let mut column = self.slope(index, &here);
             let std_error = noise / column.norm();
-            let variable = self.variables.get(place).copied().unwrap_or_default();
+            let variable = self.variables[index];
             if bounds.stops(variable, column.dot(&here), std_error) {
                 column.fill(0.0);
             }

@@ -68,7 +68,7 @@ impl<'a> FitRecord<'a> {
         }
     }
 
-    /// The same with the activity of the other joints, per trial and sample.
+    /// This record with the activity of the other joints, per trial and sample.
     #[must_use]
     pub fn with_others(mut self, others: Vec<Vec<f64>>) -> Self {
         self.others = others;
@@ -76,7 +76,7 @@ impl<'a> FitRecord<'a> {
         self
     }
 
-    /// The same with each change's own delay in seconds, per trial, for models that take
+    /// This record with each change's own delay in seconds, per trial, for models that take
     /// measured delays. Without it they are measured, by [`step_delays`].
     #[must_use]
     pub fn with_delays(mut self, delays: Vec<Vec<Option<f64>>>) -> Self {
@@ -99,7 +99,7 @@ impl<'a> FitRecord<'a> {
         if model.takes_measured_delays() { known(self.delays()) } else { 0 }
     }
 
-    /// The same trials and surroundings with another horizon.
+    /// The trials and surroundings with another horizon.
     #[must_use]
     pub fn with_horizon(&self, horizon: Horizon) -> Self {
         let (others, delays) = (self.others.clone(), self.delays.clone());
@@ -137,7 +137,7 @@ impl<'a> FitRecord<'a> {
         self.evaluate_weighted(model, None)
     }
 
-    /// The same with weights for the outputs at the start of windows.
+    /// Simulates `model` with weights for the outputs at the start of windows.
     pub(super) fn evaluate_weighted(
         &self,
         model: &JointModel,
@@ -177,14 +177,14 @@ impl<'a> FitRecord<'a> {
         residuals.collect()
     }
 
-    /// The same with a part of the training windows, where they are many: enough to see which
+    /// This record with a part of the training windows, where they are many: enough to see which
     /// models are worth a fit.
     pub(crate) fn thinned(&self) -> Self {
         let training = self.for_training();
         Self { windows: thinned(&training.windows), ..training }
     }
 
-    /// The same with training windows of no more than a few steps of the input.
+    /// This record with training windows of no more than a few steps of the input.
     pub(super) fn shortened(&self) -> Self {
         let windows = self.part(Part::Training).flat_map(|window| {
             let input = self.joint.trials.get(window.trial).map_or(&[][..], Trial::input);
@@ -194,7 +194,7 @@ impl<'a> FitRecord<'a> {
         Self { windows: windows.collect(), ..self.clone() }
     }
 
-    /// The same with the training windows only: what lies behind the last of a trial is not
+    /// This record with the training windows only: what lies behind the last of a trial is not
     /// simulated.
     pub(crate) fn for_training(&self) -> Self {
         Self { windows: self.part(Part::Training).copied().collect(), ..self.clone() }
@@ -235,7 +235,7 @@ impl<'a> FitRecord<'a> {
             surroundings,
             windows: windows.collect(),
             weights,
-            span: self.spans.get(index).copied().unwrap_or_default(),
+            span: self.spans[index],
             speeds_measured: self.speeds_measured && model.has_dynamics(),
         })
     }
@@ -249,7 +249,7 @@ impl<'a> FitRecord<'a> {
     }
 
     fn start_s(&self, trial: usize) -> f64 {
-        self.starts_s.get(trial).copied().unwrap_or_default()
+        self.starts_s[trial]
     }
 
     /// How large the signals are; `levels` are the input's magnitudes, see

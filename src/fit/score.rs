@@ -1,14 +1,14 @@
-//! How far effects would go at a glance: the residual in the directions of their starts.
+//! A linear screen of effects: the residual in the directions of their starts.
 //!
 //! With `r` the residual of a model, `J` its slopes to the free parameters, and `d` the change
-//! of the residual from where an effect is neutral to where it would start, all projected off
+//! of the residual from where an effect is neutral to where it would start, all less their projection on
 //! `J`, the effect's share of the sum of squares is, to first order,
 //!
 //! ```text
 //! max(0, −r·d)² / (d·d r·r)
 //! ```
 //!
-//! as in a score test (Rao 1948), but with the whole way to the start in the place of a slope:
+//! as in a score test (Rao 1948), but with the whole way to the start instead of a slope:
 //! a threshold has none where it is neutral. Only ways towards the start count: an effect
 //! undone is no effect.
 //!
@@ -26,8 +26,9 @@ use super::space::Space;
 use super::starts::starts;
 use crate::effect::RecordRange;
 use crate::model::JointModel;
+use crate::numerics::{Basis, rank};
 
-/// A model's residual, and what its own parameters cannot do about it.
+/// A model's residual, less what its own parameters can explain.
 #[derive(Debug)]
 pub struct Score<'r> {
     /// Training windows that are short enough for an error to count where it is made.
@@ -35,13 +36,13 @@ pub struct Score<'r> {
     /// The residual as it is.
     raw: DVector<f64>,
     /// An orthonormal basis of the slopes to the free parameters.
-    slopes: Vec<DVector<f64>>,
+    slopes: Basis,
     /// The residual without them, of length one.
     unit: DVector<f64>,
 }
 
 /// Where an effect would go from where it is neutral: for each of its starts the change of the
-/// residual with its sign turned, of length one, and the part of the residual that it takes.
+/// residual with its sign turned, of length one, and the part of the residual that it explains.
 #[derive(Clone, Debug)]
 pub struct Directions {
     units: Vec<(DVector<f64>, f64)>,
@@ -57,12 +58,8 @@ impl<'r> Score<'r> {
         let search = Search::new(&record, model, &space, start);
         let jacobian = search.problem.jacobian()?;
         let raw = record.training(&record.evaluate(model).residuals);
-        let mut slopes: Vec<DVector<f64>> = Vec::new();
-        for column in jacobian.column_iter() {
-            let own = unit(off(&slopes, column.into_owned()), column.norm());
-            slopes.extend(own);
-        }
-        let unit = unit(off(&slopes, raw.clone()), raw.norm())?;
+        let slopes = Basis::of(jacobian, rank::DIFFERENCED);
+        let unit = unit(slopes.residual(&raw), raw.norm())?;
         Some(Self { record, raw, slopes, unit })
     }
 
@@ -74,7 +71,7 @@ impl<'r> Score<'r> {
             let residuals = self.record.evaluate(&model.with_values(&start)).residuals;
             let change = &self.raw - self.record.training(&residuals);
             let size = change.norm();
-            let direction = unit(off(&self.slopes, change), size)?;
+            let direction = unit(self.slopes.residual(&change), size)?;
             let share = direction.dot(&self.unit);
             (share > 0.0).then_some((direction, share))
         };
@@ -83,21 +80,21 @@ impl<'r> Score<'r> {
 }
 
 impl Directions {
-    /// The share of the sum of squares that the best of these and the best of `others` take
+    /// The share of the sum of squares that the best of these and the best of `others` explain
     /// together, 0 to 1.
     #[must_use]
     pub fn share_with(&self, others: &Self) -> f64 {
         let alone = |directions: &Self| directions.units.iter().fold(0.0, |m: f64, u| m.max(u.1));
         let alone = alone(self).max(alone(others)).powi(2);
         let pairs = self.units.iter().flat_map(|a| others.units.iter().map(move |b| (a, b)));
-        let shares = pairs.map(|((a, of_a), (b, of_b))| of_two(*of_a, *of_b, a.dot(b)));
+        let shares = pairs.map(|((a, of_a), (b, of_b))| share_of_two(*of_a, *of_b, a.dot(b)));
         shares.fold(alone, f64::max)
     }
 }
 
-/// The share that two directions take together, each forwards, of what they take alone and the
+/// The share that two directions explain together, each forwards, from what they explain alone and the
 /// cosine between them; 0 where one alone is as good.
-fn of_two(one: f64, two: f64, cosine: f64) -> f64 {
+fn share_of_two(one: f64, two: f64, cosine: f64) -> f64 {
     /// Directions nearer than this are one.
     const ALIKE: f64 = 0.999;
     let forwards = one > cosine * two && two > cosine * one;
@@ -107,21 +104,11 @@ fn of_two(one: f64, two: f64, cosine: f64) -> f64 {
     (one * one + two * two - 2.0 * cosine * one * two) / (1.0 - cosine * cosine)
 }
 
-/// `vector` without its parts along `basis`.
-fn off(basis: &[DVector<f64>], mut vector: DVector<f64>) -> DVector<f64> {
-    for axis in basis {
-        let along = axis.dot(&vector);
-        vector.axpy(-along, axis, 1.0);
-    }
-    vector
-}
-
-/// `vector` with length one; `None` where little is left of its `size`.
+/// The residual `vector` with length one; `None` where it is dependent: next to none of the
+/// `size` it had.
 fn unit(vector: DVector<f64>, size: f64) -> Option<DVector<f64>> {
-    /// What rounding leaves of a vector that lies in the others.
-    const NOTHING: f64 = 1e-6;
     let length = vector.norm();
-    (length.is_finite() && length > NOTHING * size).then(|| vector / length)
+    (length.is_finite() && length > rank::DIFFERENCED * size).then(|| vector / length)
 }
 
 #[cfg(test)]
@@ -136,7 +123,7 @@ mod tests {
     use crate::units::SamplePeriod;
 
     #[test]
-    fn the_share_of_two_directions_is_that_of_least_squares() {
+    fn the_share_share_of_two_directions_is_that_of_least_squares() {
         let vector = |phase: f64| {
             let values = (0..40).map(|k| (f64::from(k) * 0.3 + phase).sin() + phase);
             unit(DVector::from_iterator(40, values), 1.0).unwrap()
@@ -146,14 +133,14 @@ mod tests {
         let best = columns.clone().svd(true, true).solve(&target, 1e-12).unwrap();
         assert!(best.min() > 0.0, "both go forwards: {best}");
         let share = 1.0 - (&target - columns * best).norm_squared();
-        let found = of_two(one.dot(&target), two.dot(&target), one.dot(&two));
+        let found = share_of_two(one.dot(&target), two.dot(&target), one.dot(&two));
         assert!((found - share).abs() < 1e-9, "{found} is not {share}");
     }
 
     #[test]
     fn one_that_would_go_backwards_does_not_count() {
-        assert!(of_two(0.9, 0.1, 0.5) <= 0.0);
-        assert!((of_two(0.6, 0.6, 0.0) - 0.72).abs() < 1e-12);
+        assert!(share_of_two(0.9, 0.1, 0.5) <= 0.0);
+        assert!((share_of_two(0.6, 0.6, 0.0) - 0.72).abs() < 1e-12);
     }
 
     /// A joint with a dead band and an offset of the input, which hide each other in part.

@@ -60,8 +60,7 @@ impl<'p, 'r> Search<'p, 'r> {
         start: Vec<f64>,
     ) -> Self {
         let free = space.free.iter().zip(&space.bounds);
-        let variables =
-            free.map(|(index, bounds)| bounds.free(start.get(*index).copied().unwrap_or_default()));
+        let variables = free.map(|(index, bounds)| bounds.free(start[*index]));
         let variables = DVector::from_vec(variables.collect());
         let problem = Problem {
             record,

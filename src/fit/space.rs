@@ -23,7 +23,7 @@ impl Space {
         /// No joint of this kind reacts later than this.
         const LONGEST_DELAY_S: f64 = 5.0;
         let delay = (0.0, LONGEST_DELAY_S.min(0.5 * range.duration_s));
-        // Beside measured delays it would only stand in for those that are not known.
+        // Beside measured delays it would only make up for those that are not known.
         let has_delay = !model.takes_measured_delays();
         let mut bounds = vec![(f64::MIN, f64::MAX, true), (delay.0, delay.1, has_delay)];
         for component in model.components() {
@@ -55,10 +55,10 @@ impl Space {
     }
 
     /// What a fit could do with a free parameter.
-    pub(super) fn status(&self, covariance: &Covariance, place: usize) -> Status {
-        let is_lost = |error| self.bounds.get(place).is_some_and(|bounds| bounds.is_lost_in(error));
-        match covariance.std_error(place) {
-            _ if covariance.is_at_bound(place) => Status::AtBound,
+    pub(super) fn status(&self, covariance: &Covariance, free: usize) -> Status {
+        let is_lost = |error| self.bounds[free].is_lost_in(error);
+        match covariance.std_error(free) {
+            _ if covariance.is_at_bound(free) => Status::AtBound,
             Some(error) if !is_lost(error) => Status::Fitted,
             _ => Status::Undetermined,
         }
@@ -69,9 +69,7 @@ impl Space {
         let mut values = start.to_vec();
         for ((index, bounds), variable) in self.free.iter().zip(&self.bounds).zip(variables.iter())
         {
-            if let Some(value) = values.get_mut(*index) {
-                *value = bounds.value(*variable);
-            }
+            values[*index] = bounds.value(*variable);
         }
         values
     }
@@ -80,8 +78,8 @@ impl Space {
 /// Whether a parameter of `model` is a level of the input.
 fn is_level(model: &JointModel, index: usize) -> bool {
     let specs = model.components().iter().flat_map(|c| c.effect().spec().parameters);
-    let place = index.checked_sub(2);
-    place
-        .and_then(|place| specs.clone().nth(place))
+    let of_effects = index.checked_sub(2);
+    of_effects
+        .and_then(|index| specs.clone().nth(index))
         .is_some_and(|p| p.dimension == Dimension::Input)
 }

@@ -46,7 +46,7 @@ pub(super) fn measured(trial: &Trial, sample: usize) -> Option<f64> {
 }
 
 impl Speed {
-    /// From the best parabola about `sample`, or behind the start of the trial.
+    /// From the best parabola around `sample`, or behind the start of the trial.
     ///
     /// With `x` from the middle, and polynomials that are orthogonal on the grid, it is
     /// `a + b x + c (x² − mean x²)`, with the slope `b + 2 c x`.
@@ -56,8 +56,8 @@ impl Speed {
     fn at(trial: &Trial, sample: usize) -> Option<Self> {
         let from = sample.saturating_sub(SIDE).min(trial.len().saturating_sub(2 * SIDE + 1));
         let values = trial.output().get(from..=from + 2 * SIDE)?;
-        let (middle, place) = (values.get(SIDE)?, sample.checked_sub(from)?);
-        let place = (place <= 2 * SIDE).then_some(place as f64 - SIDE as f64)?;
+        let (middle, offset) = (values.get(SIDE)?, sample.checked_sub(from)?);
+        let offset = (offset <= 2 * SIDE).then_some(offset as f64 - SIDE as f64)?;
         let n = values.len() as f64;
         let x = |k: usize| k as f64 - SIDE as f64;
         let (square, odd) = ((n * n - 1.0) / 12.0, (3.0 * n * n - 7.0) / 20.0);
@@ -77,13 +77,13 @@ impl Speed {
             (y - middle - parabola).powi(2)
         });
         let variance = rest.sum::<f64>() / (n - 3.0);
-        let of_slope = variance * (1.0 / linear + 4.0 * place * place / quadratic);
+        let of_slope = variance * (1.0 / linear + 4.0 * offset * offset / quadratic);
         let (twist, cubic) = project(&|x| x * x * x - odd * x);
-        let turn = 3.0 * place * place - odd;
+        let turn = 3.0 * offset * offset - odd;
         let beyond = turn * turn * (twist * twist - variance / cubic);
         let period = trial.period().seconds();
         Some(Self {
-            value: (slope + 2.0 * bend * place) / period,
+            value: (slope + 2.0 * bend * offset) / period,
             of_noise: of_slope / (period * period),
             beyond: beyond / (period * period),
         })
@@ -140,10 +140,10 @@ mod tests {
             let output: Vec<f64> = output.collect();
             let trial = Trial::new("a", 0.0, period, vec![0.0; output.len()], output).unwrap();
             let found = (0..WINDOWS).map(|i| Speed::at(&trial, 21 * i + 10).unwrap());
-            let (told, is) = found.fold((0.0, 0.0), |(told, is), speed| {
-                (told + speed.of_noise + speed.beyond, is + speed.value * speed.value)
+            let (reported, is) = found.fold((0.0, 0.0), |(reported, is), speed| {
+                (reported + speed.of_noise + speed.beyond, is + speed.value * speed.value)
             });
-            told / is
+            reported / is
         };
         let white = errors(1.0, 0.0);
         assert!((white - 1.0).abs() < 0.15, "{white}");

@@ -28,7 +28,7 @@ impl std::fmt::Display for Horizon {
     }
 }
 
-/// How training and validation are told apart; never sample by sample.
+/// How training and validation are separated; never sample by sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Split {
     /// The first part of each trial is for training: its share, 0 to 1.

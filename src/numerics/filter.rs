@@ -95,13 +95,13 @@ impl LowPass {
     /// How many of the last samples of a growing signal are smoothed to something else when
     /// it grows: before them the change is below a millionth of the signal's span.
     ///
-    /// The end acts through the backward pass, whose slowest pole tells how soon it is
+    /// The end acts through the backward pass, whose slowest pole sets how soon it is
     /// forgotten.
     ///
     /// # Errors
     /// [`FilterError`] when the cutoff or the order is out of range.
     pub fn reach(&self, period: SamplePeriod) -> Result<usize, FilterError> {
-        /// Part that is left of the end: below a millionth, poles of several sections
+        /// Part that remains of the end: below a millionth, poles of several sections
         /// acting together.
         const LEFT: f64 = 1e-8;
         let sections = self.design(period)?;
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn at_the_lowest_cutoff_a_ramp_keeps_its_place() {
+    fn at_the_lowest_cutoff_a_ramp_is_not_shifted() {
         let ramp: Vec<f64> = (0..20_000).map(f64::from).collect();
         let lowest = LowPass { cutoff_hz: 50.0 * LOWEST_CUTOFF, order: 4 };
         let smooth = lowest.smooth(&ramp, period()).unwrap();

@@ -1,4 +1,4 @@
-//! Regression lines, and the running fit that makes a candidate cost nothing to add.
+//! Regression lines, and a fit that grows by one value at constant cost.
 
 /// A line `y = intercept + slope · k` over the sample number `k` of the trial.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

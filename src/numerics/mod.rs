@@ -10,28 +10,27 @@
 mod autoregression;
 mod filter;
 mod line;
+mod moments;
 mod noise;
 mod normal_equations;
 mod projection;
+pub(crate) mod rank;
 mod regression;
 mod statistics;
 #[cfg(test)]
 pub(crate) mod testing;
-mod whitening;
 
-pub(crate) use autoregression::{
-    Autoregression, autocovariances, dot, dots, moments, take_off_line,
-};
 pub use filter::{FilterError, LowPass, MAX_ORDER};
 pub use line::Line;
 pub(crate) use line::RunningLine;
+pub(crate) use moments::{autocovariances, dot, moments, take_off_line};
 pub(crate) use noise::NoiseModel;
-pub(crate) use normal_equations::{DEPENDENT, NormalEquations};
-pub(crate) use projection::Projection;
+pub(crate) use normal_equations::NormalEquations;
+pub(crate) use projection::{Basis, Projection};
+pub(crate) use rank::PseudoInverse;
 pub(crate) use regression::{Regression, residuals_of};
 pub(crate) use statistics::robust_scale;
 pub use statistics::{
     RankTest, chi_square_tail, fisher_tail, holm, mann_whitney, median, normal_below, quantile,
     ranks, spearman, student_quantile,
 };
-pub(crate) use whitening::{autoregression, correlations, whitened};

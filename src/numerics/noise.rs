@@ -1,10 +1,18 @@
-//! The noise of the output, and what takes its memory away.
+//! Noise with a memory, and the filter that removes it.
+//!
+//! One model, an autoregression, and three ways to estimate it, which differ in what was
+//! fitted to the windows before: so many parameters each, columns that are known, or the mean.
 
+use super::autoregression::Autoregression;
+use super::moments::{autocovariances, dot};
 use super::projection::{self, Projection};
-use super::{Autoregression, autocovariances, dot};
 
-/// Longest memory of the noise that is looked for, samples.
+/// Longest memory of the noise that is looked for in short windows, samples (chosen).
 const LONGEST_MEMORY: usize = 8;
+
+/// Longest memory of the noise in the residual of a model, samples: chosen; beyond it, noise
+/// cannot be separated from motion.
+const LONGEST_OF_RESIDUAL: usize = 12;
 
 /// Largest sum of the coefficients: noise that wanders is no noise about a line.
 const LARGEST_SUM: f64 = 0.98;
@@ -30,52 +38,85 @@ impl NoiseModel {
         Self::new(Vec::new())
     }
 
-    fn new(mut coefficients: Vec<f64>) -> Self {
+    fn new(coefficients: Vec<f64>) -> Self {
+        let level = 1.0 - coefficients.iter().sum::<f64>();
+        let shift = coefficients.iter().zip(1..).map(|(a, i)| f64::from(i) * a).sum();
+        Self { coefficients, level, shift }
+    }
+
+    /// Noise about a line, which does not wander.
+    fn about_line(mut coefficients: Vec<f64>) -> Self {
         let sum: f64 = coefficients.iter().sum();
         if sum > LARGEST_SUM {
             for a in &mut coefficients {
                 *a *= LARGEST_SUM / sum;
             }
         }
-        let level = 1.0 - coefficients.iter().sum::<f64>();
-        let shift = coefficients.iter().zip(1..).map(|(a, i)| f64::from(i) * a).sum();
-        Self { coefficients, level, shift }
+        Self::new(coefficients)
     }
 
-    /// The noise that the residuals of many fits with so many `parameters` each show.
+    /// Noise about a line; white where its memory is negligible.
+    fn of_found(found: Autoregression) -> Self {
+        let is_white = found.explained <= LEAST * LEAST;
+        if is_white { Self::white() } else { Self::about_line(found.coefficients) }
+    }
+
+    /// The noise in the residuals of many fits with so many `parameters` each.
     ///
-    /// Each parameter takes the power of slow noise from the residuals, `S/n` from every
+    /// Each parameter removes the power of slow noise from the residuals, `S/n` from every
     /// autocovariance, with `S` their sum over all lags and `n` the length of a fit; it is
-    /// put back. Little memory is taken for none.
+    /// put back.
     pub(crate) fn of(residuals: &[Vec<f64>], parameters: usize) -> Self {
         /// Times that `S` is estimated from what it corrects.
         const ROUNDS: usize = 3;
         let power = |values: &Vec<f64>| dot(values, values) / values.len().max(1) as f64;
-        let residuals = usual_ones(residuals, power);
+        let residuals = without_misfits(residuals, power);
         let samples: usize = residuals.iter().map(|values| values.len()).sum();
         let length = samples as f64 / residuals.len().max(1) as f64;
         let measured = autocovariances(&residuals, LONGEST_MEMORY.min(samples / 10));
         let mut found = Autoregression::default();
         for _ in 0..ROUNDS {
-            let noise = Self::new(found.coefficients.clone());
-            let power = measured.first().copied().unwrap_or(0.0) * (1.0 - found.explained);
-            let taken = parameters as f64 / length.max(1.0) * power / noise.level.powi(2);
-            let whole: Vec<f64> = measured.iter().map(|value| value + taken).collect();
+            let noise = Self::about_line(found.coefficients.clone());
+            // S = σ²/(1 − Σ a_i)², with the innovations' variance σ².
+            let power = measured[0] * (1.0 - found.explained);
+            let removed = parameters as f64 / length.max(1.0) * power / noise.level.powi(2);
+            let whole: Vec<f64> = measured.iter().map(|value| value + removed).collect();
             found = Autoregression::of(&whole, samples);
         }
-        if found.explained > LEAST * LEAST { Self::new(found.coefficients) } else { Self::white() }
+        Self::of_found(found)
     }
 
-    /// The noise that regressions of short windows leave.
-    pub(crate) fn left_by(leftovers: &[Projection]) -> Self {
-        let usual = usual_ones(leftovers, Projection::power);
-        let samples: usize = usual.iter().map(|leftover| leftover.samples()).sum();
+    /// The noise in the residuals of regressions of short windows.
+    pub(crate) fn left_by(projections: &[Projection]) -> Self {
+        let usual = without_misfits(projections, Projection::power);
+        let samples: usize = usual.iter().map(|projection| projection.samples()).sum();
         let longest = LONGEST_MEMORY.min(samples / 10);
-        let found = Autoregression::of(&projection::autocovariances(&usual, longest), samples);
-        if found.explained > LEAST * LEAST { Self::new(found.coefficients) } else { Self::white() }
+        let covariances = projection::autocovariances(&usual, longest);
+        Self::of_found(Autoregression::of(&covariances, samples))
     }
 
-    /// Samples that it remembers.
+    /// The noise in the residual of a model, of which the mean of each window was subtracted.
+    ///
+    /// What that takes from the covariances, the variance of the mean of a window, is put
+    /// back. It follows from the noise itself, so that both are found by turns.
+    pub(crate) fn of_centred(windows: &[Vec<f64>]) -> Self {
+        /// Turns; each leaves a small part of what was wrong before.
+        const TURNS: usize = 6;
+        let measured = covariances_of_pairs(windows);
+        let samples: usize = windows.iter().map(Vec::len).sum();
+        let mut noise = Self::new(Autoregression::of(&measured, samples).coefficients);
+        for _ in 0..TURNS {
+            if noise.order() == 0 {
+                break;
+            }
+            let removed = noise.mean_variance(windows, measured[0]);
+            let whole: Vec<f64> = measured.iter().map(|value| value + removed).collect();
+            noise = Self::new(Autoregression::of(&whole, samples).coefficients);
+        }
+        noise
+    }
+
+    /// Samples of its memory.
     pub(crate) fn order(&self) -> usize {
         self.coefficients.len()
     }
@@ -105,6 +146,55 @@ impl NoiseModel {
         onset
     }
 
+    /// The variance of the mean of a window, averaged over the samples in them, where the
+    /// variance of the noise was measured as `power` after the means were subtracted.
+    ///
+    /// `var(mean of L) = (c₀ + 2 Σ (1 − h/L) c_h) / L`; with the correlations `r_h = c_h / c₀`
+    /// this is `c₀ m`, and the measured power is `c₀ (1 − m)`.
+    fn mean_variance(&self, windows: &[Vec<f64>], power: f64) -> f64 {
+        /// Largest part of the variance that means are taken to hold: more is no noise.
+        const LARGEST: f64 = 0.5;
+        let longest = windows.iter().map(Vec::len).max().unwrap_or(0);
+        // Running sums over the lags, so that each length costs nothing more.
+        let (mut plain, mut weighted) = (vec![0.0], vec![0.0]);
+        let (mut sum, mut lagged) = (0.0, 0.0);
+        for (lag, correlation) in self.correlations(longest).iter().enumerate().skip(1) {
+            sum += correlation;
+            lagged += lag as f64 * correlation;
+            plain.push(sum);
+            weighted.push(lagged);
+        }
+        let part = |length: usize| {
+            let last = (length - 1).min(plain.len() - 1);
+            (1.0 + 2.0 * (plain[last] - weighted[last] / length as f64)) / length as f64
+        };
+        let samples: usize = windows.iter().map(Vec::len).sum();
+        let filled = windows.iter().map(Vec::len).filter(|length| *length > 0);
+        let share = filled.map(|length| length as f64 * part(length)).sum::<f64>();
+        let share = (share / samples.max(1) as f64).clamp(0.0, LARGEST);
+        power * share / (1.0 - share)
+    }
+
+    /// Correlations of the noise at lags from 0 to below `count`, as far as they matter: the
+    /// products of the impulse response with itself.
+    pub(crate) fn correlations(&self, count: usize) -> Vec<f64> {
+        /// Below this part of its first value the response is over.
+        const OVER: f64 = 1e-4;
+        /// Longest response.
+        const LONGEST: usize = 2000;
+        let mut response: Vec<f64> = vec![1.0];
+        let mut small = 0;
+        while response.len() < LONGEST && small <= self.order() {
+            let past = response.iter().rev();
+            let next: f64 = self.coefficients.iter().zip(past).map(|(a, x)| a * x).sum();
+            small = if next.abs() < OVER { small + 1 } else { 0 };
+            response.push(next);
+        }
+        let power = dot(&response, &response);
+        let correlation = |lag: usize| dot(&response, &response[lag..]) / power;
+        (0..count.min(response.len())).map(correlation).collect()
+    }
+
     /// Turns whitened `values` into those whose products with any column are the products of
     /// `values` with the whitened column.
     pub(crate) fn pull(&self, values: &mut [f64]) {
@@ -119,7 +209,7 @@ impl NoiseModel {
             for (a, later) in self.coefficients.iter().zip(block.windows(LANES).skip(1)) {
                 sums.iter_mut().zip(later).for_each(|(sum, y)| *sum += a * y);
             }
-            let block = values.get_mut(from..).unwrap_or_default();
+            let block = &mut values[from..];
             block.iter_mut().zip(sums).for_each(|(y, sum)| *y -= sum);
             from += LANES;
         }
@@ -132,7 +222,7 @@ impl NoiseModel {
         }
     }
 
-    /// Takes the memory out of `values` in place; the first ones become 0.
+    /// Whitens `values` in place; the first ones become 0.
     pub(crate) fn whiten(&self, values: &mut [f64]) {
         let order = self.order();
         if order == 0 {
@@ -141,7 +231,7 @@ impl NoiseModel {
         // Backwards: no value is used after it was changed.
         let mut end = values.len();
         while let Some(from) = end.checked_sub(LANES + order) {
-            let block = values.get_mut(from..end).unwrap_or_default();
+            let block = &mut values[from..end];
             let mut sums = [0.0; LANES];
             let past = block.windows(LANES).rev().skip(1);
             for (a, past) in self.coefficients.iter().zip(past) {
@@ -160,23 +250,51 @@ impl NoiseModel {
         }
         values.iter_mut().take(order).for_each(|value| *value = 0.0);
     }
+
+    /// Each of the `windows` whitened, without its first samples, which have no past, and
+    /// without its mean.
+    pub(crate) fn whitened(&self, windows: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let whiten = |window: &Vec<f64>| {
+            let mut values = window.clone();
+            self.whiten(&mut values);
+            values.drain(..self.order().min(window.len()));
+            let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+            for value in &mut values {
+                *value -= mean;
+            }
+            values
+        };
+        windows.iter().map(whiten).collect()
+    }
 }
 
-/// Those whose `power` is not far larger than that of most: what is left in others is no
+/// Mean products of values so many samples apart, from 0 on, each over its own pairs.
+fn covariances_of_pairs(windows: &[Vec<f64>]) -> Vec<f64> {
+    let samples: usize = windows.iter().map(Vec::len).sum();
+    let covariance = |lag: usize| -> f64 {
+        let products = windows.iter().map(|w| w.get(lag..).map_or(0.0, |later| dot(w, later)));
+        let pairs: usize = windows.iter().map(|w| w.len().saturating_sub(lag)).sum();
+        products.sum::<f64>() / pairs.max(1) as f64
+    };
+    (0..=LONGEST_OF_RESIDUAL.min(samples / 10)).map(covariance).collect()
+}
+
+/// Those whose `power` is not far larger than that of most: the residual of the others is no
 /// noise.
-fn usual_ones<T>(all: &[T], power: impl Fn(&T) -> f64) -> Vec<&T> {
-    /// Times the median of the mean squares.
-    const STRANGE: f64 = 2.5;
+fn without_misfits<T>(all: &[T], power: impl Fn(&T) -> f64) -> Vec<&T> {
+    /// Times the median of the mean squares (chosen).
+    const MISFIT: f64 = 2.5;
     let powers: Vec<f64> = all.iter().map(power).collect();
     let mut sorted = powers.clone();
     sorted.sort_by(f64::total_cmp);
-    let most = sorted.get(sorted.len() / 2).map_or(0.0, |median| STRANGE * median);
-    all.iter().zip(powers).filter(|(_, power)| *power <= most).map(|(one, _)| one).collect()
+    let limit = sorted.get(sorted.len() / 2).map_or(0.0, |median| MISFIT * median);
+    all.iter().zip(powers).filter(|(_, power)| *power <= limit).map(|(one, _)| one).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::testing::noise;
 
     #[test]
     fn whitening_makes_of_a_line_and_of_an_onset_what_is_promised() {
@@ -216,5 +334,39 @@ mod tests {
         };
         let signal: Vec<f64> = (0..400).map(white).collect();
         assert_eq!(NoiseModel::of(&[signal], 2).order(), 0);
+    }
+
+    /// Noise of first order in windows, each without its mean.
+    fn windows(rho: f64, length: usize, count: usize) -> Vec<Vec<f64>> {
+        let centred = |window: &[f64]| {
+            let mean = window.iter().sum::<f64>() / length as f64;
+            window.iter().map(|value| value - mean).collect()
+        };
+        noise(5, rho, length * count).chunks_exact(length).map(centred).collect()
+    }
+
+    #[test]
+    fn the_means_of_short_windows_do_not_shorten_the_memory() {
+        for (rho, length) in [(0.0, 100), (0.8, 100), (0.95, 150)] {
+            let noise = NoiseModel::of_centred(&windows(rho, length, 400));
+            let first = noise.coefficients.first().copied().unwrap_or(0.0);
+            assert!((first - rho).abs() < 0.01, "{rho}: {noise:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_whitened_has_no_memory() {
+        let noisy = windows(0.9, 500, 40);
+        let white = NoiseModel::of_centred(&noisy).whitened(&noisy);
+        let covariances = covariances_of_pairs(&white);
+        assert!((covariances[1] / covariances[0]).abs() < 0.02, "{covariances:?}");
+    }
+
+    #[test]
+    fn correlations_of_first_order_are_powers() {
+        for (lag, found) in NoiseModel::new(vec![0.9]).correlations(50).into_iter().enumerate() {
+            let expected = 0.9_f64.powi(i32::try_from(lag).unwrap());
+            assert!((found - expected).abs() < 1e-3);
+        }
     }
 }

@@ -1,10 +1,7 @@
 //! Small least squares by normal equations, solved column by column.
 
-use super::{dot, dots};
-
-/// Pivots below this part of a column's own square belong to columns that the ones before
-/// them already make up.
-pub(crate) const DEPENDENT: f64 = 1e-11;
+use super::moments::{dot, dots};
+use super::rank::PIVOT;
 
 /// The products of all columns with each other, the last of them the target; eliminated
 /// from the front as far as is asked for.
@@ -66,7 +63,7 @@ impl NormalEquations {
         Self { size, products, squares }
     }
 
-    /// The same with the columns in another `order`, before any is eliminated.
+    /// These equations with the columns in another `order`, before any is eliminated.
     pub(crate) fn reordered(&self, order: &[usize]) -> Self {
         let product = |i: &usize, j: &usize| self.at(*i.min(j), *i.max(j));
         let rows = order.iter().map(|i| order.iter().map(|j| product(i, j)).collect::<Vec<_>>());
@@ -79,7 +76,7 @@ impl NormalEquations {
         self.size
     }
 
-    /// What is left at a row and a column of the upper triangle.
+    /// The entry at a row and a column of the upper triangle.
     pub(crate) fn at(&self, row: usize, column: usize) -> f64 {
         self.products.get(row * self.size + column).copied().unwrap_or(0.0)
     }
@@ -93,10 +90,10 @@ impl NormalEquations {
     /// Whether a column is no combination of those before it.
     pub(crate) fn stands_alone(&self, column: usize) -> bool {
         let square = self.squares.get(column).copied().unwrap_or(0.0);
-        self.at(column, column) > DEPENDENT * square && square > 0.0
+        self.at(column, column) > PIVOT * square && square > 0.0
     }
 
-    /// Takes what `column` explains off all behind it.
+    /// Eliminates `column` from all behind it: `A_rs −= A_cr A_cs / A_cc`.
     pub(crate) fn eliminate(&mut self, column: usize) {
         if !self.stands_alone(column) {
             return;
@@ -105,7 +102,7 @@ impl NormalEquations {
         let size = self.size;
         let split = ((column + 1) * size).min(self.products.len());
         let (done, behind) = self.products.split_at_mut(split);
-        let row = done.get(column * size..).unwrap_or_default();
+        let row = &done[column * size..];
         for (offset, target) in behind.chunks_exact_mut(size).enumerate() {
             let r = column + 1 + offset;
             let factor = row.get(r).copied().unwrap_or(0.0) / pivot;

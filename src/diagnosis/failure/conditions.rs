@@ -149,15 +149,15 @@ fn percent(share: f64) -> String {
 /// with every sample whose expected square is above the mean square, and `S` ends where
 /// the error falls to its mean. Covering more and being sharper count alike (weighted
 /// relative accuracy in subgroup discovery). A second clause must add 0.05, and a gain
-/// below 0.1 is not worth telling.
+/// below 0.1 is not reported.
 ///
 /// All conditions of one clause, of an interval, and of one clause each on two features
 /// are scored. Thresholds part the levels of a feature, or are near 32 quantiles; those
-/// of the best are then moved between the next ones, if that adds 0.01. The best one is held against shuffled records, which keep the residual's correlation;
-/// its second clause is so among the samples of the first. A condition that chance would
-/// match in more than 1 % of them is dropped: what is left of a white or a correlated
-/// residual of even size is nothing. The next condition is looked for in the samples
-/// that those before it do not hold, so that each tells of another failure; one that
+/// of the best are then moved between the next ones, if that adds 0.01. The best one is
+/// compared with shuffled records, which keep the residual's correlation; its second clause is so among the samples of the first. A condition that chance would
+/// match in more than 1 % of them is dropped: of a white or a correlated residual of
+/// even size no condition is found. The next condition is looked for in the samples
+/// that those before it do not hold, so that each shows another failure; one that
 /// shares more than half of its samples with one before is dropped.
 ///
 /// A gain that is wrong everywhere makes the larger error where the joint is faster. Where

@@ -105,8 +105,8 @@ impl ResidualRecord {
             return Err(RecordError::UnequalLengths { column, found, expected });
         }
         let mut residuals = samples.residual.iter().chain(&samples.speed_error);
-        if let Some(place) = residuals.position(|value| !value.is_finite()) {
-            return Err(RecordError::NotFinite { index: place % expected });
+        if let Some(index) = residuals.position(|value| !value.is_finite()) {
+            return Err(RecordError::NotFinite { index: index % expected });
         }
         let unknown = samples.trial.iter().position(|trial| *trial >= trials.len());
         if let Some((index, &trial)) = unknown.and_then(|at| Some((at, samples.trial.get(at)?))) {

@@ -142,7 +142,7 @@ impl Search {
         })
     }
 
-    /// The same of a part of the record.
+    /// The gain of `rows` among the rows of a part of the record.
     pub(super) fn gain_among(&self, part: &[usize], rows: &[usize]) -> f64 {
         let sum = |rows: &[usize]| rows.iter().map(|row| self.shares[*row]).sum::<f64>();
         sum(rows) / sum(part) - rows.len() as f64 / part.len() as f64

@@ -14,11 +14,11 @@ pub(super) fn levels(values: &[f64], most: usize) -> Option<Vec<f64>> {
             continue;
         }
         last = value;
-        if let Err(place) = found.binary_search_by(|level| level.total_cmp(&value)) {
+        if let Err(index) = found.binary_search_by(|level| level.total_cmp(&value)) {
             if found.len() == most {
                 return None;
             }
-            found.insert(place, value);
+            found.insert(index, value);
         }
     }
     Some(found)
@@ -44,18 +44,18 @@ fn between_levels(levels: &[f64]) -> Vec<f64> {
     levels.iter().zip(levels.iter().skip(1)).map(cut).collect()
 }
 
-/// The roundest number about each quantile, a quarter of a part on each side.
+/// The roundest number near each quantile, a quarter of a part on each side.
 fn near_quantiles(values: &[f64], parts: usize) -> Vec<f64> {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
     let margin = sorted.len() / (4 * parts);
-    let about = |part: usize| {
+    let cut = |part: usize| {
         let rank = part * sorted.len() / parts;
         let low = *sorted.get(rank.saturating_sub(margin + 1))?;
         let high = *sorted.get(rank + margin)?;
         (low < high).then(|| roundest(low, high))
     };
-    let mut cuts: Vec<f64> = (1..parts).filter_map(about).collect();
+    let mut cuts: Vec<f64> = (1..parts).filter_map(cut).collect();
     cuts.dedup_by(|later, earlier| later <= earlier);
     cuts
 }
