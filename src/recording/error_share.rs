@@ -13,7 +13,7 @@ use crate::diagnosis::failure::{Feature, Region, Units};
 use crate::experiment::Joint;
 use crate::figure::error_share::{FeatureShares, Share, is_level};
 use crate::report::ComparedJoint;
-use crate::wording::number;
+use crate::wording::{bracketed, number};
 
 /// Width and height of the sheet: two rows of plots.
 pub(super) const SIZE: (f32, f32) = (1900.0, 480.0);
@@ -159,7 +159,6 @@ pub(super) fn short(value: f64) -> String {
 
 fn title(feature: Feature, joint: &Joint) -> String {
     let units = Units { input: joint.input_unit.clone(), output: joint.output_unit.clone() };
-    let unit = feature.unit(&units).map_or(String::new(), |unit| format!(" [{unit}]"));
     let name = match feature {
         Feature::Direction => "direction of the input",
         Feature::Input => "input, as it acts",
@@ -167,7 +166,7 @@ fn title(feature: Feature, joint: &Joint) -> String {
         Feature::Time => "time in the record",
         _ => feature.name(),
     };
-    format!("{name}{unit}")
+    bracketed(name, feature.unit(&units).as_deref())
 }
 
 /// The lines that fill the bars of one model.

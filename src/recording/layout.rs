@@ -51,7 +51,7 @@ impl Start {
         self.samples_before + signed(k)
     }
 
-    /// The same on the timeline of time.
+    /// Sample `k` of `trial`, which starts here, on the timeline of time.
     pub(super) fn time_ns(self, trial: &Trial, k: usize) -> i64 {
         let seconds = self.seconds_before + (k as f64 - 1.0) * trial.period().seconds();
         #[expect(clippy::cast_possible_truncation, reason = "292 years fit")]
@@ -253,7 +253,7 @@ impl<'a> TrialLayout<'a> {
         self.moment(segment, segment.verdict(), k)
     }
 
-    /// The same tick, at a sample between this step and the next: what is drawn of a
+    /// A tick moved to a sample between this step and the next: what is drawn of a
     /// candidate is then never seen in the drawing of another segment, whatever the
     /// timeline. Candidates reach into both neighbours.
     pub(super) fn within(&self, segment: &SegmentLayout<'_>, moment: Moment) -> Moment {

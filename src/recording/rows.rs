@@ -27,7 +27,7 @@ impl<'c> Rows<'c> {
         Self { chunks, root, index, order: None }
     }
 
-    /// The same, what is pushed first being drawn behind the rest.
+    /// These rows, what is pushed first being drawn behind the rest.
     pub(super) fn back_to_front(self) -> Self {
         Self { order: Some(1.0), ..self }
     }

@@ -10,6 +10,7 @@ use super::palette::{self, color};
 use super::paths::{at, of_model, scatter};
 use super::sheet::Sheet;
 use crate::report::ComparedJoint;
+use crate::wording::bracketed;
 
 /// Width and height of the sheet: two plots below one another.
 pub(super) const SIZE: (f32, f32) = (SHEET.0, 480.0);
@@ -70,7 +71,7 @@ fn plot(place: usize, pairs: &Pairs) -> Plot {
 fn quantities(compared: &ComparedJoint<'_>) -> Vec<Pairs> {
     let joint = compared.joint;
     let evaluation = &compared.comparison.fit.evaluation;
-    let unit = |unit: &Option<String>| unit.as_ref().map_or(String::new(), |u| format!(" [{u}]"));
+    let unit = |unit: &Option<String>| bracketed("", unit.as_deref());
     let (input, output) = (unit(&joint.input_unit), unit(&joint.output_unit));
     let speed = joint.output_unit.as_ref().map_or(String::new(), |u| format!(" [{u}/s]"));
     let residual: Vec<f64> = evaluation.residuals.concat();

@@ -22,7 +22,7 @@ use crate::experiment::Joint;
 use crate::figure::Role;
 use crate::figure::segment::SegmentFigure;
 use crate::units::signed;
-use crate::wording::number;
+use crate::wording::{bracketed, number};
 
 /// Adds the drawings of all segments below `root`/drawing.
 pub(super) fn add(
@@ -273,8 +273,8 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let (first, last) = (decision.segment.first, decision.segment.last);
         labels.put_whole(self.output.below(first as f64, 2.0), format!("r = {first}"));
         labels.put_whole(self.output.below(last as f64, 2.0), format!("end = {last}"));
-        let unit = joint.output_unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}]"));
-        labels.put(Vec2D::new(62.0, 22.0), format!("output{unit}"));
+        let output = bracketed("output", joint.output_unit.as_deref());
+        labels.put(Vec2D::new(62.0, 22.0), output);
         labels.put(Vec2D::new(62.0, 430.0), "SSE (log)".to_owned());
         labels
     }

@@ -8,6 +8,7 @@ use super::layout::{JointLayout, TrialLayout};
 use super::palette::{self, Rgb, color};
 use super::paths::{self, at, child};
 use crate::experiment::Joint;
+use crate::wording::bracketed;
 
 /// Adds all signals of `joint` below the entity `root`.
 pub(super) fn add(
@@ -16,7 +17,7 @@ pub(super) fn add(
     joint: &Joint,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
-    let unit = |unit: &Option<String>| unit.as_ref().map_or(String::new(), |u| format!(" [{u}]"));
+    let unit = |unit: &Option<String>| bracketed("", unit.as_deref());
     let (input, output) = (unit(&joint.input_unit), unit(&joint.output_unit));
     // Input and delay are held between samples; what was measured is drawn from point to point.
     let entity = at(root, paths::INPUT);

@@ -15,6 +15,7 @@ use crate::recording::paths::revision::record;
 use crate::recording::rows::Rows;
 use crate::recording::sheet::Sheet;
 use crate::report::{ImprovedJoint, change_in_words};
+use crate::wording::bracketed;
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 600.0);
@@ -115,7 +116,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
 
     fn sheet(&self, improved: &ImprovedJoint<'_>) -> Sheet {
         let unit = &improved.finding.compared.joint.output_unit;
-        let unit = unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}]"));
+        let unit = bracketed("", unit.as_deref());
         let mut sheet = Sheet::default();
         let output = format!("measured (white) and simulated (orange){unit}");
         sheet.frame(&self.output, &self.output.x_span().ticks(8.0), &ticks(&self.output), &output);

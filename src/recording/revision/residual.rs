@@ -10,6 +10,7 @@ use crate::explain::Candidate;
 use crate::fit::Evaluation;
 use crate::recording::canvas::Span;
 use crate::recording::scatter::since_step;
+use crate::wording::bracketed;
 
 /// Bins with as many samples each.
 const BINS: usize = 40;
@@ -40,7 +41,7 @@ pub(super) fn figure(
         std_error: noise / count.sqrt(),
     };
     let explained: Law = bins.iter().map(|(mean, _)| (mean.x, mean.explained)).collect();
-    let unit = joint.output_unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}]"));
+    let unit = bracketed("", joint.output_unit.as_deref());
     let heights = bins.iter().flat_map(|(mean, _)| [mean.residual, mean.explained, 0.0]);
     Figure {
         title: format!("residual{unit} against {name}"),

@@ -14,7 +14,7 @@ use crate::recording::palette::{self, color, dimmed};
 use crate::recording::paths::{at, sweep::one};
 use crate::recording::rows::Rows;
 use crate::recording::sheet::{Sheet, put_texts, strips};
-use crate::wording::number as shown;
+use crate::wording::{bracketed, number as shown};
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1090.0);
@@ -133,7 +133,7 @@ impl<'s> Drawing<'s> {
     /// Grid, ticks and titles.
     fn sheet(&self, joint: &Joint) -> Sheet {
         let mut sheet = Sheet::default();
-        let unit = joint.output_unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}]"));
+        let unit = bracketed("", joint.output_unit.as_deref());
         let title = format!("{}; the output{unit} as measured", self.in_words(joint));
         let y_ticks = self.output.y_span().ticks(4.0).into_iter();
         let y_ticks: Vec<_> = y_ticks.map(|y| (y, shown(y))).collect();

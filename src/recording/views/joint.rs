@@ -90,7 +90,7 @@ impl Views<'_> {
         at(&joint_root(&self.joint.name), path)
     }
 
-    /// The same entity as a query.
+    /// That entity as a query.
     fn path(&self, path: &str) -> String {
         self.at(path).to_string()
     }

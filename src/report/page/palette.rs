@@ -1,4 +1,4 @@
-//! Colours: one meaning each, told apart by colour-blind readers too.
+//! Colours: one meaning each, distinct for colour-blind readers too.
 //!
 //! Okabe and Ito's hues, which the recording has as well, in a shade for light ground and
 //! one for dark ground. A figure is drawn in the shades for light ground, which are right

@@ -13,7 +13,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape};
 
-/// Parts of a pixel that a coordinate tells.
+/// Parts of a pixel that a coordinate resolves.
 const FINE: u32 = 4;
 
 /// Height of letters in pixels.
@@ -354,7 +354,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drawing_is_well_formed_and_tells_its_name() {
+    fn a_drawing_is_well_formed_and_has_its_name() {
         let lines = Shape::Lines(vec![vec![(0.0, 0.0), (10.0, 10.0)]], 1.0);
         let drawn = panel(vec![Mark::new(Role::Model, lines).named("a < b")]);
         let svg = draw(&[drawn], 300, "1 < 2").unwrap();

@@ -188,7 +188,7 @@ impl Choice<'_> {
     }
 }
 
-/// A time to the hundredth, where that tells it.
+/// A time to the hundredth, where that is enough.
 fn rounded_time(seconds: f64) -> String {
     if seconds.abs() < 1e6 { number((seconds * 100.0).round() / 100.0) } else { rounded(seconds) }
 }

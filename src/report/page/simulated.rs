@@ -1,4 +1,4 @@
-//! A model beside the measurement: what it simulates, what is left, and where that is most.
+//! A model beside the measurement: what it simulates, the residual, and where that is largest.
 
 use super::document::Figure;
 use super::layout::{HALF, WIDTH, values_of};
@@ -17,7 +17,7 @@ use crate::wording::percent;
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
 
-/// Measured and simulated output over time, and what is left.
+/// Measured and simulated output over time, and the residual.
 pub(super) fn figure(
     compared: &ComparedJoint<'_>,
     split: Split,
@@ -27,7 +27,7 @@ pub(super) fn figure(
     let timeline = Timeline::of(joint);
     let unfitted = Mark::new(Role::Faint, Shape::Spans(unfitted(joint, split, &timeline), 0.13));
     let borders = timeline.borders();
-    let worst = worst_stretches(compared, &timeline);
+    let worst = worst_parts(compared, &timeline);
     let output = Panel {
         x: timeline.axis().bare(),
         y: Axis::new(outputs(compared), bracketed("output", joint.output_unit.as_deref()), 5.0),
@@ -57,8 +57,7 @@ pub(super) fn figure(
     let left = Panel { x: timeline.axis(), y, height: 110, marks };
     let name = format!("Measured and simulated output of {}", joint.name);
     let svg = draw(&[output, left], WIDTH, &name)?;
-    let caption =
-        "The measured output beside the simulated one, and what is left of it.".to_owned();
+    let caption = "The measured output beside the simulated one, and the residual.".to_owned();
     Ok(Figure { file, svg, caption })
 }
 
@@ -150,12 +149,12 @@ fn unfitted(joint: &Joint, split: Split, timeline: &Timeline<'_>) -> Vec<(f64, f
     record.part(Part::Validation).map(ends).collect()
 }
 
-fn worst_stretches(compared: &ComparedJoint<'_>, timeline: &Timeline<'_>) -> Vec<(f64, f64)> {
+fn worst_parts(compared: &ComparedJoint<'_>, timeline: &Timeline<'_>) -> Vec<(f64, f64)> {
     let worst = compared.comparison.failure.iter().flat_map(|failure| &failure.worst_segments);
     let trials = &compared.joint.trials;
-    let stretch = |worst: &WorstSegment| {
+    let part = |worst: &WorstSegment| {
         let trial = trials.iter().position(|trial| trial.label() == worst.trial)?;
         Some((timeline.of_log(trial, worst.start_s), timeline.of_log(trial, worst.end_s)))
     };
-    worst.filter_map(stretch).collect()
+    worst.filter_map(part).collect()
 }

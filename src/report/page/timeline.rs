@@ -62,7 +62,7 @@ impl<'a> Timeline<'a> {
         (self.at(0, 1.0), self.at(last, samples as f64))
     }
 
-    /// Where trials after the first begin; nothing where these are too many to be told apart.
+    /// Where trials after the first begin; nothing where these are too many to be distinguished.
     pub(super) fn borders(&self) -> Mark {
         const MOST: usize = 60;
         let places = (1..self.trials.len()).map(|trial| self.at(trial, 1.0));
