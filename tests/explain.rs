@@ -62,7 +62,7 @@ fn an_integrator_lacks_nothing_and_its_limits_are_said() {
     assert!(words.contains("No lack of fit is shown") && words.contains("times the noise"));
     assert!(words.contains("input -1.5 to 1.5 V"), "{words}");
     let text = String::from_utf8(desk.run("explain log.csv").stdout).unwrap();
-    assert!(text.starts_with("boom: nothing to add\n"), "{text}");
+    assert!(text.starts_with("boom: no missing effect found\n"), "{text}");
 }
 
 #[test]
@@ -97,7 +97,9 @@ fn several_joints_each_have_their_own_command_and_a_broken_one_costs_no_other() 
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8(output.stderr).unwrap().contains("broken"));
     let text = String::from_utf8(output.stdout).unwrap();
-    for part in ["boom: dead_band is missing", "│ dead_band ", command, "arm: nothing to add"] {
+    for part in
+        ["boom: dead_band is missing", "│ dead_band ", command, "arm: no missing effect found"]
+    {
         assert!(text.contains(part), "no `{part}` in: {text}");
     }
 }

@@ -147,7 +147,7 @@ fn every_drawing_changes_with_the_revision_and_is_on_every_timeline() {
         let Change::Added(id) = pair[1].change else { panic!("{:?}", pair[1].change) };
         assert!(text.contains(&format!("{} is missing", id.replace('_', "\\_"))), "{text}");
     }
-    assert!(words.last().unwrap().1.contains("nothing to add"));
+    assert!(words.last().unwrap().1.contains("no missing effect found"));
 }
 
 #[test]

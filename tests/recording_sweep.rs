@@ -232,7 +232,7 @@ fn words_are_those_of_the_text_and_tell_what_it_was_made_from() {
         cell.as_string::<i32>().value(0).to_owned()
     };
     let found = text("/boom/found");
-    assert!(found.contains("hang on the method"), "{found}");
+    assert!(found.contains("depend on the method"), "{found}");
     assert!(found.contains("that they agree does not make them right"), "{found}");
     assert!(found.contains("| no low-pass |"), "{found}");
     let about = text("/about");

@@ -1,4 +1,4 @@
-//! Every delay with many settings: what it hangs on, and which settings agree.
+//! Every delay with many settings: what it depends on, and which settings agree.
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::path::Path;
@@ -34,7 +34,7 @@ fn swept(made: &Synthetic, methods: &[Method], passbands: &[Option<f64>]) -> Joi
     found.remove(0).unwrap().sweep
 }
 
-/// How many delays hang on each setting, in the order of [`Factor::ALL`].
+/// How many delays depend on each setting, in the order of [`Factor::ALL`].
 fn counts(sweep: &JointSweep) -> [usize; 4] {
     let on = |factor| {
         let steps = sweep.steps.iter().filter_map(|step| step.delay_hangs_on.as_ref());
@@ -140,7 +140,7 @@ fn the_text_says_what_delays_hang_on() {
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0));
     assert!(text.contains("boom: 0 of"), "{text}");
-    assert!(text.contains("hang on the method"), "{text}");
+    assert!(text.contains("depend on the method"), "{text}");
     assert!(text.contains("`lag-aware` finds a lag of 0.0"), "{text}");
     assert!(text.contains("24 combinations of settings"), "{text}");
 }

@@ -43,6 +43,13 @@ pub struct Comparison {
     pub regions: Vec<Region>,
 }
 
+impl Comparison {
+    /// The error by which the model is judged: on the validation part where there is one.
+    pub fn judged(&self) -> Option<ErrorFigures> {
+        self.validation.or(self.training)
+    }
+}
+
 /// All figures of a fitted model on `record`.
 pub fn compare(record: &FitRecord<'_>, fit: Fit) -> Comparison {
     let lack_of_fit = lack_of(record, &fit);

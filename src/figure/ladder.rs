@@ -24,5 +24,5 @@ pub(crate) fn largest(rungs: &[Rung<'_>]) -> f64 {
 
 /// The error by which a revision is judged: on data that were not fitted, where there are any.
 pub(crate) fn judged(comparison: &Comparison) -> f64 {
-    comparison.validation.or(comparison.training).map_or(0.0, |error| error.rmse)
+    comparison.judged().map_or(0.0, |error| error.rmse)
 }

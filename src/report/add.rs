@@ -45,25 +45,23 @@ impl<'a> AddedJoint<'a> {
         [format!("revision {first}, {had}"), format!("revision {second}, + {}", self.effect)]
     }
 
-    /// `boom: dead_band takes 87 % of the error away, …`.
+    /// `boom: with dead_band the error falls from 2.9 to 0.4 deg, by 87 %`.
     fn sentence(&self) -> String {
-        let error = |comparison: &Comparison| {
-            let of_part = comparison.validation.or(comparison.training);
-            of_part.map_or(f64::NAN, |error| error.rmse)
-        };
+        let error =
+            |comparison: &Comparison| comparison.judged().map_or(f64::NAN, |error| error.rmse);
         let (before, after) = (error(&self.addition.before), error(&self.addition.after));
         let taken = 100.0 * (1.0 - after / before);
         let unit = self.joint.output_unit.as_deref();
         let falls = if taken >= 0.0 { "falls" } else { "rises" };
         let (from, to) = (number(before), with_unit(after, unit));
-        let chance = self.addition.p_value.map_or_else(String::new, |p| {
-            let by_chance = if p < 0.01 { "" } else { ": no more than chance gives" };
-            format!(" ({}{by_chance})", p_text(p))
+        let p_value = self.addition.p_value.map_or_else(String::new, |p| {
+            let verdict = if p < 0.01 { "" } else { ": not significant" };
+            format!(" ({}{verdict})", p_text(p))
         });
         let share = (10.0 * taken.abs()).round() / 10.0;
         let Self { joint, effect, .. } = self;
         format!(
-            "{}: with {effect} the error {falls} from {from} to {to}, by {share} %{chance}",
+            "{}: with {effect} the error {falls} from {from} to {to}, by {share} %{p_value}",
             joint.name
         )
     }

@@ -1,24 +1,14 @@
 //! The delay against the state, for the terminal.
 
-use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
-
+use super::text_table::TextTable;
 use crate::delay::{AgainstState, Correlation, Direction};
 use crate::wording::{bracketed, p_cell};
 
 /// A row per joint and variable; `joints` are names and what was found.
 pub fn against_table<'a>(joints: impl IntoIterator<Item = (&'a str, &'a AgainstState)>) -> String {
-    let mut table = Table::new();
-    table
-        .load_style(presets::UTF8_BORDERS_ONLY)
-        .set_content_arrangement(ContentArrangement::Disabled)
-        .set_header(AGAINST_HEADER);
+    let mut table = TextTable::new(AGAINST_HEADER, &[2, 3, 4]);
     for (joint, found) in joints {
-        table.add_rows(against_rows(joint, found));
-    }
-    for right in [2, 3, 4] {
-        if let Some(column) = table.column_mut(right) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
+        against_rows(joint, found).into_iter().for_each(|cells| table.row(cells));
     }
     format!("{table}\nSpearman's rank correlation; `yes`: p at most 0.05 after Holm's correction\n")
 }

@@ -1,9 +1,6 @@
 //! `compare` as text.
 
-use std::ops::Range;
-
-use comfy_table::{CellAlignment, Table, presets};
-
+use super::text_table::TextTable;
 use crate::diagnosis::{Comparison, ErrorFigures};
 use crate::experiment::Joint;
 use crate::fit::Parameter;
@@ -26,20 +23,11 @@ pub struct ComparedJoint<'a> {
 
 /// A table of errors, one row per joint and model, and the parameters below it.
 pub fn compare_table(joints: &[ComparedJoint<'_>], horizon: &str) -> String {
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_BORDERS_ONLY).set_header([
-        "joint",
-        "model",
-        "training",
-        "validation",
-        "fit",
-        "noise",
-        "lack of fit",
-    ]);
+    let header = ["joint", "model", "training", "validation", "fit", "noise", "lack of fit"];
+    let mut table = TextTable::new(header, &[2, 3, 4, 5]);
     for compared in joints {
-        table.add_row(row(compared));
+        table.row(row(compared));
     }
-    align_right(&mut table, 2..6);
     let parameters: Vec<_> = joints.iter().map(parameters).collect();
     let failures: Vec<_> = joints.iter().flat_map(failure_sentences).collect();
     let failures = if failures.is_empty() {
@@ -51,7 +39,7 @@ pub fn compare_table(joints: &[ComparedJoint<'_>], horizon: &str) -> String {
     let residuals = if residuals.is_empty() {
         String::new()
     } else {
-        format!("\nwhat is left of the training part:\n{}\n", residuals.join("\n"))
+        format!("\nresidual of the training part:\n{}\n", residuals.join("\n"))
     };
     let parameters = parameters.join("\n");
     format!("{table}\nroot-mean-square errors, {horizon}\n\n{parameters}\n{residuals}{failures}")
@@ -62,15 +50,6 @@ fn residual_line(compared: &ComparedJoint<'_>) -> Option<String> {
     let parts = correlation_sentences(compared.comparison);
     (!parts.is_empty())
         .then(|| format!("{} ({}): {}", compared.joint.name, compared.model, parts.join("; ")))
-}
-
-/// Numbers stand right.
-pub(super) fn align_right(table: &mut Table, columns: Range<usize>) {
-    for right in columns {
-        if let Some(column) = table.column_mut(right) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
 }
 
 /// Where a model fails, in sentences that start with the joint.

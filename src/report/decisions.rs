@@ -27,7 +27,7 @@ pub struct DecisionRow<'a> {
     pub candidates: usize,
     /// `f`: the best candidate.
     pub f_opt: Option<usize>,
-    /// `q`: its breakpoint; between samples where the method tells it.
+    /// `q`: its breakpoint; between samples where the method finds it so.
     #[serde(serialize_with = "samples")]
     pub q: Option<f64>,
     /// `δ = q − p` in samples.
@@ -51,7 +51,7 @@ pub struct DecisionRow<'a> {
     pub failed: String,
 }
 
-/// What more is told of a decision: the columns behind those of [`DecisionRow`] where a
+/// Further details of a decision: the columns behind those of [`DecisionRow`] where a
 /// method other than the paper's was run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DecisionDetail {
@@ -61,7 +61,7 @@ pub struct DecisionDetail {
     pub delta_low: Option<f64>,
     /// Upper end of it.
     pub delta_high: Option<f64>,
-    /// The chance that noise alone looks as much like a reaction, where that was asked.
+    /// p-value of the reaction: how often noise alone looks as much like one; where tested.
     pub p_value: Option<f64>,
     /// The second-best breakpoint.
     pub runner_up_q: Option<usize>,
@@ -150,7 +150,7 @@ pub fn decision_rows(
     })
 }
 
-/// The rows of one joint with all that is told of them.
+/// The rows of one joint with their details.
 pub(super) fn detailed_rows(
     joint: EstimatedJoint<'_>,
 ) -> impl Iterator<Item = (DecisionRow<'_>, DecisionDetail)> + '_ {
@@ -168,7 +168,7 @@ pub(super) fn detailed_rows(
 }
 
 /// Writes the decisions of all joints as CSV, those of one run of settings below those of
-/// another. With a method other than the paper's there are columns for what it tells.
+/// another. With a method other than the paper's there are columns for its details.
 ///
 /// # Errors
 /// When `out` cannot be written.
@@ -202,7 +202,7 @@ pub fn decision_columns(methods: Methods) -> impl Iterator<Item = (&'static str,
 pub enum Methods {
     /// The paper's.
     PaperOnly,
-    /// Others, which tell more.
+    /// Others, which have further details.
     Others,
 }
 
@@ -257,7 +257,7 @@ const DETAILS: [&str; 7] = [
     "accepted_with",
 ];
 
-/// The header stands even when there is no row.
+/// The header, which is written even when there is no row.
 const COLUMNS: [&str; 18] = [
     "joint",
     "trial",

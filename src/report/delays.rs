@@ -69,7 +69,7 @@ fn runs<'a>(joints: &[EstimatedJoint<'a>]) -> Vec<&'a Trial> {
     all.filter(|trial| seen.insert(key(trial))).collect()
 }
 
-/// What tells one run from another: name, start and sample period.
+/// What identifies a run: name, start and sample period.
 fn key(trial: &Trial) -> (&str, u64, u64) {
     (trial.label(), trial.time_s(1).to_bits(), trial.period().seconds().to_bits())
 }

@@ -15,15 +15,15 @@ pub struct DesignedJoint {
     pub schedule: Schedule,
     /// What the joint will do, where a model says so: for two suspects the first's.
     pub prediction: Option<Prediction>,
-    /// What it is to tell apart, if that is what it is for.
-    pub told: Option<Told>,
+    /// What it is to distinguish, if that is what it is for.
+    pub discrimination: Option<Discrimination>,
     /// What whoever plays it should know.
     pub notes: Vec<String>,
 }
 
-/// Two suspects that an input tells apart.
+/// Two suspects that an input distinguishes.
 #[derive(Clone, Debug)]
-pub struct Told {
+pub struct Discrimination {
     /// Their ids.
     pub ids: [&'static str; 2],
     /// The input, and how surely.
@@ -41,8 +41,8 @@ impl DesignedJoint {
     /// where no model says so.
     pub fn expected(&self) -> Vec<(&str, &Prediction)> {
         let Some(prediction) = &self.prediction else { return Vec::new() };
-        match &self.told {
-            Some(Told { ids: [one, other], other: second, .. }) => {
+        match &self.discrimination {
+            Some(Discrimination { ids: [one, other], other: second, .. }) => {
                 vec![(one, prediction), (other, second)]
             }
             None => vec![("model", prediction)],
@@ -107,7 +107,9 @@ pub fn write_preview(joints: &[DesignedJoint], out: impl Write) -> csv::Result<(
         add("output", output.clone(), f64::NAN);
         add("low", with(-1.0), f64::NAN);
         add("high", with(1.0), f64::NAN);
-        if let Some(Told { ids: [one, other], other: outputs, .. }) = &joint.told {
+        if let Some(Discrimination { ids: [one, other], other: outputs, .. }) =
+            &joint.discrimination
+        {
             add(one, output.clone(), f64::NAN);
             add(other, outputs.output.clone(), f64::NAN);
         }
@@ -115,7 +117,7 @@ pub fn write_preview(joints: &[DesignedJoint], out: impl Write) -> csv::Result<(
     write_columns(joints, &columns, out)
 }
 
-/// Columns with their names and what stands behind their ends; not a number: nothing.
+/// Columns with their names and the value behind their ends; not a number: an empty cell.
 fn write_columns(
     joints: &[DesignedJoint],
     columns: &[(String, Vec<f64>, f64)],

@@ -1,8 +1,7 @@
 //! The next experiment in words.
 
-use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
-
-use super::design::{DesignedJoint, Told, holds, kept_until_s, order};
+use super::design::{DesignedJoint, Discrimination, holds, kept_until_s, order};
+use super::text_table::TextTable;
 use crate::design::{Expected, OpenThreshold, Prediction, Rehearsal, Schedule, transitions};
 use crate::wording::{listed, measure, rounded, unit_suffix, wrapped};
 
@@ -14,7 +13,7 @@ pub fn design_text(joints: &[DesignedJoint]) -> String {
 fn joint_text(joint: &DesignedJoint) -> String {
     let mut sentences = design_sentences(joint);
     let mut parts = vec![wrapped(&sentences.remove(0))];
-    parts.extend(joint.told.as_ref().map(|told| side_table(told).to_string()));
+    parts.extend(joint.discrimination.as_ref().map(|found| side_table(found).to_string()));
     if !sentences.is_empty() {
         parts.push(wrapped(&sentences.join(" ")));
     }
@@ -22,11 +21,11 @@ fn joint_text(joint: &DesignedJoint) -> String {
     parts.join("\n\n")
 }
 
-/// What is played, in the first sentence; what it tells, where the joint will be, and what
+/// What is played, in the first sentence; what it distinguishes, where the joint will be, and what
 /// whoever plays it should know.
 pub fn design_sentences(joint: &DesignedJoint) -> Vec<String> {
     let mut sentences = vec![headline(joint)];
-    sentences.extend(joint.told.iter().flat_map(|told| explanation(joint, told)));
+    sentences.extend(joint.discrimination.iter().flat_map(|found| explanation(joint, found)));
     sentences.extend(joint.prediction.as_ref().map(|prediction| foreseen(joint, prediction)));
     sentences.extend(joint.notes.iter().cloned());
     sentences
@@ -41,16 +40,16 @@ fn headline(joint: &DesignedJoint) -> String {
     let (hold, steps) = (hold_text(schedule), schedule.steps());
     let duration = measure(schedule.duration_s(), Some("s"));
     let name = &rig.name;
-    if let Some(Told { ids: [one, other], design, .. }) = &joint.told {
+    if let Some(Discrimination { ids: [one, other], design, .. }) = &joint.discrimination {
         if !design.explores.is_empty() {
             return format!(
-                "{name}: {duration} that explore, before an input tells {one} from {other}: \
+                "{name}: {duration} that explore, before an input distinguishes {one} from {other}: \
                  {levels}, each held for {hold}, {steps} steps."
             );
         }
         let order = order(design.order);
         return format!(
-            "{name}: {duration} tell {one} from {other}: {order} of {levels}, each held for \
+            "{name}: {duration} distinguish {one} from {other}: {order} of {levels}, each held for \
              {hold}, {steps} steps."
         );
     }
@@ -70,20 +69,20 @@ fn hold_text(schedule: &Schedule) -> String {
     format!("{shortest} to {longest}")
 }
 
-/// What [`side_rows`] tell.
+/// Header of [`side_rows`].
 pub const SIDE_HEADER: [&str; 5] = ["if it is", "expected power", "rehearsed", "other", "neither"];
 
-/// A row for each suspect: how surely it is told where it is there.
-pub fn side_rows(told: &Told) -> [[String; 5]; 2] {
-    let [one, other] = &told.design.sides;
-    let [first, second] = told.ids;
+/// A row for each suspect: how surely it is identified where it is present.
+pub fn side_rows(found: &Discrimination) -> [[String; 5]; 2] {
+    let [one, other] = &found.design.sides;
+    let [first, second] = found.ids;
     [(first, one), (second, other)].map(|(id, side)| {
         let Expected { rival, neither, .. } = side.expected;
         let power =
             if side.is_target { format!("{:.3}", side.expected.power()) } else { "-".into() };
         let rehearsed = side.rehearsal.map_or_else(
             || "-".to_owned(),
-            |Rehearsal { successes, runs }| format!("{successes} of {runs} told"),
+            |Rehearsal { successes, runs }| format!("{successes} of {runs} correct"),
         );
         let far = |noncentrality: f64| format!("λ = {}", rounded(noncentrality));
         let (rival, neither) = (far(rival.noncentrality()), far(neither.noncentrality()));
@@ -91,37 +90,26 @@ pub fn side_rows(told: &Told) -> [[String; 5]; 2] {
     })
 }
 
-fn side_table(told: &Told) -> Table {
-    let mut table = Table::new();
-    table
-        .load_style(presets::UTF8_BORDERS_ONLY)
-        .set_content_arrangement(ContentArrangement::Disabled)
-        .set_header(SIDE_HEADER);
-    for row in side_rows(told) {
-        table.add_row(row);
-    }
-    for right in 1..5 {
-        if let Some(column) = table.column_mut(right) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
+fn side_table(found: &Discrimination) -> TextTable {
+    let mut table = TextTable::new(SIDE_HEADER, &[1, 2, 3, 4]);
+    side_rows(found).into_iter().for_each(|cells| table.row(cells));
     table
 }
 
 /// What the figures are about.
-fn explanation(joint: &DesignedJoint, told: &Told) -> Vec<String> {
-    let Told { ids, design, wanted, noise, .. } = told;
+fn explanation(joint: &DesignedJoint, found: &Discrimination) -> Vec<String> {
+    let Discrimination { ids, design, wanted, noise, .. } = found;
     let noise = measure(*noise, joint.rig.output_unit.as_deref());
     let mut sentences = vec![format!(
         "Power: the probability that explain names the effect that is there and excludes the \
          other, with noise of {noise}; {wanted} was wanted. λ: squared distance to the best fit \
          with the other effect and with neither, in variances of the noise."
     )];
-    for (place, side) in design.sides.iter().enumerate().filter(|(_, side)| !side.is_target) {
-        let (is, other) = (ids.get(place), ids.get(1 - place));
+    for (index, side) in design.sides.iter().enumerate().filter(|(_, side)| !side.is_target) {
+        let (is, other) = (ids.get(index), ids.get(1 - index));
         if let (Some(is), Some(other), true) = (is, other, side.is_excluded) {
             sentences.push(format!(
-                "The log speaks against {is} already: the input is made for the case that it is \
+                "The log already contradicts {is}: the input is made for the case that it is \
                  {other}."
             ));
         } else if let (Some(is), Some(other)) = (is, other) {

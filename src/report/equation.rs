@@ -25,7 +25,7 @@ pub(super) fn filled_in(component: &Component) -> String {
     filled
 }
 
-/// `text` cut into names and what stands between them.
+/// `text` cut into names and what is between them.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     let mut rest = text;
     std::iter::from_fn(move || {
@@ -42,7 +42,7 @@ fn is_of_name(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-/// A number as it stands behind `before`: in brackets where it would run into a sign or
+/// A number as it is written behind `before`: in brackets where it would run into a sign or
 /// another number.
 fn in_place(value: f64, before: &str) -> String {
     if value.abs() >= UNLIMITED {

@@ -1,9 +1,7 @@
 //! What `explain` and `improve` have found of a joint, as a table.
 
-use comfy_table::{Table, presets};
-
 use super::ComparedJoint;
-use super::compare::align_right;
+use super::text_table::TextTable;
 use crate::effect::Spec;
 use crate::experiment::Joint;
 use crate::explain::{Candidate, Verdict};
@@ -19,7 +17,7 @@ pub struct Finding<'a> {
     pub verdict: Verdict,
     /// The candidates, best first.
     pub ranking: &'a [Candidate],
-    /// What stands behind the effect on the command line that adds it.
+    /// What follows the effect on the command line that adds it.
     pub add_arguments: &'a str,
 }
 
@@ -35,14 +33,13 @@ pub(super) fn specs(candidate: &Candidate) -> impl Iterator<Item = &'static Spec
     added(candidate).map(|component| component.effect().spec())
 }
 
-/// The candidates, best first.
-pub(super) fn ranking_table(joint: &Joint, ranking: &[Candidate]) -> String {
-    let mut table = Table::new();
-    let header = ["effect", "validation", "reduction", "chance", "cannot be told from"];
-    table.load_style(presets::UTF8_BORDERS_ONLY).set_header(header);
+/// A row per candidate, best first.
+pub(super) fn ranking_table(joint: &Joint, ranking: &[Candidate]) -> TextTable {
+    let header = ["effect", "validation", "reduction", "p-value", "indistinguishable from"];
+    let mut table = TextTable::new(header, &[1, 2]);
     for candidate in ranking {
         let same = &candidate.indistinguishable_from;
-        table.add_row([
+        table.row([
             candidate.name(),
             with_unit(candidate.rmse(), joint.output_unit.as_deref()),
             format!("{:.1} %", candidate.error_reduction_percent),
@@ -50,6 +47,5 @@ pub(super) fn ranking_table(joint: &Joint, ranking: &[Candidate]) -> String {
             if same.is_empty() { "-".to_owned() } else { same.join(", ") },
         ]);
     }
-    align_right(&mut table, 1..3);
-    table.to_string()
+    table
 }

@@ -2,8 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use comfy_table::{CellAlignment, Table, presets};
-
+use super::text_table::TextTable;
 use super::{DataTable, DelayRange, Kind, Methods, decision_columns};
 use crate::wording::{counted, percent};
 
@@ -124,13 +123,11 @@ impl FolderReport {
         let mut across: Vec<Across> = Vec::new();
         for (_, joint) in self.joints() {
             let name = joint.get("joint").and_then(Value::as_str).unwrap_or_default();
-            let place = across.iter().position(|known| known.joint == name).unwrap_or_else(|| {
+            let index = across.iter().position(|known| known.joint == name).unwrap_or_else(|| {
                 across.push(Across { joint: name.to_owned(), ..Across::default() });
                 across.len() - 1
             });
-            if let Some(known) = across.get_mut(place) {
-                known.add(joint);
-            }
+            across[index].add(joint);
         }
         across
     }
@@ -152,14 +149,13 @@ impl FolderReport {
                 "medians of the logs",
             ]
         };
-        let mut table = Table::new();
-        table.load_style(presets::UTF8_BORDERS_ONLY).set_header(header);
-        for joint in self.across() {
-            table.add_row(if improve { joint.improved_cells() } else { joint.estimated_cells() });
-        }
-        for column in table.column_iter_mut().skip(1).take(header.len() - 2) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
+        let cells =
+            |joint: &Across| if improve { joint.improved_cells() } else { joint.estimated_cells() };
+        let table = TextTable {
+            header: header.iter().map(ToString::to_string).collect(),
+            rows: self.across().iter().map(cells).collect(),
+            numbers: (1..header.len() - 1).collect(),
+        };
         format!("{table}\n{}, each by itself\n", counted(self.logs.len(), "log"))
     }
 }

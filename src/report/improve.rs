@@ -1,10 +1,9 @@
 //! `improve` as text: the ladder of errors.
 
-use comfy_table::{Table, presets};
-
-use super::compare::{ComparedJoint, align_right, figures, parameters};
+use super::compare::{ComparedJoint, figures, parameters};
+use super::conclusion::{Conclusion, printed};
 use super::finding::Finding;
-use super::words::{Words, printed};
+use super::text_table::TextTable;
 use crate::experiment::Joint;
 use crate::explain::{Candidate, Change, Revision, Verdict};
 use crate::wording::effects_text;
@@ -35,76 +34,68 @@ impl<'a> ImprovedJoint<'a> {
         (self.first_revision..).zip(self.revisions)
     }
 
-    /// The candidate of the revision at `place` that the next one took, or would take.
-    pub fn proposed(&self, place: usize) -> Option<&'a Candidate> {
-        self.ranking_behind(place).first()
+    /// The candidate of the revision at `index` that the next one took, or would take.
+    pub fn proposed(&self, index: usize) -> Option<&'a Candidate> {
+        self.ranking_behind(index).first()
     }
 
-    /// The ranking at `place` from that candidate on.
-    fn ranking_behind(&self, place: usize) -> &'a [Candidate] {
-        let ranking = self.revisions.get(place).map_or(&[][..], |revision| &revision.ranking);
-        let first = ranking.iter().position(|candidate| self.is_taken(place, candidate));
+    /// The ranking at `index` from that candidate on.
+    fn ranking_behind(&self, index: usize) -> &'a [Candidate] {
+        let ranking = self.revisions.get(index).map_or(&[][..], |revision| &revision.ranking);
+        let first = ranking.iter().position(|candidate| self.is_taken(index, candidate));
         first.and_then(|first| ranking.get(first..)).unwrap_or_default()
     }
 
-    fn is_taken(&self, place: usize, candidate: &Candidate) -> bool {
-        match self.revisions.get(place + 1).map(|next| next.change) {
+    fn is_taken(&self, index: usize, candidate: &Candidate) -> bool {
+        match self.revisions.get(index + 1).map(|next| next.change) {
             Some(Change::Added(id)) => candidate.effects.first() == Some(&id),
             Some(_) => false,
             None => self.finding.verdict == Verdict::MissingEffect,
         }
     }
 
-    /// What is to be said of the revision at `place`.
-    pub fn words_of(&self, place: usize) -> Words {
-        let next = self.revisions.get(place + 1).map(|next| next.change);
-        let known = self.numbered().nth(place).zip(next);
-        let Some(((revision, step), next)) = known else { return self.finding.words() };
+    /// What is to be said of the revision at `index`.
+    pub fn conclusion_at(&self, index: usize) -> Conclusion {
+        let next = self.revisions.get(index + 1).map(|next| next.change);
+        let known = self.numbered().nth(index).zip(next);
+        let Some(((revision, step), next)) = known else { return self.finding.conclusion() };
         let verdict = Verdict::MissingEffect;
         let compared =
             ComparedJoint { revision, comparison: &step.comparison, ..self.finding.compared };
-        let ranking = self.ranking_behind(place);
+        let ranking = self.ranking_behind(index);
         let finding = Finding { compared, verdict, ranking, ..self.finding };
         match made_useless(next) {
-            Some(why) => Words {
+            Some(why) => Conclusion {
                 headline: format!("{}: {why}", compared.joint.name),
                 paragraph: "The effects that came after it do its part, so that it no longer \
                             earns its parameters."
                     .to_owned(),
                 commands: Vec::new(),
             },
-            None => finding.words(),
+            None => finding.conclusion(),
         }
     }
 
     fn text(&self) -> String {
-        let words = self.finding.words();
+        let conclusion = self.finding.conclusion();
         let stopped = if self.interrupted { " (stopped before the end)" } else { "" };
         let ladder = self.ladder();
         let model = parameters(&self.finding.compared);
-        let headline = &words.headline;
-        format!("{headline}{stopped}\n{ladder}\n\n{}\nmodel of {model}\n", printed(&words))
+        let headline = &conclusion.headline;
+        format!("{headline}{stopped}\n{ladder}\n\n{}\nmodel of {model}\n", printed(&conclusion))
     }
 
-    /// A row per revision.
-    fn ladder(&self) -> Table {
-        let mut table = Table::new();
-        table.load_style(presets::UTF8_BORDERS_ONLY).set_header([
-            "revision",
-            "change",
-            "training",
-            "validation",
-            "fit",
-            "noise",
-            "lack of fit",
-        ]);
+    /// The ladder of errors: a row per revision.
+    pub(super) fn ladder(&self) -> TextTable {
+        let header =
+            ["revision", "change", "training", "validation", "fit", "noise", "lack of fit"];
+        let mut table = TextTable::new(header, &[2, 3, 4, 5]);
         for (number, revision) in self.numbered() {
             let [training, validation, fit, noise, lack] =
                 figures(self.finding.compared.joint, &revision.comparison);
             let change = change_in_words(revision);
-            table.add_row([number.to_string(), change, training, validation, fit, noise, lack]);
+            table.row([number.to_string(), change, training, validation, fit, noise, lack]);
         }
-        align_right(&mut table, 2..6);
         table
     }
 }

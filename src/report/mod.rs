@@ -3,6 +3,7 @@
 mod add;
 mod against;
 mod compare;
+mod conclusion;
 mod decisions;
 mod delays;
 mod design;
@@ -23,19 +24,20 @@ mod summary;
 mod sweep;
 mod table;
 mod text;
-mod words;
+mod text_table;
 
 pub use add::{AddedJoint, add_text, gone};
 pub use against::against_table;
 #[cfg(feature = "rrd")]
 pub(crate) use against::variable_text;
 pub use compare::{ComparedJoint, compare_table};
+pub use conclusion::Conclusion;
 pub use decisions::{
     DecisionDetail, DecisionRow, Methods, decision_columns, decision_rows, decision_table,
     write_decisions,
 };
 pub use delays::{delay_table, write_delays};
-pub use design::{DesignedJoint, Told, write_input, write_preview};
+pub use design::{DesignedJoint, Discrimination, write_input, write_preview};
 pub use design_words::{SIDE_HEADER, design_sentences, design_text, side_rows};
 pub use effects::{listing, sheet};
 pub use estimated::EstimatedJoint;
@@ -56,11 +58,10 @@ pub use summary::{DelayRange, JointSummary};
 pub use sweep::{ReportedSweep, StepsShown, sweep_text};
 #[cfg(feature = "rrd")]
 pub(crate) use sweep::{
-    hangs_on, level_cell, level_text, run_text, settings_in_words, sweep_sentences,
+    depends_on, level_cell, level_text, run_text, settings_in_words, sweep_sentences,
 };
 pub use table::{DataTable, Kind};
 pub(crate) use text::chosen_line;
 pub use text::estimate_table;
 #[cfg(feature = "rrd")]
 pub(crate) use text::{SUMMARY_HEADER, summary_cells};
-pub use words::Words;

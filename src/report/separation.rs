@@ -1,21 +1,23 @@
-//! The experiment that would tell two effects apart.
+//! The experiment that would distinguish two effects.
 
 use crate::experiment::Joint;
 use crate::explain::{Pattern, Proposal, Separation, Start};
 use crate::wording::{listed, measure, rounded, unit_suffix};
 
-/// What would tell an effect from another, or that nothing would.
+/// What would distinguish an effect from another, or that nothing would.
 pub(super) fn sentence(joint: &Joint, separation: &Separation) -> String {
     let other = separation.other;
     if separation.is_clear {
-        return format!("To tell it from {other}: {}.", experiment(joint, separation));
+        return format!("To distinguish it from {other}: {}.", experiment(joint, separation));
     }
     let why = if separation.times_noise < UNSEEN {
         "with these numbers the two do the same"
     } else {
         "what the two differ by is noise, or another gain"
     };
-    format!("No input that was tried at the angles of this record tells it from {other}: {why}.")
+    format!(
+        "No input that was tried at the angles of this record distinguishes it from {other}: {why}."
+    )
 }
 
 /// A difference of a smaller part of the noise is none.
@@ -114,7 +116,7 @@ mod tests {
 
     #[test]
     fn an_experiment_is_said_with_its_numbers() {
-        let expected = "To tell it from stiction: hold 0.3, 0.4 and 0.5 V for 2 s each, rising \
+        let expected = "To distinguish it from stiction: hold 0.3, 0.4 and 0.5 V for 2 s each, rising \
                         and then falling, in one direction and then in the other, from rest at \
                         12 and 40 deg: after 6 s the two differ by 14 times the noise.";
         assert_eq!(sentence(&joint(), &separation(&[0.3, 0.4, 0.5])), expected);
@@ -123,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_input_tells_apart_is_said_too() {
+    fn that_no_input_distinguishes_them_is_said_too() {
         let separation = Separation { is_clear: false, ..separation(&[1.0]) };
         let said = sentence(&joint(), &separation);
         assert!(said.starts_with("No input that was tried") && said.ends_with("another gain."));

@@ -1,14 +1,13 @@
 //! Every step in a row, for the terminal.
 
-use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
-
 use super::EstimatedJoint;
 use super::decisions::detailed_rows;
+use super::text_table::TextTable;
 use crate::delay::{Decision, InputStep, Verdict};
 use crate::experiment::{Joint, Trial};
 use crate::wording::{number, unit_suffix};
 
-/// One step in a line, as it is told when it has come, with its trial where there are several.
+/// One step in a line, as it is reported when it has come, with its trial where there are several.
 pub fn step_line(joint: &Joint, trial: &Trial, decision: &Decision) -> String {
     let name = &joint.name;
     let is_one_of_several = joint.trials.len() > 1;
@@ -31,11 +30,8 @@ pub fn step_line(joint: &Joint, trial: &Trial, decision: &Decision) -> String {
 /// A row per step: its delay with the interval, the verdict, and what would have accepted
 /// it, or by how much the second-best breakpoint is worse.
 pub fn steps_table(joints: &[EstimatedJoint<'_>]) -> String {
-    let mut table = Table::new();
-    table
-        .load_style(presets::UTF8_BORDERS_ONLY)
-        .set_content_arrangement(ContentArrangement::Disabled)
-        .set_header(["joint", "trial", "step", "delay", "interval", "verdict", "how near"]);
+    let header = ["joint", "trial", "step", "delay", "interval", "verdict", "how near"];
+    let mut table = TextTable::new(header, &[2, 3]);
     for joint in joints {
         for (row, detail) in detailed_rows(*joint) {
             let delay = row.delta.map_or_else(|| "-".to_owned(), number);
@@ -52,12 +48,7 @@ pub fn steps_table(joints: &[EstimatedJoint<'_>]) -> String {
                 _ => detail.accepted_with,
             };
             let (joint, trial) = (row.joint.to_owned(), row.trial.to_owned());
-            table.add_row([joint, trial, row.i.to_string(), delay, interval, row.verdict, near]);
-        }
-    }
-    for right in [2, 3] {
-        if let Some(column) = table.column_mut(right) {
-            column.set_cell_alignment(CellAlignment::Right);
+            table.row([joint, trial, row.i.to_string(), delay, interval, row.verdict, near]);
         }
     }
     format!("{table}\ndelays in samples\n")

@@ -65,7 +65,7 @@ impl Column {
         }
     }
 
-    /// The cell as it stands in CSV.
+    /// The cell as text of CSV.
     fn write_cell(&self, row: usize, out: &mut csv::Writer<impl Write>) -> csv::Result<()> {
         match &self.values {
             Values::Text(texts) => out.write_field(texts.get(row).map_or("", String::as_str)),

@@ -1,7 +1,6 @@
 //! Tables for the terminal.
 
-use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
-
+use super::text_table::TextTable;
 use super::{DelayRange, EstimatedJoint, JointSummary};
 use crate::delay::{Automatic, Chosen, Condition, Interpolation, LagPart, Settings};
 use crate::numerics::LowPass;
@@ -9,18 +8,9 @@ use crate::wording::{measure, percent, rounded};
 
 /// The table of `estimate`: a row per joint, and the settings below it.
 pub fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings) -> String {
-    let mut table = Table::new();
-    table
-        .load_style(presets::UTF8_BORDERS_ONLY)
-        .set_content_arrangement(ContentArrangement::Disabled)
-        .set_header(SUMMARY_HEADER);
+    let mut table = TextTable::new(SUMMARY_HEADER, &[1, 2, 4, 5, 6]);
     for joint in joints {
-        table.add_row(summary_cells(&joint.joint.name, &JointSummary::of(*joint)));
-    }
-    for right in [1, 2, 4, 5, 6] {
-        if let Some(column) = table.column_mut(right) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
+        table.row(summary_cells(&joint.joint.name, &JointSummary::of(*joint)));
     }
     let lags: String = joints.iter().filter_map(lag_line).collect();
     let chosen: String = joints.iter().filter_map(chosen_line).collect();

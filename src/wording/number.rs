@@ -26,7 +26,7 @@ fn to_digits(value: f64, significant: i32) -> String {
     tidy(&format!("{value:.decimals$}"))
 }
 
-/// Takes the zeros off the end of a number with a point.
+/// Removes trailing zeros behind a decimal point.
 fn tidy(text: &str) -> String {
     let (mantissa, exponent) = text.split_at(text.find('e').unwrap_or(text.len()));
     if mantissa.contains('.') {
@@ -36,7 +36,7 @@ fn tidy(text: &str) -> String {
     format!("{mantissa}{exponent}")
 }
 
-/// A unit as it stands behind a number: ` V`, or nothing.
+/// A unit as it is written behind a number: ` V`, or nothing.
 pub fn unit_suffix(unit: Option<&str>) -> String {
     unit.map_or_else(String::new, |unit| format!(" {unit}"))
 }

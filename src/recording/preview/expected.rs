@@ -27,7 +27,7 @@ impl<'a> Preview<'a> {
         let expected =
             expected.map(|((name, prediction), rgb)| Expectation { name, prediction, rgb });
         let expected: Vec<_> = expected.collect();
-        let noise = joint.told.as_ref().map(|told| told.noise);
+        let noise = joint.discrimination.as_ref().map(|found| found.noise);
         let apart = match (expected.as_slice(), noise) {
             ([one, other], Some(noise)) => {
                 let [one, other] = [one, other].map(|expected| &expected.prediction.output);

@@ -185,7 +185,7 @@ impl<'p> Page<'p> {
         const DISTANCE: f32 = 320.0;
         let mut entries: Vec<(String, Rgb)> = vec![("– input".to_owned(), palette::INPUT)];
         let expected = self.preview.expected.iter();
-        entries.extend(expected.map(|e| match self.preview.joint.told {
+        entries.extend(expected.map(|e| match self.preview.joint.discrimination {
             Some(_) => (format!("– if it is {}", e.name), e.rgb),
             None => (format!("– {}", e.name), e.rgb),
         }));

@@ -50,7 +50,7 @@ fn tab(builder: &mut Builder, joint: &DesignedJoint) -> Result<Node, RecordError
         let outputs: Vec<String> = expected.chain(range).collect();
         plots.push(builder.view(plot("Expected output", &outputs))?);
     }
-    if joint.told.is_some() {
+    if joint.discrimination.is_some() {
         plots.push(builder.view(plot("Difference over noise", &[path(paths::APART)]))?);
     }
     let signals = builder.container(ContainerKind::Vertical, "Signals", &plots, &[])?;

@@ -46,7 +46,7 @@ fn says(preview: &Preview<'_>) -> Written {
     if let Some(first) = sentences.next() {
         writeln!(page, "**{}**\n", plain(&first))?;
     }
-    if let Some(told) = &preview.joint.told {
+    if let Some(told) = &preview.joint.discrimination {
         writeln!(page, "| {} |\n|---|---|---|---|---|", SIDE_HEADER.join(" | "))?;
         for row in side_rows(told) {
             writeln!(page, "| {} |", row.map(|cell| plain(&cell)).join(" | "))?;

@@ -20,9 +20,9 @@ fn written(improved: &ImprovedJoint<'_>, place: usize) -> Result<String, std::fm
     let last = improved.numbered().last().map_or(revision, |(number, _)| number);
     writeln!(page, "## Revision {revision} of {last}: {}\n", plain(&change_in_words(step)))?;
     writeln!(page, "**{}**\n", plain(&fall(improved, place)))?;
-    let words = improved.words_of(place);
-    writeln!(page, "### {}\n\n{}\n", plain(&words.headline), plain(&words.paragraph))?;
-    for command in &words.commands {
+    let conclusion = improved.conclusion_at(place);
+    writeln!(page, "### {}\n\n{}\n", plain(&conclusion.headline), plain(&conclusion.paragraph))?;
+    for command in &conclusion.commands {
         writeln!(page, "    {command}\n")?;
     }
     writeln!(page, "| parameter | value | standard error |\n|---|---|---|")?;

@@ -10,7 +10,7 @@ use crate::recording::chunk::{Chunks, Index};
 use crate::recording::error::RecordError;
 use crate::recording::markdown::plain;
 use crate::recording::paths::{at, sweep as paths};
-use crate::report::{hangs_on, level_cell, level_text, sweep_sentences};
+use crate::report::{depends_on, level_cell, level_text, sweep_sentences};
 use crate::wording::number;
 
 /// Adds all words below `root`.
@@ -133,7 +133,7 @@ fn one_step(swept: &Swept<'_>, step: &SweptStep) -> Written {
         writeln!(page, "| most say | **{}**, {votes} of them |", seconds(agreed.delay))?;
         writeln!(page, "| range of all | {} to {} |", seconds(spread.min), seconds(spread.max))?;
     }
-    let on = hangs_on(swept.grid, step);
+    let on = depends_on(swept.grid, step);
     let on = if on.is_empty() { "no setting".to_owned() } else { on };
     writeln!(page, "| sensitive to | {} |", plain(&on))?;
     let Some(hanging) = &step.delay_hangs_on else { return Ok(page) };
@@ -163,7 +163,7 @@ fn add_list(chunks: &mut Chunks, entity: EntityPath, swept: &Swept<'_>) -> Resul
         // All of them are there from the first setting on.
         index.setting.push(1);
         let agreed = step.agreement.map_or(0.0, |agreed| agreed.delay * step.period_s);
-        let (number, on) = (step.number, hangs_on(swept.grid, step));
+        let (number, on) = (step.number, depends_on(swept.grid, step));
         lines.push(format!("step {number} at {:.2} s: {on}; most say {agreed:.3} s", step.time_s));
     }
     let lines = TextLog::update_fields().with_many_text(lines);

@@ -1,4 +1,4 @@
-//! A candidate of a ranking, and the experiment that would tell it from another.
+//! A candidate of a ranking, and the experiment that would distinguish it from another.
 
 use serde::Serialize;
 use serde_json::{Map, Value};

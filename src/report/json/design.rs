@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::header::Header;
 use crate::design::{Expected, OpenThreshold, Prediction, Rehearsal, Side, transitions};
-use crate::report::design::{DesignedJoint, Told, holds, kept_until_s, order};
+use crate::report::design::{DesignedJoint, Discrimination, holds, kept_until_s, order};
 
 /// The document of `design --format json`.
 #[derive(Debug, Serialize)]
@@ -30,7 +30,7 @@ struct JointJson<'a> {
     start: f64,
     output_range: Option<Ends>,
     predicted: Option<PredictedJson>,
-    separates: Option<ToldJson>,
+    separates: Option<DiscriminationJson>,
     notes: &'a [String],
     holds: Vec<HoldJson>,
 }
@@ -57,7 +57,7 @@ struct HoldJson {
 }
 
 #[derive(Debug, Serialize)]
-struct ToldJson {
+struct DiscriminationJson {
     effects: [&'static str; 2],
     order: &'static str,
     noise: f64,
@@ -115,7 +115,7 @@ impl<'a> JointJson<'a> {
             start: rig.start,
             output_range: rig.range.map(|(low, high)| Ends { low, high }),
             predicted: joint.prediction.as_ref().map(|found| predicted(joint, found)),
-            separates: joint.told.as_ref().map(ToldJson::new),
+            separates: joint.discrimination.as_ref().map(DiscriminationJson::new),
             notes: &joint.notes,
             holds: holds(schedule)
                 .into_iter()
@@ -131,9 +131,9 @@ fn predicted(joint: &DesignedJoint, prediction: &Prediction) -> PredictedJson {
     PredictedJson { low, high, largest_margin, kept_until_s: kept_until_s(joint, prediction) }
 }
 
-impl ToldJson {
-    fn new(told: &Told) -> Self {
-        let Told { ids, design, wanted, noise, .. } = told;
+impl DiscriminationJson {
+    fn new(found: &Discrimination) -> Self {
+        let Discrimination { ids, design, wanted, noise, .. } = found;
         let sides = ids.iter().zip(&design.sides);
         Self {
             effects: *ids,

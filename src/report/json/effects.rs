@@ -43,7 +43,7 @@ struct ParameterJson {
 }
 
 impl EffectsJson {
-    /// Collects `effects`; `units` stand in the order of the parameters.
+    /// Collects `effects`; `units` are in the order of the parameters.
     pub fn new(effects: &[&dyn Effect]) -> Self {
         let effects = effects.iter().map(|effect| effect.spec().into()).collect();
         Self { header: Header::of("tauscope/effects/1"), effects }

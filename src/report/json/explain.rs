@@ -50,14 +50,14 @@ impl<'a> ExplainJson<'a> {
 impl<'a> FindingJson<'a> {
     pub(super) fn new(finding: &Finding<'a>) -> Self {
         let joint = finding.compared.joint;
-        let words = finding.words();
+        let conclusion = finding.conclusion();
         let ranking = finding.ranking.iter();
         Self {
             verdict: verdict_id(finding.verdict),
             ranking: ranking.map(|candidate| CandidateJson::new(joint, candidate)).collect(),
-            headline: words.headline,
-            in_words: words.paragraph,
-            commands: words.commands,
+            headline: conclusion.headline,
+            in_words: conclusion.paragraph,
+            commands: conclusion.commands,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The JSON of each command: types of their own, so that what the library calls a quantity and
 //! what its file calls it change apart. One file holds a command's schema; what several share
-//! stands in [`header`], [`joint`], [`misfit`], [`candidate`] and [`settings`].
+//! is in [`header`], [`joint`], [`misfit`], [`candidate`] and [`settings`].
 
 mod add;
 mod candidate;

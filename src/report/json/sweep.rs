@@ -25,7 +25,7 @@ pub struct SweepJson<'a> {
     failures: &'a [String],
 }
 
-/// A run, and how many combinations it stands for.
+/// A run, and how many combinations it represents.
 #[derive(Debug, Serialize)]
 struct RunJson {
     combinations: usize,

@@ -1,4 +1,4 @@
-//! The report as a document: what stands in it, in its order.
+//! The report as a document: its parts in their order.
 
 use super::document::{Block, Document, Entry, slug};
 use super::plot::PlotError;

@@ -1,5 +1,7 @@
 //! What a report says, before it is written down as a page or as Markdown.
 
+use crate::report::text_table::TextTable;
+
 /// A report: what it says in its order, and what is drawn.
 #[derive(Clone, Debug, Default)]
 pub struct Document {
@@ -14,7 +16,7 @@ pub(super) enum Block {
     Heading { depth: u8, text: String, anchor: Option<String> },
     /// A paragraph.
     Text(String),
-    /// A paragraph that tells the most of its section.
+    /// The paragraph that sums up its section.
     Lead(String),
     /// A line for each entry.
     List(Vec<String>),
@@ -22,10 +24,10 @@ pub(super) enum Block {
     Contents(Vec<Entry>),
     /// Something to be typed, or printed as it is.
     Code(String),
-    /// Drawings that stand beside one another where there is room.
+    /// Drawings side by side where there is room.
     Figures(Vec<Figure>),
     /// A table.
-    Table(Table),
+    Table(TextTable),
     /// What is shown when it is asked for.
     Details { summary: String, blocks: Vec<Self> },
     /// A file that is in the page.
@@ -50,15 +52,6 @@ pub(super) struct Figure {
     pub(super) caption: String,
 }
 
-/// A table; numbers stand right.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Table {
-    pub(super) header: Vec<String>,
-    pub(super) rows: Vec<Vec<String>>,
-    /// Columns of numbers.
-    pub(super) numbers: Vec<usize>,
-}
-
 /// A file that is in the page.
 #[derive(Clone, Debug)]
 pub(super) struct Attachment {
@@ -77,22 +70,6 @@ impl Block {
 
     pub(super) fn text(text: impl Into<String>) -> Self {
         Self::Text(text.into())
-    }
-}
-
-impl Table {
-    pub(super) fn new<const N: usize>(header: [&str; N], numbers: &[usize]) -> Self {
-        let header = header.map(str::to_owned).to_vec();
-        Self { header, rows: Vec::new(), numbers: numbers.to_vec() }
-    }
-
-    pub(super) fn row<const N: usize>(&mut self, cells: [String; N]) {
-        self.rows.push(cells.into());
-    }
-
-    /// Whether a column holds numbers.
-    pub(super) fn is_number(&self, column: usize) -> bool {
-        self.numbers.contains(&column)
     }
 }
 

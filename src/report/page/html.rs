@@ -4,8 +4,9 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::document::{Attachment, Block, Document, Entry, Figure, Table};
+use super::document::{Attachment, Block, Document, Entry, Figure};
 use super::palette::figure_style;
+use crate::report::text_table::TextTable;
 
 /// How the page looks, but for the shades of figures.
 const STYLE: &str = include_str!("style.css");
@@ -88,7 +89,7 @@ fn drawn(figures: &[Figure]) -> Markup {
     }
 }
 
-fn table(table: &Table) -> Markup {
+fn table(table: &TextTable) -> Markup {
     let class = |column: usize| table.is_number(column).then_some("n");
     html! {
         div.table { table {

@@ -1,6 +1,6 @@
 //! What is said of one joint.
 
-use super::document::{Block, Table};
+use super::document::Block;
 use super::plot::PlotError;
 use super::report::Report;
 use super::{delays, model, record, segment};
@@ -8,6 +8,7 @@ use crate::delay::{AgainstState, Condition};
 use crate::report::against::{AGAINST_HEADER, against_rows};
 use crate::report::decisions::detailed_rows;
 use crate::report::text::lag_line;
+use crate::report::text_table::TextTable;
 use crate::report::{DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary};
 use crate::wording::number;
 
@@ -85,9 +86,9 @@ fn delay_blocks(estimated: EstimatedJoint<'_>, file: &str) -> Result<Vec<Block>,
 }
 
 /// A row per variable.
-fn against(joint: &str, found: &AgainstState) -> Table {
+fn against(joint: &str, found: &AgainstState) -> TextTable {
     let [_, header @ ..] = AGAINST_HEADER;
-    let mut table = Table::new(header, &[2, 3]);
+    let mut table = TextTable::new(header, &[2, 3]);
     for [_, cells @ ..] in against_rows(joint, found) {
         table.row(cells);
     }
@@ -100,7 +101,7 @@ fn rejections(estimated: EstimatedJoint<'_>) -> Vec<Block> {
     if summary.rejected.is_empty() {
         return Vec::new();
     }
-    let mut table = Table::new(["rejected as", "steps", "meaning"], &[1]);
+    let mut table = TextTable::new(["rejected as", "steps", "meaning"], &[1]);
     for (condition, count) in &summary.rejected {
         table.row([condition.to_string(), count.to_string(), condition.meaning().to_owned()]);
     }
@@ -126,7 +127,7 @@ fn decisions(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Block {
 }
 
 /// A row per decision; intervals only of a method that has them.
-fn decision_table(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Table {
+fn decision_table(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> TextTable {
     let unit = estimated.joint.output_unit.as_ref();
     let sse = unit.map_or_else(|| "SSE".to_owned(), |unit| format!("SSE [{unit}²]"));
     let before = ["trial", "i", "p", "r", "end", "q", "δ [samples]", "δ [s]"];
@@ -135,7 +136,7 @@ fn decision_table(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Table {
     let header = before.map(str::to_owned).into_iter().chain(interval).chain([sse]);
     let behind = ["verdict", "accepted with"].map(str::to_owned);
     let rows = detailed_rows(estimated).take(MOST_ROWS);
-    Table {
+    TextTable {
         numbers: (1..before.len() + 1 + usize::from(has_intervals)).collect(),
         header: header.chain(behind).collect(),
         rows: rows.map(|(row, detail)| decision_row(row, detail, has_intervals)).collect(),

@@ -1,16 +1,14 @@
 //! The ladder of errors: how the error falls from revision to revision.
 
-use super::document::{Figure, Table};
+use super::document::Figure;
 use super::layout::WIDTH;
 use super::plot::{PlotError, draw};
 use crate::figure::Role;
 use crate::figure::Span;
 use crate::figure::ladder::{self, Rung};
 use crate::figure::{Axis, Mark, Panel, Shape};
-use crate::report::compare::figures;
 use crate::report::{ImprovedJoint, change_in_words};
-use crate::wording::bracketed;
-use crate::wording::number;
+use crate::wording::{bracketed, number};
 
 /// A bar for the error of each revision, and the noise as a line.
 pub(super) fn figure(improved: &ImprovedJoint<'_>, file: String) -> Result<Figure, PlotError> {
@@ -44,19 +42,6 @@ pub(super) fn figure(improved: &ImprovedJoint<'_>, file: String) -> Result<Figur
     let svg = draw(&[panel], WIDTH, &format!("Errors of the revisions of {}", joint.name))?;
     let caption = "How the error falls from revision to revision.".to_owned();
     Ok(Figure { file, svg, caption })
-}
-
-/// A row per revision.
-pub(super) fn table(improved: &ImprovedJoint<'_>) -> Table {
-    let header = ["revision", "change", "training", "validation", "fit", "noise", "lack of fit"];
-    let mut table = Table::new(header, &[0, 2, 3, 4, 5]);
-    for (number, revision) in improved.numbered() {
-        let [training, validation, fit, noise, lack] =
-            figures(improved.finding.compared.joint, &revision.comparison);
-        let change = change_in_words(revision);
-        table.row([number.to_string(), change, training, validation, fit, noise, lack]);
-    }
-    table
 }
 
 fn judged_on(improved: &ImprovedJoint<'_>) -> &'static str {

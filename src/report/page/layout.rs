@@ -2,7 +2,7 @@
 
 use crate::experiment::{Joint, Trial};
 
-/// Width of a drawing that stands alone, in pixels.
+/// Width of a drawing by itself, in pixels.
 pub(super) const WIDTH: u32 = 760;
 
 /// Width of one of two beside one another.

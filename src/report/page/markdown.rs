@@ -2,15 +2,16 @@
 
 use std::fmt::Write as _;
 
-use super::document::{Block, Document, Entry, Figure, Table};
+use super::document::{Block, Document, Entry, Figure};
 use super::palette::figure_style;
+use crate::report::text_table::TextTable;
 
 /// A report as Markdown.
 #[derive(Clone, Debug)]
 pub struct Markdown {
     /// The text.
     pub text: String,
-    /// Names and contents of the drawings that it shows, which stand in the folder that was
+    /// Names and contents of the drawings that it shows, which are in the folder that was
     /// asked for.
     pub files: Vec<(String, String)>,
 }
@@ -29,7 +30,7 @@ impl Document {
 }
 
 impl Markdown {
-    /// A paragraph, or what stands for one.
+    /// A paragraph.
     fn line(&mut self, text: &str) {
         self.text.push_str(text.trim_end());
         self.text.push_str("\n\n");
@@ -67,7 +68,7 @@ impl Markdown {
                 }
                 self.line("</details>");
             }
-            // A file can only be in a page; here it stands beside.
+            // A file can only be in a page; here it is beside.
             Block::Attachment(file) => self.line(&format!("`{}`", file.name)),
         }
     }
@@ -92,7 +93,7 @@ fn with_style(svg: &str) -> String {
     svg.replacen("</title>", &format!("</title><style>{style}{ground}</style>"), 1)
 }
 
-fn table(table: &Table) -> String {
+fn table(table: &TextTable) -> String {
     let row = |cells: &[String]| {
         let cells = cells.iter().map(|cell| escaped(cell));
         format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "))

@@ -1,6 +1,6 @@
 //! What is said of a joint's model: verdict, equations, parameters, errors, ranking.
 
-use super::document::{Block, Table};
+use super::document::Block;
 use super::plot::PlotError;
 use super::report::Report;
 use super::{ladder, share, simulated};
@@ -10,10 +10,12 @@ use crate::explain::{Candidate, Revision, Verdict};
 use crate::fit::{Parameter, Split};
 use crate::model::Component;
 use crate::report::equation::filled_in;
+use crate::report::finding::ranking_table;
+use crate::report::text_table::TextTable;
 use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::wording::{
-    correlation_sentences, effect_ids, failure_sentences, measure, number, p_text, parameter_units,
-    remark, with_error, with_remark, with_unit,
+    correlation_sentences, effect_ids, failure_sentences, measure, number, parameter_units, remark,
+    with_error, with_remark, with_unit,
 };
 
 /// All that is said of the model of a joint.
@@ -23,14 +25,14 @@ pub(super) fn blocks(
     file: &str,
 ) -> Result<Vec<Block>, PlotError> {
     let compared = &improved.finding.compared;
-    let words = improved.finding.words();
+    let conclusion = improved.finding.conclusion();
     let stopped = if improved.interrupted { " (stopped before the end)" } else { "" };
     let mut blocks = vec![
         Block::part("Model"),
-        Block::Lead(format!("{}{stopped}", lead(improved, &words.headline))),
-        Block::text(words.paragraph),
+        Block::Lead(format!("{}{stopped}", lead(improved, &conclusion.headline))),
+        Block::text(conclusion.paragraph),
     ];
-    blocks.extend(words.commands.into_iter().map(Block::Code));
+    blocks.extend(conclusion.commands.into_iter().map(Block::Code));
     blocks.push(Block::Code(equations(compared)));
     blocks.push(Block::Table(parameters(compared)));
     blocks.push(Block::text(format!("The fit: {}.", compared.comparison.termination)));
@@ -90,15 +92,14 @@ fn missing(improved: &ImprovedJoint<'_>) -> String {
 
 /// The error by which a model is judged.
 fn judged_error(improved: &ImprovedJoint<'_>, comparison: &Comparison) -> String {
-    let judged = comparison.validation.or(comparison.training);
     let unit = improved.finding.compared.joint.output_unit.as_deref();
-    judged.map_or_else(|| "-".to_owned(), |error| measure(error.rmse, unit))
+    comparison.judged().map_or_else(|| "-".to_owned(), |error| measure(error.rmse, unit))
 }
 
-/// The same, against the noise and the signal.
+/// The error by which a model is judged, and what it is of the noise and the signal.
 fn error_of(improved: &ImprovedJoint<'_>, comparison: &Comparison) -> String {
     let rmse = judged_error(improved, comparison);
-    let Some(error) = comparison.validation.or(comparison.training) else { return rmse };
+    let Some(error) = comparison.judged() else { return rmse };
     let noise = comparison.noise_floor.filter(|noise| *noise > 0.0);
     let times = noise
         .map_or_else(String::new, |noise| format!(", {:.2} times the noise", error.rmse / noise));
@@ -137,14 +138,14 @@ fn behind(name: &str, effects: usize) -> &str {
 /// `    dead_band, on the delayed input: out = …`.
 fn law(component: &Component) -> String {
     let spec = component.effect().spec();
-    let place = match spec.stage {
+    let acts = match spec.stage {
         Stage::Transport => "on the delay",
         Stage::Input => "on the delayed input",
         Stage::Dynamics => "on the input as it acts",
         Stage::Load => "on the speed",
         Stage::Output => "on the output",
     };
-    format!("    {}, {place}: {}", spec.id, filled_in(component))
+    format!("    {}, {acts}: {}", spec.id, filled_in(component))
 }
 
 /// `11.900 ± 0.020 deg/s/V`.
@@ -159,11 +160,11 @@ fn known(parameter: &Parameter) -> String {
 }
 
 /// A row per parameter.
-fn parameters(compared: &ComparedJoint<'_>) -> Table {
+fn parameters(compared: &ComparedJoint<'_>) -> TextTable {
     let fit = &compared.comparison.fit;
     let units = parameter_units(compared.joint, &fit.model);
     let header = ["parameter", "value ± standard error", "unit", "remark"];
-    let mut table = Table::new(header, &[1]);
+    let mut table = TextTable::new(header, &[1]);
     for (parameter, unit) in fit.parameters.iter().zip(units) {
         let remark = remark(parameter.status).unwrap_or_default().to_owned();
         table.row([parameter.name.clone(), known(parameter), unit, remark]);
@@ -182,17 +183,17 @@ fn errors(
         let figure = ladder::figure(improved, format!("{file}-ladder"))?;
         blocks.push(Block::Figures(vec![figure]));
     }
-    blocks.push(Block::Table(ladder::table(improved)));
+    blocks.push(Block::Table(improved.ladder()));
     blocks.push(Block::text(format!("Root-mean-square errors, {}.", report.horizon)));
     blocks.extend(history(report, improved));
     Ok(blocks)
 }
 
-/// What the model file tells of revisions before this report.
+/// Revisions before this report, from the model file.
 fn history(report: &Report<'_>, improved: &ImprovedJoint<'_>) -> Option<Block> {
     let joint = improved.finding.compared.joint;
     let entries = report.model.map_or(&[][..], |file| file.history(&joint.name));
-    let mut table = Table::new(["revision", "added", "removed", "validation"], &[0, 3]);
+    let mut table = TextTable::new(["revision", "added", "removed", "validation"], &[0, 3]);
     let dash = |id: &Option<String>| id.clone().unwrap_or_else(|| "-".to_owned());
     for entry in entries {
         let unit = joint.output_unit.as_deref();
@@ -200,11 +201,11 @@ fn history(report: &Report<'_>, improved: &ImprovedJoint<'_>) -> Option<Block> {
         table.row([entry.revision.to_string(), dash(&entry.added), dash(&entry.removed), error]);
     }
     let blocks = vec![Block::Table(table)];
-    let summary = "The ladder before: what the model file tells of its revisions".to_owned();
+    let summary = "Earlier revisions, from the model file".to_owned();
     (!entries.is_empty()).then_some(Block::Details { summary, blocks })
 }
 
-/// What the model simulates, and what is left.
+/// What the model simulates, and the residual.
 fn beside_the_measurement(
     report: &Report<'_>,
     compared: &ComparedJoint<'_>,
@@ -213,9 +214,9 @@ fn beside_the_measurement(
     let split = report.split.unwrap_or_else(|| Split::of(compared.joint));
     let figure = simulated::figure(compared, split, format!("{file}-simulated"))?;
     let mut blocks = vec![Block::part("Measured and simulated"), Block::Figures(vec![figure])];
-    let left = correlation_sentences(compared.comparison).join("; ");
-    if !left.is_empty() {
-        blocks.push(Block::text(format!("What is left of the part that was fitted: {left}.")));
+    let residual = correlation_sentences(compared.comparison).join("; ");
+    if !residual.is_empty() {
+        blocks.push(Block::text(format!("Residual of the part that was fitted: {residual}.")));
     }
     Ok(blocks)
 }
@@ -251,41 +252,24 @@ fn failures(improved: &ImprovedJoint<'_>, file: &str) -> Result<Vec<Block>, Plot
 
 /// What was tried: the best of the last race, and all of each.
 fn rankings(improved: &ImprovedJoint<'_>) -> Vec<Block> {
-    /// Rows that stand openly.
+    /// Rows that are not folded away.
     const BEST: usize = 5;
     let tried = improved.numbered().filter(|(_, revision)| !revision.ranking.is_empty());
     let tried: Vec<_> = tried.collect();
     let Some((number, last)) = tried.last() else { return Vec::new() };
     let best = last.ranking.get(..BEST).unwrap_or(&last.ranking);
+    let joint = improved.finding.compared.joint;
     let mut blocks = vec![
         Block::part(format!("Effects that were tried on revision {number}, best first")),
-        Block::Table(ranking(improved, best)),
+        Block::Table(ranking_table(joint, best)),
     ];
     let is_shown =
         |revision: &Revision| std::ptr::eq(revision, *last) && best.len() == revision.ranking.len();
     for (number, revision) in tried.iter().filter(|(_, revision)| !is_shown(revision)) {
-        let table = Block::Table(ranking(improved, &revision.ranking));
+        let table = Block::Table(ranking_table(joint, &revision.ranking));
         let count = revision.ranking.len();
         let summary = format!("All {count} that were tried on revision {number}");
         blocks.push(Block::Details { summary, blocks: vec![table] });
     }
     blocks
-}
-
-/// A row per candidate.
-fn ranking(improved: &ImprovedJoint<'_>, candidates: &[Candidate]) -> Table {
-    let unit = improved.finding.compared.joint.output_unit.as_deref();
-    let header = ["effect", "error", "reduction", "chance", "cannot be told from"];
-    let mut table = Table::new(header, &[1, 2]);
-    for candidate in candidates {
-        let same = &candidate.indistinguishable_from;
-        table.row([
-            candidate.name(),
-            with_unit(candidate.rmse(), unit),
-            format!("{:.1} %", candidate.error_reduction_percent),
-            p_text(candidate.p_value),
-            if same.is_empty() { "-".to_owned() } else { same.join(", ") },
-        ]);
-    }
-    table
 }

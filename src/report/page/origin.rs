@@ -1,9 +1,10 @@
 //! What a report was made from and with, so that it can be made again.
 
-use super::document::{Attachment, Block, Table};
+use super::document::{Attachment, Block};
 use super::report::{RecordingFile, Report};
 use crate::report::chosen_line;
 use crate::report::settings::settings_rows;
+use crate::report::text_table::TextTable;
 
 pub(super) fn blocks(report: &Report<'_>) -> Vec<Block> {
     let mut blocks = vec![Block::section("How this was made", "how-this-was-made")];
@@ -32,8 +33,8 @@ pub(super) fn blocks(report: &Report<'_>) -> Vec<Block> {
 }
 
 /// The files that were read.
-fn files(report: &Report<'_>) -> Table {
-    let mut table = Table::new(["file", "bytes", "SHA-256"], &[1]);
+fn files(report: &Report<'_>) -> TextTable {
+    let mut table = TextTable::new(["file", "bytes", "SHA-256"], &[1]);
     for source in &report.experiment.sources {
         let path = source.path.display().to_string();
         table.row([path, source.bytes.to_string(), source.sha256.clone()]);
@@ -41,8 +42,8 @@ fn files(report: &Report<'_>) -> Table {
     table
 }
 
-fn settings(report: &Report<'_>) -> Table {
-    let mut table = Table::new(["setting", "value"], &[]);
+fn settings(report: &Report<'_>) -> TextTable {
+    let mut table = TextTable::new(["setting", "value"], &[]);
     for (name, value) in settings_rows(report.settings) {
         table.row([name.to_owned(), value]);
     }
@@ -52,11 +53,11 @@ fn settings(report: &Report<'_>) -> Table {
 /// How to look at the recording.
 fn recording(recording: &RecordingFile<'_>) -> Vec<Block> {
     let RecordingFile { name, bytes } = recording;
-    let place = if bytes.is_some() { "is in this page" } else { "stands beside this report" };
+    let location = if bytes.is_some() { "is in this page" } else { "is beside this report" };
     let mut blocks = vec![
         Block::part("Recording"),
         Block::text(format!(
-            "{name} {place}: every decision, to be stepped through in the Rerun viewer 0.36.3 \
+            "{name} {location}: every decision, to be stepped through in the Rerun viewer 0.36.3 \
              (package rerun-sdk of PyPI), with:"
         )),
         Block::Code(format!("rerun {name}")),

@@ -23,7 +23,7 @@ pub struct Report<'a> {
     pub revised: Option<&'a str>,
     /// How simulations were restarted, in words.
     pub horizon: &'a str,
-    /// How training and validation were told apart; as [`Split::of`] says without it.
+    /// How training and validation were split; as [`Split::of`] says without it.
     pub split: Option<Split>,
     /// The command that makes this report.
     pub command: &'a str,
@@ -38,7 +38,7 @@ pub struct Report<'a> {
 /// A recording that belongs to a report.
 #[derive(Clone, Copy, Debug)]
 pub struct RecordingFile<'a> {
-    /// Its name, without a folder: it stands beside the report.
+    /// Its name, without a folder: it is beside the report.
     pub name: &'a str,
     /// Its bytes, where the report holds it.
     pub bytes: Option<&'a [u8]>,

@@ -5,7 +5,7 @@ mod text;
 
 pub use text::{StepsShown, sweep_text};
 #[cfg(feature = "rrd")]
-pub(crate) use text::{hangs_on, level_cell, settings_in_words, sweep_sentences};
+pub(crate) use text::{depends_on, level_cell, settings_in_words, sweep_sentences};
 
 #[cfg(feature = "rrd")]
 use crate::delay::Settings;

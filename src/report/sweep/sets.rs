@@ -13,7 +13,7 @@ pub(super) struct Clause {
 type Levels = [usize; 4];
 
 /// The combinations of the runs that are `chosen`, as clauses: values that go with the
-/// same values of all other settings stand together, and what is free is not said.
+/// same values of all other settings are listed together, and what is free is not said.
 pub(super) fn clauses(grid: &Grid, chosen: &[bool]) -> Vec<Clause> {
     let chosen = grid.combinations().iter().filter(|one| chosen.get(one.run) == Some(&true));
     let chosen: Vec<Levels> = chosen.map(|one| one.levels).collect();

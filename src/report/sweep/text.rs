@@ -1,20 +1,21 @@
 //! What a person wants to know of a sweep: a sentence for each joint, what each value of a
 //! setting does, and the steps to look at.
 
-use comfy_table::{Cell, CellAlignment, ContentArrangement, Table, presets};
+use comfy_table::{Cell, CellAlignment, Table, presets};
 
 use super::sets::{Clause, clauses};
 use super::{ReportedSweep, level_text};
 use crate::delay::sweep::{Factor, Grid, Hanging, LevelSummary, SweptStep};
+use crate::report::text_table::TextTable;
 use crate::wording::{percent, rounded, wrapped};
 
 /// Clauses of the settings that agree that are said; the JSON has all.
 const CLAUSES: usize = 3;
 
-/// How many steps that hang on a setting are shown.
+/// How many steps that depend on a setting are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepsShown {
-    /// Those that hang on it most: ten, three of a joint.
+    /// Those that depend on it most: ten, three of a joint.
     Worst,
     /// All of them.
     All,
@@ -51,7 +52,7 @@ fn paragraph(grid: &Grid, reported: &ReportedSweep<'_>) -> String {
     wrapped(&format!("{}: {}", reported.joint.name, sweep_sentences(grid, reported).join(" ")))
 }
 
-/// How many delays are the same, what the others hang on, and which settings agree.
+/// How many delays are the same, what the others depend on, and which settings agree.
 pub(crate) fn sweep_sentences(grid: &Grid, reported: &ReportedSweep<'_>) -> Vec<String> {
     let judged = reported.sweep.judged().count();
     if judged == 0 {
@@ -83,10 +84,10 @@ pub(crate) fn settings_in_words(grid: &Grid, chosen: &[bool]) -> String {
     said(&found)
 }
 
-/// On which settings how many delays hang.
+/// On which settings how many delays depend.
 fn on_what(reported: &ReportedSweep<'_>) -> String {
     let hanging = reported.sweep.hanging();
-    let (moved, told_by_some): (Vec<_>, Vec<_>) =
+    let (moved, accepted_by_some): (Vec<_>, Vec<_>) =
         hanging.into_iter().partition(|step| step.disagreeing() > 0);
     let on = |factor: Option<Factor>| {
         let own = |step: &&&SweptStep| step.delay_hangs_on.as_ref().map(|on| on.factor) == factor;
@@ -97,13 +98,13 @@ fn on_what(reported: &ReportedSweep<'_>) -> String {
     parts.push((on(None), "several settings at once".to_owned()));
     parts.sort_by_key(|(count, _)| std::cmp::Reverse(*count));
     parts.retain(|(count, _)| *count > 0);
-    let part = |(place, (count, what)): (usize, &(usize, String))| match (place, count) {
-        (0, 1) => format!("1 hangs on {what}"),
-        (0, _) => format!("{count} hang on {what}"),
+    let part = |(index, (count, what)): (usize, &(usize, String))| match (index, count) {
+        (0, 1) => format!("1 depends on {what}"),
+        (0, _) => format!("{count} depend on {what}"),
         _ => format!("{count} on {what}"),
     };
     let mut parts: Vec<String> = parts.iter().enumerate().map(part).collect();
-    match told_by_some.len() {
+    match accepted_by_some.len() {
         0 => {}
         1 => parts.push("1 is accepted by some settings only".to_owned()),
         count => parts.push(format!("{count} are accepted by some settings only")),
@@ -151,7 +152,7 @@ fn lag_sentence(grid: &Grid, reported: &ReportedSweep<'_>) -> Option<String> {
         Some((settings.low_pass, lag.mean_s().value))
     };
     let mut lags: Vec<_> = reported.sweep.runs.iter().enumerate().filter_map(of_run).collect();
-    // A low-pass looks like a lag; what was found without it is told first.
+    // A low-pass looks like a lag; what was found without it comes first.
     lags.sort_by_key(|(low_pass, _)| low_pass.is_some());
     let (low_pass, seconds) = lags.first()?;
     let others = grid.bases().len() > 1 && low_pass.is_none();
@@ -168,14 +169,13 @@ fn lag_sentence(grid: &Grid, reported: &ReportedSweep<'_>) -> Option<String> {
 fn levels_table(grid: &Grid, joints: &[ReportedSweep<'_>]) -> String {
     let mut table = Table::new();
     table.load_style(presets::UTF8_BORDERS_ONLY);
-    table.set_content_arrangement(ContentArrangement::Disabled);
     let names = joints.iter().map(|joint| joint.joint.name.clone());
     table.set_header(std::iter::once("setting".to_owned()).chain(names));
-    for (place, factor) in Factor::ALL.into_iter().enumerate() {
+    for (index, factor) in Factor::ALL.into_iter().enumerate() {
         let varied = grid.levels(factor) > 1;
         for level in (0..grid.levels(factor)).filter(|_| varied) {
             let of_joint = |joint: &ReportedSweep<'_>| {
-                let levels = joint.sweep.levels.get(place);
+                let levels = joint.sweep.levels.get(index);
                 let summary = levels.and_then(|levels| levels.get(level));
                 summary.map_or_else(|| "-".to_owned(), level_cell)
             };
@@ -196,10 +196,10 @@ pub(crate) fn level_cell(summary: &LevelSummary) -> String {
     }
 }
 
-/// The steps that hang on a setting, worst first.
+/// The steps that depend on a setting, worst first.
 fn steps_part(grid: &Grid, joints: &[ReportedSweep<'_>], shown: StepsShown) -> String {
     /// Steps that are shown where not all are asked for, and how many of one joint: where
-    /// all its steps hang on the method the first ones tell it.
+    /// all its steps depend on the method the first ones show it.
     const WORST: [usize; 2] = [10, 3];
     let all: usize = joints.iter().map(|joint| joint.sweep.hanging().len()).sum();
     let [most, of_one] = if shown == StepsShown::All { [all; 2] } else { WORST };
@@ -211,24 +211,17 @@ fn steps_part(grid: &Grid, joints: &[ReportedSweep<'_>], shown: StepsShown) -> S
     // As in each joint; the sort is stable, so that joints keep their order.
     steps.sort_by(|(_, a), (_, b)| b.apart.total_cmp(&a.apart));
     if all == 0 {
-        return "No step hangs on a setting.".to_owned();
+        return "No step depends on a setting.".to_owned();
     }
     steps.truncate(most);
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_BORDERS_ONLY);
-    table.set_content_arrangement(ContentArrangement::Disabled);
-    table.set_header(["look at", "trial", "step", "at", "most say", "agree", "range", "hangs on"]);
+    let header = ["look at", "trial", "step", "at", "most say", "agree", "range", "depends on"];
+    let mut table = TextTable::new(header, &[2, 3, 4, 5]);
     for (name, step) in &steps {
-        table.add_row(step_cells(grid, name, step));
-    }
-    for right in 2..6 {
-        if let Some(column) = table.column_mut(right) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
+        table.row(step_cells(grid, name, step));
     }
     let more = match all - steps.len() {
         0 => String::new(),
-        more => format!("\n{more} more steps hang on a setting: `--steps` shows all."),
+        more => format!("\n{more} more steps depend on a setting: `--steps` shows all."),
     };
     format!("{table}{more}")
 }
@@ -247,12 +240,12 @@ fn step_cells(grid: &Grid, name: &str, step: &SweptStep) -> [String; 8] {
         step.spread.map_or_else(dash, |all| {
             format!("{:.3} … {}", all.min * step.period_s, seconds(all.max))
         }),
-        hangs_on(grid, step),
+        depends_on(grid, step),
     ]
 }
 
-/// On what a step hangs, and what the odd values of that setting say.
-pub(crate) fn hangs_on(grid: &Grid, step: &SweptStep) -> String {
+/// On what a step depends, and what the odd values of that setting say.
+pub(crate) fn depends_on(grid: &Grid, step: &SweptStep) -> String {
     let delay = step.delay_hangs_on.as_ref().map(|found| odd_levels(grid, found, step.period_s));
     let accepted = percent(step.accepted as f64 / step.tried.max(1) as f64);
     let verdict = step.verdict_hangs_on.map(|factor| format!("{factor}, {accepted} accept it"));
@@ -265,14 +258,14 @@ fn odd_levels(grid: &Grid, found: &Hanging, period_s: f64) -> String {
     /// Values that are shown.
     const SHOWN: usize = 2;
     let name = |level: usize| level_text(grid, found.factor, level);
-    let told: Vec<(usize, f64, f64)> =
+    let known: Vec<(usize, f64, f64)> =
         found.levels.iter().enumerate().filter_map(numbered).collect();
-    let odd = told.iter().filter(|(_, _, agree)| *agree < 0.5);
+    let odd = known.iter().filter(|(_, _, agree)| *agree < 0.5);
     let odd =
         odd.map(|(level, delay, _)| format!("{} says {:.3} s", name(*level), delay * period_s));
     let mut odd: Vec<String> = odd.collect();
     if odd.is_empty() {
-        let most = told.iter().min_by(|a, b| a.2.total_cmp(&b.2));
+        let most = known.iter().min_by(|a, b| a.2.total_cmp(&b.2));
         odd.extend(most.map(|(level, ..)| format!("{} at times", name(*level))));
     }
     if odd.len() > SHOWN {
@@ -287,6 +280,6 @@ fn odd_levels(grid: &Grid, found: &Hanging, period_s: f64) -> String {
 }
 
 /// A value's index, its delay and how much of it agrees.
-fn numbered((level, told): (usize, &Option<(f64, f64)>)) -> Option<(usize, f64, f64)> {
-    told.map(|(delay, agree)| (level, delay, agree))
+fn numbered((level, found): (usize, &Option<(f64, f64)>)) -> Option<(usize, f64, f64)> {
+    found.map(|(delay, agree)| (level, delay, agree))
 }

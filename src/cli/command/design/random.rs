@@ -90,7 +90,7 @@ fn steps_of(
         })
     });
     let notes = notes.into_iter().collect();
-    Ok(DesignedJoint { rig, schedule, prediction, told: None, notes })
+    Ok(DesignedJoint { rig, schedule, prediction, discrimination: None, notes })
 }
 
 /// What is to become of which dead band.

@@ -7,7 +7,7 @@ use crate::design::{
 use crate::effect::Effect;
 use crate::experiment::Joint;
 use crate::model::JointModel;
-use crate::report::{DesignedJoint, Told};
+use crate::report::{DesignedJoint, Discrimination};
 use anyhow::{Context as _, anyhow, bail};
 
 use super::args::Args;
@@ -46,7 +46,7 @@ pub(crate) fn designed(
             Some(None) => bail!("it has no model"),
             None => of_model(args, known, &rig, effects)?,
         };
-        told(args, known, rig, &suspects, bar)
+        distinguish(args, known, rig, &suspects, bar)
     };
     Ok(known.names.iter().map(one).collect())
 }
@@ -129,7 +129,7 @@ fn of_model(
 }
 
 /// The input that tells the suspects apart, and what is expected of it.
-fn told(
+fn distinguish(
     args: &Args,
     known: &Known,
     rig: TestRig,
@@ -177,6 +177,6 @@ fn told(
         (None, next)
     };
     let notes = doubt.into_iter().chain([next]).collect();
-    let told = Some(Told { ids, design, wanted, noise, other });
-    Ok(DesignedJoint { rig, schedule, prediction, told, notes })
+    let discrimination = Some(Discrimination { ids, design, wanted, noise, other });
+    Ok(DesignedJoint { rig, schedule, prediction, discrimination, notes })
 }

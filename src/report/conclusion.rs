@@ -14,9 +14,9 @@ use crate::wording::{
     region_text, remark, rounded, unit_suffix, with_error, worst_segment_text, wrapped,
 };
 
-/// What is to be said of a joint.
+/// What is concluded of a joint.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Words {
+pub struct Conclusion {
     /// The verdict in one sentence.
     pub headline: String,
     /// What is behind it.
@@ -30,7 +30,7 @@ const ABOVE_NOISE: f64 = 1.15;
 
 impl Finding<'_> {
     /// The verdict in words.
-    pub fn words(&self) -> Words {
+    pub fn conclusion(&self) -> Conclusion {
         let best = self.ranking.first().filter(|_| self.verdict == Verdict::MissingEffect);
         let (headline, sentences) = match (self.verdict, best) {
             (_, Some(best)) => (self.missing_headline(best), self.missing(best)),
@@ -40,7 +40,7 @@ impl Finding<'_> {
         };
         let command = |id: &&'static str| format!("tauscope add {id} {}", self.add_arguments);
         let commands = best.iter().flat_map(|best| &best.effects).map(command).collect();
-        Words { headline, paragraph: sentences.join(" "), commands }
+        Conclusion { headline, paragraph: sentences.join(" "), commands }
     }
 
     fn joint(&self) -> &Joint {
@@ -57,7 +57,7 @@ impl Finding<'_> {
     }
 
     fn error(&self) -> f64 {
-        rmse(self.comparison())
+        self.comparison().judged().map_or(f64::NAN, |error| error.rmse)
     }
 
     fn noise(&self) -> Option<f64> {
@@ -71,7 +71,7 @@ impl Finding<'_> {
     }
 
     fn missing(&self, best: &Candidate) -> Vec<String> {
-        let mut said: Vec<String> = added(best)
+        let mut sentences: Vec<String> = added(best)
             .map(|component| {
                 let spec = component.effect().spec();
                 let parameters = self.parameters(&best.fit, &format!("{}.", spec.id));
@@ -79,22 +79,22 @@ impl Finding<'_> {
                 format!("{} ({}): here {law}, with {parameters}.", spec.id, spec.summary)
             })
             .collect();
-        said.push(self.improvement(best));
-        said.extend(self.where_it_fails());
-        said.push(self.alternatives(best));
-        said.extend(self.look_alikes(best));
-        said
+        sentences.push(self.improvement(best));
+        sentences.extend(self.where_it_fails());
+        sentences.push(self.alternatives(best));
+        sentences.extend(self.look_alikes(best));
+        sentences
     }
 
     /// What the error becomes.
     fn improvement(&self, best: &Candidate) -> String {
         let part = if best.validation.is_some() { "not fitted" } else { "fitted" };
         let (before, after) = (self.output(self.error()), self.output(best.rmse()));
-        let taken = rounded(best.error_reduction_percent);
-        let chance = p_text(best.p_value);
+        let reduction = rounded(best.error_reduction_percent);
+        let p_value = p_text(best.p_value);
         let falls = format!(
             "With it the error on data that were {part} falls from {before} to {after}, by \
-             {taken} % ({chance})"
+             {reduction} % ({p_value})"
         );
         // Its own: how steady a joint is depends on when its steps arrive.
         let noise = best.noise_floor.filter(|noise| *noise > 0.0).or(self.noise());
@@ -102,7 +102,7 @@ impl Finding<'_> {
         let times = best.rmse() / noise;
         if times > ABOVE_NOISE {
             let times = rounded(times);
-            let rest = "more is missing behind it, which shows when it is in";
+            let rest = "more is missing, to be sought with it in the model";
             return format!("{falls}; that is still {times} times the noise, so {rest}.");
         }
         format!("{falls}, down to the noise.")
@@ -127,64 +127,65 @@ impl Finding<'_> {
         }
     }
 
-    /// What it cannot be told from; the next of the race where there is no such effect.
+    /// What it is indistinguishable from; the second best where there is no such effect.
     fn alternatives(&self, best: &Candidate) -> String {
         let same = &best.indistinguishable_from;
         if !same.is_empty() {
             let same = same.join(", ");
-            let alike =
-                format!("This record cannot tell it from {same}: only one of them need be there.");
+            let alike = format!(
+                "On this record it is indistinguishable from {same}: one of them is enough."
+            );
             let apart = best.separated_by.iter().map(|s| sentence(self.joint(), s));
             return std::iter::once(alike).chain(apart).collect::<Vec<_>>().join(" ");
         }
         match self.ranking.get(1) {
             Some(next) => {
-                format!(
-                    "Next in the race is {}: it leaves {}.",
-                    next.name(),
-                    self.output(next.rmse())
-                )
+                format!("Second best is {}, error {}.", next.name(), self.output(next.rmse()))
             }
-            None => "No other effect was in the race.".to_owned(),
+            None => "No other effect was tried.".to_owned(),
         }
     }
 
     /// What the catalogue confuses with it, and how that did.
     fn look_alikes(&self, best: &Candidate) -> Option<String> {
         let next = self.ranking.get(1).map(|next| next.effects.as_slice()).unwrap_or_default();
-        let said = [&best.effects, &best.indistinguishable_from, next];
-        let named = |id: &&str| !said.iter().any(|ids| ids.contains(id));
+        let mentioned = [&best.effects, &best.indistinguishable_from, next];
+        let named = |id: &&str| !mentioned.iter().any(|ids| ids.contains(id));
         let confused = specs(best).flat_map(|spec| spec.confused_with).copied().filter(named);
         let how = |id: &str| {
             let other = self.ranking.iter().find(|other| other.effects == [id]);
             other.map_or_else(
                 || format!("{id} (not in the ranking)"),
-                |other| format!("{id} (leaves {})", self.output(other.rmse())),
+                |other| format!("{id} (error {})", self.output(other.rmse())),
             )
         };
         let confused: Vec<String> = confused.map(how).collect();
-        (!confused.is_empty()).then(|| format!("Often taken for it: {}.", confused.join(", ")))
+        (!confused.is_empty()).then(|| format!("Often confused with it: {}.", confused.join(", ")))
     }
 
     fn adequate_headline(&self) -> String {
-        format!("{}: nothing to add", self.joint().name)
+        format!("{}: no missing effect found", self.joint().name)
     }
 
     fn adequate(&self) -> Vec<String> {
+        let mut sentences = vec![self.test(), self.size()];
+        sentences.extend(self.misses_validation());
+        sentences.extend(self.laws());
+        sentences.push(self.limits());
+        sentences.extend(self.undetermined());
+        sentences
+    }
+
+    /// How large the error is.
+    fn size(&self) -> String {
         let error = self.output(self.error());
-        let error = match self.noise() {
+        match self.noise() {
             Some(noise) => {
                 let times = rounded(self.error() / noise);
                 format!("The error is {error}, {times} times the noise.")
             }
             None => format!("The error is {error}."),
-        };
-        let mut said = vec![self.test(), error];
-        said.extend(self.misses_validation());
-        said.extend(self.laws());
-        said.push(self.limits());
-        said.extend(self.undetermined());
-        said
+        }
     }
 
     /// What the test of the lack of fit says of an adequate model.
@@ -195,7 +196,7 @@ impl Finding<'_> {
             }
             Some(test) => {
                 let share = rounded(100.0 * test.misfit_share);
-                format!("What it lacks is {share} % of the squared error: of no consequence.")
+                format!("What it lacks is {share} % of the squared error: negligible.")
             }
             None => "There are too few samples to test it.".to_owned(),
         }
@@ -214,8 +215,8 @@ impl Finding<'_> {
     /// A warning where the part that was not fitted is worse than noise.
     fn misses_validation(&self) -> Option<String> {
         let times = self.comparison().validation?.rmse / self.noise()?;
-        let warning = "The test is about the part that was fitted; on the other part more than \
-                       noise is left, so the model does not carry over yet.";
+        let warning = "The test covers the part that was fitted; on the other part the error exceeds \
+                       the noise, so the model does not generalise yet.";
         (times > ABOVE_NOISE).then(|| warning.to_owned())
     }
 
@@ -241,10 +242,10 @@ impl Finding<'_> {
     }
 
     fn unexplained(&self) -> Vec<String> {
-        let mut said = self.fails();
-        said.extend(self.shape());
-        said.extend(self.nearest());
-        said
+        let mut sentences = self.fails();
+        sentences.extend(self.shape());
+        sentences.extend(self.nearest());
+        sentences
     }
 
     fn open_headline(&self) -> String {
@@ -253,17 +254,10 @@ impl Finding<'_> {
 
     /// How large the error is, and where.
     fn fails(&self) -> Vec<String> {
-        let error = self.output(self.error());
-        let mut said = vec![match self.noise() {
-            Some(noise) => {
-                let times = rounded(self.error() / noise);
-                format!("The error is {error}, {times} times the noise.")
-            }
-            None => format!("The error is {error}."),
-        }];
-        said.extend(self.shown_beside_size());
-        said.extend(self.where_it_fails());
-        said
+        let mut sentences = vec![self.size()];
+        sentences.extend(self.shown_beside_size());
+        sentences.extend(self.where_it_fails());
+        sentences
     }
 
     /// What shows the lack of fit of an error that may be no larger than noise.
@@ -318,7 +312,7 @@ impl Finding<'_> {
         let nearest = self.ranking.first()?;
         let (name, share) = (nearest.name(), percent(nearest.share_of_misfit.clamp(0.0, 1.0)));
         Some(format!(
-            "The nearest effect, {name}, would take {share} of the misfit away and is not to be \
+            "The nearest effect, {name}, would explain {share} of the misfit and is not to be \
              trusted."
         ))
     }
@@ -344,11 +338,6 @@ fn measured(name: &str, parameter: &Parameter, unit: &str) -> String {
     }
 }
 
-/// The error by which a model is judged.
-fn rmse(comparison: &Comparison) -> f64 {
-    comparison.validation.or(comparison.training).map_or(f64::NAN, |error| error.rmse)
-}
-
 /// The parts of the feature whose means hold most of the squared residual, and their share.
 fn most_followed(regions: &[Region]) -> Option<(&[Region], f64)> {
     let square = |part: &Region, value: f64| part.share_of_time * value * value;
@@ -370,8 +359,8 @@ fn span(values: impl Iterator<Item = f64>, unit: Option<&str>) -> String {
 }
 
 /// The words as they are printed.
-pub(super) fn printed(words: &Words) -> String {
-    let commands = words.commands.iter().map(|command| format!("    {command}"));
-    let blocks = std::iter::once(wrapped(&words.paragraph)).chain(commands);
+pub(super) fn printed(conclusion: &Conclusion) -> String {
+    let commands = conclusion.commands.iter().map(|command| format!("    {command}"));
+    let blocks = std::iter::once(wrapped(&conclusion.paragraph)).chain(commands);
     blocks.collect::<Vec<_>>().join("\n\n") + "\n"
 }

@@ -1,0 +1,57 @@
+//! A table of texts: for the terminal as it is displayed, for pages as a part of a document.
+
+use std::fmt;
+
+use comfy_table::{CellAlignment, presets};
+
+/// Rows of texts below a header; columns of numbers are aligned to the right.
+#[derive(Clone, Debug, Default)]
+pub(super) struct TextTable {
+    pub(super) header: Vec<String>,
+    pub(super) rows: Vec<Vec<String>>,
+    /// Columns of numbers.
+    pub(super) numbers: Vec<usize>,
+}
+
+impl TextTable {
+    pub(super) fn new<const N: usize>(header: [&str; N], numbers: &[usize]) -> Self {
+        let header = header.map(str::to_owned).to_vec();
+        Self { header, rows: Vec::new(), numbers: numbers.to_vec() }
+    }
+
+    pub(super) fn row<const N: usize>(&mut self, cells: [String; N]) {
+        self.rows.push(cells.into());
+    }
+
+    /// Whether a column holds numbers.
+    pub(super) fn is_number(&self, column: usize) -> bool {
+        self.numbers.contains(&column)
+    }
+}
+
+impl fmt::Display for TextTable {
+    /// With borders, as wide as its cells.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut table = comfy_table::Table::new();
+        table.load_style(presets::UTF8_BORDERS_ONLY).set_header(&self.header).add_rows(&self.rows);
+        for (number, column) in table.column_iter_mut().enumerate() {
+            if self.is_number(number) {
+                column.set_cell_alignment(CellAlignment::Right);
+            }
+        }
+        table.fmt(f)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_aligned_to_the_right() {
+        let mut table = TextTable::new(["joint", "steps"], &[1]);
+        table.row(["boom".to_owned(), "7".to_owned()]);
+        let lines: Vec<String> = table.to_string().lines().map(str::to_owned).collect();
+        assert_eq!(lines[1..4], ["│ joint   steps │", "╞═══════════════╡", "│ boom        7 │"]);
+    }
+}
