@@ -40,6 +40,18 @@ pub(crate) fn signed(samples: usize) -> i64 {
     i64::try_from(samples).unwrap_or(i64::MAX)
 }
 
+/// The whole samples in `value`; 0 for what is negative or no number.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the cast saturates")]
+pub(crate) fn floor_to_index(value: f64) -> usize {
+    value.max(0.0) as usize
+}
+
+/// The first sample that is not before `value`; 0 for what is negative or no number.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the cast saturates")]
+pub(crate) fn ceil_to_index(value: f64) -> usize {
+    value.ceil().max(0.0) as usize
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -143,8 +143,8 @@ fn a_rotary_actuator_stops_where_the_pressure_says() {
         let label = labels.iter().find(|label| label.stroke == *name).unwrap();
         let found = stroke(angles, 0.95).unwrap();
         let (onsets, stops) = behind.entry(label.actuator).or_default();
-        onsets.push(found.onset.place - label.k_pressure_peak);
-        stops.push(found.stop.place - label.k_pressure_endstop);
+        onsets.push(found.onset.position - label.k_pressure_peak);
+        stops.push(found.stop.position - label.k_pressure_endstop);
     }
     assert_eq!(behind.values().map(|(_, stops)| stops.len()).sum::<usize>(), 120);
     // Units 3 and 4 are damaged.
@@ -165,7 +165,7 @@ fn the_break_of_a_stagnant_layer_is_that_of_the_literature() {
     let found = broken_regression(&points).unwrap();
     // R's segmented 1.6-2 on the same points.
     let expected = [
-        (found.place.value, 0.041_106, 5e-7),
+        (found.position.value, 0.041_106, 5e-7),
         (found.place.std_error, 0.022_835, 5e-7),
         (found.slope_before.value, -0.422_077, 5e-5),
         (found.slope_before.std_error, 0.011_487, 5e-7),

@@ -39,10 +39,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::chain::ceil;
 use super::decision::{Decision, Verdict};
-use super::hinge;
 use super::interval::FineDelay;
+use super::method::decide_by_broken_lines;
 use super::settings::Settings;
 use super::spec::Method;
 use super::steps::input_steps;
@@ -51,6 +50,7 @@ use crate::numerics::LowPass;
 use crate::numerics::NoiseModel;
 use crate::numerics::RunningLine;
 use crate::numerics::{autocovariances, median, quantile};
+use crate::units::ceil_to_index;
 
 /// Which settings are chosen from the record.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -117,7 +117,7 @@ pub fn choose(trials: &[Trial], settings: &Settings, automatic: Automatic) -> (S
     let record = Record::of(trials, settings);
     let grounds = record.grounds();
     if let Some(delay) = grounds.short_delay.filter(|_| automatic.alpha) {
-        chosen.alpha = ceil(delay).max(1);
+        chosen.alpha = ceil_to_index(delay).max(1);
     }
     if automatic.passband {
         let smooths = settings.method.spec().low_pass.is_some();
@@ -174,7 +174,7 @@ impl<'a> Record<'a> {
             if steps.is_empty() {
                 continue;
             }
-            record.add(trial.output(), &hinge::decide_all(trial.output(), &steps, &hinge));
+            record.add(trial.output(), &decide_by_broken_lines(trial.output(), &steps, &hinge));
         }
         record.noise = NoiseModel::of(&record.quiet, LINE);
         record.innovations = record.innovations();
@@ -190,7 +190,7 @@ impl<'a> Record<'a> {
         // What was not accepted may be a reaction all the same: no line goes across it.
         let place = |one: &Decision| {
             let place = one.input_step.sample as f64 - 1.0 + one.fine?.delay;
-            Some(ceil(place).min(output.len()))
+            Some(ceil_to_index(place).min(output.len()))
         };
         let places: Vec<usize> = decisions.iter().filter_map(place).collect();
         let ends = places.iter().skip(1).copied().chain([output.len()]);
@@ -269,7 +269,7 @@ impl<'a> Record<'a> {
         let Some(bend) = median(&bends).filter(|bend| *bend > 0.0) else { return 1 };
         // What a line over many samples sees of noise with a memory.
         let noise = self.innovations / self.noise.level.powi(2);
-        ceil((6.0 * noise / bend).cbrt().round()).clamp(1, MOST)
+        ceil_to_index((6.0 * noise / bend).cbrt().round()).clamp(1, MOST)
     }
 
     /// The lowest frequency, radians per sample, at which motion is no stronger than noise.
@@ -280,7 +280,7 @@ impl<'a> Record<'a> {
             .collect();
         // One period of white noise is no evidence: bands of a third of an octave are.
         let band = |bin: usize, up: f64| {
-            let last = ceil(bin as f64 * up).min(noise.len().saturating_sub(1));
+            let last = ceil_to_index(bin as f64 * up).min(noise.len().saturating_sub(1));
             let sum = |values: &[f64]| values.get(bin..=last).map_or(0.0, |v| v.iter().sum());
             let (all, own): (f64, f64) = (sum(&spectrum.power), sum(&noise));
             all <= 2.0 * own

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::condition::{Check, Condition, Outcome};
+use super::condition::{Check, Condition, Outcome, nothing_happened};
 use super::interval::FineDelay;
 use super::search::{Candidate, Candidates};
 use super::segment::Segment;
@@ -77,6 +77,14 @@ impl Decision {
     pub fn failed(&self) -> impl Iterator<Item = Condition> + '_ {
         let failed = self.checks.iter().filter(|check| check.outcome == Outcome::Failed);
         failed.map(|check| check.condition)
+    }
+
+    /// Puts the result of a test against noise among the checks.
+    pub(super) fn test_reaction(&mut self, p_value: Option<f64>, confidence: f64) {
+        let found = nothing_happened(p_value, confidence);
+        for check in self.checks.iter_mut().filter(|check| check.condition == found.condition) {
+            *check = found;
+        }
     }
 
     /// The delay in samples, if it was accepted.

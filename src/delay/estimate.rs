@@ -2,10 +2,10 @@
 
 use std::fmt;
 
+use super::lag::Lag;
 use super::method::{DelayMethod, implementation};
 use super::prepared::Prepared;
 use super::profile::DelayProfile;
-use super::response::Lag;
 use super::settings::Settings;
 use super::spec::Scope;
 use super::trial_estimate::{EstimateError, TrialEstimate};

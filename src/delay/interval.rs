@@ -12,3 +12,13 @@ pub struct FineDelay {
     /// How often such an interval holds the true delay.
     pub confidence: f64,
 }
+
+impl FineDelay {
+    /// A delay that cannot be below zero, unless all of its interval is.
+    pub(super) fn causal(delay: f64, low: f64, high: f64, confidence: f64) -> Self {
+        if high < 0.0 {
+            return Self { delay, low, high, confidence };
+        }
+        Self { delay: delay.max(0.0), low: low.max(0.0), high, confidence }
+    }
+}

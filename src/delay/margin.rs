@@ -158,7 +158,7 @@ mod tests {
                 settings.max_sse = Some(value);
             }),
             (Settings { min_delay: 150, ..kept.clone() }, "--min-delay", |settings, value| {
-                settings.min_delay = super::super::broken_line::floor(value);
+                settings.min_delay = crate::units::floor_to_index(value);
             }),
         ];
         for (settings, option, change) in cases {

@@ -1,6 +1,6 @@
 //! Every candidate breakpoint of a segment: both lines and their squared error.
 
-use super::frame::Bends;
+use super::broken_line::Bends;
 use crate::numerics::{Line, RunningLine};
 
 /// Difference of two squared errors, as a part of the segment's total sum of squares,

@@ -1,8 +1,8 @@
 //! The delays of one trial, and why a trial has none.
 
 use super::decision::Decision;
+use super::lag::Lag;
 use super::profile::DelayProfile;
-use super::response::Lag;
 use super::settings::SettingsError;
 use crate::numerics::FilterError;
 

@@ -1,8 +1,8 @@
 //! What every method does.
 
 use crate::delay::decision::Decision;
+use crate::delay::lag::Lag;
 use crate::delay::prepared::Prepared;
-use crate::delay::response::Lag;
 use crate::delay::settings::Settings;
 use crate::delay::spec::Method;
 

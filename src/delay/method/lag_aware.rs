@@ -1,14 +1,27 @@
-//! `lag-aware`: the broken line behind a lag that all steps of a joint share, so that dead
-//! time and lag are told apart, each with an interval.
+//! `lag-aware`: dead time apart from lag, the broken line behind a lag that all steps share.
+//!
+//! The lag comes from the whole joint ([`LagSearch`]); then each step's dead time is found
+//! between its neighbours, together with them where holds are short, and with what earlier
+//! steps left as part of the fit. A joint without a lag is left to the broken line.
 
 use super::hinge::Hinge;
 use super::interface::DelayMethod;
+use super::step_context::StepContext;
+use crate::delay::broken_line;
 use crate::delay::decision::Decision;
-use crate::delay::lag_aware;
+use crate::delay::interval::FineDelay;
+use crate::delay::lag::{FINE, FitWindow, Lag, LagModel, LagSearch, Linearised};
+use crate::delay::onsets::{
+    OnsetPath, Precision, RefinedOnset, Refinement, fit_windows, located, thinned,
+};
 use crate::delay::prepared::Prepared;
-use crate::delay::response::Lag;
+use crate::delay::search::Candidates;
+use crate::delay::segment::Segment;
 use crate::delay::settings::{CONFIDENCE, Settings};
 use crate::delay::spec::{Method, MethodSpec, Scope};
+use crate::delay::steps::InputStep;
+use crate::numerics::{Line, NoiseModel, student_quantile};
+use crate::units::{SamplePeriod, ceil_to_index};
 
 static SPEC: MethodSpec = MethodSpec {
     id: "lag-aware",
@@ -36,7 +49,7 @@ impl DelayMethod for LagAware {
     }
 
     fn shared_lag(&self, trials: &[Prepared<'_>], settings: &Settings) -> Option<Lag> {
-        Some(lag_aware::lag_of(trials, settings))
+        Some(lag_of(trials, settings))
     }
 
     fn decide(
@@ -48,10 +61,177 @@ impl DelayMethod for LagAware {
         match lag.filter(|lag| lag.order() > 0) {
             Some(lag) => {
                 let (output, steps) = (trial.output(), trial.steps.as_slice());
-                lag_aware::decide_all(output, steps, lag, trial.period, settings)
+                decide_all(output, steps, lag, trial.period, settings)
             }
             // A joint that follows at once has a broken line.
             None => Hinge.decide(trial, None, settings),
         }
     }
+}
+
+/// Samples that are enough to know which poles a lag has, and where they are.
+const ENOUGH_FOR_POLES: usize = 6_000;
+const ENOUGH: usize = 20_000;
+
+/// Times that the lag is searched where holds are short, at most.
+const ROUNDS: usize = 12;
+
+/// The first of them, in which a simpler lag is taken although its squared error is larger by
+/// this part.
+const CAUTIOUS: usize = 2;
+const CAUTION: f64 = 0.02;
+
+/// The lag that the trials of a joint share.
+fn lag_of(trials: &[Prepared<'_>], settings: &Settings) -> Lag {
+    let Some(period) = trials.first().map(|trial| trial.period) else { return Lag::none() };
+    let alike = trials.iter().filter(|trial| trial.period == period);
+    let paths: Vec<_> = alike
+        .map(|trial| (trial.output(), rough(trial.output(), &trial.steps, settings)))
+        .collect();
+    let all: Vec<_> = paths
+        .iter()
+        .flat_map(|(output, path)| fit_windows(output, path, Precision::Rough))
+        .collect();
+    let clear = paths.iter().all(|(_, path)| path.in_time());
+    let enough = if clear { ENOUGH_FOR_POLES } else { ENOUGH };
+    let mut found = LagSearch::new(thinned(all.clone(), enough)).select();
+    if found.model.order() == 0 && found.is_faint() {
+        found = LagSearch::new(thinned(all, ENOUGH)).select();
+    }
+    // With the dead times known better, windows reach as far as they may.
+    for round in 0..if clear { 1 } else { ROUNDS } {
+        if found.model.order() == 0 {
+            break;
+        }
+        let refined = refined(&paths, &found);
+        let windows =
+            refined.iter().flat_map(|it| fit_windows(it.output, &it.path, Precision::Refined));
+        let windows = thinned(windows.collect(), ENOUGH);
+        if windows.is_empty() {
+            break;
+        }
+        let again = LagSearch::new(windows).with_model(found.model, found.noise.clone());
+        // Onsets suit the lag behind which they were found: at first only what is plain counts.
+        let caution = if round < CAUTIOUS { CAUTION } else { 0.0 };
+        let before = found.model;
+        found = if clear { again.refit() } else { again.reselected(caution) };
+        // A pole too many makes onsets that speak for it, which it takes some rounds to undo.
+        if round > CAUTIOUS && found.model.is_close_to(&before) {
+            break;
+        }
+    }
+    Lag::new(period, found.model, found.covariance())
+}
+
+/// The onsets of each trial behind the lag that was found.
+fn refined<'a>(paths: &[(&'a [f64], OnsetPath)], found: &LagSearch<'_>) -> Vec<Refinement<'a>> {
+    let refined = |(output, path): &(&'a [f64], OnsetPath)| {
+        let path = behind(path, output, &found.model);
+        Refinement::of(output, path, found.model, found.noise.clone()).refined(1)
+    };
+    paths.iter().map(refined).collect()
+}
+
+/// The onsets by broken lines. Their residuals hold the lag's transients, which are no noise:
+/// its memory is not estimated from them.
+fn rough(output: &[f64], steps: &[InputStep], settings: &Settings) -> OnsetPath {
+    let (mut path, _) = located(output, steps, settings, 1);
+    path.onsets.iter_mut().for_each(|onset| onset.counts = true);
+    path
+}
+
+/// About where onsets behind a lag are, given where broken lines put them. Where holds
+/// are short, the transients of earlier steps hide which one belongs to which step.
+fn behind(rough: &OnsetPath, output: &[f64], model: &LagModel) -> OnsetPath {
+    let path = rough.clone();
+    if path.in_time() { path.without(model) } else { path.behind(model, output) }
+}
+
+/// The decisions on all steps of a trial with this lag.
+fn decide_all(
+    output: &[f64],
+    steps: &[InputStep],
+    lag: &Lag,
+    period: SamplePeriod,
+    settings: &Settings,
+) -> Vec<Decision> {
+    /// Passes: the first takes the noise for white, the second knows its memory.
+    const PASSES: usize = 2;
+    let model = lag.model_at(period);
+    let path = behind(&rough(output, steps, settings), output, &model);
+    let trial = Refinement::of(output, path, model, NoiseModel::white()).refined(PASSES);
+    let decide = |index| decide(&StepContext { steps, index, output, settings }, &trial, lag);
+    (0..steps.len()).map(decide).collect()
+}
+
+fn decide(context: &StepContext<'_>, trial: &Refinement<'_>, lag: &Lag) -> Decision {
+    let StepContext { index, output, settings, .. } = *context;
+    let range = trial.path.window(index);
+    let segment = Segment::clipped(range.start + 1, range.end, output.len());
+    let found = trial.fit(index, FINE);
+    let p_value = found.as_ref().map(|found| trial.p_value(index, found));
+    let origin = context.step().sample as f64 - 1.0;
+    let fine = found.as_ref().map(|found| fine(trial, found, origin, lag, settings.interval));
+    let candidates = found.map_or_else(Candidates::default, |found| candidates(trial, &found));
+    let mut decision = context.decision(segment, 1, candidates, fine);
+    if let Some(confidence) = settings.confidence {
+        decision.test_reaction(p_value, confidence);
+    }
+    decision
+}
+
+/// The dead time and its interval: the profile likelihood of the onset, and, independent of
+/// it, the delta method for the uncertainty of the lag.
+fn fine(
+    trial: &Refinement<'_>,
+    found: &RefinedOnset<'_>,
+    origin: f64,
+    lag: &Lag,
+    confidence: f64,
+) -> FineDelay {
+    /// Half-width in samples from which an onset isn't known at all.
+    const UNKNOWN: f64 = 1e6;
+    let Refinement { basis, noise, .. } = trial;
+    let with_lag = found.window.with_lag_columns(&basis.model, noise, &found.fit.parts);
+    let rows = found.range.len() - noise.order();
+    let freedom = (rows as f64 - found.fit.parameters() as f64).max(1.0);
+    let variance = found.fit.sse / freedom;
+    let t = student_quantile(f64::midpoint(1.0, confidence), freedom);
+    let own = t * (variance * found.fit.onset_variance()).sqrt();
+    let shared = t * lag.variance_along(&with_lag.onset_slopes()).sqrt();
+    let side = |sign: f64| {
+        let reach = found.reach(sign * own, variance * t * t, basis, noise);
+        sign * reach.hypot(shared)
+    };
+    let delay = found.position() - origin;
+    let (low, high) = if own < UNKNOWN { (side(-1.0), side(1.0)) } else { (-own, own) };
+    let ends = (delay + low, delay + high);
+    FineDelay::causal(broken_line::median(delay, ends, t), ends.0, ends.1, confidence)
+}
+
+/// The onset where it was found, and a sample to each side.
+fn candidates(trial: &Refinement<'_>, found: &RefinedOnset<'_>) -> Candidates {
+    let start = found.range.start;
+    let mean = trial.basis.response.mean;
+    let there = |by: f64| {
+        let window = found.window.with_last_onset(found.window.last_onset() + by);
+        let fit = window.at(&trial.basis, &trial.noise);
+        (fit.sse, lines(&window, &fit, start, mean))
+    };
+    let best = (found.fit.sse, lines(&found.window, &found.fit, start, mean));
+    let all = [there(-1.0), best, there(1.0)];
+    let (sse, lines): (Vec<f64>, Vec<(Line, Line)>) = all.into_iter().unzip();
+    let first = ceil_to_index(found.position()).saturating_sub(1);
+    Candidates::fitted(first, sse, lines.into_iter().unzip(), 1)
+}
+
+/// The lines that the output approaches before and after the last onset, behind a lag that is
+/// `mean` samples late; over sample numbers.
+fn lines(window: &FitWindow<'_>, fit: &Linearised, start: usize, mean: f64) -> (Line, Line) {
+    let (value, slope) = (fit.parts[0], fit.parts[1]);
+    let first = start as f64 + 1.0;
+    let before = Line { slope, intercept: value + window.values[0] - slope * first };
+    let change = fit.change();
+    let at = first + window.last_onset() + mean;
+    (before, Line { slope: slope + change, intercept: before.intercept - change * at })
 }

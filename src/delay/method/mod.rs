@@ -7,8 +7,11 @@
 mod hinge;
 mod interface;
 mod lag_aware;
+mod noise_test;
 mod registry;
+mod step_context;
 mod two_line;
 
+pub(super) use hinge::decide_all as decide_by_broken_lines;
 pub(super) use interface::DelayMethod;
 pub(super) use registry::implementation;

@@ -9,11 +9,11 @@
 //! Albrecht and Taylor, Algorithm 1 (time-varying delays of hydraulic manipulators).
 
 use super::interface::DelayMethod;
-use crate::delay::condition::Facts;
+use super::noise_test;
+use super::step_context::StepContext;
 use crate::delay::decision::{Decision, Verdict};
+use crate::delay::lag::Lag;
 use crate::delay::prepared::Prepared;
-use crate::delay::reaction;
-use crate::delay::response::Lag;
 use crate::delay::search::Candidates;
 use crate::delay::segment::Segment;
 use crate::delay::settings::Settings;
@@ -74,54 +74,34 @@ fn decide_all(
 ) -> Vec<Decision> {
     let mut decisions: Vec<Decision> = Vec::with_capacity(steps.len());
     for index in 0..steps.len() {
-        let decision = decide(steps, index, output, decisions.last(), settings);
-        decisions.extend(decision);
+        let context = StepContext { steps, index, output, settings };
+        decisions.push(decide(&context, decisions.last()));
     }
     if let Some(confidence) = settings.confidence {
-        reaction::judge(&mut decisions, raw, confidence);
+        noise_test::judge(&mut decisions, raw, confidence);
     }
     decisions
 }
 
-/// The decision on step `index`, after the one `before` it.
-fn decide(
-    steps: &[InputStep],
-    index: usize,
-    output: &[f64],
-    before: Option<&Decision>,
-    settings: &Settings,
-) -> Option<Decision> {
-    let input_step = *steps.get(index)?;
-    let samples = output.len();
-    let p = input_step.sample;
-    // Behind the last step the trial's end stands in for the next one.
-    let next = steps.get(index + 1).map_or(samples + 1, |next| next.sample);
+/// The decision on a step, after the one `before` it.
+fn decide(context: &StepContext<'_>, before: Option<&Decision>) -> Decision {
+    let StepContext { output, settings, .. } = *context;
+    let p = context.step().sample;
     let accepted = before.filter(|before| before.verdict() == Verdict::Accepted);
     let previous = accepted.and_then(Decision::breakpoint);
     let before_step = p.saturating_sub(settings.alpha);
     let breakpoint = previous.map(|best| best.candidate.breakpoint);
     let latest = settings.max_delay.map_or(usize::MAX, |delay| p.saturating_add(delay));
+    // r_i = q_(i−1) if step i−1 was accepted, else p_i − α.
     let first = match (breakpoint, settings.max_delay) {
         (None, _) => before_step,
         (Some(breakpoint), None) => breakpoint,
         // What came long before the step is none of its business.
         (Some(breakpoint), Some(_)) => breakpoint.max(before_step),
     };
-    let last = next.min(latest).saturating_add(settings.alpha);
-    let segment = Segment::clipped(first, last, samples);
-    let values = output.get(segment.indices()).unwrap_or_default();
+    let last = context.next_sample().min(latest).saturating_add(settings.alpha);
+    let segment = Segment::clipped(first, last, output.len());
+    let values = &output[segment.indices()];
     let candidates = Candidates::search_until(values, segment.first, settings.beta, latest);
-    let facts = Facts {
-        step: index + 1,
-        steps: steps.len(),
-        input_sample: p,
-        hold: next - p,
-        output: values,
-        rows: values.len() / settings.beta,
-        best: candidates.best(),
-        fine: None,
-    };
-    let checks = facts.check(settings);
-    let (number, hold) = (index + 1, next - p);
-    Some(Decision { number, input_step, hold, segment, candidates, checks, fine: None })
+    context.decision(segment, settings.beta, candidates, None)
 }

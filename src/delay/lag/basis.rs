@@ -5,26 +5,19 @@
 //! white noise the products of whole columns so follow from a few sums over each piece,
 //! which hang on its length alone; only the output is gone through sample by sample.
 
-use super::broken_line::floor;
-use super::response::{MOST, Response, Shape};
+use super::model::{LagModel, MAX_PARAMETERS};
+use super::motion::{COLUMNS, LINE, Motion, inner_product};
+use super::response::Response;
 use crate::numerics::moments;
-
-/// Columns of the line.
-pub(super) const LINE: usize = 2;
-
-/// Level, ramp, and the modes of three poles.
-pub(super) const COLUMNS: usize = LINE + MOST;
-
-/// Coefficients of level, ramp and modes at the beginning of a piece.
-pub(super) type Motion = [f64; COLUMNS];
+use crate::units::floor_to_index;
 
 /// The motions behind a lag, as far as its modes are felt.
 #[derive(Clone, Debug)]
-pub(super) struct Basis {
-    pub(super) shape: Shape,
-    pub(super) response: Response,
+pub(crate) struct Basis {
+    pub(crate) model: LagModel,
+    pub(crate) response: Response,
     /// The modes of each sample; 0 for those that the lag has not.
-    modes: Vec<[f64; MOST]>,
+    modes: Vec<[f64; MAX_PARAMETERS]>,
     /// Sums over as many samples.
     sums: Vec<Sums>,
 }
@@ -32,28 +25,29 @@ pub(super) struct Basis {
 /// Sums of the modes, of their products with the sample's number, and with each other.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
-    ones: [f64; MOST],
-    ramps: [f64; MOST],
-    products: [[f64; MOST]; MOST],
+    ones: [f64; MAX_PARAMETERS],
+    ramps: [f64; MAX_PARAMETERS],
+    products: [[f64; MAX_PARAMETERS]; MAX_PARAMETERS],
 }
 
 /// Products over a piece: of the motions with each other, with the output, and of the output
 /// with itself.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Products {
+pub(crate) struct Products {
     motions: [Motion; COLUMNS],
     with: Motion,
-    pub(super) square: f64,
+    pub(crate) square: f64,
 }
 
 impl Basis {
     /// For pieces of `longest` samples at most.
-    pub(super) fn of(shape: &Shape, longest: usize) -> Self {
-        let response = Response::of(shape);
-        let felt = if response.modes() > 0 { floor(response.over()).min(longest) + 1 } else { 0 };
+    pub(crate) fn of(model: &LagModel, longest: usize) -> Self {
+        let response = Response::of(model);
+        let felt =
+            if response.modes() > 0 { floor_to_index(response.over()).min(longest) + 1 } else { 0 };
         let mut columns = vec![0.0; response.modes() * felt];
         response.fill_modes(&mut columns, felt);
-        let mut modes = vec![[0.0; MOST]; felt];
+        let mut modes = vec![[0.0; MAX_PARAMETERS]; felt];
         for (index, column) in columns.chunks_exact(felt.max(1)).enumerate() {
             for (row, value) in modes.iter_mut().zip(column) {
                 row.iter_mut().skip(index).take(1).for_each(|slot| *slot = *value);
@@ -65,14 +59,14 @@ impl Basis {
             now.add(k as f64, row);
             sums.push(now);
         }
-        Self { shape: *shape, response, modes, sums }
+        Self { model: *model, response, modes, sums }
     }
 
     /// The products over `values`, less `offset`.
-    pub(super) fn products(&self, values: &[f64], offset: f64) -> Products {
+    pub(crate) fn products(&self, values: &[f64], offset: f64) -> Products {
         let (sum, moment, square) = moments(values, offset);
         let mut with = [sum, moment, 0.0, 0.0, 0.0];
-        let mut felt = [0.0; MOST];
+        let mut felt = [0.0; MAX_PARAMETERS];
         for (y, row) in values.iter().zip(&self.modes) {
             felt.iter_mut().zip(row).for_each(|(sum, mode)| *sum += (y - offset) * mode);
         }
@@ -98,7 +92,7 @@ impl Basis {
     }
 
     /// The same motion seen `by` samples later.
-    pub(super) fn later(&self, motion: &Motion, by: usize) -> Motion {
+    pub(crate) fn later(&self, motion: &Motion, by: usize) -> Motion {
         let [level, ramp, modes @ ..] = *motion;
         let decayed = self.modes.get(by).copied().unwrap_or_default();
         let [a, b, c] = self.response.later(modes, decayed);
@@ -107,7 +101,7 @@ impl Basis {
 }
 
 impl Sums {
-    fn add(&mut self, k: f64, row: &[f64; MOST]) {
+    fn add(&mut self, k: f64, row: &[f64; MAX_PARAMETERS]) {
         let slots = self.ones.iter_mut().zip(&mut self.ramps).zip(&mut self.products);
         for (((one, ramp), products), mode) in slots.zip(row) {
             *one += mode;
@@ -118,18 +112,13 @@ impl Sums {
 }
 
 impl Products {
-    /// What `motion` has in common with each of the motions.
-    pub(super) fn along(&self, motion: &Motion) -> Motion {
-        self.motions.map(|row| common(&row, motion))
+    /// What `motion` has in inner_product with each of the motions.
+    pub(crate) fn along(&self, motion: &Motion) -> Motion {
+        self.motions.map(|row| inner_product(&row, motion))
     }
 
-    /// What `motion` has in common with the output.
-    pub(super) fn with_output(&self, motion: &Motion) -> f64 {
-        common(&self.with, motion)
+    /// What `motion` has in inner_product with the output.
+    pub(crate) fn with_output(&self, motion: &Motion) -> f64 {
+        inner_product(&self.with, motion)
     }
-}
-
-/// The sum of products.
-pub(super) fn common(a: &Motion, b: &Motion) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -1,23 +1,19 @@
 //! How well a joint that nothing moves anew explains a piece of its output: the squared
 //! error of a line and of the modes that earlier steps left, for pieces of any length.
 //!
-//! What the columns have in common depends on the length alone, so that it is worked out
+//! The inner products of the columns depend on the length alone, so that they are worked out
 //! once; a piece costs a product per column and sample.
 
-use super::response::{Response, Shape};
+use super::model::LagModel;
+use super::motion::{COLUMNS, LINE};
+use super::response::Response;
 use crate::numerics::rank::PIVOT;
-
-/// Most columns: the line, and the modes of three poles.
-const MOST: usize = 5;
-
-/// Columns of the line.
-const LINE: usize = 2;
 
 /// The columns of free motion, and how they are told apart at each length.
 #[derive(Clone, Debug)]
-pub(super) struct FreeMotion {
+pub(crate) struct FreeMotion {
     /// The columns side by side, sample by sample.
-    rows: Vec<[f64; MOST]>,
+    rows: Vec<[f64; COLUMNS]>,
     /// For each number of samples.
     factors: Vec<Factors>,
 }
@@ -26,20 +22,20 @@ pub(super) struct FreeMotion {
 #[derive(Clone, Copy, Debug, Default)]
 struct Factors {
     /// Multiples of earlier columns in a later one.
-    lower: [[f64; MOST]; MOST],
+    lower: [[f64; COLUMNS]; COLUMNS],
     /// One over the squares of what is left of each column; 0 where nothing is.
-    per_square: [f64; MOST],
+    per_square: [f64; COLUMNS],
 }
 
 impl FreeMotion {
     /// For pieces of `longest` samples at most.
-    pub(super) fn of(shape: &Shape, longest: usize) -> Self {
-        let response = Response::of(shape);
+    pub(crate) fn of(model: &LagModel, longest: usize) -> Self {
+        let response = Response::of(model);
         let modes = response.modes();
         let mut columns = vec![0.0; modes * longest];
         response.fill_modes(&mut columns, longest);
         let row = |k: usize| {
-            let mut row = [0.0; MOST];
+            let mut row = [0.0; COLUMNS];
             row[0] = 1.0;
             row[1] = k as f64;
             for (slot, mode) in row.iter_mut().skip(LINE).zip(columns.chunks_exact(longest.max(1)))
@@ -49,7 +45,7 @@ impl FreeMotion {
             row
         };
         let rows: Vec<_> = (0..longest).map(row).collect();
-        let mut products = [[0.0; MOST]; MOST];
+        let mut products = [[0.0; COLUMNS]; COLUMNS];
         let mut factors = vec![Factors::default()];
         for row in &rows {
             for (sums, a) in products.iter_mut().zip(row) {
@@ -62,9 +58,9 @@ impl FreeMotion {
 
     /// The squared error of each piece of `values` from its first sample up to one of the
     /// `ends`, which ascend.
-    pub(super) fn errors(&self, values: &[f64], ends: impl Iterator<Item = usize>) -> Vec<f64> {
+    pub(crate) fn errors(&self, values: &[f64], ends: impl Iterator<Item = usize>) -> Vec<f64> {
         let offset = values.first().copied().unwrap_or_default();
-        let (mut sums, mut square, mut done) = ([0.0; MOST], 0.0, 0);
+        let (mut sums, mut square, mut done) = ([0.0; COLUMNS], 0.0, 0);
         let error = |end: usize| {
             let end = end.min(values.len()).min(self.rows.len());
             let piece = values.get(done..end).unwrap_or_default();
@@ -82,10 +78,10 @@ impl FreeMotion {
 }
 
 impl Factors {
-    fn of(products: &[[f64; MOST]; MOST]) -> Self {
+    fn of(products: &[[f64; COLUMNS]; COLUMNS]) -> Self {
         let mut left = *products;
         let mut factors = Self::default();
-        for column in 0..MOST {
+        for column in 0..COLUMNS {
             let pivot_row = left.get(column).copied().unwrap_or_default();
             let pivot = pivot_row.get(column).copied().unwrap_or_default();
             let whole = products.get(column).and_then(|row| row.get(column)).copied();
@@ -108,7 +104,7 @@ impl Factors {
     }
 
     /// What the columns explain of a target, given its products with them.
-    fn explained(&self, sums: &[f64; MOST]) -> f64 {
+    fn explained(&self, sums: &[f64; COLUMNS]) -> f64 {
         let mut left = *sums;
         let mut explained = 0.0;
         for (column, per_square) in self.per_square.iter().enumerate() {
@@ -128,11 +124,11 @@ mod tests {
 
     #[test]
     fn nothing_is_left_of_a_motion_that_dies_away() {
-        let shape = Shape::pair_of(0.157, 0.25).behind(6.0);
+        let model = LagModel::pair_of(0.157, 0.25).behind(6.0);
         let (mut y, mut unused) = (vec![0.0; 90], vec![0.0; 90]);
-        Response::of(&shape).fill(-11.0, &mut y, &mut unused);
+        Response::of(&model).fill(-11.0, &mut y, &mut unused);
         let y: Vec<f64> = y.iter().zip(0_u32..).map(|(y, k)| y + 0.3 * f64::from(k)).collect();
-        let free = FreeMotion::of(&shape, 90);
+        let free = FreeMotion::of(&model, 90);
         let left = free.errors(&y, [3, 20, 90].into_iter());
         assert!(left.iter().all(|error| *error < 1e-8), "{left:?}");
         // Another motion is none of it.
@@ -142,9 +138,9 @@ mod tests {
 
     #[test]
     fn the_error_is_that_of_a_regression() {
-        let shape = Shape::real(6.0);
+        let model = LagModel::real(6.0);
         let y: Vec<f64> = (0..40).map(|k| f64::from(k * k % 17)).collect();
-        let left = FreeMotion::of(&shape, 64).errors(&y, [12, 40].into_iter());
+        let left = FreeMotion::of(&model, 64).errors(&y, [12, 40].into_iter());
         for (left, end) in left.into_iter().zip([12_usize, 40]) {
             let row = |k: usize, i: usize| [1.0, k as f64, (-(k as f64) / 6.0).exp()][i];
             let columns = nalgebra::DMatrix::from_fn(end, 3, row);

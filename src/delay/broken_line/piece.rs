@@ -1,5 +1,5 @@
 //! A broken line whose break is between two neighbouring samples: what it takes off the squared
-//! error, a quotient of two quadratics in the place.
+//! error, a quotient of two quadratics in the position.
 
 /// Level and ramp behind a sample, without what a line can do.
 #[derive(Clone, Copy, Debug, Default)]

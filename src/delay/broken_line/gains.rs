@@ -1,4 +1,4 @@
-//! The places of a window where a line may break: what a ramp behind each has in common with the
+//! The positions of a window where a line may break: what a ramp behind each has in common with the
 //! output, and what a break there takes off the squared error.
 
 use std::ops::RangeInclusive;
@@ -7,9 +7,9 @@ use super::frame::Frame;
 use super::piece::Piece;
 use crate::numerics::moments;
 
-/// Ramps behind each place of a range, and what a break there takes away.
+/// Ramps behind each position of a range, and what a break there takes away.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Places {
+pub(super) struct BreakGains {
     pub(super) first: usize,
     /// What each ramp has in common with the output; one more, behind the last.
     ramp_y: Vec<f64>,
@@ -18,13 +18,14 @@ pub(super) struct Places {
     pub(super) gain: Vec<f64>,
 }
 
-impl Places {
-    /// The `places` of a window whose output, without what a line can do and pulled through the
+impl BreakGains {
+    /// The `positions` of a window whose output, without what a line can do and pulled through the
     /// noise, is `pulled`.
-    pub(super) fn of(frame: &Frame, pulled: &[f64], places: &RangeInclusive<usize>) -> Self {
+    pub(super) fn of(frame: &Frame, pulled: &[f64], positions: &RangeInclusive<usize>) -> Self {
         /// Samples at a time: of these only two sums hang on those before.
         const TOGETHER: usize = 4;
-        let (first, count) = (*places.start(), (places.end() + 1).saturating_sub(*places.start()));
+        let (first, count) =
+            (*positions.start(), (positions.end() + 1).saturating_sub(*positions.start()));
         let (searched, rest) = pulled.split_at((first + 1 + count).min(pulled.len()));
         let (level_sum, moment, _) = moments(rest, 0.0);
         let ramp_sum = level_sum + moment;
@@ -63,13 +64,13 @@ impl Places {
         (errors, changes)
     }
 
-    /// Places behind which a break between two samples may take away the most, from the
+    /// BreakGains behind which a break between two samples may take away the most, from the
     /// back: what it has in common with the output is linear between them, and its own square
     /// at most by a quarter of the level's below both ends.
     pub(super) fn promising(&self, frame: &Frame) -> impl Iterator<Item = usize> + use<> {
         /// More than rounding.
         const SLACK: f64 = 1.0 - 1e-9;
-        /// Places that are told at a time; most of them have none that may.
+        /// BreakGains that are told at a time; most of them have none that may.
         const BLOCK: usize = 8;
         let most = SLACK * self.gain.iter().copied().fold(0.0, larger);
         let spare = |[a, b]: [f64; 2], [size, next]: [f64; 2], reach: f64| {
@@ -103,7 +104,7 @@ impl Places {
         good.into_iter().rev()
     }
 
-    /// The piece behind the place of an index.
+    /// The piece behind the position of an index.
     pub(super) fn piece(&self, index: usize, frame: &Frame) -> Piece {
         let of = |index: usize| self.ramp_y.get(index).copied().unwrap_or_default();
         let (here, next) = (of(index), of(index + 1));

@@ -18,7 +18,7 @@ pub(super) struct Frame {
     /// What whitening makes of 1 and of a ramp.
     level: f64,
     shift: f64,
-    onset: Onset,
+    onset: OnsetSums,
     /// What a ramp has in common with itself, along a constant and along a slope: cubics in the
     /// samples behind its beginning.
     ramps: [[f64; 4]; 3],
@@ -43,7 +43,7 @@ pub(super) struct Ramp {
 
 /// The lines of breaks at each sample from one on.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Bends {
+pub(crate) struct Bends {
     frame: Frame,
     first: usize,
     changes: Vec<f64>,
@@ -58,12 +58,12 @@ impl Bends {
     }
 
     /// The lines before and behind the break of an index.
-    pub(super) fn get(&self, index: usize) -> Option<(Line, Line)> {
+    pub(crate) fn get(&self, index: usize) -> Option<(Line, Line)> {
         let change = *self.changes.get(index)?;
-        let place = (self.first + index) as f64;
-        let ramp = self.frame.ramp(self.frame.last - place);
+        let position = (self.first + index) as f64;
+        let ramp = self.frame.ramp(self.frame.last - position);
         let along = ramp.line.map(|part| change * part);
-        Some(self.frame.lines_of(along, place, change, self.number))
+        Some(self.frame.lines_of(along, position, change, self.number))
     }
 }
 
@@ -75,7 +75,7 @@ impl Frame {
         let spread = rows * (rows * rows - 1.0) / 12.0;
         let (last, middle) = (rows + order - 1.0, order + (rows - 1.0) / 2.0);
         let (per_level, per_slope) = (rows.sqrt().recip(), spread.sqrt().recip());
-        let (level, shift, onset) = (noise.level, noise.shift, Onset::of(noise));
+        let (level, shift, onset) = (noise.level, noise.shift, OnsetSums::of(noise));
         Self {
             order,
             last,
@@ -110,8 +110,8 @@ impl Frame {
     }
 
     /// Samples behind one.
-    fn behind(&self, place: usize) -> f64 {
-        self.last - place as f64
+    fn behind(&self, position: usize) -> f64 {
+        self.last - position as f64
     }
 
     /// The ramp behind the sample that has `reach` samples behind it.
@@ -170,22 +170,22 @@ impl Frame {
         self.lines_of(along, j + s, change, number)
     }
 
-    /// The same given the change of slope at a `place`, and what it takes along a constant and
+    /// The same given the change of slope at a `position`, and what it takes along a constant and
     /// along a slope.
-    fn lines_of(&self, along: [f64; 2], place: f64, change: f64, number: f64) -> (Line, Line) {
+    fn lines_of(&self, along: [f64; 2], position: f64, change: f64, number: f64) -> (Line, Line) {
         let [along_level, along_slope] = along.map(|part| part * self.per_noise_level);
         let slope = self.slope - along_slope * self.per_slope;
         let value = self.value - along_level * self.per_level;
         let at = number + self.middle + self.shift * self.per_noise_level;
         let before = Line { slope, intercept: value - slope * at };
-        let intercept = before.intercept - change * (place + number);
+        let intercept = before.intercept - change * (position + number);
         (before, Line { slope: slope + change, intercept })
     }
 }
 
 /// Sums of a whitened level and ramp over the samples in which they begin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Onset {
+struct OnsetSums {
     level: f64,
     ramp: f64,
     level_d: f64,
@@ -195,7 +195,7 @@ struct Onset {
     ramp_ramp: f64,
 }
 
-impl Onset {
+impl OnsetSums {
     /// The cubics of [`Frame::ramps`], for a last sample so far behind the `middle` one.
     ///
     /// Behind the `order` samples of its onset a whitened ramp is `level·d + shift`, `d` samples

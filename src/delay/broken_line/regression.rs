@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Between two neighbouring `x` the squared error is the same quotient of two quadratics as
-//! between two samples, so that every place is searched exactly. Standard errors are those
+//! between two samples, so that every position is searched exactly. Standard errors are those
 //! of the regression on `1, x, max(x − ψ, 0)` and `−c·[x > ψ]`, whose last coefficient is how
 //! far ψ would still move (the delta method).
 //!
@@ -16,7 +16,7 @@
 use nalgebra::{Matrix4, Vector4};
 
 use super::piece::Piece;
-use super::response::LagPart;
+use crate::delay::lag::LagPart;
 
 /// Fewest points, for a variance beside four parameters.
 const FEWEST: usize = 6;
@@ -25,7 +25,7 @@ const FEWEST: usize = 6;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BrokenRegression {
     /// ψ: where it breaks.
-    pub place: LagPart,
+    pub position: LagPart,
     /// Slope before the break.
     pub slope_before: LagPart,
     /// Slope behind it.
@@ -48,7 +48,7 @@ pub struct BrokenRegression {
 /// let y = |x: f64| 1.0 - 0.5 * x - 2.0 * (x - 0.3_f64).max(0.0);
 /// let points: Vec<_> = [-1.0, -0.4, 0.1, 0.2, 0.5, 0.9, 1.4].map(|x| (x, y(x))).into();
 /// let found = broken_regression(&points).unwrap();
-/// assert!((found.place.value - 0.3).abs() < 1e-9);
+/// assert!((found.position.value - 0.3).abs() < 1e-9);
 /// assert!((found.slope_after.value + 2.5).abs() < 1e-9);
 /// ```
 pub fn broken_regression(points: &[(f64, f64)]) -> Option<BrokenRegression> {
@@ -57,7 +57,7 @@ pub fn broken_regression(points: &[(f64, f64)]) -> Option<BrokenRegression> {
         return None;
     }
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    regression(&points, best_place(&points)?)
+    regression(&points, best_position(&points)?)
 }
 
 /// Sums over some points, `x` and `y` about their means.
@@ -80,8 +80,8 @@ impl Sums {
     }
 }
 
-/// The place of the least squared error among sorted points.
-fn best_place(points: &[(f64, f64)]) -> Option<f64> {
+/// The position of the least squared error among sorted points.
+fn best_position(points: &[(f64, f64)]) -> Option<f64> {
     let n = points.len() as f64;
     let mean_x = points.iter().map(|(x, _)| x).sum::<f64>() / n;
     let mean_y = points.iter().map(|(_, y)| y).sum::<f64>() / n;
@@ -104,7 +104,7 @@ fn best_place(points: &[(f64, f64)]) -> Option<f64> {
             best = Some((gain, mean_x + x + s * width));
         }
     }
-    best.map(|(_, place)| place)
+    best.map(|(_, position)| position)
 }
 
 /// Level and ramp over the points `behind` `x`, the ramp in units of `width`, without what a
@@ -130,11 +130,11 @@ fn piece(whole: &Sums, behind: &Sums, x: f64, width: f64) -> Piece {
     }
 }
 
-/// The regression at a place, and what is known of it.
-fn regression(points: &[(f64, f64)], place: f64) -> Option<BrokenRegression> {
+/// The regression at a position, and what is known of it.
+fn regression(points: &[(f64, f64)], position: f64) -> Option<BrokenRegression> {
     let columns = |x: f64, change: f64| {
-        let step = if x > place { -change } else { 0.0 };
-        Vector4::new(1.0, x - place, (x - place).max(0.0), step)
+        let step = if x > position { -change } else { 0.0 };
+        Vector4::new(1.0, x - position, (x - position).max(0.0), step)
     };
     // The change only scales the last column: one regression tells it, another uses it.
     let (found, ..) = solved(points, |x| {
@@ -154,10 +154,10 @@ fn regression(points: &[(f64, f64)], place: f64) -> Option<BrokenRegression> {
         LagPart { value, std_error: square.max(0.0).sqrt() }
     };
     Some(BrokenRegression {
-        place: part(place, Vector4::w()),
+        position: part(position, Vector4::w()),
         slope_before: part(slope, Vector4::y()),
         slope_after: part(slope + change, Vector4::y() + Vector4::z()),
-        intercept: value - slope * place,
+        intercept: value - slope * position,
         sse,
         freedom,
     })
@@ -195,7 +195,7 @@ mod tests {
         let points: Vec<_> = (0..40).map(|k| (f64::from(k), y(k))).collect();
         let expected = crate::delay::broken_line(&values, 0.95).unwrap();
         let found = broken_regression(&points).unwrap();
-        assert!((found.place.value - expected.place).abs() < 1e-9, "{found:?} {expected:?}");
+        assert!((found.position.value - expected.position).abs() < 1e-9, "{found:?} {expected:?}");
         assert!((found.sse - expected.sse).abs() < 1e-9);
         assert!((found.slope_after.value - expected.after.slope).abs() < 1e-9);
         assert!((found.intercept - expected.before.intercept).abs() < 1e-9);

@@ -6,9 +6,9 @@
 //! line is fitted again to what is near. Where the speed changes by a tenth within that, the
 //! break is found up to 0.8 samples early.
 
-use super::broken_line::{BrokenLine, broken_line};
-use super::chain::ceil;
+use super::window::{BrokenLine, broken_line};
 use crate::numerics::Line;
+use crate::units::ceil_to_index;
 
 /// Samples to each side of a break that are looked at.
 const NEAR: usize = 40;
@@ -16,7 +16,7 @@ const NEAR: usize = 40;
 /// Times that what is near is looked at about the break that was found before.
 const ROUNDS: usize = 3;
 
-/// Where a stroke starts and where it ends; places are indices of its samples.
+/// Where a stroke starts and where it ends; positions are indices of its samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stroke {
     /// From rest to motion.
@@ -35,8 +35,8 @@ pub struct Stroke {
 ///
 /// let values: Vec<f64> = (0..200).map(|k| (f64::from(k) - 20.5).clamp(0.0, 90.2)).collect();
 /// let found = stroke(&values, 0.95).unwrap();
-/// assert!((found.onset.place - 20.5).abs() < 1e-9);
-/// assert!((found.stop.place - 110.7).abs() < 1e-9);
+/// assert!((found.onset.position - 20.5).abs() < 1e-9);
+/// assert!((found.stop.position - 110.7).abs() < 1e-9);
 /// ```
 pub fn stroke(values: &[f64], confidence: f64) -> Option<Stroke> {
     let (first, last) = (values.first()?, values.last()?);
@@ -45,7 +45,7 @@ pub fn stroke(values: &[f64], confidence: f64) -> Option<Stroke> {
     let near = |low: usize, high: usize| {
         let mut found = placed(values, low, high, confidence)?;
         for _ in 0..ROUNDS {
-            let at = ceil(found.place);
+            let at = ceil_to_index(found.position);
             let from = low.max(at.saturating_sub(NEAR));
             found = placed(values, from, high.min(at + NEAR), confidence)?;
         }
@@ -59,7 +59,8 @@ fn placed(values: &[f64], low: usize, high: usize, confidence: f64) -> Option<Br
     let mut found = broken_line(values.get(low..high)?, confidence)?;
     let by = low as f64;
     let shifted = |line: Line| Line { intercept: line.intercept - line.slope * by, ..line };
-    (found.place, found.low, found.high) = (found.place + by, found.low + by, found.high + by);
+    (found.position, found.low, found.high) =
+        (found.position + by, found.low + by, found.high + by);
     (found.before, found.after) = (shifted(found.before), shifted(found.after));
     Some(found)
 }
@@ -75,7 +76,7 @@ mod tests {
         let noise = |k: i32| f64::from(k * 7919 % 13 - 6) * 0.02;
         let values: Vec<f64> = (0..300).map(|k| 50.0 - way(f64::from(k)) + noise(k)).collect();
         let found = stroke(&values, 0.95).unwrap();
-        let early = [30.3 - found.onset.place, 220.6 - found.stop.place];
+        let early = [30.3 - found.onset.position, 220.6 - found.stop.position];
         (found, early)
     }
 
@@ -83,7 +84,8 @@ mod tests {
     fn a_stroke_that_slows_down_still_stops_where_it_stops() {
         let (found, early) = found(1600.0);
         assert!(early.iter().all(|early| early.abs() < 0.2), "{early:?}");
-        let met = (found.stop.before.at(found.stop.place), found.stop.after.at(found.stop.place));
+        let met =
+            (found.stop.before.at(found.stop.position), found.stop.after.at(found.stop.position));
         assert!((met.0 - met.1).abs() < 1e-9, "{found:?}");
         let (_, early) = self::found(400.0);
         assert!(early.iter().all(|early| (0.0..0.8).contains(early)), "{early:?}");

@@ -11,9 +11,9 @@
 //! first samples behind the break change.
 //!
 //! The interval holds every τ whose squared error is within `t²·s²` of the least one
-//! (profile likelihood, with the segment's own `s²`). The chance of so good a break in
+//! (profile likelihood, with the segment's own `s²`). The p_value of so good a break in
 //! noise alone is that of a random direction coming so near to a curve on a sphere, whose
-//! length is `√3/2 · ln(s/(1−s))` between the ends of the search (`s` the break's place as
+//! length is `√3/2 · ln(s/(1−s))` between the ends of the search (`s` the break's position as
 //! a part of the segment).
 //!
 //! # References
@@ -26,34 +26,33 @@ use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
 use super::frame::{Bends, Frame};
+use super::gains::BreakGains;
 use super::piece::Piece;
-use super::places::Places;
-use crate::numerics::Line;
-use crate::numerics::NoiseModel;
-use crate::numerics::{fisher_tail, moments, student_quantile, take_off_line};
+use crate::numerics::{Line, NoiseModel, fisher_tail, moments, student_quantile, take_off_line};
+use crate::units::floor_to_index;
 
 /// Fewest samples beside those that the noise remembers.
-pub(super) const FEWEST: usize = 8;
+pub(crate) const FEWEST: usize = 8;
 
 /// Parameters of a broken line.
-pub(super) const PARAMETERS: usize = 4;
+pub(crate) const PARAMETERS: usize = 4;
 
-/// The interval whose sides tell the middle of what is likely, and the end of its upper half.
+/// The interval whose sides tell the median of what is likely, and the end of its upper half.
 const USUAL: f64 = 0.95;
 const UPPER: f64 = 0.975;
 
-/// The best broken line through a window; places are indices of the window.
+/// The best broken line through a window; positions are indices of the window.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BrokenLine {
     /// Where it breaks.
-    pub place: f64,
-    /// The first place that is as good as the data can tell.
+    pub position: f64,
+    /// The first position that is as good as the data can tell.
     pub low: f64,
     /// The last of them.
     pub high: f64,
-    /// The place that the true one is as likely before as behind.
-    pub middle: f64,
-    /// The chance of so good a break in noise alone.
+    /// The position that the true one is as likely before as behind.
+    pub median: f64,
+    /// The p_value of so good a break in noise alone.
     pub p_value: f64,
     /// Squared error, of whitened residuals where the noise is not white.
     pub sse: f64,
@@ -72,40 +71,40 @@ pub struct BrokenLine {
 ///
 /// let values: Vec<f64> = (0..80).map(|k| 0.2 * (f64::from(k) - 33.3).max(0.0)).collect();
 /// let found = broken_line(&values, 0.95).unwrap();
-/// assert!((found.place - 33.3).abs() < 1e-9);
+/// assert!((found.position - 33.3).abs() < 1e-9);
 /// assert!((found.after.slope - 0.2).abs() < 1e-9);
 /// ```
 pub fn broken_line(values: &[f64], confidence: f64) -> Option<BrokenLine> {
     let noise = NoiseModel::white();
     let window = Window::of(values, &noise)?;
-    Some(window.fit(window.places(), confidence, 0.0)?.0)
+    Some(window.fit(window.positions(), confidence, 0.0)?.0)
 }
 
 impl BrokenLine {
-    /// About the standard error of the place in the middle of so many samples: that of where
+    /// About the standard error of the position in the median of so many samples: that of where
     /// two lines meet that are fitted apart.
-    pub(super) fn place_error(&self, samples: usize) -> f64 {
+    pub(crate) fn position_error(&self, samples: usize) -> f64 {
         4.0 * self.sse.sqrt() / samples as f64 / (self.after.slope - self.before.slope).abs()
     }
 
     /// What it leaves of the window's output.
-    pub(super) fn residuals(&self, values: &[f64]) -> Vec<f64> {
-        let fitted = |k: f64| if k < self.place { self.before.at(k) } else { self.after.at(k) };
+    pub(crate) fn residuals(&self, values: &[f64]) -> Vec<f64> {
+        let fitted = |k: f64| if k < self.position { self.before.at(k) } else { self.after.at(k) };
         values.iter().enumerate().map(|(k, y)| y - fitted(k as f64)).collect()
     }
 }
 
 /// The error of broken lines with the break at each sample of a range, and the lines.
 #[derive(Clone, Debug)]
-pub(super) struct Evidence {
-    pub(super) first: usize,
-    pub(super) sse: Vec<f64>,
-    pub(super) bends: Bends,
+pub(crate) struct Evidence {
+    pub(crate) first: usize,
+    pub(crate) sse: Vec<f64>,
+    pub(crate) bends: Bends,
 }
 
 /// A window's output, whitened, and what one line leaves of it.
 #[derive(Clone, Debug)]
-pub(super) struct Window<'a> {
+pub(crate) struct Window<'a> {
     noise: &'a NoiseModel,
     frame: Frame,
     /// What one line leaves, whitened once more backwards: sums of it behind a sample are what
@@ -118,7 +117,7 @@ pub(super) struct Window<'a> {
 
 impl<'a> Window<'a> {
     /// `None` with too few samples for two lines.
-    pub(super) fn of(values: &[f64], noise: &'a NoiseModel) -> Option<Self> {
+    pub(crate) fn of(values: &[f64], noise: &'a NoiseModel) -> Option<Self> {
         let order = noise.order();
         let rows = values.len().checked_sub(order).filter(|rows| *rows >= FEWEST)?;
         let offset = *values.first()?;
@@ -136,43 +135,43 @@ impl<'a> Window<'a> {
         Some(Self { noise, frame: Frame::of(noise, rows, line), pulled: left, power, rows })
     }
 
-    /// Places at which a break leaves enough samples on both sides.
-    pub(super) fn places(&self) -> RangeInclusive<usize> {
+    /// BreakGains at which a break leaves enough samples on both sides.
+    pub(crate) fn positions(&self) -> RangeInclusive<usize> {
         let order = self.noise.order();
         order.max(1)..=self.pulled.len().saturating_sub(3 + order)
     }
 
-    /// The best broken line with its break in `places`.
-    pub(super) fn best(&self, places: RangeInclusive<usize>) -> Option<BrokenLine> {
-        if places.is_empty() {
+    /// The best broken line with its break in `positions`.
+    pub(crate) fn best(&self, positions: RangeInclusive<usize>) -> Option<BrokenLine> {
+        if positions.is_empty() {
             return None;
         }
-        Some(self.search(&Places::of(&self.frame, &self.pulled, &places)))
+        Some(self.search(&BreakGains::of(&self.frame, &self.pulled, &positions)))
     }
 
-    /// The best broken line with its break in `places`, with an interval that holds the
-    /// true break as often as `confidence` says; and the error all over the `places`, with lines
+    /// The best broken line with its break in `positions`, with an interval that holds the
+    /// true break as often as `confidence` says; and the error all over the `positions`, with lines
     /// over numbers that are `number` at the window's first sample.
-    pub(super) fn fit(
+    pub(crate) fn fit(
         &self,
-        places: RangeInclusive<usize>,
+        positions: RangeInclusive<usize>,
         confidence: f64,
         number: f64,
     ) -> Option<(BrokenLine, Evidence)> {
-        if places.is_empty() {
+        if positions.is_empty() {
             return None;
         }
-        let at = Places::of(&self.frame, &self.pulled, &places);
+        let at = BreakGains::of(&self.frame, &self.pulled, &positions);
         let mut line = self.search(&at);
         let freedom = (self.rows - PARAMETERS as f64).max(1.0);
         let ends = |confidence: f64| {
             let t = student_quantile(f64::midpoint(1.0, confidence), freedom);
             let limit = self.power - line.sse * (1.0 + t * t / freedom);
-            self.interval(&at, limit, line.place)
+            self.interval(&at, limit, line.position)
         };
         let usual = ends(USUAL);
         let asked = if (confidence - USUAL).abs() < 1e-12 { usual } else { ends(confidence) };
-        line.middle = middle(line.place, usual, student_quantile(UPPER, freedom));
+        line.median = median(line.position, usual, student_quantile(UPPER, freedom));
         (line.low, line.high) = asked;
         let first = at.first;
         let (sse, changes) = at.into_errors(self.power);
@@ -181,7 +180,7 @@ impl<'a> Window<'a> {
     }
 
     /// The best break of all, which is its own interval.
-    fn search(&self, at: &Places) -> BrokenLine {
+    fn search(&self, at: &BreakGains) -> BrokenLine {
         let mut best = (0.0, 0, 0.0, Piece::default());
         for index in at.promising(&self.frame) {
             let piece = at.piece(index, &self.frame);
@@ -191,19 +190,19 @@ impl<'a> Window<'a> {
             }
         }
         let (gain, j, s, piece) = best;
-        let place = j as f64 + s;
+        let position = j as f64 + s;
         let last = at.first + at.gain.len();
         let ends = (at.first as f64 + 0.5, last as f64);
         let samples = self.pulled.len() as f64;
-        let p_value = chance(gain / self.power, self.rows - 2.0, samples, ends);
+        let p_value = p_value(gain / self.power, self.rows - 2.0, samples, ends);
         let (before, after) = self.frame.lines(&piece, j as f64, s, 0.0);
         let sse = (self.power - gain).max(0.0);
-        let (low, middle, high) = (place, place, place);
-        BrokenLine { place, low, high, middle, p_value, sse, before, after }
+        let (low, median, high) = (position, position, position);
+        BrokenLine { position, low, high, median, p_value, sse, before, after }
     }
 
-    /// The outermost places whose gain is `limit`.
-    fn interval(&self, at: &Places, limit: f64, place: f64) -> (f64, f64) {
+    /// The outermost positions whose gain is `limit`.
+    fn interval(&self, at: &BreakGains, limit: f64, position: f64) -> (f64, f64) {
         let good = |gain: &f64| *gain >= limit;
         let (first, count) = (at.first, at.gain.len());
         let cross = |j: usize| {
@@ -211,7 +210,7 @@ impl<'a> Window<'a> {
             let (low, high) = at.piece(index, &self.frame).crossings(limit)?;
             Some((j as f64 + low, j as f64 + high))
         };
-        let piece_of_best = if place >= 0.0 { floor(place) } else { first };
+        let piece_of_best = if position >= 0.0 { floor_to_index(position) } else { first };
         let lowest = at.gain.iter().position(good).map_or(piece_of_best + 1, |i| first + i);
         let low = match lowest.min(piece_of_best + 1) {
             j if j > first => cross(j - 1).map_or(j as f64 - 1.0, |(first, _)| first),
@@ -225,80 +224,74 @@ impl<'a> Window<'a> {
         } else {
             cross(highest).map_or(highest as f64 + 1.0, |(_, last)| last)
         };
-        (low.min(place), high.max(place))
+        (low.min(position), high.max(position))
     }
 }
 
-/// The place that the true one is as likely before as behind, given the most likely one and its
+/// The position that the true one is as likely before as behind, given the most likely one and its
 /// interval from `low` to `high`, `t` standard errors to each side.
 ///
 /// Where samples are few beside the noise the squared error grows faster to one side than to
-/// the other. Of two half normals that meet at the most likely place, each as wide as its side
+/// the other. Of two half normals that meet at the most likely position, each as wide as its side
 /// of the interval, the median is on the wider one.
-pub(super) fn middle(place: f64, (low, high): (f64, f64), t: f64) -> f64 {
+pub(crate) fn median(position: f64, (low, high): (f64, f64), t: f64) -> f64 {
     /// Times the other side: what is wider reaches into another valley.
     const WIDEST: f64 = 2.0;
-    let (before, after) = (place - low, high - place);
+    let (before, after) = (position - low, high - position);
     let (before, after) = (before.min(WIDEST * after), after.min(WIDEST * before));
     let wide = before.max(after);
     if !(wide > 0.0 && wide.is_finite()) {
-        return place;
+        return position;
     }
     let odd = (after - before) / wide;
     // The quantile of a normal variable at ½ + odd/4, to a thousandth.
-    place + wide / t * odd * (0.626_7 + 0.047_8 * odd * odd)
+    position + wide / t * odd * (0.626_7 + 0.047_8 * odd * odd)
 }
 
-/// The chance that noise alone gains the `share` of its power with a break between `low`
+/// The p_value that noise alone gains the `share` of its power with a break between `low`
 /// and `high` of `samples`, where there are that many `dimensions` to gain in.
-pub(super) fn chance(share: f64, dimensions: f64, samples: f64, (low, high): (f64, f64)) -> f64 {
+pub(crate) fn p_value(share: f64, dimensions: f64, samples: f64, (low, high): (f64, f64)) -> f64 {
     if !share.is_finite() || dimensions < 3.0 {
         return 1.0;
     }
     let share = share.clamp(0.0, 1.0);
     // The curve's ends are a sample from those of the window at least.
-    let odds = |place: f64| (place.max(1.0) / (samples - place).max(1.0)).ln();
+    let odds = |position: f64| (position.max(1.0) / (samples - position).max(1.0)).ln();
     let length = 0.75_f64.sqrt() * (odds(high) - odds(low)).max(0.0);
     let tube = length / PI * (1.0 - share).powf((dimensions - 2.0) / 2.0);
     let freedom = dimensions - 1.0;
     let statistic = freedom * share / (1.0 - share).max(f64::MIN_POSITIVE);
-    let ends = fisher_tail(statistic, 1, floor(freedom)).unwrap_or(1.0);
+    let ends = fisher_tail(statistic, 1, floor_to_index(freedom)).unwrap_or(1.0);
     (tube + ends).min(1.0)
-}
-
-/// Whole samples in `value`, which is not negative.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is not negative")]
-pub(super) fn floor(value: f64) -> usize {
-    value.max(0.0) as usize
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn noisy(samples: i32, place: f64, change: f64, noise: f64) -> Vec<f64> {
+    fn noisy(samples: i32, position: f64, change: f64, noise: f64) -> Vec<f64> {
         let mut state = 7_u32;
         let mut white = || {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             f64::from(state >> 8) / f64::from(1_u32 << 24) - 0.5
         };
-        let y = |k: f64| 3.0 - 0.2 * k + change * (k - place).max(0.0);
+        let y = |k: f64| 3.0 - 0.2 * k + change * (k - position).max(0.0);
         (0..samples).map(|k| y(f64::from(k)) + noise * white()).collect()
     }
 
     fn fit(values: &[f64], noise: &NoiseModel) -> (BrokenLine, Evidence) {
         let window = Window::of(values, noise).unwrap();
-        window.fit(window.places(), 0.95, 0.0).unwrap()
+        window.fit(window.positions(), 0.95, 0.0).unwrap()
     }
 
     #[test]
     fn a_break_between_samples_is_found_where_it_is() {
-        for place in [20.25, 33.5, 47.99] {
-            let (found, _) = fit(&noisy(80, place, 0.7, 0.0), &NoiseModel::white());
-            assert!((found.place - place).abs() < 1e-9, "{found:?}");
+        for position in [20.25, 33.5, 47.99] {
+            let (found, _) = fit(&noisy(80, position, 0.7, 0.0), &NoiseModel::white());
+            assert!((found.position - position).abs() < 1e-9, "{found:?}");
             assert!((found.before.slope + 0.2).abs() < 1e-9, "{found:?}");
             assert!((found.after.slope - 0.5).abs() < 1e-9, "{found:?}");
-            assert!((found.before.at(place) - found.after.at(place)).abs() < 1e-9);
+            assert!((found.before.at(position) - found.after.at(position)).abs() < 1e-9);
             assert!((found.before.at(0.0) - 3.0).abs() < 1e-9);
         }
     }
@@ -310,8 +303,8 @@ mod tests {
             let (found, evidence) = fit(&values, &noise);
             let window = Window::of(&values, &noise).unwrap();
             let mut least = f64::INFINITY;
-            let places = 100 * evidence.first..100 * (evidence.first + evidence.sse.len());
-            for step in places {
+            let positions = 100 * evidence.first..100 * (evidence.first + evidence.sse.len());
+            for step in positions {
                 least = least.min(brute_force(&values, step as f64 / 100.0, &noise));
             }
             assert!(found.sse <= least + 1e-9, "{} {least}", found.sse);
@@ -336,7 +329,7 @@ mod tests {
     }
 
     /// The squared error of the whitened regression on constant, slope and ramp.
-    fn brute_force(values: &[f64], place: f64, noise: &NoiseModel) -> f64 {
+    fn brute_force(values: &[f64], position: f64, noise: &NoiseModel) -> f64 {
         let samples = i32::try_from(values.len()).unwrap();
         let columns = |shape: &dyn Fn(f64) -> f64| {
             let mut column: Vec<f64> = (0..samples).map(|k| shape(f64::from(k))).collect();
@@ -346,7 +339,8 @@ mod tests {
         let mut y = values.to_vec();
         noise.whiten(&mut y);
         let y = nalgebra::DVector::from_vec(y.split_off(noise.order()));
-        let all = [columns(&|_| 1.0), columns(&|k| k - 30.0), columns(&|k| (k - place).max(0.0))];
+        let all =
+            [columns(&|_| 1.0), columns(&|k| k - 30.0), columns(&|k| (k - position).max(0.0))];
         let all = all.map(nalgebra::DVector::from_vec);
         let matrix = nalgebra::DMatrix::from_columns(&all);
         let solved = matrix.clone().svd(true, true).solve(&y, 1e-14).unwrap();
@@ -365,22 +359,22 @@ mod tests {
             let sse = brute_force(&values, end, &noise);
             assert!((sse / limit - 1.0).abs() < 1e-6, "{found:?}: {sse} {limit}");
         }
-        assert!(found.low < found.place && found.place < found.high);
+        assert!(found.low < found.position && found.position < found.high);
     }
 
     #[test]
-    fn the_middle_of_two_half_normals_halves_them() {
+    fn the_median_of_two_half_normals_halves_them() {
         let t = 1.96;
-        assert!((middle(5.0, (4.0, 6.0), t) - 5.0).abs() < 1e-12);
+        assert!((median(5.0, (4.0, 6.0), t) - 5.0).abs() < 1e-12);
         // Half of two unit normals' halves, one 1.6 times as wide: Φ(z) = ½ + 0.6/1.6/4.
         let (narrow, wide) = (t, 1.6 * t);
-        let found = middle(0.0, (-narrow, wide), t);
+        let found = median(0.0, (-narrow, wide), t);
         let right = crate::numerics::normal_below(found / 1.6) - 0.5;
         assert!((2.0 * right * 1.6 / 2.6 - (0.5 - 1.0 / 2.6)).abs() < 1e-3, "{found}");
-        assert!((middle(0.0, (-wide, narrow), t) + found).abs() < 1e-12);
+        assert!((median(0.0, (-wide, narrow), t) + found).abs() < 1e-12);
         // Another valley counts no more than a side twice as wide.
-        assert!((middle(0.0, (-1.0, 40.0), t) - middle(0.0, (-1.0, 2.0), t)).abs() < 1e-12);
-        assert!(middle(3.0, (f64::NEG_INFINITY, 4.0), t).is_finite());
+        assert!((median(0.0, (-1.0, 40.0), t) - median(0.0, (-1.0, 2.0), t)).abs() < 1e-12);
+        assert!(median(3.0, (f64::NEG_INFINITY, 4.0), t).is_finite());
     }
 
     #[test]
