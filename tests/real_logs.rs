@@ -166,7 +166,7 @@ fn the_break_of_a_stagnant_layer_is_that_of_the_literature() {
     // R's segmented 1.6-2 on the same points.
     let expected = [
         (found.position.value, 0.041_106, 5e-7),
-        (found.place.std_error, 0.022_835, 5e-7),
+        (found.position.std_error, 0.022_835, 5e-7),
         (found.slope_before.value, -0.422_077, 5e-5),
         (found.slope_before.std_error, 0.011_487, 5e-7),
         (found.slope_after.value, -1.020_570, 5e-5),
