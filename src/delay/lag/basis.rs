@@ -112,12 +112,12 @@ impl Sums {
 }
 
 impl Products {
-    /// What `motion` has in inner_product with each of the motions.
+    /// The inner products of `motion` with each of the motions.
     pub(crate) fn along(&self, motion: &Motion) -> Motion {
         self.motions.map(|row| inner_product(&row, motion))
     }
 
-    /// What `motion` has in inner_product with the output.
+    /// The inner product of `motion` with the output.
     pub(crate) fn with_output(&self, motion: &Motion) -> f64 {
         inner_product(&self.with, motion)
     }
