@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use crate::delay::sweep::{Grid, JointSweep, RunTold};
+use crate::delay::sweep::{Grid, JointSweep, RunDelays};
 use crate::delay::{
     Automatic, Chosen, Decision, EstimateError, Estimator, Settings, TrialEstimate, choose,
 };
@@ -123,10 +123,10 @@ pub fn sweep_joints(
         done();
         let estimate = estimate?;
         let trials = estimate.trials.iter().map(|trial| trial.as_ref().ok());
-        Ok(RunTold::of(&joint.trials, trials, settings))
+        Ok(RunDelays::of(&joint.trials, trials, settings))
     };
     let one_joint = |joint: &Joint| {
-        let runs: Vec<Result<RunTold, EstimateError>> =
+        let runs: Vec<Result<RunDelays, EstimateError>> =
             grid.runs().par_iter().map(|settings| one_run(joint, settings)).collect();
         let (mut told, mut failed) = (Vec::with_capacity(runs.len()), Vec::new());
         for (index, run) in runs.into_iter().enumerate() {

@@ -79,7 +79,7 @@ impl Swept {
 
     /// The delay that each run tells of a step.
     fn delays(step: &SweptStep) -> Vec<Option<f64>> {
-        step.told.iter().map(|told| told.map(|told| told.delay)).collect()
+        step.delays.iter().map(|told| told.map(|told| told.delay)).collect()
     }
 }
 
@@ -137,7 +137,7 @@ fn settings_and_what_is_agreed_on_are_those_of_the_sweep() {
     assert_eq!(agreed.iter().map(|row| row.1).collect::<Vec<_>>(), expected);
     let hangs = back.texts("/boom/sweep/step", "delay_hangs_on");
     let on_method = sweep.steps.iter().filter(|step| {
-        step.delay_hangs_on.as_ref().is_some_and(|hanging| hanging.factor == Factor::Method)
+        step.delay_depends_on.as_ref().is_some_and(|hanging| hanging.factor == Factor::Method)
     });
     assert_eq!(hangs.iter().filter(|(_, on)| on == "method").count(), on_method.count());
 }
@@ -156,7 +156,7 @@ fn the_picture_has_a_row_per_combination_and_a_column_per_step() {
         assert_eq!(pixels.len(), combinations.len() * steps.len());
         for (row, one) in pixels.chunks(steps.len()).zip(combinations) {
             for (&[red, _, blue], step) in row.iter().zip(steps) {
-                let told = step.told[one.run];
+                let told = step.delays[one.run];
                 let agreed = step.agreement.zip(told);
                 match agreed {
                     None => assert_eq!((red, blue), (0, 0), "not accepted"),
@@ -185,7 +185,7 @@ fn the_cursor_goes_through_settings_and_through_steps() {
     let delays = back.rows("/boom/sheet/setting/delays", "Points2D:positions", |c| places(c).len());
     for (times, count) in &delays {
         let run = usize::try_from(times["setting"]).unwrap() - 1;
-        assert_eq!(*count, steps.iter().filter(|step| step.told[run].is_some()).count());
+        assert_eq!(*count, steps.iter().filter(|step| step.delays[run].is_some()).count());
     }
     assert_eq!(delays.len(), swept.grid.runs().len());
     let pages = back.texts("/boom/here", "TextDocument:text");
@@ -194,14 +194,14 @@ fn the_cursor_goes_through_settings_and_through_steps() {
     assert!(of_settings[0].1.starts_with("## two-line, 5 Hz, α 10, β 1\n"), "{of_settings:?}");
     assert_eq!(of_settings.len(), swept.grid.runs().len());
     assert_eq!(of_steps.len(), steps.len());
-    let hanging: Vec<&SweptStep> = steps.iter().filter(|s| s.delay_hangs_on.is_some()).collect();
+    let hanging: Vec<&SweptStep> = steps.iter().filter(|s| s.delay_depends_on.is_some()).collect();
     for step in &hanging {
         let (_, page) = &of_steps[step.number - 1];
         assert!(page.starts_with(&format!("## Step {} of trial 1", step.number)), "{page}");
         assert!(page.contains("median delay | agree with most"), "{page}");
     }
     let list = back.texts("/boom/hanging/log", "TextLog:text");
-    assert_eq!(list.len(), swept.joints[1].sweep.hanging().len());
+    assert_eq!(list.len(), swept.joints[1].sweep.sensitive().len());
     assert!(list.iter().all(|(times, _)| times["setting"] == 1), "all of them are always there");
 }
 
@@ -216,7 +216,7 @@ fn the_step_that_hangs_most_is_drawn_first() {
             texts.filter(|text| text.starts_with("step ")).collect::<Vec<_>>()
         });
         assert_eq!(titles.len(), swept.steps(joint).len());
-        let Some(worst) = swept.joints[joint].sweep.hanging().first().copied() else { continue };
+        let Some(worst) = swept.joints[joint].sweep.sensitive().first().copied() else { continue };
         let (times, title) = titles.last().unwrap();
         assert_eq!((times["setting"], times["segment"]), (1, whole(worst.number)));
         assert!(title[0].starts_with(&format!("step {} at", worst.number)), "{title:?}");

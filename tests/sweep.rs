@@ -37,7 +37,7 @@ fn swept(made: &Synthetic, methods: &[Method], passbands: &[Option<f64>]) -> Joi
 /// How many delays depend on each setting, in the order of [`Factor::ALL`].
 fn counts(sweep: &JointSweep) -> [usize; 4] {
     let on = |factor| {
-        let steps = sweep.steps.iter().filter_map(|step| step.delay_hangs_on.as_ref());
+        let steps = sweep.steps.iter().filter_map(|step| step.delay_depends_on.as_ref());
         steps.filter(|hanging| hanging.factor == factor).count()
     };
     Factor::ALL.map(on)
@@ -47,11 +47,11 @@ fn counts(sweep: &JointSweep) -> [usize; 4] {
 fn the_delays_of_an_ideal_joint_hang_on_nothing() {
     let sweep =
         swept(&made(vec![joint("arm")]), &Method::all().collect::<Vec<_>>(), &[Some(10.0), None]);
-    let settled = sweep.judged().filter(|step| step.is_settled()).count();
+    let settled = sweep.judged().filter(|step| step.is_unanimous()).count();
     assert!(10 * settled >= 9 * sweep.judged().count(), "{settled} of {}", sweep.judged().count());
     // All settings say what is true.
     let truth = made(vec![joint("arm")]).truth;
-    for (step, truth) in sweep.steps.iter().zip(&truth).filter(|(step, _)| step.is_settled()) {
+    for (step, truth) in sweep.steps.iter().zip(&truth).filter(|(step, _)| step.is_unanimous()) {
         let Some(agreement) = step.agreement else { continue };
         assert!((agreement.delay - truth.delay_samples).abs() < 1.5, "{agreement:?} {truth:?}");
     }

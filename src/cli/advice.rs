@@ -3,7 +3,7 @@
 
 use std::error::Error;
 
-use crate::delay::{EstimateError, Growing};
+use crate::delay::{EstimateError, Growing, Method, Scope};
 use crate::design::SuspectsError;
 use crate::experiment::ReadError;
 use crate::explain::AddError;
@@ -14,15 +14,13 @@ pub(crate) fn advice(error: &(dyn Error + 'static)) -> String {
     if let Some(error) = error.downcast_ref::<ReadError>() {
         return on_reading(error);
     }
+    if let Some(error) = error.downcast_ref::<Growing>() {
+        return on_growing(*error);
+    }
     let text = match error.downcast_ref::<EstimateError>() {
         Some(EstimateError::Filter(error)) => on_filter(error),
         Some(EstimateError::TooFewSamples { .. }) => "; choose a smaller `--beta`",
         _ => "",
-    };
-    let text = match error.downcast_ref::<Growing>() {
-        Some(Growing::Method { .. }) => "; expected `--method two-line`",
-        Some(Growing::Confidence) => "; expected `--confidence none`",
-        None => text,
     };
     let text = match error.downcast_ref::<AddError>() {
         Some(AddError::AlreadyThere { .. }) => "; `tauscope compare --fit` fits it again",
@@ -62,6 +60,17 @@ fn on_uneven_times(step: f64, period: f64) -> String {
     let lost_rows = periods > 1.5 && (periods - periods.round()).abs() < 0.01;
     let fill = if lost_rows { ", `--fill SECONDS` fills lost rows" } else { "" };
     format!("; `--resample {period}` puts the log on a uniform grid{fill}")
+}
+
+fn on_growing(error: Growing) -> String {
+    let expected = match error {
+        Growing::Method { .. } => {
+            let alone = Method::all().filter(|method| method.spec().scope == Scope::Segment);
+            format!("--method {}", alone.map(Method::id).collect::<Vec<_>>().join("|"))
+        }
+        Growing::Confidence => "--confidence none".to_owned(),
+    };
+    format!("; expected `{expected}`")
 }
 
 fn on_filter(error: &FilterError) -> &'static str {

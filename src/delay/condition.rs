@@ -21,7 +21,7 @@ pub enum Condition {
     ShortHold,
     /// (6) The squared error is not below the limit.
     Sse,
-    /// There are fewer than two rows of β samples, so no candidate.
+    /// There are fewer than two rows of β samples, so no candidate, nor a delay without one.
     TooShort,
     /// The slope changes no more than noise makes it.
     NothingHappened,
@@ -82,11 +82,11 @@ pub enum Outcome {
     Passed,
     /// Not met.
     Failed,
-    /// No limit is set, or there is no candidate to hold against it.
+    /// No limit is set, or there is no candidate to compare with it.
     NotChecked,
 }
 
-/// A condition, the number it looked at, and the limit it was held against.
+/// A condition, the number it looked at, and the limit that it was compared with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Check {
     /// Which one.
@@ -99,7 +99,7 @@ pub struct Check {
     pub outcome: Outcome,
 }
 
-/// What the conditions look at.
+/// What the conditions of Algorithm 1 look at; numbers in brackets are the paper's.
 pub(super) struct Facts<'a> {
     pub(super) step: usize,
     pub(super) steps: usize,
@@ -110,13 +110,14 @@ pub(super) struct Facts<'a> {
     pub(super) output: &'a [f64],
     /// Whole rows of β samples in the segment.
     pub(super) rows: usize,
+    /// The best candidate, where the method compares any.
     pub(super) best: Option<Candidate>,
-    /// The delay between samples, where the method tells it.
+    /// The delay between samples, where the method gives it.
     pub(super) fine: Option<FineDelay>,
 }
 
 impl Facts<'_> {
-    /// All conditions, in the order of [`Condition::ALL`].
+    /// All conditions, in the order of [`Condition::ALL`]; none of them depends on another.
     pub(super) fn check(&self, settings: &Settings) -> Vec<Check> {
         vec![
             self.first_or_last(settings),
@@ -130,6 +131,7 @@ impl Facts<'_> {
         ]
     }
 
+    /// (1) `i = 1` or the last.
     fn first_or_last(&self, settings: &Settings) -> Check {
         let at_an_end = self.step == 1 || self.step == self.steps;
         let outcome = match (settings.keep_first_last, at_an_end) {
@@ -140,7 +142,8 @@ impl Facts<'_> {
         check(Condition::FirstOrLast, Some(self.step as f64), Some(self.steps as f64), outcome)
     }
 
-    /// The value is the sample that is farthest out of, or nearest to, the limits.
+    /// (2) Any sample at a limit or beyond; the value is the sample that is farthest out of,
+    /// or nearest to, the limits.
     fn output_limit(&self, settings: &Settings) -> Check {
         let Some((low, high)) = settings.output_limits else {
             return check(Condition::OutputLimit, None, None, Outcome::NotChecked);
@@ -152,6 +155,7 @@ impl Facts<'_> {
         check(Condition::OutputLimit, extreme, limit, Outcome::from(inside))
     }
 
+    /// (3) `q_i < p_i`.
     fn before_input(&self) -> Check {
         let limit = self.input_sample as f64;
         let coarse = self.best.map(|best| best.breakpoint as f64);
@@ -161,6 +165,7 @@ impl Facts<'_> {
         check(Condition::BeforeInput, value, Some(limit), outcome)
     }
 
+    /// (4) `|slope after − slope before|` below the limit.
     fn slope_change(&self, settings: &Settings) -> Check {
         let limit = settings.min_slope_change;
         let value = self.best.map(|best| best.slope_change().abs());
@@ -168,12 +173,14 @@ impl Facts<'_> {
         check(Condition::SlopeChange, value, Some(limit), outcome)
     }
 
+    /// (5) `p_(i+1) − p_i < τ_min`.
     fn short_hold(&self, settings: &Settings) -> Check {
         let outcome = Outcome::from(self.hold >= settings.min_delay);
         let limit = Some(settings.min_delay as f64);
         check(Condition::ShortHold, Some(self.hold as f64), limit, outcome)
     }
 
+    /// (6) Not `SSE < limit`.
     fn sse(&self, settings: &Settings) -> Check {
         let value = self.best.map(|best| best.sse);
         let outcome = match (value, settings.max_sse) {
@@ -183,8 +190,9 @@ impl Facts<'_> {
         check(Condition::Sse, value, settings.max_sse, outcome)
     }
 
+    /// `M_i < 2`: no pair of lines.
     fn too_short(&self) -> Check {
-        let outcome = Outcome::from(self.best.is_some());
+        let outcome = Outcome::from(self.best.is_some() || self.fine.is_some());
         check(Condition::TooShort, Some(self.rows as f64), Some(2.0), outcome)
     }
 }
@@ -193,8 +201,8 @@ fn check(condition: Condition, value: Option<f64>, limit: Option<f64>, outcome: 
     Check { condition, value, limit, outcome }
 }
 
-/// (7) The change of slope against noise; the value is the chance that noise alone looks
-/// as much like a reaction, none where there are too few samples to tell.
+/// The change of slope against noise; the value is the p-value of a reaction, none where
+/// there are too few samples for one. The paper has no such condition.
 pub(super) fn nothing_happened(p_value: Option<f64>, confidence: f64) -> Check {
     let limit = 1.0 - confidence;
     let outcome = Outcome::from(p_value.is_some_and(|p_value| p_value <= limit));
@@ -205,5 +213,34 @@ impl From<bool> for Outcome {
     /// `true` when the condition is met.
     fn from(met: bool) -> Self {
         if met { Self::Passed } else { Self::Failed }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_delay_needs_no_candidate() {
+        let fine = FineDelay { delay: 12.0, low: 11.0, high: 13.0, confidence: 0.95 };
+        let facts = |fine| Facts {
+            step: 2,
+            steps: 3,
+            input_sample: 100,
+            hold: 50,
+            output: &[0.0; 60],
+            rows: 0,
+            best: None,
+            fine,
+        };
+        let failed = |fine| {
+            let checks = facts(fine).check(&Settings::default());
+            let failed = checks.into_iter().filter(|check| check.outcome == Outcome::Failed);
+            failed.map(|check| check.condition).collect::<Vec<_>>()
+        };
+        assert_eq!(failed(Some(fine)), []);
+        assert_eq!(failed(None), [Condition::TooShort]);
+        let early = FineDelay { delay: -2.0, low: -3.0, high: -1.0, ..fine };
+        assert_eq!(failed(Some(early)), [Condition::BeforeInput]);
     }
 }

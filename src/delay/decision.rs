@@ -18,13 +18,14 @@ pub struct Decision {
     pub input_step: InputStep,
     /// Samples to the next step, or to the end of the trial.
     pub hold: usize,
-    /// The samples that were looked at.
+    /// The samples that it was decided from.
     pub segment: Segment,
-    /// Every pair of lines.
+    /// Every pair of lines that was compared; none where the segment was too short, or the
+    /// method compares none.
     pub candidates: Candidates,
     /// Every condition, in the order of [`Condition::ALL`].
     pub checks: Vec<Check>,
-    /// The delay between samples, where the method tells it.
+    /// The delay between samples, where the method gives it.
     pub fine: Option<FineDelay>,
 }
 
@@ -93,7 +94,7 @@ impl Decision {
         self.delay().filter(|_| accepted)
     }
 
-    /// The delay in samples, accepted or not, as finely as the method tells it.
+    /// The delay in samples, accepted or not, as finely as the method gives it.
     pub fn delay(&self) -> Option<f64> {
         let fine = self.fine.map(|fine| fine.delay);
         fine.or_else(|| self.breakpoint().map(|best| best.delay as f64))

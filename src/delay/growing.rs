@@ -1,7 +1,7 @@
-//! What of a trial that still grows stays as it is.
+//! The part of a growing trial, and of its estimate, that is final.
 //!
-//! Algorithm 1 goes step by step, so that a decision stays as soon as its segment has come
-//! whole: up to `p_(i+1) + α`, and so much further that the low-pass has forgotten the end.
+//! Algorithm 1 goes step by step, so that a decision is final as soon as its segment is
+//! complete: up to `p_(i+1) + α`, and so much further that the low-pass has forgotten the end.
 
 use super::profile::DelayProfile;
 use super::settings::Settings;
@@ -10,25 +10,25 @@ use super::trial_estimate::{EstimateError, TrialEstimate};
 use crate::experiment::Trial;
 use crate::numerics::FilterError;
 
-/// Why decisions cannot be told while a record grows.
+/// Why decisions are not final while a record grows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Growing {
     /// The method looks at the whole record before it decides on any step.
-    #[error("`{method}` looks at the whole record before it decides")]
+    #[error("`{method}` looks at the whole record before it decides on any step")]
     Method {
         /// Its id.
         method: &'static str,
     },
-    /// The chance of noise alone is judged by the noise of the whole record.
-    #[error("the confidence is judged by the noise of the whole record")]
+    /// Whether a reaction is more than noise is judged by the noise of the whole record.
+    #[error("the confidence of a reaction is judged by the noise of the whole record")]
     Confidence,
 }
 
-/// Whether decisions with `settings` stay when a record grows.
+/// Whether decisions with `settings` are final before the record ends.
 ///
 /// # Errors
-/// [`Growing`] when they hang on the whole record.
+/// [`Growing`] when they depend on the whole record.
 pub fn check_growing(settings: &Settings) -> Result<(), Growing> {
     if settings.method.spec().scope != Scope::Segment {
         return Err(Growing::Method { method: settings.method.id() });
@@ -39,12 +39,12 @@ pub fn check_growing(settings: &Settings) -> Result<(), Growing> {
     Ok(())
 }
 
-/// What of `trial` and its `estimate` stays as it is when more samples come: the samples
-/// whose smoothed value does, and the decisions within them. `None` where nothing does yet.
+/// The part of `trial` and its `estimate` that more samples cannot change: the samples whose
+/// smoothed value is final, and the decisions within them. `None` where nothing is yet.
 ///
 /// # Errors
 /// [`EstimateError::Filter`] when the filter does not fit this trial.
-pub fn settled(
+pub fn final_part(
     trial: &Trial,
     estimate: &TrialEstimate,
     settings: &Settings,
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn decisions_that_have_settled_are_those_of_the_whole_record() {
+    fn final_decisions_are_those_of_the_whole_record() {
         let smoothed = Settings { beta: 2, ..Settings::default() };
         let plain = Settings { low_pass: None, ..smoothed.clone() };
         for settings in [smoothed, plain] {
@@ -99,7 +99,7 @@ mod tests {
             for samples in (100..1400).step_by(37) {
                 let part = whole.beginning(samples).unwrap();
                 let found = estimate(&part, &settings).unwrap();
-                let Some((kept, found)) = settled(&part, &found, &settings).unwrap() else {
+                let Some((kept, found)) = final_part(&part, &found, &settings).unwrap() else {
                     continue;
                 };
                 assert!(kept.len() <= samples && found.profile.iter().count() == kept.len());
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn what_hangs_on_the_whole_record_is_refused() {
+    fn what_depends_on_the_whole_record_is_refused() {
         assert_eq!(check_growing(&Settings::default()), Ok(()));
         let hinge = Settings::of(crate::delay::Method::HINGE);
         assert_eq!(check_growing(&hinge), Err(Growing::Method { method: "hinge" }));

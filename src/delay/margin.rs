@@ -1,28 +1,29 @@
 //! How near a verdict was: what would have accepted a step, and what came second.
 
-use std::fmt;
-
 use super::condition::{Check, Condition, Outcome};
 use super::decision::Decision;
 use super::settings::Settings;
 
-/// The smallest change of the settings with which one condition would have been met, all
-/// else being as it was.
-#[derive(Clone, Debug, PartialEq)]
+/// The smallest change of a setting with which one condition would have been met, all else
+/// being as it was.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Remedy {
-    /// An option of `tauscope estimate`, with its value.
-    Option(String),
-    /// No setting does it.
+    /// The first and the last step are judged like the others.
+    KeepFirstLast,
+    /// Wider limits of the output: the lower and the upper one.
+    OutputLimits(f64, f64),
+    /// A smaller change of slope is accepted, output units per sample.
+    MinSlopeChange(f64),
+    /// A shorter hold is accepted, samples.
+    MinDelay(usize),
+    /// A larger squared error is accepted, output units squared.
+    MaxSse(f64),
+    /// A smaller β, samples.
+    Beta(usize),
+    /// A reaction needs to be less sure; none for an untested one.
+    Confidence(Option<f64>),
+    /// No setting helps against this condition.
     None(Condition),
-}
-
-impl fmt::Display for Remedy {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Option(option) => f.write_str(option),
-            Self::None(condition) => write!(f, "no setting: {}", condition.meaning()),
-        }
-    }
 }
 
 /// The second-best breakpoint.
@@ -47,35 +48,34 @@ impl Decision {
 
     fn remedy(&self, check: &Check, settings: &Settings, output: &[f64]) -> Remedy {
         let value = check.value.unwrap_or(f64::NAN);
-        let option = match check.condition {
-            Condition::FirstOrLast => Some("--keep-first-last".to_owned()),
-            Condition::OutputLimit => self.wider_limits(settings, output),
-            Condition::BeforeInput => None,
-            Condition::SlopeChange => Some(format!("--min-slope-change {}", at_most(value))),
-            Condition::ShortHold => Some(format!("--min-delay {}", self.hold)),
-            Condition::Sse => Some(format!("--max-sse {}", above(value))),
-            Condition::TooShort => {
-                let beta = self.segment.len() / 2;
-                let helps = settings.method.spec().has_rows && beta > 0;
-                helps.then(|| format!("--beta {beta}"))
-            }
-            Condition::NothingHappened => check.value.map(|p_value| {
+        let none = Remedy::None(check.condition);
+        match check.condition {
+            Condition::FirstOrLast => Remedy::KeepFirstLast,
+            Condition::OutputLimit => self.wider_limits(settings, output).unwrap_or(none),
+            Condition::BeforeInput => none,
+            Condition::SlopeChange => Remedy::MinSlopeChange(at_most(value)),
+            Condition::ShortHold => Remedy::MinDelay(self.hold),
+            Condition::Sse => Remedy::MaxSse(above(value)),
+            // M = 2 rows are the fewest that have a candidate.
+            Condition::TooShort => match self.segment.len() / 2 {
+                beta if settings.method.spec().has_rows && beta > 0 => Remedy::Beta(beta),
+                _ => none,
+            },
+            Condition::NothingHappened => check.value.map_or(none, |p_value| {
                 let confidence = at_most(1.0 - p_value);
-                let some = confidence > 0.0;
-                if some { format!("--confidence {confidence}") } else { "--confidence none".into() }
+                Remedy::Confidence((confidence > 0.0).then_some(confidence))
             }),
-        };
-        option.map_or(Remedy::None(check.condition), Remedy::Option)
+        }
     }
 
-    fn wider_limits(&self, settings: &Settings, output: &[f64]) -> Option<String> {
+    fn wider_limits(&self, settings: &Settings, output: &[f64]) -> Option<Remedy> {
         let (low, high) = settings.output_limits?;
         let values = output.get(self.segment.indices())?;
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
         let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let low = if least > low { low } else { -above(-least) };
         let high = if most < high { high } else { above(most) };
-        Some(format!("--output-limits {low},{high}"))
+        Some(Remedy::OutputLimits(low, high))
     }
 
     /// The best breakpoint in another valley of the squared error; where there is only one
@@ -139,44 +139,40 @@ mod tests {
         Trial::new("1", 0.0, SamplePeriod::from_seconds(0.01).unwrap(), input, output).unwrap()
     }
 
-    type Changed = fn(&mut Settings, f64);
+    /// `settings` after a remedy whose number is `factor` times as large.
+    fn remedied(settings: &Settings, remedy: Remedy, factor: f64) -> Settings {
+        let mut changed = settings.clone();
+        match remedy {
+            Remedy::MinSlopeChange(value) => changed.min_slope_change = value * factor,
+            Remedy::MaxSse(value) => changed.max_sse = Some(value * factor),
+            Remedy::MinDelay(samples) => {
+                changed.min_delay = if factor > 1.0 { samples + 1 } else { samples };
+            }
+            Remedy::OutputLimits(low, high) => changed.output_limits = Some((low, high)),
+            other => panic!("{other:?}"),
+        }
+        changed
+    }
 
     #[test]
     fn what_would_have_accepted_a_step_does() {
         let trial = trial();
         let kept = Settings { keep_first_last: true, low_pass: None, ..Settings::default() };
-        let value = |remedy: &Remedy, option: &str| -> f64 {
-            remedy.to_string().strip_prefix(option).unwrap().trim().parse().unwrap()
-        };
-        let cases: [(Settings, &str, Changed); 3] = [
-            (
-                Settings { min_slope_change: 0.5, ..kept.clone() },
-                "--min-slope-change",
-                |settings, value| settings.min_slope_change = value,
-            ),
-            (Settings { max_sse: Some(1e-6), ..kept.clone() }, "--max-sse", |settings, value| {
-                settings.max_sse = Some(value);
-            }),
-            (Settings { min_delay: 150, ..kept.clone() }, "--min-delay", |settings, value| {
-                settings.min_delay = crate::units::floor_to_index(value);
-            }),
+        let cases = [
+            (Settings { min_slope_change: 0.5, ..kept.clone() }, 1.02),
+            (Settings { max_sse: Some(1e-6), ..kept.clone() }, 0.999),
+            (Settings { min_delay: 150, ..kept.clone() }, 1.02),
         ];
-        for (settings, option, change) in cases {
+        for (settings, too_little) in cases {
             let found = estimate(&trial, &settings).unwrap();
-            let first = &found.decisions[0];
-            let remedies = first.remedies(&settings, trial.output());
+            let remedies = found.decisions[0].remedies(&settings, trial.output());
             assert_eq!(remedies.len(), 1, "{remedies:?}");
-            let mut changed = settings.clone();
-            change(&mut changed, value(&remedies[0], option));
-            let again = estimate(&trial, &changed).unwrap();
-            assert_eq!(again.decisions[0].verdict(), Verdict::Accepted, "{option}");
-            let mut less = settings.clone();
-            change(
-                &mut less,
-                value(&remedies[0], option) * if option == "--max-sse" { 0.999 } else { 1.02 },
-            );
-            let still = estimate(&trial, &less).unwrap();
-            assert_ne!(still.decisions[0].verdict(), Verdict::Accepted, "{option}");
+            let verdict = |factor: f64| {
+                let changed = remedied(&settings, remedies[0], factor);
+                estimate(&trial, &changed).unwrap().decisions[0].verdict()
+            };
+            assert_eq!(verdict(1.0), Verdict::Accepted, "{remedies:?}");
+            assert_ne!(verdict(too_little), Verdict::Accepted, "{remedies:?}");
         }
     }
 
@@ -188,10 +184,7 @@ mod tests {
         settings.output_limits = Some((-0.01, 3.0));
         let found = estimate(&trial, &settings).unwrap();
         let remedies = found.decisions[0].remedies(&settings, trial.output());
-        let text = remedies[0].to_string();
-        let (low, high) = text.strip_prefix("--output-limits ").unwrap().split_once(',').unwrap();
-        settings.output_limits = Some((low.parse().unwrap(), high.parse().unwrap()));
-        let again = estimate(&trial, &settings).unwrap();
+        let again = estimate(&trial, &remedied(&settings, remedies[0], 1.0)).unwrap();
         assert_eq!(again.decisions[0].verdict(), Verdict::Accepted);
     }
 

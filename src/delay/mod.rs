@@ -18,7 +18,7 @@
 //! - [`Remedy`], [`RunnerUp`]: how near a verdict was
 //! - [`step_delays`]: the delays alone, by the best method
 //! - [`DelayProfile`]: the delay of every sample
-//! - [`settled`]: what of a trial that still grows stays as it is
+//! - [`final_part`]: the part of a growing trial that more samples cannot change
 //! - [`AgainstState`]: what the delay may depend on
 //! - [`choose`]: α, β and the passband from a joint's own record
 //! - [`sweep`]: how every delay moves with the settings
@@ -58,7 +58,7 @@ pub use broken_line::{
 pub use condition::{Check, Condition, Outcome};
 pub use decision::{Breakpoint, Decision, Verdict};
 pub use estimate::{Estimator, estimate, estimate_joint};
-pub use growing::{Growing, check_growing, settled};
+pub use growing::{Growing, check_growing, final_part};
 pub use interval::FineDelay;
 pub use lag::{Lag, LagPart};
 pub use margin::{Remedy, RunnerUp};

@@ -84,7 +84,7 @@ impl Settings {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingsError {
-    /// α or β is zero.
+    /// A number of samples is zero.
     #[error("{name} is 0, but must be at least 1 sample")]
     Zero {
         /// The setting's name.
@@ -122,7 +122,7 @@ impl Settings {
     /// # Errors
     /// [`SettingsError`], the first that is found.
     pub fn check(&self) -> Result<(), SettingsError> {
-        for (name, samples) in [("alpha", self.alpha), ("beta", self.beta)] {
+        for (name, samples) in [("α", self.alpha), ("β", self.beta)] {
             if samples == 0 {
                 return Err(SettingsError::Zero { name });
             }
@@ -132,19 +132,23 @@ impl Settings {
         {
             return Err(SettingsError::LimitsSwapped { low, high });
         }
-        let probabilities =
-            [("confidence", self.confidence.unwrap_or(0.5)), ("interval", self.interval)];
+        let probabilities = [
+            ("the confidence of a reaction", self.confidence),
+            ("the confidence of an interval", Some(self.interval)),
+        ];
         for (name, value) in probabilities {
+            let Some(value) = value else { continue };
             if !(value > 0.0 && value < 1.0) {
                 return Err(SettingsError::Probability { name, value });
             }
         }
         let thresholds = [
-            ("min-slope-change", self.min_slope_change),
-            ("max-sse", self.max_sse.unwrap_or_default()),
-            ("min-step", self.min_step),
+            ("the smallest change of slope", Some(self.min_slope_change)),
+            ("the largest squared error", self.max_sse),
+            ("the smallest step of the input", Some(self.min_step)),
         ];
-        match thresholds.into_iter().find(|(_, value)| value.is_nan() || *value < 0.0) {
+        let mut given = thresholds.into_iter().filter_map(|(name, value)| Some((name, value?)));
+        match given.find(|(_, value)| value.is_nan() || *value < 0.0) {
             Some((name, value)) => Err(SettingsError::Threshold { name, value }),
             None => Ok(()),
         }

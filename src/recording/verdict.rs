@@ -10,9 +10,9 @@ use super::markdown::plain;
 use super::palette::{self, color};
 use super::paths::{self, at};
 use crate::delay::{Check, Condition, Decision, FineDelay, Lag, LagPart, Outcome};
-use crate::delay::{Remedy, Settings, Verdict};
+use crate::delay::{Settings, Verdict};
 use crate::experiment::Joint;
-use crate::wording::number;
+use crate::wording::{number, remedy_text};
 
 /// Adds `/verdict` (text, log line and lane), `/segment` and `/trial` (lanes).
 pub(super) fn add(
@@ -281,11 +281,7 @@ impl Facts<'_, '_> {
             return Some(("second-best breakpoint".to_owned(), near));
         }
         let remedies = decision.remedies(self.settings, self.trial.output());
-        let remedies = remedies.iter().map(|remedy| match remedy {
-            Remedy::Option(option) => format!("`{option}`"),
-            Remedy::None(_) => remedy.to_string(),
-        });
-        let remedies: Vec<_> = remedies.collect();
+        let remedies: Vec<_> = remedies.into_iter().map(|it| remedy_text(it, "`")).collect();
         Some(("would be accepted with".to_owned(), remedies.join(", ")))
     }
 

@@ -7,6 +7,7 @@ use serde::{Serialize, Serializer};
 use super::{DataTable, EstimatedJoint, Kind};
 use crate::delay::{Check, Condition, Decision, Method, Settings};
 use crate::experiment::Trial;
+use crate::wording::remedy_text;
 
 /// One row of `--decisions`; sample numbers count from 1 within the trial.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -75,7 +76,7 @@ impl DecisionDetail {
     fn new(decision: &Decision, settings: &Settings, output: &[f64]) -> Self {
         let second = decision.runner_up();
         let remedies = decision.remedies(settings, output);
-        let remedies: Vec<_> = remedies.iter().map(ToString::to_string).collect();
+        let remedies: Vec<_> = remedies.into_iter().map(|remedy| remedy_text(remedy, "")).collect();
         let tested = |check: &&Check| check.condition == Condition::NothingHappened;
         Self {
             method: settings.method.id(),

@@ -8,6 +8,7 @@ mod parameter;
 mod probability;
 mod prose;
 mod region;
+mod remedy;
 
 pub use effects::{effect_ids, effects_text};
 pub use misfit::{correlation_sentences, lack_of_fit};
@@ -18,3 +19,4 @@ pub use prose::{counted, listed, wrapped};
 pub use region::{
     failure_sentences, feature_with_unit, misfit_units, region_text, worst_segment_text,
 };
+pub(crate) use remedy::remedy_text;

@@ -8,7 +8,7 @@ use crate::delay::{Decision, Settings};
 
 /// What a run tells of a step that it accepted; samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Told {
+pub struct ReportedDelay {
     /// The delay.
     pub delay: f64,
     /// The shortest delay that it may be.
@@ -17,7 +17,7 @@ pub struct Told {
     pub high: f64,
 }
 
-impl Told {
+impl ReportedDelay {
     /// What `decision` tells, if the step was accepted.
     pub fn of(decision: &Decision, settings: &Settings) -> Option<Self> {
         let delay = decision.accepted_delay()?;
@@ -49,11 +49,11 @@ pub struct Agreement {
 }
 
 impl Agreement {
-    /// The agreement among all that is `told`; `None` when nothing is. Of several that are
+    /// The agreement among all that is `reported`; `None` when nothing is. Of several that are
     /// as large the shortest delay counts.
-    pub(super) fn of(told: &[Told]) -> Option<Self> {
-        let mut starts: Vec<f64> = told.iter().map(|one| one.low).collect();
-        let mut ends: Vec<f64> = told.iter().map(|one| one.high).collect();
+    pub(super) fn of(reported: &[ReportedDelay]) -> Option<Self> {
+        let mut starts: Vec<f64> = reported.iter().map(|one| one.low).collect();
+        let mut ends: Vec<f64> = reported.iter().map(|one| one.high).collect();
         starts.sort_by(f64::total_cmp);
         ends.sort_by(f64::total_cmp);
         let (mut most, mut low, mut ended) = (0, f64::NAN, 0);
@@ -66,26 +66,27 @@ impl Agreement {
         let high = ends.into_iter().find(|end| *end >= low)?;
         let mut agreed = Self { delay: low, low, high, combinations: most };
         let delays: Vec<f64> =
-            told.iter().filter(|one| agreed.holds(one)).map(|one| one.delay).collect();
+            reported.iter().filter(|one| agreed.holds(one)).map(|one| one.delay).collect();
         agreed.delay = crate::numerics::median(&delays)?;
         Some(agreed)
     }
 
-    /// Whether `told` allows all that is agreed on.
-    pub fn holds(&self, told: &Told) -> bool {
-        self.distance(told) <= 0.0
+    /// Whether `reported` allows all that is agreed on.
+    pub fn holds(&self, reported: &ReportedDelay) -> bool {
+        self.distance(reported) <= 0.0
     }
 
-    /// By how many samples `told` misses what is agreed on.
-    pub(super) fn distance(&self, told: &Told) -> f64 {
-        (told.low - self.low).max(self.high - told.high).max(0.0)
+    /// By how many samples `reported` misses what is agreed on.
+    pub(super) fn distance(&self, reported: &ReportedDelay) -> f64 {
+        (reported.low - self.low).max(self.high - reported.high).max(0.0)
     }
 }
 
-/// By how many samples the ranges of `told` miss a common delay; 0 where they share one.
-pub(super) fn gap<'a>(told: impl IntoIterator<Item = &'a Told>) -> f64 {
-    let ends = |(low, high): (f64, f64), one: &Told| (low.max(one.low), high.min(one.high));
-    let (low, high) = told.into_iter().fold((f64::NEG_INFINITY, f64::INFINITY), ends);
+/// By how many samples the ranges of `reported` miss a common delay; 0 where they share one.
+pub(super) fn gap<'a>(reported: impl IntoIterator<Item = &'a ReportedDelay>) -> f64 {
+    let ends =
+        |(low, high): (f64, f64), one: &ReportedDelay| (low.max(one.low), high.min(one.high));
+    let (low, high) = reported.into_iter().fold((f64::NEG_INFINITY, f64::INFINITY), ends);
     (low - high).max(0.0)
 }
 
@@ -93,16 +94,17 @@ pub(super) fn gap<'a>(told: impl IntoIterator<Item = &'a Told>) -> f64 {
 mod tests {
     use super::*;
 
-    fn told(low: f64, high: f64) -> Told {
-        Told { delay: f64::midpoint(low, high), low, high }
+    fn reported(low: f64, high: f64) -> ReportedDelay {
+        ReportedDelay { delay: f64::midpoint(low, high), low, high }
     }
 
     #[test]
     fn most_count_and_not_the_mean() {
-        let all = [told(9.0, 11.0), told(30.0, 40.0), told(10.0, 12.0), told(31.0, 32.0)];
+        let all =
+            [reported(9.0, 11.0), reported(30.0, 40.0), reported(10.0, 12.0), reported(31.0, 32.0)];
         let two = Agreement::of(&all).unwrap();
         assert_eq!((two.low, two.high, two.combinations), (10.0, 11.0, 2));
-        let three = Agreement::of(&[all.as_slice(), &[told(31.5, 33.0)]].concat()).unwrap();
+        let three = Agreement::of(&[all.as_slice(), &[reported(31.5, 33.0)]].concat()).unwrap();
         assert_eq!((three.low, three.high, three.combinations), (31.5, 32.0, 3));
         assert!((three.delay - 32.25).abs() < 1e-12);
         assert!(three.holds(&all[1]) && !three.holds(&all[0]));
@@ -112,9 +114,12 @@ mod tests {
 
     #[test]
     fn ranges_that_touch_agree() {
-        let all = [told(1.0, 2.0), told(2.0, 3.0)];
+        let all = [reported(1.0, 2.0), reported(2.0, 3.0)];
         assert_eq!(Agreement::of(&all).unwrap().combinations, 2);
         assert!(gap(&all) == 0.0 && gap(&[]) == 0.0);
-        assert!((gap(&[told(1.0, 2.0), told(5.0, 6.0), told(3.0, 4.0)]) - 3.0).abs() < 1e-12);
+        assert!(
+            (gap(&[reported(1.0, 2.0), reported(5.0, 6.0), reported(3.0, 4.0)]) - 3.0).abs()
+                < 1e-12
+        );
     }
 }

@@ -44,7 +44,7 @@ impl fmt::Display for Factor {
 pub struct Combination {
     /// Index of the value of each factor, in the order of [`Factor::ALL`].
     pub levels: [usize; 4],
-    /// Index of its run: methods that know no β have one run for all of them.
+    /// Index of its run: methods without rows have one run for all of them.
     pub run: usize,
 }
 
@@ -59,8 +59,8 @@ pub struct Base {
 
 /// Every combination of some methods, passbands, α and β.
 ///
-/// Each combination counts once when votes are counted, so that a method that knows no β
-/// counts as much as one that does; what is the same is run once.
+/// Each combination counts once when votes are counted, so that a method without rows
+/// counts as much as one with them; what is the same is run once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     bases: Vec<Base>,
@@ -112,9 +112,9 @@ impl Grid {
 
     /// The run of these levels, where they come before the last.
     fn run_at(&self, levels: [usize; 4]) -> Option<usize> {
-        let place =
-            |place: usize, (factor, level): (Factor, usize)| place * self.levels(factor) + level;
-        let index = Factor::ALL.into_iter().zip(levels).fold(0, place);
+        // A number with as many digits as there are factors, each to the base of its levels.
+        let digit = |number: usize, (factor, level)| number * self.levels(factor) + level;
+        let index = Factor::ALL.into_iter().zip(levels).fold(0, digit);
         self.combinations.get(index).map(|one| one.run)
     }
 
@@ -158,35 +158,34 @@ impl Grid {
         }
     }
 
-    /// The combinations with the value `level` of `factor`, of methods that it says
-    /// anything to.
+    /// The combinations with the value `level` of `factor`, of methods that it applies to.
     pub fn at(&self, factor: Factor, level: usize) -> impl Iterator<Item = &Combination> {
-        let place = factor as usize;
-        let has = move |one: &&Combination| one.levels.get(place) == Some(&level);
-        self.combinations.iter().filter(has).filter(move |one| self.knows(one, factor))
+        let index = factor as usize;
+        let has = move |one: &&Combination| one.levels.get(index) == Some(&level);
+        self.combinations.iter().filter(has).filter(move |one| self.applies(one, factor))
     }
 
     /// Sets of combinations that differ in `factor` alone, as indices.
     pub(super) fn lines(&self, factor: Factor) -> impl Iterator<Item = Vec<usize>> {
-        let place = factor as usize;
-        let faster = Factor::ALL.iter().skip(place + 1).map(|factor| self.levels(*factor));
+        let index = factor as usize;
+        let faster = Factor::ALL.iter().skip(index + 1).map(|factor| self.levels(*factor));
         let stride: usize = faster.product();
         let count = self.levels(factor);
-        let first = move |one: &Combination| one.levels.get(place) == Some(&0);
+        let first = move |one: &Combination| one.levels.get(index) == Some(&0);
         let starts = self.combinations.iter().enumerate();
-        let starts = starts.filter(move |(_, one)| first(one) && self.knows(one, factor));
+        let starts = starts.filter(move |(_, one)| first(one) && self.applies(one, factor));
         starts.map(move |(start, _)| (0..count).map(|n| start + n * stride).collect())
     }
 
-    /// Whether `factor` says anything to the method of a combination.
-    fn knows(&self, one: &Combination, factor: Factor) -> bool {
+    /// Whether `factor` applies to the method of a combination.
+    fn applies(&self, one: &Combination, factor: Factor) -> bool {
         let [method, ..] = one.levels;
-        let knows = |base: &Base| match factor {
+        let applies = |base: &Base| match factor {
             Factor::Method | Factor::Alpha => true,
             Factor::Passband => !base.keeps_low_pass,
             Factor::Beta => base.settings.method.spec().has_rows,
         };
-        self.bases.get(method).is_some_and(knows)
+        self.bases.get(method).is_some_and(applies)
     }
 }
 
@@ -195,7 +194,7 @@ mod tests {
     use super::*;
     use crate::delay::Method;
 
-    /// Two methods, of which the one that is told keeps its own low-pass.
+    /// Two methods, of which the one that is given keeps its own low-pass.
     fn grid(kept: Option<Method>) -> Grid {
         let bases = [Method::TWO_LINE, Method::HINGE].map(|method| Base {
             settings: Settings::of(method),
@@ -223,7 +222,7 @@ mod tests {
     fn a_line_varies_one_setting_alone() {
         let all = grid(None);
         let lines = |grid: &Grid, factor| grid.lines(factor).collect::<Vec<_>>();
-        // The broken line knows no β.
+        // The broken line has no rows.
         assert_eq!(lines(&all, Factor::Beta), [[0, 1, 2], [3, 4, 5]]);
         assert_eq!(lines(&all, Factor::Passband)[1], [1, 4]);
         assert_eq!(lines(&all, Factor::Method)[2], [2, 8]);

@@ -76,9 +76,9 @@ fn add_steps(
     };
     let words =
         |of: fn(&SweptStep) -> Option<String>| -> Vec<Option<String>> { steps().map(of).collect() };
-    let on = |step: &SweptStep| step.delay_hangs_on.as_ref().map(|on| on.factor.to_string());
+    let on = |step: &SweptStep| step.delay_depends_on.as_ref().map(|on| on.factor.to_string());
     let delays = |step: &SweptStep| {
-        (0..step.told.len()).map(|run| Swept::delay(step, run)).collect::<Vec<_>>()
+        (0..step.delays.len()).map(|run| Swept::delay(step, run)).collect::<Vec<_>>()
     };
     let columns = [
         texts("trial", &words(|step| Some(step.trial.clone()))),
@@ -93,7 +93,7 @@ fn add_steps(
         numbers("min", &spread(|all| all.min)),
         numbers("max", &spread(|all| all.max)),
         texts("delay_hangs_on", &words(on)),
-        texts("verdict_hangs_on", &words(|s| s.verdict_hangs_on.map(|on| on.to_string()))),
+        texts("verdict_hangs_on", &words(|s| s.verdict_depends_on.map(|on| on.to_string()))),
         optional_lists("delays", &steps().map(delays).collect::<Vec<_>>()),
     ];
     chunks.push(entity, swept.index.clone(), columns)

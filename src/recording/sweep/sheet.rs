@@ -81,7 +81,7 @@ impl Cause {
     }
 
     fn moves(self, step: &SweptStep) -> bool {
-        let on = step.delay_hangs_on.as_ref().map(|hanging| hanging.factor);
+        let on = step.delay_depends_on.as_ref().map(|hanging| hanging.factor);
         match self {
             Self::Delay(factor) => on == Some(factor),
             Self::Several => on.is_none() && step.disagreeing() > 0,
@@ -313,7 +313,7 @@ struct Group {
 impl Group {
     fn all(swept: &Swept<'_>, step: &SweptStep) -> Vec<Self> {
         let mut groups: BTreeMap<(u64, Opinion), Self> = BTreeMap::new();
-        for run in 0..step.told.len() {
+        for run in 0..step.delays.len() {
             let Some(delay) = Swept::delay(step, run) else { continue };
             let opinion = Swept::cell(step, run).opinion();
             let empty = Self { delay, opinion, runs: Vec::new(), votes: 0 };
@@ -362,7 +362,7 @@ fn delay_span(swept: &Swept<'_>) -> Span {
     const BEYOND: f64 = 0.005;
     let steps = || swept.steps.iter().map(|(step, _)| *step);
     let of_step = |step: &SweptStep| {
-        let known = step.told.iter().flatten();
+        let known = step.delays.iter().flatten();
         known.map(|known| known.delay * step.period_s).collect::<Vec<_>>()
     };
     let delays: Vec<f64> = steps().flat_map(of_step).collect();
@@ -408,7 +408,7 @@ fn put_legend(
 fn headline(swept: &Swept<'_>) -> String {
     let name = &swept.reported.joint.name;
     let judged = swept.reported.sweep.judged().count();
-    let settled = swept.reported.sweep.judged().filter(|step| step.is_settled()).count();
+    let settled = swept.reported.sweep.judged().filter(|step| step.is_unanimous()).count();
     match (judged, judged - settled) {
         (0, _) => format!("{name}: no step is accepted with any of the settings"),
         (_, 0) => format!("{name}: all {judged} delays are the same whatever the settings"),

@@ -58,7 +58,7 @@ pub(super) fn add(
 /// at the first tick of the settings, too.
 fn worst_last(swept: &Swept<'_>) -> (Index, Vec<usize>) {
     let mut order: Vec<usize> = (0..swept.steps.len()).collect();
-    let hanging = swept.reported.sweep.hanging();
+    let hanging = swept.reported.sweep.sensitive();
     let worst = hanging
         .first()
         .and_then(|worst| swept.steps.iter().position(|(step, _)| std::ptr::eq(*step, *worst)));

@@ -1,7 +1,7 @@
 //! A joint over all settings, as it is recorded.
 
 use super::recorded::SweepRecording;
-use crate::delay::sweep::{Agreement, Grid, SweptStep, Told};
+use crate::delay::sweep::{Agreement, Grid, ReportedDelay, SweptStep};
 use crate::experiment::Trial;
 use crate::recording::chunk::Index;
 use crate::recording::layout::TrialStarts;
@@ -55,13 +55,13 @@ impl<'a> Swept<'a> {
 
     /// What a run reports of a step.
     pub(super) fn cell(step: &SweptStep, run: usize) -> Cell {
-        let Some(told) = step.told.get(run).copied().flatten() else { return Cell::Silent };
+        let Some(told) = step.delays.get(run).copied().flatten() else { return Cell::Silent };
         step.agreement.map_or(Cell::Same, |agreed| Cell::of(&told, &agreed))
     }
 
     /// The delay that a run reports of a step; samples.
     pub(super) fn delay(step: &SweptStep, run: usize) -> Option<f64> {
-        Some(step.told.get(run).copied().flatten()?.delay)
+        Some(step.delays.get(run).copied().flatten()?.delay)
     }
 }
 
@@ -79,7 +79,7 @@ pub(super) enum Cell {
 }
 
 impl Cell {
-    fn of(told: &Told, agreed: &Agreement) -> Self {
+    fn of(told: &ReportedDelay, agreed: &Agreement) -> Self {
         let (longer, shorter) = (told.low - agreed.low, agreed.high - told.high);
         if longer.max(shorter) <= 0.0 {
             Self::Same
@@ -138,8 +138,9 @@ mod tests {
     #[test]
     fn a_delay_is_longer_or_shorter_than_what_most_allow() {
         let agreed = Agreement { delay: 10.0, low: 9.5, high: 11.0, combinations: 3 };
-        let cell =
-            |low, high| Cell::of(&Told { delay: f64::midpoint(low, high), low, high }, &agreed);
+        let cell = |low, high| {
+            Cell::of(&ReportedDelay { delay: f64::midpoint(low, high), low, high }, &agreed)
+        };
         assert_eq!(cell(9.0, 11.0), Cell::Same);
         assert_eq!(cell(12.0, 14.0), Cell::Longer(2.5));
         assert_eq!(cell(4.0, 6.0), Cell::Shorter(5.0));

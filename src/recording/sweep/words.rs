@@ -136,7 +136,7 @@ fn one_step(swept: &Swept<'_>, step: &SweptStep) -> Written {
     let on = depends_on(swept.grid, step);
     let on = if on.is_empty() { "no setting".to_owned() } else { on };
     writeln!(page, "| sensitive to | {} |", plain(&on))?;
-    let Some(hanging) = &step.delay_hangs_on else { return Ok(page) };
+    let Some(hanging) = &step.delay_depends_on else { return Ok(page) };
     writeln!(page, "\n| {} | median delay | agree with most |\n|---|---|---|", hanging.factor)?;
     for (level, told) in hanging.levels.iter().enumerate() {
         let name = level_text(swept.grid, hanging.factor, level);
@@ -154,7 +154,7 @@ fn add_list(chunks: &mut Chunks, entity: EntityPath, swept: &Swept<'_>) -> Resul
     let places = &swept.index;
     let places = places.segment.iter().zip(&places.sample).zip(&places.time_ns);
     for ((step, _), ((segment, sample), time_ns)) in swept.steps.iter().zip(places) {
-        if step.accepted == 0 || step.is_settled() {
+        if step.accepted == 0 || step.is_unanimous() {
             continue;
         }
         index.segment.push(*segment);

@@ -8,7 +8,7 @@ use super::header::Header;
 use super::settings::SettingsJson;
 use crate::delay::Settings;
 use crate::delay::sweep::{
-    Agreement, Factor, Grid, Hanging, LevelSummary, RunSummary, Spread, SweptStep,
+    Agreement, Factor, Grid, LevelSummary, RunSummary, Sensitivity, Spread, SweptStep,
 };
 use crate::report::sweep::{ReportedSweep, value};
 
@@ -106,7 +106,7 @@ impl<'a> JointJson<'a> {
         let sweep = reported.sweep;
         let hanging = |factor: Factor| {
             let on = |step: &&SweptStep| {
-                step.delay_hangs_on.as_ref().is_some_and(|hanging| hanging.factor == factor)
+                step.delay_depends_on.as_ref().is_some_and(|hanging| hanging.factor == factor)
             };
             (id(factor).to_owned(), sweep.steps.iter().filter(on).count().into())
         };
@@ -118,7 +118,7 @@ impl<'a> JointJson<'a> {
             joint: &reported.joint.name,
             steps: sweep.steps.len(),
             accepted_by_any: sweep.judged().count(),
-            settled: sweep.judged().filter(|step| step.is_settled()).count(),
+            settled: sweep.judged().filter(|step| step.is_unanimous()).count(),
             hanging_on: Factor::ALL.into_iter().map(hanging).collect(),
             agreeing_settings: agreeing.filter_map(|(n, agrees)| agrees.then_some(n)).collect(),
             settings: sweep.runs.iter().map(|run| run.as_ref().map(SettingJson::new)).collect(),
@@ -176,11 +176,11 @@ impl<'a> StepJson<'a> {
             accepted: step.accepted,
             delay_samples: step.spread.as_ref().map(spread_json).into(),
             agreed: step.agreement.as_ref().map(agreement_json).into(),
-            settled: step.is_settled(),
-            delay_hangs_on: step.delay_hangs_on.as_ref().map(|found| hanging_json(grid, found)),
-            verdict_hangs_on: step.verdict_hangs_on.map(id),
+            settled: step.is_unanimous(),
+            delay_hangs_on: step.delay_depends_on.as_ref().map(|found| hanging_json(grid, found)),
+            verdict_hangs_on: step.verdict_depends_on.map(id),
             apart_samples: step.apart,
-            delays: step.told.iter().map(|told| told.map(|told| told.delay)).collect(),
+            delays: step.delays.iter().map(|told| told.map(|told| told.delay)).collect(),
         }
     }
 }
@@ -199,7 +199,7 @@ fn agreement_json(agreement: &Agreement) -> Value {
     })
 }
 
-fn hanging_json(grid: &Grid, found: &Hanging) -> Value {
+fn hanging_json(grid: &Grid, found: &Sensitivity) -> Value {
     let level = |(level, told): (usize, &Option<(f64, f64)>)| {
         json!({
             "value": value(grid, found.factor, level),

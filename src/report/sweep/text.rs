@@ -5,7 +5,7 @@ use comfy_table::{Cell, CellAlignment, Table, presets};
 
 use super::sets::{Clause, clauses};
 use super::{ReportedSweep, level_text};
-use crate::delay::sweep::{Factor, Grid, Hanging, LevelSummary, SweptStep};
+use crate::delay::sweep::{Factor, Grid, LevelSummary, Sensitivity, SweptStep};
 use crate::report::text_table::TextTable;
 use crate::wording::{percent, rounded, wrapped};
 
@@ -58,7 +58,7 @@ pub(crate) fn sweep_sentences(grid: &Grid, reported: &ReportedSweep<'_>) -> Vec<
     if judged == 0 {
         return vec!["no step is accepted with any of the settings.".to_owned()];
     }
-    let settled = reported.sweep.judged().filter(|step| step.is_settled()).count();
+    let settled = reported.sweep.judged().filter(|step| step.is_unanimous()).count();
     let mut sentences = vec![match judged - settled {
         0 => format!("all {judged} delays are the same whatever the settings."),
         _ => format!(
@@ -86,11 +86,11 @@ pub(crate) fn settings_in_words(grid: &Grid, chosen: &[bool]) -> String {
 
 /// On which settings how many delays depend.
 fn on_what(reported: &ReportedSweep<'_>) -> String {
-    let hanging = reported.sweep.hanging();
+    let hanging = reported.sweep.sensitive();
     let (moved, accepted_by_some): (Vec<_>, Vec<_>) =
         hanging.into_iter().partition(|step| step.disagreeing() > 0);
     let on = |factor: Option<Factor>| {
-        let own = |step: &&&SweptStep| step.delay_hangs_on.as_ref().map(|on| on.factor) == factor;
+        let own = |step: &&&SweptStep| step.delay_depends_on.as_ref().map(|on| on.factor) == factor;
         moved.iter().filter(own).count()
     };
     let known = Factor::ALL.map(|factor| (on(Some(factor)), named(factor)));
@@ -201,11 +201,11 @@ fn steps_part(grid: &Grid, joints: &[ReportedSweep<'_>], shown: StepsShown) -> S
     /// Steps that are shown where not all are asked for, and how many of one joint: where
     /// all its steps depend on the method the first ones show it.
     const WORST: [usize; 2] = [10, 3];
-    let all: usize = joints.iter().map(|joint| joint.sweep.hanging().len()).sum();
+    let all: usize = joints.iter().map(|joint| joint.sweep.sensitive().len()).sum();
     let [most, of_one] = if shown == StepsShown::All { [all; 2] } else { WORST };
     let mut steps: Vec<(&str, &SweptStep)> = Vec::new();
     for ReportedSweep { joint, sweep } in joints {
-        let worst = sweep.hanging().into_iter().take(of_one);
+        let worst = sweep.sensitive().into_iter().take(of_one);
         steps.extend(worst.map(|step| (joint.name.as_str(), step)));
     }
     // As in each joint; the sort is stable, so that joints keep their order.
@@ -246,15 +246,15 @@ fn step_cells(grid: &Grid, name: &str, step: &SweptStep) -> [String; 8] {
 
 /// On what a step depends, and what the odd values of that setting say.
 pub(crate) fn depends_on(grid: &Grid, step: &SweptStep) -> String {
-    let delay = step.delay_hangs_on.as_ref().map(|found| odd_levels(grid, found, step.period_s));
+    let delay = step.delay_depends_on.as_ref().map(|found| odd_levels(grid, found, step.period_s));
     let accepted = percent(step.accepted as f64 / step.tried.max(1) as f64);
-    let verdict = step.verdict_hangs_on.map(|factor| format!("{factor}, {accepted} accept it"));
+    let verdict = step.verdict_depends_on.map(|factor| format!("{factor}, {accepted} accept it"));
     let several = (step.disagreeing() > 0 && delay.is_none()).then(|| "several at once".to_owned());
     [delay, several, verdict].into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
 
 /// The setting, with those of its values that mostly disagree, or the one that most does.
-fn odd_levels(grid: &Grid, found: &Hanging, period_s: f64) -> String {
+fn odd_levels(grid: &Grid, found: &Sensitivity, period_s: f64) -> String {
     /// Values that are shown.
     const SHOWN: usize = 2;
     let name = |level: usize| level_text(grid, found.factor, level);

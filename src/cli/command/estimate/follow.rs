@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::batch::{JointEstimate, estimate_joints};
-use crate::delay::{Settings, check_growing, settled};
+use crate::delay::{Settings, check_growing, final_part};
 use crate::experiment::{Experiment, GrowingLog, Joint};
 use crate::report::{DecisionRow, EstimatedJoint, decision_rows, step_line};
 use anyhow::{Context as _, bail};
@@ -306,7 +306,7 @@ fn settled_joint(
         // A trial that another one follows has come whole.
         let kept = match index {
             _ if index < last => Some((trial.clone(), found.clone())),
-            _ => settled(trial, found, settings).ok()?,
+            _ => final_part(trial, found, settings).ok()?,
         };
         if let Some((trial, found)) = kept {
             trials.push(trial);

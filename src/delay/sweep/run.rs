@@ -1,0 +1,120 @@
+//! A run of one combination of settings, and the values of a setting, over all steps.
+
+use super::agreement::ReportedDelay;
+use super::grid::Combination;
+use super::step::{SweptStep, mean};
+use crate::delay::{Lag, Settings, TrialEstimate, input_steps};
+use crate::experiment::Trial;
+use crate::numerics::median;
+
+/// What one run tells of all steps of a joint.
+#[derive(Clone, Debug)]
+pub struct RunDelays {
+    /// A place for each step of all trials, in order.
+    pub steps: Vec<Option<ReportedDelay>>,
+    /// The lag that it found.
+    pub lag: Option<Lag>,
+}
+
+impl RunDelays {
+    /// Collects what a run tells of `trials`; `None` stands for a trial that failed.
+    pub fn of<'a>(
+        trials: &[Trial],
+        estimates: impl IntoIterator<Item = Option<&'a TrialEstimate>>,
+        settings: &Settings,
+    ) -> Self {
+        let mut found = Self { steps: Vec::new(), lag: None };
+        for (trial, estimate) in trials.iter().zip(estimates) {
+            if let Some(estimate) = estimate {
+                let decisions = estimate.decisions.iter();
+                found.steps.extend(decisions.map(|decision| ReportedDelay::of(decision, settings)));
+                found.lag = found.lag.or_else(|| estimate.lag.clone());
+            } else {
+                let steps = input_steps(trial.input(), settings.min_step).len();
+                found.steps.resize(found.steps.len() + steps, None);
+            }
+        }
+        found
+    }
+}
+
+/// A run over all steps of a joint.
+#[derive(Clone, Debug)]
+pub struct RunSummary {
+    /// Steps that it accepted.
+    pub accepted: usize,
+    /// The median of its delays, seconds.
+    pub median_s: Option<f64>,
+    /// Accepted steps of which it tells another delay than most.
+    pub disagreements: usize,
+    /// Of the steps that most agree on, the part where it agrees with them.
+    pub agrees: Option<f64>,
+    /// The lag that it found.
+    pub lag: Option<Lag>,
+}
+
+/// All combinations with one value of a setting, over all steps of a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LevelSummary {
+    /// The part of the steps that is accepted.
+    pub accepted: f64,
+    /// The median of all delays, seconds.
+    pub median_s: Option<f64>,
+    /// The median distance from what most say, samples.
+    pub shift_samples: Option<f64>,
+    /// The part of the delays that disagrees with what most say.
+    pub disagrees: Option<f64>,
+}
+
+impl RunSummary {
+    pub(super) fn of(steps: &[SweptStep], run: usize, lag: Option<Lag>) -> Self {
+        let reported = |step: &SweptStep| step.delays.get(run).copied().flatten();
+        let delays = steps.iter().filter_map(|step| Some(reported(step)?.delay * step.period_s));
+        let delays: Vec<f64> = delays.collect();
+        let disagrees = |step: &&SweptStep| {
+            let agreed = step.agreement.zip(reported(step));
+            agreed.is_some_and(|(agreement, reported)| !agreement.holds(&reported))
+        };
+        let agrees = steps.iter().filter_map(|step| {
+            let agreement = step.majority()?;
+            Some(f64::from(u8::from(
+                reported(step).is_some_and(|reported| agreement.holds(&reported)),
+            )))
+        });
+        Self {
+            accepted: delays.len(),
+            median_s: median(&delays),
+            disagreements: steps.iter().filter(disagrees).count(),
+            agrees: mean(agrees),
+            lag,
+        }
+    }
+}
+
+impl LevelSummary {
+    pub(super) fn of<'a>(
+        steps: &[SweptStep],
+        combinations: impl Iterator<Item = &'a Combination>,
+        ran: &[bool],
+    ) -> Self {
+        let (mut tried, mut delays, mut shifts, mut outside) = (0, Vec::new(), Vec::new(), 0);
+        for one in combinations.filter(|one| ran.get(one.run) == Some(&true)) {
+            tried += steps.iter().filter(|step| step.accepted > 0).count();
+            for step in steps {
+                let Some((reported, agreed)) = step.reported(one).zip(step.agreement) else {
+                    continue;
+                };
+                delays.push(reported.delay * step.period_s);
+                shifts.push(reported.delay - agreed.delay);
+                outside += usize::from(!agreed.holds(&reported));
+            }
+        }
+        let count = delays.len() as f64;
+        Self {
+            accepted: if tried > 0 { count / tried as f64 } else { 0.0 },
+            median_s: median(&delays),
+            shift_samples: median(&shifts),
+            disagrees: (count > 0.0).then(|| outside as f64 / count),
+        }
+    }
+}
