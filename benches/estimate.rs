@@ -4,9 +4,10 @@
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use tauscope::batch::{JointEstimate, estimate_joints, with_threads};
+use tauscope::batch::{Threads, with_threads};
 use tauscope::delay::Settings;
 use tauscope::experiment::{Experiment, Joint, ReadOptions};
+use tauscope::study::{JointEstimate, estimate_joints};
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate, write_log};
 
 /// Joints at 100 Hz with holds of 5 to 9 s: 2,000 decisions in 14 × 100,000 samples.
@@ -24,7 +25,7 @@ fn joints(count: usize, samples: usize) -> Vec<Joint> {
 }
 
 fn estimated(joints: &[Joint], settings: &Settings) -> Vec<JointEstimate> {
-    estimate_joints(joints, settings, || ()).into_iter().map(Result::unwrap).collect()
+    estimate_joints(joints, settings, || (), &Threads).into_iter().map(Result::unwrap).collect()
 }
 
 /// One joint, longer and longer.

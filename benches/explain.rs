@@ -5,12 +5,13 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use tauscope::batch::{Mode, Protocol, estimate_joints, explain_joints, improve_joints};
+use tauscope::batch::Threads;
 use tauscope::delay::Settings;
 use tauscope::effect::{Effect, REGISTRY, find};
 use tauscope::experiment::Joint;
 use tauscope::explain::Options;
 use tauscope::fit::Horizon;
+use tauscope::study::{Mode, Protocol, estimate_joints, explain_joints, improve_joints};
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate};
 
 /// Joints at 100 Hz that all hide a dead band, or three effects: a lag, too, and another gain
@@ -51,16 +52,16 @@ const PROTOCOL: Protocol =
     Protocol { mode: Mode::FitOrIntegrator, split: None, horizon: Horizon::Steps };
 
 fn explain(joints: &[Joint], effects: &[&'static dyn Effect]) {
-    let estimates = estimate_joints(joints, &Settings::default(), || ());
+    let estimates = estimate_joints(joints, &Settings::default(), || (), &Threads);
     let options = Options { effects: effects.to_vec(), ..Options::default() };
-    black_box(explain_joints(joints, &estimates, |_| None, PROTOCOL, &options));
+    black_box(explain_joints(joints, &estimates, |_| None, PROTOCOL, &options, &Threads));
 }
 
 fn improve(joints: &[Joint], effects: &[&'static dyn Effect]) {
-    let estimates = estimate_joints(joints, &Settings::default(), || ());
+    let estimates = estimate_joints(joints, &Settings::default(), || (), &Threads);
     let options = Options { effects: effects.to_vec(), ..Options::default() };
     let every = |_, _: &_| true;
-    black_box(improve_joints(joints, &estimates, |_| None, PROTOCOL, &options, every));
+    black_box(improve_joints(joints, &estimates, |_| None, PROTOCOL, &options, every, &Threads));
 }
 
 /// A command that is measured.

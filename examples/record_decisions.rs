@@ -4,11 +4,12 @@
 use std::path::PathBuf;
 
 use rerun::{RecordingStreamBuilder, Scalars};
-use tauscope::batch::estimate_joints;
+use tauscope::batch::Threads;
 use tauscope::delay::Settings;
 use tauscope::experiment::{Experiment, ReadOptions};
 use tauscope::recording::{Detail, Recording, log_recording};
 use tauscope::report::EstimatedJoint;
+use tauscope::study::estimate_joints;
 
 fn main() -> anyhow::Result<()> {
     let file = std::env::temp_dir().join("tauscope-record-decisions.rrd");
@@ -24,7 +25,7 @@ fn main() -> anyhow::Result<()> {
     let experiment = Experiment::read(&paths, &ReadOptions::default());
     let settings = Settings::default();
     let mut estimates = Vec::new();
-    for estimate in estimate_joints(&experiment.joints, &settings, || ()) {
+    for estimate in estimate_joints(&experiment.joints, &settings, || (), &Threads) {
         estimates.push(estimate?);
     }
     let pairs = experiment.joints.iter().zip(&estimates);

@@ -15,7 +15,8 @@
 //! - [`diagnosis`]: how good a model is, and where it fails
 //! - [`explain`]: which physical effect a model lacks
 //! - [`design`]: the next experiment
-//! - [`batch`]: all joints in parallel
+//! - [`study`]: all joints of an experiment
+//! - [`batch`]: pieces of work on many threads
 //! - [`wording`]: what statuses, units, probabilities and numbers are called
 //! - [`report`]: results as text, CSV and JSON, and as a page with figures
 //! - `recording`: results as a Rerun recording (feature `rrd`)
@@ -36,6 +37,7 @@ pub mod numerics;
 #[cfg(feature = "rrd")]
 pub mod recording;
 pub mod report;
+pub mod study;
 pub mod synthetic;
 pub mod units;
 pub mod wording;

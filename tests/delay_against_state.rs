@@ -1,10 +1,11 @@
 //! What the delay depends on: planted laws are found, and nothing else.
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
-use tauscope::batch::estimate_joints;
+use tauscope::batch::Threads;
 use tauscope::delay::{AgainstState, Settings};
 use tauscope::experiment::{Joint, Signal};
 use tauscope::report::{EstimatedJoint, against_table};
+use tauscope::study::estimate_joints;
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate};
 
 fn joint(law: DelayLaw, duration_s: f64) -> Joint {
@@ -17,7 +18,7 @@ fn joint(law: DelayLaw, duration_s: f64) -> Joint {
 
 fn found(joint: &Joint) -> AgainstState {
     let settings = Settings { low_pass: None, beta: 1, ..Settings::default() };
-    let estimates = estimate_joints(std::slice::from_ref(joint), &settings, || ());
+    let estimates = estimate_joints(std::slice::from_ref(joint), &settings, || (), &Threads);
     let estimate = estimates[0].as_ref().unwrap();
     EstimatedJoint { joint, estimate }.against_state()
 }

@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use serde::Deserialize;
-use tauscope::batch::estimate_joints;
+use tauscope::batch::Threads;
 use tauscope::delay::{Settings, Verdict};
 use tauscope::experiment::{Experiment, ReadOptions};
+use tauscope::study::estimate_joints;
 use tauscope::synthetic::{PlantSpec, simulate, write_log, write_truth};
 
 #[derive(Deserialize)]
@@ -28,7 +29,7 @@ fn judged() -> BTreeMap<String, Vec<Judged>> {
     let path = PathBuf::from("data/manipulator.csv");
     let experiment = Experiment::read(&[path], &ReadOptions::default());
     let settings = Settings { beta: 2, ..Settings::default() };
-    let estimates = estimate_joints(&experiment.joints, &settings, || ());
+    let estimates = estimate_joints(&experiment.joints, &settings, || (), &Threads);
     let mut truth = csv::Reader::from_path("data/manipulator.truth.csv").unwrap();
     let mut judged: BTreeMap<String, Vec<Judged>> = BTreeMap::new();
     for step in truth.deserialize().map(Result::<Truth, _>::unwrap) {

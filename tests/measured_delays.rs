@@ -1,13 +1,15 @@
 //! Delays that follow no law are taken from the record, and do not hide what else is missing.
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
-use tauscope::batch::{JointEstimate, Mode, Protocol, estimate_joints};
-use tauscope::batch::{add_to_joints, explain_joints, improve_joints};
+use tauscope::batch::Threads;
 use tauscope::delay::{EstimateError, Settings};
 use tauscope::effect::VariableDelay;
 use tauscope::experiment::Joint;
 use tauscope::explain::{Options, Verdict};
 use tauscope::fit::Horizon;
+use tauscope::study::{
+    JointEstimate, Mode, Protocol, add_to_joints, estimate_joints, explain_joints, improve_joints,
+};
 use tauscope::synthetic::effects::Effects;
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate};
 
@@ -30,7 +32,7 @@ fn made(seed: u64, delay: DelayLaw, effect: &Effects) -> (Vec<Joint>, Estimates)
         ..JointSpec::new("boom", input, delay)
     };
     let joints = simulate(&PlantSpec::new(seed, 90.0, vec![joint])).unwrap().joints;
-    let estimates = estimate_joints(&joints, &Settings::default(), || ());
+    let estimates = estimate_joints(&joints, &Settings::default(), || (), &Threads);
     (joints, estimates)
 }
 
@@ -45,14 +47,14 @@ fn ids(model: &tauscope::model::JointModel) -> Vec<&'static str> {
 fn random_delays_are_told_and_taken_from_the_record() {
     let (joints, estimates) = made(11, RANDOM, &Effects::default());
     let options = Options::default();
-    let found = explain_joints(&joints, &estimates, |_| None, PROTOCOL, &options);
+    let found = explain_joints(&joints, &estimates, |_| None, PROTOCOL, &options, &Threads);
     let found = found.into_iter().next().unwrap().unwrap().unwrap();
     assert_eq!(found.verdict, Verdict::MissingEffect);
     assert_eq!(found.ranking[0].name(), "variable_delay");
     assert!(found.ranking[0].fit.model.takes_measured_delays());
     assert!(found.ranking[0].validation.unwrap().rmse < 1.15 * NOISE);
 
-    let added = add_to_joints(&joints, &estimates, |_| None, PROTOCOL, &VariableDelay);
+    let added = add_to_joints(&joints, &estimates, |_| None, PROTOCOL, &VariableDelay, &Threads);
     let added = added.into_iter().next().unwrap().unwrap().unwrap();
     assert!(added.after.fit.model.takes_measured_delays());
     assert!(added.after.validation.unwrap().rmse < 1.15 * NOISE);
@@ -64,7 +66,8 @@ fn what_random_delays_hide_is_found_behind_them() {
     let (joints, estimates) = made(13, RANDOM, &banded);
     let goes_on = |_: usize, _: &_| true;
     let options = Options::default();
-    let found = improve_joints(&joints, &estimates, |_| None, PROTOCOL, &options, goes_on);
+    let found =
+        improve_joints(&joints, &estimates, |_| None, PROTOCOL, &options, goes_on, &Threads);
     let found = found.into_iter().next().unwrap().unwrap().unwrap();
     let last = &found.revisions.last().unwrap().comparison;
     let mut effects = ids(&last.fit.model);
@@ -77,7 +80,8 @@ fn what_random_delays_hide_is_found_behind_them() {
 fn a_law_is_preferred_to_measured_delays_where_it_does_as_well() {
     let law = toml::from_str("[variable_delay]\nfalling_s = 0.1").unwrap();
     let (joints, estimates) = made(12, DelayLaw::Constant { seconds: 0.1 }, &law);
-    let found = explain_joints(&joints, &estimates, |_| None, PROTOCOL, &Options::default());
+    let found =
+        explain_joints(&joints, &estimates, |_| None, PROTOCOL, &Options::default(), &Threads);
     let found = found.into_iter().next().unwrap().unwrap().unwrap();
     assert_eq!(found.ranking[0].name(), "variable_delay");
     assert!(!found.ranking[0].fit.model.takes_measured_delays());

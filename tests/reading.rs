@@ -5,12 +5,13 @@ use std::fs;
 use std::path::PathBuf;
 
 use proptest::prelude::*;
-use tauscope::batch::{JointEstimate, estimate_joints};
+use tauscope::batch::Threads;
 use tauscope::delay::{Settings, estimate};
 use tauscope::experiment::{
     ColumnMap, Experiment, Joint, JointColumns, ReadError, ReadOptions, expand_folders,
 };
 use tauscope::report::{EstimatedJoint, write_delays};
+use tauscope::study::{JointEstimate, estimate_joints};
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate, write_log};
 use tauscope::units::SamplePeriod;
 use tempfile::TempDir;
@@ -516,8 +517,10 @@ fn each_sample_of_the_delays_has_its_own_time_where_joints_split_apart() {
     let log: String = stepping("", 400, 1.0).lines().enumerate().map(row).collect();
     let joints = Reading::of(header + &log).fill(0.05).joints();
     let settings = Settings { low_pass: None, ..Settings::default() };
-    let estimates: Vec<JointEstimate> =
-        estimate_joints(&joints, &settings, || ()).into_iter().map(Result::unwrap).collect();
+    let estimates: Vec<JointEstimate> = estimate_joints(&joints, &settings, || (), &Threads)
+        .into_iter()
+        .map(Result::unwrap)
+        .collect();
     let pairs = joints.iter().zip(&estimates);
     let both: Vec<_> = pairs.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect();
     for (place, joint) in both.iter().enumerate() {

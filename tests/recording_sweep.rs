@@ -13,13 +13,14 @@ use rerun::Loggable as _;
 use rerun::components::ImageBuffer;
 use rerun::external::arrow::array::{Array, AsArray as _};
 use rerun::external::arrow::datatypes::Float64Type;
-use tauscope::batch::{SweptJoint, sweep_joints};
+use tauscope::batch::Threads;
 use tauscope::delay::sweep::{Base, Factor, Grid, SweptStep};
 use tauscope::delay::{Method, Settings};
 use tauscope::experiment::{Experiment, ReadOptions};
 use tauscope::numerics::LowPass;
 use tauscope::recording::{SweepRecording, write_sweep};
 use tauscope::report::ReportedSweep;
+use tauscope::study::{SweptJoint, sweep_joints};
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate, write_log};
 
 /// An ideal joint and one behind a lag, which `lag-aware` alone tells from delay.
@@ -52,7 +53,7 @@ impl Swept {
         write_log(&made, std::fs::File::create(&path).unwrap()).unwrap();
         let experiment = Experiment::read(&[path], &ReadOptions::default());
         let grid = grid();
-        let joints = sweep_joints(&experiment.joints, &grid, 2.0, || ());
+        let joints = sweep_joints(&experiment.joints, &grid, 2.0, || (), &Threads);
         let joints = joints.into_iter().map(Result::unwrap).collect();
         Self { experiment, grid, joints, folder }
     }

@@ -2,12 +2,13 @@
 //! apart: with it in the record, the race does.
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
-use tauscope::batch::{Mode, Protocol, estimate_joints, explain_joints};
+use tauscope::batch::Threads;
 use tauscope::delay::Settings;
 use tauscope::effect::find;
 use tauscope::experiment::{Joint, Trial};
 use tauscope::explain::{Explanation, Options, Proposal, Verdict};
 use tauscope::fit::Horizon;
+use tauscope::study::{Mode, Protocol, estimate_joints, explain_joints};
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate};
 
 const PERIOD_S: f64 = 0.02;
@@ -25,11 +26,11 @@ fn driven(effect: (&str, &[(&str, f64)]), input: InputSpec, seconds: f64, seed: 
 
 fn explained(joint: &Joint, effects: &[&str]) -> Explanation {
     let joints = std::slice::from_ref(joint);
-    let estimates = estimate_joints(joints, &Settings::default(), || ());
+    let estimates = estimate_joints(joints, &Settings::default(), || (), &Threads);
     let protocol = Protocol { mode: Mode::FitOrIntegrator, split: None, horizon: Horizon::Steps };
     let effects = effects.iter().map(|id| find(id).unwrap()).collect();
     let options = Options { effects, ..Options::default() };
-    let mut explained = explain_joints(joints, &estimates, |_| None, protocol, &options);
+    let mut explained = explain_joints(joints, &estimates, |_| None, protocol, &options, &Threads);
     explained.remove(0).unwrap().unwrap()
 }
 

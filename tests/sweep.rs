@@ -5,10 +5,11 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use serde_json::Value;
-use tauscope::batch::sweep_joints;
+use tauscope::batch::Threads;
 use tauscope::delay::sweep::{Base, Factor, Grid, JointSweep};
 use tauscope::delay::{Method, Settings};
 use tauscope::numerics::LowPass;
+use tauscope::study::sweep_joints;
 use tauscope::synthetic::{
     DelayLaw, InputSpec, JointSpec, PlantSpec, Synthetic, simulate, write_log,
 };
@@ -30,7 +31,7 @@ fn swept(made: &Synthetic, methods: &[Method], passbands: &[Option<f64>]) -> Joi
     let low_pass = |hz: &Option<f64>| hz.map(|cutoff_hz| LowPass { cutoff_hz, order: 4 });
     let passbands = passbands.iter().map(low_pass).collect();
     let grid = Grid::new(bases, passbands, vec![10], vec![1, 2]);
-    let mut found = sweep_joints(&made.joints, &grid, 2.0, || ());
+    let mut found = sweep_joints(&made.joints, &grid, 2.0, || (), &Threads);
     found.remove(0).unwrap().sweep
 }
 

@@ -3,10 +3,9 @@
 use std::fmt;
 
 use anyhow::{Context as _, anyhow, bail};
-use tauscope::batch::{
-    Mode, Protocol, design_separation, estimate_joints, explain_joints, suspect_joints,
-};
+use tauscope::batch::Threads;
 use tauscope::delay::Settings;
+use tauscope::design::shortest;
 use tauscope::design::{
     Design, Hold, Limits, RandomSteps, Schedule, Suspects, TestRig, random_steps,
 };
@@ -14,6 +13,7 @@ use tauscope::effect::{Effect, by_id};
 use tauscope::experiment::Joint;
 use tauscope::explain::{Explanation, Options, Verdict};
 use tauscope::fit::{Horizon, Split};
+use tauscope::study::{Mode, Protocol, estimate_joints, explain_joints, suspect_joints};
 use tauscope::synthetic::scenario::{Noise, Scenario, Strength};
 use tauscope::synthetic::{InputSpec, PlantSpec, simulate};
 
@@ -121,14 +121,14 @@ pub(crate) fn examine(case: &Case) -> anyhow::Result<Outcome> {
     let largest = levels.iter().fold(0.0, |most: f64, level| most.max(level.abs()));
     let rehearsals = case.rehearsals;
     let limits = Limits { largest, hold_s: None, longest_s: 60.0, power: 0.95, rehearsals };
-    let mut design = design_separation(&suspects, &rig, &limits, |_| ())?;
+    let mut design = shortest(&suspects, &rig, &limits, &Threads, &|_| ())?;
     let mut explored_s = Vec::new();
     while !design.explores.is_empty() && explored_s.len() < EXPLORATIONS {
         explored_s.push(design.schedule.duration_s());
         // What is found out is known of the next one.
         let seed = 3000 + explored_s.len() as u64;
         log.trials.extend(played(&plant, &design.schedule, seed)?.trials);
-        design = design_separation(&self::suspects(&log, case)?, &rig, &limits, |_| ())?;
+        design = shortest(&self::suspects(&log, case)?, &rig, &limits, &Threads, &|_| ())?;
     }
     let after = explained(&played(&plant, &design.schedule, 1000)?, case)?;
     let duration_s = design.schedule.duration_s() + explored_s.iter().sum::<f64>();
@@ -210,10 +210,11 @@ const PROTOCOL: Protocol =
 /// Both effects as the log has them.
 fn suspects(log: &Joint, case: &Case) -> anyhow::Result<Suspects> {
     let joints = std::slice::from_ref(log);
-    let estimates = estimate_joints(joints, &Settings::default(), || ());
+    let estimates = estimate_joints(joints, &Settings::default(), || (), &Threads);
     let known = (None, 0.1);
     let all = Protocol { split: Some(Split::Time(1.0)), ..PROTOCOL };
-    let suspects = suspect_joints(joints, &estimates, |_| None, all, effects(case)?, known);
+    let suspects =
+        suspect_joints(joints, &estimates, |_| None, all, effects(case)?, known, &Threads);
     let first = suspects.into_iter().next().flatten();
     Ok(first.context("no suspects")??)
 }
@@ -248,9 +249,9 @@ fn by_chance(
 /// What the race between the two says.
 fn explained(log: &Joint, case: &Case) -> anyhow::Result<Explanation> {
     let joints = std::slice::from_ref(log);
-    let estimates = estimate_joints(joints, &Settings::default(), || ());
+    let estimates = estimate_joints(joints, &Settings::default(), || (), &Threads);
     let options = Options { effects: effects(case)?.to_vec(), ..Options::default() };
-    let explained = explain_joints(joints, &estimates, |_| None, PROTOCOL, &options);
+    let explained = explain_joints(joints, &estimates, |_| None, PROTOCOL, &options, &Threads);
     Ok(explained.into_iter().next().flatten().context("no model")??)
 }
 

@@ -1,14 +1,16 @@
 //! What explain and improve make of a record.
 
 use anyhow::Context as _;
-use tauscope::batch::{JointEstimate, Mode, Protocol};
-use tauscope::batch::{estimate_joints, explain_joints, improve_joints};
+use tauscope::batch::Threads;
 use tauscope::delay::{EstimateError, Settings};
 use tauscope::diagnosis::Comparison;
 use tauscope::diagnosis::failure::Feature;
 use tauscope::experiment::Joint;
 use tauscope::explain::{Change, Improvement, Options, Revision, Verdict};
 use tauscope::fit::{Horizon, Parameter};
+use tauscope::study::{
+    JointEstimate, Mode, Protocol, estimate_joints, explain_joints, improve_joints,
+};
 use tauscope::synthetic::{DelayLaw, JointSpec, simulate};
 
 use super::cases::{Case, Group};
@@ -73,7 +75,8 @@ impl Log {
         // Of the joint beside it only the verdict counts.
         let goes_on = |index: usize, _: &Revision| index == 0;
         let joints = &self.joints;
-        let found = improve_joints(joints, &self.estimates, |_| None, PROTOCOL, options, goes_on);
+        let found =
+            improve_joints(joints, &self.estimates, |_| None, PROTOCOL, options, goes_on, &Threads);
         let mut found = found.into_iter().flatten();
         let first = found.next().context("no joint")??;
         let other = found.next().transpose()?;
@@ -81,7 +84,8 @@ impl Log {
     }
 
     fn named(&self, options: &Options) -> anyhow::Result<Named> {
-        let explained = explain_joints(&self.joints, &self.estimates, |_| None, PROTOCOL, options);
+        let explained =
+            explain_joints(&self.joints, &self.estimates, |_| None, PROTOCOL, options, &Threads);
         let explained = explained.into_iter().flatten().next().context("no joint")??;
         let best = explained.ranking.first();
         Ok(Named {
@@ -96,7 +100,7 @@ impl Log {
 pub(crate) fn examine(case: &Case, options: &Options) -> anyhow::Result<Outcome> {
     let plant = case.plant()?;
     let joints = simulate(&plant)?.joints;
-    let estimates = estimate_joints(&joints, &Settings::default(), || ());
+    let estimates = estimate_joints(&joints, &Settings::default(), || (), &Threads);
     let log = Log { joints, estimates };
     let (improvement, other_adequate) = log.improved(options)?;
     let is_asked = matches!(case.group, Group::One | Group::Outside | Group::Nothing);

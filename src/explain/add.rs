@@ -1,7 +1,7 @@
 //! One effect more in a model, because a user says so.
 
 use super::comparison::MUCH_LESS;
-use super::eligible::range;
+use super::eligible::signal_range;
 use super::evidence::NoiseMemory;
 use super::revision::{AddError, Addition};
 use crate::diagnosis::{ErrorFigures, NEAR_NOISE, compare, floor_of};
@@ -21,7 +21,7 @@ pub fn add(
     check(&base.model, effect)?;
     let model = base.model.with(Component::neutral(effect));
     let levels = record.input_levels();
-    let range = range(record, &model, &levels);
+    let range = signal_range(record, &model, &levels);
     let by_law = fit(record, &model, &range)?;
     let measured = of_measured_delays(record, &base, &by_law, effect);
     let measured = measured.and_then(|model| fit(record, &model, &range).ok());

@@ -41,7 +41,7 @@ fn has(model: &JointModel, is_it: impl Fn(&Spec) -> bool) -> bool {
 }
 
 /// How large the signals of `record` are, for a model with about the gain of `model`.
-pub(super) fn range<'l>(
+pub(crate) fn signal_range<'l>(
     record: &FitRecord<'_>,
     model: &JointModel,
     levels: &'l [f64],

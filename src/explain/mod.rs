@@ -44,6 +44,7 @@ mod workers;
 pub use add::add;
 pub use candidate::Candidate;
 pub(crate) use candidate::{ALIKE, BEYOND_DOUBT, BEYOND_DOUBT_PERCENT};
+pub(crate) use eligible::signal_range;
 pub use improve::improve;
 pub use judge::explain;
 pub(crate) use judge::named;

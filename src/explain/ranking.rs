@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::comparison::compared;
-use super::eligible::{eligible, range};
+use super::eligible::{eligible, signal_range};
 use super::extension::Extension;
 use super::options::Options;
 use super::pairs::pairs;
@@ -44,7 +44,7 @@ pub(super) fn rank(
     workers: &impl Workers,
 ) -> Vec<Candidate> {
     let levels = record.input_levels();
-    let range = range(record, &base.model, &levels);
+    let range = signal_range(record, &base.model, &levels);
     let effects = eligible(record, &base.model, options);
     let search = Search { record, base, noise_floor, effects: &effects, range: &range };
     let [thinned, training] = [record.thinned(), record.for_training()];

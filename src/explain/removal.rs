@@ -1,6 +1,6 @@
 //! What can be removed from a model, or exchanged, after an effect was added.
 
-use super::eligible::{could_be_missing, is_due, range};
+use super::eligible::{could_be_missing, is_due, signal_range};
 use super::evidence::NoiseMemory;
 use super::extension::ids;
 use super::options::Options;
@@ -97,7 +97,7 @@ fn promising(
         return Vec::new();
     }
     let levels = record.input_levels();
-    let range = range(record, &whole.model, &levels);
+    let range = signal_range(record, &whole.model, &levels);
     let thinned = record.thinned();
     let Ok(of_whole) = survey(&thinned, &whole.model, &range) else { return Vec::new() };
     let with = |change: &Change| Some((*change, changed(&whole.model, *change)?));

@@ -7,7 +7,7 @@
 //! 1960 (with removal).
 
 use super::candidate::Candidate;
-use super::eligible::range;
+use super::eligible::signal_range;
 use super::extension::ids;
 use super::options::Options;
 use super::ranking::{Scope, rank};
@@ -119,6 +119,6 @@ fn first_of_pair(record: &FitRecord<'_>, found: &Candidate) -> Option<Step> {
     let [first, second] = found.effects.as_slice() else { return None };
     let model = found.fit.model.without(second);
     let levels = record.input_levels();
-    let fit = fit_to_compare(record, &model, &range(record, &model, &levels)).ok()?;
+    let fit = fit_to_compare(record, &model, &signal_range(record, &model, &levels)).ok()?;
     Some(Step::new(record, Change::Added(first), fit))
 }

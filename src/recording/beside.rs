@@ -3,9 +3,9 @@
 use super::layout::{SegmentLayout, TrialLayout};
 use super::palette::{self, Rgb};
 use super::recorded::{Beside, Recording};
-use crate::batch::JointEstimate;
 use crate::delay::{Decision, Method, Verdict};
 use crate::experiment::Joint;
+use crate::study::JointEstimate;
 use crate::wording::number;
 
 /// Another method on one joint.

@@ -1,8 +1,8 @@
 //! A joint with its estimate.
 
-use crate::batch::JointEstimate;
 use crate::delay::{AgainstState, Lag};
 use crate::experiment::Joint;
+use crate::study::JointEstimate;
 
 /// A joint as it was measured, and its delays.
 #[derive(Clone, Copy, Debug)]

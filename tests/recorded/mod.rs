@@ -2,9 +2,7 @@
 
 use std::io::Write;
 
-use tauscope::batch::{
-    JointEstimate, Mode, Protocol, compare_joints, estimate_joints, improve_joints,
-};
+use tauscope::batch::Threads;
 use tauscope::delay::Settings;
 use tauscope::diagnosis::Comparison;
 use tauscope::effect::find;
@@ -14,6 +12,9 @@ use tauscope::fit::Horizon;
 use tauscope::model::integrators;
 use tauscope::recording::{Beside, Detail, RecordError, Recording, write_recording};
 use tauscope::report::{ComparedJoint, EstimatedJoint, Finding, ImprovedJoint};
+use tauscope::study::{
+    JointEstimate, Mode, Protocol, compare_joints, estimate_joints, improve_joints,
+};
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate, write_log};
 
 use crate::read_back::ReadBack;
@@ -57,7 +58,7 @@ impl Recorded {
         let path = folder.path().join("log.csv");
         write_log(&made, std::fs::File::create(&path).unwrap()).unwrap();
         let experiment = Experiment::read(&[path], &ReadOptions::default());
-        let estimates = estimate_joints(&experiment.joints, &settings, || ());
+        let estimates = estimate_joints(&experiment.joints, &settings, || (), &Threads);
         let estimates = estimates.into_iter().map(Result::unwrap).collect();
         Self { experiment, estimates, settings }
     }
@@ -127,7 +128,7 @@ impl Recorded {
         };
         let horizon = Horizon::FreeRun;
         let protocol = Protocol { mode: Mode::AsItIs, split: None, horizon };
-        let compared = compare_joints(joints, &estimates, model, protocol);
+        let compared = compare_joints(joints, &estimates, model, protocol, &Threads);
         compared.into_iter().map(|result| result.unwrap().unwrap()).collect()
     }
 
@@ -140,7 +141,8 @@ impl Recorded {
         let effects = ["dead_band", "actuator_lag", "thermal_drift"].map(|id| find(id).unwrap());
         let options = Options { effects: effects.to_vec(), max_effects: 3 };
         let start = |_: &Joint| None;
-        let improved = improve_joints(joints, &estimates, start, protocol, &options, |_, _| true);
+        let improved =
+            improve_joints(joints, &estimates, start, protocol, &options, |_, _| true, &Threads);
         improved.into_iter().map(|result| result.unwrap().unwrap()).collect()
     }
 

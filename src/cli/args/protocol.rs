@@ -2,8 +2,8 @@
 
 use clap::Args;
 
-use crate::batch::{Mode, Protocol};
 use crate::fit::{Horizon, Split};
+use crate::study::{Mode, Protocol};
 
 /// By what rules models are judged.
 #[derive(Args, Debug)]

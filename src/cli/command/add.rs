@@ -1,6 +1,6 @@
 //! `tauscope add`: one effect more in a model.
 
-use crate::batch::{Mode, add_to_joints};
+use crate::batch::Threads;
 use crate::delay::Settings;
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
@@ -9,6 +9,7 @@ use crate::fit::Horizon;
 use crate::model::{ModelFile, Revision};
 use crate::report::{AddJson, AddedJoint, ComparedJoint, Finding, ImprovedJoint};
 use crate::report::{add_text, gone};
+use crate::study::{Mode, add_to_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
@@ -53,7 +54,14 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
     let study = Study::of(session, Settings::default(), |begun| {
         let bar = begun.bar("fitting");
-        add_to_joints(begun.joints, begun.estimates, starts, protocol.watched(&bar), effect)
+        add_to_joints(
+            begun.joints,
+            begun.estimates,
+            starts,
+            protocol.watched(&bar),
+            effect,
+            &Threads,
+        )
     })?;
     note_missing(&file, &study.experiment().joints, study.verbosity());
     let name = name_of(Some(target));

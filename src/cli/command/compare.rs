@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
-use crate::batch::{Mode, compare_joints};
+use crate::batch::Threads;
 use crate::delay::Settings;
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::fit::{FitError, Horizon};
 use crate::model::{JointModel, ModelFile};
 use crate::report::{CompareJson, ComparedJoint, compare_table};
+use crate::study::{Mode, compare_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{DataArgs, ProtocolArgs, ResultArgs};
@@ -64,6 +65,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
                 estimates,
                 starts,
                 args.protocol.with(named.mode(args), Horizon::FreeRun).watched(&bar),
+                &Threads,
             )
         };
         models.iter().map(one).collect::<Vec<_>>()

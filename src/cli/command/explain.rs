@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::batch::{Mode, OfJoints, compare_joints, explain_joints};
+use crate::batch::Threads;
 use crate::delay::Settings;
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
@@ -10,6 +10,7 @@ use crate::explain::{Change, Explanation, Options, Revision};
 use crate::fit::Horizon;
 use crate::model::ModelFile;
 use crate::report::{ComparedJoint, ExplainJson, Finding, ImprovedJoint, explain_text};
+use crate::study::{Mode, OfJoints, compare_joints, explain_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
@@ -57,7 +58,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
     let study = Study::of(session, Settings::default(), |begun| {
         let (joints, estimates, bar) = (begun.joints, begun.estimates, begun.bar("explaining"));
-        let explained = explain_joints(joints, estimates, starts, protocol.watched(&bar), &options);
+        let explained =
+            explain_joints(joints, estimates, starts, protocol.watched(&bar), &options, &Threads);
         let bests = args.output.is_recorded().then(|| args.bests(joints, estimates, &explained));
         (explained, bests.unwrap_or_default())
     })?;
@@ -128,6 +130,7 @@ impl Args {
             estimates,
             model,
             self.protocol.with(Mode::AsItIs, Horizon::Steps),
+            &Threads,
         );
         let named = |(joint, compared): (&Joint, Option<Result<Comparison, _>>)| {
             Some((format!("with {}", best(joint)?.name()), compared?.ok()?))

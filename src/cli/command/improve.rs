@@ -2,13 +2,14 @@
 
 use std::sync::Mutex;
 
-use crate::batch::{Mode, improve_joints};
+use crate::batch::Threads;
 use crate::delay::Settings;
 use crate::experiment::Joint;
 use crate::explain::{Improvement, MAX_EFFECTS, Options, Revision as Step, Verdict};
 use crate::fit::Horizon;
 use crate::model::ModelFile;
 use crate::report::{ImproveJson, improve_text};
+use crate::study::{Mode, improve_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
@@ -95,8 +96,15 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
             stage.show(index, revision);
             progress.done(index, revision)
         };
-        let improved =
-            improve_joints(joints, estimates, starts, protocol.watched(&bar), &options, done);
+        let improved = improve_joints(
+            joints,
+            estimates,
+            starts,
+            protocol.watched(&bar),
+            &options,
+            done,
+            &Threads,
+        );
         (improved, progress.stopped())
     })?;
     let joints = &study.experiment().joints;

@@ -5,7 +5,7 @@ use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use crate::batch::{Mode, OfJoints, explain_joints, improve_joints};
+use crate::batch::Threads;
 use crate::effect::Effect;
 use crate::experiment::Joint;
 use crate::explain::{Change, Explanation, Improvement, MAX_EFFECTS, Options, Revision};
@@ -14,6 +14,7 @@ use crate::model::ModelFile;
 use crate::report::{
     Document, EstimatedJoint, ImprovedJoint, RecordingFile, Report, ReportJson, report_text,
 };
+use crate::study::{Mode, OfJoints, explain_joints, improve_joints};
 use anyhow::{Context as _, bail};
 use clap::Args as ClapArgs;
 
@@ -136,12 +137,14 @@ impl ModelArgs {
             let progress = Progress::new(file, joints, begun.verbosity(), None);
             let done = |index, revision: &Revision| progress.done(index, revision);
             let protocol = protocol.watched(&bar);
-            return Some(improve_joints(joints, estimates, starts, protocol, &options, done));
+            return Some(improve_joints(
+                joints, estimates, starts, protocol, &options, done, &Threads,
+            ));
         }
         self.model.as_ref()?;
         let bar = begun.bar("explaining");
         let protocol = protocol.watched(&bar);
-        let explained = explain_joints(joints, estimates, starts, protocol, &options);
+        let explained = explain_joints(joints, estimates, starts, protocol, &options, &Threads);
         let one = |found: Option<Result<_, _>>| Some(found?.map(as_it_is));
         Some(explained.into_iter().map(one).collect())
     }

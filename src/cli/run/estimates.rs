@@ -1,10 +1,10 @@
 //! Delays of joints: those that have one, and what is said of them.
 
-use crate::batch::JointEstimate;
 use crate::cli::failure::{read_failures, said};
 use crate::delay::{Condition, EstimateError};
 use crate::experiment::{Experiment, Trial};
 use crate::report::{EstimatedJoint, JointSummary};
+use crate::study::JointEstimate;
 
 /// The delays of each joint.
 pub(crate) type Estimates = Vec<Result<JointEstimate, EstimateError>>;

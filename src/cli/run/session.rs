@@ -3,13 +3,14 @@
 use serde::Serialize;
 
 use super::estimates::Estimates;
-use crate::batch::{estimate_joints, estimate_joints_with};
+use crate::batch::Threads;
 use crate::cli::args::{DataArgs, RunArgs};
 use crate::cli::console::{Bar, Verbosity, message, warn};
 use crate::cli::exit::Completion;
 use crate::cli::viewer::Stream;
 use crate::delay::{Automatic, Settings};
 use crate::experiment::Experiment;
+use crate::study::{estimate_joints, estimate_joints_with};
 
 /// Logs that were read, and where what becomes of them goes.
 pub(crate) struct Session<'a> {
@@ -37,7 +38,7 @@ impl<'a> Session<'a> {
     /// The delays of each joint.
     pub(crate) fn estimates(&self, settings: &Settings) -> Estimates {
         let bar = self.estimating(1);
-        estimate_joints(&self.experiment.joints, settings, || bar.step())
+        estimate_joints(&self.experiment.joints, settings, || bar.step(), &Threads)
     }
 
     /// The delays of each joint with each of the settings, of which some are chosen for each
@@ -49,7 +50,8 @@ impl<'a> Session<'a> {
     ) -> Vec<Estimates> {
         let bar = self.estimating(settings.len());
         let joints = &self.experiment.joints;
-        let one = |settings| estimate_joints_with(joints, settings, automatic, || bar.step());
+        let one =
+            |settings| estimate_joints_with(joints, settings, automatic, || bar.step(), &Threads);
         settings.iter().map(one).collect()
     }
 

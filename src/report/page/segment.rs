@@ -196,8 +196,9 @@ fn rounded_time(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::batch::estimate_joints;
+    use crate::batch::Threads;
     use crate::delay::Settings;
+    use crate::study::estimate_joints;
     use crate::units::SamplePeriod;
 
     /// Steps of a joint whose noise grows with the time.
@@ -218,7 +219,7 @@ mod tests {
 
     fn chosen(settings: &Settings) -> Vec<(&'static str, usize)> {
         let joint = joint();
-        let estimate = estimate_joints(std::slice::from_ref(&joint), settings, || ());
+        let estimate = estimate_joints(std::slice::from_ref(&joint), settings, || (), &Threads);
         let estimate = estimate.into_iter().next().unwrap().unwrap();
         let estimated = EstimatedJoint { joint: &joint, estimate: &estimate };
         let choices = choices(estimated);

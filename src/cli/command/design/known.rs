@@ -1,11 +1,12 @@
 //! What is known before an experiment is designed: logs, models, where it is played.
 
-use crate::batch::{Mode, Protocol, estimate_joints};
+use crate::batch::Threads;
 use crate::delay::Settings;
 use crate::design::TestRig;
 use crate::experiment::{Experiment, Joint, ReadOptions, Trial, expand_folders};
 use crate::fit::{Horizon, Split};
 use crate::model::{JointModel, ModelFile};
+use crate::study::{Mode, Protocol, estimate_joints};
 use crate::units::SamplePeriod;
 use anyhow::{Context as _, anyhow, bail};
 
@@ -63,7 +64,7 @@ impl Known {
     /// All joints of the logs and their delays, where there are logs.
     pub(crate) fn estimated(&self) -> Option<(&[Joint], Estimates)> {
         let joints = self.experiment.as_ref()?.joints.as_slice();
-        Some((joints, estimate_joints(joints, &Settings::default(), || ())))
+        Some((joints, estimate_joints(joints, &Settings::default(), || (), &Threads)))
     }
 
     /// Where `name` is played, within `range`.

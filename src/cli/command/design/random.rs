@@ -1,12 +1,13 @@
 //! Random steps for each joint.
 
-use crate::batch::{OfJoints, know_joints};
+use crate::batch::Threads;
 use crate::design::{
     Band, RandomSteps, TestRig, Uncertain, default_hold_s, default_largest, default_levels,
     random_steps, response_s, resting_band,
 };
 use crate::experiment::Joint;
 use crate::report::DesignedJoint;
+use crate::study::{OfJoints, know_joints};
 use anyhow::{anyhow, bail};
 
 use super::args::Args;
@@ -39,7 +40,7 @@ pub(crate) fn designed(args: &Args, known: &Known) -> Vec<anyhow::Result<Designe
 fn uncertainties(args: &Args, known: &Known) -> OfJoints<Uncertain> {
     let Some((joints, estimates)) = known.estimated() else { return Vec::new() };
     let models = |joint: &Joint| known.model(&joint.name).cloned();
-    know_joints(joints, &estimates, models, PROTOCOL, args.uncertainty)
+    know_joints(joints, &estimates, models, PROTOCOL, args.uncertainty, &Threads)
 }
 
 /// The input of one joint.

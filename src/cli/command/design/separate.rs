@@ -1,6 +1,7 @@
 //! The shortest input that tells two effects apart, for each joint.
 
-use crate::batch::{design_separation, suspect_joints};
+use crate::batch::Threads;
+use crate::design::shortest;
 use crate::design::{
     Limits, RandomSteps, Suspects, TestRig, default_hold_s, default_largest, default_levels,
 };
@@ -8,6 +9,7 @@ use crate::effect::Effect;
 use crate::experiment::Joint;
 use crate::model::JointModel;
 use crate::report::{DesignedJoint, Discrimination};
+use crate::study::suspect_joints;
 use anyhow::{Context as _, anyhow, bail};
 
 use super::args::Args;
@@ -34,7 +36,7 @@ pub(crate) fn designed(
         Some((joints, estimates)) => {
             let base = |joint: &Joint| Some(without(known.model(&joint.name)?, effects));
             let known = (args.noise, args.uncertainty);
-            suspect_joints(joints, &estimates, base, PROTOCOL, effects, known)
+            suspect_joints(joints, &estimates, base, PROTOCOL, effects, known, &Threads)
         }
     };
     let mut suspected = suspected.into_iter();
@@ -152,7 +154,7 @@ fn distinguish(
             "designing for {name}: inputs of {seconds:.1} s, of {longest_s} s at most"
         ));
     };
-    let design = design_separation(suspects, &rig, &limits, tried)?;
+    let design = shortest(suspects, &rig, &limits, &Threads, &tried)?;
     let schedule = design.schedule.clone();
     let prediction = Some(rig.prediction(one, &schedule));
     let other = rig.prediction(other, &schedule);

@@ -6,10 +6,11 @@ use std::io::{self, Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::batch::{JointEstimate, estimate_joints};
+use crate::batch::Threads;
 use crate::delay::{Settings, check_growing, final_part};
 use crate::experiment::{Experiment, GrowingLog, Joint};
 use crate::report::{DecisionRow, EstimatedJoint, decision_rows, step_line};
+use crate::study::{JointEstimate, estimate_joints};
 use anyhow::{Context as _, bail};
 use serde::Serialize;
 
@@ -213,7 +214,7 @@ impl Reported {
     ) -> anyhow::Result<()> {
         let experiment = log.experiment()?;
         self.say_failures(args, &experiment, log);
-        let estimates = estimate_joints(&experiment.joints, settings, || ());
+        let estimates = estimate_joints(&experiment.joints, settings, || (), &Threads);
         let pairs = experiment.joints.iter().zip(&estimates);
         let pairs = pairs.filter_map(|(joint, estimate)| Some((joint, estimate.as_ref().ok()?)));
         let settled: Vec<(Joint, JointEstimate)> = pairs

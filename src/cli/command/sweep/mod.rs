@@ -4,11 +4,12 @@ mod values;
 
 use std::path::{Path, PathBuf};
 
-use crate::batch::{SweptJoint, sweep_joints};
+use crate::batch::Threads;
 use crate::delay::sweep::{Base, Grid};
 use crate::delay::{EstimateError, Method};
 use crate::experiment::Experiment;
 use crate::report::{ReportedSweep, StepsShown, SweepJson, sweep_text};
+use crate::study::{SweptJoint, sweep_joints};
 use anyhow::bail;
 use clap::Args as ClapArgs;
 
@@ -87,7 +88,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let joints = &experiment.joints;
     let runs = (joints.len() * grid.runs().len()) as u64;
     let bar = Bar::new(verbosity, "sweeping", "runs", runs);
-    let work = || sweep_joints(joints, &grid, args.tolerance, || bar.step());
+    let work = || sweep_joints(joints, &grid, args.tolerance, || bar.step(), &Threads);
     let results = session.in_threads(work)?;
     drop(bar);
     let failures = failures(experiment, &grid, &results);

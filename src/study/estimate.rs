@@ -1,0 +1,86 @@
+//! The delays of all joints: which settings are chosen for each, and when a joint fails.
+
+use crate::delay::{Automatic, Chosen, EstimateError, Estimator, Settings, TrialEstimate, choose};
+use crate::experiment::{Joint, Trial};
+use crate::explain::Workers;
+
+/// The delays of one joint in all its trials.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointEstimate {
+    /// One result per trial of the joint, in the same order.
+    pub trials: Vec<Result<TrialEstimate, EstimateError>>,
+    /// The settings that it was made with.
+    pub settings: Settings,
+    /// Which of them were chosen from the record, and from what.
+    pub chosen: Option<Chosen>,
+}
+
+impl JointEstimate {
+    /// The trials that have an estimate.
+    pub fn estimated(&self) -> impl Iterator<Item = &TrialEstimate> + '_ {
+        self.trials.iter().filter_map(|trial| trial.as_ref().ok())
+    }
+
+    /// Why the trials that have none do not.
+    pub fn failed(&self) -> impl Iterator<Item = &EstimateError> + '_ {
+        self.trials.iter().filter_map(|trial| trial.as_ref().err())
+    }
+}
+
+/// Estimates every trial of every joint; `done` is called after each of them.
+///
+/// A joint fails when all its trials do, with the first trial's error, or when they are all
+/// too short for two lines.
+pub fn estimate_joints(
+    joints: &[Joint],
+    settings: &Settings,
+    done: impl Fn() + Sync,
+    workers: &impl Workers,
+) -> Vec<Result<JointEstimate, EstimateError>> {
+    estimate_joints_with(joints, settings, Automatic::default(), done, workers)
+}
+
+/// Estimates every trial of every joint with settings of which some are chosen for each joint
+/// from its own record: see [`choose`].
+pub fn estimate_joints_with(
+    joints: &[Joint],
+    settings: &Settings,
+    automatic: Automatic,
+    done: impl Fn() + Sync,
+    workers: &impl Workers,
+) -> Vec<Result<JointEstimate, EstimateError>> {
+    let one_joint = |joint: &Joint| {
+        if !automatic.any() {
+            return estimate_one(joint, settings, &done, workers);
+        }
+        settings.check()?;
+        let (settings, chosen) = choose(&joint.trials, settings, automatic);
+        let estimate = estimate_one(joint, &settings, &done, workers)?;
+        Ok(JointEstimate { chosen: Some(chosen), ..estimate })
+    };
+    workers.map(joints, one_joint)
+}
+
+pub(super) fn estimate_one(
+    joint: &Joint,
+    settings: &Settings,
+    done: &(impl Fn() + Sync),
+    workers: &impl Workers,
+) -> Result<JointEstimate, EstimateError> {
+    let needed = settings.beta.saturating_mul(2);
+    let longest = joint.trials.iter().map(Trial::len).max();
+    if let Some(samples) = longest.filter(|samples| *samples < needed) {
+        return Err(EstimateError::TooFewSamples { samples, needed });
+    }
+    let estimator = Estimator::of(&joint.trials, settings)?;
+    let one_trial = |trial: &Trial| {
+        let estimate = estimator.estimate(trial);
+        done();
+        estimate
+    };
+    let trials = workers.map(&joint.trials, one_trial);
+    match trials.first() {
+        Some(Err(first)) if trials.iter().all(Result::is_err) => Err(first.clone()),
+        _ => Ok(JointEstimate { trials, settings: settings.clone(), chosen: None }),
+    }
+}

@@ -1,0 +1,24 @@
+//! All joints of an experiment: what is done with each, by any [`Workers`](crate::explain::Workers).
+//!
+//! - [`estimate_joints`]: the delays of every joint, with settings that may be chosen from its
+//!   record
+//! - [`sweep_joints`]: the delays with every setting of a grid
+//! - [`compare_joints`], [`explain_joints`], [`add_to_joints`], [`improve_joints`]: the model of
+//!   every joint, under a [`Protocol`]
+//! - [`know_joints`], [`suspect_joints`]: what an experiment is designed from
+//!
+//! Results come back in the order of the joints; a joint that fails does not stop the others.
+
+mod estimate;
+mod models;
+mod protocol;
+mod start;
+mod sweep;
+
+pub use estimate::{JointEstimate, estimate_joints, estimate_joints_with};
+pub use models::{
+    OfJoints, add_to_joints, compare_joints, explain_joints, improve_joints, know_joints,
+    suspect_joints,
+};
+pub use protocol::{Mode, Protocol, Watch, Watched};
+pub use sweep::{SweptJoint, sweep_joints};

@@ -1,0 +1,150 @@
+//! The model of every joint: compared, explained, improved, or known for a design.
+
+use super::estimate::JointEstimate;
+use super::protocol::{Mode, Protocol, Watched};
+use super::start::{as_it_is, best_fit, starts, typical_delay_s};
+use crate::delay::EstimateError;
+use crate::design::{Suspects, SuspectsError, Uncertain};
+use crate::diagnosis::{Comparison, compare, compare_unfitted, floor_of};
+use crate::effect::Effect;
+use crate::experiment::{Joint, activity};
+use crate::explain::{AddError, Addition, Explanation, Improvement, Options, Revision, Workers};
+use crate::explain::{add, explain, improve};
+use crate::fit::{Fit, FitError, FitRecord, Split};
+use crate::model::JointModel;
+
+/// What came of each joint: `None` where it has no model.
+pub type OfJoints<T> = Vec<Option<Result<T, FitError>>>;
+
+/// Compares each joint with its model: `None` where it has none.
+///
+/// The other `joints` are the ones that share the supply with a joint: see [`activity`].
+/// `models` gives the model of a joint; it is not asked for plain integrators.
+pub fn compare_joints<'a>(
+    joints: &[Joint],
+    estimates: &[Result<JointEstimate, EstimateError>],
+    models: impl Fn(&Joint) -> Option<JointModel> + Sync,
+    protocol: impl Into<Watched<'a>>,
+    workers: &impl Workers,
+) -> OfJoints<Comparison> {
+    let watched = protocol.into();
+    if watched.protocol.mode == Mode::AsItIs {
+        let compared = |_: usize, record: &FitRecord<'_>, model| compare_unfitted(record, model);
+        return for_each_joint((joints, estimates), models, watched, workers, (as_it_is, compared));
+    }
+    let compared = |_: usize, record: &FitRecord<'_>, fit| compare(record, fit);
+    for_each_joint((joints, estimates), models, watched, workers, (best_fit, compared))
+}
+
+/// Says what each joint's model lacks: see [`explain`].
+pub fn explain_joints<'a>(
+    joints: &[Joint],
+    estimates: &[Result<JointEstimate, EstimateError>],
+    models: impl Fn(&Joint) -> Option<JointModel> + Sync,
+    protocol: impl Into<Watched<'a>>,
+    options: &Options,
+    workers: &impl Workers,
+) -> OfJoints<Explanation> {
+    let watched = protocol.into();
+    let work = |_: usize, record: &FitRecord<'_>, fit| {
+        explain(record, fit, options, &watched.workers(workers))
+    };
+    for_each_joint((joints, estimates), models, watched, workers, (best_fit, work))
+}
+
+/// Adds `effect` to each joint's model: see [`add`].
+pub fn add_to_joints<'a>(
+    joints: &[Joint],
+    estimates: &[Result<JointEstimate, EstimateError>],
+    models: impl Fn(&Joint) -> Option<JointModel> + Sync,
+    protocol: impl Into<Watched<'a>>,
+    effect: &'static dyn Effect,
+    workers: &impl Workers,
+) -> Vec<Option<Result<Addition, AddError>>> {
+    let work = |_: usize, record: &FitRecord<'_>, fit: Fit| add(record, fit, effect);
+    let added =
+        for_each_joint((joints, estimates), models, protocol.into(), workers, (best_fit, work));
+    added.into_iter().map(|result| Some(result?.map_err(AddError::from).flatten())).collect()
+}
+
+/// Adds to each joint's model what it lacks: see [`improve`]. `done` is called with the
+/// index of the joint and each revision; where it says no, the joint is left as it is.
+pub fn improve_joints<'a>(
+    joints: &[Joint],
+    estimates: &[Result<JointEstimate, EstimateError>],
+    models: impl Fn(&Joint) -> Option<JointModel> + Sync,
+    protocol: impl Into<Watched<'a>>,
+    options: &Options,
+    done: impl Fn(usize, &Revision) -> bool + Sync,
+    workers: &impl Workers,
+) -> OfJoints<Improvement> {
+    let watched = protocol.into();
+    let work = |index, record: &FitRecord<'_>, fit| {
+        improve(record, fit, options, &watched.workers(workers), |revision| done(index, revision))
+    };
+    for_each_joint((joints, estimates), models, watched, workers, (best_fit, work))
+}
+
+/// Fits each joint's model and says how well its log knows the numbers; what it does not
+/// determine is off by `share` of its value.
+pub fn know_joints(
+    joints: &[Joint],
+    estimates: &[Result<JointEstimate, EstimateError>],
+    models: impl Fn(&Joint) -> Option<JointModel> + Sync,
+    protocol: Protocol,
+    share: f64,
+    workers: &impl Workers,
+) -> OfJoints<Uncertain> {
+    let work = |_: usize, record: &FitRecord<'_>, fit: Fit| {
+        let noise = floor_of(record, &fit).unwrap_or(0.0).max(f64::MIN_POSITIVE);
+        Uncertain::of_fit(record, &fit, noise, share)
+    };
+    for_each_joint((joints, estimates), models, protocol.into(), workers, (best_fit, work))
+}
+
+/// Fits two effects to each joint, each beside its model: see [`Suspects::of_record`].
+pub fn suspect_joints(
+    joints: &[Joint],
+    estimates: &[Result<JointEstimate, EstimateError>],
+    models: impl Fn(&Joint) -> Option<JointModel> + Sync,
+    protocol: Protocol,
+    effects: [&'static dyn Effect; 2],
+    (noise, share): (Option<f64>, f64),
+    workers: &impl Workers,
+) -> Vec<Option<Result<Suspects, SuspectsError>>> {
+    let work = |_: usize, record: &FitRecord<'_>, fit: Fit| {
+        Suspects::of_record(record, &fit.model, effects, noise, share)
+    };
+    let suspects =
+        for_each_joint((joints, estimates), models, protocol.into(), workers, (best_fit, work));
+    let flat = |of: Result<Result<_, _>, FitError>| of.map_err(SuspectsError::from).flatten();
+    suspects.into_iter().map(|result| result.map(flat)).collect()
+}
+
+/// Prepares the model of each joint from its starts, and does `work` with what comes of it.
+fn for_each_joint<P, T: Send>(
+    (joints, estimates): (&[Joint], &[Result<JointEstimate, EstimateError>]),
+    models: impl Fn(&Joint) -> Option<JointModel> + Sync,
+    Watched { protocol, watch }: Watched<'_>,
+    workers: &impl Workers,
+    (prepare, work): (
+        impl Fn(&FitRecord<'_>, &[JointModel]) -> Option<Result<P, FitError>> + Sync,
+        impl Fn(usize, &FitRecord<'_>, P) -> T + Sync,
+    ),
+) -> OfJoints<T> {
+    let Protocol { mode, split, horizon } = protocol;
+    watch.more(joints.len());
+    let delays_s: Vec<f64> = joints.iter().zip(estimates).map(typical_delay_s).collect();
+    let pairs: Vec<_> = joints.iter().zip(estimates).enumerate().collect();
+    let one_joint = |(index, (joint, estimate)): &(usize, (&Joint, &Result<JointEstimate, _>))| {
+        let estimated: Vec<_> = estimate.iter().flat_map(JointEstimate::estimated).collect();
+        let split = split.unwrap_or_else(|| Split::of(joint));
+        let others = activity(joints, *index, &delays_s);
+        let record = FitRecord::new(joint, split, horizon).with_others(others);
+        let starts = starts(mode, joint, &estimated, &models)?;
+        let prepared = prepare(&record, &starts);
+        watch.done();
+        Some(prepared?.map(|prepared| work(*index, &record, prepared)))
+    };
+    workers.map(&pairs, one_joint)
+}
