@@ -8,13 +8,11 @@
 //! λ ≈ |d − J (JᵀJ)⁻¹ Jᵀ d|² / σ²
 //! ```
 
-use nalgebra::{DMatrix, DVector};
-
 use super::predict::TestRig;
 use super::schedule::Schedule;
 use super::suspects::Suspects;
 use crate::model::JointModel;
-use crate::numerics::{Basis, rank};
+use crate::numerics::{Basis, dot, rank};
 
 /// Samples of a window between steps of the input, at most: as of a fit.
 const LONGEST_WINDOW: usize = 200;
@@ -68,15 +66,13 @@ impl LinearScreen {
         noise: f64,
     ) -> Vec<f64> {
         let windows = windows(schedule, count);
-        let column = |values: &Vec<f64>| DVector::from_vec(centred(values, &windows));
-        let mut slopes = DMatrix::zeros(column(&self.here).len(), self.slopes.len());
-        for (index, slope) in self.slopes.iter().enumerate() {
-            slopes.set_column(index, &column(slope));
-        }
-        let basis = Basis::of(slopes, rank::COARSELY_DIFFERENCED);
+        let column = |values: &Vec<f64>| centred(values, &windows);
+        let slopes: Vec<f64> = self.slopes.iter().flat_map(column).collect();
+        let length = column(&self.here).len();
+        let basis = Basis::of(&slopes, length, rank::COARSELY_DIFFERENCED);
         let residual = |difference| basis.residual(&column(difference));
         let differences = self.differences.iter().map(residual);
-        differences.map(|residual| residual.norm_squared() / (noise * noise)).collect()
+        differences.map(|residual| dot(&residual, &residual) / (noise * noise)).collect()
     }
 }
 

@@ -58,8 +58,8 @@ impl<'r> Score<'r> {
         let search = Search::new(&record, model, &space, start);
         let jacobian = search.problem.jacobian()?;
         let raw = record.training(&record.evaluate(model).residuals);
-        let slopes = Basis::of(jacobian, rank::DIFFERENCED);
-        let unit = unit(slopes.residual(&raw), raw.norm())?;
+        let slopes = Basis::of(jacobian.as_slice(), jacobian.nrows(), rank::DIFFERENCED);
+        let unit = unit(residual(&slopes, &raw), raw.norm())?;
         Some(Self { record, raw, slopes, unit })
     }
 
@@ -71,7 +71,7 @@ impl<'r> Score<'r> {
             let residuals = self.record.evaluate(&model.with_values(&start)).residuals;
             let change = &self.raw - self.record.training(&residuals);
             let size = change.norm();
-            let direction = unit(self.slopes.residual(&change), size)?;
+            let direction = unit(residual(&self.slopes, &change), size)?;
             let share = direction.dot(&self.unit);
             (share > 0.0).then_some((direction, share))
         };
@@ -102,6 +102,11 @@ fn share_of_two(one: f64, two: f64, cosine: f64) -> f64 {
         return 0.0;
     }
     (one * one + two * two - 2.0 * cosine * one * two) / (1.0 - cosine * cosine)
+}
+
+/// What of a change of the residual no parameter of the model makes.
+fn residual(slopes: &Basis, change: &DVector<f64>) -> DVector<f64> {
+    DVector::from_vec(slopes.residual(change.as_slice()))
 }
 
 /// The residual `vector` with length one; `None` where it is dependent: next to none of the
