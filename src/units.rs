@@ -23,7 +23,7 @@ impl SamplePeriod {
         self.0
     }
 
-    /// Half the sample rate in Hz: nothing above it can be told apart.
+    /// Half the sample rate in Hz: nothing above it can be distinguished.
     pub fn nyquist_hz(self) -> f64 {
         0.5 / self.0
     }

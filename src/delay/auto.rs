@@ -88,7 +88,7 @@ pub struct Grounds {
 pub struct Chosen {
     /// Which settings.
     pub automatic: Automatic,
-    /// What the record told.
+    /// What the record showed.
     pub grounds: Grounds,
 }
 
@@ -228,7 +228,7 @@ impl<'a> Record<'a> {
             (left.iter().map(|value| value * value).sum::<f64>(), rows as f64)
         };
         let all = self.quiet.iter().map(whitened).filter(|(_, rows)| *rows > 0.0);
-        // The median, so that what is left of a slow lag counts for nothing.
+        // The median, so that the rest of a slow lag counts for nothing.
         let powers: Vec<f64> = all.map(|(power, rows)| power / rows).collect();
         median(&powers).unwrap_or(0.0)
     }
@@ -248,7 +248,7 @@ impl<'a> Record<'a> {
         }
     }
 
-    /// A low-pass that ends where the motion does; `usual` where that cannot be told.
+    /// A low-pass that ends where the motion does; `usual` where that cannot be determined.
     fn low_pass(&self, usual: Option<LowPass>, motion_ends_hz: Option<f64>) -> Option<LowPass> {
         /// The part of Nyquist's frequency from which on a low-pass has nothing to take.
         const TOP: f64 = 0.9;
@@ -261,7 +261,7 @@ impl<'a> Record<'a> {
         (cutoff_hz < TOP * 0.5 / self.period_s).then_some(LowPass { cutoff_hz, order })
     }
 
-    /// The distance at which two breakpoints can be told apart, samples.
+    /// The distance at which two breakpoints can be distinguished, samples.
     fn blur(&self) -> usize {
         /// The greatest that is chosen: half of the paper's α.
         const MOST: usize = 5;
@@ -297,7 +297,7 @@ fn gain(noise: &NoiseModel, omega: f64) -> f64 {
 
 /// What a line leaves of `values`, and its slope; `None` for too few of them.
 fn without_line(values: &[f64]) -> Option<(f64, Vec<f64>)> {
-    /// Samples from which on noise can be told from a line.
+    /// Samples from which on noise can be distinguished from a line.
     const FEWEST: usize = 8;
     let offset = values.first().filter(|_| values.len() >= FEWEST)?;
     let mut line = RunningLine::default();

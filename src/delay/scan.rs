@@ -1,4 +1,4 @@
-//! One delay for a whole record, in whole samples, where no single step can be told.
+//! One delay for a whole record, in whole samples, where no single step can be estimated.
 //!
 //! For every delay `d` the change of the output is regressed on its own past and on one to
 //! three values of the input so long before,
@@ -9,7 +9,7 @@
 //!
 //! over the same samples for all `d`. With `b′ = 0` the joint integrates; without, it follows
 //! a lag, and noise may wander. A delay that is too short by one explains as much, with a first
-//! coefficient of nothing: Schwarz's penalty for each coefficient tells the two apart. A joint
+//! coefficient of nothing: Schwarz's penalty for each coefficient distinguishes the two. A joint
 //! that follows in more than one way may have its least elsewhere: it is a value to start from.
 //!
 //! # References
@@ -32,7 +32,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// The squared error of every delay from 0 to `longest` samples, larger by Schwarz's penalty
 /// for the values of the input that it takes; empty for a record that is too short. The least
-/// one tells the delay.
+/// one is the delay.
 pub fn delay_scan(input: &[f64], output: &[f64], longest: usize) -> Vec<f64> {
     let first = longest + INPUTS;
     let end = input.len().min(output.len()).min(first + ENOUGH);
@@ -112,7 +112,7 @@ mod tests {
     fn a_delay_is_found_behind_a_gain_a_lag_and_an_integrator() {
         let mut white = noise(9);
         let input: Vec<f64> = (0..300).map(|_| white()).collect();
-        // An input that remembers itself tells less well where the output comes from.
+        // An input that remembers itself shows less well where the output comes from.
         for input in [behind(&input, 0.9), input] {
             for level in [0.0, 0.1] {
                 let follows = follows(&input, level);

@@ -69,7 +69,7 @@ impl Candidate {
 
 impl Candidates {
     /// Fits every pair of lines to `values`, the samples from `first_sample` on, in rows
-    /// of `beta`; what is left over behind the last whole row is dropped.
+    /// of `beta`; what remains behind the last whole row is dropped.
     ///
     /// Time and memory grow with the number of samples and candidates, not their product.
     pub fn search(values: &[f64], first_sample: usize, beta: usize) -> Self {

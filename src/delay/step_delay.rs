@@ -18,7 +18,7 @@ pub struct StepDelay {
 }
 
 /// The dead time of every change of the input in all `trials` of a joint, by the best
-/// method there is; none where nothing happened or it cannot be told.
+/// method there is; none where nothing happened or it cannot be determined.
 ///
 /// # Errors
 /// [`EstimateError`], when a trial cannot be estimated.

@@ -86,7 +86,7 @@ fn likely(
     let mut random = ChaCha8Rng::seed_from_u64(0);
     let samples: usize = record.joint().trials.iter().map(Trial::len).sum();
     let least = cost(record, &known.model, noise);
-    // Variances are of the noise, or of what is left where that is more.
+    // Variances are of the noise, or of the residual where that is more.
     let scale = (least / samples.max(1) as f64).max(1.0);
     let cost = |model: &JointModel| cost(record, model, noise) / scale;
     let walker = |_| {

@@ -1,4 +1,4 @@
-//! How likely it is that two models are told apart.
+//! How likely it is that two models are distinguished.
 //!
 //! Let the first of two models make the data, with white noise of variance `σ²`, and let the
 //! second be fitted to them. What the second cannot follow, in units of the noise, is the
@@ -62,7 +62,7 @@ pub struct Expected {
 }
 
 impl Expected {
-    /// The probability that the race tells the two apart, or more.
+    /// The probability that the ranking distinguishes the two, or more.
     pub fn power(&self) -> f64 {
         // Of two events, both happen at least as often as their chances exceed one together.
         (normal_below(self.ranks()) + normal_below(self.fails()) - 1.0).max(0.0)

@@ -100,7 +100,7 @@ impl Suspects {
 }
 
 /// Twice the difference in log-likelihood at which a record speaks against a suspect: well
-/// beyond that at which two are told apart, as neither model is the joint.
+/// beyond that at which two are distinguished, as neither model is the joint.
 const CLEAR: f64 = 10.0 * ALIKE;
 
 /// Twice the negative log-likelihood of `fit`, but for what all fits of a record share.

@@ -15,7 +15,7 @@
 //!
 //! It contains [`Resonance`](super::Resonance), as the case in which neither matters, and is
 //! looked for only where that is found: by itself a swing says that the oil is a spring, and
-//! only what is left of it how the spring changes. Over an interval the swing is exact for
+//! only the rest of it how the spring changes. Over an interval the swing is exact for
 //! the angle in its middle.
 //!
 //! # References

@@ -35,7 +35,7 @@ pub(super) struct Frame {
 /// A ramp without what a line can do.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ramp {
-    /// What is left of its square.
+    /// Its residual square.
     pub(super) square: f64,
     /// Its parts along a constant, and along a slope.
     line: [f64; 2],

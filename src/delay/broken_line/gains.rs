@@ -1,5 +1,5 @@
 //! The positions of a window where a line may break: what a ramp behind each has in common with the
-//! output, and what a break there takes off the squared error.
+//! output, and what a break there subtracts from the squared error.
 
 use std::ops::RangeInclusive;
 
@@ -13,7 +13,7 @@ pub(super) struct BreakGains {
     pub(super) first: usize,
     /// What each ramp has in common with the output; one more, behind the last.
     ramp_y: Vec<f64>,
-    /// What is left of each ramp's own square; 0 behind the last.
+    /// Each ramp's own residual square; 0 behind the last.
     size: Vec<f64>,
     pub(super) gain: Vec<f64>,
 }
@@ -22,7 +22,7 @@ impl BreakGains {
     /// The `positions` of a window whose output, without what a line can do and pulled through the
     /// noise, is `pulled`.
     pub(super) fn of(frame: &Frame, pulled: &[f64], positions: &RangeInclusive<usize>) -> Self {
-        /// Samples at a time: of these only two sums hang on those before.
+        /// Samples at a time: of these only two sums depend on those before.
         const TOGETHER: usize = 4;
         let (first, count) =
             (*positions.start(), (positions.end() + 1).saturating_sub(*positions.start()));
@@ -70,7 +70,7 @@ impl BreakGains {
     pub(super) fn promising(&self, frame: &Frame) -> impl Iterator<Item = usize> + use<> {
         /// More than rounding.
         const SLACK: f64 = 1.0 - 1e-9;
-        /// BreakGains that are told at a time; most of them have none that may.
+        /// Positions that are judged at a time; most of them have none that may.
         const BLOCK: usize = 8;
         let most = SLACK * self.gain.iter().copied().fold(0.0, larger);
         let spare = |[a, b]: [f64; 2], [size, next]: [f64; 2], reach: f64| {
@@ -97,8 +97,8 @@ impl BreakGains {
             }
             let may = |spare: &f64| *spare >= 0.0;
             if spares.iter().any(may) {
-                let told = spares.iter().enumerate().filter(|(_, spare)| may(spare));
-                good.extend(told.map(|(lane, _)| from + lane));
+                let promising = spares.iter().enumerate().filter(|(_, spare)| may(spare));
+                good.extend(promising.map(|(lane, _)| from + lane));
             }
         }
         good.into_iter().rev()

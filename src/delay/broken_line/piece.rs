@@ -1,4 +1,4 @@
-//! A broken line whose break is between two neighbouring samples: what it takes off the squared
+//! A broken line whose break is between two neighbouring samples: what it subtracts from the squared
 //! error, a quotient of two quadratics in the position.
 
 /// Level and ramp behind a sample, without what a line can do.

@@ -136,7 +136,7 @@ fn regression(points: &[(f64, f64)], position: f64) -> Option<BrokenRegression> 
         let step = if x > position { -change } else { 0.0 };
         Vector4::new(1.0, x - position, (x - position).max(0.0), step)
     };
-    // The change only scales the last column: one regression tells it, another uses it.
+    // The change only scales the last column: one regression determines it, another uses it.
     let (found, ..) = solved(points, |x| {
         let mut row = columns(x, 1.0);
         row[3] = 0.0;

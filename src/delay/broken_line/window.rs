@@ -108,7 +108,7 @@ pub(crate) struct Window<'a> {
     noise: &'a NoiseModel,
     frame: Frame,
     /// What one line leaves, whitened once more backwards: sums of it behind a sample are what
-    /// a whitened level has in common with what is left.
+    /// a whitened level has for inner product with the residual.
     pulled: Vec<f64>,
     /// The squared error of one line.
     power: f64,

@@ -3,7 +3,7 @@
 //! Level, ramp and modes, counted from the beginning of a piece, make up every column of a
 //! regression: what an earlier reaction did since is another sum of the same motions. With
 //! white noise the products of whole columns so follow from a few sums over each piece,
-//! which hang on its length alone; only the output is gone through sample by sample.
+//! which depend on its length alone; only the output is gone through sample by sample.
 
 use super::model::{LagModel, MAX_PARAMETERS};
 use super::motion::{COLUMNS, LINE, Motion, inner_product};

@@ -283,7 +283,7 @@ impl<'a> FitWindow<'a> {
         const STEPS: usize = 10;
         /// Samples, so few that no interval shows them.
         const NEGLIGIBLE: f64 = 0.001;
-        /// What is left of a step that did not lower the squared error.
+        /// The part that remains of a step that did not lower the squared error.
         const SHORTENED: f64 = 1.0 / 3.0;
         let mut best = self.at(basis, noise);
         let mut factor = 1.0;

@@ -9,7 +9,7 @@ use super::motion::{COLUMNS, LINE};
 use super::response::Response;
 use crate::numerics::rank::PIVOT;
 
-/// The columns of free motion, and how they are told apart at each length.
+/// The columns of free motion, and their inverse squares at each length.
 #[derive(Clone, Debug)]
 pub(crate) struct FreeMotion {
     /// The columns side by side, sample by sample.
@@ -23,7 +23,7 @@ pub(crate) struct FreeMotion {
 struct Factors {
     /// Multiples of earlier columns in a later one.
     lower: [[f64; COLUMNS]; COLUMNS],
-    /// One over the squares of what is left of each column; 0 where nothing is.
+    /// One over the square of each column's residual; 0 where there is none.
     per_square: [f64; COLUMNS],
 }
 

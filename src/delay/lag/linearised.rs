@@ -29,7 +29,7 @@ impl Linearised {
         (0..linear).for_each(|column| equations.eliminate(column));
         let sse = equations.error();
         let parts = equations.coefficients(linear, &[]);
-        // Moves of the onsets: what is left behind them belongs to the lag.
+        // Moves of the onsets: what remains behind them belongs to the lag.
         (linear..linear + reactions).for_each(|column| equations.eliminate(column));
         Self { sse, parts, equations, whole, modes, reactions }
     }

@@ -14,7 +14,7 @@
 //! C = cos(√q·t), S = sin(√q·t)/√q; for q < 0 their hyperbolic twins
 //! ```
 //!
-//! Whatever moved a joint before, what is left of it is a sum of the same modes.
+//! Whatever moved a joint before, what remains of it is a sum of the same modes.
 
 use super::model::{LagModel, MAX_PARAMETERS};
 use super::motion::Motion;

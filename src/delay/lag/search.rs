@@ -29,7 +29,7 @@ pub(crate) struct LagSearch<'a> {
     pub(crate) windows: Vec<FitWindow<'a>>,
     pub(crate) noise: NoiseModel,
     pub(crate) model: LagModel,
-    /// The longest time that can be told from a drift, samples.
+    /// The longest time that can be distinguished from a drift, samples.
     longest: f64,
     /// Sum of squares about the mean of each window.
     power: f64,

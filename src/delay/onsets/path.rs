@@ -1,7 +1,7 @@
 //! Where the output reacts to each step, roughly and all at once.
 //!
 //! Between two reactions the output is about a line. Which reaction belongs to which step
-//! is told by the cheapest path of lines through the whole trial (dynamic programming),
+//! is determined by the cheapest path of lines through the whole trial (dynamic programming),
 //! first over few positions for each reaction, then over some about the best ones. So holds
 //! may be shorter than delays. What is found only has to be good enough for windows.
 

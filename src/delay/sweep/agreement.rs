@@ -1,12 +1,12 @@
 //! The delay that most settings can agree on.
 //!
-//! Each run tells where the delay may be: its interval where it has one, else ± β/2, the
+//! Each run reports where the delay may be: its interval where it has one, else ± β/2, the
 //! distance of its candidates; both are widened by a tolerance. The delays that most
 //! ranges hold are those that most settings can agree on; who holds all of them, agrees.
 
 use crate::delay::{Decision, Settings};
 
-/// What a run tells of a step that it accepted; samples.
+/// What a run reports of a step that it accepted; samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReportedDelay {
     /// The delay.
@@ -18,7 +18,7 @@ pub struct ReportedDelay {
 }
 
 impl ReportedDelay {
-    /// What `decision` tells, if the step was accepted.
+    /// What `decision` reports, if the step was accepted.
     pub fn of(decision: &Decision, settings: &Settings) -> Option<Self> {
         let delay = decision.accepted_delay()?;
         let grid = 0.5 * settings.beta as f64;

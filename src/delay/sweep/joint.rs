@@ -18,7 +18,7 @@ pub struct JointSweep {
 }
 
 impl JointSweep {
-    /// Judges every step of `trials` by what each run of `grid` tells of it, `None` where a
+    /// Judges every step of `trials` by what each run of `grid` reports of it, `None` where a
     /// run failed. Delays that differ by `tolerance` samples more than each of them allows
     /// still agree.
     pub fn of(grid: &Grid, trials: &[Trial], runs: &[Option<RunDelays>], tolerance: f64) -> Self {
@@ -80,7 +80,7 @@ mod tests {
         Grid::new(vec![base], vec![slow, None], vec![10], vec![1, 2, 3])
     }
 
-    /// One step, of which each run tells this delay.
+    /// One step, of which each run reports this delay.
     fn swept(delays: [Option<f64>; 6]) -> SweptStep {
         let period = SamplePeriod::from_seconds(0.01).unwrap();
         let trial = Trial::new("1", 0.0, period, vec![0.0, 1.0], vec![0.0; 2]).unwrap();

@@ -7,7 +7,7 @@ use crate::delay::{Lag, Settings, TrialEstimate, input_steps};
 use crate::experiment::Trial;
 use crate::numerics::median;
 
-/// What one run tells of all steps of a joint.
+/// What one run reports of all steps of a joint.
 #[derive(Clone, Debug)]
 pub struct RunDelays {
     /// A place for each step of all trials, in order.
@@ -17,7 +17,7 @@ pub struct RunDelays {
 }
 
 impl RunDelays {
-    /// Collects what a run tells of `trials`; `None` stands for a trial that failed.
+    /// Collects what a run reports of `trials`; `None` stands for a trial that failed.
     pub fn of<'a>(
         trials: &[Trial],
         estimates: impl IntoIterator<Item = Option<&'a TrialEstimate>>,
@@ -45,7 +45,7 @@ pub struct RunSummary {
     pub accepted: usize,
     /// The median of its delays, seconds.
     pub median_s: Option<f64>,
-    /// Accepted steps of which it tells another delay than most.
+    /// Accepted steps of which it reports another delay than most.
     pub disagreements: usize,
     /// Of the steps that most agree on, the part where it agrees with them.
     pub agrees: Option<f64>,

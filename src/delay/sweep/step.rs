@@ -22,7 +22,7 @@ pub struct SweptStep {
     pub time_s: f64,
     /// Seconds between samples.
     pub period_s: f64,
-    /// What each run of the grid tells, where it accepted the step.
+    /// What each run of the grid reports, where it accepted the step.
     pub delays: Vec<Option<ReportedDelay>>,
     /// Combinations that accepted it.
     pub accepted: usize,

@@ -46,9 +46,9 @@ fn says(preview: &Preview<'_>) -> Written {
     if let Some(first) = sentences.next() {
         writeln!(page, "**{}**\n", plain(&first))?;
     }
-    if let Some(told) = &preview.joint.discrimination {
+    if let Some(sides) = &preview.joint.discrimination {
         writeln!(page, "| {} |\n|---|---|---|---|---|", SIDE_HEADER.join(" | "))?;
-        for row in side_rows(told) {
+        for row in side_rows(sides) {
             writeln!(page, "| {} |", row.map(|cell| plain(&cell)).join(" | "))?;
         }
         writeln!(page)?;

@@ -55,8 +55,8 @@ impl<'a> Swept<'a> {
 
     /// What a run reports of a step.
     pub(super) fn cell(step: &SweptStep, run: usize) -> Cell {
-        let Some(told) = step.delays.get(run).copied().flatten() else { return Cell::Silent };
-        step.agreement.map_or(Cell::Same, |agreed| Cell::of(&told, &agreed))
+        let Some(found) = step.delays.get(run).copied().flatten() else { return Cell::Silent };
+        step.agreement.map_or(Cell::Same, |agreed| Cell::of(&found, &agreed))
     }
 
     /// The delay that a run reports of a step; samples.
@@ -79,8 +79,8 @@ pub(super) enum Cell {
 }
 
 impl Cell {
-    fn of(told: &ReportedDelay, agreed: &Agreement) -> Self {
-        let (longer, shorter) = (told.low - agreed.low, agreed.high - told.high);
+    fn of(found: &ReportedDelay, agreed: &Agreement) -> Self {
+        let (longer, shorter) = (found.low - agreed.low, agreed.high - found.high);
         if longer.max(shorter) <= 0.0 {
             Self::Same
         } else if longer >= shorter {

@@ -138,9 +138,9 @@ fn one_step(swept: &Swept<'_>, step: &SweptStep) -> Written {
     writeln!(page, "| sensitive to | {} |", plain(&on))?;
     let Some(hanging) = &step.delay_depends_on else { return Ok(page) };
     writeln!(page, "\n| {} | median delay | agree with most |\n|---|---|---|", hanging.factor)?;
-    for (level, told) in hanging.levels.iter().enumerate() {
+    for (level, found) in hanging.levels.iter().enumerate() {
         let name = level_text(swept.grid, hanging.factor, level);
-        let (delay, agree) = told.map_or(("-".to_owned(), "-".to_owned()), |(delay, agree)| {
+        let (delay, agree) = found.map_or(("-".to_owned(), "-".to_owned()), |(delay, agree)| {
             (seconds(delay), format!("{:.0} %", 100.0 * agree))
         });
         writeln!(page, "| {} | {delay} | {agree} |", plain(&name))?;

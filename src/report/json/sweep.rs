@@ -180,7 +180,7 @@ impl<'a> StepJson<'a> {
             delay_hangs_on: step.delay_depends_on.as_ref().map(|found| hanging_json(grid, found)),
             verdict_hangs_on: step.verdict_depends_on.map(id),
             apart_samples: step.apart,
-            delays: step.delays.iter().map(|told| told.map(|told| told.delay)).collect(),
+            delays: step.delays.iter().map(|found| found.map(|found| found.delay)).collect(),
         }
     }
 }
@@ -200,11 +200,11 @@ fn agreement_json(agreement: &Agreement) -> Value {
 }
 
 fn hanging_json(grid: &Grid, found: &Sensitivity) -> Value {
-    let level = |(level, told): (usize, &Option<(f64, f64)>)| {
+    let level = |(level, seen): (usize, &Option<(f64, f64)>)| {
         json!({
             "value": value(grid, found.factor, level),
-            "median_delay": told.map(|told| told.0),
-            "agree": told.map(|told| told.1),
+            "median_delay": seen.map(|seen| seen.0),
+            "agree": seen.map(|seen| seen.1),
         })
     };
     let levels: Vec<Value> = found.levels.iter().enumerate().map(level).collect();

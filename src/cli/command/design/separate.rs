@@ -1,4 +1,4 @@
-//! The shortest input that tells two effects apart, for each joint.
+//! The shortest input that distinguishes two effects, for each joint.
 
 use crate::batch::Threads;
 use crate::design::shortest;
@@ -130,7 +130,7 @@ fn of_model(
     Ok(Suspects::of_model(model, effects, noise, args.uncertainty, (rig, &steps))?)
 }
 
-/// The input that tells the suspects apart, and what is expected of it.
+/// The input that distinguishes the suspects, and what is expected of it.
 fn distinguish(
     args: &Args,
     known: &Known,
