@@ -9,11 +9,10 @@ use super::error::RecordError;
 use super::palette::{self, Rgb, color};
 use super::paths::{at, error_share, of_model};
 use super::sheet::Sheet;
-use crate::diagnosis::failure::{Feature, Region, Units};
-use crate::experiment::Joint;
+use crate::diagnosis::failure::{Feature, Region};
 use crate::figure::error_share::{FeatureShares, Share, is_level};
 use crate::report::ComparedJoint;
-use crate::wording::{bracketed, number};
+use crate::wording::{feature_with_unit, number};
 
 /// Width and height of the sheet: two rows of plots.
 pub(super) const SIZE: (f32, f32) = (1900.0, 480.0);
@@ -54,7 +53,7 @@ impl Drawing {
             let alike = models.iter().map(|model| alike(model, feature, of_first.len()));
             let of_each: Vec<&[Region]> = alike.collect();
             let plot = plot(place, &of_each);
-            draw_frame(&mut sheet, &plot, &title(feature, joint), of_first);
+            draw_frame(&mut sheet, &plot, &feature_with_unit(feature, joint), of_first);
             for ((bars, regions), number) in bars.iter_mut().zip(&of_each).zip(0..) {
                 bars.add(&plot, regions, (number, models.len()));
             }
@@ -155,18 +154,6 @@ fn name(region: &Region) -> String {
 /// A number in three digits.
 pub(super) fn short(value: f64) -> String {
     format!("{value:.2e}").parse().map_or_else(|_| number(value), number)
-}
-
-fn title(feature: Feature, joint: &Joint) -> String {
-    let units = Units { input: joint.input_unit.clone(), output: joint.output_unit.clone() };
-    let name = match feature {
-        Feature::Direction => "direction of the input",
-        Feature::Input => "input, as it acts",
-        Feature::Hold => "how long the input is held",
-        Feature::Time => "time in the record",
-        _ => feature.name(),
-    };
-    bracketed(name, feature.unit(&units).as_deref())
 }
 
 /// The lines that fill the bars of one model.

@@ -53,8 +53,12 @@ mod write;
 
 pub use error::RecordError;
 pub use layout::Detail;
-pub use live::Live;
-pub use preview::PreviewRecording;
-pub use recorded::{Beside, Recording};
+pub(crate) use live::Live;
+pub(crate) use preview::PreviewRecording;
+pub use recorded::Beside;
+pub use recorded::Recording;
 pub use sweep::SweepRecording;
-pub use write::{log_recording, write_preview, write_recording, write_sweep};
+pub use write::log_recording;
+pub(crate) use write::write_preview;
+pub use write::write_recording;
+pub use write::write_sweep;

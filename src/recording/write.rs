@@ -38,7 +38,10 @@ pub fn write_sweep(sweep: &SweepRecording<'_>, out: impl Write) -> Result<(), Re
 ///
 /// # Errors
 /// As [`write_recording`].
-pub fn write_preview(preview: &PreviewRecording<'_>, out: impl Write) -> Result<(), RecordError> {
+pub(crate) fn write_preview(
+    preview: &PreviewRecording<'_>,
+    out: impl Write,
+) -> Result<(), RecordError> {
     write(preview, out)
 }
 

@@ -9,28 +9,28 @@ use crate::wording::{effect_ids, effects_text, number, p_text, with_unit};
 
 /// A joint whose model got another effect.
 #[derive(Clone, Copy, Debug)]
-pub struct AddedJoint<'a> {
+pub(crate) struct AddedJoint<'a> {
     /// What was measured.
-    pub joint: &'a Joint,
+    pub(crate) joint: &'a Joint,
     /// Name of the model: that of its file.
-    pub model: &'a str,
+    pub(crate) model: &'a str,
     /// Id of the effect.
-    pub effect: &'static str,
+    pub(crate) effect: &'static str,
     /// Number of the revision that has it.
-    pub revision: u32,
+    pub(crate) revision: u32,
     /// The model before and after.
-    pub addition: &'a Addition,
+    pub(crate) addition: &'a Addition,
 }
 
 /// Ids of the effects that `after` has no more.
-pub fn gone(before: &JointModel, after: &JointModel) -> Vec<&'static str> {
+pub(crate) fn gone(before: &JointModel, after: &JointModel) -> Vec<&'static str> {
     let left = effect_ids(after);
     effect_ids(before).into_iter().filter(|id| !left.contains(id)).collect()
 }
 
 impl<'a> AddedJoint<'a> {
     /// The model before and after, as revisions.
-    pub fn compared(&self) -> [ComparedJoint<'a>; 2] {
+    pub(crate) fn compared(&self) -> [ComparedJoint<'a>; 2] {
         let Self { joint, model, revision, addition, .. } = *self;
         let compared = |revision, comparison| ComparedJoint { joint, model, revision, comparison };
         let before = compared(revision.saturating_sub(1), &addition.before);
@@ -68,7 +68,7 @@ impl<'a> AddedJoint<'a> {
 }
 
 /// Each joint's model before and after, and what it means.
-pub fn add_text(joints: &[AddedJoint<'_>], horizon: &str) -> String {
+pub(crate) fn add_text(joints: &[AddedJoint<'_>], horizon: &str) -> String {
     let labels: Vec<_> = joints.iter().map(AddedJoint::labels).collect();
     let named = joints.iter().zip(&labels).flat_map(|(joint, [first, second])| {
         let [before, after] = joint.compared();

@@ -22,7 +22,7 @@ pub struct ComparedJoint<'a> {
 }
 
 /// A table of errors, one row per joint and model, and the parameters below it.
-pub fn compare_table(joints: &[ComparedJoint<'_>], horizon: &str) -> String {
+pub(crate) fn compare_table(joints: &[ComparedJoint<'_>], horizon: &str) -> String {
     let header = ["joint", "model", "training", "validation", "fit", "noise", "lack of fit"];
     let mut table = TextTable::new(header, &[2, 3, 4, 5]);
     for compared in joints {

@@ -16,13 +16,13 @@ use crate::wording::{
 
 /// What is concluded of a joint.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Conclusion {
+pub(crate) struct Conclusion {
     /// The verdict in one sentence.
-    pub headline: String,
+    pub(crate) headline: String,
     /// What is behind it.
-    pub paragraph: String,
+    pub(crate) paragraph: String,
     /// Commands that do what it proposes.
-    pub commands: Vec<String>,
+    pub(crate) commands: Vec<String>,
 }
 
 /// Times the noise above which an error is said to be more than noise.
@@ -30,7 +30,7 @@ const ABOVE_NOISE: f64 = 1.15;
 
 impl Finding<'_> {
     /// The verdict in words.
-    pub fn conclusion(&self) -> Conclusion {
+    pub(crate) fn conclusion(&self) -> Conclusion {
         let best = self.ranking.first().filter(|_| self.verdict == Verdict::MissingEffect);
         let (headline, sentences) = match (self.verdict, best) {
             (_, Some(best)) => (self.missing_headline(best), self.missing(best)),

@@ -55,21 +55,21 @@ pub struct DecisionRow<'a> {
 /// Further details of a decision: the columns behind those of [`DecisionRow`] where a
 /// method other than the paper's was run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct DecisionDetail {
+pub(crate) struct DecisionDetail {
     /// The method's name.
-    pub method: &'static str,
+    pub(crate) method: &'static str,
     /// Lower end of the delay's interval, samples.
-    pub delta_low: Option<f64>,
+    pub(crate) delta_low: Option<f64>,
     /// Upper end of it.
-    pub delta_high: Option<f64>,
+    pub(crate) delta_high: Option<f64>,
     /// p-value of the reaction: how often noise alone looks as much like one; where tested.
-    pub p_value: Option<f64>,
+    pub(crate) p_value: Option<f64>,
     /// The second-best breakpoint.
-    pub runner_up_q: Option<usize>,
+    pub(crate) runner_up_q: Option<usize>,
     /// By how much its squared error is larger, as a part of the best one's.
-    pub runner_up_margin: Option<f64>,
+    pub(crate) runner_up_margin: Option<f64>,
     /// What would have accepted the step, all else being as it was; separated by `; `.
-    pub accepted_with: String,
+    pub(crate) accepted_with: String,
 }
 
 impl DecisionDetail {
@@ -173,7 +173,7 @@ pub(super) fn detailed_rows(
 ///
 /// # Errors
 /// When `out` cannot be written.
-pub fn write_decisions(
+pub(crate) fn write_decisions(
     runs: &[(&Settings, &[EstimatedJoint<'_>])],
     out: impl Write,
 ) -> csv::Result<()> {
@@ -193,14 +193,14 @@ pub fn write_decisions(
 }
 
 /// The columns of [`decision_table`] for decisions of these methods.
-pub fn decision_columns(methods: Methods) -> impl Iterator<Item = (&'static str, Kind)> {
+pub(crate) fn decision_columns(methods: Methods) -> impl Iterator<Item = (&'static str, Kind)> {
     let more: &[&str] = if methods == Methods::PaperOnly { &[] } else { &DETAILS };
     COLUMNS.iter().chain(more).map(|name| (*name, kind(name)))
 }
 
 /// Which methods the decisions are of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Methods {
+pub(crate) enum Methods {
     /// The paper's.
     PaperOnly,
     /// Others, which have further details.
@@ -227,7 +227,7 @@ fn kind(column: &str) -> Kind {
 ///
 /// # Errors
 /// Never: the rows have fields.
-pub fn decision_table(
+pub(crate) fn decision_table(
     runs: &[(&Settings, &[EstimatedJoint<'_>])],
 ) -> serde_json::Result<DataTable> {
     let mut table = DataTable::new(decision_columns(Methods::of(runs)));

@@ -38,7 +38,7 @@ pub fn write_delays(joints: &[EstimatedJoint<'_>], out: impl Write) -> csv::Resu
 }
 
 /// The delays that [`write_delays`] writes, as a table with types.
-pub fn delay_table(joints: &[EstimatedJoint<'_>]) -> DataTable {
+pub(crate) fn delay_table(joints: &[EstimatedJoint<'_>]) -> DataTable {
     let taus: Vec<_> = joints.iter().map(|joint| format!("{}.tau", joint.joint.name)).collect();
     let first = [("trial", Kind::Text), ("sample", Kind::Whole), ("time_s", Kind::Real)];
     let mut table = DataTable::new(

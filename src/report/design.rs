@@ -8,38 +8,38 @@ use crate::explain::Pattern;
 
 /// The input of one joint, and what is expected of it.
 #[derive(Clone, Debug)]
-pub struct DesignedJoint {
+pub(crate) struct DesignedJoint {
     /// Where it is played.
-    pub rig: TestRig,
+    pub(crate) rig: TestRig,
     /// The input.
-    pub schedule: Schedule,
+    pub(crate) schedule: Schedule,
     /// What the joint will do, where a model says so: for two suspects the first's.
-    pub prediction: Option<Prediction>,
+    pub(crate) prediction: Option<Prediction>,
     /// What it is to distinguish, if that is what it is for.
-    pub discrimination: Option<Discrimination>,
+    pub(crate) discrimination: Option<Discrimination>,
     /// What whoever plays it should know.
-    pub notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
 }
 
 /// Two suspects that an input distinguishes.
 #[derive(Clone, Debug)]
-pub struct Discrimination {
+pub(crate) struct Discrimination {
     /// Their ids.
-    pub ids: [&'static str; 2],
+    pub(crate) ids: [&'static str; 2],
     /// The input, and how surely.
-    pub design: Design,
+    pub(crate) design: Design,
     /// The power that was wanted.
-    pub wanted: f64,
+    pub(crate) wanted: f64,
     /// Standard deviation of the noise, output units.
-    pub noise: f64,
+    pub(crate) noise: f64,
     /// What the joint will do where the second suspect is there.
-    pub other: Prediction,
+    pub(crate) other: Prediction,
 }
 
 impl DesignedJoint {
     /// What the joint is expected to do, by name: that of each suspect, or `model`; nothing
     /// where no model says so.
-    pub fn expected(&self) -> Vec<(&str, &Prediction)> {
+    pub(crate) fn expected(&self) -> Vec<(&str, &Prediction)> {
         let Some(prediction) = &self.prediction else { return Vec::new() };
         match &self.discrimination {
             Some(Discrimination { ids: [one, other], other: second, .. }) => {
@@ -82,7 +82,7 @@ pub(super) fn order(order: Order) -> &'static str {
 ///
 /// # Errors
 /// When `out` cannot be written.
-pub fn write_input(joints: &[DesignedJoint], out: impl Write) -> csv::Result<()> {
+pub(crate) fn write_input(joints: &[DesignedJoint], out: impl Write) -> csv::Result<()> {
     let columns = joints.iter().map(|joint| {
         let name = format!("{}.input", joint.rig.name);
         (name, joint.schedule.input(), 0.0)
@@ -95,7 +95,7 @@ pub fn write_input(joints: &[DesignedJoint], out: impl Write) -> csv::Result<()>
 ///
 /// # Errors
 /// When `out` cannot be written.
-pub fn write_preview(joints: &[DesignedJoint], out: impl Write) -> csv::Result<()> {
+pub(crate) fn write_preview(joints: &[DesignedJoint], out: impl Write) -> csv::Result<()> {
     let mut columns = Vec::new();
     for joint in joints {
         let mut add = |name: &str, values: Vec<f64>, after: f64| {

@@ -6,7 +6,7 @@ use crate::design::{Expected, OpenThreshold, Prediction, Rehearsal, Schedule, tr
 use crate::wording::{listed, measure, rounded, unit_suffix, wrapped};
 
 /// What is to be played on each joint, and what is expected of it.
-pub fn design_text(joints: &[DesignedJoint]) -> String {
+pub(crate) fn design_text(joints: &[DesignedJoint]) -> String {
     joints.iter().map(joint_text).collect::<Vec<_>>().join("\n\n") + "\n"
 }
 
@@ -23,7 +23,7 @@ fn joint_text(joint: &DesignedJoint) -> String {
 
 /// What is played, in the first sentence; what it distinguishes, where the joint will be, and what
 /// whoever plays it should know.
-pub fn design_sentences(joint: &DesignedJoint) -> Vec<String> {
+pub(crate) fn design_sentences(joint: &DesignedJoint) -> Vec<String> {
     let mut sentences = vec![headline(joint)];
     sentences.extend(joint.discrimination.iter().flat_map(|found| explanation(joint, found)));
     sentences.extend(joint.prediction.as_ref().map(|prediction| foreseen(joint, prediction)));
@@ -70,10 +70,11 @@ fn hold_text(schedule: &Schedule) -> String {
 }
 
 /// Header of [`side_rows`].
-pub const SIDE_HEADER: [&str; 5] = ["if it is", "expected power", "rehearsed", "other", "neither"];
+pub(crate) const SIDE_HEADER: [&str; 5] =
+    ["if it is", "expected power", "rehearsed", "other", "neither"];
 
 /// A row for each suspect: how surely it is identified where it is present.
-pub fn side_rows(found: &Discrimination) -> [[String; 5]; 2] {
+pub(crate) fn side_rows(found: &Discrimination) -> [[String; 5]; 2] {
     let [one, other] = &found.design.sides;
     let [first, second] = found.ids;
     [(first, one), (second, other)].map(|(id, side)| {

@@ -9,13 +9,13 @@ const NARROWEST: usize = 40;
 const INDENT: usize = 4;
 
 /// The whole catalogue as text, in lines of at most `width` columns where words allow.
-pub fn listing(width: usize) -> String {
+pub(crate) fn listing(width: usize) -> String {
     let entries = REGISTRY.iter().map(|effect| lines_of(effect.spec(), width).join("\n"));
     entries.map(|entry| entry + "\n").collect::<Vec<_>>().join("\n")
 }
 
 /// One effect as text, with its drawing and its source.
-pub fn sheet(effect: &dyn Effect, width: usize) -> String {
+pub(crate) fn sheet(effect: &dyn Effect, width: usize) -> String {
     let spec = effect.spec();
     let mut lines = lines_of(spec, width);
     lines.push(String::new());

@@ -5,7 +5,7 @@ use super::conclusion::printed;
 use super::finding::{Finding, ranking_table};
 
 /// For each joint the verdict, the ranking and what they mean.
-pub fn explain_text(findings: &[Finding<'_>], horizon: &str) -> String {
+pub(crate) fn explain_text(findings: &[Finding<'_>], horizon: &str) -> String {
     let joint = |finding: &Finding<'_>| {
         let conclusion = finding.conclusion();
         let ranking = match finding.ranking {

@@ -8,34 +8,34 @@ use crate::wording::{counted, percent};
 
 /// The result of one log: the document that the command prints as JSON.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LogResult {
+pub(crate) struct LogResult {
     /// The log, as it was given.
-    pub file: String,
+    pub(crate) file: String,
     /// The document, schema `tauscope/estimate/1` or `tauscope/improve/1`.
-    pub document: Value,
+    pub(crate) document: Value,
 }
 
 /// The results of many logs, in the order of the logs' names.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FolderReport {
+pub(crate) struct FolderReport {
     pub(super) command: String,
     pub(super) logs: Vec<LogResult>,
 }
 
 impl FolderReport {
     /// Brings the results of `command` together.
-    pub fn new(command: &str, mut logs: Vec<LogResult>) -> Self {
+    pub(crate) fn new(command: &str, mut logs: Vec<LogResult>) -> Self {
         logs.sort_by(|a, b| a.file.cmp(&b.file));
         Self { command: command.to_owned(), logs }
     }
 
     /// Whether there is no result at all.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.logs.is_empty()
     }
 
     /// What failed in the logs that have a result.
-    pub fn failures(&self) -> impl Iterator<Item = String> {
+    pub(crate) fn failures(&self) -> impl Iterator<Item = String> {
         let of = |log: &LogResult| {
             let failures = texts(&log.document, "failures");
             let name = |failure: String| {
@@ -58,7 +58,7 @@ impl FolderReport {
     }
 
     /// The decisions of all logs: the columns of `--decisions` behind one for the log.
-    pub fn decisions(&self) -> DataTable {
+    pub(crate) fn decisions(&self) -> DataTable {
         let paper = |log: &LogResult| {
             let runs = std::iter::once(&log.document).chain(array(&log.document, "also"));
             runs.into_iter().all(|run| run.pointer("/settings/method") == Some(&json!("two-line")))
@@ -80,7 +80,7 @@ impl FolderReport {
     }
 
     /// A row per log and joint.
-    pub fn summary(&self) -> DataTable {
+    pub(crate) fn summary(&self) -> DataTable {
         let columns: &[(&str, Kind)] =
             if self.command == "improve" { &IMPROVED } else { &ESTIMATED };
         let mut table = DataTable::new(columns.iter().copied());
@@ -133,7 +133,7 @@ impl FolderReport {
     }
 
     /// A table of the joints across all logs.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let improve = self.command == "improve";
         let header: &[&str] = if improve {
             &["joint", "logs", "adequate", "validation rmse min", "median", "max", "effects (logs)"]

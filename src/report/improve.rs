@@ -1,7 +1,11 @@
 //! `improve` as text: the ladder of errors.
 
-use super::compare::{ComparedJoint, figures, parameters};
-use super::conclusion::{Conclusion, printed};
+#[cfg(feature = "rrd")]
+use super::compare::ComparedJoint;
+use super::compare::{figures, parameters};
+#[cfg(feature = "rrd")]
+use super::conclusion::Conclusion;
+use super::conclusion::printed;
 use super::finding::Finding;
 use super::text_table::TextTable;
 use crate::experiment::Joint;
@@ -55,7 +59,8 @@ impl<'a> ImprovedJoint<'a> {
     }
 
     /// What is to be said of the revision at `index`.
-    pub fn conclusion_at(&self, index: usize) -> Conclusion {
+    #[cfg(feature = "rrd")]
+    pub(crate) fn conclusion_at(&self, index: usize) -> Conclusion {
         let next = self.revisions.get(index + 1).map(|next| next.change);
         let known = self.numbered().nth(index).zip(next);
         let Some(((revision, step), next)) = known else { return self.finding.conclusion() };
@@ -101,6 +106,7 @@ impl<'a> ImprovedJoint<'a> {
 }
 
 /// Which effect goes with a change, and why.
+#[cfg(feature = "rrd")]
 fn made_useless(change: Change) -> Option<String> {
     match change {
         Change::Removed(id) => Some(format!("{id} has become useless")),
@@ -110,7 +116,7 @@ fn made_useless(change: Change) -> Option<String> {
 }
 
 /// `+ dead_band`; the first revision by what it has.
-pub fn change_in_words(revision: &Revision) -> String {
+pub(crate) fn change_in_words(revision: &Revision) -> String {
     match revision.change {
         Change::Start => effects_text(&revision.comparison.fit.model),
         Change::Added(id) => format!("+ {id}"),
@@ -121,7 +127,7 @@ pub fn change_in_words(revision: &Revision) -> String {
 
 /// One line on a revision, for somebody who waits: `boom: revision 1, + dead_band:
 /// validation error 0.06 deg`.
-pub fn revision_line(joint: &Joint, number: u32, revision: &Revision) -> String {
+pub(crate) fn revision_line(joint: &Joint, number: u32, revision: &Revision) -> String {
     let [training, validation, ..] = figures(joint, &revision.comparison);
     let change = change_in_words(revision);
     let error = match revision.comparison.validation {
@@ -132,7 +138,7 @@ pub fn revision_line(joint: &Joint, number: u32, revision: &Revision) -> String 
 }
 
 /// For each joint the ladder of errors and what is to be said of the last revision.
-pub fn improve_text(joints: &[ImprovedJoint<'_>], horizon: &str) -> String {
+pub(crate) fn improve_text(joints: &[ImprovedJoint<'_>], horizon: &str) -> String {
     let joints: Vec<String> = joints.iter().map(ImprovedJoint::text).collect();
     format!("{}\nroot-mean-square errors, {horizon}\n", joints.join("\n\n"))
 }

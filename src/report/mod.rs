@@ -26,42 +26,48 @@ mod table;
 mod text;
 mod text_table;
 
-pub use add::{AddedJoint, add_text, gone};
+pub(crate) use add::{AddedJoint, add_text, gone};
 pub use against::against_table;
 #[cfg(feature = "rrd")]
 pub(crate) use against::variable_text;
-pub use compare::{ComparedJoint, compare_table};
-pub use conclusion::Conclusion;
-pub use decisions::{
-    DecisionDetail, DecisionRow, Methods, decision_columns, decision_rows, decision_table,
-    write_decisions,
+pub use compare::ComparedJoint;
+pub(crate) use compare::compare_table;
+pub use decisions::DecisionRow;
+pub use decisions::decision_rows;
+pub(crate) use decisions::{
+    DecisionDetail, Methods, decision_columns, decision_table, write_decisions,
 };
-pub use delays::{delay_table, write_delays};
-pub use design::{DesignedJoint, Discrimination, write_input, write_preview};
-pub use design_words::{SIDE_HEADER, design_sentences, design_text, side_rows};
-pub use effects::{listing, sheet};
+pub(crate) use delays::delay_table;
+pub use delays::write_delays;
+pub(crate) use design::{DesignedJoint, Discrimination, write_input, write_preview};
+pub(crate) use design_words::design_text;
+#[cfg(feature = "rrd")]
+pub(crate) use design_words::{SIDE_HEADER, design_sentences, side_rows};
+pub(crate) use effects::{listing, sheet};
 pub use estimated::EstimatedJoint;
-pub use explain::explain_text;
+pub(crate) use explain::explain_text;
 pub use finding::Finding;
-pub use folder::{FolderReport, LogResult};
-pub use improve::{ImprovedJoint, change_in_words, improve_text, revision_line};
+pub(crate) use folder::{FolderReport, LogResult};
+pub use improve::ImprovedJoint;
+pub(crate) use improve::{change_in_words, improve_text, revision_line};
 pub(crate) use json::Header;
-pub use json::{
+pub(crate) use json::{
     AddJson, CompareJson, DesignJson, EffectsJson, EstimateJson, ExplainJson, FolderJson,
     ImproveJson, ReportJson, SweepJson,
 };
-pub use page::{Document, Markdown, PlotError, RecordingFile, Report, report_text};
+pub(crate) use page::{Document, RecordingFile, Report, report_text};
 #[cfg(feature = "rrd")]
 pub(crate) use settings::settings_rows;
-pub use steps::{step_line, steps_table};
-pub use summary::{DelayRange, JointSummary};
-pub use sweep::{ReportedSweep, StepsShown, sweep_text};
+pub(crate) use steps::{step_line, steps_table};
+pub(crate) use summary::{DelayRange, JointSummary};
+pub use sweep::ReportedSweep;
+pub(crate) use sweep::{StepsShown, sweep_text};
 #[cfg(feature = "rrd")]
 pub(crate) use sweep::{
     depends_on, level_cell, level_text, run_text, settings_in_words, sweep_sentences,
 };
-pub use table::{DataTable, Kind};
+pub(crate) use table::{DataTable, Kind};
 pub(crate) use text::chosen_line;
-pub use text::estimate_table;
+pub(crate) use text::estimate_table;
 #[cfg(feature = "rrd")]
 pub(crate) use text::{SUMMARY_HEADER, summary_cells};

@@ -8,7 +8,7 @@ use crate::experiment::{Joint, Trial};
 use crate::wording::{number, unit_suffix};
 
 /// One step in a line, as it is reported when it has come, with its trial where there are several.
-pub fn step_line(joint: &Joint, trial: &Trial, decision: &Decision) -> String {
+pub(crate) fn step_line(joint: &Joint, trial: &Trial, decision: &Decision) -> String {
     let name = &joint.name;
     let is_one_of_several = joint.trials.len() > 1;
     let label = is_one_of_several.then(|| format!(", trial {}", trial.label()));
@@ -29,7 +29,7 @@ pub fn step_line(joint: &Joint, trial: &Trial, decision: &Decision) -> String {
 
 /// A row per step: its delay with the interval, the verdict, and what would have accepted
 /// it, or by how much the second-best breakpoint is worse.
-pub fn steps_table(joints: &[EstimatedJoint<'_>]) -> String {
+pub(crate) fn steps_table(joints: &[EstimatedJoint<'_>]) -> String {
     let header = ["joint", "trial", "step", "delay", "interval", "verdict", "how near"];
     let mut table = TextTable::new(header, &[2, 3]);
     for joint in joints {

@@ -7,33 +7,33 @@ use crate::delay::Condition;
 
 /// How many steps were accepted, why the others were not, and what the delays are.
 #[derive(Clone, Debug, PartialEq)]
-pub struct JointSummary {
+pub(crate) struct JointSummary {
     /// Input steps in all trials.
-    pub steps: usize,
+    pub(crate) steps: usize,
     /// Steps whose delay counts.
-    pub accepted: usize,
+    pub(crate) accepted: usize,
     /// Rejected steps by the first condition that failed, in the paper's order.
-    pub rejected: Vec<(Condition, usize)>,
+    pub(crate) rejected: Vec<(Condition, usize)>,
     /// The accepted delays in samples.
-    pub delay_samples: Option<DelayRange>,
+    pub(crate) delay_samples: Option<DelayRange>,
     /// The accepted delays in seconds.
-    pub delay_s: Option<DelayRange>,
+    pub(crate) delay_s: Option<DelayRange>,
 }
 
 /// The least, the middle and the greatest of the accepted delays.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct DelayRange {
+pub(crate) struct DelayRange {
     /// The least.
-    pub min: f64,
+    pub(crate) min: f64,
     /// The middle one; the mean of two where their number is even.
-    pub median: f64,
+    pub(crate) median: f64,
     /// The greatest.
-    pub max: f64,
+    pub(crate) max: f64,
 }
 
 impl DelayRange {
     /// The range of `delays`, or `None` when there are none.
-    pub fn of(mut delays: Vec<f64>) -> Option<Self> {
+    pub(crate) fn of(mut delays: Vec<f64>) -> Option<Self> {
         delays.sort_by(f64::total_cmp);
         let (&min, &max) = (delays.first()?, delays.last()?);
         let upper = *delays.get(delays.len() / 2)?;
@@ -44,7 +44,7 @@ impl DelayRange {
 
 impl JointSummary {
     /// Counts the decisions of `joint`.
-    pub fn of(joint: EstimatedJoint<'_>) -> Self {
+    pub(crate) fn of(joint: EstimatedJoint<'_>) -> Self {
         let rows: Vec<_> = decision_rows(joint).map(|(_, row)| row).collect();
         let accepted: Vec<_> = rows.iter().filter(|row| row.verdict == "accepted").collect();
         let samples = accepted.iter().filter_map(|row| row.delta);

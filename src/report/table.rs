@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub(crate) enum Kind {
     /// Text.
     Text,
     /// Whole numbers.
@@ -20,7 +20,7 @@ pub enum Kind {
 
 /// A table whose columns have a name and a type; numbers may be missing.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DataTable {
+pub(crate) struct DataTable {
     columns: Vec<Column>,
 }
 
@@ -88,13 +88,13 @@ impl Column {
 
 impl DataTable {
     /// A table without rows.
-    pub fn new<'a>(columns: impl IntoIterator<Item = (&'a str, Kind)>) -> Self {
+    pub(crate) fn new<'a>(columns: impl IntoIterator<Item = (&'a str, Kind)>) -> Self {
         let columns = columns.into_iter().map(|(name, kind)| Column::new(name, kind));
         Self { columns: columns.collect() }
     }
 
     /// Adds a row: the value of each column by its name, missing where there is none.
-    pub fn push(&mut self, row: &Map<String, Value>) {
+    pub(crate) fn push(&mut self, row: &Map<String, Value>) {
         for column in &mut self.columns {
             let value = row.get(&column.name);
             column.push(value);
@@ -119,7 +119,7 @@ impl DataTable {
     ///
     /// # Errors
     /// When it has no fields.
-    pub fn push_fields(&mut self, row: impl Serialize) -> serde_json::Result<()> {
+    pub(crate) fn push_fields(&mut self, row: impl Serialize) -> serde_json::Result<()> {
         if let Value::Object(row) = serde_json::to_value(row)? {
             self.push(&row);
         }
@@ -127,7 +127,7 @@ impl DataTable {
     }
 
     /// Number of rows.
-    pub fn rows(&self) -> usize {
+    pub(crate) fn rows(&self) -> usize {
         self.columns.first().map_or(0, |column| match &column.values {
             Values::Text(texts) => texts.len(),
             Values::Whole(numbers) => numbers.len(),
@@ -139,7 +139,7 @@ impl DataTable {
     ///
     /// # Errors
     /// When `out` cannot be written.
-    pub fn write_csv(&self, out: impl Write) -> csv::Result<()> {
+    pub(crate) fn write_csv(&self, out: impl Write) -> csv::Result<()> {
         let mut writer = csv::Writer::from_writer(out);
         writer.write_record(self.columns.iter().map(|column| &column.name))?;
         for row in 0..self.rows() {
@@ -171,7 +171,7 @@ mod parquet_file {
         ///
         /// # Errors
         /// When `out` cannot be written.
-        pub fn write_parquet(&self, out: impl Write + Send) -> Result<()> {
+        pub(crate) fn write_parquet(&self, out: impl Write + Send) -> Result<()> {
             self.write(out).map_err(Error::other)
         }
 

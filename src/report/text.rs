@@ -7,7 +7,7 @@ use crate::numerics::LowPass;
 use crate::wording::{measure, percent, rounded};
 
 /// The table of `estimate`: a row per joint, and the settings below it.
-pub fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings) -> String {
+pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings) -> String {
     let mut table = TextTable::new(SUMMARY_HEADER, &[1, 2, 4, 5, 6]);
     for joint in joints {
         table.row(summary_cells(&joint.joint.name, &JointSummary::of(*joint)));

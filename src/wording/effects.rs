@@ -3,12 +3,12 @@
 use crate::model::JointModel;
 
 /// Ids of the effects of a model, in its order.
-pub fn effect_ids(model: &JointModel) -> Vec<&'static str> {
+pub(crate) fn effect_ids(model: &JointModel) -> Vec<&'static str> {
     model.components().iter().map(|component| component.effect().spec().id).collect()
 }
 
 /// `dead_band + stiction`; a model without effects is an integrator.
-pub fn effects_text(model: &JointModel) -> String {
+pub(crate) fn effects_text(model: &JointModel) -> String {
     let ids = effect_ids(model);
     if ids.is_empty() { "integrator".to_owned() } else { ids.join(" + ") }
 }

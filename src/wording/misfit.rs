@@ -6,7 +6,7 @@ use crate::diagnosis::{
 };
 
 /// Whether a lack of fit is shown, and by what.
-pub fn lack_of_fit(test: LackOfFit) -> String {
+pub(crate) fn lack_of_fit(test: LackOfFit) -> String {
     let p_value = p_text(test.p_value);
     match test.shown_by {
         None => format!("not shown ({p_value})"),
@@ -18,7 +18,7 @@ pub fn lack_of_fit(test: LackOfFit) -> String {
 }
 
 /// How the residual is correlated with itself and with the input, in a sentence each.
-pub fn correlation_sentences(comparison: &Comparison) -> Vec<String> {
+pub(crate) fn correlation_sentences(comparison: &Comparison) -> Vec<String> {
     let Comparison { whiteness, input_correlation, .. } = comparison;
     let white = whiteness.as_ref().map(whiteness_sentence);
     white.into_iter().chain(input_correlation.as_ref().map(input_sentence)).collect()

@@ -10,13 +10,14 @@ mod prose;
 mod region;
 mod remedy;
 
-pub use effects::{effect_ids, effects_text};
-pub use misfit::{correlation_sentences, lack_of_fit};
-pub use number::{bracketed, measure, number, rounded, unit_suffix, with_error, with_unit};
-pub use parameter::{certainty, parameter_units, remark, with_remark};
-pub use probability::{p_cell, p_text, percent};
-pub use prose::{counted, listed, wrapped};
-pub use region::{
-    failure_sentences, feature_with_unit, misfit_units, region_text, worst_segment_text,
-};
+pub(crate) use effects::{effect_ids, effects_text};
+pub(crate) use misfit::{correlation_sentences, lack_of_fit};
+pub use number::number;
+pub(crate) use number::{bracketed, measure, rounded, unit_suffix, with_error, with_unit};
+pub(crate) use parameter::{certainty, parameter_units, remark, with_remark};
+pub(crate) use probability::{p_cell, p_text, percent};
+pub(crate) use prose::{counted, listed, wrapped};
+#[cfg(feature = "rrd")]
+pub(crate) use region::feature_with_unit;
+pub(crate) use region::{failure_sentences, misfit_units, region_text, worst_segment_text};
 pub(crate) use remedy::remedy_text;

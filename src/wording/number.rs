@@ -8,7 +8,7 @@ pub fn number(value: f64) -> String {
 }
 
 /// `value` as it is said in a sentence: to three significant digits.
-pub fn rounded(value: f64) -> String {
+pub(crate) fn rounded(value: f64) -> String {
     to_digits(value, 3)
 }
 
@@ -37,27 +37,27 @@ fn tidy(text: &str) -> String {
 }
 
 /// A unit as it is written behind a number: ` V`, or nothing.
-pub fn unit_suffix(unit: Option<&str>) -> String {
+pub(crate) fn unit_suffix(unit: Option<&str>) -> String {
     unit.map_or_else(String::new, |unit| format!(" {unit}"))
 }
 
 /// A quantity's name with its unit, as a heading: `input [V]`.
-pub fn bracketed(name: &str, unit: Option<&str>) -> String {
+pub(crate) fn bracketed(name: &str, unit: Option<&str>) -> String {
     unit.map_or_else(|| name.to_owned(), |unit| format!("{name} [{unit}]"))
 }
 
 /// A number to five digits, with its unit where there is one.
-pub fn with_unit(value: f64, unit: Option<&str>) -> String {
+pub(crate) fn with_unit(value: f64, unit: Option<&str>) -> String {
     number(value) + &unit_suffix(unit)
 }
 
 /// A number to three digits, with its unit where there is one.
-pub fn measure(value: f64, unit: Option<&str>) -> String {
+pub(crate) fn measure(value: f64, unit: Option<&str>) -> String {
     rounded(value) + &unit_suffix(unit)
 }
 
 /// A value to the digits that its standard error leaves: `0.612 ± 0.021`.
-pub fn with_error(value: f64, std_error: f64) -> String {
+pub(crate) fn with_error(value: f64, std_error: f64) -> String {
     let known = std_error.is_finite() && std_error > 0.0;
     #[expect(clippy::cast_possible_truncation, reason = "an exponent is small")]
     let decimals = if known { 1 - std_error.log10().floor() as i32 } else { 0 };

@@ -7,7 +7,7 @@ use crate::fit::{Parameter, Status};
 use crate::model::JointModel;
 
 /// What is remarkable about how a parameter was found; nothing where it was simply fitted.
-pub fn remark(status: Status) -> Option<&'static str> {
+pub(crate) fn remark(status: Status) -> Option<&'static str> {
     match status {
         Status::Fitted => None,
         Status::Fixed => Some("fixed"),
@@ -17,13 +17,13 @@ pub fn remark(status: Status) -> Option<&'static str> {
 }
 
 /// `text` with the remark in brackets behind it, where there is one.
-pub fn with_remark(text: &str, status: Status) -> String {
+pub(crate) fn with_remark(text: &str, status: Status) -> String {
     let remark = remark(status).map_or_else(String::new, |remark| format!(" ({remark})"));
     format!("{}{remark}", text.trim_end())
 }
 
 /// The standard error of a parameter, or why it has none.
-pub fn certainty(parameter: &Parameter) -> String {
+pub(crate) fn certainty(parameter: &Parameter) -> String {
     match (remark(parameter.status), parameter.std_error) {
         (Some(remark), _) => remark.to_owned(),
         (None, Some(error)) => number(error),
@@ -32,7 +32,7 @@ pub fn certainty(parameter: &Parameter) -> String {
 }
 
 /// Units of a model's parameters, in the order of [`JointModel::values`].
-pub fn parameter_units(joint: &Joint, model: &JointModel) -> Vec<String> {
+pub(crate) fn parameter_units(joint: &Joint, model: &JointModel) -> Vec<String> {
     let unit = |unit: &Option<String>, kind: &str| unit.clone().unwrap_or_else(|| kind.to_owned());
     let (input, output) = (unit(&joint.input_unit, "input"), unit(&joint.output_unit, "output"));
     let own = [format!("{output}/s/{input}"), "s".to_owned()].into_iter();

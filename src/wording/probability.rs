@@ -3,12 +3,12 @@
 use super::number;
 
 /// A p-value in a sentence: `p = 0.0312`.
-pub fn p_text(p_value: f64) -> String {
+pub(crate) fn p_text(p_value: f64) -> String {
     if p_value < 1e-4 { "p < 0.0001".to_owned() } else { format!("p = {p_value:.4}") }
 }
 
 /// A p-value in a table, to the thousandth: a rank test gives it no better.
-pub fn p_cell(p_value: Option<f64>) -> String {
+pub(crate) fn p_cell(p_value: Option<f64>) -> String {
     match p_value {
         None => "-".to_owned(),
         Some(p_value) if p_value < 0.001 => "< 0.001".to_owned(),
@@ -17,7 +17,7 @@ pub fn p_cell(p_value: Option<f64>) -> String {
 }
 
 /// A share in percent: `31 %`.
-pub fn percent(share: f64) -> String {
+pub(crate) fn percent(share: f64) -> String {
     format!("{:.0} %", 100.0 * share)
 }
 

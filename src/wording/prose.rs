@@ -4,7 +4,7 @@
 const WIDTH: usize = 92;
 
 /// `text` in lines of at most [`WIDTH`] columns where words allow.
-pub fn wrapped(text: &str) -> String {
+pub(crate) fn wrapped(text: &str) -> String {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         let length = |line: &str| line.chars().count();
@@ -20,7 +20,7 @@ pub fn wrapped(text: &str) -> String {
 }
 
 /// `1, 2 and 3`, with `and` or another word before the last.
-pub fn listed(items: &[String], conjunction: &str) -> String {
+pub(crate) fn listed(items: &[String], conjunction: &str) -> String {
     match items {
         [before @ .., last] if !before.is_empty() => {
             format!("{} {conjunction} {last}", before.join(", "))
@@ -30,7 +30,7 @@ pub fn listed(items: &[String], conjunction: &str) -> String {
 }
 
 /// `1 joint`, `2 joints`.
-pub fn counted(count: usize, noun: &str) -> String {
+pub(crate) fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
 

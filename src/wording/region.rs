@@ -6,12 +6,12 @@ use crate::diagnosis::failure::{Feature, Region, Units, WorstSegment};
 use crate::experiment::Joint;
 
 /// The units in which the features of a joint are measured.
-pub fn misfit_units(joint: &Joint) -> Units {
+pub(crate) fn misfit_units(joint: &Joint) -> Units {
     Units { input: joint.input_unit.clone(), output: joint.output_unit.clone() }
 }
 
 /// A part of a feature's range: `2 to 3`; a level, a sign or a trial by its label.
-pub fn region_text(region: &Region) -> String {
+pub(crate) fn region_text(region: &Region) -> String {
     #[expect(clippy::float_cmp, reason = "a level has one value")]
     let is_level = region.from == region.to;
     if is_level || matches!(region.feature, Feature::Direction | Feature::Trial) {
@@ -21,7 +21,8 @@ pub fn region_text(region: &Region) -> String {
 }
 
 /// What a feature is and its unit, as the title of an axis: `input, as it acts [V]`.
-pub fn feature_with_unit(feature: Feature, joint: &Joint) -> String {
+#[cfg(feature = "rrd")]
+pub(crate) fn feature_with_unit(feature: Feature, joint: &Joint) -> String {
     let name = match feature {
         Feature::Direction => "direction of the input",
         Feature::Input => "input, as it acts",
@@ -33,13 +34,13 @@ pub fn feature_with_unit(feature: Feature, joint: &Joint) -> String {
 }
 
 /// `12.4 s to 13.1 s (9 %)`.
-pub fn worst_segment_text(worst: &WorstSegment) -> String {
+pub(crate) fn worst_segment_text(worst: &WorstSegment) -> String {
     let (from, to) = (number(worst.start_s), number(worst.end_s));
     format!("{from} s to {to} s ({})", percent(worst.share_of_squared_error))
 }
 
 /// Where a model fails, a sentence for each condition.
-pub fn failure_sentences(joint: &Joint, comparison: &Comparison) -> Vec<String> {
+pub(crate) fn failure_sentences(joint: &Joint, comparison: &Comparison) -> Vec<String> {
     let units = misfit_units(joint);
     let conditions = comparison.failure.iter().flat_map(|failure| &failure.fails_where);
     conditions.map(|condition| condition.sentence(&units)).collect()

@@ -27,7 +27,7 @@ const READ: Duration = Duration::from_mins(2);
 const KEPT: f32 = 0.5;
 
 /// A recording on its way to a viewer.
-pub struct Live {
+pub(crate) struct Live {
     /// None once the viewer is lost.
     sink: Option<Sink>,
     url: String,
@@ -60,7 +60,7 @@ impl Live {
     /// # Errors
     /// [`RecordError::Address`] for what is no address, [`RecordError::NoViewer`] when none
     /// answers there.
-    pub fn connect(address: &str) -> Result<Self, RecordError> {
+    pub(crate) fn connect(address: &str) -> Result<Self, RecordError> {
         let uri = address::parse(address)?;
         let no_viewer = |why: &str| RecordError::NoViewer { url: uri.to_string(), why: why.into() };
         address::reach(&uri, ANSWER).map_err(|error| no_viewer(&error.to_string()))?;
@@ -76,7 +76,7 @@ impl Live {
     ///
     /// # Errors
     /// [`RecordError::Listen`] when `address` is taken, or not of this machine.
-    pub fn serve(address: SocketAddr) -> Result<Self, RecordError> {
+    pub(crate) fn serve(address: SocketAddr) -> Result<Self, RecordError> {
         // The server itself would only log that it cannot listen.
         let free = TcpListener::bind(address).and_then(|listener| listener.local_addr());
         let address = free.map_err(|source| RecordError::Listen { address, source })?;
@@ -100,17 +100,17 @@ impl Live {
 
     /// Shows a page of revisions for every joint, which are yet to come.
     #[must_use]
-    pub fn expecting_revisions(self) -> Self {
+    pub(crate) fn expecting_revisions(self) -> Self {
         Self { growth: Growth::Growing, ..self }
     }
 
     /// Where the viewer is, or where viewers are served.
-    pub fn url(&self) -> &str {
+    pub(crate) fn url(&self) -> &str {
         &self.url
     }
 
     /// Whether viewers connect to this program.
-    pub fn is_served(&self) -> bool {
+    pub(crate) fn is_served(&self) -> bool {
         matches!(self.sink, Some(Sink::Server(_)))
     }
 
@@ -119,7 +119,7 @@ impl Live {
     /// # Errors
     /// [`RecordError::Chunk`] and [`RecordError::Serialize`], which would be bugs. Whether
     /// it arrives, [`flush`](Self::flush) reports.
-    pub fn send(&mut self, recording: &Recording<'_>) -> Result<(), RecordError> {
+    pub(crate) fn send(&mut self, recording: &Recording<'_>) -> Result<(), RecordError> {
         self.send_part(recording, None)
     }
 
@@ -127,7 +127,7 @@ impl Live {
     ///
     /// # Errors
     /// As [`send`](Self::send).
-    pub fn send_joint(
+    pub(crate) fn send_joint(
         &mut self,
         recording: &Recording<'_>,
         joint: &str,
@@ -139,7 +139,7 @@ impl Live {
     ///
     /// # Errors
     /// As [`send`](Self::send).
-    pub fn send_sweep(&mut self, sweep: &SweepRecording<'_>) -> Result<(), RecordError> {
+    pub(crate) fn send_sweep(&mut self, sweep: &SweepRecording<'_>) -> Result<(), RecordError> {
         self.send_part(sweep, None)
     }
 
@@ -202,7 +202,7 @@ impl Live {
     ///
     /// # Errors
     /// [`RecordError::Lost`] when the viewer went away.
-    pub fn flush(&mut self) -> Result<(), RecordError> {
+    pub(crate) fn flush(&mut self) -> Result<(), RecordError> {
         let flushed = match &self.sink {
             Some(Sink::Viewer(viewer)) => viewer.flush_blocking(READ),
             Some(Sink::Server(server)) => server.flush_blocking(READ),

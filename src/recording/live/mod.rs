@@ -5,4 +5,4 @@ mod address;
 mod connection;
 mod sent;
 
-pub use connection::Live;
+pub(crate) use connection::Live;

@@ -13,4 +13,4 @@ mod sheet;
 mod views;
 mod words;
 
-pub use recorded::PreviewRecording;
+pub(crate) use recorded::PreviewRecording;

@@ -7,13 +7,13 @@ use crate::report::DesignedJoint;
 
 /// Everything that a preview holds.
 #[derive(Clone, Copy, Debug)]
-pub struct PreviewRecording<'a> {
+pub(crate) struct PreviewRecording<'a> {
     /// The inputs, in the order of their tabs.
-    pub joints: &'a [DesignedJoint],
+    pub(crate) joints: &'a [DesignedJoint],
     /// The logs from which the joints are known.
-    pub sources: &'a [Source],
+    pub(crate) sources: &'a [Source],
     /// How they were read.
-    pub reading: &'a ReadOptions,
+    pub(crate) reading: &'a ReadOptions,
     /// The model file, where one was given.
-    pub model: Option<&'a Path>,
+    pub(crate) model: Option<&'a Path>,
 }

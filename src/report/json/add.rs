@@ -9,7 +9,7 @@ use crate::wording::effect_ids;
 
 /// The document of `add --format json`.
 #[derive(Debug, Serialize)]
-pub struct AddJson<'a> {
+pub(crate) struct AddJson<'a> {
     #[serde(flatten)]
     header: Header,
     model_file: String,
@@ -36,7 +36,11 @@ struct BeforeJson {
 
 impl<'a> AddJson<'a> {
     /// Collects the results; `failures` are messages on joints and files that failed.
-    pub fn new(model_file: String, joints: &[AddedJoint<'a>], failures: &'a [String]) -> Self {
+    pub(crate) fn new(
+        model_file: String,
+        joints: &[AddedJoint<'a>],
+        failures: &'a [String],
+    ) -> Self {
         let joint = |added: &AddedJoint<'a>| {
             let [before, after] = added.compared();
             let model = &before.comparison.fit.model;

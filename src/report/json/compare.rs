@@ -8,7 +8,7 @@ use crate::report::compare::ComparedJoint;
 
 /// The document of `compare --format json`.
 #[derive(Debug, Serialize)]
-pub struct CompareJson<'a> {
+pub(crate) struct CompareJson<'a> {
     #[serde(flatten)]
     header: Header,
     joints: Vec<JointJson<'a>>,
@@ -17,7 +17,7 @@ pub struct CompareJson<'a> {
 
 impl<'a> CompareJson<'a> {
     /// Collects the results; `failures` are messages on joints and files that failed.
-    pub fn new(joints: &[ComparedJoint<'a>], failures: &'a [String]) -> Self {
+    pub(crate) fn new(joints: &[ComparedJoint<'a>], failures: &'a [String]) -> Self {
         let joints = joints.iter().map(JointJson::new).collect();
         Self { header: Header::of("tauscope/compare/1"), joints, failures }
     }

@@ -8,7 +8,7 @@ use crate::report::design::{DesignedJoint, Discrimination, holds, kept_until_s, 
 
 /// The document of `design --format json`.
 #[derive(Debug, Serialize)]
-pub struct DesignJson<'a> {
+pub(crate) struct DesignJson<'a> {
     #[serde(flatten)]
     header: Header,
     seed: u64,
@@ -92,7 +92,7 @@ struct SideJson {
 
 impl<'a> DesignJson<'a> {
     /// Collects the results; `failures` are messages on joints that failed.
-    pub fn new(seed: u64, joints: &'a [DesignedJoint], failures: &'a [String]) -> Self {
+    pub(crate) fn new(seed: u64, joints: &'a [DesignedJoint], failures: &'a [String]) -> Self {
         let joints = joints.iter().map(JointJson::new).collect();
         Self { header: Header::of("tauscope/design/1"), seed, joints, failures }
     }

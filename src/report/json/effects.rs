@@ -7,7 +7,7 @@ use crate::effect::{Effect, Parameter, Spec};
 
 /// The document of `effects --format json`.
 #[derive(Clone, Debug, Serialize)]
-pub struct EffectsJson {
+pub(crate) struct EffectsJson {
     #[serde(flatten)]
     header: Header,
     effects: Vec<EffectJson>,
@@ -44,7 +44,7 @@ struct ParameterJson {
 
 impl EffectsJson {
     /// Collects `effects`; `units` are in the order of the parameters.
-    pub fn new(effects: &[&dyn Effect]) -> Self {
+    pub(crate) fn new(effects: &[&dyn Effect]) -> Self {
         let effects = effects.iter().map(|effect| effect.spec().into()).collect();
         Self { header: Header::of("tauscope/effects/1"), effects }
     }

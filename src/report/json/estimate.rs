@@ -12,7 +12,7 @@ use crate::report::{DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, Joi
 
 /// The document of `estimate --format json`.
 #[derive(Debug, Serialize)]
-pub struct EstimateJson<'a> {
+pub(crate) struct EstimateJson<'a> {
     #[serde(flatten)]
     header: Header,
     sources: Vec<SourceJson<'a>>,
@@ -150,7 +150,7 @@ struct DecisionJson<'a> {
 impl<'a> EstimateJson<'a> {
     /// Collects the results of one or several runs, the first of which is the answer;
     /// `failures` are messages on joints and files that failed.
-    pub fn new(
+    pub(crate) fn new(
         experiment: &'a Experiment,
         runs: &[(&'a Settings, &'a [EstimatedJoint<'a>])],
         failures: &'a [String],

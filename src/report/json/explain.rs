@@ -10,7 +10,7 @@ use crate::report::finding::Finding;
 
 /// The document of `explain --format json`.
 #[derive(Debug, Serialize)]
-pub struct ExplainJson<'a> {
+pub(crate) struct ExplainJson<'a> {
     #[serde(flatten)]
     header: Header,
     joints: Vec<ExplainedJson<'a>>,
@@ -37,7 +37,7 @@ pub(super) struct FindingJson<'a> {
 
 impl<'a> ExplainJson<'a> {
     /// Collects the results; `failures` are messages on joints and files that failed.
-    pub fn new(findings: &[Finding<'a>], failures: &'a [String]) -> Self {
+    pub(crate) fn new(findings: &[Finding<'a>], failures: &'a [String]) -> Self {
         let joint = |finding: &Finding<'a>| ExplainedJson {
             joint: JointJson::new(&finding.compared),
             finding: FindingJson::new(finding),

@@ -9,7 +9,7 @@ use crate::report::folder::{Across, FolderReport};
 
 /// The document of `--results … --format json` and `merge`.
 #[derive(Debug, Serialize)]
-pub struct FolderJson {
+pub(crate) struct FolderJson {
     #[serde(flatten)]
     header: Header,
     command: String,
@@ -21,7 +21,7 @@ pub struct FolderJson {
 
 impl FolderJson {
     /// Collects what `report` holds; `failures` are messages on logs that failed.
-    pub fn new(report: &FolderReport, failures: &[String]) -> Self {
+    pub(crate) fn new(report: &FolderReport, failures: &[String]) -> Self {
         Self {
             header: Header::of("tauscope/folder/1"),
             command: report.command.clone(),

@@ -14,7 +14,7 @@ use crate::wording::effect_ids;
 
 /// The document of `improve --format json`.
 #[derive(Debug, Serialize)]
-pub struct ImproveJson<'a> {
+pub(crate) struct ImproveJson<'a> {
     #[serde(flatten)]
     header: Header,
     joints: Vec<ImprovedJson<'a>>,
@@ -44,7 +44,7 @@ struct RevisionJson {
 
 impl<'a> ImproveJson<'a> {
     /// Collects the results; `failures` are messages on joints and files that failed.
-    pub fn new(joints: &[ImprovedJoint<'a>], failures: &'a [String]) -> Self {
+    pub(crate) fn new(joints: &[ImprovedJoint<'a>], failures: &'a [String]) -> Self {
         let joint = |improved: &ImprovedJoint<'a>| {
             let compared = &improved.finding.compared;
             let revision = |(number, revision)| RevisionJson::new(compared.joint, number, revision);

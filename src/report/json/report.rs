@@ -7,7 +7,7 @@ use crate::report::page::Report;
 
 /// The document of `report --format json`: a sentence or two per joint.
 #[derive(Debug, Serialize)]
-pub struct ReportJson<'a> {
+pub(crate) struct ReportJson<'a> {
     #[serde(flatten)]
     header: Header,
     report: String,
@@ -24,7 +24,7 @@ struct SentenceJson<'a> {
 
 impl<'a> ReportJson<'a> {
     /// What was written where, and what is said of each joint.
-    pub fn new(report: &'a Report<'_>, path: String, recording: Option<String>) -> Self {
+    pub(crate) fn new(report: &'a Report<'_>, path: String, recording: Option<String>) -> Self {
         let joints = report.sentences().into_iter();
         Self {
             header: Header::of("tauscope/report/1"),

@@ -14,7 +14,7 @@ use crate::report::sweep::{ReportedSweep, value};
 
 /// The document of `sweep --format json`.
 #[derive(Debug, Serialize)]
-pub struct SweepJson<'a> {
+pub(crate) struct SweepJson<'a> {
     #[serde(flatten)]
     header: Header,
     tolerance_samples: f64,
@@ -78,7 +78,7 @@ struct StepJson<'a> {
 impl<'a> SweepJson<'a> {
     /// Collects the delays of all joints over `grid`; `failures` are messages on joints,
     /// files and settings that failed.
-    pub fn new(
+    pub(crate) fn new(
         grid: &'a Grid,
         tolerance_samples: f64,
         joints: &[ReportedSweep<'a>],

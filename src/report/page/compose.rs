@@ -13,7 +13,7 @@ impl Report<'_> {
     ///
     /// # Errors
     /// When a figure cannot be drawn.
-    pub fn document(&self) -> Result<Document, PlotError> {
+    pub(crate) fn document(&self) -> Result<Document, PlotError> {
         let mut blocks = vec![Block::text(self.extent()), Block::Contents(self.contents())];
         blocks.extend(delays::overview(self.joints)?.map(|figure| Block::Figures(vec![figure])));
         if !self.failures.is_empty() {
@@ -29,7 +29,7 @@ impl Report<'_> {
     }
 
     /// What is said of each joint in a sentence or two; also what `report` prints.
-    pub fn sentences(&self) -> Vec<(&str, String)> {
+    pub(crate) fn sentences(&self) -> Vec<(&str, String)> {
         let joints = self.joints.iter();
         joints.map(|joint| (joint.joint.name.as_str(), joint::sentences(self, *joint))).collect()
     }
@@ -73,7 +73,7 @@ fn anchor(index: usize, joint: &Joint) -> String {
 }
 
 /// What `report` prints: a line or two per joint.
-pub fn report_text(report: &Report<'_>) -> String {
+pub(crate) fn report_text(report: &Report<'_>) -> String {
     let lines = report.sentences().into_iter();
     lines.map(|(joint, sentence)| [joint, ": ", &sentence, "\n"].concat()).collect()
 }

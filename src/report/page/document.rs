@@ -4,7 +4,7 @@ use crate::report::text_table::TextTable;
 
 /// A report: what it says in its order, and what is drawn.
 #[derive(Clone, Debug, Default)]
-pub struct Document {
+pub(crate) struct Document {
     pub(super) title: String,
     pub(super) blocks: Vec<Block>,
 }

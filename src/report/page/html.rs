@@ -13,7 +13,7 @@ const STYLE: &str = include_str!("style.css");
 
 impl Document {
     /// The report as one HTML page: no script, and nothing is fetched.
-    pub fn html(&self) -> String {
+    pub(crate) fn html(&self) -> String {
         let style = format!("{}{STYLE}", figure_style());
         let page = html! {
             (DOCTYPE)

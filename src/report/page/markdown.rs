@@ -8,17 +8,17 @@ use crate::report::text_table::TextTable;
 
 /// A report as Markdown.
 #[derive(Clone, Debug)]
-pub struct Markdown {
+pub(crate) struct Markdown {
     /// The text.
-    pub text: String,
+    pub(crate) text: String,
     /// Names and contents of the drawings that it shows, which are in the folder that was
     /// asked for.
-    pub files: Vec<(String, String)>,
+    pub(crate) files: Vec<(String, String)>,
 }
 
 impl Document {
     /// The report as Markdown, whose drawings are in the folder `folder` beside it.
-    pub fn markdown(&self, folder: &str) -> Markdown {
+    pub(crate) fn markdown(&self, folder: &str) -> Markdown {
         let mut markdown = Markdown { text: String::new(), files: Vec::new() };
         let folder = url(folder);
         markdown.line(&format!("# {}", escaped(&self.title)));

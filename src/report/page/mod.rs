@@ -22,8 +22,6 @@ mod share;
 mod simulated;
 mod timeline;
 
-pub use compose::report_text;
-pub use document::Document;
-pub use markdown::Markdown;
-pub use plot::PlotError;
-pub use report::{RecordingFile, Report};
+pub(crate) use compose::report_text;
+pub(crate) use document::Document;
+pub(crate) use report::{RecordingFile, Report};

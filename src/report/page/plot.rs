@@ -37,7 +37,7 @@ const LETTER_WIDTH: f64 = 0.56;
 /// Why a figure is not there.
 #[derive(Debug, thiserror::Error)]
 #[error("a figure cannot be drawn: {0}")]
-pub struct PlotError(String);
+pub(crate) struct PlotError(String);
 
 type Svg<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Axes = Cartesian2d<Axis, Axis>;

@@ -3,7 +3,7 @@
 mod sets;
 mod text;
 
-pub use text::{StepsShown, sweep_text};
+pub(crate) use text::{StepsShown, sweep_text};
 #[cfg(feature = "rrd")]
 pub(crate) use text::{depends_on, level_cell, settings_in_words, sweep_sentences};
 
@@ -27,7 +27,7 @@ pub struct ReportedSweep<'a> {
 
 impl ReportedSweep<'_> {
     /// For each run whether it agrees with most of the others on nine steps of ten.
-    pub(crate) fn agreeing(&self) -> Vec<bool> {
+    pub fn agreeing(&self) -> Vec<bool> {
         let runs = self.sweep.runs.iter();
         runs.map(|run| run.as_ref().and_then(|run| run.agrees) >= Some(AGREES)).collect()
     }

@@ -14,7 +14,7 @@ const CLAUSES: usize = 3;
 
 /// How many steps that depend on a setting are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StepsShown {
+pub(crate) enum StepsShown {
     /// Those that depend on it most: ten, three of a joint.
     Worst,
     /// All of them.
@@ -22,7 +22,7 @@ pub enum StepsShown {
 }
 
 /// The text of `sweep`.
-pub fn sweep_text(
+pub(crate) fn sweep_text(
     grid: &Grid,
     tolerance: f64,
     joints: &[ReportedSweep<'_>],
