@@ -177,7 +177,7 @@ fn a_suspect_that_contains_the_other_is_said() {
     let options = "design --model boom.toml --separate dead_band,coulomb_friction --duration 8 \
                    --rehearsals 0";
     let said = desk.refusal(options);
-    assert!(said.contains("no input of 8 s or less tells them apart"), "{said}");
+    assert!(said.contains("no input of 8 s or less separates them"), "{said}");
     assert!(said.contains("one of them can do all that the other does"), "{said}");
 }
 
@@ -189,7 +189,7 @@ fn what_cannot_be_designed_is_refused_in_one_message_and_leaves_no_file() {
         ("--levels 1", "expected two levels or more"),
         ("--hold 2,1", "expected two numbers, the lower one first"),
         ("--output-range=-1,1", "give --model or a log"),
-        ("--dead-band avoid", "no model tells it"),
+        ("--dead-band avoid", "no model has it"),
         ("--model plain.toml --dead-band avoid", "the model has none"),
         ("--levels=-1,1 --dead-band=-2,2", "fewer than two are left"),
         ("--hold 5,6 --duration 3", "longer than the whole input"),

@@ -138,7 +138,7 @@ fn a_model_is_reported_with_its_ladder() {
     let json = desk.json("report log.csv --model boom.toml -o given.html", 0);
     let sentence = json["joints"][0]["sentence"].as_str().unwrap();
     assert!(sentence.contains("integrator + dead_band, error"), "{sentence}");
-    assert!(words(parsed(&desk.read("given.html")).root_element()).contains("The ladder before"));
+    assert!(words(parsed(&desk.read("given.html")).root_element()).contains("Earlier revisions"));
 }
 
 #[test]

@@ -36,8 +36,8 @@ pub(super) fn rehearse(
 ) -> Rehearsed {
     let first = (attempt * count) as u64;
     let seeds: Vec<u64> = (first + 1..).take(count).collect();
-    let mut found = Rehearsed::default();
-    found.sides = targets.map(|is_target| is_target.then(Rehearsal::default));
+    let sides = targets.map(|is_target| is_target.then(Rehearsal::default));
+    let mut found = Rehearsed { sides, ..Rehearsed::default() };
     for some in seeds.chunks(FEW) {
         let sides = found.sides.iter_mut().zip(&mut found.failed).enumerate();
         for (truth, (side, failed)) in sides {

@@ -111,6 +111,7 @@ fn add_lines(
     root: &EntityPath,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
+    type Side = fn(&Candidate, &SegmentLayout<'_>) -> (Line, [usize; 2]);
     let before = |best: &Candidate, segment: &SegmentLayout<'_>| {
         (best.before, [segment.decision.segment.first, best.breakpoint])
     };
@@ -120,7 +121,6 @@ fn add_lines(
         let end = segment.decision.segment.last.min(q + segment.decision.hold).max(q);
         (best.after, [q, end])
     };
-    type Side = fn(&Candidate, &SegmentLayout<'_>) -> (Line, [usize; 2]);
     let sides: [(&str, &str, Rgb, Side); 2] = [
         (paths::LINE_BEFORE, "line before", palette::CANDIDATE, before),
         (paths::LINE_AFTER, "line after", palette::ACCEPTED, after),

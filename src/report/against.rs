@@ -8,7 +8,9 @@ use crate::wording::{bracketed, p_cell};
 pub fn against_table<'a>(joints: impl IntoIterator<Item = (&'a str, &'a AgainstState)>) -> String {
     let mut table = TextTable::new(AGAINST_HEADER, &[2, 3, 4]);
     for (joint, found) in joints {
-        against_rows(joint, found).into_iter().for_each(|cells| table.row(cells));
+        for cells in against_rows(joint, found) {
+            table.row(cells);
+        }
     }
     format!("{table}\nSpearman's rank correlation; `yes`: p at most 0.05 after Holm's correction\n")
 }

@@ -93,7 +93,9 @@ pub(crate) fn side_rows(found: &Discrimination) -> [[String; 5]; 2] {
 
 fn side_table(found: &Discrimination) -> TextTable {
     let mut table = TextTable::new(SIDE_HEADER, &[1, 2, 3, 4]);
-    side_rows(found).into_iter().for_each(|cells| table.row(cells));
+    for cells in side_rows(found) {
+        table.row(cells);
+    }
     table
 }
 

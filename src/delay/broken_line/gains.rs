@@ -64,7 +64,7 @@ impl BreakGains {
         (errors, changes)
     }
 
-    /// BreakGains behind which a break between two samples may take away the most, from the
+    /// Positions behind which a break between two samples may take away the most, from the
     /// back: what it has in common with the output is linear between them, and its own square
     /// at most by a quarter of the level's below both ends.
     pub(super) fn promising(&self, frame: &Frame) -> impl Iterator<Item = usize> + use<> {

@@ -11,7 +11,7 @@
 //! first samples behind the break change.
 //!
 //! The interval holds every τ whose squared error is within `t²·s²` of the least one
-//! (profile likelihood, with the segment's own `s²`). The p_value of so good a break in
+//! (profile likelihood, with the segment's own `s²`). The p-value of so good a break in
 //! noise alone is that of a random direction coming so near to a curve on a sphere, whose
 //! length is `√3/2 · ln(s/(1−s))` between the ends of the search (`s` the break's position as
 //! a part of the segment).
@@ -52,7 +52,7 @@ pub struct BrokenLine {
     pub high: f64,
     /// The position that the true one is as likely before as behind.
     pub median: f64,
-    /// The p_value of so good a break in noise alone.
+    /// The p-value of so good a break in noise alone.
     pub p_value: f64,
     /// Squared error, of whitened residuals where the noise is not white.
     pub sse: f64,
@@ -135,7 +135,7 @@ impl<'a> Window<'a> {
         Some(Self { noise, frame: Frame::of(noise, rows, line), pulled: left, power, rows })
     }
 
-    /// BreakGains at which a break leaves enough samples on both sides.
+    /// Positions at which a break leaves enough samples on both sides.
     pub(crate) fn positions(&self) -> RangeInclusive<usize> {
         let order = self.noise.order();
         order.max(1)..=self.pulled.len().saturating_sub(3 + order)
@@ -248,7 +248,7 @@ pub(crate) fn median(position: f64, (low, high): (f64, f64), t: f64) -> f64 {
     position + wide / t * odd * (0.626_7 + 0.047_8 * odd * odd)
 }
 
-/// The p_value that noise alone gains the `share` of its power with a break between `low`
+/// The probability that noise alone gains the `share` of its power with a break between `low`
 /// and `high` of `samples`, where there are that many `dimensions` to gain in.
 pub(crate) fn p_value(share: f64, dimensions: f64, samples: f64, (low, high): (f64, f64)) -> f64 {
     if !share.is_finite() || dimensions < 3.0 {

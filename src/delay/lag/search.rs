@@ -260,7 +260,7 @@ impl<'a> LagSearch<'a> {
     /// The best lag: no poles, a real one, a pair, or all three.
     pub(crate) fn select(self) -> Self {
         let mut white = self.of_each_order();
-        let usual = richest(&white).map(|richest| richest.trim_outliers());
+        let usual = richest(&white).map(Self::trim_outliers);
         if let Some(usual) = usual.filter(|usual| usual.windows.len() < self.windows.len()) {
             white = usual.with_lag(LagModel::NONE).of_each_order();
         }

@@ -62,7 +62,7 @@ pub fn ranks(values: &[f64]) -> Vec<f64> {
 ///
 /// # Examples
 /// ```
-/// use tauscope::statistics::spearman;
+/// use tauscope::numerics::spearman;
 /// let rises = spearman(&[1.0, 2.0, 3.0, 4.0], &[0.1, 0.2, 0.4, 0.8]).unwrap();
 /// assert!((rises.statistic - 1.0).abs() < 1e-12);
 /// assert!((rises.p_value - 2.0 / 24.0).abs() < 1e-12);

@@ -33,7 +33,7 @@ struct Ladder<'r> {
 
 impl<'r> Ladder<'r> {
     fn of(improved: &'r ImprovedJoint<'_>) -> Self {
-        let rungs = ladder::rungs(&improved.revisions);
+        let rungs = ladder::rungs(improved.revisions);
         let bars = Bars::new(COLUMNS, rungs.len(), ladder::largest(&rungs));
         Self { rungs, bars }
     }

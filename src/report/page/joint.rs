@@ -4,7 +4,7 @@ use super::document::Block;
 use super::plot::PlotError;
 use super::report::Report;
 use super::{delays, model, record, segment};
-use crate::delay::{AgainstState, Condition};
+use crate::delay::{AgainstState, Condition, MethodSpec};
 use crate::report::against::{AGAINST_HEADER, against_rows};
 use crate::report::decisions::detailed_rows;
 use crate::report::text::lag_line;
@@ -131,19 +131,19 @@ fn decision_table(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> TextTab
     let unit = estimated.joint.output_unit.as_ref();
     let sse = unit.map_or_else(|| "SSE".to_owned(), |unit| format!("SSE [{unit}²]"));
     let before = ["trial", "i", "p", "r", "end", "q", "δ [samples]", "δ [s]"];
-    let has_intervals = report.settings.method.spec().has_intervals;
-    let interval = has_intervals.then(|| "interval [samples]".to_owned());
+    let method = report.settings.method.spec();
+    let interval = method.has_intervals.then(|| "interval [samples]".to_owned());
     let header = before.map(str::to_owned).into_iter().chain(interval).chain([sse]);
     let behind = ["verdict", "accepted with"].map(str::to_owned);
     let rows = detailed_rows(estimated).take(MOST_ROWS);
     TextTable {
-        numbers: (1..before.len() + 1 + usize::from(has_intervals)).collect(),
+        numbers: (1..before.len() + 1 + usize::from(method.has_intervals)).collect(),
         header: header.chain(behind).collect(),
-        rows: rows.map(|(row, detail)| decision_row(row, detail, has_intervals)).collect(),
+        rows: rows.map(|(row, detail)| decision_row(row, detail, method)).collect(),
     }
 }
 
-fn decision_row(row: DecisionRow<'_>, detail: DecisionDetail, has_intervals: bool) -> Vec<String> {
+fn decision_row(row: DecisionRow<'_>, detail: DecisionDetail, method: &MethodSpec) -> Vec<String> {
     let dash = || "-".to_owned();
     let optional = |value: Option<f64>| value.map_or_else(dash, number);
     let ends = detail.delta_low.zip(detail.delta_high);
@@ -153,5 +153,5 @@ fn decision_row(row: DecisionRow<'_>, detail: DecisionDetail, has_intervals: boo
     let delay = [row.q, row.delta, row.delta_s].map(optional);
     let before = [row.trial.to_owned()].into_iter().chain(samples).chain(delay);
     let behind = [optional(row.sse), row.verdict, detail.accepted_with];
-    before.chain(has_intervals.then(interval)).chain(behind).collect()
+    before.chain(method.has_intervals.then(interval)).chain(behind).collect()
 }

@@ -13,7 +13,7 @@ use crate::wording::{bracketed, number};
 /// A bar for the error of each revision, and the noise as a line.
 pub(super) fn figure(improved: &ImprovedJoint<'_>, file: String) -> Result<Figure, PlotError> {
     let joint = improved.finding.compared.joint;
-    let rungs = ladder::rungs(&improved.revisions);
+    let rungs = ladder::rungs(improved.revisions);
     let numbered = (improved.first_revision..).zip(&rungs);
     let name =
         |(number, rung): (u32, &Rung<'_>)| format!("{number}: {}", change_in_words(rung.revision));
