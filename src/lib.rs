@@ -2,15 +2,15 @@
 //!
 //! ## Where things are
 //!
-//! Each module uses only those above it.
+//! Each module uses only those above it; `tests/layering.rs` checks it.
 //!
 //! - [`units`]: scalars that are valid once they exist
-//! - [`numerics`]: statistics, filters and least squares
+//! - [`numerics`]: statistics, filters, projections, noise models
+//! - [`experiment`]: logs, joints, trials, and the formats they are read from
+//! - [`synthetic`]: logs of joints with known delays and effects, made by plants of their own
 //! - [`effect`]: the catalogue of physical effects
-//! - [`experiment`]: logs, joints, trials
 //! - [`delay`]: the delay of every step of one joint
-//! - [`model`]: the grey-box model of a joint, and its simulation
-//! - [`synthetic`]: logs of joints with known delays and effects
+//! - [`model`]: the grey-box model of a joint, its simulation and its file
 //! - [`fit`]: models fitted to measurements
 //! - [`diagnosis`]: how good a model is, and where it fails
 //! - [`explain`]: which physical effect a model lacks
@@ -18,8 +18,21 @@
 //! - [`study`]: all joints of an experiment
 //! - [`batch`]: pieces of work on many threads
 //! - [`wording`]: what statuses, units, probabilities and numbers are called
+//! - `figure`: what is drawn, as data
 //! - [`report`]: results as text, CSV and JSON, and as a page with figures
 //! - `recording`: results as a Rerun recording (feature `rrd`)
+//! - `cli`: arguments, printing and exit status
+//!
+//! ## Where to add what
+//!
+//! | what | one file | one line |
+//! |---|---|---|
+//! | an effect | `src/effect/` | `src/effect/registry.rs`; its independent twin for tests in `src/synthetic/effects/` |
+//! | a method that finds delays | `src/delay/method/` | `src/delay/method/registry.rs` |
+//! | a format of logs | `src/experiment/format/` | `src/experiment/format/registry.rs` |
+//! | a field of a command's JSON | `src/report/json/`, a file per command | |
+//! | a view of a recording | what is drawn in `src/figure/` and `src/recording/`, where it stands in `src/recording/views/` | its path in `src/recording/paths.rs` |
+//! | a command | `src/cli/command/` | `src/cli/program.rs` |
 
 pub mod batch;
 #[doc(hidden)]
@@ -41,3 +54,8 @@ pub mod study;
 pub mod synthetic;
 pub mod units;
 pub mod wording;
+
+pub use delay::{Method, Settings, estimate};
+pub use effect::Effect;
+pub use experiment::{Experiment, Joint, Trial};
+pub use model::JointModel;

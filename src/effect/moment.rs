@@ -3,7 +3,7 @@
 /// What an effect sees of one interval of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
-    /// The signal of its [`Stage`], after the effects before it.
+    /// The signal of its [`Stage`](super::Stage), after the effects before it.
     pub signal: f64,
     /// Angle of the joint, in output units.
     pub position: f64,

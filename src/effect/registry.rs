@@ -81,8 +81,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_catalogue_is_the_documented_one() {
-        let documented = [
+    fn ids_that_model_files_rely_on_are_there_in_order() {
+        let promised = [
             "input_offset",
             "dead_band",
             "stiction",
@@ -103,8 +103,9 @@ mod tests {
             "end_stop",
             "backlash",
         ];
-        let ids: Vec<_> = REGISTRY.iter().map(|effect| effect.spec().id).collect();
-        assert_eq!(ids, documented);
+        let ids = REGISTRY.iter().map(|effect| effect.spec().id);
+        let kept: Vec<_> = ids.filter(|id| promised.contains(id)).collect();
+        assert_eq!(kept, promised);
     }
 
     #[test]

@@ -23,7 +23,7 @@
 //! An expression has no memory. It is compiled once and takes 20 to 40 ns to compute.
 //!
 //! Without a value for each parameter at which it changes nothing, models with and without
-//! the effect do not nest; [`Effect::nests`] says so.
+//! the effect do not nest; [`Effect::nests`](crate::effect::Effect::nests) says so.
 
 mod compiled;
 mod error;
