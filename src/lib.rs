@@ -25,12 +25,12 @@
 //!
 //! ## Where to add what
 //!
-//! | what | one file | one line |
+//! | what | one file | one line, beside its `mod` |
 //! |---|---|---|
-//! | an effect | `src/effect/` | `src/effect/registry.rs`; its independent twin for tests in `src/synthetic/effects/` |
-//! | a method that finds delays | `src/delay/method/` | `src/delay/method/registry.rs` |
+//! | an effect | `src/effect/` | `src/effect/registry.rs`; its independent twin for tests in `src/synthetic/effects/`, where `tests/hidden_effects.rs` asks for it |
+//! | a method that finds delays | `src/delay/method/` | `src/delay/method/registry.rs`; a row in `docs/methods.md` |
 //! | a format of logs | `src/experiment/format/` | `src/experiment/format/registry.rs` |
-//! | a field of a command's JSON | `src/report/json/`, a file per command | |
+//! | a field of a command's JSON | `src/report/json/`, a file per command; what models have in all of them in `joint.rs` | |
 //! | a view of a recording | what is drawn in `src/figure/` and `src/recording/`, where it stands in `src/recording/views/` | its path in `src/recording/paths.rs` |
 //! | a command | `src/cli/command/` | `src/cli/program.rs` |
 

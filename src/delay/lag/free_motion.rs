@@ -38,9 +38,8 @@ impl FreeMotion {
             let mut row = [0.0; COLUMNS];
             row[0] = 1.0;
             row[1] = k as f64;
-            for (slot, mode) in row.iter_mut().skip(LINE).zip(columns.chunks_exact(longest.max(1)))
-            {
-                *slot = mode.get(k).copied().unwrap_or_default();
+            for mode in 0..modes {
+                row[LINE + mode] = columns[mode * longest + k];
             }
             row
         };
@@ -59,12 +58,13 @@ impl FreeMotion {
     /// The squared error of each piece of `values` from its first sample up to one of the
     /// `ends`, which ascend.
     pub(crate) fn errors(&self, values: &[f64], ends: impl Iterator<Item = usize>) -> Vec<f64> {
-        let offset = values.first().copied().unwrap_or_default();
+        // No values, no error whatever the offset.
+        let offset = values.first().map_or(0.0, |first| *first);
         let (mut sums, mut square, mut done) = ([0.0; COLUMNS], 0.0, 0);
         let error = |end: usize| {
             let end = end.min(values.len()).min(self.rows.len());
-            let piece = values.get(done..end).unwrap_or_default();
-            for (y, row) in piece.iter().zip(self.rows.iter().skip(done)) {
+            let start = done.min(end);
+            for (y, row) in values[start..end].iter().zip(&self.rows[start..]) {
                 let y = y - offset;
                 square += y * y;
                 sums.iter_mut().zip(row).for_each(|(sum, value)| *sum += y * value);
@@ -78,40 +78,38 @@ impl FreeMotion {
 }
 
 impl Factors {
+    /// `L·D·Lᵀ` of the products, by elimination from the first column on; a column that depends
+    /// on those before it is skipped.
     fn of(products: &[[f64; COLUMNS]; COLUMNS]) -> Self {
-        let mut left = *products;
+        let mut residual = *products;
         let mut factors = Self::default();
         for column in 0..COLUMNS {
-            let pivot_row = left.get(column).copied().unwrap_or_default();
-            let pivot = pivot_row.get(column).copied().unwrap_or_default();
-            let whole = products.get(column).and_then(|row| row.get(column)).copied();
-            if pivot <= PIVOT * whole.unwrap_or_default() {
+            let pivot_row = residual[column];
+            let pivot = pivot_row[column];
+            if pivot <= PIVOT * products[column][column] {
                 continue;
             }
-            if let Some(slot) = factors.per_square.get_mut(column) {
-                *slot = pivot.recip();
-            }
-            let later = left.iter_mut().zip(&mut factors.lower).skip(column + 1);
+            factors.per_square[column] = pivot.recip();
+            let later = residual.iter_mut().zip(&mut factors.lower).skip(column + 1);
             for (row, lower) in later {
-                let multiple = row.get(column).copied().unwrap_or_default() / pivot;
+                let multiple = row[column] / pivot;
                 row.iter_mut().zip(&pivot_row).for_each(|(slot, value)| *slot -= multiple * value);
-                if let Some(slot) = lower.get_mut(column) {
-                    *slot = multiple;
-                }
+                lower[column] = multiple;
             }
         }
         factors
     }
 
-    /// What the columns explain of a target, given its products with them.
+    /// What the columns explain of a target, given its products with them: `Σ z_j²/d_j` with
+    /// `L·z` the products.
     fn explained(&self, sums: &[f64; COLUMNS]) -> f64 {
-        let mut left = *sums;
+        let mut residual = *sums;
         let mut explained = 0.0;
-        for (column, per_square) in self.per_square.iter().enumerate() {
-            let value = left.get(column).copied().unwrap_or_default();
-            explained += value * value * per_square;
-            for (slot, lower) in left.iter_mut().zip(&self.lower).skip(column + 1) {
-                *slot -= lower.get(column).copied().unwrap_or_default() * value;
+        for column in 0..COLUMNS {
+            let value = residual[column];
+            explained += value * value * self.per_square[column];
+            for (slot, lower) in residual.iter_mut().zip(&self.lower).skip(column + 1) {
+                *slot -= lower[column] * value;
             }
         }
         explained
@@ -123,17 +121,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_is_left_of_a_motion_that_dies_away() {
+    fn a_motion_that_dies_away_leaves_no_residual() {
         let model = LagModel::pair_of(0.157, 0.25).behind(6.0);
         let (mut y, mut unused) = (vec![0.0; 90], vec![0.0; 90]);
         Response::of(&model).fill(-11.0, &mut y, &mut unused);
         let y: Vec<f64> = y.iter().zip(0_u32..).map(|(y, k)| y + 0.3 * f64::from(k)).collect();
         let free = FreeMotion::of(&model, 90);
-        let left = free.errors(&y, [3, 20, 90].into_iter());
-        assert!(left.iter().all(|error| *error < 1e-8), "{left:?}");
+        let errors = free.errors(&y, [3, 20, 90].into_iter());
+        assert!(errors.iter().all(|error| *error < 1e-8), "{errors:?}");
         // Another motion is none of it.
-        let left = free.errors(&y.iter().map(|y| y * y).collect::<Vec<_>>(), std::iter::once(90));
-        assert!(left[0] > 1.0, "{left:?}");
+        let squares: Vec<f64> = y.iter().map(|y| y * y).collect();
+        let errors = free.errors(&squares, std::iter::once(90));
+        assert!(errors[0] > 1.0, "{errors:?}");
     }
 
     #[test]
