@@ -6,6 +6,8 @@
 //! Two more [methods](Method) find it between samples and tell how well it is known.
 //!
 //! - [`steps`](InputStep): where the input changes
+//! - [`Neutral`], [`Transition`]: the level at which a joint rests, and what kind of step
+//!   leaves it or leads there
 //! - [`Segment`]: which samples belong to a step
 //! - [`Candidates`]: every pair of lines, with its squared error
 //! - [`Check`]: the conditions, with the numbers compared
@@ -32,10 +34,12 @@ mod condition;
 mod decision;
 mod estimate;
 mod growing;
+mod hold;
 mod interval;
 mod lag;
 mod margin;
 mod method;
+mod neutral;
 mod onsets;
 mod prepared;
 mod profile;
@@ -47,6 +51,7 @@ mod spec;
 mod step_delay;
 mod steps;
 pub mod sweep;
+mod transition;
 mod trial_estimate;
 
 pub use crate::numerics::Line;
@@ -59,9 +64,11 @@ pub use condition::{Check, Condition, Outcome};
 pub use decision::{Breakpoint, Decision, Verdict};
 pub use estimate::{Estimator, estimate, estimate_joint};
 pub use growing::{Growing, check_growing, final_part};
+pub use hold::level_tolerance;
 pub use interval::FineDelay;
 pub use lag::{Lag, LagPart};
 pub use margin::{Remedy, RunnerUp};
+pub use neutral::Neutral;
 pub use profile::DelayProfile;
 pub use scan::delay_scan;
 pub use search::{Candidate, Candidates};
@@ -70,4 +77,5 @@ pub use settings::{Interpolation, Settings, SettingsError};
 pub use spec::{Method, MethodSpec, Scope};
 pub use step_delay::{StepDelay, step_delays};
 pub use steps::{InputStep, input_steps};
+pub use transition::Transition;
 pub use trial_estimate::{EstimateError, TrialEstimate};
