@@ -80,6 +80,11 @@ impl Reading {
         self
     }
 
+    fn as_it_stands(mut self) -> Self {
+        self.options.repair.as_it_stands = true;
+        self
+    }
+
     fn fill(mut self, seconds: f64) -> Self {
         self.options.repair.fill_s = Some(seconds);
         self
@@ -234,7 +239,8 @@ fn sample_numbers_need_the_period_between_them() {
 fn a_lost_sample_number_is_noticed_and_can_be_filled() {
     let text = "sample,boom.input,boom.output\n1,5,1\n2,5,2\n4,6,4\n5,6,5\n";
     let lost = Reading::of(text).sample_period(0.02);
-    assert!(matches!(lost.error(), ReadError::NotUniform { row: 4, .. }));
+    let strict = Reading::of(text).sample_period(0.02).as_it_stands();
+    assert!(matches!(strict.error(), ReadError::NotUniform { row: 4, .. }));
     let joint = lost.fill(0.04).the_joint();
     assert_eq!(outputs(&joint), [[1.0, 2.0, 3.0, 4.0, 5.0]]);
     assert_eq!(inputs(&joint), [[5.0, 5.0, 5.0, 6.0, 6.0]]);
@@ -384,11 +390,15 @@ fn names_of_joints_may_hold_dots_spaces_and_slashes() {
 }
 
 #[test]
-fn a_jittered_log_is_put_on_a_grid_when_that_is_asked_for() {
+fn a_jittered_log_keeps_its_rows_unless_another_grid_is_asked_for() {
     let text =
         "time_s,boom.input,boom.output\n0,1,0\n0.009,2,9\n0.021,3,21\n0.03,4,30\n0.04,4,40\n";
-    let error = Reading::of(text).error();
+    let error = Reading::of(text).as_it_stands().error();
     assert!(matches!(error, ReadError::NotUniform { row: 3, .. }), "{error}");
+    let experiment = Reading::of(text).read();
+    assert_eq!(periods(&experiment.joints[0]), ["0.01 s"]);
+    assert_eq!(outputs(&experiment.joints[0]), [[0.0, 9.0, 21.0, 30.0, 40.0]]);
+    assert!(experiment.notes[0].contains("the clock jitters by"), "{:?}", experiment.notes);
     let joint = Reading::of(text).resample(0.005).the_joint();
     assert_eq!(periods(&joint), ["0.005 s"]);
     assert_near(outputs(&joint)[0], &[0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0]);
@@ -447,10 +457,15 @@ fn a_part_of_a_trial_never_takes_the_name_of_another_trial() {
 }
 
 #[test]
-fn a_missing_value_is_refused_unless_it_may_be_filled() {
+fn a_missing_value_is_filled_with_a_note_and_refused_where_a_log_is_to_stand_as_it_is() {
     for cell in ["", "NaN", " "] {
+        let text = stepping("a", 150, 1.0).replacen(",1,0\n", &format!(",1,{cell}\n"), 1);
+        let text = format!("time_s,trial,boom.input,boom.output\n{text}");
+        let experiment = Reading::of(&text).read();
+        assert_eq!(labels(&experiment.joints[0]), ["a"]);
+        assert!(experiment.notes[0].contains("1 cell is empty or NaN"), "{:?}", experiment.notes);
         let text = PLAIN.replace("1.25", cell);
-        let error = Reading::of(text).error();
+        let error = Reading::of(text).as_it_stands().error();
         let ReadError::Missing { row, column, .. } = &error else { panic!("{error}") };
         assert_eq!((*row, column.as_str()), (3, "boom.output"));
     }

@@ -66,7 +66,8 @@ pub fn final_part(
 
 /// How many of the last samples may still change.
 fn held_back(trial: &Trial, settings: &Settings) -> Result<usize, FilterError> {
-    settings.low_pass.map_or(Ok(0), |low_pass| low_pass.reach(trial.period()))
+    let low_pass = settings.low_pass_at(trial.period());
+    low_pass.map_or(Ok(0), |low_pass| low_pass.reach(trial.period()))
 }
 
 #[cfg(test)]

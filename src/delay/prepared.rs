@@ -17,7 +17,7 @@ pub(super) struct Prepared<'a> {
 impl<'a> Prepared<'a> {
     pub(super) fn of(trial: &'a Trial, settings: &Settings) -> Result<Self, FilterError> {
         let smooth = |filter: LowPass| filter.smooth(trial.output(), trial.period());
-        let smoothed = settings.low_pass.map(smooth).transpose()?;
+        let smoothed = settings.low_pass_at(trial.period()).map(smooth).transpose()?;
         let steps = input_steps(trial.input(), settings.min_step);
         Ok(Self { raw: trial.output(), smoothed, period: trial.period(), steps })
     }

@@ -2,6 +2,7 @@
 
 use super::spec::Method;
 use crate::numerics::LowPass;
+use crate::units::SamplePeriod;
 
 /// How `τ_k` goes on between two steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,6 +26,9 @@ pub struct Settings {
     pub beta: usize,
     /// Zero-phase low-pass on the output before anything else.
     pub low_pass: Option<LowPass>,
+    /// Refuse a trial that is sampled too slowly for the low-pass. Else the low-pass is left
+    /// out there: such a record holds nothing that it would take off.
+    pub low_pass_required: bool,
     /// `τ_min`: the shortest hold, in samples, that is accepted.
     pub min_delay: usize,
     /// The longest delay that is looked for, in samples; a segment then runs from
@@ -66,6 +70,7 @@ impl Settings {
             alpha: 10,
             beta: 5,
             low_pass: spec.low_pass,
+            low_pass_required: false,
             min_delay: 0,
             max_delay: None,
             output_limits: None,
@@ -117,6 +122,12 @@ pub enum SettingsError {
 }
 
 impl Settings {
+    /// The low-pass of a trial that is sampled every `period`.
+    pub fn low_pass_at(&self, period: SamplePeriod) -> Option<LowPass> {
+        let fits = |low_pass: &LowPass| low_pass.cutoff_hz < period.nyquist_hz();
+        self.low_pass.filter(|low_pass| self.low_pass_required || fits(low_pass))
+    }
+
     /// Checks what can be checked without a log.
     ///
     /// # Errors

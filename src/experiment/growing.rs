@@ -188,15 +188,17 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log.csv");
         let start = "t,a.input,a.output\n0,1,2\n1,1,3\n";
+        let mut options = ReadOptions::default();
+        options.repair.as_it_stands = true;
         for wrong in ["2,1\n", "2,1,x\n", "2,inf,1\n", "0.5,1,1\n"] {
-            let mut growing = GrowingLog::new(&path, ReadOptions::default());
+            let mut growing = GrowingLog::new(&path, options.clone());
             growing.push(start.as_bytes());
             assert!(growing.experiment().failures.is_empty());
             growing.push(wrong.as_bytes());
             let first = failures(&growing.experiment());
             growing.push(b"3,1,2\n");
             let text = format!("{start}{wrong}3,1,2\n");
-            let expected = read(folder.path(), text.as_bytes(), &ReadOptions::default());
+            let expected = read(folder.path(), text.as_bytes(), &options);
             assert_eq!(first.len(), 1, "{wrong}");
             assert_eq!(failures(&growing.experiment()), failures(&expected));
         }

@@ -1,10 +1,12 @@
 //! The numbers of a log as joints: cells checked, trials cut and put on a uniform grid.
 
 use super::error::ReadError;
+use super::even;
 use super::joint::{Joint, Signal, Trial};
 use super::layout::{JointLayout, TimeSource};
-use super::sampling::{Fault, Grid, Repair, Signals};
+use super::sampling::{Fault, Grid, Piece, Repair, Signals};
 use super::table::{BadCell, Column, Head, Table, TrialRows};
+use crate::units::SamplePeriod;
 
 /// A table that was read, with what is needed to speak of its cells.
 pub(super) struct Log<'a> {
@@ -29,29 +31,72 @@ impl Log<'_> {
         trials
     }
 
+    /// The grid of each trial, and what should be known of the clock.
     pub(super) fn grids(
         &self,
         time: TimeSource,
         trials: &[TrialRows],
         repair: Repair,
-    ) -> Result<Vec<Grid>, ReadError> {
+    ) -> Result<(Vec<Grid>, Vec<String>), ReadError> {
+        let times = match self.times(time)? {
+            Clock::Stamps(times) => times,
+            Clock::Rows(period) => {
+                let grid =
+                    |trial: &TrialRows| Grid::of_rows(trial.end - trial.start, period, repair);
+                return Ok((trials.iter().map(grid).collect(), Vec::new()));
+            }
+        };
+        let rows = |trial: &TrialRows| (trial.start..trial.end).collect();
+        let rows: Vec<Vec<usize>> = trials.iter().map(rows).collect();
+        self.grids_of(&times, &rows, trials, repair)
+    }
+
+    /// The grids of `rows` of each trial, which are some of its rows or all.
+    fn grids_of(
+        &self,
+        times: &[f64],
+        rows: &[Vec<usize>],
+        trials: &[TrialRows],
+        repair: Repair,
+    ) -> Result<(Vec<Grid>, Vec<String>), ReadError> {
+        let of = |rows: &Vec<usize>| {
+            rows.iter().map(|&row| times.get(row).copied().unwrap_or(f64::NAN)).collect()
+        };
+        let of_trials: Vec<Vec<f64>> = rows.iter().map(of).collect();
+        let error = |index: usize, fault: Fault| {
+            let rows = rows.get(index).map_or(&[][..], Vec::as_slice);
+            let times = of_trials.get(index).map_or(&[][..], Vec::as_slice);
+            let label = trials.get(index).map_or("", |trial| &trial.label);
+            self.time_error(fault, label, rows, times)
+        };
+        let lay = |(index, times): (usize, &Vec<f64>)| {
+            Grid::lay(times, repair).map_err(|fault| (index, fault))
+        };
+        match of_trials.iter().enumerate().map(lay).collect::<Result<Vec<_>, _>>() {
+            Ok(grids) => return Ok((grids, Vec::new())),
+            Err((index, fault)) if repair.as_it_stands || !fault.is_mended() => {
+                return Err(error(index, fault));
+            }
+            Err(_) => {}
+        }
+        let number = |trial: usize, row: usize| {
+            rows.get(trial).and_then(|rows| rows.get(row)).map_or(0, |&row| self.row(row))
+        };
+        let times: Vec<&[f64]> = of_trials.iter().map(Vec::as_slice).collect();
+        even::grids(&times, repair, &number).map_err(|(index, fault)| error(index, fault))
+    }
+
+    /// The times of all rows, in seconds; or how far apart they are, where nothing says when.
+    fn times(&self, time: TimeSource) -> Result<Clock, ReadError> {
         let (column, scale) = match time {
             TimeSource::Times(column, scale) => (column, scale),
             TimeSource::SampleNumbers(column, period) => (column, period.seconds()),
-            TimeSource::Rows(period) => {
-                let grid =
-                    |trial: &TrialRows| Grid::of_rows(trial.end - trial.start, period, repair);
-                return Ok(trials.iter().map(grid).collect());
-            }
+            TimeSource::Rows(period) => return Ok(Clock::Rows(period)),
         };
         let values = self.column(column).map_or(&[][..], |column| &column.values);
         let times: Vec<f64> = values.iter().map(|value| value * scale).collect();
         self.check_times(column, &times)?;
-        let lay = |trial: &TrialRows| {
-            let times = times.get(trial.start..trial.end).unwrap_or_default();
-            Grid::lay(times, repair).map_err(|fault| self.time_error(fault, trial, times))
-        };
-        trials.iter().map(lay).collect()
+        Ok(Clock::Stamps(times))
     }
 
     /// Every row needs a time.
@@ -69,39 +114,44 @@ impl Log<'_> {
         }
     }
 
-    fn time_error(&self, fault: Fault, trial: &TrialRows, times: &[f64]) -> ReadError {
+    /// `fault` in the clock of the trial `label`, of whose `rows` these are the `times`.
+    fn time_error(&self, fault: Fault, label: &str, rows: &[usize], times: &[f64]) -> ReadError {
         let path = self.head.path.clone();
         let at = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
+        let number = |row: usize| rows.get(row).map_or(0, |&row| self.row(row));
+        let trial = label.to_owned();
         match fault {
             Fault::NotIncreasing { row } => ReadError::TimeNotIncreasing {
                 path,
-                row: self.row(trial.start + row),
-                previous: at(row - 1),
+                row: number(row),
+                previous: row.checked_sub(1).map_or(f64::NAN, at),
                 time: at(row),
             },
             Fault::NotUniform { row, step, period } => {
-                ReadError::NotUniform { path, row: self.row(trial.start + row), step, period }
+                ReadError::NotUniform { path, row: number(row), step, period }
             }
             Fault::TooMany { samples, period } => {
-                let trial = trial.label.clone();
                 ReadError::TooManySamples { path, trial, samples, period }
             }
-            Fault::SingleRow => ReadError::SingleRow {
-                path,
-                row: self.row(trial.start),
-                trial: trial.label.clone(),
-            },
+            Fault::SingleRow => ReadError::SingleRow { path, row: number(0), trial },
         }
     }
 
+    /// A joint, and what should be known of how it was read.
     pub(super) fn joint(
         &self,
         layout: &JointLayout,
         trials: &[TrialRows],
         grids: &[Grid],
+        time: TimeSource,
         repair: Repair,
-    ) -> Result<Joint, ReadError> {
+    ) -> Result<(Joint, Vec<String>), ReadError> {
         self.check_joint(layout, repair)?;
+        let (own, mut notes) = match self.sparse_rows(layout, trials, repair) {
+            Some(rows) => self.sparse_grids(layout, trials, rows, time)?,
+            None => (None, self.missing_notes(layout)),
+        };
+        let grids = own.as_deref().unwrap_or(grids);
         let mut joint = Joint {
             name: layout.name.clone(),
             input_unit: layout.input.signal.unit.clone(),
@@ -113,24 +163,103 @@ impl Log<'_> {
             let pieces = grid.pieces(&self.signals(layout, rows));
             let labels = part_labels(&rows.label, pieces.len(), trials);
             for (label, piece) in labels.into_iter().zip(pieces) {
-                let Signals { input, output, covariates } = piece.signals;
-                let trial = Trial::new(label, piece.start_s, grid.period(), input, output)
-                    .and_then(|trial| trial.with_covariates(covariates));
-                joint.trials.push(trial.map_err(|source| ReadError::Trial {
-                    path: self.head.path.clone(),
-                    joint: layout.name.clone(),
-                    source,
-                })?);
+                joint.trials.push(self.trial(layout, label, grid, piece)?);
             }
         }
         if joint.trials.is_empty() {
             let (path, joint) = (self.head.path.clone(), layout.name.clone());
             return Err(ReadError::NoSamples { path, joint });
         }
-        Ok(joint)
+        notes.extend(split_notes(&joint, trials));
+        Ok((joint, notes))
     }
 
-    /// Refuses bad cells, and missing ones unless they may be filled.
+    fn trial(
+        &self,
+        layout: &JointLayout,
+        label: String,
+        grid: &Grid,
+        piece: Piece,
+    ) -> Result<Trial, ReadError> {
+        let Signals { input, output, covariates } = piece.signals;
+        let trial = Trial::new(label, piece.start_s, grid.period(), input, output)
+            .and_then(|trial| trial.with_covariates(covariates));
+        trial.map_err(|source| ReadError::Trial {
+            path: self.head.path.clone(),
+            joint: layout.name.clone(),
+            source,
+        })
+    }
+
+    /// The rows of each trial that hold the joint's output, where that is so seldom that the
+    /// table must be one of several clocks.
+    fn sparse_rows(
+        &self,
+        layout: &JointLayout,
+        trials: &[TrialRows],
+        repair: Repair,
+    ) -> Option<Vec<Vec<usize>>> {
+        /// Part of the rows without an output above which it has a clock of its own.
+        const SPARSE: f64 = 0.3;
+        let output = &self.column(layout.output.column)?.values;
+        let missing = output.iter().filter(|value| value.is_nan()).count() as f64;
+        let measured = |trial: &TrialRows| {
+            let rows = trial.start..trial.end;
+            rows.filter(|&row| output.get(row).is_some_and(|value| !value.is_nan())).collect()
+        };
+        let is_sparse = repair.is_free() && missing > SPARSE * output.len() as f64;
+        is_sparse.then(|| trials.iter().map(measured).collect())
+    }
+
+    /// Grids of the rows with an output, each trial's own.
+    fn sparse_grids(
+        &self,
+        layout: &JointLayout,
+        trials: &[TrialRows],
+        rows: Vec<Vec<usize>>,
+        time: TimeSource,
+    ) -> Result<(Option<Vec<Grid>>, Vec<String>), ReadError> {
+        let Clock::Stamps(times) = self.times(time)? else {
+            return Ok((None, self.missing_notes(layout)));
+        };
+        let name = &layout.name;
+        let (grids, clock) = self.grids_of(&times, &rows, trials, Repair::default())?;
+        let count: usize = rows.iter().map(Vec::len).sum();
+        let mut notes = vec![format!(
+            "joint `{name}`: {count} of {} rows have an output, and are taken as its samples; the \
+             input is held",
+            self.table.rows.len()
+        )];
+        notes.extend(clock.into_iter().map(|note| format!("joint `{name}`: {note}")));
+        let in_trial = |(rows, trial): (Vec<usize>, &TrialRows)| {
+            rows.into_iter().map(|row| row - trial.start).collect()
+        };
+        let rows = rows.into_iter().zip(trials).map(in_trial);
+        let grids = grids.into_iter().zip(rows).map(|(grid, rows)| grid.of_some(rows));
+        Ok((Some(grids.collect()), notes))
+    }
+
+    /// A line on cells that are missing in the input and the output of a joint.
+    fn missing_notes(&self, layout: &JointLayout) -> Vec<String> {
+        let kinds = [
+            (layout.output.column, "short gaps are filled in a line, longer ones part the trial"),
+            (layout.input.column, "the last value is held"),
+        ];
+        let note = |(column, what): (usize, &str)| {
+            let values = &self.column(column)?.values;
+            let missing = values.iter().filter(|value| value.is_nan()).count();
+            let first = values.iter().position(|value| value.is_nan())?;
+            let (name, column, row) = (&layout.name, self.header(column), self.row(first));
+            let cells = if missing == 1 { "cell is" } else { "cells are" };
+            Some(format!(
+                "joint `{name}`: {missing} {cells} empty or NaN in `{column}` (first at row \
+                 {row}): {what}"
+            ))
+        };
+        kinds.into_iter().filter_map(note).collect()
+    }
+
+    /// Refuses bad cells, and missing ones where they may not be filled.
     fn check_joint(&self, layout: &JointLayout, repair: Repair) -> Result<(), ReadError> {
         let needed = [layout.input.column, layout.output.column];
         let further = layout.covariates.iter().map(|covariate| covariate.column);
@@ -144,7 +273,7 @@ impl Log<'_> {
             let (path, column) = (self.head.path.clone(), self.header(column));
             return Err(ReadError::NeverMeasured { path, column });
         }
-        if repair.fill_s.is_some() {
+        if !repair.as_it_stands || repair.fill_s.is_some() {
             return Ok(());
         }
         let first_missing = |column: usize| {
@@ -196,6 +325,36 @@ impl Log<'_> {
             BadCell::Infinite => ReadError::Infinite { path, row, column },
         })
     }
+}
+
+/// Times of the rows in seconds, or the period between rows that have none.
+enum Clock {
+    Stamps(Vec<f64>),
+    Rows(SamplePeriod),
+}
+
+/// A line on each trial of `joint` that was split at gaps.
+fn split_notes(joint: &Joint, trials: &[TrialRows]) -> Vec<String> {
+    let parts = |trial: &TrialRows| {
+        let parts = joint.trials.iter().filter(|part| {
+            let rest = part.label().strip_prefix(&trial.label);
+            rest.is_some_and(|rest| rest.starts_with('#'))
+        });
+        let whole = joint.trials.iter().any(|part| part.label() == trial.label);
+        let count = parts.count();
+        let (name, label) = (&joint.name, &trial.label);
+        (!whole && count > 1)
+            .then(|| format!("joint `{name}`: trial `{label}` is split in {count} at long gaps"))
+    };
+    let mut notes: Vec<String> = trials.iter().filter_map(parts).collect();
+    /// Notes of one kind that are all shown.
+    const SHOWN: usize = 3;
+    if notes.len() > SHOWN {
+        let more = notes.len() - SHOWN;
+        notes.truncate(SHOWN);
+        notes.push(format!("joint `{}`: {more} more trials are split at long gaps", joint.name));
+    }
+    notes
 }
 
 /// Names of the parts of a trial that was split: `a#1`, `a#2`, with as many marks as it

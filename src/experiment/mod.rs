@@ -5,8 +5,10 @@
 //! knows how a delay is estimated.
 
 mod activity;
+mod clock;
 mod columns;
 mod error;
+mod even;
 mod format;
 mod growing;
 mod joint;

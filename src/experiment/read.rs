@@ -12,7 +12,7 @@ use super::layout::Layout;
 use super::log::Log;
 use super::sampling::Repair;
 use super::source::{Source, source_of};
-use super::table::{Head, OpenTable, TrialRows};
+use super::table::{Head, OpenTable};
 use crate::units::SamplePeriod;
 
 /// How logs are read.
@@ -234,11 +234,12 @@ impl Experiment {
         repair: Repair,
     ) -> Result<(), ReadError> {
         let trials = log.trials(stem);
-        let grids = log.grids(layout.time, &trials, repair)?;
+        let (grids, notes) = log.grids(layout.time, &trials, repair)?;
+        self.notes.extend(notes.iter().map(|note| format!("{}: {note}", log.head.path.display())));
         for joint in &layout.joints {
-            match log.joint(joint, &trials, &grids, repair) {
-                Ok(joint) => {
-                    self.notes.extend(split_notes(&joint, &trials));
+            match log.joint(joint, &trials, &grids, layout.time, repair) {
+                Ok((joint, notes)) => {
+                    self.notes.extend(notes);
                     self.joints.push(joint);
                 }
                 Err(error) => self.failures.push(failed((joint.name.clone(), error))),
@@ -250,22 +251,6 @@ impl Experiment {
         }
         Ok(())
     }
-}
-
-/// A line on each trial of `joint` that was split at gaps.
-fn split_notes(joint: &Joint, trials: &[TrialRows]) -> Vec<String> {
-    let parts = |trial: &TrialRows| {
-        let parts = joint.trials.iter().filter(|part| {
-            let rest = part.label().strip_prefix(&trial.label);
-            rest.is_some_and(|rest| rest.starts_with('#'))
-        });
-        let whole = joint.trials.iter().any(|part| part.label() == trial.label);
-        let count = parts.count();
-        let (name, label) = (&joint.name, &trial.label);
-        (!whole && count > 1)
-            .then(|| format!("joint `{name}`: trial `{label}` is split in {count} at long gaps"))
-    };
-    trials.iter().filter_map(parts).collect()
 }
 
 fn sample_period(path: &Path, map: &ColumnMap) -> Result<Option<SamplePeriod>, ReadError> {

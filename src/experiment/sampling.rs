@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::clock::filled_s;
 use crate::numerics::median;
 use crate::units::SamplePeriod;
 
@@ -10,8 +11,13 @@ use crate::units::SamplePeriod;
 pub struct Repair {
     /// Put every trial on a grid of this period: output linear, input held.
     pub resample: Option<SamplePeriod>,
-    /// Fill gaps up to this many seconds; longer ones split the trial in two.
+    /// Fill gaps up to this many seconds; longer ones split the trial in two. None: gaps of
+    /// a few samples are filled.
     pub fill_s: Option<f64>,
+    /// Refuse times that are not uniform and cells that are empty: what is made of them
+    /// depends on the whole log, which may still grow.
+    #[serde(skip)]
+    pub as_it_stands: bool,
 }
 
 /// Largest difference of a time step from the median, as a part of it, that still
@@ -31,6 +37,13 @@ pub(super) enum Fault {
     TooMany { samples: f64, period: f64 },
 }
 
+impl Fault {
+    /// Whether a clock with this fault is put on a grid unasked.
+    pub(super) fn is_mended(self) -> bool {
+        matches!(self, Self::NotIncreasing { .. } | Self::NotUniform { .. })
+    }
+}
+
 /// Times of a trial's rows, checked, and the grid they are put on.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Grid {
@@ -45,6 +58,15 @@ enum Placement {
     Rows { start_s: f64, places: Vec<usize>, fill: f64 },
     /// The grid lies anew over the rows' times.
     Resampled { times: Vec<f64>, longest_gap_s: f64 },
+    /// Some of the rows have a grid of their own each.
+    Parts(Vec<Part>),
+}
+
+/// Rows of a trial, in the order of their time, and their grid.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Part {
+    pub(super) rows: Vec<usize>,
+    pub(super) grid: Grid,
 }
 
 /// The signals of one joint in one trial, a value per row, NaN where missing.
@@ -84,7 +106,7 @@ impl Grid {
         let span = times.last().copied().unwrap_or_default() - start_s;
         let period = span / places.last().copied().unwrap_or(1) as f64;
         let period = SamplePeriod::from_seconds(tidy(period)).ok_or(Fault::SingleRow)?;
-        let fill = repair.fill_s.map_or(1.0, |fill| fill / period.seconds());
+        let fill = repair.fill_periods(period);
         let gaps = places.windows(2).map(|pair| (pair[1] - pair[0]) as f64);
         check_size(gaps.filter(|gap| is_within(*gap, fill)).sum(), period.seconds())?;
         Ok(Self { period, placement: Placement::Rows { start_s, places, fill } })
@@ -92,9 +114,43 @@ impl Grid {
 
     /// A grid on which row follows row, where the log has no times.
     pub(super) fn of_rows(rows: usize, period: SamplePeriod, repair: Repair) -> Self {
-        let fill = repair.fill_s.map_or(1.0, |fill| fill / period.seconds());
+        let fill = repair.fill_periods(period);
         let placement = Placement::Rows { start_s: 0.0, places: (0..rows).collect(), fill };
         Self { period, placement }
+    }
+
+    /// A grid from `start_s` on, in whose `places` the rows are; gaps up to `longest_gap_s`
+    /// are filled.
+    pub(super) fn of_places(
+        start_s: f64,
+        places: Vec<usize>,
+        period: SamplePeriod,
+        longest_gap_s: f64,
+    ) -> Result<Self, Fault> {
+        check_size(places.last().map_or(0.0, |last| *last as f64), period.seconds())?;
+        let fill = (longest_gap_s / period.seconds()).max(1.0);
+        Ok(Self { period, placement: Placement::Rows { start_s, places, fill } })
+    }
+
+    /// A grid that lies anew over rows at `times`, which increase.
+    pub(super) fn resampled(
+        times: Vec<f64>,
+        period: SamplePeriod,
+        longest_gap_s: f64,
+    ) -> Result<Self, Fault> {
+        let span = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
+        check_size(span / period.seconds(), period.seconds())?;
+        Ok(Self { period, placement: Placement::Resampled { times, longest_gap_s } })
+    }
+
+    /// Grids of `parts` of the rows.
+    pub(super) fn of_parts(period: SamplePeriod, parts: Vec<Part>) -> Self {
+        Self { period, placement: Placement::Parts(parts) }
+    }
+
+    /// This grid, of rows of which only `rows` are looked at.
+    pub(super) fn of_some(self, rows: Vec<usize>) -> Self {
+        Self::of_parts(self.period, vec![Part { rows, grid: self }])
     }
 
     pub(super) fn period(&self) -> SamplePeriod {
@@ -124,8 +180,43 @@ impl Grid {
             Placement::Resampled { times, longest_gap_s } => {
                 resampled(&signals, times, *longest_gap_s, self.period)
             }
+            Placement::Parts(parts) => {
+                let pieces = |part: &Part| part.grid.pieces(&signals.of_rows(&part.rows));
+                parts.iter().flat_map(pieces).collect()
+            }
         }
     }
+}
+
+impl Repair {
+    /// Periods up to which a gap is filled.
+    fn fill_periods(self, period: SamplePeriod) -> f64 {
+        self.fill_s.unwrap_or_else(|| filled_s(period.seconds())) / period.seconds()
+    }
+
+    /// Whether nothing was asked for, so that what suits the log is done.
+    pub(super) fn is_free(self) -> bool {
+        self == Self::default()
+    }
+}
+
+impl Signals {
+    /// The values of some rows, in their order.
+    pub(super) fn of_rows(&self, rows: &[usize]) -> Self {
+        let of = |values: &Vec<f64>| {
+            rows.iter().map(|&row| values.get(row).copied().unwrap_or(f64::NAN)).collect()
+        };
+        Self {
+            input: of(&self.input),
+            output: of(&self.output),
+            covariates: self.covariates.iter().map(of).collect(),
+        }
+    }
+}
+
+/// Whether rows at `times` are uniform as they stand, no row missing.
+pub(super) fn is_uniform(times: &[f64]) -> bool {
+    Grid::lay(times, Repair::default()).is_ok()
 }
 
 /// Rows with an output.
@@ -300,7 +391,11 @@ mod tests {
     }
 
     fn repair(resample: Option<f64>, fill_s: Option<f64>) -> Repair {
-        Repair { resample: resample.and_then(SamplePeriod::from_seconds), fill_s }
+        Repair {
+            resample: resample.and_then(SamplePeriod::from_seconds),
+            fill_s,
+            as_it_stands: false,
+        }
     }
 
     #[test]

@@ -111,7 +111,8 @@ impl AlgorithmArgs {
             Between::Hold => Interpolation::Hold,
             Between::Linear => Interpolation::Linear,
         };
-        Settings { alpha, beta, low_pass, interpolation, ..base }
+        let low_pass_required = given(self.passband).is_some();
+        Settings { alpha, beta, low_pass, low_pass_required, interpolation, ..base }
     }
 
     /// Which settings are to be chosen from the record.

@@ -167,7 +167,7 @@ impl DataArgs {
                 }
             }
         }
-        let repair = Repair { resample: self.resample, fill_s: self.fill };
+        let repair = Repair { resample: self.resample, fill_s: self.fill, as_it_stands: false };
         Ok(ReadOptions { columns, joints, repair })
     }
 }

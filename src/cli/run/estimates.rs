@@ -2,7 +2,7 @@
 
 use crate::cli::failure::{read_failures, said};
 use crate::delay::{Condition, EstimateError};
-use crate::experiment::{Experiment, Trial};
+use crate::experiment::{Experiment, Joint, Trial};
 use crate::report::{EstimatedJoint, JointSummary};
 use crate::study::JointEstimate;
 
@@ -48,6 +48,7 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
         let name = &joint.name;
         let steps: usize = estimate.estimated().map(|trial| trial.decisions.len()).sum();
         let samples: usize = joint.trials.iter().map(Trial::len).sum();
+        notes.extend(unsmoothed(joint, estimate));
         let summary = JointSummary::of(EstimatedJoint { joint, estimate });
         if steps > 0 && summary.rejected == [(Condition::FirstOrLast, steps)] {
             notes.push(format!(
@@ -63,4 +64,20 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
         }
     }
     notes
+}
+
+/// A line on the trials that are sampled too slowly for the low-pass.
+fn unsmoothed(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
+    let low_pass = estimate.settings.low_pass?;
+    let is_slow = |trial: &&Trial| estimate.settings.low_pass_at(trial.period()).is_none();
+    let slow = joint.trials.iter().filter(is_slow).count();
+    let (name, all, hz) = (&joint.name, joint.trials.len(), low_pass.cutoff_hz);
+    let whose = if slow == all { String::new() } else { format!(" at {slow} of {all} trials") };
+    (slow > 0).then(|| {
+        format!(
+            "joint `{name}`: the low-pass of {hz} Hz is left out{whose}, where no more than {} \
+             samples come in a second",
+            2.0 * hz
+        )
+    })
 }

@@ -99,10 +99,14 @@ impl Grid {
         let low_pass = if keeps_low_pass { settings.low_pass } else { low_pass };
         let alpha = self.alphas.get(a).copied().unwrap_or(settings.alpha);
         for b in 0..self.betas.len() {
+            let settings = settings.clone();
             let levels = [m, p, a, b];
             if !known && (b == 0 || settings.method.spec().has_rows) {
                 let beta = self.betas.get(b).copied().unwrap_or(settings.beta);
-                self.runs.push(Settings { alpha, beta, low_pass, ..settings.clone() });
+                // Two runs that differ by a low-pass that is left out would be one.
+                let low_pass_required = true;
+                let varied = Settings { alpha, beta, low_pass, low_pass_required, ..settings };
+                self.runs.push(varied);
             }
             let same = if known { self.run_at([m, 0, a, b]) } else { None };
             let run = same.unwrap_or(self.runs.len() - 1);

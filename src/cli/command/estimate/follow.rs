@@ -128,7 +128,9 @@ impl<'a> Followed<'a> {
         let Some(bytes) = self.news()? else { return Ok(false) };
         if let Kept::Nothing = self.kept {
             self.kept = if GrowingLog::is_text(&self.path, &bytes) {
-                let options = self.args.data.options()?;
+                let mut options = self.args.data.options()?;
+                // What is reported stands: nothing may depend on rows that are still to come.
+                options.repair.as_it_stands = true;
                 Kept::Text(Box::new(GrowingLog::new(&self.path, options)))
             } else {
                 Kept::Copy(Copied::of(&self.path)?)
