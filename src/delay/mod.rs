@@ -21,6 +21,7 @@
 //! - [`step_delays`]: the delays alone, by the best method
 //! - [`DelayProfile`]: the delay of every sample
 //! - [`final_part`]: the part of a growing trial that more samples cannot change
+//! - [`DelayTable`]: the delays by kind of step and level
 //! - [`AgainstState`]: what the delay may depend on
 //! - [`choose`]: α, β and the passband from a joint's own record
 //! - [`sweep`]: how every delay moves with the settings
@@ -51,8 +52,10 @@ mod spec;
 mod step_delay;
 mod steps;
 pub mod sweep;
+mod table;
 mod transition;
 mod trial_estimate;
+mod typical;
 
 pub use crate::numerics::Line;
 pub use against::{AgainstState, Correlation, Direction, StepState};
@@ -77,5 +80,7 @@ pub use settings::{Interpolation, Settings, SettingsError};
 pub use spec::{Method, MethodSpec, Scope};
 pub use step_delay::{StepDelay, step_delays};
 pub use steps::{InputStep, input_steps};
+pub use table::{CurvePoint, DelayCurve, DelayRow, DelayTable, KindDelay};
 pub use transition::Transition;
 pub use trial_estimate::{EstimateError, TrialEstimate};
+pub use typical::TypicalDelay;

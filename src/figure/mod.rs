@@ -8,6 +8,7 @@ pub(crate) mod correlogram;
 #[cfg(feature = "rrd")]
 pub(crate) mod course;
 pub(crate) mod delay_against;
+pub(crate) mod delay_levels;
 pub(crate) mod error_share;
 pub(crate) mod ladder;
 mod panel;

@@ -1,6 +1,6 @@
 //! A joint with its estimate.
 
-use crate::delay::{AgainstState, Lag};
+use crate::delay::{AgainstState, DelayTable, Lag};
 use crate::experiment::Joint;
 use crate::study::JointEstimate;
 
@@ -17,6 +17,12 @@ impl EstimatedJoint<'_> {
     /// The lag that its trials share, where the method looks for one.
     pub fn lag(&self) -> Option<&Lag> {
         self.estimate.estimated().find_map(|trial| trial.lag.as_ref())
+    }
+
+    /// The joint's delays by kind of step and level.
+    pub fn delay_table(&self) -> DelayTable {
+        let estimates = self.estimate.trials.iter().map(|trial| trial.as_ref().ok());
+        DelayTable::of(self.joint, estimates)
     }
 
     /// The joint's accepted delays against its state.

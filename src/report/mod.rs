@@ -5,6 +5,7 @@ mod against;
 mod compare;
 mod conclusion;
 mod decisions;
+mod delay_table;
 mod delays;
 mod design;
 mod design_words;
@@ -37,6 +38,7 @@ pub use decisions::decision_rows;
 pub(crate) use decisions::{
     DecisionDetail, Methods, decision_columns, decision_table, write_decisions,
 };
+pub(crate) use delay_table::{level_table, level_text, write_level_table};
 pub(crate) use delays::delay_table;
 pub use delays::write_delays;
 pub(crate) use design::{DesignedJoint, Discrimination, write_input, write_preview};

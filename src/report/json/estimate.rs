@@ -5,9 +5,10 @@ use serde::Serialize;
 use super::header::Header;
 use super::settings::SettingsJson;
 use crate::delay::{AgainstState, Chosen, Condition, Correlation, Direction, Lag, LagPart};
-use crate::delay::{Settings, StepState};
+use crate::delay::{DelayRow, DelayTable, KindDelay, Neutral, Settings, StepState};
 use crate::experiment::{Experiment, ReadOptions, Source};
 use crate::report::decisions::detailed_rows;
+use crate::report::delay_table::DelayTableRow;
 use crate::report::{DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary};
 
 /// The document of `estimate --format json`.
@@ -55,8 +56,40 @@ struct JointJson<'a> {
     chosen: Option<ChosenJson>,
     #[serde(skip_serializing_if = "Option::is_none")]
     lag: Option<LagJson>,
+    neutral: Option<NeutralJson>,
+    delay_table: Vec<DelayRowJson<'a>>,
+    delay_by_transition: Vec<KindJson>,
     against_state: AgainstJson,
     decisions: Vec<DecisionJson<'a>>,
+}
+
+/// Where the input is neutral, input units.
+#[derive(Debug, Serialize)]
+struct NeutralJson {
+    level: f64,
+    low: f64,
+    high: f64,
+}
+
+/// A row of the delay table, with the limits of its bins.
+#[derive(Debug, Serialize)]
+struct DelayRowJson<'a> {
+    #[serde(flatten)]
+    row: DelayTableRow<'a>,
+    level_from_limits: (f64, f64),
+    level_to_limits: (f64, f64),
+}
+
+/// All steps of a kind; a median only where it is typical.
+#[derive(Debug, Serialize)]
+struct KindJson {
+    transition: &'static str,
+    steps: usize,
+    accepted: usize,
+    delay_median_s: Option<f64>,
+    delay_low_s: Option<f64>,
+    delay_high_s: Option<f64>,
+    most_rejected_as: Option<&'static str>,
 }
 
 /// Settings that were chosen, and from what.
@@ -180,6 +213,7 @@ impl<'a> EstimateJson<'a> {
 impl<'a> JointJson<'a> {
     fn new(joint: EstimatedJoint<'a>) -> Self {
         let chosen = joint.estimate.chosen;
+        let DelayTable { neutral, rows, kinds, .. } = joint.delay_table();
         let JointSummary { steps, accepted, rejected, delay_samples, delay_s } =
             JointSummary::of(joint);
         let count = |(condition, count): (Condition, usize)| (condition.to_string(), count.into());
@@ -195,10 +229,35 @@ impl<'a> JointJson<'a> {
             settings: chosen.map(|_| (&joint.estimate.settings).into()),
             chosen: chosen.map(Into::into),
             lag: joint.lag().map(LagJson::new),
+            neutral: neutral.map(|Neutral { level, low, high }| NeutralJson { level, low, high }),
+            delay_table: rows.iter().map(|row| DelayRowJson::new(&joint.joint.name, row)).collect(),
+            delay_by_transition: kinds.into_iter().map(Into::into).collect(),
             against_state: joint.against_state().into(),
             decisions: detailed_rows(joint)
                 .map(|(row, detail)| DecisionJson { row, detail })
                 .collect(),
+        }
+    }
+}
+
+impl<'a> DelayRowJson<'a> {
+    fn new(joint: &'a str, row: &DelayRow) -> Self {
+        let (level_from_limits, level_to_limits) = (row.from_limits, row.to_limits);
+        Self { row: DelayTableRow::new(joint, row), level_from_limits, level_to_limits }
+    }
+}
+
+impl From<KindDelay> for KindJson {
+    fn from(kind: KindDelay) -> Self {
+        let interval = kind.typical.and_then(|typical| typical.interval_s);
+        Self {
+            transition: kind.transition.id(),
+            steps: kind.steps,
+            accepted: kind.accepted,
+            delay_median_s: kind.typical.map(|typical| typical.median_s),
+            delay_low_s: interval.map(|(low, _)| low),
+            delay_high_s: interval.map(|(_, high)| high),
+            most_rejected_as: kind.rejected.map(|(condition, _)| condition.id()),
         }
     }
 }

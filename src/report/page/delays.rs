@@ -4,14 +4,15 @@ use super::document::Figure;
 use super::layout::{HALF, WIDTH};
 use super::plot::{PlotError, draw};
 use super::timeline::Timeline;
-use crate::delay::{AgainstState, Correlation, DelayProfile};
+use crate::delay::{AgainstState, Correlation, DelayProfile, DelayTable};
 use crate::figure::Role;
 use crate::figure::delay_against::{self, Way};
+use crate::figure::delay_levels::{self, Series};
 use crate::figure::{Axis, Mark, Panel, Place, Shape};
 use crate::figure::{Span, thinned_to};
 use crate::report::EstimatedJoint;
 use crate::report::against::variable_text;
-use crate::wording::p_cell;
+use crate::wording::{bracketed, p_cell};
 
 /// Steps between which the delay is drawn.
 const MOST_STEPS: usize = 2000;
@@ -109,6 +110,45 @@ fn corners(run: &[(usize, f64)]) -> Vec<(usize, f64)> {
     let kept: Vec<_> = run.first().into_iter().chain(inside).chain(run.last()).copied().collect();
     let values: Vec<f64> = kept.iter().map(|one| one.1).collect();
     thinned_to(&values, 4000).into_iter().filter_map(|index| kept.get(index)).copied().collect()
+}
+
+/// The median delay over the level, by kind of step; none where none was accepted.
+pub(super) fn over_levels(
+    estimated: EstimatedJoint<'_>,
+    found: &DelayTable,
+    file: String,
+) -> Result<Option<Figure>, PlotError> {
+    let all = delay_levels::series(found);
+    let Some((x, y)) = delay_levels::spans(&all) else { return Ok(None) };
+    let input = bracketed("level of the input", estimated.joint.input_unit.as_deref());
+    let panel = Panel {
+        x: Axis::new(x, input, 8.0),
+        y: Axis::new(y, "delay [s]", 5.0),
+        height: 220,
+        marks: all.iter().flat_map(|one| level_marks(one, y)).collect(),
+    };
+    let svg = draw(&[panel], WIDTH, &format!("Delay of {} by level", estimated.joint.name))?;
+    let caption = "The median delay over the level, for a stop that before it, else that after \
+                   it, with its 95 % interval and how many of how many steps were accepted; where \
+                   none was, a cross stands at the bottom."
+        .to_owned();
+    Ok(Some(Figure { file, svg, caption }))
+}
+
+fn level_marks(one: &Series, y: Span) -> Vec<Mark> {
+    let bottom = y.low + 0.04 * (y.high - y.low);
+    let cut = |line: &Vec<Place>| line.iter().map(|place| (place.0, place.1.min(y.high))).collect();
+    let without: Vec<_> =
+        one.without.iter().map(|(x, text)| ((*x, bottom), text.clone())).collect();
+    let crosses = without.iter().map(|(place, _)| *place).collect();
+    let dots = one.medians.iter().map(|(place, _)| *place).collect();
+    let words = one.medians.iter().cloned().chain(without).collect();
+    vec![
+        Mark::new(one.role, Shape::Lines(one.intervals.iter().map(cut).collect(), 1.4)),
+        Mark::new(one.role, Shape::Dots(dots)).named(one.kind.id()),
+        Mark::new(one.role, Shape::Crosses(crosses)),
+        Mark::new(Role::Faint, Shape::Words(words)),
+    ]
 }
 
 /// The delay against the speed, and against what it goes with most besides.

@@ -4,9 +4,10 @@ use super::document::Block;
 use super::plot::PlotError;
 use super::report::Report;
 use super::{delays, model, record, segment};
-use crate::delay::{AgainstState, Condition, MethodSpec};
+use crate::delay::{AgainstState, Condition, DelayTable, MethodSpec};
 use crate::report::against::{AGAINST_HEADER, against_rows};
 use crate::report::decisions::detailed_rows;
+use crate::report::delay_table::{LEVEL_HEADER, kind_sentence, level_cells, neutral_sentence};
 use crate::report::text::lag_line;
 use crate::report::text_table::TextTable;
 use crate::report::{DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary};
@@ -30,7 +31,11 @@ pub(super) fn blocks(
         blocks.push(Block::part("Single decisions"));
         blocks.push(Block::Figures(segments));
     }
+    let found = estimated.delay_table();
     blocks.extend(delay_blocks(estimated, file)?);
+    if !found.rows.is_empty() {
+        blocks.extend(level_blocks(estimated, file, &found)?);
+    }
     blocks.extend(rejections(estimated));
     blocks.push(decisions(report, estimated));
     if let Some(improved) = report.model_of(estimated.joint) {
@@ -82,6 +87,28 @@ fn delay_blocks(estimated: EstimatedJoint<'_>, file: &str) -> Result<Vec<Block>,
     let note = "Spearman's rank correlation; `yes`: p at most 0.05 after Holm's correction.";
     let summary = "What the delay depends on".to_owned();
     blocks.push(Block::Details { summary, blocks: vec![table, Block::text(note)] });
+    Ok(blocks)
+}
+
+/// The delays by kind of step and level.
+fn level_blocks(
+    estimated: EstimatedJoint<'_>,
+    file: &str,
+    found: &DelayTable,
+) -> Result<Vec<Block>, PlotError> {
+    let unit = estimated.joint.input_unit.as_deref();
+    let mut table = TextTable::new(LEVEL_HEADER, &[1, 2, 3, 4, 5]);
+    for row in &found.rows {
+        table.row(level_cells(row));
+    }
+    let figure = delays::over_levels(estimated, found, format!("{file}-delay-by-level"))?;
+    let mut blocks = vec![
+        Block::part("Delay by kind of step"),
+        Block::text(format!("The input is {}.", neutral_sentence(found, unit))),
+        Block::List(found.kinds.iter().map(kind_sentence).collect()),
+    ];
+    blocks.extend(figure.map(|figure| Block::Figures(vec![figure])));
+    blocks.push(Block::Table(table));
     Ok(blocks)
 }
 

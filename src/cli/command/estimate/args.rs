@@ -67,6 +67,11 @@ pub(crate) struct OutputArgs {
     #[arg(long, value_name = "FILE.csv|FILE.parquet")]
     pub(crate) delays: Option<PathBuf>,
 
+    /// Write and show the delay table: the delays by kind of step (start, stop, change,
+    /// reversal) and level, as CSV or Parquet
+    #[arg(long, value_name = "FILE.csv|FILE.parquet")]
+    pub(crate) table: Option<PathBuf>,
+
     /// Show every step: its delay with the interval, and how near the verdict was
     #[arg(long)]
     pub(crate) steps: bool,

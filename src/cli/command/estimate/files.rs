@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::report::{decision_table, delay_table, write_decisions, write_delays};
+use crate::report::{
+    decision_table, delay_table, level_table, write_decisions, write_delays, write_level_table,
+};
 
 use super::args::OutputArgs;
 use super::estimated::Estimated;
@@ -20,9 +22,10 @@ pub(crate) struct Files<'a> {
 impl<'a> Files<'a> {
     /// Refuses what cannot be written, or would replace an input or another output.
     pub(crate) fn check(args: &'a OutputArgs, inputs: &[PathBuf]) -> anyhow::Result<Self> {
-        let outputs = [&args.recording, &args.decisions, &args.delays].into_iter().flatten();
+        let outputs = [&args.recording, &args.decisions, &args.delays, &args.table];
+        let outputs = outputs.into_iter().flatten();
         check_outputs(&outputs.map(PathBuf::as_path).collect::<Vec<_>>(), inputs)?;
-        check_tables(args.decisions.iter().chain(&args.delays))?;
+        check_tables(args.decisions.iter().chain(&args.delays).chain(&args.table))?;
         Ok(Self { args })
     }
 
@@ -43,6 +46,12 @@ impl<'a> Files<'a> {
             write_file(path, |file| match FileKind::of(path) {
                 FileKind::Csv => Ok(write_delays(result.joints, file)?),
                 FileKind::Parquet => write_parquet(&delay_table(result.joints), file),
+            })?;
+        }
+        if let Some(path) = &self.args.table {
+            write_file(path, |file| match FileKind::of(path) {
+                FileKind::Csv => Ok(write_level_table(result.joints, file)?),
+                FileKind::Parquet => write_parquet(&level_table(result.joints)?, file),
             })?;
         }
         let contents = Contents {

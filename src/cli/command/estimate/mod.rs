@@ -9,7 +9,7 @@ use crate::cli::each_log::Each;
 use crate::cli::exit::Completion;
 use crate::cli::failure::nothing_usable;
 use crate::cli::run::{Session, estimated, failures, notes};
-use crate::report::{EstimateJson, against_table, estimate_table, steps_table};
+use crate::report::{EstimateJson, against_table, estimate_table, level_text, steps_table};
 use estimated::{Estimated, Run};
 use files::Files;
 
@@ -60,6 +60,7 @@ fn each_log(args: &Args, program: &clap::Command) -> anyhow::Result<Completion> 
             ("--connect, --spawn or --serve", output.stream.is_asked()),
             ("--follow", args.follow.is_on),
             ("--delays", output.delays.is_some()),
+            ("--table", output.table.is_some()),
             ("--steps", output.steps),
             ("--against-state", output.against_state),
         ],
@@ -75,6 +76,9 @@ fn text(args: &args::OutputArgs, result: &Estimated<'_>) -> String {
         if args.steps {
             text += &steps_table(joints);
         }
+    }
+    if args.table.is_some() {
+        text += &level_text(result.joints);
     }
     if args.against_state {
         let found = result.joints.iter().map(|j| (j.joint.name.as_str(), j.against_state()));

@@ -1,0 +1,212 @@
+//! The delays by kind of step and level, as CSV, as a typed table, and for people.
+
+use std::io::Write;
+
+use serde::Serialize;
+
+use super::text_table::TextTable;
+use super::{DataTable, EstimatedJoint, Kind};
+use crate::delay::{Condition, DelayRow, DelayTable, KindDelay, Remedy, TypicalDelay};
+use crate::wording::{number, remedy_text, unit_suffix};
+
+/// One row of `--table`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct DelayTableRow<'a> {
+    joint: &'a str,
+    transition: &'static str,
+    /// Mean of a bin.
+    level_from: f64,
+    level_to: f64,
+    steps: usize,
+    accepted: usize,
+    delay_median_s: Option<f64>,
+    /// Lower end of the median's 95 % interval.
+    delay_low_s: Option<f64>,
+    delay_high_s: Option<f64>,
+    delay_min_s: Option<f64>,
+    delay_max_s: Option<f64>,
+}
+
+/// Names and kinds of the columns.
+const COLUMNS: [(&str, Kind); 11] = [
+    ("joint", Kind::Text),
+    ("transition", Kind::Text),
+    ("level_from", Kind::Real),
+    ("level_to", Kind::Real),
+    ("steps", Kind::Whole),
+    ("accepted", Kind::Whole),
+    ("delay_median_s", Kind::Real),
+    ("delay_low_s", Kind::Real),
+    ("delay_high_s", Kind::Real),
+    ("delay_min_s", Kind::Real),
+    ("delay_max_s", Kind::Real),
+];
+
+impl<'a> DelayTableRow<'a> {
+    pub(super) fn new(joint: &'a str, row: &DelayRow) -> Self {
+        let delay = row.delay;
+        let interval = delay.and_then(|delay| delay.interval_s);
+        Self {
+            joint,
+            transition: row.transition.id(),
+            level_from: row.level_from,
+            level_to: row.level_to,
+            steps: row.steps,
+            accepted: row.accepted,
+            delay_median_s: delay.map(|delay| delay.median_s),
+            delay_low_s: interval.map(|(low, _)| low),
+            delay_high_s: interval.map(|(_, high)| high),
+            delay_min_s: delay.map(|delay| delay.min_s),
+            delay_max_s: delay.map(|delay| delay.max_s),
+        }
+    }
+}
+
+/// The rows of all joints, as a table with types.
+///
+/// # Errors
+/// Never: the rows have fields.
+pub(crate) fn level_table(joints: &[EstimatedJoint<'_>]) -> serde_json::Result<DataTable> {
+    let mut table = DataTable::new(COLUMNS);
+    for joint in joints {
+        for row in &joint.delay_table().rows {
+            table.push_fields(DelayTableRow::new(&joint.joint.name, row))?;
+        }
+    }
+    Ok(table)
+}
+
+/// Writes the rows of all joints as CSV, numbers in full.
+///
+/// # Errors
+/// When `out` cannot be written.
+pub(crate) fn write_level_table(joints: &[EstimatedJoint<'_>], out: impl Write) -> csv::Result<()> {
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(out);
+    writer.write_record(COLUMNS.map(|(name, _)| name))?;
+    for joint in joints {
+        for row in &joint.delay_table().rows {
+            writer.serialize(DelayTableRow::new(&joint.joint.name, row))?;
+        }
+    }
+    Ok(writer.flush()?)
+}
+
+/// What the cells of [`level_cells`] are.
+pub(super) const LEVEL_HEADER: [&str; 8] =
+    ["transition", "from", "to", "steps", "accepted", "median", "95 % interval", "min to max"];
+
+/// A row for people.
+pub(super) fn level_cells(row: &DelayRow) -> [String; 8] {
+    let dash = || "-".to_owned();
+    let level = |level: f64, (low, high): (f64, f64)| {
+        if low < high { format!("{} to {}", number(low), number(high)) } else { number(level) }
+    };
+    let range = |low: f64, high: f64| format!("{low:.3} to {high:.3} s");
+    let interval = row.delay.and_then(|delay| delay.interval_s);
+    [
+        row.transition.to_string(),
+        level(row.level_from, row.from_limits),
+        level(row.level_to, row.to_limits),
+        row.steps.to_string(),
+        row.accepted.to_string(),
+        row.delay.map_or_else(dash, |delay| format!("{:.3} s", delay.median_s)),
+        interval.map_or_else(dash, |(low, high)| range(low, high)),
+        row.delay.map_or_else(dash, |delay| range(delay.min_s, delay.max_s)),
+    ]
+}
+
+/// The tables of all joints for the terminal.
+pub(crate) fn level_text(joints: &[EstimatedJoint<'_>]) -> String {
+    let mut text = String::new();
+    for joint in joints {
+        let found = joint.delay_table();
+        let mut table = TextTable::new(LEVEL_HEADER, &[1, 2, 3, 4, 5]);
+        for row in &found.rows {
+            table.row(level_cells(row));
+        }
+        let name = &joint.joint.name;
+        let neutral = neutral_sentence(&found, joint.joint.input_unit.as_deref());
+        text += &format!("\n{name}: the input is {neutral}\n{table}\n");
+        for kind in &found.kinds {
+            text += &format!("{}\n", kind_sentence(kind));
+        }
+    }
+    text
+}
+
+/// Where the input is neutral.
+pub(super) fn neutral_sentence(found: &DelayTable, unit: Option<&str>) -> String {
+    match found.neutral {
+        Some(neutral) => format!(
+            "neutral at {}{}; a start leaves it, a stop leads to it",
+            number(neutral.level),
+            unit_suffix(unit)
+        ),
+        None => "neutral where the record does not show: every step is a change".to_owned(),
+    }
+}
+
+/// The typical delay of a kind, or what prevents it and what helps.
+pub(crate) fn kind_sentence(kind: &KindDelay) -> String {
+    let KindDelay { transition, steps, accepted, .. } = kind;
+    let Some(typical) = kind.typical else {
+        let why = kind.rejected.map_or_else(String::new, |(condition, count)| {
+            format!("; {count} rejected: {}; {}", condition.meaning(), help(condition))
+        });
+        return format!(
+            "{transition}: no typical delay, {accepted} of {steps} steps accepted{why}"
+        );
+    };
+    let TypicalDelay { median_s, interval_s, .. } = typical;
+    let interval = interval_s.map_or_else(String::new, |(low, high)| {
+        format!(" (median, 95 %: {low:.3} to {high:.3} s)")
+    });
+    format!("{transition}: delay {median_s:.3} s{interval}, {accepted} of {steps} steps accepted")
+}
+
+/// Which option or experiment would give more delays.
+fn help(condition: Condition) -> String {
+    let text = match condition {
+        Condition::FirstOrLast => {
+            return format!("{} judges them", remedy_text(Remedy::KeepFirstLast, "`"));
+        }
+        Condition::OutputLimit => "start away from the limit, or widen `--output-limits`",
+        Condition::BeforeInput => "repeat these steps from rest and hold them longer",
+        Condition::SlopeChange => "lower `--min-slope-change`, or make larger steps",
+        Condition::ShortHold => "lower `--min-delay`, or hold longer",
+        Condition::Sse => "raise `--max-sse`",
+        Condition::TooShort => "hold longer, or choose a smaller `--beta`",
+        _ => "make larger steps where the joint is free to move",
+    };
+    text.to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delay::Transition;
+
+    #[test]
+    fn a_typical_delay_needs_steps_that_were_accepted() {
+        let delay =
+            TypicalDelay { median_s: 0.21, interval_s: Some((0.2, 0.24)), min_s: 0.19, max_s: 0.3 };
+        let kind = |typical, accepted| KindDelay {
+            transition: Transition::Stop,
+            steps: 26,
+            accepted,
+            typical,
+            rejected: Some((Condition::FirstOrLast, 25)),
+        };
+        assert_eq!(
+            kind_sentence(&kind(Some(delay), 20)),
+            "stop: delay 0.210 s (median, 95 %: 0.200 to 0.240 s), 20 of 26 steps accepted"
+        );
+        assert_eq!(
+            kind_sentence(&kind(None, 1)).split("; `").next(),
+            Some(
+                "stop: no typical delay, 1 of 26 steps accepted; 25 rejected: first or last step \
+                 of the trial"
+            )
+        );
+    }
+}
