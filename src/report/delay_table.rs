@@ -116,7 +116,7 @@ pub(super) fn level_cells(row: &DelayRow) -> [String; 8] {
 }
 
 /// The tables of all joints for the terminal.
-pub(crate) fn level_text(joints: &[EstimatedJoint<'_>]) -> String {
+pub(crate) fn delay_levels_text(joints: &[EstimatedJoint<'_>]) -> String {
     let mut text = String::new();
     for joint in joints {
         let found = joint.delay_table();

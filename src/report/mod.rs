@@ -38,7 +38,7 @@ pub use decisions::decision_rows;
 pub(crate) use decisions::{
     DecisionDetail, Methods, decision_columns, decision_table, write_decisions,
 };
-pub(crate) use delay_table::{level_table, level_text, write_level_table};
+pub(crate) use delay_table::{delay_levels_text, level_table, write_level_table};
 pub(crate) use delays::delay_table;
 pub use delays::write_delays;
 pub(crate) use design::{DesignedJoint, Discrimination, write_input, write_preview};

@@ -9,7 +9,7 @@ use crate::cli::each_log::Each;
 use crate::cli::exit::Completion;
 use crate::cli::failure::nothing_usable;
 use crate::cli::run::{Session, estimated, failures, notes};
-use crate::report::{EstimateJson, against_table, estimate_table, level_text, steps_table};
+use crate::report::{EstimateJson, against_table, delay_levels_text, estimate_table, steps_table};
 use estimated::{Estimated, Run};
 use files::Files;
 
@@ -78,7 +78,7 @@ fn text(args: &args::OutputArgs, result: &Estimated<'_>) -> String {
         }
     }
     if args.table.is_some() {
-        text += &level_text(result.joints);
+        text += &delay_levels_text(result.joints);
     }
     if args.against_state {
         let found = result.joints.iter().map(|j| (j.joint.name.as_str(), j.against_state()));
