@@ -325,7 +325,8 @@ fn options_map_the_columns_of_a_foreign_log() {
     let joint = reading.joint("arm", "u_duty (pct)", "angle_deg").the_joint();
     assert_eq!((joint.name.as_str(), labels(&joint)), ("arm", vec!["x", "y"]));
     assert_eq!(outputs(&joint), [[1.0, 2.0], [3.0, 4.0]]);
-    assert_eq!((joint.input_unit, joint.output_unit.as_deref()), (None, Some("deg")));
+    let units = (joint.input_unit.as_deref(), joint.output_unit.as_deref());
+    assert_eq!(units, (Some("%"), Some("deg")));
 }
 
 #[test]

@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use clap::{CommandFactory as _, Parser, Subcommand};
 
 use crate::cli::command::{
-    add, compare, completions, design, doctor, effects, estimate, explain, improve, man, merge,
-    report, simulate, sweep,
+    add, columns, compare, completions, design, doctor, effects, estimate, explain, improve, man,
+    merge, report, simulate, sweep,
 };
 use crate::cli::console::message;
 use crate::cli::exit::Completion;
@@ -30,6 +30,7 @@ enum Command {
     Add(Box<add::Args>),
     Improve(Box<improve::Args>),
     Merge(merge::Args),
+    Columns(columns::Args),
     Report(Box<report::Args>),
     Effects(effects::Args),
     Simulate(Box<simulate::Args>),
@@ -65,6 +66,7 @@ fn perform(command: Command) -> anyhow::Result<Completion> {
         Command::Add(args) => add::run(&args),
         Command::Improve(args) => improve::run(&args, &Cli::command()),
         Command::Merge(args) => merge::run(&args),
+        Command::Columns(args) => columns::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Effects(args) => effects::run(&args),
         Command::Simulate(args) => simulate::run(&args),

@@ -118,7 +118,7 @@ impl Clock {
             runs.extend(parts.into_iter().filter(|run| run.rows.len() > 1));
         }
         let period = least_squares_period(&runs, times).ok_or(ClockFault::SingleRow)?;
-        let deviations = Deviations::of(&runs, times, period);
+        let deviations = Deviations::of(&runs, times, period, block_rows(&typical));
         let evenness = deviations.evenness(&runs, &typical, period)?;
         Ok(Self {
             gaps: short_gaps(&runs),
@@ -340,18 +340,18 @@ struct Deviations {
 }
 
 impl Deviations {
-    fn of(runs: &[Run], times: &[f64], period: f64) -> Self {
+    fn of(runs: &[Run], times: &[f64], period: f64, block: usize) -> Self {
         let mut all = Self { jitter: Vec::new(), drift: 0.0, rate: 0.0 };
         for run in runs {
             let start = Clock::start_s(run, times, period);
             let whole: Vec<f64> =
                 run.points(times).map(|(place, time)| (time - start) / period - place).collect();
-            let blocks: Vec<f64> = whole.chunks(BLOCK).filter_map(median).collect();
+            let blocks: Vec<f64> = whole.chunks(block).filter_map(median).collect();
             for pair in blocks.windows(2) {
-                all.rate = all.rate.max((pair[1] - pair[0]).abs() / BLOCK as f64);
+                all.rate = all.rate.max((pair[1] - pair[0]).abs() / block as f64);
             }
             for (k, (deviation, &row)) in whole.iter().zip(&run.rows).enumerate() {
-                let drift = between_blocks(&blocks, k);
+                let drift = between_blocks(&blocks, block, k);
                 all.drift = all.drift.max(drift.abs());
                 all.jitter.push((deviation - drift, row));
             }
@@ -394,9 +394,15 @@ impl Deviations {
     }
 }
 
+/// Rows of a block: whole grains of stamps that are rounded, whose sawtooth is no drift.
+fn block_rows(typical: &Typical) -> usize {
+    let grain = crate::units::floor_to_index((typical.grain_s / typical.seconds).round()).max(1);
+    grain.saturating_mul(BLOCK.div_ceil(grain))
+}
+
 /// The drift at row `k` of a run: the line between the medians of its blocks.
-fn between_blocks(blocks: &[f64], k: usize) -> f64 {
-    let center = (k as f64 + 0.5) / BLOCK as f64 - 0.5;
+fn between_blocks(blocks: &[f64], block: usize, k: usize) -> f64 {
+    let center = (k as f64 + 0.5) / block as f64 - 0.5;
     let last = blocks.len().saturating_sub(1);
     let index = crate::units::floor_to_index(center).min(last);
     let (Some(&from), Some(&to)) = (blocks.get(index), blocks.get((index + 1).min(last))) else {

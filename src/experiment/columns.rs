@@ -131,24 +131,49 @@ impl ColumnMap {
     }
 }
 
-#[derive(Deserialize)]
+impl ColumnMap {
+    /// The mapping as the text of a file, which [`Self::read`] reads.
+    pub fn to_toml(&self) -> String {
+        let joint = |joint: &JointColumns| {
+            let JointColumns { name, input, output, input_unit, output_unit, covariates } =
+                joint.clone();
+            let covariates = covariates.into_iter().collect();
+            (name, MapJoint { input, output, input_unit, output_unit, covariates })
+        };
+        let file = MapFile {
+            time: self.time.clone(),
+            trial: self.trial.clone(),
+            sample_period: self.sample_period_s,
+            joint: self.joints.iter().map(joint).collect(),
+        };
+        // A structure of texts and numbers is always written.
+        toml::to_string(&file).unwrap_or_default()
+    }
+}
+
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct MapFile {
+    #[serde(skip_serializing_if = "Option::is_none")]
     time: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     trial: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     sample_period: Option<f64>,
     #[serde(default)]
     joint: BTreeMap<String, MapJoint>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct MapJoint {
     input: String,
     output: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
     input_unit: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     output_unit: Option<String>,
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     covariates: BTreeMap<String, String>,
 }
 

@@ -95,7 +95,8 @@ impl GrowingLog {
             return Ok(found);
         }
         let numeric = layout.numeric_columns();
-        let wanted = Wanted { head, numeric: &numeric, label: layout.trial, clock: layout.clock() };
+        let (label, time, clock) = (layout.trial, layout.time.column(), layout.clock());
+        let wanted = Wanted { head, numeric: &numeric, label, time, clock };
         let table = self.rows.read(&wanted, source)?;
         if table.rows.is_empty() {
             return Err(ReadError::HeaderOnly { path: path() });

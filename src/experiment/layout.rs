@@ -8,10 +8,36 @@ use super::error::ReadError;
 use super::joint::Signal;
 use super::names::{listed, nearest_name};
 use super::table::{Head, Header};
+use super::unit;
 use crate::units::SamplePeriod;
 
 /// Names of a time column, the preferred first.
 const TIME_NAMES: [&str; 4] = ["time_s", "t_s", "time", "t"];
+/// Further names of a column of times, in lower case, without the unit they may end in.
+const FURTHER_TIME_NAMES: [&str; 22] = [
+    "time",
+    "t",
+    "timestamp",
+    "time_stamp",
+    "stamp",
+    "elapsed",
+    "elapsed_time",
+    "elapsed time",
+    "datetime",
+    "date_time",
+    "date time",
+    "seconds",
+    "sec",
+    "millis",
+    "epoch",
+    "unix_time",
+    "unixtime",
+    "__time",
+    "%time",
+    "rosbagtimestamp",
+    "zeit",
+    "zeitstempel",
+];
 /// Name of a column of sample numbers.
 const SAMPLE_NAME: &str = "sample";
 /// Names of a column that names the trial.
@@ -23,8 +49,8 @@ const NO_TRIAL: &str = "none";
 /// Where the time of a row comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum TimeSource {
-    /// A column of times, and the seconds in its unit.
-    Times(usize, f64),
+    /// A column of times, and the seconds in its unit where the unit is known.
+    Times(usize, Option<f64>),
     /// A column of sample numbers, one period apart.
     SampleNumbers(usize, SamplePeriod),
     /// The rows themselves, one period apart.
@@ -80,7 +106,7 @@ impl Layout {
         let trial = match map.trial.as_deref() {
             Some(NO_TRIAL) => None,
             Some(name) => Some(find(head, name)?),
-            None => find_any(head, &TRIAL_NAMES),
+            None => find_trial(head),
         };
         let time = find_time(head, map, period)?;
         let mut layout = Self { time, trial, joints: Vec::new(), incomplete: Vec::new() };
@@ -223,7 +249,9 @@ fn signal_column(
 ) -> Result<SignalColumn, ReadError> {
     let column = find(head, column)?;
     let stated = head.headers.get(column).and_then(|header| header.unit.as_ref());
-    let signal = Signal { name: name.to_owned(), unit: unit.or(stated).cloned() };
+    let named = || head.headers.get(column).and_then(|header| unit::of_signal(&header.name));
+    let unit = unit.or(stated).cloned().or_else(named);
+    let signal = Signal { name: name.to_owned(), unit };
     let clock = head.headers.get(column).map_or(0, |header| header.clock);
     Ok(SignalColumn { signal, column, clock })
 }
@@ -234,38 +262,54 @@ fn find_time(
     period: Option<SamplePeriod>,
 ) -> Result<TimeSource, ReadError> {
     if let Some(name) = &map.time {
-        return find(head, name).and_then(|column| times(head, column));
+        // `t [ms]` says the unit of a column `t`.
+        return match (find(head, name), unit::parted(name)) {
+            (Err(_), (name, Some(unit))) if find(head, name).is_ok() => {
+                find(head, name).and_then(|column| times(head, column, Some(&unit)))
+            }
+            (found, _) => found.and_then(|column| times(head, column, None)),
+        };
     }
     let numbers = find_any(head, &[SAMPLE_NAME]);
-    match (period, numbers, find_any(head, &TIME_NAMES)) {
+    match (period, numbers, find_time_column(head)) {
         // A period that was asked for stands above a time column: the user knows why.
         (Some(period), Some(column), _) => Ok(TimeSource::SampleNumbers(column, period)),
         (Some(period), None, _) => Ok(TimeSource::Rows(period)),
-        (None, _, Some(column)) => times(head, column),
+        (None, _, Some(column)) => times(head, column, None),
         (None, _, None) => Err(ReadError::NoTime { path: head.path.clone(), row: head.header_row }),
     }
 }
 
-/// A column of times in the unit that its header states; seconds without one.
-fn times(head: &Head, column: usize) -> Result<TimeSource, ReadError> {
+/// A column of times in the unit that is `given`, else that its header states, else that its
+/// name ends in.
+fn times(head: &Head, column: usize, given: Option<&str>) -> Result<TimeSource, ReadError> {
     let header = head.headers.get(column);
-    let unit = header.and_then(|header| header.unit.as_deref()).unwrap_or("s");
-    let scale = match unit {
-        "s" | "sec" | "second" | "seconds" => 1.0,
-        "ms" => 1e-3,
-        "us" | "µs" | "μs" => 1e-6,
-        "ns" => 1e-9,
-        "min" => 60.0,
-        _ => {
-            return Err(ReadError::TimeUnit {
-                path: head.path.clone(),
-                row: head.header_row,
-                column: header.map_or_else(String::new, |header| header.name.clone()),
-                unit: unit.to_owned(),
-            });
-        }
+    let name = header.map_or("", |header| header.name.as_str());
+    let stated = given.or_else(|| header?.unit.as_deref());
+    let Some(unit) = stated.or_else(|| unit::of_time(name)) else {
+        return Ok(TimeSource::Times(column, None));
     };
-    Ok(TimeSource::Times(column, scale))
+    let unknown = || ReadError::TimeUnit {
+        path: head.path.clone(),
+        row: head.header_row,
+        column: name.to_owned(),
+        unit: unit.to_owned(),
+    };
+    let seconds = unit::seconds_of(unit).ok_or_else(unknown)?;
+    Ok(TimeSource::Times(column, Some(seconds)))
+}
+
+/// The column that a name such as `timestamp`, `t_us` or `elapsed` says holds the time.
+pub(super) fn find_time_column(head: &Head) -> Option<usize> {
+    let base = |header: &Header| {
+        let name = header.name.to_lowercase();
+        let bare = unit::of_time(&name).and_then(|unit| name.strip_suffix(unit));
+        let bare = bare.map_or(name.as_str(), |bare| bare.trim_end_matches('_'));
+        FURTHER_TIME_NAMES.iter().position(|known| *known == bare)
+    };
+    let named = head.headers.iter().enumerate();
+    let named = named.filter_map(|(column, header)| Some((base(header)?, column)));
+    find_any(head, &TIME_NAMES).or_else(|| named.min().map(|(_, column)| column))
 }
 
 /// The column whose whole header is `wanted`, else the one whose name it is.
@@ -287,6 +331,11 @@ fn find(head: &Head, wanted: &str) -> Result<usize, ReadError> {
             Err(ReadError::MissingColumn { path, row, column, nearest, available })
         }
     }
+}
+
+/// The column that a name such as `trial` says names the trials.
+pub(super) fn find_trial(head: &Head) -> Option<usize> {
+    find_any(head, &TRIAL_NAMES)
 }
 
 fn find_any(head: &Head, wanted: &[&str]) -> Option<usize> {

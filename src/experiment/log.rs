@@ -48,7 +48,35 @@ impl Log<'_> {
         };
         let rows = |trial: &TrialRows| (trial.start..trial.end).collect();
         let rows: Vec<Vec<usize>> = trials.iter().map(rows).collect();
-        self.grids_of(&times, &rows, trials, repair)
+        let (grids, mut notes) = self.grids_of(&times, &rows, trials, repair)?;
+        notes.extend(self.unit_note(time));
+        notes.extend(self.rate_note(time, &grids));
+        Ok((grids, notes))
+    }
+
+    /// What is said of times since 1970 whose unit was told by their size.
+    fn unit_note(&self, time: TimeSource) -> Option<String> {
+        let TimeSource::Times(column, None) = time else { return None };
+        let (scale, unit) = since_1970(&self.column(column)?.values)?;
+        let name = self.header(column);
+        (scale < 1.0).then(|| format!("`{name}` is taken for {unit} since 1970"))
+    }
+
+    /// A question where no machine is sampled like this, or where seconds are only supposed.
+    fn rate_note(&self, time: TimeSource, grids: &[Grid]) -> Option<String> {
+        /// Samples in a second that are plausible at all, and where the unit is a guess.
+        const PLAUSIBLE: (f64, f64) = (0.01, 1e5);
+        const GUESSED_FROM: f64 = 0.5;
+        let TimeSource::Times(column, scale) = time else { return None };
+        let lowest = if scale.is_some() { PLAUSIBLE.0 } else { GUESSED_FROM };
+        let rates = grids.iter().map(|grid| 1.0 / grid.period().seconds());
+        let odd = rates.into_iter().find(|rate| !(lowest..=PLAUSIBLE.1).contains(rate))?;
+        let (name, digits) = (self.header(column), format!("{odd:.2e}"));
+        let rate = digits.parse::<f64>().unwrap_or(odd);
+        Some(format!(
+            "are {rate} samples a second right? If not, say the unit of the time column: \
+             `{name} [ms]`, [us], [ns] or [s]"
+        ))
     }
 
     /// The grids of `rows` of each trial, which are some of its rows or all.
@@ -90,10 +118,11 @@ impl Log<'_> {
     fn times(&self, time: TimeSource) -> Result<Clock, ReadError> {
         let (column, scale) = match time {
             TimeSource::Times(column, scale) => (column, scale),
-            TimeSource::SampleNumbers(column, period) => (column, period.seconds()),
+            TimeSource::SampleNumbers(column, period) => (column, Some(period.seconds())),
             TimeSource::Rows(period) => return Ok(Clock::Rows(period)),
         };
         let values = self.column(column).map_or(&[][..], |column| &column.values);
+        let scale = scale.unwrap_or_else(|| since_1970(values).map_or(1.0, |(scale, _)| scale));
         let times: Vec<f64> = values.iter().map(|value| value * scale).collect();
         self.check_times(column, &times)?;
         Ok(Clock::Stamps(times))
@@ -327,6 +356,19 @@ impl Log<'_> {
     }
 }
 
+/// The unit of times since 1970, told by their size: its seconds and its name.
+fn since_1970(values: &[f64]) -> Option<(f64, &'static str)> {
+    let first = values.iter().copied().find(|value| !value.is_nan())?;
+    match first {
+        // From the year 2001 to 2128 in each unit.
+        1e9..5e9 => Some((1.0, "seconds")),
+        1e12..5e12 => Some((1e-3, "milliseconds")),
+        1e15..5e15 => Some((1e-6, "microseconds")),
+        1e18..5e18 => Some((1e-9, "nanoseconds")),
+        _ => None,
+    }
+}
+
 /// Times of the rows in seconds, or the period between rows that have none.
 enum Clock {
     Stamps(Vec<f64>),
@@ -335,6 +377,8 @@ enum Clock {
 
 /// A line on each trial of `joint` that was split at gaps.
 fn split_notes(joint: &Joint, trials: &[TrialRows]) -> Vec<String> {
+    /// Notes of one kind that are all shown.
+    const SHOWN: usize = 3;
     let parts = |trial: &TrialRows| {
         let parts = joint.trials.iter().filter(|part| {
             let rest = part.label().strip_prefix(&trial.label);
@@ -347,8 +391,6 @@ fn split_notes(joint: &Joint, trials: &[TrialRows]) -> Vec<String> {
             .then(|| format!("joint `{name}`: trial `{label}` is split in {count} at long gaps"))
     };
     let mut notes: Vec<String> = trials.iter().filter_map(parts).collect();
-    /// Notes of one kind that are all shown.
-    const SHOWN: usize = 3;
     if notes.len() > SHOWN {
         let more = notes.len() - SHOWN;
         notes.truncate(SHOWN);

@@ -18,7 +18,9 @@ mod names;
 mod read;
 mod sampling;
 mod source;
+mod survey;
 mod table;
+mod unit;
 
 pub use activity::activity;
 pub use columns::{ColumnMap, ColumnMapError, JointColumns};
@@ -29,3 +31,4 @@ pub(crate) use names::nearest_name;
 pub use read::{Experiment, Failure, ReadOptions, expand_folders};
 pub use sampling::Repair;
 pub use source::Source;
+pub use survey::{Role, Survey, SurveyedColumn};

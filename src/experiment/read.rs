@@ -220,7 +220,7 @@ impl Experiment {
             return Ok(());
         }
         let numeric = layout.numeric_columns();
-        let table = table.read(&numeric, layout.trial, layout.clock())?;
+        let table = table.read(&numeric, layout.trial, layout.time.column(), layout.clock())?;
         let log = Log { head: &head, numeric: &numeric, table: &table };
         self.add_log(&log, layout, stem, repair)
     }

@@ -11,6 +11,7 @@ use super::names::listed;
 use super::source::Source;
 #[cfg(any(feature = "mat", feature = "parquet"))]
 use super::source::source_of;
+use super::unit;
 
 /// Name and unit of a column.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,14 +25,10 @@ pub(super) struct Header {
 }
 
 impl Header {
-    /// Splits `boom.output [deg]` into a name and a unit.
+    /// Splits `boom.output [deg]` and `angle (deg)` into a name and a unit.
     pub(super) fn parse(cell: &str) -> Self {
         let text = cell.trim();
-        let split = text.strip_suffix(']').and_then(|rest| rest.rsplit_once('['));
-        let (name, unit) = match split {
-            Some((name, unit)) => (name.trim(), Some(unit.trim().to_owned())),
-            None => (text, None),
-        };
+        let (name, unit) = unit::parted(text);
         Self { name: name.to_owned(), unit, text: text.to_owned(), clock: 0 }
     }
 }
@@ -75,6 +72,8 @@ pub(super) struct Wanted<'a> {
     pub(super) numeric: &'a [usize],
     /// The column that names the trials.
     pub(super) label: Option<usize>,
+    /// The column of the times, which may be dates.
+    pub(super) time: Option<usize>,
     /// The clock whose rows are wanted.
     #[cfg_attr(not(feature = "mcap"), expect(dead_code, reason = "for other formats"))]
     pub(super) clock: usize,
@@ -93,9 +92,10 @@ impl OpenTable {
         self,
         numeric: &[usize],
         label: Option<usize>,
+        time: Option<usize>,
         clock: usize,
     ) -> Result<Table, ReadError> {
-        let wanted = Wanted { head: &self.head, numeric, label, clock };
+        let wanted = Wanted { head: &self.head, numeric, label, time, clock };
         let table = self.rows.read(&wanted)?;
         if table.rows.is_empty() {
             return Err(ReadError::HeaderOnly { path: self.head.path });

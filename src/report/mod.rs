@@ -2,6 +2,7 @@
 
 mod add;
 mod against;
+mod columns;
 mod compare;
 mod conclusion;
 mod decisions;
@@ -31,6 +32,7 @@ pub(crate) use add::{AddedJoint, add_text, gone};
 pub use against::against_table;
 #[cfg(feature = "rrd")]
 pub(crate) use against::variable_text;
+pub(crate) use columns::columns_table;
 pub use compare::ComparedJoint;
 pub(crate) use compare::compare_table;
 pub use decisions::DecisionRow;
@@ -54,8 +56,8 @@ pub use improve::ImprovedJoint;
 pub(crate) use improve::{change_in_words, improve_text, revision_line};
 pub(crate) use json::Header;
 pub(crate) use json::{
-    AddJson, CompareJson, DesignJson, EffectsJson, EstimateJson, ExplainJson, FolderJson,
-    ImproveJson, ReportJson, SweepJson,
+    AddJson, ColumnsJson, CompareJson, DesignJson, EffectsJson, EstimateJson, ExplainJson,
+    FolderJson, ImproveJson, ReportJson, SweepJson,
 };
 pub(crate) use page::{Document, RecordingFile, Report, report_text};
 #[cfg(feature = "rrd")]

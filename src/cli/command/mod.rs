@@ -1,6 +1,7 @@
 //! The commands, each in a file or folder of its own: its arguments and what it does.
 
 pub(crate) mod add;
+pub(crate) mod columns;
 pub(crate) mod compare;
 pub(crate) mod completions;
 pub(crate) mod design;

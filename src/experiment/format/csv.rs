@@ -1,44 +1,67 @@
 //! Tables of text: delimiter, cells, line numbers.
 
 use std::collections::VecDeque;
-use std::fs::File;
-use std::io::{self, Cursor, Read};
+use std::io::{self, Read};
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use super::spelling::{Spelling, are_units, bare_unit, parse_cell, parse_time, sniff_delimiter};
+use super::text::{Bytes, SNIFFED_BYTES};
 use crate::experiment::error::ReadError;
-use crate::experiment::source::{Hashing, Source};
+use crate::experiment::source::Source;
 use crate::experiment::table::{
-    BadCell, Column, Head, Header, Labels, OpenTable, RowNumbers, Rows, Table, Wanted,
+    Column, Head, Header, Labels, OpenTable, RowNumbers, Rows, Table, Wanted,
 };
 
 /// Bytes, and a line ending behind the last line, so that every line has one and lines can
 /// be counted.
 type Lines<R> = io::Chain<LineEnds<R>, &'static [u8]>;
 
-/// A file whose first bytes were looked at.
-type Bytes = Hashing<io::Chain<Cursor<Vec<u8>>, File>>;
-
 /// What follows the header, still unread.
 struct Unread {
     reader: csv::Reader<Lines<Bytes>>,
+    delimiter: u8,
+    /// The first row, where it had to be looked at.
+    first: Option<(csv::ByteRecord, Place)>,
 }
 
 /// Opens the log and reads its header.
 pub(super) fn open(path: &Path) -> Result<OpenTable, ReadError> {
+    let (bytes, start) = Bytes::open(path)?;
+    table(path, bytes, &start)
+}
+
+/// Reads the header of a text that begins with `start`.
+pub(super) fn table(path: &Path, mut bytes: Bytes, start: &[u8]) -> Result<OpenTable, ReadError> {
     let io_error = |source| ReadError::Io { path: path.to_owned(), source };
-    let mut file = File::open(path).map_err(io_error)?;
-    let mut start = Vec::new();
-    file.by_ref().take(SNIFFED_BYTES as u64).read_to_end(&mut start).map_err(io_error)?;
-    let delimiter = sniff_delimiter(&start);
-    let bytes = Hashing::new(Cursor::new(start).chain(file));
-    let mut reader = reader(delimiter, LineEnds::new(bytes));
+    let Spelling { delimiter, preamble: (before, lines) } = Spelling::of(start);
+    io::copy(&mut bytes.by_ref().take(before as u64), &mut io::sink()).map_err(io_error)?;
+    let mut reader = reader(delimiter, LineEnds::after(bytes, lines));
     let mut record = csv::ByteRecord::new();
     if !next(&mut reader, &mut record, path)? {
         return Err(ReadError::Empty { path: path.to_owned() });
     }
-    let head = head(path, &record, place_just_read(&mut reader, &record).row)?;
-    Ok(OpenTable { head, rows: Box::new(Unread { reader }) })
+    let mut head = head(path, &record, place_just_read(&mut reader, &record).row)?;
+    let mut first = None;
+    if next(&mut reader, &mut record, path)? {
+        if are_units(&record) {
+            add_units(&mut head, &record);
+        } else {
+            let place = place_just_read(&mut reader, &record);
+            first = Some((record, place));
+        }
+    }
+    Ok(OpenTable { head, rows: Box::new(Unread { reader, delimiter, first }) })
+}
+
+/// The units of a row below the header, where the header has none.
+fn add_units(head: &mut Head, record: &csv::ByteRecord) {
+    for (header, cell) in head.headers.iter_mut().zip(record) {
+        let unit = bare_unit(&String::from_utf8_lossy(cell));
+        if header.unit.is_none() && !unit.is_empty() {
+            header.unit = Some(unit);
+        }
+    }
 }
 
 fn reader<R: Read>(delimiter: u8, lines: LineEnds<R>) -> csv::Reader<Lines<R>> {
@@ -72,26 +95,53 @@ fn next<R: Read>(
 
 impl Rows for Unread {
     fn read(mut self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let mut gathered = Gathered::new(wanted);
+        let mut gathered = Gathered::new(wanted, self.delimiter);
+        if let Some((record, place)) = self.first.take() {
+            gathered.take(&record, &place, wanted)?;
+        }
         let mut record = csv::ByteRecord::new();
         while next(&mut self.reader, &mut record, wanted.path())? {
             let place = place_just_read(&mut self.reader, &record);
-            gathered.take(&record, &place, wanted)?;
+            if let Err(error) = gathered.take(&record, &place, wanted) {
+                if !self.is_cut_off(&record, wanted)? {
+                    return Err(error);
+                }
+                gathered.table.notes.push(format!(
+                    "{}: the last row, {}, is cut off and left out",
+                    wanted.path().display(),
+                    place.row
+                ));
+            }
         }
-        let source = self.reader.into_inner().into_inner().0.inner.finish(wanted.path())?;
-        gathered.table_of(source);
+        let bytes = self.reader.into_inner().into_inner().0.inner;
+        gathered.table_of(bytes.finish(wanted.path())?);
         Ok(gathered.table)
+    }
+}
+
+impl Unread {
+    /// Whether the row just read is the last one, and was not written to its end.
+    fn is_cut_off(
+        &mut self,
+        record: &csv::ByteRecord,
+        wanted: &Wanted<'_>,
+    ) -> Result<bool, ReadError> {
+        let is_short = record.len() < wanted.head.headers.len();
+        let is_last =
+            is_short && !next(&mut self.reader, &mut csv::ByteRecord::new(), wanted.path())?;
+        Ok(is_last && self.reader.get_mut().get_mut().0.last != b'\n')
     }
 }
 
 /// Rows as they come.
 struct Gathered {
+    delimiter: u8,
     table: Table,
     labels: Option<Labels>,
 }
 
 impl Gathered {
-    fn new(wanted: &Wanted<'_>) -> Self {
+    fn new(wanted: &Wanted<'_>, delimiter: u8) -> Self {
         let path = wanted.path().to_owned();
         let table = Table {
             source: Source { path, sha256: String::new(), bytes: 0 },
@@ -100,7 +150,7 @@ impl Gathered {
             trials: Vec::new(),
             notes: Vec::new(),
         };
-        Self { table, labels: wanted.label.map(|_| Labels::default()) }
+        Self { delimiter, table, labels: wanted.label.map(|_| Labels::default()) }
     }
 
     fn take(
@@ -111,10 +161,15 @@ impl Gathered {
     ) -> Result<(), ReadError> {
         check_width(wanted, place, record.len())?;
         let row = place.row;
+        if self.table.rows.is_empty() && are_units(record) {
+            return Ok(());
+        }
         self.table.rows.push(row);
         let cell = |index: usize| record.get(index).unwrap_or_default().trim_ascii();
         for (column, index) in self.table.columns.iter_mut().zip(wanted.numeric) {
-            column.push(parse_cell(cell(*index)), row);
+            let is_time = wanted.time == Some(*index);
+            let parse = if is_time { parse_time } else { parse_cell };
+            column.push(parse(cell(*index), self.delimiter), row);
         }
         if let (Some(labels), Some(index)) = (&mut self.labels, wanted.label) {
             labels.push(&String::from_utf8_lossy(cell(index)), row, wanted.path())?;
@@ -169,7 +224,8 @@ impl GrowingRows {
         wanted: &Wanted<'_>,
         source: Source,
     ) -> Result<&Table, ReadError> {
-        let mut gathered = self.gathered.take().unwrap_or_else(|| Gathered::new(wanted));
+        let gathered = self.gathered.take();
+        let mut gathered = gathered.unwrap_or_else(|| Gathered::new(wanted, self.delimiter));
         let result = self.each(wanted.path(), |record, place| {
             gathered.take(record, place, wanted).map(ControlFlow::Continue)
         });
@@ -216,34 +272,6 @@ fn check_width(wanted: &Wanted<'_>, place: &Place, found: usize) -> Result<(), R
     Err(ReadError::UnequalRow { path, row, found, expected, lines })
 }
 
-/// Bytes that are looked at to find the delimiter.
-const SNIFFED_BYTES: usize = 64 * 1024;
-
-/// The delimiter that is most frequent in the first line that is no comment, units and
-/// quoted cells left out.
-fn sniff_delimiter(start: &[u8]) -> u8 {
-    let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
-    let line = text
-        .split(|&byte| byte == b'\n')
-        .find(|line| !line.starts_with(b"#") && !line.trim_ascii().is_empty())
-        .unwrap_or_default();
-    let mut enclosed = None;
-    let mut counts = [(b'\t', 0), (b';', 0), (b',', 0)];
-    for &byte in line {
-        enclosed = match (enclosed, byte) {
-            (None, b'[') => Some(b']'),
-            (None, b'"') => Some(b'"'),
-            (Some(end), byte) if end == byte => None,
-            (enclosed, _) => enclosed,
-        };
-        for (delimiter, count) in &mut counts {
-            *count += usize::from(enclosed.is_none() && *delimiter == byte);
-        }
-    }
-    // The comma is last, so that it wins when nothing is found.
-    counts.into_iter().max_by_key(|(_, count)| *count).map_or(b',', |(delimiter, _)| delimiter)
-}
-
 /// Where a record is in the file.
 struct Place {
     /// Its first line, counted from 1.
@@ -267,36 +295,21 @@ fn place_just_read<R: Read>(reader: &mut csv::Reader<Lines<R>>, record: &csv::By
     Place { row: before_end + 1 - inside, lines: inside + 1 }
 }
 
-/// The number in a cell; NaN where there is none.
-fn parse_cell(cell: &[u8]) -> Result<f64, BadCell> {
-    if cell.is_empty() {
-        return Ok(f64::NAN);
-    }
-    let number = std::str::from_utf8(cell).ok().and_then(|text| text.parse::<f64>().ok());
-    match number {
-        Some(value) if value.is_infinite() => Err(BadCell::Infinite),
-        Some(value) => Ok(value),
-        None => Err(BadCell::Text(String::from_utf8_lossy(cell).into_owned())),
-    }
-}
-
 /// Passes bytes on and notes where lines end.
 struct LineEnds<R> {
     inner: R,
     bytes: u64,
+    /// The last of them.
+    last: u8,
     /// Places of the line ends that no record has passed yet.
     ends: VecDeque<u64>,
     passed: u64,
 }
 
 impl<R: Read> LineEnds<R> {
-    fn new(inner: R) -> Self {
-        Self::after(inner, 0)
-    }
-
     /// Bytes that come after so many `lines`.
     fn after(inner: R, lines: u64) -> Self {
-        Self { inner, bytes: 0, ends: VecDeque::new(), passed: lines }
+        Self { inner, bytes: 0, last: b'\n', ends: VecDeque::new(), passed: lines }
     }
 
     /// Number of line ends before the byte `place`, which never goes back.
@@ -314,6 +327,7 @@ impl<R: Read> Read for LineEnds<R> {
         let new = buffer.get(..count).unwrap_or_default();
         let ends = new.iter().zip(self.bytes..).filter(|(byte, _)| **byte == b'\n');
         self.ends.extend(ends.map(|(_, place)| place));
+        self.last = new.last().copied().unwrap_or(self.last);
         self.bytes += count as u64;
         Ok(count)
     }
@@ -322,25 +336,7 @@ impl<R: Read> Read for LineEnds<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_delimiter_is_told_from_the_header() {
-        assert_eq!(sniff_delimiter(b"# a, b, c\n\nt;a.input;a.output\n1;2;3"), b';');
-        assert_eq!(sniff_delimiter(b"t\ta,b\tc"), b'\t');
-        assert_eq!(sniff_delimiter(b"single"), b',');
-        assert_eq!(sniff_delimiter(b"\xef\xbb\xbf# a, b, c\nt;x;y"), b';');
-        assert_eq!(sniff_delimiter(b"t,x [a;b;c]"), b',');
-    }
-
-    #[test]
-    fn a_cell_is_a_number_or_missing_or_wrong() {
-        assert_eq!(parse_cell(b"-1.5e3"), Ok(-1500.0));
-        assert!(parse_cell(b"").unwrap().is_nan());
-        assert!(parse_cell(b"NaN").unwrap().is_nan());
-        assert_eq!(parse_cell(b"inf"), Err(BadCell::Infinite));
-        assert_eq!(parse_cell(b"1e999"), Err(BadCell::Infinite));
-        assert_eq!(parse_cell(b"n/a"), Err(BadCell::Text("n/a".to_owned())));
-    }
+    use crate::experiment::table::BadCell;
 
     #[test]
     fn rows_are_the_lines_of_the_file() {
@@ -352,7 +348,7 @@ mod tests {
             std::fs::write(&path, &text).unwrap();
             let open = open(&path).unwrap();
             assert_eq!(open.head.header_row, 2, "{text:?}");
-            let table = open.read(&[0, 1], None, 0).unwrap();
+            let table = open.read(&[0, 1], None, Some(0), 0).unwrap();
             let rows = [0, 1, 2].map(|index| table.rows.number(index));
             assert_eq!((table.rows.len(), rows), (3, [3, 6, 7]), "{text:?}");
             assert_eq!(table.columns[1].error, Some((7, BadCell::Text("x".to_owned()))));

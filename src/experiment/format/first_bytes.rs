@@ -17,6 +17,11 @@ pub(super) fn is_matlab_73(start: &[u8]) -> bool {
     start.starts_with(HDF5) || start.get(512..).is_some_and(|rest| rest.starts_with(HDF5))
 }
 
+/// Whether these are the first bytes of a file packed by gzip.
+pub(super) fn is_gzip(start: &[u8]) -> bool {
+    start.starts_with(b"\x1f\x8b")
+}
+
 /// The bytes by which formats are distinguished.
 pub(super) fn start_of(path: &Path) -> Result<Vec<u8>, ReadError> {
     /// MATLAB 7.3 has a header of 512 bytes before its own mark.

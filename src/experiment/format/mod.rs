@@ -13,6 +13,10 @@ mod mcap;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod registry;
+mod spelling;
+mod text;
+#[cfg(feature = "xlsx")]
+mod xlsx;
 
 pub(super) use csv::GrowingRows;
 pub(super) use registry::{endings, is_named_like_a_log, is_text, open};

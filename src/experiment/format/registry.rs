@@ -3,13 +3,15 @@
 use std::path::Path;
 
 use super::csv;
-use super::first_bytes::{is_matlab, start_of};
+use super::first_bytes::{is_gzip, is_matlab, start_of};
 #[cfg(feature = "mat")]
 use super::mat;
 #[cfg(feature = "mcap")]
 use super::mcap;
 #[cfg(feature = "parquet")]
 use super::parquet;
+#[cfg(feature = "xlsx")]
+use super::xlsx;
 use crate::experiment::error::ReadError;
 use crate::experiment::table::OpenTable;
 
@@ -27,7 +29,7 @@ struct Format {
 }
 
 /// All formats. The last one is text, which any bytes may be.
-const FORMATS: [Format; 4] = [
+const FORMATS: [Format; 8] = [
     Format {
         name: "Parquet",
         endings: &[".parquet", ".pq"],
@@ -59,15 +61,61 @@ const FORMATS: [Format; 4] = [
         open: |path| left_out(path, "MCAP", "mcap"),
     },
     Format {
+        name: "XLSX",
+        endings: &[".xlsx", ".xlsm"],
+        starts: |start| start.starts_with(b"PK\x03\x04"),
+        remedy: "save it again as .xlsx, or as CSV",
+        #[cfg(feature = "xlsx")]
+        open: xlsx::open,
+        #[cfg(not(feature = "xlsx"))]
+        open: |path| left_out(path, "XLSX", "xlsx"),
+    },
+    Format {
+        name: "rosbag2 in SQLite",
+        endings: &[],
+        starts: |start| start.starts_with(b"SQLite format 3\0"),
+        remedy: "",
+        open: |path| {
+            let remedy = "convert it to MCAP: `ros2 bag convert -i BAG -o out.yaml`, with \
+                          `storage_id: mcap` in out.yaml";
+            Err(unread(path, "a log", "it is an SQLite database, as rosbag2 writes", remedy))
+        },
+    },
+    Format {
+        name: "ROS 1",
+        endings: &[],
+        starts: |start| start.starts_with(b"#ROSBAG V"),
+        remedy: "",
+        open: |path| {
+            let remedy = "convert it to MCAP: `mcap convert in.bag out.mcap`";
+            Err(unread(path, "a log", "it is a recording of ROS 1", remedy))
+        },
+    },
+    Format {
+        name: "XLS",
+        endings: &[],
+        starts: |start| start.starts_with(b"\xd0\xcf\x11\xe0"),
+        remedy: "",
+        open: |path| {
+            let remedy = "save it as .xlsx, or as CSV";
+            Err(unread(path, "a log", "it is a file of an old spreadsheet program", remedy))
+        },
+    },
+    Format {
         name: "CSV",
-        endings: &[".csv", ".tsv", ".txt"],
+        endings: &[".csv", ".tsv", ".txt", ".csv.gz", ".tsv.gz", ".txt.gz"],
         starts: |_| true,
         remedy: "write it as text",
         open: csv::open,
     },
 ];
 
-#[cfg(not(all(feature = "mat", feature = "mcap", feature = "parquet")))]
+/// A format that is known, and not read.
+fn unread(path: &Path, format: &'static str, reason: &str, remedy: &'static str) -> ReadError {
+    ReadError::Format { path: path.to_owned(), format, reason: reason.to_owned(), remedy }
+}
+
+#[cfg(not(all(feature = "mat", feature = "mcap", feature = "parquet", feature = "xlsx")))]
 fn left_out(
     path: &Path,
     format: &'static str,
@@ -103,7 +151,7 @@ pub(in crate::experiment) fn is_text(path: &Path, start: &[u8]) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     let is_text = |format: &Format| (format.starts)(b"");
     let other = |format: &&Format| format.ends(&name) || (format.starts)(start);
-    FORMATS.iter().filter(other).all(is_text)
+    !is_gzip(start) && FORMATS.iter().filter(other).all(is_text)
 }
 
 impl Format {

@@ -4,6 +4,7 @@
 
 mod add;
 mod candidate;
+mod columns;
 mod compare;
 mod design;
 mod effects;
@@ -19,6 +20,7 @@ mod settings;
 mod sweep;
 
 pub(crate) use add::AddJson;
+pub(crate) use columns::ColumnsJson;
 pub(crate) use compare::CompareJson;
 pub(crate) use design::DesignJson;
 pub(crate) use effects::EffectsJson;

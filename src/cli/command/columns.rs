@@ -1,0 +1,57 @@
+//! `tauscope columns`: what a log's columns are taken for, and the mapping that follows.
+
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use clap::Args as ClapArgs;
+
+use crate::cli::args::{RunArgs, quoted};
+use crate::cli::exit::Completion;
+use crate::cli::output::write_file;
+use crate::experiment::Survey;
+use crate::report::{ColumnsJson, columns_table};
+
+/// Say what each column of a log is taken for, and why
+///
+/// Names and data tell which column is the time, which drives a joint, and which follows.
+/// With `-w` the mapping is written as a file for `--columns`, to be corrected by hand.
+#[derive(ClapArgs, Debug)]
+pub(crate) struct Args {
+    /// The log
+    #[arg(value_name = "LOG")]
+    log: PathBuf,
+
+    /// Write the mapping for `--columns`
+    #[arg(short = 'w', long = "write", value_name = "FILE.toml")]
+    write: Option<PathBuf>,
+
+    #[command(flatten)]
+    run: RunArgs,
+}
+
+pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
+    let survey = Survey::of(&args.log)?;
+    if let Some(path) = &args.write {
+        write_file(path, |file| Ok(file.write_all(survey.map.to_toml().as_bytes())?))?;
+    }
+    let options = options(&survey);
+    let text = || {
+        let joints = if survey.map.joints.is_empty() { "" } else { options.as_str() };
+        columns_table(&survey, joints)
+    };
+    args.run.print(text, || ColumnsJson::new(&survey, &options))?;
+    let told = !survey.map.joints.is_empty();
+    Ok(if told { Completion::Whole } else { Completion::Partial })
+}
+
+/// The mapping as it is typed.
+fn options(survey: &Survey) -> String {
+    let map = &survey.map;
+    let named = [("--time", &map.time), ("--trial", &map.trial)];
+    let named =
+        named.into_iter().filter_map(|(name, column)| Some([name.to_owned(), column.clone()?]));
+    let joints = map.joints.iter().map(|joint| {
+        ["--joint".to_owned(), format!("{}={}:{}", joint.name, joint.input, joint.output)]
+    });
+    quoted(&named.chain(joints).flatten().collect::<Vec<_>>())
+}

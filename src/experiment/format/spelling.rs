@@ -1,0 +1,220 @@
+//! How the rows of a text are written: delimiter, lines before the header, units below it,
+//! numbers and times.
+
+use crate::experiment::table::BadCell;
+use crate::experiment::unit::is_unit;
+
+/// What parts the cells, and what stands before the header.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Spelling {
+    pub(super) delimiter: u8,
+    /// Bytes and lines before the header that belong to no table.
+    pub(super) preamble: (usize, u64),
+}
+
+/// Lines that are looked at to tell the table from what stands before it.
+const LINES: usize = 200;
+
+impl Spelling {
+    /// How a text is written that starts so.
+    pub(super) fn of(start: &[u8]) -> Self {
+        let plain = Self { delimiter: sniff_delimiter(start), preamble: (0, 0) };
+        let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
+        // The last line may be cut off.
+        let whole = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
+        let lines = text.get(..whole).unwrap_or_default().split_inclusive(|byte| *byte == b'\n');
+        let lines: Vec<&[u8]> = lines.take(LINES).collect();
+        let counts = |delimiter: u8| -> Vec<usize> {
+            lines.iter().map(|line| cells(line, delimiter)).collect()
+        };
+        let agreeing = |delimiter: u8| {
+            let counts = counts(delimiter);
+            let width = usual(&counts);
+            (counts.iter().filter(|count| **count == width && width > 1).count(), width)
+        };
+        let first =
+            lines.iter().find(|line| is_row(line)).map_or(0, |line| cells(line, plain.delimiter));
+        let (agree, width) = agreeing(plain.delimiter);
+        if agree < 2 && first > 1 || first == width {
+            return plain;
+        }
+        let best = [b'\t', b';', b','].map(|delimiter| (agreeing(delimiter), delimiter));
+        let Some(&((agree, width), delimiter)) =
+            best.iter().max_by_key(|((agree, width), _)| (*agree, *width))
+        else {
+            return plain;
+        };
+        let counts = counts(delimiter);
+        let header = counts.windows(2).position(|pair| pair == [width, width]);
+        match header.filter(|_| agree > 2) {
+            Some(header) => {
+                let skipped = lines.iter().take(header).map(|line| line.len()).sum::<usize>();
+                let mark = start.len() - text.len();
+                Self { delimiter, preamble: (mark + skipped, header as u64) }
+            }
+            None => plain,
+        }
+    }
+}
+
+fn is_row(line: &[u8]) -> bool {
+    !line.starts_with(b"#") && !line.trim_ascii().is_empty()
+}
+
+/// Cells of a line, as long as no quotation goes over it; 0 of a line that is no row.
+fn cells(line: &[u8], delimiter: u8) -> usize {
+    if is_row(line) { 1 + count(line, delimiter) } else { 0 }
+}
+
+/// The count that most rows have.
+fn usual(counts: &[usize]) -> usize {
+    let rows: Vec<usize> = counts.iter().copied().filter(|count| *count > 0).collect();
+    let times = |count: &usize| rows.iter().filter(|other| *other == count).count();
+    rows.iter().copied().max_by_key(|count| (times(count), *count)).unwrap_or_default()
+}
+
+/// Delimiters of a line, units and quoted cells left out.
+fn count(line: &[u8], delimiter: u8) -> usize {
+    let mut enclosed = None;
+    let mut count = 0;
+    for &byte in line {
+        enclosed = match (enclosed, byte) {
+            (None, b'[') => Some(b']'),
+            (None, b'"') => Some(b'"'),
+            (Some(end), byte) if end == byte => None,
+            (enclosed, _) => enclosed,
+        };
+        count += usize::from(enclosed.is_none() && delimiter == byte);
+    }
+    count
+}
+
+/// The delimiter that is most frequent in the first line that is no comment.
+pub(super) fn sniff_delimiter(start: &[u8]) -> u8 {
+    let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
+    let line = text.split(|&byte| byte == b'\n').find(|line| is_row(line)).unwrap_or_default();
+    let counts = [b'\t', b';', b','].map(|delimiter| (delimiter, count(line, delimiter)));
+    // The comma is last, so that it wins when nothing is found.
+    counts.into_iter().max_by_key(|(_, count)| *count).map_or(b',', |(delimiter, _)| delimiter)
+}
+
+/// Whether the cells below a header are its units: none is a number, and one at least is a unit.
+pub(super) fn are_units(record: &csv::ByteRecord) -> bool {
+    let texts = record.iter().map(|cell| bare_unit(&String::from_utf8_lossy(cell)));
+    let texts: Vec<String> = texts.filter(|text| !text.is_empty()).collect();
+    let is_number = |text: &String| text.replace(',', ".").parse::<f64>().is_ok();
+    !texts.is_empty()
+        && !texts.iter().any(is_number)
+        && 2 * texts.iter().filter(|text| is_unit(text)).count() > texts.len()
+}
+
+/// A unit without its brackets.
+pub(super) fn bare_unit(cell: &str) -> String {
+    let cell = cell.trim();
+    let inner = |open: char, close: char| cell.strip_prefix(open)?.strip_suffix(close);
+    inner('[', ']').or_else(|| inner('(', ')')).unwrap_or(cell).trim().to_owned()
+}
+
+/// The number in a cell; NaN where there is none. A comma may stand for the point where it
+/// does not part the cells.
+pub(super) fn parse_cell(cell: &[u8], delimiter: u8) -> Result<f64, BadCell> {
+    if cell.is_empty() {
+        return Ok(f64::NAN);
+    }
+    let text = std::str::from_utf8(cell).ok();
+    let number = text.and_then(|text| text.parse::<f64>().ok());
+    let with_comma = || {
+        let text = text.filter(|text| delimiter != b',' && text.matches(',').count() == 1)?;
+        let text = (!text.contains('.')).then(|| text.replace(',', "."))?;
+        text.parse::<f64>().ok()
+    };
+    match number.or_else(with_comma) {
+        Some(value) if value.is_infinite() => Err(BadCell::Infinite),
+        Some(value) => Ok(value),
+        None => Err(BadCell::Text(String::from_utf8_lossy(cell).into_owned())),
+    }
+}
+
+/// The time in a cell: a number, or a date and time of ISO 8601 as seconds since 1970, or a
+/// time of day as seconds since midnight.
+pub(super) fn parse_time(cell: &[u8], delimiter: u8) -> Result<f64, BadCell> {
+    let number = parse_cell(cell, delimiter);
+    let Err(BadCell::Text(text)) = &number else { return number };
+    date_time(text).map_or(number.clone(), Ok)
+}
+
+fn date_time(text: &str) -> Option<f64> {
+    use jiff::Timestamp;
+    use jiff::civil::{Date, DateTime, Time};
+    let text = text.trim().trim_matches('"').replace(',', ".");
+    let seconds =
+        |stamp: Timestamp| stamp.as_second() as f64 + f64::from(stamp.subsec_nanosecond()) * 1e-9;
+    if let Ok(stamp) = text.parse::<Timestamp>() {
+        return Some(seconds(stamp));
+    }
+    let midnight = Date::constant(1970, 1, 1);
+    let civil = match text.parse::<Time>() {
+        Ok(time) if !text.contains('-') => midnight.to_datetime(time),
+        _ => text.parse::<DateTime>().ok()?,
+    };
+    civil.to_zoned(jiff::tz::TimeZone::UTC).ok().map(|zoned| seconds(zoned.timestamp()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_delimiter_is_told_from_the_header() {
+        assert_eq!(sniff_delimiter(b"# a, b, c\n\nt;a.input;a.output\n1;2;3"), b';');
+        assert_eq!(sniff_delimiter(b"t\ta,b\tc"), b'\t');
+        assert_eq!(sniff_delimiter(b"single"), b',');
+        assert_eq!(sniff_delimiter(b"\xef\xbb\xbf# a, b, c\nt;x;y"), b';');
+        assert_eq!(sniff_delimiter(b"t,x [a;b;c]"), b',');
+    }
+
+    #[test]
+    fn what_stands_before_the_header_is_told_from_the_table() {
+        let table = "t;u;y\n0,0;1,5;2\n0,1;1;2\n0,2;1;2\n";
+        let plain = Spelling { delimiter: b';', preamble: (0, 0) };
+        assert_eq!(Spelling::of(table.as_bytes()), plain);
+        let preamble = "Logger 4.2, boom test\nOperator:;somebody\n\n";
+        let found = Spelling::of(format!("{preamble}{table}").as_bytes());
+        assert_eq!(found, Spelling { delimiter: b';', preamble: (preamble.len(), 3) });
+        // One row of another length is a fault of the row, and not of the header.
+        assert_eq!(Spelling::of(format!("{table}1;2\n").as_bytes()), plain);
+    }
+
+    #[test]
+    fn a_cell_is_a_number_or_missing_or_wrong() {
+        let parse = |cell: &[u8]| parse_cell(cell, b',');
+        assert_eq!(parse(b"-1.5e3"), Ok(-1500.0));
+        assert!(parse(b"").unwrap().is_nan());
+        assert!(parse(b"NaN").unwrap().is_nan());
+        assert_eq!(parse(b"inf"), Err(BadCell::Infinite));
+        assert_eq!(parse(b"1e999"), Err(BadCell::Infinite));
+        assert_eq!(parse(b"n/a"), Err(BadCell::Text("n/a".to_owned())));
+        assert_eq!(parse(b"1,5"), Err(BadCell::Text("1,5".to_owned())));
+        assert_eq!(parse_cell(b"-1,5", b';'), Ok(-1.5));
+        assert!(parse_cell(b"1.000,5", b';').is_err());
+    }
+
+    #[test]
+    fn times_may_be_dates() {
+        let time = |text: &str| parse_time(text.as_bytes(), b';').unwrap();
+        for text in
+            ["2024-05-01T12:00:00.25Z", "2024-05-01 12:00:00,25", "2024-05-01T14:00:00.25+02:00"]
+        {
+            assert!((time(text) - 1_714_564_800.25).abs() < 1e-6, "{text}: {}", time(text));
+        }
+        assert!((time("12:00:00.5") - 43_200.5).abs() < 1e-9);
+        assert!(parse_time(b"noon", b';').is_err());
+    }
+
+    #[test]
+    fn units_below_the_header_are_no_samples() {
+        let row = |cells: &[&str]| are_units(&csv::ByteRecord::from(cells.to_vec()));
+        assert!(row(&["s", "V", "deg"]) && row(&["[ms]", "(%)", ""]));
+        assert!(!row(&["0", "V", "deg"]) && !row(&["", ""]) && !row(&["x", "n/a"]));
+    }
+}

@@ -1,0 +1,148 @@
+//! Bytes of a file as UTF-8 text: unpacked, decoded, and with its hash at the end.
+
+use std::fs::File;
+use std::io::{self, Chain, Cursor, Read};
+use std::path::{Path, PathBuf};
+
+use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
+use flate2::read::MultiGzDecoder;
+
+use super::first_bytes::is_gzip;
+use crate::experiment::error::ReadError;
+use crate::experiment::source::{Hashing, Source, source_of};
+
+/// Bytes that are looked at to find out how a text is written.
+pub(super) const SNIFFED_BYTES: usize = 64 * 1024;
+
+/// A file whose first bytes were looked at.
+type Plain = Hashing<Chain<Cursor<Vec<u8>>, File>>;
+
+/// The bytes of a text, and where they come from.
+pub(super) enum Bytes {
+    /// As they stand in the file.
+    Plain(Plain),
+    /// Unpacked or decoded from those of the file.
+    Made(Box<dyn Read>, PathBuf),
+}
+
+impl Bytes {
+    /// Opens the file, and its first bytes as text.
+    pub(super) fn open(path: &Path) -> Result<(Self, Vec<u8>), ReadError> {
+        let io_error = |source| ReadError::Io { path: path.to_owned(), source };
+        let mut file = File::open(path).map_err(io_error)?;
+        let start = start_of(&mut file).map_err(io_error)?;
+        let whole = Cursor::new(start.clone()).chain(file);
+        if !is_gzip(&start) {
+            return match encoding_of(&start) {
+                None => Ok((Self::Plain(Hashing::new(whole)), start)),
+                Some(encoding) => Self::decoded(path, whole, encoding),
+            };
+        }
+        let mut unpacked = MultiGzDecoder::new(whole);
+        let start = start_of(&mut unpacked).map_err(|error| damaged(path, &error))?;
+        if encoding_of(&start).is_none() && start.contains(&0) {
+            return Err(ReadError::Format {
+                path: path.to_owned(),
+                format: "CSV packed by gzip",
+                reason: "what is packed is no text".to_owned(),
+                remedy: "unpack it with `gunzip`",
+            });
+        }
+        let whole = Cursor::new(start.clone()).chain(unpacked);
+        match encoding_of(&start) {
+            None => Ok((Self::Made(Box::new(whole), path.to_owned()), start)),
+            Some(encoding) => Self::decoded(path, whole, encoding),
+        }
+    }
+
+    /// A text that was made of a file of another kind.
+    #[cfg(feature = "xlsx")]
+    pub(super) fn made(text: Vec<u8>, path: &Path) -> (Self, Vec<u8>) {
+        let start = text.get(..SNIFFED_BYTES).unwrap_or(&text).to_vec();
+        (Self::Made(Box::new(Cursor::new(text)), path.to_owned()), start)
+    }
+
+    fn decoded(
+        path: &Path,
+        mut whole: impl Read,
+        encoding: &'static Encoding,
+    ) -> Result<(Self, Vec<u8>), ReadError> {
+        let io_error = |source| ReadError::Io { path: path.to_owned(), source };
+        let mut bytes = Vec::new();
+        whole.read_to_end(&mut bytes).map_err(io_error)?;
+        let text = encoding.decode(&bytes).0.into_owned().into_bytes();
+        let start = text.get(..SNIFFED_BYTES).unwrap_or(&text).to_vec();
+        Ok((Self::Made(Box::new(Cursor::new(text)), path.to_owned()), start))
+    }
+
+    /// The file that was read, all of it.
+    pub(super) fn finish(self, path: &Path) -> Result<Source, ReadError> {
+        match self {
+            Self::Plain(bytes) => bytes.finish(path),
+            Self::Made(_, path) => source_of(&path),
+        }
+    }
+}
+
+impl Read for Bytes {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        match self {
+            Self::Plain(bytes) => bytes.read(buffer),
+            Self::Made(bytes, _) => bytes.read(buffer),
+        }
+    }
+}
+
+fn start_of(bytes: &mut impl Read) -> io::Result<Vec<u8>> {
+    let mut start = Vec::new();
+    bytes.by_ref().take(SNIFFED_BYTES as u64).read_to_end(&mut start)?;
+    Ok(start)
+}
+
+fn damaged(path: &Path, error: &io::Error) -> ReadError {
+    ReadError::Format {
+        path: path.to_owned(),
+        format: "CSV packed by gzip",
+        reason: error.to_string(),
+        remedy: "pack it again, or rename it if it is of another format",
+    }
+}
+
+/// How a text that starts so is written, where it is not UTF-8.
+fn encoding_of(start: &[u8]) -> Option<&'static Encoding> {
+    if let Some((encoding, _)) = Encoding::for_bom(start) {
+        return Some(encoding).filter(|encoding| [UTF_16LE, UTF_16BE].contains(encoding));
+    }
+    // In UTF-16 without a mark every other byte of a table of numbers is 0.
+    let zeros = |first: usize| {
+        let bytes = start.iter().skip(first).step_by(2).take(100);
+        start.len() > 3 && bytes.filter(|byte| **byte == 0).count() * 2 > start.len().min(200) / 2
+    };
+    match (zeros(0), zeros(1)) {
+        (true, false) => return Some(UTF_16BE),
+        (false, true) => return Some(UTF_16LE),
+        _ => {}
+    }
+    let text = std::str::from_utf8(start);
+    // A letter may be cut off at the end.
+    let is_cut = |error: &std::str::Utf8Error| error.error_len().is_none();
+    let is_single_bytes = text.is_err_and(|error| !is_cut(&error)) && !start.contains(&0);
+    is_single_bytes.then_some(WINDOWS_1252)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn encodings_are_told_by_the_first_bytes() {
+        let utf16: Vec<u8> = "t;u;y\n0;1;2\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        assert_eq!(encoding_of(&utf16), Some(UTF_16LE));
+        let swapped: Vec<u8> = utf16.chunks(2).flat_map(|pair| [pair[1], pair[0]]).collect();
+        assert_eq!(encoding_of(&swapped), Some(UTF_16BE));
+        assert_eq!(encoding_of(&[b"\xff\xfe", utf16.as_slice()].concat()), Some(UTF_16LE));
+        assert_eq!(encoding_of(b"t;y [\xb0]\n0;1\n"), Some(WINDOWS_1252));
+        assert_eq!(encoding_of("\u{feff}t;y [°]\n0;1\n".as_bytes()), None);
+        assert_eq!(encoding_of("t;y [°".as_bytes().split_last().unwrap().1), None);
+    }
+}

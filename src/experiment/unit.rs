@@ -1,0 +1,132 @@
+//! Units in the names of columns: `boom.output [deg]`, `angle (rad)`, `u_duty_pct`, `t_ms`.
+
+/// How units are written in names, and how they are shown.
+const UNITS: [(&str, &str); 45] = [
+    ("deg", "deg"),
+    ("degrees", "deg"),
+    ("°", "°"),
+    ("rad", "rad"),
+    ("mrad", "mrad"),
+    ("pct", "%"),
+    ("percent", "%"),
+    ("%", "%"),
+    ("mm", "mm"),
+    ("cm", "cm"),
+    ("m", "m"),
+    ("um", "µm"),
+    ("V", "V"),
+    ("volt", "V"),
+    ("mV", "mV"),
+    ("A", "A"),
+    ("mA", "mA"),
+    ("bar", "bar"),
+    ("mbar", "mbar"),
+    ("Pa", "Pa"),
+    ("kPa", "kPa"),
+    ("MPa", "MPa"),
+    ("psi", "psi"),
+    ("N", "N"),
+    ("kN", "kN"),
+    ("Nm", "N·m"),
+    ("kg", "kg"),
+    ("rpm", "rpm"),
+    ("Hz", "Hz"),
+    ("W", "W"),
+    ("kW", "kW"),
+    ("degC", "°C"),
+    ("°C", "°C"),
+    ("ms", "ms"),
+    ("us", "µs"),
+    ("ns", "ns"),
+    ("deg_s", "deg/s"),
+    ("deg/s", "deg/s"),
+    ("rad_s", "rad/s"),
+    ("rad/s", "rad/s"),
+    ("m_s", "m/s"),
+    ("m/s", "m/s"),
+    ("mm_s", "mm/s"),
+    ("mm/s", "mm/s"),
+    ("cm_s", "cm/s"),
+];
+
+/// Units of time, and their seconds.
+const TIMES: [(&[&str], f64); 5] = [
+    (&["s", "sec", "secs", "second", "seconds"], 1.0),
+    (&["ms", "msec", "millis", "milliseconds"], 1e-3),
+    (&["us", "µs", "μs", "usec", "micros", "microseconds"], 1e-6),
+    (&["ns", "nsec", "nanos", "nanoseconds"], 1e-9),
+    (&["min", "minutes"], 60.0),
+];
+
+/// Whether `text` is a unit by itself.
+pub(super) fn is_unit(text: &str) -> bool {
+    shown(text).is_some() || seconds_of(text).is_some()
+}
+
+fn shown(text: &str) -> Option<&'static str> {
+    UNITS.iter().find(|(written, _)| *written == text).map(|(_, shown)| *shown)
+}
+
+/// The seconds of a unit of time.
+pub(super) fn seconds_of(unit: &str) -> Option<f64> {
+    let is_it = |(names, _): &&(&[&str], f64)| names.contains(&unit);
+    TIMES.iter().find(is_it).map(|(_, seconds)| *seconds)
+}
+
+/// Name and unit of a header: a unit in square brackets is any text, one in round brackets
+/// must be known.
+pub(super) fn parted(text: &str) -> (&str, Option<String>) {
+    let split = |open: char, close: char| {
+        let (name, unit) = text.strip_suffix(close)?.rsplit_once(open)?;
+        Some((name.trim(), unit.trim()))
+    };
+    if let Some((name, unit)) = split('[', ']') {
+        return (name, Some(unit.to_owned()));
+    }
+    let known = split('(', ')').filter(|(name, unit)| is_unit(unit) && !name.is_empty());
+    known.map_or((text, None), |(name, unit)| (name, Some(shown(unit).unwrap_or(unit).to_owned())))
+}
+
+/// The unit at the end of a name: `°` of none, `deg` of `angle_deg`, `deg/s` of `v_deg_per_s`.
+pub(super) fn of_signal(name: &str) -> Option<String> {
+    let name = name.replace("_per_", "_");
+    let (rest, last) = name.rsplit_once('_')?;
+    let two = rest.rsplit_once('_').and_then(|(before, first)| {
+        (!before.is_empty()).then(|| shown(&format!("{first}_{last}")))?
+    });
+    let one = (!rest.is_empty()).then(|| shown(last))?;
+    two.or(one).map(str::to_owned)
+}
+
+/// The unit of time at the end of a name: `ms` of `t_ms` and `time_ms`.
+pub(super) fn of_time(name: &str) -> Option<&str> {
+    let (_, last) = name.rsplit_once('_')?;
+    seconds_of(last).map(|_| last)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_stand_in_brackets() {
+        let unit = |text: &str| parted(text).1;
+        assert_eq!(parted("boom.output [deg/s]"), ("boom.output", Some("deg/s".to_owned())));
+        assert_eq!(parted("angle (rad)"), ("angle", Some("rad".to_owned())));
+        assert_eq!(unit("Time (s)").as_deref(), Some("s"));
+        assert_eq!((unit("y(2)"), unit("angle (left)"), unit("boom.output")), (None, None, None));
+    }
+
+    #[test]
+    fn units_end_names() {
+        let of = |name: &str| of_signal(name);
+        assert_eq!(of("u_duty_pct").as_deref(), Some("%"));
+        assert_eq!(of("v_deg_per_s").as_deref(), Some("deg/s"));
+        assert_eq!(of("valve_V").as_deref(), Some("V"));
+        assert_eq!(
+            (of("boom_v"), of("deg"), of("y_boom"), of("jaw_torque_counts")),
+            (None, None, None, None)
+        );
+        assert_eq!((of_time("time_ms"), of_time("t"), of_time("t_boom")), (Some("ms"), None, None));
+    }
+}

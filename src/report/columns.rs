@@ -1,0 +1,33 @@
+//! What a log's columns are taken for, as a table.
+
+use super::text_table::TextTable;
+use crate::experiment::{Role, Survey, SurveyedColumn};
+
+/// A row per column: what it is taken for and why; what is open; and the mapping as `options`,
+/// where there are some.
+pub(crate) fn columns_table(survey: &Survey, options: &str) -> String {
+    let mut table = TextTable::new(["column", "taken for", "unit", "why"], &[]);
+    for column in &survey.columns {
+        let unit = column.unit.clone().unwrap_or_default();
+        table.row([column.name.clone(), role(column), unit, column.why.clone()]);
+    }
+    let mut text = format!("{table}\n");
+    let open = survey.open.iter().cloned();
+    let options = (!options.is_empty()).then(|| format!("as options: {options}"));
+    for line in open.chain(options) {
+        text += &line;
+        text.push('\n');
+    }
+    text
+}
+
+/// What a column is taken for, in words.
+pub(super) fn role(column: &SurveyedColumn) -> String {
+    match &column.role {
+        Role::Time => "time".to_owned(),
+        Role::Trial => "trial".to_owned(),
+        Role::Input(joint) => format!("input of {joint}"),
+        Role::Output(joint) => format!("output of {joint}"),
+        Role::Other => "other".to_owned(),
+    }
+}
