@@ -5,7 +5,7 @@
 #![expect(clippy::print_stdout, reason = "an example prints")]
 
 use anyhow::Context as _;
-use tauscope::delay::{Automatic, Settings, choose, estimate};
+use tauscope::delay::{Automatic, FirstLast, Settings, choose, estimate};
 use tauscope::experiment::Trial;
 use tauscope::synthetic::{
     DelayLaw, InputSpec, JointSpec, PlantSpec, Ringing, StepTruth, Synthetic, simulate,
@@ -88,7 +88,7 @@ impl Tally {
 /// The paper's settings and those of each record, on `records` records of a plant; and those
 /// of the last one.
 fn measure(spec: &JointSpec, records: u64) -> anyhow::Result<([Tally; 2], Settings)> {
-    let paper = Settings { keep_first_last: true, ..Settings::default() };
+    let paper = Settings { first_last: FirstLast::Keep, ..Settings::default() };
     let (mut tallies, mut last) = ([Tally::default(), Tally::default()], paper.clone());
     for seed in 0..records {
         let plant = PlantSpec::new(2000 + seed, DURATION_S, vec![spec.clone()]);

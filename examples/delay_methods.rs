@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
 use nalgebra::DMatrix;
-use tauscope::delay::{Method, Settings, TrialEstimate, estimate};
+use tauscope::delay::{FirstLast, Method, Settings, TrialEstimate, estimate};
 use tauscope::experiment::Trial;
 use tauscope::synthetic::{
     DelayLaw, InputSpec, JointSpec, PlantSpec, Ringing, StepTruth, Synthetic, simulate,
@@ -67,7 +67,7 @@ fn plants() -> Vec<(&'static str, JointSpec)> {
 }
 
 fn settings(method: Method) -> Settings {
-    let settings = Settings { keep_first_last: true, ..Settings::of(method) };
+    let settings = Settings { first_last: FirstLast::Keep, ..Settings::of(method) };
     // Means nothing to methods without rows.
     Settings { beta: 2, ..settings }
 }

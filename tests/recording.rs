@@ -16,7 +16,7 @@ use read_back::{ReadBack, batches, whole};
 use recorded::{Recorded, samples};
 use rerun::external::arrow::array::AsArray as _;
 use tauscope::batch::Threads;
-use tauscope::delay::{Decision, FineDelay, Method, Settings};
+use tauscope::delay::{Decision, FineDelay, FirstLast, Method, Settings};
 use tauscope::experiment::{Experiment, ReadOptions};
 use tauscope::recording::{Beside, Detail, RecordError};
 use tauscope::report::{DecisionRow, EstimatedJoint, decision_rows};
@@ -136,7 +136,7 @@ fn a_delay_between_samples_is_recorded_as_finely_as_it_was_found() {
 #[test]
 fn what_another_method_decided_is_drawn_beside_the_first() {
     let recorded = Recorded::with(Settings::of(Method::LAG_AWARE));
-    let settings = Settings { keep_first_last: true, ..Settings::default() };
+    let settings = Settings { first_last: FirstLast::Keep, ..Settings::default() };
     let other = estimate_joints(&recorded.experiment.joints, &settings, || (), &Threads);
     let other: Vec<JointEstimate> = other.into_iter().map(Result::unwrap).collect();
     let pairs = recorded.experiment.joints.iter().zip(&other);
@@ -334,7 +334,7 @@ fn trials_follow_one_another_with_an_empty_row_between() {
     }
     std::fs::write(&path, text).unwrap();
     let experiment = Experiment::read(&[path], &ReadOptions::default());
-    let settings = Settings { keep_first_last: true, low_pass: None, ..Settings::default() };
+    let settings = Settings { first_last: FirstLast::Keep, low_pass: None, ..Settings::default() };
     let estimates: Vec<_> = estimate_joints(&experiment.joints, &settings, || (), &Threads);
     let estimates = estimates.into_iter().map(Result::unwrap).collect();
     let recorded = Recorded { experiment, estimates, settings };

@@ -42,9 +42,9 @@ use std::f64::consts::{PI, TAU};
 use super::decision::{Decision, Verdict};
 use super::interval::FineDelay;
 use super::method::decide_by_broken_lines;
-use super::settings::Settings;
+use super::prepared::Prepared;
+use super::settings::{FirstLast, Settings};
 use super::spec::Method;
-use super::steps::input_steps;
 use crate::experiment::Trial;
 use crate::numerics::LowPass;
 use crate::numerics::NoiseModel;
@@ -154,7 +154,7 @@ impl<'a> Record<'a> {
         let hinge = Settings {
             max_delay: settings.max_delay,
             min_step: settings.min_step,
-            keep_first_last: true,
+            first_last: FirstLast::Keep,
             ..Settings::of(Method::HINGE)
         };
         let period = trials.first().map(Trial::period);
@@ -170,11 +170,12 @@ impl<'a> Record<'a> {
             innovations: 0.0,
         };
         for trial in alike {
-            let steps = input_steps(trial.input(), hinge.min_step);
-            if steps.is_empty() {
+            // Without a low-pass nothing can fail to fit.
+            let Ok(prepared) = Prepared::of(trial, &hinge) else { continue };
+            if prepared.steps.is_empty() {
                 continue;
             }
-            record.add(trial.output(), &decide_by_broken_lines(trial.output(), &steps, &hinge));
+            record.add(trial.output(), &decide_by_broken_lines(&prepared, &hinge));
         }
         record.noise = NoiseModel::of(&record.quiet, LINE);
         record.innovations = record.innovations();

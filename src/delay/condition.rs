@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::interval::FineDelay;
+use super::motion::StepMotion;
 use super::search::Candidate;
 use super::settings::Settings;
 
@@ -23,13 +24,15 @@ pub enum Condition {
     Sse,
     /// There are fewer than two rows of β samples, so no candidate, nor a delay without one.
     TooShort,
+    /// The joint stood still, or at its stop, when the input changed, and went on doing so.
+    AtRest,
     /// The slope changes no more than noise makes it.
     NothingHappened,
 }
 
 impl Condition {
     /// All conditions, in the order they are reported.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::FirstOrLast,
         Self::OutputLimit,
         Self::BeforeInput,
@@ -37,6 +40,7 @@ impl Condition {
         Self::ShortHold,
         Self::Sse,
         Self::TooShort,
+        Self::AtRest,
         Self::NothingHappened,
     ];
 
@@ -50,6 +54,7 @@ impl Condition {
             Self::ShortHold => "short_hold",
             Self::Sse => "sse",
             Self::TooShort => "too_short",
+            Self::AtRest => "at_rest",
             Self::NothingHappened => "nothing_happened",
         }
     }
@@ -64,6 +69,7 @@ impl Condition {
             Self::ShortHold => "input held too short",
             Self::Sse => "lines fit too badly",
             Self::TooShort => "segment too short for two lines",
+            Self::AtRest => "joint at rest, before and after",
             Self::NothingHappened => "no reaction beyond the noise",
         }
     }
@@ -106,8 +112,11 @@ pub(super) struct Facts<'a> {
     pub(super) input_sample: usize,
     /// Samples to the next step, or to the end of the trial.
     pub(super) hold: usize,
-    /// Output over the segment.
+    /// Output over the segment, whose first sample has the number `first`.
     pub(super) output: &'a [f64],
+    pub(super) first: usize,
+    /// What the output does about the step, where rest or a stop is shown.
+    pub(super) motion: Option<StepMotion>,
     /// Whole rows of β samples in the segment.
     pub(super) rows: usize,
     /// The best candidate, where the method compares any.
@@ -127,6 +136,7 @@ impl Facts<'_> {
             self.short_hold(settings),
             self.sse(settings),
             self.too_short(),
+            self.at_rest(),
             check(Condition::NothingHappened, None, None, Outcome::NotChecked),
         ]
     }
@@ -134,7 +144,7 @@ impl Facts<'_> {
     /// (1) `i = 1` or the last.
     fn first_or_last(&self, settings: &Settings) -> Check {
         let at_an_end = self.step == 1 || self.step == self.steps;
-        let outcome = match (settings.keep_first_last, at_an_end) {
+        let outcome = match (settings.first_last.are_judged(self.steps), at_an_end) {
             (true, _) => Outcome::NotChecked,
             (false, true) => Outcome::Failed,
             (false, false) => Outcome::Passed,
@@ -149,10 +159,19 @@ impl Facts<'_> {
             return check(Condition::OutputLimit, None, None, Outcome::NotChecked);
         };
         let room = |y: f64| (high - y).min(y - low);
-        let extreme = self.output.iter().copied().min_by(|a, b| room(*a).total_cmp(&room(*b)));
+        let output = self.in_motion();
+        let extreme = output.iter().copied().min_by(|a, b| room(*a).total_cmp(&room(*b)));
         let limit = extreme.map(|y| if high - y <= y - low { high } else { low });
-        let inside = self.output.iter().all(|&y| y < high && y > low);
+        let inside = output.iter().all(|&y| y < high && y > low);
         check(Condition::OutputLimit, extreme, limit, Outcome::from(inside))
+    }
+
+    /// The output over the segment without the rest that the joint starts from, which may be
+    /// at a stop.
+    fn in_motion(&self) -> &[f64] {
+        let rest = self.motion.filter(|motion| motion.rest.is_some());
+        let resting = rest.map_or(0, |motion| (motion.latest + 1).saturating_sub(self.first));
+        self.output.get(resting..).unwrap_or_default()
     }
 
     /// (3) `q_i < p_i`.
@@ -195,6 +214,14 @@ impl Facts<'_> {
         let outcome = Outcome::from(self.best.is_some() || self.fine.is_some());
         check(Condition::TooShort, Some(self.rows as f64), Some(2.0), outcome)
     }
+
+    /// The joint rested when the input changed, and moves no further than one at rest does.
+    fn at_rest(&self) -> Check {
+        let rest = self.motion.and_then(|motion| motion.rest);
+        let outcome = rest.map_or(Outcome::NotChecked, |rest| Outcome::from(!rest.lasts()));
+        let (moved, limit) = (rest.map(|rest| rest.moved), rest.map(|rest| rest.limit));
+        check(Condition::AtRest, moved, limit, outcome)
+    }
 }
 
 fn check(condition: Condition, value: Option<f64>, limit: Option<f64>, outcome: Outcome) -> Check {
@@ -229,6 +256,8 @@ mod tests {
             input_sample: 100,
             hold: 50,
             output: &[0.0; 60],
+            first: 1,
+            motion: None,
             rows: 0,
             best: None,
             fine,

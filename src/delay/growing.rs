@@ -54,7 +54,11 @@ pub fn final_part(
     let Some(beginning) = trial.beginning(samples) else { return Ok(None) };
     let is_whole = |next: usize| next.saturating_add(settings.alpha) <= samples;
     // The last step of a trial may be the last of all, which is rejected.
-    let all_but_last = estimate.decisions.split_last().map_or(&[][..], |(_, others)| others);
+    // Until there are more than a few, the first may yet be judged.
+    let is_open = settings.first_last.are_judged(estimate.decisions.len())
+        && !settings.first_last.are_judged(usize::MAX);
+    let decisions = if is_open { &[][..] } else { &estimate.decisions[..] };
+    let all_but_last = decisions.split_last().map_or(&[][..], |(_, others)| others);
     let decisions = all_but_last.iter().take_while(|decision| is_whole(decision.next_sample()));
     let decisions: Vec<_> = decisions.cloned().collect();
     let profile = DelayProfile::of(&decisions, samples, settings.interpolation);

@@ -52,7 +52,7 @@ impl Decision {
         match check.condition {
             Condition::FirstOrLast => Remedy::KeepFirstLast,
             Condition::OutputLimit => self.wider_limits(settings, output).unwrap_or(none),
-            Condition::BeforeInput => none,
+            Condition::BeforeInput | Condition::AtRest => none,
             Condition::SlopeChange => Remedy::MinSlopeChange(at_most(value)),
             Condition::ShortHold => Remedy::MinDelay(self.hold),
             Condition::Sse => Remedy::MaxSse(above(value)),
@@ -125,7 +125,7 @@ fn scaled(value: f64, round: impl Fn(f64) -> f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::delay::{Verdict, estimate};
+    use crate::delay::{FirstLast, Verdict, estimate};
     use crate::experiment::Trial;
     use crate::units::SamplePeriod;
 
@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn what_would_have_accepted_a_step_does() {
         let trial = trial();
-        let kept = Settings { keep_first_last: true, low_pass: None, ..Settings::default() };
+        let kept = Settings { first_last: FirstLast::Keep, low_pass: None, ..Settings::default() };
         let cases = [
             (Settings { min_slope_change: 0.5, ..kept.clone() }, 1.02),
             (Settings { max_sse: Some(1e-6), ..kept.clone() }, 0.999),
@@ -180,7 +180,7 @@ mod tests {
     fn wider_limits_hold_the_whole_segment() {
         let trial = trial();
         let mut settings =
-            Settings { keep_first_last: true, low_pass: None, ..Settings::default() };
+            Settings { first_last: FirstLast::Keep, low_pass: None, ..Settings::default() };
         settings.output_limits = Some((-0.01, 3.0));
         let found = estimate(&trial, &settings).unwrap();
         let remedies = found.decisions[0].remedies(&settings, trial.output());

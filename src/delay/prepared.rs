@@ -1,5 +1,6 @@
 //! A trial as a method sees it: its steps, and its output smoothed as asked.
 
+use super::motion::{StepMotion, motions};
 use super::settings::Settings;
 use super::steps::{InputStep, input_steps};
 use crate::experiment::Trial;
@@ -12,6 +13,8 @@ pub(super) struct Prepared<'a> {
     pub(super) smoothed: Option<Vec<f64>>,
     pub(super) period: SamplePeriod,
     pub(super) steps: Vec<InputStep>,
+    /// What the output does about each step, where rest or a stop is shown.
+    pub(super) motions: Vec<Option<StepMotion>>,
 }
 
 impl<'a> Prepared<'a> {
@@ -19,7 +22,9 @@ impl<'a> Prepared<'a> {
         let smooth = |filter: LowPass| filter.smooth(trial.output(), trial.period());
         let smoothed = settings.low_pass_at(trial.period()).map(smooth).transpose()?;
         let steps = input_steps(trial.input(), settings.min_step);
-        Ok(Self { raw: trial.output(), smoothed, period: trial.period(), steps })
+        let (raw, period) = (trial.output(), trial.period());
+        let motions = motions(raw, &steps, period, settings);
+        Ok(Self { raw, smoothed, period, steps, motions })
     }
 
     /// What the method is to look at.

@@ -15,7 +15,36 @@ pub enum Interpolation {
     Linear,
 }
 
-/// A method and its settings; the default is the paper's.
+/// Whether the first and the last step of a trial are judged, which have no neighbour on one
+/// side: the paper's condition 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FirstLast {
+    /// Rejected in a trial of more than three steps; judged like the others in one of three or
+    /// fewer, such as a stroke from rest to rest, which has hardly any others.
+    #[default]
+    Auto,
+    /// Rejected, as in the paper.
+    Reject,
+    /// Judged like the others.
+    Keep,
+}
+
+impl FirstLast {
+    /// Steps of a trial up to which its first and last are judged.
+    pub(super) const FEW: usize = 3;
+
+    /// Whether they are judged in a trial of so many steps.
+    pub fn are_judged(self, steps: usize) -> bool {
+        match self {
+            Self::Auto => steps <= Self::FEW,
+            Self::Reject => false,
+            Self::Keep => true,
+        }
+    }
+}
+
+/// A method and its settings; the default is the paper's search with what real logs need
+/// beside it, see [`Settings::paper`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// How a delay is found.
@@ -42,8 +71,11 @@ pub struct Settings {
     pub min_slope_change: f64,
     /// Squared error that an accepted step must stay below, output units squared.
     pub max_sse: Option<f64>,
-    /// Judge the first and the last step of a trial like the others.
-    pub keep_first_last: bool,
+    /// Whether the first and the last step of a trial are judged.
+    pub first_last: FirstLast,
+    /// Algorithm 1 to the letter: nothing is made of rest and of stops, so that a segment runs
+    /// from step to step whatever the output does, and no step is `at_rest`.
+    pub paper: bool,
     /// Smallest change of the input that is a step, input units; 0 for any change.
     pub min_step: f64,
     /// How `τ_k` goes on between two steps.
@@ -76,7 +108,8 @@ impl Settings {
             output_limits: None,
             min_slope_change: 0.0,
             max_sse: None,
-            keep_first_last: false,
+            first_last: FirstLast::Auto,
+            paper: false,
             min_step: 0.0,
             interpolation: Interpolation::Hold,
             confidence: spec.confidence,

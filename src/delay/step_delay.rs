@@ -1,7 +1,7 @@
 //! The delays of a joint for whoever only wants the delays.
 
 use super::estimate::estimate_joint;
-use super::settings::Settings;
+use super::settings::{FirstLast, Settings};
 use super::spec::Method;
 use super::trial_estimate::EstimateError;
 use crate::experiment::Trial;
@@ -38,7 +38,7 @@ pub struct StepDelay {
 /// assert!((delays[0][0].unwrap().delay_s - 0.12).abs() < 1e-6);
 /// ```
 pub fn step_delays(trials: &[Trial]) -> Result<Vec<Vec<Option<StepDelay>>>, EstimateError> {
-    let settings = Settings { keep_first_last: true, ..Settings::of(Method::LAG_AWARE) };
+    let settings = Settings { first_last: FirstLast::Keep, ..Settings::of(Method::LAG_AWARE) };
     let estimates = estimate_joint(trials, &settings);
     let of = |(trial, estimate): (&Trial, Result<_, EstimateError>)| {
         let estimate: super::trial_estimate::TrialEstimate = estimate?;

@@ -313,8 +313,8 @@ impl Facts<'_, '_> {
             Condition::FirstOrLast => {
                 let value =
                     format!("step {} of {}", value.unwrap_or_default(), limit.unwrap_or_default());
-                let kept = self.settings.keep_first_last;
-                (value, if kept { "any" } else { "a step on each side" }.to_owned())
+                let is_judged = check.outcome == Outcome::NotChecked;
+                (value, if is_judged { "any" } else { "a step on each side" }.to_owned())
             }
             Condition::OutputLimit => {
                 let limits = self.settings.output_limits;

@@ -1,6 +1,6 @@
 //! The settings in words.
 
-use crate::delay::{Method, Settings};
+use crate::delay::{FirstLast, Method, Settings};
 use crate::wording::number;
 
 /// Each setting with its value, as a person would say it.
@@ -26,9 +26,15 @@ pub(crate) fn settings_rows(settings: &Settings) -> Vec<(&'static str, String)> 
         ("output limits", limits.map_or_else(not_set, |(low, high)| format!("{low} … {high}"))),
         ("smallest slope change", format!("{} per sample", settings.min_slope_change)),
         ("largest SSE", settings.max_sse.map_or_else(not_set, |limit| limit.to_string())),
+        ("rest and stops", if settings.paper { "not looked for" } else { "looked for" }.to_owned()),
         (
             "first and last step",
-            if settings.keep_first_last { "judged" } else { "left out" }.to_owned(),
+            match settings.first_last {
+                FirstLast::Auto => "judged in trials of three steps or fewer",
+                FirstLast::Reject => "left out",
+                FirstLast::Keep => "judged",
+            }
+            .to_owned(),
         ),
         ("smallest input step", settings.min_step.to_string()),
         ("τ between steps", format!("{:?}", settings.interpolation).to_lowercase()),

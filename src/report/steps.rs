@@ -57,7 +57,7 @@ pub(crate) fn steps_table(joints: &[EstimatedJoint<'_>]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::delay::{Settings, estimate};
+    use crate::delay::{FirstLast, Settings, estimate};
     use crate::units::SamplePeriod;
 
     #[test]
@@ -69,7 +69,7 @@ mod tests {
         let period = SamplePeriod::from_seconds(0.01).unwrap();
         let trial = Trial::new("1", 0.0, period, input, output).unwrap();
         let settings = Settings { low_pass: None, beta: 2, ..Settings::default() };
-        let kept = Settings { keep_first_last: true, ..settings.clone() };
+        let kept = Settings { first_last: FirstLast::Keep, ..settings.clone() };
         let joint = |trials| Joint {
             name: "swing".to_owned(),
             input_unit: Some("V".to_owned()),

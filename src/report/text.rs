@@ -2,7 +2,7 @@
 
 use super::text_table::TextTable;
 use super::{DelayRange, EstimatedJoint, JointSummary};
-use crate::delay::{Automatic, Chosen, Condition, Interpolation, LagPart, Settings};
+use crate::delay::{Automatic, Chosen, Condition, FirstLast, Interpolation, LagPart, Settings};
 use crate::numerics::LowPass;
 use crate::wording::{measure, percent, rounded};
 
@@ -145,8 +145,13 @@ fn settings_line(settings: &Settings, automatic: Automatic) -> String {
     if settings.interpolation == Interpolation::Linear {
         parts.push("delay linear between steps".to_owned());
     }
-    if settings.keep_first_last {
-        parts.push("first and last step kept".to_owned());
+    match settings.first_last {
+        FirstLast::Auto => {}
+        FirstLast::Reject => parts.push("first and last step rejected".to_owned()),
+        FirstLast::Keep => parts.push("first and last step kept".to_owned()),
+    }
+    if settings.paper {
+        parts.push("Algorithm 1 to the letter".to_owned());
     }
     format!("{}: {}", spec.fits, parts.join("; "))
 }

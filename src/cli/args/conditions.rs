@@ -1,10 +1,10 @@
 //! The settings that every command takes whose delays are asked for.
 
 use super::number::{at_least_one, probability, threshold};
-use crate::delay::{Method, MethodSpec, Settings};
+use crate::delay::{FirstLast, Method, MethodSpec, Settings};
 use crate::numerics::LowPass;
-use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueEnum};
 
 /// The settings that are no part of how a breakpoint is searched.
 #[derive(Args, Debug)]
@@ -42,9 +42,18 @@ pub(crate) struct ConditionArgs {
     #[arg(long, value_name = "X", value_parser = threshold, allow_negative_numbers = true)]
     max_sse: Option<f64>,
 
-    /// Judge the first and the last step like the others
-    #[arg(long)]
+    /// Whether the first and the last step of a trial are judged
+    #[arg(long, value_enum, default_value_t = EndSteps::Auto)]
+    first_last: EndSteps,
+
+    /// The same as `--first-last keep`
+    #[arg(long, conflicts_with = "first_last")]
     keep_first_last: bool,
+
+    /// Algorithm 1 of Albrecht and Taylor to the letter, on any log: no rest or stop of the joint
+    /// is looked for, and the first and the last step are rejected
+    #[arg(long, conflicts_with_all = ["first_last", "keep_first_last"])]
+    paper: bool,
 
     /// Count a change of the input as a step when it is more than this: for an input
     /// that was measured
@@ -71,6 +80,16 @@ pub(crate) fn method() -> impl TypedValueParser<Value = Method> {
     let known = |method: Method| PossibleValue::new(method.id()).help(method.spec().summary);
     let ids = PossibleValuesParser::new(Method::all().map(known));
     ids.try_map(|id| Method::find(&id).ok_or("no method has this name"))
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum EndSteps {
+    /// In trials of three steps or fewer
+    Auto,
+    /// Never, as in the paper
+    Reject,
+    /// Always
+    Keep,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -122,6 +141,16 @@ impl Passband {
 }
 
 impl ConditionArgs {
+    fn first_last(&self) -> FirstLast {
+        match self.first_last {
+            _ if self.paper => FirstLast::Reject,
+            _ if self.keep_first_last => FirstLast::Keep,
+            EndSteps::Auto => FirstLast::Auto,
+            EndSteps::Reject => FirstLast::Reject,
+            EndSteps::Keep => FirstLast::Keep,
+        }
+    }
+
     /// The settings of `method` with these conditions; all else is as usual.
     pub(crate) fn settings(&self, method: Method) -> Settings {
         let usual = Settings::of(method);
@@ -138,7 +167,8 @@ impl ConditionArgs {
             output_limits: self.output_limits,
             min_slope_change: self.min_slope_change,
             max_sse: self.max_sse,
-            keep_first_last: self.keep_first_last,
+            first_last: self.first_last(),
+            paper: self.paper,
             min_step: self.min_step,
             confidence,
             interval: self.interval,

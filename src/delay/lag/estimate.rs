@@ -22,6 +22,7 @@ pub struct Lag {
     model: LagModel,
     /// Covariance of the model's parameters.
     covariance: [[f64; MAX_PARAMETERS]; MAX_PARAMETERS],
+    determined: bool,
 }
 
 impl Lag {
@@ -30,7 +31,18 @@ impl Lag {
         model: LagModel,
         covariance: [[f64; MAX_PARAMETERS]; MAX_PARAMETERS],
     ) -> Self {
-        Self { period, model, covariance }
+        Self { period, model, covariance, determined: true }
+    }
+
+    /// Of a joint whose steps do not show it.
+    pub(crate) fn undetermined() -> Self {
+        Self { determined: false, ..Self::none() }
+    }
+
+    /// Whether the record shows a lag that its steps share, or that there is none. Strokes from
+    /// rest do not: each gathers speed in its own way.
+    pub fn is_determined(&self) -> bool {
+        self.determined
     }
 
     /// A joint that follows at once.

@@ -18,7 +18,6 @@ use crate::delay::search::Candidates;
 use crate::delay::segment::Segment;
 use crate::delay::settings::{CONFIDENCE, Settings};
 use crate::delay::spec::{Method, MethodSpec, Scope};
-use crate::delay::steps::InputStep;
 use crate::numerics::{Line, NoiseModel};
 use crate::units::ceil_to_index;
 
@@ -47,7 +46,7 @@ impl DelayMethod for Hinge {
     }
 
     fn decide(&self, trial: &Prepared<'_>, _: Option<&Lag>, settings: &Settings) -> Vec<Decision> {
-        decide_all(trial.output(), &trial.steps, settings)
+        decide_all(trial, settings)
     }
 }
 
@@ -63,18 +62,15 @@ struct Found {
 }
 
 /// The decisions on all steps of a trial.
-pub(in crate::delay) fn decide_all(
-    output: &[f64],
-    steps: &[InputStep],
-    settings: &Settings,
-) -> Vec<Decision> {
-    let (path, noise) = located(output, steps, settings, PASSES);
-    let decide = |index| decide(&StepContext { steps, index, output, settings }, &path, &noise);
-    (0..steps.len()).map(decide).collect()
+pub(in crate::delay) fn decide_all(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
+    let (path, noise) = located(trial, settings, PASSES);
+    let decide = |index| decide(&StepContext { trial, index, settings }, &path, &noise);
+    (0..trial.steps.len()).map(decide).collect()
 }
 
 fn decide(context: &StepContext<'_>, path: &OnsetPath, noise: &NoiseModel) -> Decision {
-    let StepContext { index, output, settings, .. } = *context;
+    let StepContext { index, settings, .. } = *context;
+    let output = context.output();
     let found = search(path, index, output, noise, settings.interval);
     let fine = found.as_ref().map(|found| fine(found, &path.onsets[index], settings));
     let p_value = found.as_ref().map(|found| found.line.p_value);
@@ -83,7 +79,7 @@ fn decide(context: &StepContext<'_>, path: &OnsetPath, noise: &NoiseModel) -> De
     let candidates = found.map_or_else(Candidates::default, candidates);
     let mut decision = context.decision(segment, 1, candidates, fine);
     if let Some(confidence) = settings.confidence {
-        decision.test_reaction(p_value, confidence);
+        decision.test_reaction(context.departed().or(p_value), confidence);
     }
     decision
 }

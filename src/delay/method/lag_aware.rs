@@ -11,17 +11,18 @@ use crate::delay::broken_line;
 use crate::delay::decision::Decision;
 use crate::delay::interval::FineDelay;
 use crate::delay::lag::{FINE, FitWindow, Lag, LagModel, LagSearch, Linearised};
+use crate::delay::motion::{DEPARTED, StepMotion};
 use crate::delay::onsets::{
-    OnsetPath, Precision, RefinedOnset, Refinement, fit_windows, located, thinned,
+    GradualOnset, Onset, OnsetPath, Precision, RefinedOnset, Refinement, fit_windows, located,
+    thinned,
 };
 use crate::delay::prepared::Prepared;
 use crate::delay::search::Candidates;
 use crate::delay::segment::Segment;
 use crate::delay::settings::{CONFIDENCE, Settings};
 use crate::delay::spec::{Method, MethodSpec, Scope};
-use crate::delay::steps::InputStep;
 use crate::numerics::{Line, NoiseModel, student_quantile};
-use crate::units::{SamplePeriod, ceil_to_index};
+use crate::units::ceil_to_index;
 
 static SPEC: MethodSpec = MethodSpec {
     id: "lag-aware",
@@ -59,12 +60,10 @@ impl DelayMethod for LagAware {
         settings: &Settings,
     ) -> Vec<Decision> {
         match lag.filter(|lag| lag.order() > 0) {
-            Some(lag) => {
-                let (output, steps) = (trial.output(), trial.steps.as_slice());
-                decide_all(output, steps, lag, trial.period, settings)
-            }
+            Some(lag) => decide_all(trial, lag, settings),
             // A joint that follows at once has a broken line.
-            None => Hinge.decide(trial, None, settings),
+            None if lag.is_none_or(Lag::is_determined) => Hinge.decide(trial, None, settings),
+            None => without_a_lag(trial, settings),
         }
     }
 }
@@ -85,9 +84,10 @@ const CAUTION: f64 = 0.02;
 fn lag_of(trials: &[Prepared<'_>], settings: &Settings) -> Lag {
     let Some(period) = trials.first().map(|trial| trial.period) else { return Lag::none() };
     let alike = trials.iter().filter(|trial| trial.period == period);
-    let paths: Vec<_> = alike
-        .map(|trial| (trial.output(), rough(trial.output(), &trial.steps, settings)))
-        .collect();
+    let paths: Vec<_> = alike.map(|trial| (trial.output(), rough(trial, settings))).collect();
+    if !is_shown(paths.iter().flat_map(|(_, path)| &path.onsets)) {
+        return Lag::undetermined();
+    }
     let all: Vec<_> = paths
         .iter()
         .flat_map(|(output, path)| fit_windows(output, path, Precision::Rough))
@@ -123,6 +123,59 @@ fn lag_of(trials: &[Prepared<'_>], settings: &Settings) -> Lag {
     Lag::new(period, found.model, found.covariance())
 }
 
+/// Whether enough steps can show a lag, where some cannot: those of a joint that rested, and
+/// does not go on as it starts.
+fn is_shown<'a>(onsets: impl Iterator<Item = &'a Onset>) -> bool {
+    /// Steps that say more than one of them alone (chosen).
+    const FEWEST: usize = 3;
+    let (unfit, fit): (Vec<&Onset>, Vec<&Onset>) =
+        onsets.partition(|onset| onset.alone || onset.at_rest);
+    unfit.is_empty() || fit.len() >= FEWEST
+}
+
+/// The decisions on all steps where no lag is known: onsets from rest by the speed that they
+/// gather, all others by broken lines.
+fn without_a_lag(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
+    let decide = |(index, hinged): (usize, Decision)| {
+        from_rest(&StepContext { trial, index, settings }).unwrap_or(hinged)
+    };
+    Hinge.decide(trial, None, settings).into_iter().enumerate().map(decide).collect()
+}
+
+/// The decision on a step at which the joint rested and then departed.
+fn from_rest(context: &StepContext<'_>) -> Option<Decision> {
+    let StepContext { settings, .. } = *context;
+    let output = context.output();
+    let motion = context.motion().filter(StepMotion::departs)?;
+    let step = context.step().sample - 1;
+    let start = motion.first.max(step.saturating_sub(settings.alpha));
+    let end = motion.end.min(context.next_sample() - 1);
+    let values = output.get(start..end)?;
+    let found = GradualOnset::of(values, 0..motion.latest + 1 - start, settings.interval)?;
+    let fine = found.delay((step - start) as f64, settings.interval);
+    let segment = Segment::clipped(start + 1, end, output.len());
+    let candidates = gradual_candidates(&found, values, start);
+    let mut decision = context.decision(segment, 1, candidates, Some(fine));
+    if let Some(confidence) = settings.confidence {
+        decision.test_reaction(Some(DEPARTED), confidence);
+    }
+    Some(decision)
+}
+
+/// The onset at every sample, with the level before it and the chord behind it.
+fn gradual_candidates(found: &GradualOnset, values: &[f64], start: usize) -> Candidates {
+    let number = |index: usize| (start + index + 1) as f64;
+    let last = values.len() - 1;
+    let lines = (found.first..found.first + found.sse.len()).map(|index| {
+        let slope = (values[last] - found.level) / (last.max(index + 1) - index) as f64;
+        let before = Line { slope: 0.0, intercept: found.level };
+        (before, Line { slope, intercept: found.level - slope * number(index) })
+    });
+    let best = ceil_to_index(found.position).saturating_sub(found.first);
+    let best = best.min(found.sse.len().saturating_sub(1));
+    Candidates::fitted(start + found.first, found.sse.clone(), lines.unzip(), best)
+}
+
 /// The onsets of each trial behind the lag that was found.
 fn refined<'a>(paths: &[(&'a [f64], OnsetPath)], found: &LagSearch<'_>) -> Vec<Refinement<'a>> {
     let refined = |(output, path): &(&'a [f64], OnsetPath)| {
@@ -134,9 +187,9 @@ fn refined<'a>(paths: &[(&'a [f64], OnsetPath)], found: &LagSearch<'_>) -> Vec<R
 
 /// The onsets by broken lines. Their residuals hold the lag's transients, which are no noise:
 /// its memory is not estimated from them.
-fn rough(output: &[f64], steps: &[InputStep], settings: &Settings) -> OnsetPath {
-    let (mut path, _) = located(output, steps, settings, 1);
-    path.onsets.iter_mut().for_each(|onset| onset.counts = true);
+fn rough(trial: &Prepared<'_>, settings: &Settings) -> OnsetPath {
+    let (mut path, _) = located(trial, settings, 1);
+    path.onsets.iter_mut().for_each(|onset| onset.counts = !onset.at_rest);
     path
 }
 
@@ -148,24 +201,19 @@ fn behind(rough: &OnsetPath, output: &[f64], model: &LagModel) -> OnsetPath {
 }
 
 /// The decisions on all steps of a trial with this lag.
-fn decide_all(
-    output: &[f64],
-    steps: &[InputStep],
-    lag: &Lag,
-    period: SamplePeriod,
-    settings: &Settings,
-) -> Vec<Decision> {
+fn decide_all(prepared: &Prepared<'_>, lag: &Lag, settings: &Settings) -> Vec<Decision> {
     /// Passes: the first takes the noise for white, the second knows its memory.
     const PASSES: usize = 2;
-    let model = lag.model_at(period);
-    let path = behind(&rough(output, steps, settings), output, &model);
+    let (output, model) = (prepared.output(), lag.model_at(prepared.period));
+    let path = behind(&rough(prepared, settings), output, &model);
     let trial = Refinement::of(output, path, model, NoiseModel::white()).refined(PASSES);
-    let decide = |index| decide(&StepContext { steps, index, output, settings }, &trial, lag);
-    (0..steps.len()).map(decide).collect()
+    let decide = |index| decide(&StepContext { trial: prepared, index, settings }, &trial, lag);
+    (0..prepared.steps.len()).map(decide).collect()
 }
 
 fn decide(context: &StepContext<'_>, trial: &Refinement<'_>, lag: &Lag) -> Decision {
-    let StepContext { index, output, settings, .. } = *context;
+    let StepContext { index, settings, .. } = *context;
+    let output = context.output();
     let range = trial.path.window(index);
     let segment = Segment::clipped(range.start + 1, range.end, output.len());
     let found = trial.fit(index, FINE);
@@ -175,7 +223,7 @@ fn decide(context: &StepContext<'_>, trial: &Refinement<'_>, lag: &Lag) -> Decis
     let candidates = found.map_or_else(Candidates::default, |found| candidates(trial, &found));
     let mut decision = context.decision(segment, 1, candidates, fine);
     if let Some(confidence) = settings.confidence {
-        decision.test_reaction(p_value, confidence);
+        decision.test_reaction(context.departed().or(p_value), confidence);
     }
     decision
 }

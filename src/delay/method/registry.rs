@@ -32,7 +32,7 @@ pub(in crate::delay) fn implementation(method: Method) -> &'static dyn DelayMeth
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::delay::{Scope, Settings, TrialEstimate, estimate};
+    use crate::delay::{FirstLast, Scope, Settings, TrialEstimate, estimate};
     use crate::experiment::Trial;
     use crate::units::SamplePeriod;
 
@@ -46,7 +46,7 @@ mod tests {
         let period = SamplePeriod::from_seconds(0.01).unwrap();
         let trial = Trial::new("1", 0.0, period, input, output).unwrap();
         let usual = Settings::of(method);
-        let settings = Settings { keep_first_last: true, low_pass: None, beta, ..usual };
+        let settings = Settings { first_last: FirstLast::Keep, low_pass: None, beta, ..usual };
         estimate(&trial, &settings).unwrap()
     }
 

@@ -3,6 +3,8 @@
 use crate::delay::condition::Facts;
 use crate::delay::decision::Decision;
 use crate::delay::interval::FineDelay;
+use crate::delay::motion::{DEPARTED, StepMotion};
+use crate::delay::prepared::Prepared;
 use crate::delay::search::Candidates;
 use crate::delay::segment::Segment;
 use crate::delay::settings::Settings;
@@ -10,20 +12,35 @@ use crate::delay::steps::InputStep;
 
 /// A step among all of its trial.
 pub(super) struct StepContext<'a> {
-    pub(super) steps: &'a [InputStep],
+    pub(super) trial: &'a Prepared<'a>,
     pub(super) index: usize,
-    pub(super) output: &'a [f64],
     pub(super) settings: &'a Settings,
 }
 
 impl StepContext<'_> {
+    /// What the method looks at.
+    pub(super) fn output(&self) -> &[f64] {
+        self.trial.output()
+    }
+
     pub(super) fn step(&self) -> InputStep {
-        self.steps[self.index]
+        self.trial.steps[self.index]
+    }
+
+    /// What the output does about the step, where rest or a stop is shown.
+    pub(super) fn motion(&self) -> Option<StepMotion> {
+        self.trial.motions.get(self.index).copied().flatten()
+    }
+
+    /// The p-value of a departure from rest, where the joint departed: the noise of its rest
+    /// is known from there, while lines that do not fit make any noise look large.
+    pub(super) fn departed(&self) -> Option<f64> {
+        self.motion().filter(StepMotion::departs).map(|_| DEPARTED)
     }
 
     /// `p_(i+1)`: the sample of the next step, or the one behind the trial's last.
     pub(super) fn next_sample(&self) -> usize {
-        self.steps.get(self.index + 1).map_or(self.output.len() + 1, |next| next.sample)
+        self.trial.steps.get(self.index + 1).map_or(self.output().len() + 1, |next| next.sample)
     }
 
     /// The decision that follows from what was found in a segment, in rows of so many samples.
@@ -38,10 +55,12 @@ impl StepContext<'_> {
         let hold = self.next_sample() - input_step.sample;
         let facts = Facts {
             step: number,
-            steps: self.steps.len(),
+            steps: self.trial.steps.len(),
             input_sample: input_step.sample,
             hold,
-            output: &self.output[segment.indices()],
+            output: &self.output()[segment.indices()],
+            first: segment.first,
+            motion: self.motion(),
             rows: segment.len() / row_length,
             best: candidates.best(),
             fine,

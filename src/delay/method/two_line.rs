@@ -16,9 +16,8 @@ use crate::delay::lag::Lag;
 use crate::delay::prepared::Prepared;
 use crate::delay::search::Candidates;
 use crate::delay::segment::Segment;
-use crate::delay::settings::Settings;
+use crate::delay::settings::{CONFIDENCE, FirstLast, Settings};
 use crate::delay::spec::{Method, MethodSpec, Scope};
-use crate::delay::steps::InputStep;
 use crate::numerics::LowPass;
 
 static SPEC: MethodSpec = MethodSpec {
@@ -60,46 +59,69 @@ impl DelayMethod for TwoLine {
     }
 
     fn decide(&self, trial: &Prepared<'_>, _: Option<&Lag>, settings: &Settings) -> Vec<Decision> {
-        decide_all(trial.output(), trial.raw, &trial.steps, settings)
+        decide_all(trial, settings)
     }
 }
 
-/// The decisions on all `steps`; `output` is what the lines are fitted to, `raw` what was
-/// measured.
-fn decide_all(
-    output: &[f64],
-    raw: &[f64],
-    steps: &[InputStep],
-    settings: &Settings,
-) -> Vec<Decision> {
-    let mut decisions: Vec<Decision> = Vec::with_capacity(steps.len());
-    for index in 0..steps.len() {
-        let context = StepContext { steps, index, output, settings };
+/// The decisions on all steps.
+fn decide_all(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
+    let mut decisions: Vec<Decision> = Vec::with_capacity(trial.steps.len());
+    for index in 0..trial.steps.len() {
+        let context = StepContext { trial, index, settings };
         decisions.push(decide(&context, decisions.last()));
     }
-    if let Some(confidence) = settings.confidence {
-        noise_test::judge(&mut decisions, raw, confidence);
+    if let Some(confidence) = confidence(trial, settings) {
+        noise_test::judge(&mut decisions, trial.raw, confidence);
+        for (index, decision) in decisions.iter_mut().enumerate() {
+            let context = StepContext { trial, index, settings };
+            if let Some(p_value) = context.departed() {
+                decision.test_reaction(Some(p_value), confidence);
+            }
+        }
     }
     decisions
 }
 
+/// How sure a reaction must be. The paper asks nothing, but rejects the ends of a trial; where
+/// they are judged since there is hardly anything else, whether anything happened is asked.
+fn confidence(trial: &Prepared<'_>, settings: &Settings) -> Option<f64> {
+    let few = settings.first_last == FirstLast::Auto
+        && settings.first_last.are_judged(trial.steps.len());
+    settings.confidence.or(few.then_some(CONFIDENCE))
+}
+
+/// The first sample that a segment may have, the last breakpoint, and the last sample.
+fn bounds(context: &StepContext<'_>) -> (usize, usize, usize) {
+    let Settings { alpha, beta, max_delay, .. } = *context.settings;
+    let p = context.step().sample;
+    let before_step = p.saturating_sub(alpha);
+    let asked = max_delay.map(|delay| p.saturating_add(delay));
+    let mut bounds = asked.map_or((0, usize::MAX, usize::MAX), |latest| {
+        (before_step, latest, latest.saturating_add(alpha))
+    });
+    if let Some(motion) = context.motion() {
+        bounds.0 = bounds.0.max(motion.first + 1);
+        // A breakpoint is at the end of a row of β samples.
+        bounds.1 = bounds.1.min(motion.latest + beta);
+        bounds.2 = bounds.2.min(motion.end);
+    }
+    bounds
+}
+
 /// The decision on a step, after the one `before` it.
 fn decide(context: &StepContext<'_>, before: Option<&Decision>) -> Decision {
-    let StepContext { output, settings, .. } = *context;
+    let StepContext { settings, .. } = *context;
+    let output = context.output();
     let p = context.step().sample;
     let accepted = before.filter(|before| before.verdict() == Verdict::Accepted);
     let previous = accepted.and_then(Decision::breakpoint);
     let before_step = p.saturating_sub(settings.alpha);
     let breakpoint = previous.map(|best| best.candidate.breakpoint);
-    let latest = settings.max_delay.map_or(usize::MAX, |delay| p.saturating_add(delay));
-    // r_i = q_(i−1) if step i−1 was accepted, else p_i − α.
-    let first = match (breakpoint, settings.max_delay) {
-        (None, _) => before_step,
-        (Some(breakpoint), None) => breakpoint,
-        // What came long before the step is none of its business.
-        (Some(breakpoint), Some(_)) => breakpoint.max(before_step),
-    };
-    let last = context.next_sample().min(latest).saturating_add(settings.alpha);
+    let (from, latest, until) = bounds(context);
+    // r_i = q_(i−1) if step i−1 was accepted, else p_i − α; what came long before the step is
+    // none of its business where its own reaction is bounded.
+    let first = breakpoint.map_or(before_step, |breakpoint| breakpoint.max(from));
+    let last = context.next_sample().saturating_add(settings.alpha).min(until);
     let segment = Segment::clipped(first, last, output.len());
     let values = &output[segment.indices()];
     let candidates = Candidates::search_until(values, segment.first, settings.beta, latest);

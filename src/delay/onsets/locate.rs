@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 
 use super::path::OnsetPath;
 use crate::delay::broken_line::{PARAMETERS, Window};
+use crate::delay::prepared::Prepared;
 use crate::delay::settings::Settings;
-use crate::delay::steps::InputStep;
 use crate::numerics::NoiseModel;
 
 /// A reaction with a larger p-value does not bound its neighbours.
@@ -15,14 +15,14 @@ pub(super) const DOUBTFUL: f64 = 0.01;
 /// The onset of each step, and the noise about the lines, after `passes` at most; after
 /// one the noise is taken for white.
 pub(crate) fn located(
-    output: &[f64],
-    steps: &[InputStep],
+    trial: &Prepared<'_>,
     settings: &Settings,
     passes: usize,
 ) -> (OnsetPath, NoiseModel) {
     /// Samples that are enough to know the noise.
     const ENOUGH: usize = 50_000;
-    let mut path = OnsetPath::of(output, steps, settings);
+    let output = trial.output();
+    let mut path = OnsetPath::of(trial, settings);
     let every = output.len().div_ceil(ENOUGH).max(1);
     let mut noise = NoiseModel::white();
     for pass in 0..passes {
@@ -43,7 +43,7 @@ pub(crate) fn located(
             }
             let onset = &mut path.onsets[index];
             onset.position = start as f64 + line.position;
-            onset.counts = line.p_value <= DOUBTFUL;
+            onset.counts = line.p_value <= DOUBTFUL && !onset.at_rest;
             onset.error = line.position_error(values.len());
         }
         noise = NoiseModel::of(&residuals, PARAMETERS);

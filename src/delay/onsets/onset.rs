@@ -1,5 +1,6 @@
 //! Where the output starts to react to one step of the input, and where it may.
 
+use crate::delay::motion::StepMotion;
 use crate::units::{ceil_to_index, floor_to_index};
 
 /// Positions of each onset that are tried at a time.
@@ -23,9 +24,24 @@ pub(crate) struct Onset {
     pub(crate) error: f64,
     /// Whether it bounds its neighbours: whether it is more than noise makes.
     pub(crate) counts: bool,
+    /// Whether the joint was shown to stand still: nothing bounds its neighbours then.
+    pub(crate) at_rest: bool,
+    /// Whether its window is its own, whatever its neighbours do.
+    pub(crate) alone: bool,
 }
 
 impl Onset {
+    /// Bounds it by what the output does about its step.
+    pub(super) fn narrow(&mut self, motion: &StepMotion) {
+        self.within = (self.within.0.max(motion.first), self.within.1.min(motion.end));
+        self.latest = self.latest.min(motion.latest);
+        self.earliest = self.earliest.min(self.latest);
+        self.at_rest = motion.rest.is_some_and(|rest| rest.lasts());
+        self.alone = motion.end != usize::MAX && motion.rest.is_some();
+        self.counts = !self.at_rest;
+        self.position = self.origin.midpoint(self.latest.min(self.next)) as f64;
+    }
+
     /// Whether it has room before the next step of the input.
     pub(super) fn in_time(&self) -> bool {
         /// Samples that a reaction needs before the next one may be.

@@ -10,6 +10,7 @@ use std::ops::Range;
 use super::costs::{LONGEST_MOTION, Pieces, lateness};
 use super::onset::Onset;
 use crate::delay::lag::{FreeMotion, LagModel, Response};
+use crate::delay::prepared::Prepared;
 use crate::delay::settings::Settings;
 use crate::delay::steps::InputStep;
 use crate::units::ceil_to_index;
@@ -22,11 +23,17 @@ pub(crate) struct OnsetPath {
 }
 
 impl OnsetPath {
-    /// The reactions of `output` to `steps`.
-    pub(crate) fn of(output: &[f64], steps: &[InputStep], settings: &Settings) -> Self {
+    /// The reactions to the steps of `trial`.
+    pub(crate) fn of(trial: &Prepared<'_>, settings: &Settings) -> Self {
+        let output = trial.output();
         let samples = output.len();
-        let mut path = Self { onsets: onsets(samples, steps, settings), samples };
-        if settings.max_delay.is_none() {
+        let mut path = Self { onsets: onsets(samples, &trial.steps, settings), samples };
+        for (onset, motion) in path.onsets.iter_mut().zip(&trial.motions) {
+            if let Some(motion) = motion {
+                onset.narrow(motion);
+            }
+        }
+        if settings.max_delay.is_none() && path.onsets.iter().any(|onset| !onset.alone) {
             path.connect(output);
         }
         path
@@ -174,7 +181,18 @@ fn onsets(samples: usize, steps: &[InputStep], settings: &Settings) -> Vec<Onset
         };
         let earliest = origin.saturating_sub(settings.alpha);
         let position = origin.midpoint(latest.min(next)) as f64;
-        Onset { origin, earliest, latest, within, next, position, error: 0.0, counts: true }
+        Onset {
+            origin,
+            earliest,
+            latest,
+            within,
+            next,
+            position,
+            error: 0.0,
+            counts: true,
+            at_rest: false,
+            alone: false,
+        }
     };
     steps.iter().zip(nexts).map(onset).collect()
 }

@@ -77,7 +77,7 @@ impl<'a> Refinement<'a> {
             let p_value = self.p_value(index, &found);
             let onset = &mut self.path.onsets[index];
             onset.position = found.position();
-            onset.counts = p_value <= doubtful;
+            onset.counts = p_value <= doubtful && !onset.at_rest;
             onset.error = found.position_error();
         }
         NoiseModel::left_by(&projections)

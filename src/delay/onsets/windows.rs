@@ -11,6 +11,9 @@ use crate::units::ceil_to_index;
 /// line and its modes.
 const TOGETHER: usize = 4;
 
+/// Samples for each onset, more than which a window needs.
+const FEWEST: usize = 8;
+
 /// How well the positions of a path are known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Precision {
@@ -27,9 +30,10 @@ pub(crate) fn fit_windows<'a>(
     path: &OnsetPath,
     precision: Precision,
 ) -> Vec<FitWindow<'a>> {
-    /// Samples for each onset, more than which a window needs.
-    const FEWEST: usize = 8;
     let rough = precision == Precision::Rough;
+    if path.onsets.iter().any(|onset| onset.alone || onset.at_rest) {
+        return lone_windows(output, path, precision);
+    }
     let counting: Vec<_> = path.onsets.iter().filter(|onset| rough || onset.counts).collect();
     let guard = guard(path, precision);
     let range = |(index, group): (usize, &[&Onset])| {
@@ -52,6 +56,23 @@ pub(crate) fn fit_windows<'a>(
         FitWindow { values: &output[range.clone()], onsets: onsets.clone(), shared: (first, last) }
     };
     ranges.iter().enumerate().map(window).collect()
+}
+
+/// Windows of an onset each, of those that the path does not bound by rest or a stop.
+fn lone_windows<'a>(
+    output: &'a [f64],
+    path: &OnsetPath,
+    precision: Precision,
+) -> Vec<FitWindow<'a>> {
+    let rough = precision == Precision::Rough;
+    let window = |(index, onset): (usize, &Onset)| {
+        let range = path.window(index);
+        let onsets = vec![onset.position - range.start as f64];
+        let is_fit = !onset.alone && !onset.at_rest && (rough || onset.counts);
+        let values = output.get(range).filter(|values| is_fit && values.len() > FEWEST)?;
+        Some(FitWindow { values, onsets, shared: (0, 0) })
+    };
+    path.onsets.iter().enumerate().filter_map(window).collect()
 }
 
 /// Samples by which an onset of another step may be later than it was found.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::delay::{Interpolation, Settings};
+use crate::delay::{FirstLast, Interpolation, Settings};
 use crate::numerics::LowPass;
 
 #[derive(Debug, Serialize)]
@@ -16,7 +16,9 @@ pub(super) struct SettingsJson {
     output_limits: Option<(f64, f64)>,
     min_slope_change: f64,
     max_sse: Option<f64>,
+    first_last: &'static str,
     keep_first_last: bool,
+    paper: bool,
     min_step: f64,
     interpolation: &'static str,
     confidence: Option<f64>,
@@ -42,7 +44,13 @@ impl From<&Settings> for SettingsJson {
             output_limits: settings.output_limits,
             min_slope_change: settings.min_slope_change,
             max_sse: settings.max_sse,
-            keep_first_last: settings.keep_first_last,
+            first_last: match settings.first_last {
+                FirstLast::Auto => "auto",
+                FirstLast::Reject => "reject",
+                FirstLast::Keep => "keep",
+            },
+            keep_first_last: settings.first_last == FirstLast::Keep,
+            paper: settings.paper,
             min_step: settings.min_step,
             interpolation: match settings.interpolation {
                 Interpolation::Hold => "hold",

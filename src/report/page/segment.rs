@@ -197,7 +197,7 @@ fn rounded_time(seconds: f64) -> String {
 mod tests {
     use super::*;
     use crate::batch::Threads;
-    use crate::delay::Settings;
+    use crate::delay::{FirstLast, Settings};
     use crate::study::estimate_joints;
     use crate::units::SamplePeriod;
 
@@ -228,7 +228,8 @@ mod tests {
 
     #[test]
     fn the_clearest_decision_is_where_the_noise_is_least() {
-        let settings = Settings { low_pass: None, keep_first_last: true, ..Settings::default() };
+        let settings =
+            Settings { low_pass: None, first_last: FirstLast::Keep, ..Settings::default() };
         let chosen = chosen(&settings);
         assert_eq!(chosen, [("Clearest", 1), ("Typical", 3), ("Least clear", 5)]);
     }
