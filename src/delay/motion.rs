@@ -13,6 +13,9 @@
 //! |v| + 2e ≤ REST · v_max      or      |v| ≤ 2e ≤ SLOW · v_max
 //! ```
 //!
+//! A joint that turns leaves more about a line than its noise: the second holds only where `s` is
+//! what the differences of neighbours say of the noise.
+//!
 //! It has *departed* once the output stays beyond that line by more than `6·s`, by more than the
 //! part [`PLAIN`] of the motion to come, and by more than as much drift again as before. It has
 //! *arrived* at a stop when it rests before the next step, although it was plainly driven: it
@@ -186,17 +189,23 @@ impl Hold<'_> {
     }
 
     fn motion(&self, so_far: &SoFar) -> Option<StepMotion> {
-        // What is sampled seldom needs longer to show its rest.
-        let looks = [self.look_back, 2 * self.look_back];
-        let quiet = looks.map(|look_back| Quiet::before(self.output, self.step, look_back));
-        match quiet.iter().flatten().find(|quiet| quiet.rests(so_far)) {
-            Some(rest) => self.from_rest(rest, so_far),
-            None => self.into_stop(quiet[0].as_ref()?, so_far),
+        match self.quiet_at(self.step).find(|quiet| quiet.rests(so_far)) {
+            Some(rest) => self.from_rest(&rest, so_far),
+            None => self.into_stop(so_far),
         }
     }
 
-    /// From rest: to the next step, or not far behind the departure where the joint does not
-    /// go on as it started.
+    /// The lines before a sample: what is sampled seldom needs longer to show its rest.
+    fn quiet_at(&self, end: usize) -> impl Iterator<Item = Quiet> {
+        let looks = [self.look_back, 2 * self.look_back];
+        let (output, least) = (self.output, if end > self.step { self.step } else { 0 });
+        let lines =
+            looks.into_iter().filter(move |look_back| least + look_back <= end || least == 0);
+        lines.filter_map(move |look_back| Quiet::before(output, end, look_back))
+    }
+
+    /// From rest: not far behind the departure, where the joint does not go on as it started
+    /// until the next step. Where it does, nothing needs to be known.
     fn from_rest(&self, before: &Quiet, so_far: &SoFar) -> Option<StepMotion> {
         let moved = self.held().iter().map(|y| (y - before.level).abs()).fold(0.0, f64::max);
         let rest = Rest { moved, limit: self.limit_at_rest(before, so_far) };
@@ -213,12 +222,13 @@ impl Hold<'_> {
         if self.since > 0 && self.step - self.since < delay {
             return None;
         }
-        let known = StepMotion { first: 0, latest: departed, end: usize::MAX, rest: Some(rest) };
-        if before.moves_evenly(self.output.get(departed..self.end())?, delay) {
-            return Some(known);
+        let moving = self.output.get(departed..self.end())?;
+        let arrives = self.quiet_at(self.end()).any(|quiet| quiet.rests(so_far));
+        if !arrives && before.moves_evenly(moving, delay) {
+            return None;
         }
         let end = (departed + (delay / 2).max(self.reach)).min(self.end());
-        Some(StepMotion { first, end, ..known })
+        Some(StepMotion { first, latest: departed, end, rest: Some(rest) })
     }
 
     /// How far a joint may move that goes on resting.
@@ -230,10 +240,11 @@ impl Hold<'_> {
     }
 
     /// In motion, and at a stop before the next step.
-    fn into_stop(&self, before: &Quiet, so_far: &SoFar) -> Option<StepMotion> {
+    fn into_stop(&self, so_far: &SoFar) -> Option<StepMotion> {
         let held = self.held();
-        let at_stop = Quiet::before(self.output, self.end(), self.look_back)?;
-        if held.len() < 2 * self.look_back || !at_stop.rests(so_far) {
+        let before = Quiet::before(self.output, self.step, self.look_back)?;
+        let at_stop = self.quiet_at(self.end()).find(|quiet| quiet.rests(so_far))?;
+        if held.len() < 2 * self.look_back {
             return None;
         }
         let near = (PLAIN * so_far.range()).max(BEYOND_NOISE * at_stop.noise);
@@ -253,6 +264,10 @@ impl Hold<'_> {
     }
 }
 
+/// Times the noise of neighbours that a joint leaves about a line which does not turn: more than
+/// white noise does in one of a thousand windows of eight.
+const TURNS: f64 = 1.5;
+
 /// Times as fast as before the step that a joint is plainly driven.
 const FASTER: f64 = 1.2;
 
@@ -266,6 +281,8 @@ struct Quiet {
     level: f64,
     /// Standard deviation of what it leaves.
     noise: f64,
+    /// That of white noise with such differences between neighbours.
+    rough: f64,
 }
 
 impl Quiet {
@@ -278,31 +295,34 @@ impl Quiet {
         let samples = values.len() as f64;
         let level = origin + line.mean() + line.slope() * (samples - 1.0) / 2.0;
         let noise = (line.sse() / (samples - 2.0)).sqrt();
-        Some(Self { samples, speed: line.slope(), level, noise })
+        let differences = values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum::<f64>();
+        let rough = (differences / (2.0 * (samples - 1.0))).sqrt();
+        Some(Self { samples, speed: line.slope(), level, noise, rough })
     }
 
     fn rests(&self, so_far: &SoFar) -> bool {
         let uncertain = 2.0 * self.noise * (12.0 / self.samples.powi(3)).sqrt();
         let is_shown = self.speed.abs() + uncertain <= REST * so_far.fastest;
-        let shows_none = self.speed.abs() <= uncertain && uncertain <= SLOW * so_far.fastest;
+        let shows_none = self.speed.abs() <= uncertain
+            && uncertain <= SLOW * so_far.fastest
+            && self.noise <= TURNS * self.rough;
         so_far.fastest > 0.0 && (is_shown || shows_none)
     }
 
     /// Whether the joint, which departed after `delay` samples, moves on so evenly that a line
-    /// through all of `moving` meets its rest where it started, but for a tenth of the delay.
+    /// through all of `moving` meets its rest no further off than the delay is long.
     ///
     /// A speed that changes by `Δv` over `n` samples bends the line so that it meets the rest
     /// about `n·Δv/(8·v)` samples off. The first quarter is left out, in which a joint gathers
     /// speed.
     fn moves_evenly(&self, moving: &[f64], delay: usize) -> bool {
-        const SHARE: f64 = 0.1;
         let quarter = moving.len() / 4;
         let at = |n: usize| moving.get(n * quarter).or(moving.last()).copied().unwrap_or_default();
         let ways = [1, 2, 3].map(|n| (at(n + 1) - at(n)).abs());
         let most = ways.iter().copied().fold(0.0, f64::max);
         let least = ways.iter().copied().fold(f64::INFINITY, f64::min);
         let off = moving.len() as f64 / 8.0 * (most - least - BEYOND_NOISE * self.noise);
-        off <= (SHARE * delay as f64).max(1.0) * most.midpoint(least)
+        off <= delay as f64 * most.midpoint(least)
     }
 
     /// Samples of `held`, which follows, until the output has plainly left this line.

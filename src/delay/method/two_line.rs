@@ -85,8 +85,8 @@ fn decide_all(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
 /// How sure a reaction must be. The paper asks nothing, but rejects the ends of a trial; where
 /// they are judged since there is hardly anything else, whether anything happened is asked.
 fn confidence(trial: &Prepared<'_>, settings: &Settings) -> Option<f64> {
-    let few = settings.first_last == FirstLast::Auto
-        && settings.first_last.are_judged(trial.steps.len());
+    let few =
+        settings.first_last == FirstLast::Auto && settings.first_last.are_judged(trial.steps.len());
     settings.confidence.or(few.then_some(CONFIDENCE))
 }
 

@@ -37,7 +37,7 @@ impl Onset {
         self.latest = self.latest.min(motion.latest);
         self.earliest = self.earliest.min(self.latest);
         self.at_rest = motion.rest.is_some_and(|rest| rest.lasts());
-        self.alone = motion.end != usize::MAX && motion.rest.is_some();
+        self.alone = motion.rest.is_some();
         self.counts = !self.at_rest;
         self.position = self.origin.midpoint(self.latest.min(self.next)) as f64;
     }
