@@ -355,7 +355,8 @@ fn lag_rows(lag: &Lag) -> Vec<(String, String)> {
     let known =
         |part: LagPart| format!("{} ± {}", number(part.value), number(1.96 * part.std_error));
     if lag.order() == 0 {
-        return vec![("lag behind the dead time".to_owned(), "none".to_owned())];
+        let word = if lag.is_determined() { "none" } else { "not determined" };
+        return vec![("lag behind the dead time".to_owned(), word.to_owned())];
     }
     let rows = [
         ("lag behind the dead time", Some(lag.mean_s()), " s"),

@@ -68,7 +68,8 @@ mod tests {
         let output = (0..300).map(moved).collect();
         let period = SamplePeriod::from_seconds(0.01).unwrap();
         let trial = Trial::new("1", 0.0, period, input, output).unwrap();
-        let settings = Settings { low_pass: None, beta: 2, ..Settings::default() };
+        let first_last = FirstLast::Reject;
+        let settings = Settings { low_pass: None, beta: 2, first_last, ..Settings::default() };
         let kept = Settings { first_last: FirstLast::Keep, ..settings.clone() };
         let joint = |trials| Joint {
             name: "swing".to_owned(),

@@ -56,6 +56,10 @@ fn low_pass_text(settings: &Settings) -> String {
     )
 }
 
+/// What is said of a joint whose steps do not show a common lag.
+pub(crate) const LAG_NOT_DETERMINED: &str = "the lag is not determined: each step starts from \
+    rest in a way of its own, and its onset is found by itself";
+
 /// The lag of a joint in words, where one was looked for.
 pub(super) fn lag_line(joint: &EstimatedJoint<'_>) -> Option<String> {
     let lag = joint.lag()?;
@@ -67,6 +71,9 @@ pub(super) fn lag_line(joint: &EstimatedJoint<'_>) -> Option<String> {
     ];
     let parts: Vec<_> = parts.into_iter().flatten().collect();
     let name = &joint.joint.name;
+    if !lag.is_determined() {
+        return Some(format!("{name}: {LAG_NOT_DETERMINED}\n"));
+    }
     if parts.is_empty() {
         return Some(format!("{name}: no lag behind the dead time\n"));
     }
