@@ -342,6 +342,11 @@ impl Facts<'_, '_> {
                 format!("{} rows of β = {}", value.unwrap_or_default(), self.settings.beta),
                 format!("≥ {not_set} rows"),
             ),
+            Condition::AtRest => {
+                let moved =
+                    value.map_or_else(missing, |moved| format!("moves by {moved}{}", unit("")));
+                (moved, limit.map_or(not_set, |limit| format!("> {limit}{}", unit(""))))
+            }
             Condition::NothingHappened => {
                 let p_value = value.map_or_else(missing, |p_value| format!("p = {p_value}"));
                 (p_value, format!("≤ {not_set}"))
