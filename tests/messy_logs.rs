@@ -8,7 +8,7 @@ use std::io::Write as _;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use tauscope::delay::{Settings, estimate_joint};
+use tauscope::delay::{FirstLast, Settings, estimate_joint};
 use tauscope::experiment::{ColumnMap, Experiment, JointColumns, ReadOptions};
 
 /// A row of the log: when, what drove the joint, what it did.
@@ -87,7 +87,7 @@ fn read(within_s: f64, says: &'static str) -> Expected {
 
 /// The delays of the first joint, in seconds, of all trials one after another.
 fn delays(experiment: &Experiment) -> Vec<Option<f64>> {
-    let settings = Settings { keep_first_last: true, ..Settings::default() };
+    let settings = Settings { first_last: FirstLast::Keep, ..Settings::default() };
     let joint = &experiment.joints[0];
     let found = estimate_joint(&joint.trials, &settings);
     let trials = joint.trials.iter().zip(found);
