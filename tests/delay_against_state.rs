@@ -104,13 +104,25 @@ fn the_table_says_what_is_not_known() {
     let lines: Vec<&str> = table.lines().map(str::trim_end).collect();
     assert!(few.steps.len() < 4 && few.correlations.iter().all(|one| one.rho.is_none()));
     assert!(lines[1].contains("rank correlation"), "{table}");
-    assert!(
-        lines[3].contains("average speed [deg/s]") && lines[3].contains("not known"),
-        "{table}"
-    );
+    assert!(lines[3].contains("too few steps") && lines[3].contains("not known"), "{table}");
     let law = DelayLaw::StepSize { min: 0.05, max: 0.5, scale: 3.0 };
     let table = against_table([("boom", &found(&joint(law, 120.0)))]);
-    let row = table.lines().find(|line| line.contains("step size [V]")).unwrap();
-    assert!(row.contains("< 0.001") && row.contains("yes"), "{table}");
+    let rows: Vec<&str> = table.lines().filter(|line| line.contains("step size [V]")).collect();
+    assert_eq!(rows.len(), 4, "{table}");
+    let reversals = rows.iter().find(|row| row.contains("reversal")).unwrap();
+    assert!(reversals.contains("< 0.001") && reversals.contains("yes"), "{table}");
     println!("{table}");
+}
+
+#[test]
+fn kinds_of_steps_are_compared_each_among_themselves() {
+    let joint = joint(DelayLaw::StepSize { min: 0.05, max: 0.5, scale: 3.0 }, 120.0);
+    let found = found(&joint);
+    let steps: usize = found.kinds.iter().map(|kind| kind.steps).sum();
+    assert_eq!((found.kinds.len(), steps), (4, found.steps.len()));
+    for kind in &found.kinds {
+        let same = found.steps.iter().filter(|step| step.transition == kind.transition);
+        assert_eq!(same.count(), kind.steps);
+        assert!(kind.correlations[1].rho.unwrap() < -0.8, "{kind:?}");
+    }
 }

@@ -1,9 +1,12 @@
 //! The accepted delays of a joint against its state: what the delay may depend on.
 //!
 //! Each accepted step is a point; each variable gets a rank correlation, which asks only
-//! whether the delay rises or falls with it.
+//! whether the delay rises or falls with it. Starts, stops, changes and reversals are compared
+//! each among themselves: together they would show how they differ, not what each depends on.
 
 use super::decision::{Breakpoint, Decision};
+use super::neutral::Neutral;
+use super::transition::Transition;
 use super::trial_estimate::TrialEstimate;
 use crate::experiment::{Joint, Trial};
 use crate::numerics::{RankTest, holm, mann_whitney, median, spearman};
@@ -21,6 +24,8 @@ pub struct StepState {
     pub trial: String,
     /// `i`: number of the step in its trial, from 1.
     pub number: usize,
+    /// Which kind of step it is.
+    pub transition: Transition,
     /// The delay in seconds.
     pub delay_s: f64,
     /// Magnitude of the slope behind the breakpoint, output units per second.
@@ -81,7 +86,23 @@ pub struct Direction {
 pub struct AgainstState {
     /// The accepted steps of all trials, in their order.
     pub steps: Vec<StepState>,
-    /// Average speed, step size, dwell, angle, time, then the further signals.
+    /// Of the steps of all kinds: average speed, step size, dwell, angle, time, then the
+    /// further signals.
+    pub correlations: Vec<Correlation>,
+    /// Steps up against steps down, of all kinds.
+    pub direction: Direction,
+    /// The same for the steps of each kind that there is.
+    pub kinds: Vec<AgainstOfKind>,
+}
+
+/// The accepted delays of one kind of step against the joint's state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AgainstOfKind {
+    /// Which kind.
+    pub transition: Transition,
+    /// Accepted steps.
+    pub steps: usize,
+    /// As in [`AgainstState::correlations`].
     pub correlations: Vec<Correlation>,
     /// Steps up against steps down.
     pub direction: Direction,
@@ -94,30 +115,47 @@ impl AgainstState {
         joint: &'a Joint,
         estimates: impl IntoIterator<Item = Option<&'a TrialEstimate>>,
     ) -> Self {
+        let neutral = Neutral::of(&joint.trials);
         let trials = joint.trials.iter().zip(estimates);
         let estimated = trials.filter_map(|(trial, estimate)| Some((trial, estimate?)));
         let steps: Vec<_> =
-            estimated.flat_map(|(trial, estimate)| states(trial, estimate)).collect();
-        let named = variables(joint).into_iter().enumerate();
-        let mut correlations: Vec<_> =
-            named.map(|(number, variable)| correlate(&steps, number, variable)).collect();
-        let mut direction = Direction::of(&steps);
-        correct(&mut correlations, &mut direction);
-        Self { steps, correlations, direction }
+            estimated.flat_map(|(trial, found)| states(trial, found, neutral.as_ref())).collect();
+        let (correlations, direction) = compare(joint, &steps);
+        let kinds = Transition::ALL.into_iter().filter_map(|kind| {
+            let same = steps.iter().filter(|step| step.transition == kind);
+            let same: Vec<StepState> = same.cloned().collect();
+            let (correlations, direction) = compare(joint, &same);
+            let of_kind =
+                AgainstOfKind { transition: kind, steps: same.len(), correlations, direction };
+            (!same.is_empty()).then_some(of_kind)
+        });
+        Self { kinds: kinds.collect(), steps, correlations, direction }
     }
+}
+
+/// The delays of `steps` against every variable and direction, corrected for their number.
+fn compare(joint: &Joint, steps: &[StepState]) -> (Vec<Correlation>, Direction) {
+    let named = variables(joint).into_iter().enumerate();
+    let mut correlations: Vec<_> =
+        named.map(|(number, variable)| correlate(steps, number, variable)).collect();
+    let mut direction = Direction::of(steps);
+    correct(&mut correlations, &mut direction);
+    (correlations, direction)
 }
 
 /// The accepted steps of a trial.
 fn states<'a>(
     trial: &'a Trial,
     estimate: &'a TrialEstimate,
+    neutral: Option<&'a Neutral>,
 ) -> impl Iterator<Item = StepState> + 'a {
     let output = estimate.smoothed.as_deref().unwrap_or(trial.output());
     let decisions = estimate.decisions.iter().enumerate();
     let accepted = decisions.filter(|(_, decision)| decision.accepted_delay().is_some());
     accepted.filter_map(move |(index, decision)| {
         let before = index.checked_sub(1).and_then(|before| estimate.decisions.get(before));
-        state(trial, output, before, decision, decision.breakpoint()?)
+        let kind = Transition::of(&decision.input_step, neutral);
+        state(trial, output, before, decision, (kind, decision.breakpoint()?))
     })
 }
 
@@ -126,7 +164,7 @@ fn state(
     output: &[f64],
     before: Option<&Decision>,
     decision: &Decision,
-    best: Breakpoint,
+    (transition, best): (Transition, Breakpoint),
 ) -> Option<StepState> {
     let period_s = trial.period().seconds();
     let step = decision.input_step;
@@ -135,6 +173,7 @@ fn state(
     Some(StepState {
         trial: trial.label().to_owned(),
         number: decision.number,
+        transition,
         delay_s: decision.delay()? * period_s,
         average_speed: best.candidate.after.slope.abs() / period_s,
         input_change: step.after - step.before,

@@ -59,7 +59,7 @@ mod trial_estimate;
 mod typical;
 
 pub use crate::numerics::Line;
-pub use against::{AgainstState, Correlation, Direction, StepState};
+pub use against::{AgainstOfKind, AgainstState, Correlation, Direction, StepState};
 pub use auto::{Automatic, Chosen, Grounds, choose};
 pub use broken_line::{
     BrokenLine, BrokenRegression, Stroke, broken_line, broken_regression, stroke,

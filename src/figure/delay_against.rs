@@ -1,6 +1,5 @@
 //! The delay against what it may depend on: a point per accepted step, by its direction.
 
-use super::panel::Place;
 use crate::delay::StepState;
 
 /// Where a step of the input goes.
@@ -23,15 +22,4 @@ impl Way {
             Self::Up => "up",
         }
     }
-}
-
-/// Points of all steps in one direction at which `value` is known: it, and the delay in
-/// seconds.
-pub(crate) fn points(
-    steps: &[StepState],
-    way: Way,
-    value: impl Fn(&StepState) -> Option<f64>,
-) -> Vec<Place> {
-    let same = steps.iter().filter(|step| Way::of(step) == way);
-    same.filter_map(|step| Some((value(step)?, step.delay_s))).collect()
 }

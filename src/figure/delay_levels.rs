@@ -45,7 +45,8 @@ fn level(row: &DelayRow) -> f64 {
     if row.transition == Transition::Stop { row.level_from } else { row.level_to }
 }
 
-fn role(kind: Transition) -> Role {
+/// The colour of a kind of step.
+pub(crate) fn role(kind: Transition) -> Role {
     match kind {
         Transition::Start => Role::Smoothed,
         Transition::Stop => Role::Model,

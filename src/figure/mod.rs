@@ -7,6 +7,7 @@
 pub(crate) mod correlogram;
 #[cfg(feature = "rrd")]
 pub(crate) mod course;
+#[cfg(feature = "rrd")]
 pub(crate) mod delay_against;
 pub(crate) mod delay_levels;
 pub(crate) mod error_share;

@@ -1,12 +1,12 @@
 //! The delay against the state, for the terminal.
 
 use super::text_table::TextTable;
-use crate::delay::{AgainstState, Correlation, Direction};
+use crate::delay::{AgainstOfKind, AgainstState, Correlation, Direction};
 use crate::wording::{bracketed, p_cell};
 
-/// A row per joint and variable; `joints` are names and what was found.
+/// A row per joint, kind of step and variable; `joints` are names and what was found.
 pub fn against_table<'a>(joints: impl IntoIterator<Item = (&'a str, &'a AgainstState)>) -> String {
-    let mut table = TextTable::new(AGAINST_HEADER, &[2, 3, 4]);
+    let mut table = TextTable::new(AGAINST_HEADER, &[3, 4, 5]);
     for (joint, found) in joints {
         for cells in against_rows(joint, found) {
             table.row(cells);
@@ -16,20 +16,34 @@ pub fn against_table<'a>(joints: impl IntoIterator<Item = (&'a str, &'a AgainstS
 }
 
 /// What the cells of [`against_rows`] are.
-pub(super) const AGAINST_HEADER: [&str; 6] =
-    ["joint", "delay against", "steps", "rank correlation", "p", "depends"];
+pub(super) const AGAINST_HEADER: [&str; 7] =
+    ["joint", "kind of step", "delay against", "steps", "rank correlation", "p", "depends"];
 
-/// The rows of a joint, for people.
-pub(super) fn against_rows(joint: &str, found: &AgainstState) -> Vec<[String; 6]> {
-    let correlations = found.correlations.iter().map(|one| correlation_row(joint, one));
-    correlations.chain([direction_row(joint, &found.direction)]).collect()
+/// The rows of a joint, for people: those of each kind of step for itself. Of a kind with
+/// fewer steps than any comparison needs there is one row.
+pub(super) fn against_rows(joint: &str, found: &AgainstState) -> Vec<[String; 7]> {
+    found.kinds.iter().flat_map(|kind| kind_rows(joint, kind)).collect()
 }
 
-fn correlation_row(joint: &str, found: &Correlation) -> [String; 6] {
+fn kind_rows(joint: &str, kind: &AgainstOfKind) -> Vec<[String; 7]> {
+    let is_known = |one: &Correlation| one.p_value.is_some();
+    let name = kind.transition.to_string();
+    if kind.direction.p_value.is_none() && !kind.correlations.iter().any(is_known) {
+        let dash = || "-".to_owned();
+        let steps = kind.steps.to_string();
+        let why = "too few steps, or no change".to_owned();
+        return vec![[joint.to_owned(), name, why, steps, dash(), dash(), answer(None)]];
+    }
+    let correlations = kind.correlations.iter().map(correlation_row);
+    let rows = correlations.chain([direction_row(&kind.direction)]);
+    let full = |[a, b, c, d, e]: [String; 5]| [joint.to_owned(), name.clone(), a, b, c, d, e];
+    rows.map(full).collect()
+}
+
+fn correlation_row(found: &Correlation) -> [String; 5] {
     let Correlation { variable, unit, steps, rho, p_value, significant, .. } = found;
     let rho = rho.map_or_else(|| "-".to_owned(), |rho| format!("{rho:+.2}"));
     [
-        joint.to_owned(),
         variable_text(variable, unit.as_deref()),
         steps.to_string(),
         rho,
@@ -43,20 +57,13 @@ pub(crate) fn variable_text(variable: &str, unit: Option<&str>) -> String {
     bracketed(&variable.replace('_', " "), unit)
 }
 
-fn direction_row(joint: &str, found: &Direction) -> [String; 6] {
+fn direction_row(found: &Direction) -> [String; 5] {
     let Direction { up, down, median_difference_s, p_value, significant, .. } = found;
     let difference = median_difference_s
         .map_or_else(|| "-".to_owned(), |seconds| format!("up - down {seconds:+.3} s"));
     let steps = format!("{up} up, {down} down");
-    let name = "direction".to_owned();
-    [
-        joint.to_owned(),
-        name,
-        steps,
-        difference,
-        p_cell(*p_value),
-        answer(p_value.map(|_| *significant)),
-    ]
+    let significant = p_value.map(|_| *significant);
+    ["direction".to_owned(), steps, difference, p_cell(*p_value), answer(significant)]
 }
 
 fn answer(significant: Option<bool>) -> String {

@@ -117,21 +117,19 @@ pub(super) fn level_cells(row: &DelayRow) -> [String; 8] {
 
 /// The tables of all joints for the terminal.
 pub(crate) fn delay_levels_text(joints: &[EstimatedJoint<'_>]) -> String {
-    let mut text = String::new();
-    for joint in joints {
-        let found = joint.delay_table();
-        let mut table = TextTable::new(LEVEL_HEADER, &[1, 2, 3, 4, 5]);
-        for row in &found.rows {
-            table.row(level_cells(row));
-        }
-        let name = &joint.joint.name;
-        let neutral = neutral_sentence(&found, joint.joint.input_unit.as_deref());
-        text += &format!("\n{name}: the input is {neutral}\n{table}\n");
-        for kind in &found.kinds {
-            text += &format!("{}\n", kind_sentence(kind));
-        }
+    joints.iter().map(joint_text).collect()
+}
+
+fn joint_text(joint: &EstimatedJoint<'_>) -> String {
+    let found = joint.delay_table();
+    let mut table = TextTable::new(LEVEL_HEADER, &[1, 2, 3, 4, 5]);
+    for row in &found.rows {
+        table.row(level_cells(row));
     }
-    text
+    let name = &joint.joint.name;
+    let neutral = neutral_sentence(&found, joint.joint.input_unit.as_deref());
+    let kinds: Vec<_> = found.kinds.iter().map(kind_sentence).collect();
+    format!("\n{name}: the input is {neutral}\n{table}\n{}\n", kinds.join("\n"))
 }
 
 /// Where the input is neutral.
@@ -171,12 +169,11 @@ fn help(condition: Condition) -> String {
             return format!("{} judges them", remedy_text(Remedy::KeepFirstLast, "`"));
         }
         Condition::OutputLimit => "start away from the limit, or widen `--output-limits`",
-        Condition::BeforeInput => "repeat these steps from rest and hold them longer",
         Condition::SlopeChange => "lower `--min-slope-change`, or make larger steps",
         Condition::ShortHold => "lower `--min-delay`, or hold longer",
         Condition::Sse => "raise `--max-sse`",
         Condition::TooShort => "hold longer, or choose a smaller `--beta`",
-        _ => "make larger steps where the joint is free to move",
+        _ => "make larger steps from rest, where the joint is free to move",
     };
     text.to_owned()
 }

@@ -18,6 +18,7 @@ mod finding;
 mod folder;
 mod improve;
 mod json;
+mod lookup;
 mod page;
 mod separation;
 mod settings;
@@ -59,6 +60,7 @@ pub(crate) use json::{
     AddJson, ColumnsJson, CompareJson, DesignJson, EffectsJson, EstimateJson, ExplainJson,
     FolderJson, ImproveJson, ReportJson, SweepJson,
 };
+pub(crate) use lookup::{Language, Lookup};
 pub(crate) use page::{Document, RecordingFile, Report, report_text};
 #[cfg(feature = "rrd")]
 pub(crate) use settings::settings_rows;

@@ -110,7 +110,7 @@ fn reasons(rejected: &[(Condition, usize)]) -> String {
 }
 
 /// The settings in one line, as a person would say them.
-fn settings_line(settings: &Settings, automatic: Automatic) -> String {
+pub(super) fn settings_line(settings: &Settings, automatic: Automatic) -> String {
     let spec = settings.method.spec();
     let own = |name: &str, is_chosen: bool, value: usize| {
         if is_chosen { format!("{name} as above") } else { format!("{name} = {value}") }

@@ -4,7 +4,9 @@ use serde::Serialize;
 
 use super::header::Header;
 use super::settings::SettingsJson;
-use crate::delay::{AgainstState, Chosen, Condition, Correlation, Direction, Lag, LagPart};
+use crate::delay::{
+    AgainstOfKind, AgainstState, Chosen, Condition, Correlation, Direction, Lag, LagPart,
+};
 use crate::delay::{DelayRow, DelayTable, KindDelay, Neutral, Settings, StepState};
 use crate::experiment::{Experiment, ReadOptions, Source};
 use crate::report::decisions::detailed_rows;
@@ -135,12 +137,23 @@ struct AgainstJson {
     steps: Vec<StepStateJson>,
     correlations: Vec<CorrelationJson>,
     direction: DirectionJson,
+    by_transition: Vec<AgainstKindJson>,
+}
+
+/// The same for the steps of one kind.
+#[derive(Debug, Serialize)]
+struct AgainstKindJson {
+    transition: &'static str,
+    steps: usize,
+    correlations: Vec<CorrelationJson>,
+    direction: DirectionJson,
 }
 
 #[derive(Debug, Serialize)]
 struct StepStateJson {
     trial: String,
     number: usize,
+    transition: &'static str,
     delay_s: f64,
     average_speed: f64,
     input_change: f64,
@@ -298,11 +311,23 @@ impl From<LagPart> for LagPartJson {
 }
 
 impl From<AgainstState> for AgainstJson {
-    fn from(AgainstState { steps, correlations, direction }: AgainstState) -> Self {
+    fn from(AgainstState { steps, correlations, direction, kinds }: AgainstState) -> Self {
         Self {
             steps: steps.into_iter().map(Into::into).collect(),
             correlations: correlations.into_iter().map(Into::into).collect(),
             direction: direction.into(),
+            by_transition: kinds.into_iter().map(Into::into).collect(),
+        }
+    }
+}
+
+impl From<AgainstOfKind> for AgainstKindJson {
+    fn from(found: AgainstOfKind) -> Self {
+        Self {
+            transition: found.transition.id(),
+            steps: found.steps,
+            correlations: found.correlations.into_iter().map(Into::into).collect(),
+            direction: found.direction.into(),
         }
     }
 }
@@ -312,6 +337,7 @@ impl From<StepState> for StepStateJson {
         Self {
             trial: step.trial,
             number: step.number,
+            transition: step.transition.id(),
             delay_s: step.delay_s,
             average_speed: step.average_speed,
             input_change: step.input_change,

@@ -4,9 +4,8 @@ use super::document::Figure;
 use super::layout::{HALF, WIDTH};
 use super::plot::{PlotError, draw};
 use super::timeline::Timeline;
-use crate::delay::{AgainstState, Correlation, DelayProfile, DelayTable};
+use crate::delay::{AgainstOfKind, AgainstState, DelayProfile, DelayTable, Transition};
 use crate::figure::Role;
-use crate::figure::delay_against::{self, Way};
 use crate::figure::delay_levels::{self, Series};
 use crate::figure::{Axis, Mark, Panel, Place, Shape};
 use crate::figure::{Span, thinned_to};
@@ -160,8 +159,8 @@ pub(super) fn against(
     /// Number of the speed among the variables.
     const SPEED: usize = 0;
     let strength = |index: &usize| {
-        let p_value = found.correlations.get(*index).and_then(|one| one.p_value);
-        p_value.unwrap_or(f64::INFINITY)
+        let of_kinds = found.kinds.iter().filter_map(|kind| kind.correlations.get(*index));
+        of_kinds.filter_map(|one| one.p_value).fold(f64::INFINITY, f64::min)
     };
     let others = (0..found.correlations.len()).filter(|index| *index != SPEED);
     let strongest = others.min_by(|a, b| strength(a).total_cmp(&strength(b)));
@@ -170,7 +169,7 @@ pub(super) fn against(
     drawn.collect()
 }
 
-/// The delays against one variable; none where it is not known.
+/// The delays against one variable, by kind of step; none where it is not known.
 fn scatter(
     joint: &str,
     found: &AgainstState,
@@ -178,40 +177,51 @@ fn scatter(
     file: &str,
 ) -> Result<Option<Figure>, PlotError> {
     let Some(correlation) = found.correlations.get(variable) else { return Ok(None) };
-    let [down, up] =
-        Way::BOTH.map(|way| delay_against::points(&found.steps, way, |step| step.value(variable)));
-    if up.is_empty() && down.is_empty() {
+    let points = |kind: Transition| {
+        let same = found.steps.iter().filter(|step| step.transition == kind);
+        let places = same.filter_map(|step| Some((step.value(variable)?, step.delay_s)));
+        (kind, places.collect::<Vec<Place>>())
+    };
+    let kinds = Transition::ALL.map(points).into_iter().filter(|(_, places)| !places.is_empty());
+    let kinds: Vec<_> = kinds.collect();
+    if kinds.is_empty() {
         return Ok(None);
     }
-    let all = || up.iter().chain(&down);
+    let all = || kinds.iter().flat_map(|(_, places)| places);
     let x = Span::around(all().map(|place| place.0), 0.05);
     let y = Span::around(all().map(|place| place.1), 0.1);
     let name = variable_text(&correlation.variable, correlation.unit.as_deref());
+    let mark = |(kind, places): (Transition, Vec<Place>)| {
+        Mark::new(delay_levels::role(kind), Shape::Dots(places)).named(kind.id())
+    };
     let panel = Panel {
         x: Axis::new(x, name.clone(), 6.0),
         y: Axis::new(y, "delay [s]", 5.0),
         height: 190,
-        marks: vec![
-            Mark::new(Role::Smoothed, Shape::Dots(up)).named(format!("step {}", Way::Up.word())),
-            Mark::new(Role::Model, Shape::Crosses(down))
-                .named(format!("step {}", Way::Down.word())),
-        ],
+        marks: kinds.into_iter().map(mark).collect(),
     };
     let svg = draw(&[panel], HALF, &format!("Delay of {joint} against {name}"))?;
     let file = format!("{file}-against-{}", super::document::slug(&correlation.variable));
-    Ok(Some(Figure { file, svg, caption: caption(correlation) }))
+    Ok(Some(Figure { file, svg, caption: caption(found, variable, &correlation.variable) }))
 }
 
-fn caption(found: &Correlation) -> String {
-    let variable = found.variable.replace('_', " ");
-    let Some(rho) = found.rho else {
-        return format!("Delay against {variable}: too few steps, or no change, to tell more.");
+/// What is said of each kind of step.
+fn caption(found: &AgainstState, variable: usize, name: &str) -> String {
+    let of_kind = |kind: &AgainstOfKind| {
+        let one = kind.correlations.get(variable)?;
+        let Some(rho) = one.rho else {
+            return Some(format!("{}: too few steps, or no change, to tell more", kind.transition));
+        };
+        let p = p_cell(one.p_holm);
+        let p = if p.starts_with('<') { format!("p {p}") } else { format!("p = {p}") };
+        let said = if one.significant { "the delay depends on it" } else { "no dependence shown" };
+        Some(format!("{}: {said} (ρ = {rho:+.2}, {p})", kind.transition))
     };
-    let p = p_cell(found.p_holm);
-    let p = if p.starts_with('<') { format!("p {p}") } else { format!("p = {p}") };
-    let said = if found.significant { "the delay depends on it" } else { "no dependence shown" };
+    let said: Vec<_> = found.kinds.iter().filter_map(of_kind).collect();
+    let name = name.replace('_', " ");
     format!(
-        "Delay against {variable}: {said} (Spearman's ρ = {rho:+.2}, {p} after Holm's correction)."
+        "Delay against {name}, Spearman's rank correlation, p after Holm's correction; {}.",
+        said.join("; ")
     )
 }
 

@@ -115,7 +115,7 @@ fn level_blocks(
 /// A row per variable.
 fn against(joint: &str, found: &AgainstState) -> TextTable {
     let [_, header @ ..] = AGAINST_HEADER;
-    let mut table = TextTable::new(header, &[2, 3]);
+    let mut table = TextTable::new(header, &[3, 4]);
     for [_, cells @ ..] in against_rows(joint, found) {
         table.row(cells);
     }

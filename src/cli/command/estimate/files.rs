@@ -1,7 +1,11 @@
 //! The files that `tauscope estimate` writes.
 
-use std::path::PathBuf;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
 
+use anyhow::bail;
+
+use crate::report::{Language, Lookup};
 use crate::report::{
     decision_table, delay_table, level_table, write_decisions, write_delays, write_level_table,
 };
@@ -22,10 +26,11 @@ pub(crate) struct Files<'a> {
 impl<'a> Files<'a> {
     /// Refuses what cannot be written, or would replace an input or another output.
     pub(crate) fn check(args: &'a OutputArgs, inputs: &[PathBuf]) -> anyhow::Result<Self> {
-        let outputs = [&args.recording, &args.decisions, &args.delays, &args.table];
+        let outputs = [&args.recording, &args.decisions, &args.delays, &args.table, &args.export];
         let outputs = outputs.into_iter().flatten();
         check_outputs(&outputs.map(PathBuf::as_path).collect::<Vec<_>>(), inputs)?;
         check_tables(args.decisions.iter().chain(&args.delays).chain(&args.table))?;
+        args.export.as_deref().map(named_lookup).transpose()?;
         Ok(Self { args })
     }
 
@@ -54,6 +59,13 @@ impl<'a> Files<'a> {
                 FileKind::Parquet => write_parquet(&level_table(result.joints)?, file),
             })?;
         }
+        if let Some(path) = &self.args.export {
+            let (language, name) = named_lookup(path)?;
+            let Estimated { experiment, joints, settings, .. } = *result;
+            let source =
+                Lookup::new(&experiment.sources, joints, settings).source(language, name)?;
+            write_file(path, |file| Ok(file.write_all(source.as_bytes())?))?;
+        }
         let contents = Contents {
             joints: result.joints,
             settings: result.settings,
@@ -69,4 +81,25 @@ impl<'a> Files<'a> {
         }
         stream.send(&contents, None)
     }
+}
+
+/// The language of a lookup, and what its file is called without the ending.
+fn named_lookup(path: &Path) -> anyhow::Result<(Language, &str)> {
+    let shown = path.display();
+    let Some(language) = Language::of(path) else {
+        bail!(
+            "{shown}: a lookup is written as C, MATLAB, Python or JSON; give the file a name \
+               that ends in .c, .m, .py or .json"
+        );
+    };
+    let name = path.file_stem().and_then(|name| name.to_str()).unwrap_or_default();
+    let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let is_function = name.starts_with(|c: char| c.is_ascii_alphabetic());
+    if language == Language::Matlab && !(is_function && name.chars().all(is_letter)) {
+        bail!(
+            "{shown}: MATLAB calls a function as its file, and `{name}` is no name of a function; \
+               use letters, digits and underscores"
+        );
+    }
+    Ok((language, name))
 }

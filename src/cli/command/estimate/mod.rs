@@ -61,6 +61,7 @@ fn each_log(args: &Args, program: &clap::Command) -> anyhow::Result<Completion> 
             ("--follow", args.follow.is_on),
             ("--delays", output.delays.is_some()),
             ("--table", output.table.is_some()),
+            ("--export", output.export.is_some()),
             ("--steps", output.steps),
             ("--against-state", output.against_state),
         ],
