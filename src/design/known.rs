@@ -28,7 +28,10 @@ impl Uncertain {
     pub fn of_fit(record: &FitRecord<'_>, fit: &Assessment, noise: f64, share: f64) -> Self {
         let mut known = Self::by_share(fit.model.clone(), share);
         for (place, parameter) in fit.parameters.iter().enumerate() {
-            let is_free = matches!(parameter.status, Status::Undetermined | Status::AtBound);
+            let is_free = matches!(
+                parameter.status,
+                Status::Undetermined | Status::BeyondReach | Status::AtBound
+            );
             let span = is_free.then(|| span(record, &known.model, place, noise)).flatten();
             let deviation = match (span, parameter.std_error) {
                 (Some((low, high)), _) => {

@@ -2,7 +2,7 @@
 
 use crate::fit::{Evaluation, FitRecord, Part};
 
-/// The error of a model on one part of a record.
+/// The error of a model on one part of a record, without isolated spikes of the sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorFigures {
     /// Root of the mean squared residual, output units.
@@ -23,9 +23,15 @@ impl ErrorFigures {
                 evaluation.residuals.get(window.trial)?.get(window.start..window.end)?;
             let measured = record.joint().trials.get(window.trial)?.output();
             let measured = measured.get(window.start..window.end)?;
-            samples += residuals.len();
-            squares += residuals.iter().map(|r| r * r).sum::<f64>();
-            max = residuals.iter().fold(max, |max, r| max.max(r.abs()));
+            let weights = record.weights_of(window.trial);
+            let counts =
+                |k: usize| weights.is_none_or(|all| all.get(window.start + k) != Some(&0.0));
+            for residual in residuals.iter().enumerate().filter(|(k, _)| counts(*k)).map(|(_, r)| r)
+            {
+                samples += 1;
+                squares += residual * residual;
+                max = max.max(residual.abs());
+            }
             let mean = measured.iter().sum::<f64>() / measured.len() as f64;
             spread += measured.iter().map(|y| (y - mean) * (y - mean)).sum::<f64>();
         }

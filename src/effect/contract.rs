@@ -351,6 +351,21 @@ mod tests {
     }
 
     #[test]
+    fn what_is_steady_does_the_same_again_while_its_signal_is_held() {
+        let mut spread = Spread(0);
+        for effect in REGISTRY.iter().filter(|effect| effect.is_steady()) {
+            let parameters = effect.starts(&RecordRange::default()).remove(0);
+            let mut memory = vec![0.0; effect.spec().memory];
+            for _ in 0..200 {
+                let at = moment(&mut spread);
+                let [first, again] = [at, Moment { signal: at.signal, ..moment(&mut spread) }]
+                    .map(|at| effect.step(&parameters, &mut memory, &at));
+                assert!((first - again).abs() <= 0.0, "{}: {at:?}", effect.spec().id);
+            }
+        }
+    }
+
+    #[test]
     fn ids_are_unique() {
         let ids: BTreeSet<_> = REGISTRY.iter().map(|effect| effect.spec().id).collect();
         assert_eq!(ids.len(), REGISTRY.len());

@@ -49,6 +49,10 @@ impl Effect for DeadBand {
         &SPEC
     }
 
+    fn is_steady(&self) -> bool {
+        true
+    }
+
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
         let &[lower, upper] = parameters else { return at.signal };
         shifted(at.signal, lower, upper)

@@ -46,6 +46,10 @@ impl Effect for DirectionGain {
         &SPEC
     }
 
+    fn is_steady(&self) -> bool {
+        true
+    }
+
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
         let &[negative_factor] = parameters else { return at.signal };
         if at.signal < 0.0 { negative_factor * at.signal } else { at.signal }

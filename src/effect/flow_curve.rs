@@ -41,6 +41,10 @@ impl Effect for FlowCurve {
         &SPEC
     }
 
+    fn is_steady(&self) -> bool {
+        true
+    }
+
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
         let &[exponent] = parameters else { return at.signal };
         at.signal.abs().powf(exponent).copysign(at.signal)

@@ -30,6 +30,10 @@ impl Effect for InputOffset {
         &SPEC
     }
 
+    fn is_steady(&self) -> bool {
+        true
+    }
+
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
         let &[offset] = parameters else { return at.signal };
         at.signal + offset

@@ -51,6 +51,10 @@ impl Effect for InputSaturation {
         &SPEC
     }
 
+    fn is_steady(&self) -> bool {
+        true
+    }
+
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
         let &[limit, softness] = parameters else { return at.signal };
         let size = at.signal.abs();

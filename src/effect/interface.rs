@@ -49,6 +49,12 @@ pub trait Effect: Debug + Send + Sync {
         true
     }
 
+    /// Whether its signal depends on `at.signal` and its memory alone, and does not change while
+    /// `at.signal` is held: a simulation then asks it once for each level of the input.
+    fn is_steady(&self) -> bool {
+        false
+    }
+
     /// Whether a joint with it moves otherwise from another angle.
     ///
     /// A fit need not find the angle at which a record starts where nothing depends on it.

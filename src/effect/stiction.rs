@@ -56,6 +56,10 @@ impl Effect for Stiction {
     }
 
     /// The memory is the direction of motion: −1, 0 or 1.
+    fn is_steady(&self) -> bool {
+        true
+    }
+
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
         let (&[start, stop], [direction]) = (parameters, memory) else { return at.signal };
         let goes_on = at.signal * *direction > 0.0 && at.signal.abs() >= stop.min(start);

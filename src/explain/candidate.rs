@@ -3,7 +3,8 @@
 use super::extension::components_of;
 use super::separation::Separation;
 use crate::diagnosis::ErrorFigures;
-use crate::fit::Fit;
+use crate::effect::{Dimension, Parameter};
+use crate::fit::{Fit, Status};
 use crate::model::Component;
 
 /// The p-value below which the best of a whole catalogue is significant: about 0.02 for all of
@@ -88,10 +89,31 @@ impl Candidate {
 
     /// Whether it explains so much of the error that it is worth a name.
     pub(super) fn is_significant(&self) -> bool {
-        match self.effects.as_slice() {
-            [_] => self.p_value < OF_A_CATALOGUE && self.explains(SINGLE_PERCENT),
-            _ => self.p_value < OF_ALL_PAIRS && self.explains(PAIR_PERCENT),
-        }
+        self.is_reached()
+            && match self.effects.as_slice() {
+                [_] => self.p_value < OF_A_CATALOGUE && self.explains(SINGLE_PERCENT),
+                _ => self.p_value < OF_ALL_PAIRS && self.explains(PAIR_PERCENT),
+            }
+    }
+
+    /// Whether each effect acts within what the record reaches: not one of which all levels or
+    /// limits lie beyond.
+    fn is_reached(&self) -> bool {
+        let statuses: Vec<_> = self.fit.parameters.iter().map(|p| (&p.name, p.status)).collect();
+        self.added().all(|component| {
+            let spec = component.effect().spec();
+            let limits = spec.parameters.iter().filter(|parameter| match parameter.dimension {
+                Dimension::Input => true,
+                Dimension::Output => spec.acts_on_state,
+                _ => false,
+            });
+            let is_beyond = |parameter: &Parameter| {
+                let name = format!("{}.{}", spec.id, parameter.name);
+                statuses.contains(&(&name, Status::BeyondReach))
+            };
+            let mut limits = limits.peekable();
+            limits.peek().is_none() || limits.any(|parameter| !is_beyond(parameter))
+        })
     }
 
     /// Whether it is needed even where the model passes for adequate.

@@ -5,7 +5,7 @@
 
 use super::workers::Workers;
 use crate::effect::RecordRange;
-use crate::fit::{Fit, FitRecord, Survey, fit_to_compare, survey};
+use crate::fit::{Fit, FitRecord, Survey, fit_to_compare_beside, survey};
 use crate::model::JointModel;
 
 /// Surveys `models` on `surveyed` and fits the best of them to `record`; `kept` says how many,
@@ -18,14 +18,15 @@ pub(super) fn fit_best<K: Copy + Send + Sync>(
     kept: impl FnOnce(&[f64]) -> usize,
     workers: &impl Workers,
 ) -> Vec<(K, Fit)> {
-    let survey =
-        |(key, model): &(K, JointModel)| Some((*key, survey(surveyed, model, range).ok()?));
-    let mut surveys: Vec<(K, Survey)> = workers.map(models, survey).into_iter().flatten().collect();
+    let surveyed: Vec<Option<Survey>> =
+        workers.map(models, |(_, model)| survey(surveyed, model, range).ok());
+    let mut surveys: Vec<_> =
+        models.iter().zip(surveyed).filter_map(|(of, survey)| Some((of, survey?))).collect();
     surveys.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
     let costs: Vec<f64> = surveys.iter().map(|(_, survey)| survey.cost).collect();
     surveys.truncate(kept(&costs));
-    let fit = |(key, survey): &(K, Survey)| {
-        Some((*key, fit_to_compare(record, &survey.model, range).ok()?))
+    let fit = |((key, model), survey): &(&(K, JointModel), Survey)| {
+        Some((*key, fit_to_compare_beside(record, &survey.model, model, range).ok()?))
     };
     workers.map(&surveys, fit).into_iter().flatten().collect()
 }

@@ -1,4 +1,4 @@
-//! Bounds by a change of variable, so that the optimiser knows none.
+//! Lowest and highest values of the parameters of a fit.
 
 /// Lowest and highest value of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,10 +10,6 @@ pub(super) struct Bounds {
 /// Beyond this, a bound is none.
 const FAR: f64 = 1e9;
 
-/// How near to a bound, as a part of the range, a start may be: at the bound itself the
-/// change of variable has no slope.
-const MARGIN: f64 = 1e-5;
-
 /// Standard errors by which a value may miss a bound and still be on it: less than anyone
 /// can tell.
 const ON_BOUND: f64 = 0.02;
@@ -23,23 +19,39 @@ impl Bounds {
         self.low > -FAR && self.high < FAR && self.low < self.high
     }
 
-    /// The free variable of `value`: `value = low + (high − low)·(1 + sin x)/2`, or the
-    /// value itself without bounds (as MINUIT does it: F. James, "MINUIT", CERN Program
-    /// Library D506, section 1.2.1).
-    pub(super) fn free(self, value: f64) -> f64 {
-        if !self.is_bounded() {
-            return value;
-        }
-        let part = (value - self.low) / (self.high - self.low);
-        (2.0 * part.clamp(MARGIN, 1.0 - MARGIN) - 1.0).asin()
+    /// The nearest value within.
+    pub(super) fn clamped(self, value: f64) -> f64 {
+        value.max(self.low).min(self.high)
     }
 
-    /// The value of a free variable.
-    pub(super) fn value(self, free: f64) -> f64 {
-        if !self.is_bounded() {
-            return free;
+    /// These bounds, or `value` alone where it lies outside.
+    pub(super) fn holding(self, value: f64) -> Self {
+        if (self.low..=self.high).contains(&value) {
+            self
+        } else {
+            Self { low: value, high: value }
         }
-        self.low + (self.high - self.low) * f64::midpoint(1.0, free.sin())
+    }
+
+    /// Whether a value that goes down (with a negative `change`) or up from `value` leaves them.
+    pub(super) fn stop(self, value: f64, change: f64) -> bool {
+        change < 0.0 && value <= self.low || change > 0.0 && value >= self.high
+    }
+
+    /// A small step from `value` for a difference, away from a bound it is at; 0 where there is
+    /// no room.
+    pub(super) fn step(self, value: f64) -> f64 {
+        /// Large against rounding, small against what curves.
+        const PART: f64 = 1e-6;
+        let size = if self.is_bounded() { self.high - self.low } else { 0.1 };
+        let step = PART * value.abs().max(0.01 * size);
+        if value + step <= self.high {
+            step
+        } else if value - step >= self.low {
+            -step
+        } else {
+            0.0
+        }
     }
 
     /// Those of the sizes `values`, of either sign, that lie within.
@@ -57,17 +69,6 @@ impl Bounds {
     /// From `value` to the nearest bound.
     fn distance(self, value: f64) -> f64 {
         (value - self.low).min(self.high - value)
-    }
-
-    /// Whether a descent has ended at a bound: `free` is on it, and the error falls beyond.
-    ///
-    /// `error_slope` is the slope of half the squared error to `free`, `std_error` the
-    /// standard error of `free` by itself.
-    pub(super) fn stops(self, free: f64, error_slope: f64, std_error: f64) -> bool {
-        let (value, slope) = (self.value(free), 0.5 * (self.high - self.low) * free.cos());
-        let downhill = -error_slope * slope;
-        let outward = if value - self.low < self.high - value { -downhill } else { downhill };
-        outward > 0.0 && self.is_at(value, 0.5 * std_error * slope.abs())
     }
 
     /// Two values on either side of `value` for a difference, within the bounds.
@@ -90,30 +91,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_come_back_and_stay_inside() {
+    fn values_stay_inside_and_steps_lead_inside() {
         let bounds = Bounds { low: -2.0, high: 5.0 };
-        for value in [-1.9, 0.0, 3.3, 4.9] {
-            assert!((bounds.value(bounds.free(value)) - value).abs() < 1e-12);
-        }
-        for free in [-100.0, -1.0, 0.3, 9.0] {
-            assert!((-2.0..=5.0).contains(&bounds.value(free)));
-        }
+        assert_eq!([-9.0, 3.3, 9.0].map(|value| bounds.clamped(value)), [-2.0, 3.3, 5.0]);
+        assert!(bounds.step(-2.0) > 0.0 && bounds.step(5.0) < 0.0);
+        assert!(bounds.stop(5.0, 0.1) && !bounds.stop(5.0, -0.1) && bounds.stop(-2.0, -0.1));
         assert!(bounds.is_at(5.0, 0.0) && !bounds.is_at(4.9, 1.0) && bounds.is_at(4.9, 10.0));
     }
 
     #[test]
-    fn a_descent_stops_at_a_bound_beyond_which_the_error_falls() {
-        let bounds = Bounds { low: 0.0, high: 10.0 };
-        let near_low = bounds.free(0.0);
-        assert!(bounds.stops(near_low, 1.0, 10.0) && !bounds.stops(near_low, -1.0, 10.0));
-        assert!(!bounds.stops(near_low, 1.0, 1e-6) && !bounds.stops(0.0, 1.0, 1.0));
-        assert!(bounds.stops(bounds.free(10.0), -1.0, 10.0));
+    fn a_value_outside_is_held() {
+        let held = Bounds { low: 0.0, high: 10.0 }.holding(1e12);
+        assert!(held.step(1e12) == 0.0 && held.stop(1e12, 1.0) && held.stop(1e12, -1.0));
+        assert_eq!(Bounds { low: 0.0, high: 10.0 }.holding(3.0), Bounds { low: 0.0, high: 10.0 });
     }
 
     #[test]
-    fn without_bounds_nothing_changes() {
+    fn without_bounds_there_is_none_to_be_at() {
         let bounds = Bounds { low: f64::MIN, high: f64::MAX };
-        assert!((bounds.value(bounds.free(1e7)) - 1e7).abs() < 1e-300);
-        assert!(!bounds.is_at(f64::MAX, 1.0));
+        assert!(!bounds.is_at(f64::MAX, 1.0) && bounds.step(1e7) > 0.0);
     }
 }

@@ -14,7 +14,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::bounds::Bounds;
-use super::evaluation::{Evaluation, Weights};
+use super::evaluation::Evaluation;
 use super::record::FitRecord;
 use crate::model::JointModel;
 use crate::numerics::{PseudoInverse, rank};
@@ -33,26 +33,22 @@ impl Covariance {
     pub(super) fn of(
         record: &FitRecord<'_>,
         model: &JointModel,
-        (here, weights): (&Evaluation, Option<&Weights>),
+        here: &Evaluation,
         (free, bounds): (&[usize], &[Bounds]),
     ) -> Self {
+        let residuals = record.training(&here.residuals);
         let values: Vec<f64> = model.values().iter().map(|value| value.value).collect();
-        let roots = weights.map(|weights| record.training(weights).map(f64::sqrt));
-        let weighted = |residuals: &[Vec<f64>]| {
-            let residuals = record.training(residuals);
-            roots.as_ref().map_or_else(|| residuals.clone(), |roots| residuals.component_mul(roots))
-        };
         let column = |(index, bounds): (&usize, &Bounds)| {
             let (low, high) = bounds.around(values[*index]);
             let at = |there: f64| {
                 let mut values = values.clone();
                 values[*index] = there;
-                weighted(&record.residuals_near(&model.with_values(&values), weights, here))
+                record.training(&record.residuals_near(&model.with_values(&values), here))
             };
-            (at(low) - at(high)) / (high - low)
+            let held = high <= low;
+            if held { DVector::zeros(residuals.len()) } else { (at(low) - at(high)) / (high - low) }
         };
         let columns: Vec<DVector<f64>> = free.iter().zip(bounds).map(column).collect();
-        let residuals = weighted(&here.residuals);
         let noise = residuals.norm() / (residuals.len() as f64).sqrt();
         let at_bound = free.iter().zip(bounds).zip(&columns).map(|((index, bounds), column)| {
             bounds.is_at(values[*index], noise / column.norm().max(f64::MIN_POSITIVE))

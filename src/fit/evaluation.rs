@@ -18,6 +18,3 @@ pub struct Evaluation {
     /// Per trial and sample, the slope of the output to it; `None` where it is 1.
     pub(super) slopes: Vec<Option<Vec<f64>>>,
 }
-
-/// A weight for each trial and sample.
-pub(super) type Weights = Vec<Vec<f64>>;

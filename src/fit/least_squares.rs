@@ -1,10 +1,12 @@
 //! The parameters that make the training error least.
 
+use super::beginning::Beginning;
 use super::covariance::Covariance;
+use super::descent::Limits;
 use super::problem::Problem;
 use super::record::FitRecord;
 use super::result::{Assessment, Fit, FitError, Parameter, Status, Survey};
-use super::search::{Depth, Search};
+use super::search::{ROUGH, Search, comparing, whole};
 use super::space::Space;
 use super::starts::starts;
 use super::window::Part;
@@ -14,14 +16,16 @@ use crate::model::JointModel;
 /// Fits the free parameters of `model` to the training windows of `record`.
 ///
 /// Minimises `Σ w_k (y_k − ŷ_k)²` by Levenberg and Marquardt's method. `ŷ` is simulated
-/// from the start of each window, from the output that makes the window's error least.
-/// Outliers are weighted down (Huber's weights at 1.345 times the robust standard
-/// deviation). Parameters stay in the bounds of their effect for this record, and in those
-/// of the model.
+/// from the start of each window, from the output that makes the window's error least. `w_k` is
+/// 1, and 0 for isolated spikes of the sensor, which follow from the record alone: the sum is
+/// that of the training error, for every model. Parameters stay in the bounds of their effect
+/// for this record, and in those of the model.
 ///
-/// Parameters of an effect that are neutral start from each of the effect's own starts. All
-/// are followed until it is seen where they lead, in short windows, where an error does not
-/// add up and there are fewer valleys; the best two go on to the end.
+/// Parameters of an effect that are neutral start from each of the effect's own starts. Those
+/// that promise most are followed until it is seen where they lead, in short windows, where an
+/// error does not add up and there are fewer valleys; the best two go on to the end. The model as it was given
+/// is a start, too: the error is never larger than its own, so an effect that was added where
+/// it is neutral never makes it larger.
 ///
 /// Standard errors allow for correlated residuals (Newey and West, 1987).
 ///
@@ -29,14 +33,13 @@ use crate::model::JointModel;
 /// [`FitError`] when there are too few samples.
 ///
 /// # References
-/// J. J. Moré, "The Levenberg-Marquardt algorithm: implementation and theory", 1978.
-/// P. J. Huber, "Robust estimation of a location parameter", 1964.
+/// D. W. Marquardt, "An algorithm for least-squares estimation of nonlinear parameters", 1963.
 pub fn fit(
     record: &FitRecord<'_>,
     model: &JointModel,
     range: &RecordRange<'_>,
 ) -> Result<Fit, FitError> {
-    fit_to(record, model, range, Depth::whole(record.training_samples()))
+    fit_to(record, (model, model), range, whole(record.training_samples()))
 }
 
 /// Fits as [`fit`] does, but stops when the cost can fall by too little to change a comparison
@@ -49,43 +52,69 @@ pub fn fit_to_compare(
     model: &JointModel,
     range: &RecordRange<'_>,
 ) -> Result<Fit, FitError> {
-    fit_to(record, model, range, Depth::comparing(record.training_samples()))
+    fit_to_compare_beside(record, model, model, range)
+}
+
+/// Fits as [`fit_to_compare`] does; the error is not larger than that of `other`, either, which
+/// is the same structure at other values: those of a simpler model, and neutral ones.
+///
+/// # Errors
+/// As [`fit`].
+pub fn fit_to_compare_beside(
+    record: &FitRecord<'_>,
+    model: &JointModel,
+    other: &JointModel,
+    range: &RecordRange<'_>,
+) -> Result<Fit, FitError> {
+    fit_to(record, (model, other), range, comparing(record.training_samples()))
 }
 
 fn fit_to(
     record: &FitRecord<'_>,
-    model: &JointModel,
+    (model, other): (&JointModel, &JointModel),
     range: &RecordRange<'_>,
-    depth: Depth,
+    limits: Limits,
 ) -> Result<Fit, FitError> {
     let space = Space::of(model, range);
     check_size(record, &space)?;
     let (training, short) = (record.for_training(), record.shortened());
     let searches = rough(&short, model, &space, range).into_iter();
-    let finished = searches.map(|s| s.across_flats().onto(&training).descended(depth));
+    let finished = searches.map(|s| s.across_flats().onto(&training).descended(limits));
     let best = finished.min_by(|a, b| a.cost.total_cmp(&b.cost));
-    let as_given = || Search::new(&training, model, &space, plain(model)).descended(depth);
-    Ok(best.unwrap_or_else(as_given).into_fit(record))
+    // A value that does nothing may lie outside of the bounds.
+    let given = plain(other);
+    let held = space.holding(&given);
+    let given = Search::new(&training, other, &held, given);
+    let is_less = |best: &Search<'_, '_>| best.cost <= given.problem.cost();
+    let best = match best.filter(is_less) {
+        Some(best) => best,
+        None => given.descended(limits),
+    };
+    Ok(best.into_fit(record))
 }
 
-/// A short descent from each start and a rough one from the best few: the best of these.
+/// A rough descent from each of the most promising starts: the best of these.
 fn rough<'p, 'r>(
     short: &'p FitRecord<'r>,
     model: &'p JointModel,
     space: &'p Space,
     range: &RecordRange<'_>,
 ) -> Vec<Search<'p, 'r>> {
-    let starts = starts(model, range);
-    let are_many = starts.len() > FOLLOWED;
-    let depth = if are_many { Depth::SCREEN } else { Depth::ROUGH };
-    let begin = |start| Search::new(short, model, space, start).descended(depth);
-    let mut searches: Vec<_> = starts.into_iter().map(begin).collect();
+    let mut starts = starts(model, range);
+    let mut searches: Vec<_> = if starts.len() == 1 {
+        let search = |start| Search::new(short, model, space, start).descended(ROUGH);
+        starts.into_iter().map(search).collect()
+    } else {
+        let beginning = Beginning::of(short, model, space, (plain(model), &starts));
+        if starts.len() > FOLLOWED {
+            let expected = |start: Vec<f64>| (beginning.expected(&start), start);
+            let mut ranked: Vec<_> = starts.into_iter().map(expected).collect();
+            ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+            starts = ranked.into_iter().take(FOLLOWED).map(|(_, start)| start).collect();
+        }
+        starts.into_iter().map(|start| beginning.search(start).descended(ROUGH)).collect()
+    };
     searches.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    if are_many {
-        let followed = searches.into_iter().take(FOLLOWED);
-        searches = followed.map(|search| search.descended(Depth::ROUGH)).collect();
-        searches.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    }
     searches.truncate(FINALISTS);
     searches
 }
@@ -138,7 +167,7 @@ fn plain(model: &JointModel) -> Vec<f64> {
     model.values().iter().map(|value| value.value).collect()
 }
 
-/// Starts that are followed beyond the first short descent.
+/// Starts that are followed.
 const FOLLOWED: usize = 3;
 
 /// Searches that are brought to their end; the others are given up when it is seen where
@@ -153,26 +182,21 @@ impl Search<'_, '_> {
 
     /// The model as it is now, on all of `whole`.
     fn assessment(&self, whole: &FitRecord<'_>) -> Assessment {
-        let Problem { record, space, weights, .. } = &self.problem;
+        let Problem { record, space, .. } = &self.problem;
         let model = self.problem.model_now();
         let evaluation = self.problem.here();
-        let covariance = Covariance::of(
-            record,
-            &model,
-            (evaluation, weights.as_ref()),
-            (&space.free, &space.bounds),
-        );
+        let covariance = Covariance::of(record, &model, evaluation, (&space.free, &space.bounds));
         let parameter = |(index, (name, value)): (usize, (String, f64))| {
             let free = space.free.iter().position(|free| *free == index);
-            let status = free.map_or(Status::Fixed, |free| space.status(&covariance, free));
+            let status = free.map_or(Status::Fixed, |free| space.status(&covariance, free, value));
             let std_error = free.and_then(|free| covariance.std_error(free));
-            let std_error = std_error.filter(|_| status != Status::Undetermined);
+            let std_error = std_error.filter(|_| status == Status::Fitted);
             Parameter { name, value, std_error, status }
         };
         let named = model.names().into_iter().zip(plain(&model)).enumerate();
         Assessment {
             parameters: named.map(parameter).collect(),
-            evaluation: self.problem.on(whole),
+            evaluation: whole.evaluate(&model),
             model,
         }
     }

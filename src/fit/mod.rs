@@ -6,8 +6,10 @@
 //!
 //! What the numbers mean for the model is the business of the module `diagnosis`.
 
+mod beginning;
 mod bounds;
 mod covariance;
+mod descent;
 mod evaluation;
 mod least_squares;
 mod problem;
@@ -18,12 +20,13 @@ mod score;
 mod search;
 mod space;
 mod speed;
+mod spikes;
 mod starts;
 mod thin;
 mod window;
 
 pub use evaluation::Evaluation;
-pub use least_squares::{assess, fit, fit_to_compare, survey};
+pub use least_squares::{assess, fit, fit_to_compare, fit_to_compare_beside, survey};
 pub use record::FitRecord;
 pub use result::{Assessment, Fit, FitError, Parameter, Status, Survey, Termination};
 pub use score::{Directions, Score};

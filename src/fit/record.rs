@@ -4,9 +4,10 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::DVector;
 
-use super::evaluation::{Evaluation, Weights};
+use super::evaluation::Evaluation;
 use super::run::Run;
 use super::speed;
+use super::spikes;
 use super::thin::thinned;
 use super::window::{Horizon, Part, Split, Window, changes, cut, shorter};
 use crate::delay::{StepDelay, step_delays};
@@ -35,6 +36,8 @@ pub struct FitRecord<'a> {
     commands: Vec<Commands>,
     /// Highest minus lowest output, per trial.
     spans: Vec<f64>,
+    /// Per trial and sample 0 for a spike of the sensor and else 1; none where there is no spike.
+    weights: Option<Arc<Vec<Vec<f64>>>>,
 }
 
 /// Delay of each change of the input in seconds, per trial, where it is known.
@@ -65,6 +68,7 @@ impl<'a> FitRecord<'a> {
             starts_s: starts_s(&joint.trials),
             commands: joint.trials.iter().map(commands).collect(),
             spans: joint.trials.iter().map(span).collect(),
+            weights: spikes::weights(&joint.trials).map(Arc::new),
         }
     }
 
@@ -134,15 +138,6 @@ impl<'a> FitRecord<'a> {
 
     /// Simulates `model` on all trials, each to the end of its last window.
     pub fn evaluate(&self, model: &JointModel) -> Evaluation {
-        self.evaluate_weighted(model, None)
-    }
-
-    /// Simulates `model` with weights for the outputs at the start of windows.
-    pub(super) fn evaluate_weighted(
-        &self,
-        model: &JointModel,
-        weights: Option<&Weights>,
-    ) -> Evaluation {
         let indices = 0..self.joint.trials.len();
         let mut all = Evaluation {
             horizon: self.horizon,
@@ -151,7 +146,7 @@ impl<'a> FitRecord<'a> {
             starts: Vec::new(),
             slopes: Vec::new(),
         };
-        for run in indices.filter_map(|index| self.run(model, index, weights)) {
+        for run in indices.filter_map(|index| self.run(model, index)) {
             let (starts, slope) = run.best();
             let (simulated, residuals) = run.from(&starts, slope.as_deref());
             all.simulated.push(simulated);
@@ -163,16 +158,11 @@ impl<'a> FitRecord<'a> {
     }
 
     /// Residuals of a model that is near to the one of `near`, whose starts are taken.
-    pub(super) fn residuals_near(
-        &self,
-        model: &JointModel,
-        weights: Option<&Weights>,
-        near: &Evaluation,
-    ) -> Vec<Vec<f64>> {
+    pub(super) fn residuals_near(&self, model: &JointModel, near: &Evaluation) -> Vec<Vec<f64>> {
         let known = near.starts.iter().zip(&near.slopes).enumerate();
         let residuals = known.filter_map(|(index, (starts, slope))| {
-            let run = self.run(model, index, weights)?;
-            Some(run.from(starts, slope.as_deref()).1)
+            let run = self.run(model, index)?;
+            Some(run.residuals_from(starts, slope.as_deref()))
         });
         residuals.collect()
     }
@@ -205,20 +195,28 @@ impl<'a> FitRecord<'a> {
         self.part(Part::Training).map(|window| window.end - window.start).sum()
     }
 
-    /// The values of the training windows, one behind the other.
+    /// The values of the training windows, one behind the other, times their weights.
     pub(super) fn training(&self, values: &[Vec<f64>]) -> DVector<f64> {
-        let cut = |w: &Window| values.get(w.trial)?.get(w.start..w.end);
-        let values = self.part(Part::Training).filter_map(cut);
-        DVector::from_vec(values.flatten().copied().collect())
+        let mut all = Vec::with_capacity(self.training_samples());
+        for window in self.part(Part::Training) {
+            let own = values.get(window.trial).and_then(|own| own.get(window.start..window.end));
+            let own = own.unwrap_or_default();
+            match self.weights_of(window.trial).and_then(|all| all.get(window.start..window.end)) {
+                Some(weights) => all.extend(own.iter().zip(weights).map(|(value, w)| value * w)),
+                None => all.extend_from_slice(own),
+            }
+        }
+        DVector::from_vec(all)
+    }
+
+    /// The weights of the samples of a trial: 0 for isolated spikes of the sensor, which no
+    /// error counts, and 1 for all others; `None` where there is no spike in the record.
+    pub fn weights_of(&self, trial: usize) -> Option<&[f64]> {
+        self.weights.as_ref()?.get(trial).map(Vec::as_slice)
     }
 
     /// The model on one trial.
-    fn run<'m>(
-        &'m self,
-        model: &'m JointModel,
-        index: usize,
-        weights: Option<&'m Weights>,
-    ) -> Option<Run<'m>> {
+    fn run<'m>(&'m self, model: &'m JointModel, index: usize) -> Option<Run<'m>> {
         let trial = self.joint.trials.get(index)?;
         let surroundings = Surroundings {
             others: self.others.get(index).map_or(&[], Vec::as_slice),
@@ -227,14 +225,13 @@ impl<'a> FitRecord<'a> {
         };
         let windows = self.windows.iter().filter(|window| window.trial == index).copied();
         let arrivals = self.arrivals(model, index);
-        let weights = weights.and_then(|weights| weights.get(index)).map(Vec::as_slice);
         Some(Run {
             model,
             trial,
             arrivals,
             surroundings,
             windows: windows.collect(),
-            weights,
+            weights: self.weights_of(index),
             span: self.spans[index],
             speeds_measured: self.speeds_measured && model.has_dynamics(),
         })

@@ -3,8 +3,6 @@
 use std::fmt;
 use std::ops::Deref;
 
-use levenberg_marquardt::TerminationReason;
-
 use super::evaluation::Evaluation;
 use crate::model::JointModel;
 
@@ -24,7 +22,8 @@ pub struct Assessment {
 pub struct Fit {
     /// The model at the fitted values.
     pub assessment: Assessment,
-    /// The robust sum of squared errors that was minimised.
+    /// The sum of squared errors of the training windows that was minimised, without isolated spikes
+    /// of the sensor.
     pub cost: f64,
     /// Why it stopped.
     pub termination: Termination,
@@ -62,13 +61,19 @@ pub enum Status {
     AtBound,
     /// The data do not determine it: the error is the same over a wide range.
     Undetermined,
+    /// It lies beyond what the record reaches: a level above all of the input, or a limit of the
+    /// output where it never comes. The data do not determine it.
+    BeyondReach,
 }
 
 /// Why a fit stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Termination {
-    /// No change of the parameters makes the error less.
+    /// The gradient of the sum of squared errors is small: a linear step could not make it less
+    /// by more than a hundredth of what a standard error does.
     Converged,
+    /// No step made the error less, though its gradient is not small: a corner or a jump.
+    NoDescent,
     /// There was nothing to fit.
     NothingToFit,
     /// It took too many simulations; the parameters may not be the best.
@@ -81,6 +86,7 @@ impl fmt::Display for Termination {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Converged => "converged",
+            Self::NoDescent => "stopped at a corner of the error, where no step makes it less",
             Self::NothingToFit => "nothing to fit",
             Self::OutOfPatience => "stopped after too many simulations",
             Self::Numerical => "the simulation gave no numbers",
@@ -102,7 +108,7 @@ pub enum FitError {
     },
 }
 
-/// A model surveyed: where a rough descent in short windows leads, and its robust sum of
+/// A model surveyed: where a rough descent in short windows leads, and its sum of
 /// squared errors there.
 ///
 /// Sums are comparable between models of the same record.
@@ -112,21 +118,4 @@ pub struct Survey {
     pub model: JointModel,
     /// The sum in the short windows.
     pub cost: f64,
-}
-
-impl Termination {
-    /// What the optimiser says, in fewer words.
-    pub(super) fn of(reason: &TerminationReason) -> Self {
-        match reason {
-            TerminationReason::LostPatience => Self::OutOfPatience,
-            TerminationReason::User(_)
-            | TerminationReason::Numerical(_)
-            | TerminationReason::WrongDimensions(_) => Self::Numerical,
-            TerminationReason::NoParameters | TerminationReason::NoResiduals => Self::NothingToFit,
-            TerminationReason::ResidualsZero
-            | TerminationReason::Orthogonal
-            | TerminationReason::Converged { .. }
-            | TerminationReason::NoImprovementPossible(_) => Self::Converged,
-        }
-    }
 }

@@ -5,7 +5,12 @@ use std::ops::Range;
 use super::speed;
 use super::window::Window;
 use crate::experiment::Trial;
-use crate::model::{Arrivals, JointModel, Restart, Simulated, Surroundings, simulate};
+use crate::model::{
+    Arrivals, JointModel, Restart, Simulated, Surroundings, simulate, simulate_output,
+};
+
+/// How a stretch is simulated: as a whole, or the output alone.
+type Simulate = fn(&JointModel, &Arrivals, usize, f64, &[Restart], &Surroundings<'_>) -> Simulated;
 
 /// A model on one trial, and what the two need of the record.
 pub(super) struct Run<'a> {
@@ -33,10 +38,10 @@ impl Run<'_> {
         if !self.model.depends_on_angle() {
             return (starts, None);
         }
-        let simulated = self.simulate(&starts).output;
+        let simulated = self.simulate(&starts, simulate_output).output;
         let nudge = self.nudge();
         let ahead: Vec<f64> = starts.iter().map(|start| start + nudge).collect();
-        let ahead = self.simulate(&ahead).output;
+        let ahead = self.simulate(&ahead, simulate_output).output;
         let pairs = ahead.iter().zip(&simulated);
         let slope: Vec<f64> = pairs.map(|(a, b)| (a - b) / nudge).collect();
         let wrong = self.shifts(&simulated, Some(&slope));
@@ -46,7 +51,21 @@ impl Run<'_> {
     /// The simulation from `starts` and its residuals; what the starts are still wrong by
     /// is taken off as far as it is linear.
     pub(super) fn from(&self, starts: &[f64], slope: Option<&[f64]>) -> (Simulated, Vec<f64>) {
-        let mut simulated = self.simulate(starts);
+        self.from_by(starts, slope, simulate)
+    }
+
+    /// The residuals of the simulation from `starts`, as [`from`](Self::from) has them.
+    pub(super) fn residuals_from(&self, starts: &[f64], slope: Option<&[f64]>) -> Vec<f64> {
+        self.from_by(starts, slope, simulate_output).1
+    }
+
+    fn from_by(
+        &self,
+        starts: &[f64],
+        slope: Option<&[f64]>,
+        simulate: Simulate,
+    ) -> (Simulated, Vec<f64>) {
+        let mut simulated = self.simulate(starts, simulate);
         let shifts = self.shifts(&simulated.output, slope);
         for (window, shift) in self.windows.iter().zip(shifts) {
             let values = simulated.output.get_mut(window.start..window.end).unwrap_or_default();
@@ -67,7 +86,7 @@ impl Run<'_> {
     }
 
     /// The simulation of all windows; not a number where there is none.
-    fn simulate(&self, starts: &[f64]) -> Simulated {
+    fn simulate(&self, starts: &[f64], simulate: Simulate) -> Simulated {
         let restart = |(window, output): (&Window, &f64)| Restart {
             sample: window.start,
             output: *output,
@@ -81,7 +100,7 @@ impl Run<'_> {
         if let [only] = stretches.as_slice()
             && only.start == 0
         {
-            return self.simulate_stretch(only, &restarts);
+            return self.simulate_stretch(only, &restarts, simulate);
         }
         let mut whole = Simulated::default();
         for stretch in stretches {
@@ -91,13 +110,18 @@ impl Run<'_> {
             let begin = Restart { sample: 0, output, speed: None };
             let restarts: Vec<_> = std::iter::once(begin).chain(shifted).collect();
             whole.resume_at(stretch.start);
-            whole.append(self.simulate_stretch(&stretch, &restarts));
+            whole.append(self.simulate_stretch(&stretch, &restarts, simulate));
         }
         whole
     }
 
     /// The simulation of one stretch, whose restarts count from its start.
-    fn simulate_stretch(&self, stretch: &Range<usize>, restarts: &[Restart]) -> Simulated {
+    fn simulate_stretch(
+        &self,
+        stretch: &Range<usize>,
+        restarts: &[Restart],
+        simulate: Simulate,
+    ) -> Simulated {
         let period_s = self.trial.period().seconds();
         let from_s = stretch.start as f64 * period_s;
         let surroundings = Surroundings {

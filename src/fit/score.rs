@@ -17,7 +17,6 @@
 //! applications to problems of estimation", Proceedings of the Cambridge Philosophical Society
 //! 44 (1948), 50-57.
 
-use levenberg_marquardt::LeastSquaresProblem as _;
 use nalgebra::DVector;
 
 use super::record::FitRecord;
@@ -56,8 +55,11 @@ impl<'r> Score<'r> {
         let space = Space::of(model, range);
         let start = model.values().iter().map(|value| value.value).collect();
         let search = Search::new(&record, model, &space, start);
-        let jacobian = search.problem.jacobian()?;
-        let raw = record.training(&record.evaluate(model).residuals);
+        let raw = search.problem.residuals();
+        let jacobian = search.problem.jacobian(&raw);
+        if !jacobian.iter().all(|slope| slope.is_finite()) {
+            return None;
+        }
         let slopes = Basis::of(jacobian.as_slice(), jacobian.nrows(), rank::DIFFERENCED);
         let unit = unit(residual(&slopes, &raw), raw.norm())?;
         Some(Self { record, raw, slopes, unit })

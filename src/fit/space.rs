@@ -5,8 +5,8 @@ use nalgebra::DVector;
 use super::bounds::Bounds;
 use super::covariance::Covariance;
 use super::result::Status;
-use crate::effect::{Dimension, RecordRange};
-use crate::model::JointModel;
+use crate::effect::{Dimension, Parameter, RecordRange};
+use crate::model::{Component, JointModel};
 
 /// The free parameters of a model and their bounds.
 pub(super) struct Space {
@@ -16,6 +16,9 @@ pub(super) struct Space {
     /// For each of them the values, one for each gap between levels of the input, between
     /// which an effect may do nothing but switch; none for what is not a level.
     pub(super) flats: Vec<Vec<f64>>,
+    /// For each of them the values that the record reaches, where it is a level of the input or
+    /// a limit of the output.
+    reach: Vec<Bounds>,
 }
 
 impl Space {
@@ -51,35 +54,79 @@ impl Space {
                 Vec::new()
             }
         });
-        Self { flats: flats.collect(), free, bounds }
+        let reach = free.iter().map(|index| reach(model, *index, range)).collect();
+        Self { flats: flats.collect(), free, bounds, reach }
     }
 
-    /// What a fit could do with a free parameter.
-    pub(super) fn status(&self, covariance: &Covariance, free: usize) -> Status {
+    /// Whether a free parameter is a level of the input, between values of which the error may
+    /// depend on it in jumps.
+    pub(super) fn is_level(&self, free: usize) -> bool {
+        self.flats.get(free).is_some_and(|flats| !flats.is_empty())
+    }
+
+    /// What a fit could do with a free parameter, which it left at `value`.
+    pub(super) fn status(&self, covariance: &Covariance, free: usize, value: f64) -> Status {
         let is_lost = |error| self.bounds[free].is_lost_in(error);
         match covariance.std_error(free) {
+            _ if self.reach[free].clamped(value) != value => Status::BeyondReach,
             _ if covariance.is_at_bound(free) => Status::AtBound,
             Some(error) if !is_lost(error) => Status::Fitted,
             _ => Status::Undetermined,
         }
     }
 
-    /// All values of the model, with the free ones where the optimiser's variables are.
-    pub(super) fn values(&self, start: &[f64], variables: &DVector<f64>) -> Vec<f64> {
+    /// This space with the values that lie outside of their bounds held where they are.
+    pub(super) fn holding(&self, values: &[f64]) -> Self {
+        let pairs = self.free.iter().zip(&self.bounds);
+        let bounds = pairs.map(|(index, bounds)| bounds.holding(values[*index]));
+        let (free, flats, reach) = (self.free.clone(), self.flats.clone(), self.reach.clone());
+        Self { free, bounds: bounds.collect(), flats, reach }
+    }
+
+    /// The free ones of all `values`, within their bounds.
+    pub(super) fn within(&self, values: &[f64]) -> DVector<f64> {
+        let pairs = self.free.iter().zip(&self.bounds);
+        DVector::from_vec(pairs.map(|(index, bounds)| bounds.clamped(values[*index])).collect())
+    }
+
+    /// All values of the model, with the free ones as in `free`.
+    pub(super) fn values(&self, start: &[f64], free: &DVector<f64>) -> Vec<f64> {
         let mut values = start.to_vec();
-        for ((index, bounds), variable) in self.free.iter().zip(&self.bounds).zip(variables.iter())
-        {
-            values[*index] = bounds.value(*variable);
+        for (index, value) in self.free.iter().zip(free.iter()) {
+            values[*index] = *value;
         }
         values
     }
 }
 
+/// The values of a parameter of `model` that the record reaches: a level beyond all of the input,
+/// or a limit of the output where it never comes, changes at most what cannot be told from it.
+fn reach(model: &JointModel, index: usize, range: &RecordRange<'_>) -> Bounds {
+    /// What noise may have put the output beyond its limit by, in parts of its span.
+    const NOISE: f64 = 0.01;
+    let all = Bounds { low: f64::NEG_INFINITY, high: f64::INFINITY };
+    let Some((component, parameter)) = place(model, index) else { return all };
+    let is_limit = component.effect().spec().acts_on_state;
+    match parameter.dimension {
+        Dimension::Input => Bounds { low: -range.input_abs_max, high: range.input_abs_max },
+        Dimension::Output if is_limit => {
+            let noise = NOISE * range.output_span();
+            Bounds { low: range.output_min - noise, high: range.output_max + noise }
+        }
+        _ => all,
+    }
+}
+
 /// Whether a parameter of `model` is a level of the input.
 fn is_level(model: &JointModel, index: usize) -> bool {
-    let specs = model.components().iter().flat_map(|c| c.effect().spec().parameters);
-    let of_effects = index.checked_sub(2);
-    of_effects
-        .and_then(|index| specs.clone().nth(index))
-        .is_some_and(|p| p.dimension == Dimension::Input)
+    place(model, index).is_some_and(|(_, parameter)| parameter.dimension == Dimension::Input)
+}
+
+/// The effect of which a value of `model` is a parameter, and this.
+fn place(model: &JointModel, index: usize) -> Option<(&Component, &'static Parameter)> {
+    let of = |component| {
+        let parameters = Component::effect(component).spec().parameters.iter();
+        parameters.map(move |parameter| (component, parameter))
+    };
+    model.components().iter().flat_map(of).nth(index.checked_sub(2)?)
 }

@@ -69,9 +69,33 @@ pub fn simulate(
     restarts: &[Restart],
     surroundings: &Surroundings<'_>,
 ) -> Simulated {
+    run::<true>(model, arrivals, samples, period_s, restarts, surroundings)
+}
+
+/// [Simulates](simulate) the output alone.
+pub(crate) fn simulate_output(
+    model: &JointModel,
+    arrivals: &Arrivals,
+    samples: usize,
+    period_s: f64,
+    restarts: &[Restart],
+    surroundings: &Surroundings<'_>,
+) -> Simulated {
+    run::<false>(model, arrivals, samples, period_s, restarts, surroundings)
+}
+
+/// With velocity and input where `WHOLE`, else with the output alone.
+fn run<const WHOLE: bool>(
+    model: &JointModel,
+    arrivals: &Arrivals,
+    samples: usize,
+    period_s: f64,
+    restarts: &[Restart],
+    surroundings: &Surroundings<'_>,
+) -> Simulated {
     let mut joint = Joint::new(model, surroundings);
     joint.settle(arrivals.initial, period_s);
-    let mut simulated = Simulated::with_capacity(samples);
+    let mut simulated = Simulated::with_capacity(samples, if WHOLE { samples } else { 0 });
     let mut restarts = restarts.iter().peekable();
     let mut input = Input { level: arrivals.initial, coming: &arrivals.changes };
     for sample in 0..samples {
@@ -82,10 +106,12 @@ pub fn simulate(
         joint.others = surroundings.others.get(sample).copied().unwrap_or(0.0);
         input.advance(start);
         simulated.output.push(joint.measured);
-        simulated.acting.push(input.level);
-        let before = joint.angle;
+        let (before, level) = (joint.angle, input.level);
         joint.interval(&mut input, start, (sample + 1) as f64 * period_s, period_s);
-        simulated.velocity.push((joint.angle - before) / period_s);
+        if WHOLE {
+            simulated.acting.push(level);
+            simulated.velocity.push((joint.angle - before) / period_s);
+        }
     }
     simulated
 }
@@ -120,11 +146,11 @@ impl Simulated {
         self.acting.append(&mut next.acting);
     }
 
-    fn with_capacity(samples: usize) -> Self {
+    fn with_capacity(samples: usize, others: usize) -> Self {
         Self {
             output: Vec::with_capacity(samples),
-            velocity: Vec::with_capacity(samples),
-            acting: Vec::with_capacity(samples),
+            velocity: Vec::with_capacity(others),
+            acting: Vec::with_capacity(others),
         }
     }
 }
@@ -186,6 +212,10 @@ struct Joint<'a> {
     gain: f64,
     /// Effects on the input, then those of the dynamics: both before the gain.
     drive: Vec<Running>,
+    /// How many of them, from the front, do the same again as long as the input is held.
+    steady: usize,
+    /// The input that was last held, and what these made of it.
+    held: Option<(f64, f64)>,
     load: Vec<Running>,
     /// Effects that limit the angle itself.
     limits: Vec<Running>,
@@ -210,9 +240,13 @@ impl<'a> Joint<'a> {
         let (limits, sensor): (Vec<_>, Vec<_>) =
             output.partition(|component| component.effect().spec().acts_on_state);
         let load: Vec<_> = stage(Stage::Load).collect();
+        let drive: Vec<_> = stage(Stage::Input).chain(stage(Stage::Dynamics)).collect();
+        let is_steady = |running: &&Running| running.effect.is_steady();
         Self {
             gain: model.gain.value,
-            drive: stage(Stage::Input).chain(stage(Stage::Dynamics)).collect(),
+            steady: drive.iter().take_while(is_steady).count(),
+            held: None,
+            drive,
             load_remembers: load.iter().any(|running| !running.memory.is_empty()),
             load,
             load_adds: 0.0,
@@ -239,6 +273,7 @@ impl<'a> Joint<'a> {
 
     /// The effective input after `input` has long been held, and the memory that it left.
     fn settled_drive(&mut self, input: f64, period_s: f64) -> f64 {
+        self.held = None;
         let mut at = self.moment(input, 0.0, period_s);
         for running in &mut self.drive {
             running.settle(&at);
@@ -335,14 +370,32 @@ impl<'a> Joint<'a> {
         if dt <= 0.0 {
             return;
         }
-        let mut at = self.moment(input, time_s, dt);
-        at.signal = self.gain * through(&mut self.drive, at);
-        self.velocity = if self.load.is_empty() { at.signal } else { self.loaded(at) };
+        if let Some((held, signal)) = self.held
+            && self.steady == self.drive.len()
+            && self.load.is_empty()
+            && held.to_bits() == input.to_bits()
+        {
+            self.velocity = self.gain * signal;
+        } else {
+            let mut at = self.moment(input, time_s, dt);
+            at.signal = self.gain * self.driven(at);
+            self.velocity = if self.load.is_empty() { at.signal } else { self.loaded(at) };
+        }
         self.angle += self.velocity * dt;
         if !self.limits.is_empty() {
             self.limit(time_s, dt);
         }
         self.measure(time_s, dt);
+    }
+
+    /// The input after the effects on it and those of the dynamics.
+    fn driven(&mut self, mut at: Moment) -> f64 {
+        let (steady, others) = self.drive.split_at_mut(self.steady);
+        let known = self.held.filter(|(input, _)| input.to_bits() == at.signal.to_bits());
+        let input = at.signal;
+        at.signal = known.map_or_else(|| through(steady, at), |(_, signal)| signal);
+        self.held = Some((input, at.signal));
+        through(others, at)
     }
 
     /// The velocity that the load leaves of the commanded one, by the midpoint rule: half an

@@ -231,7 +231,9 @@ impl Finding<'_> {
 
     fn undetermined(&self) -> Option<String> {
         let all = self.comparison().fit.parameters.iter();
-        let open = all.filter(|parameter| parameter.status == Status::Undetermined);
+        let open = all.filter(|parameter| {
+            matches!(parameter.status, Status::Undetermined | Status::BeyondReach)
+        });
         let names: Vec<&str> = open.map(|parameter| parameter.name.as_str()).collect();
         (!names.is_empty()).then(|| format!("It does not determine {}.", names.join(", ")))
     }

@@ -12,7 +12,7 @@ pub(crate) fn remark(status: Status) -> Option<&'static str> {
         Status::Fitted => None,
         Status::Fixed => Some("fixed"),
         Status::AtBound => Some("at its bound"),
-        Status::Undetermined => Some("not determined by this record"),
+        Status::Undetermined | Status::BeyondReach => Some("not determined by this record"),
     }
 }
 

@@ -91,6 +91,6 @@ fn status_id(status: Status) -> &'static str {
         Status::Fitted => "fitted",
         Status::Fixed => "fixed",
         Status::AtBound => "at_bound",
-        Status::Undetermined => "undetermined",
+        Status::Undetermined | Status::BeyondReach => "undetermined",
     }
 }

@@ -1,0 +1,90 @@
+//! Which of several starts of an effect are followed, and with what slopes.
+//!
+//! A start moves the effect's own parameters only; the others are where the model has them. With
+//! the residual `r` there, the slopes `J` to the other parameters, and `d` the change of the
+//! residual on the way to the start, both less their projection on `J`, what a fit would leave is
+//! to first order
+//!
+//! ```text
+//! |r|² − max(0, −r·d)² / d·d
+//! ```
+//!
+//! as in the [score](super::score): one simulation for each start, where a descent takes many.
+//! From the start a descent begins with the same `J`, and only the effect's own slopes anew.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::record::FitRecord;
+use super::search::Search;
+use super::space::Space;
+use crate::model::JointModel;
+use crate::numerics::{Basis, rank};
+
+/// Where all starts of a model begin: its values as they are.
+pub(super) struct Beginning<'p, 'r> {
+    search: Search<'p, 'r>,
+    residuals: DVector<f64>,
+    /// Whether starts move a free value.
+    own: Vec<bool>,
+    /// Slopes to the others; 0 for those that starts move.
+    slopes: DMatrix<f64>,
+    others: Basis,
+    /// The residual without what the others explain.
+    rest: DVector<f64>,
+}
+
+impl<'p, 'r> Beginning<'p, 'r> {
+    pub(super) fn of(
+        record: &'p FitRecord<'r>,
+        model: &'p JointModel,
+        space: &'p Space,
+        (given, starts): (Vec<f64>, &[Vec<f64>]),
+    ) -> Self {
+        let search = Search::new(record, model, space, given.clone());
+        let residuals = search.problem.residuals();
+        #[expect(clippy::float_cmp, reason = "a start has its own value or that of the model")]
+        let moves = |index: &usize| starts.iter().any(|start| start[*index] != given[*index]);
+        let own: Vec<bool> = space.free.iter().map(moves).collect();
+        let column = |(index, own): (usize, &bool)| match own {
+            true => DVector::zeros(residuals.len()),
+            false => search.problem.slope(index, &residuals),
+        };
+        let columns: Vec<_> = own.iter().enumerate().map(column).collect();
+        let slopes = if columns.is_empty() {
+            DMatrix::zeros(residuals.len(), 0)
+        } else {
+            DMatrix::from_columns(&columns)
+        };
+        let others = Basis::of(slopes.as_slice(), slopes.nrows(), rank::DIFFERENCED);
+        let rest = DVector::from_vec(others.residual(residuals.as_slice()));
+        Self { search, residuals, own, slopes, others, rest }
+    }
+
+    /// The sum of squares that a fit from `start` would leave, to first order.
+    pub(super) fn expected(&self, start: &[f64]) -> f64 {
+        let problem = &self.search.problem;
+        let there = problem.space.within(start);
+        // What starts move and no fit does is in the start alone.
+        let model = problem.model.with_values(&problem.space.values(start, &there));
+        let residuals = problem.record.residuals_near(&model, problem.here());
+        let change = problem.record.training(&residuals) - &self.residuals;
+        let change = DVector::from_vec(self.others.residual(change.as_slice()));
+        let (forwards, square) = (-self.rest.dot(&change), change.norm_squared());
+        let gain = if square > 0.0 { forwards.max(0.0).powi(2) / square } else { 0.0 };
+        let expected = self.rest.norm_squared() - gain;
+        if expected.is_finite() { expected } else { f64::INFINITY }
+    }
+
+    /// The search from `start`, which knows the slopes about there.
+    pub(super) fn search(&self, start: Vec<f64>) -> Search<'p, 'r> {
+        let problem = &self.search.problem;
+        let mut search = Search::new(problem.record, problem.model, problem.space, start);
+        let residuals = search.problem.residuals();
+        let mut slopes = self.slopes.clone();
+        for index in (0..self.own.len()).filter(|index| self.own[*index]) {
+            slopes.set_column(index, &search.problem.slope(index, &residuals));
+        }
+        search.slopes = Some(slopes);
+        search
+    }
+}

@@ -1,0 +1,119 @@
+//! Isolated spikes of the sensor, from the record alone.
+//!
+//! A sample, or two in a row, is a spike where it lies beyond all of the three samples before
+//! and the three behind it, further than these lie from one another and further than the
+//! sensor's noise reaches. It gets no weight. Whatever a model makes of a record, the samples
+//! that count are the same: costs of models are sums of the same squares, and compare.
+
+use crate::experiment::Trial;
+use crate::numerics::robust_scale;
+
+/// Samples on either side that a spike is held against.
+const SIDE: usize = 3;
+
+/// Samples in a row that can be a spike: what lasts longer may be motion.
+const LONGEST: usize = 2;
+
+/// Standard deviations of the noise beyond which no sample of a long record lies by chance, also
+/// where differences show only half of a noise with a memory.
+const BEYOND: f64 = 8.0;
+
+/// For each trial the weights of its samples, 0 for spikes and 1 for others; `None` where no
+/// trial has a spike.
+pub(super) fn weights(trials: &[Trial]) -> Option<Vec<Vec<f64>>> {
+    let noise = noise(trials);
+    let weights: Vec<Vec<f64>> =
+        trials.iter().map(|trial| of_trial(trial.output(), noise)).collect();
+    weights.iter().flatten().any(|weight| *weight <= 0.0).then_some(weights)
+}
+
+/// Standard deviation of the sensor's noise: from differences of the second order, which leave
+/// little of a motion, and not below the sensor's step.
+fn noise(trials: &[Trial]) -> f64 {
+    /// The variance of `a − 2b + c` in parts of that of white noise.
+    const SECOND_ORDER: f64 = 6.0;
+    let second =
+        trials.iter().flat_map(|trial| trial.output().windows(3)).map(|triple| match triple {
+            [a, b, c] => a - 2.0 * b + c,
+            _ => 0.0,
+        });
+    let second: Vec<f64> = second.collect();
+    let steps = trials.iter().flat_map(|trial| trial.output().windows(2)).map(|pair| match pair {
+        [a, b] => (b - a).abs(),
+        _ => 0.0,
+    });
+    let step = steps.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);
+    (robust_scale(&second) / SECOND_ORDER.sqrt()).max(if step.is_finite() { step } else { 0.0 })
+}
+
+fn of_trial(output: &[f64], noise: f64) -> Vec<f64> {
+    let mut weights = vec![1.0; output.len()];
+    for length in 1..=LONGEST {
+        for from in SIDE..output.len().saturating_sub(SIDE + length - 1) {
+            if is_spike(output, from..from + length, noise) {
+                weights[from..from + length].fill(0.0);
+            }
+        }
+    }
+    weights
+}
+
+/// Whether the samples at `place` are a spike among their neighbours.
+fn is_spike(output: &[f64], place: std::ops::Range<usize>, noise: f64) -> bool {
+    let jump = output[place.start] - output[place.start - 1];
+    if jump.abs() <= BEYOND * noise {
+        return false;
+    }
+    let before = output.get(place.start - SIDE..place.start).unwrap_or_default();
+    let behind = output.get(place.end..place.end + SIDE).unwrap_or_default();
+    let mut around: Vec<f64> = before.iter().chain(behind).copied().collect();
+    let suspects = output.get(place).unwrap_or_default();
+    // One of the neighbours may be another spike.
+    around.sort_by(f64::total_cmp);
+    let (without_low, without_high) = (around.get(1..), around.get(..around.len() - 1));
+    let narrowest = [without_low, without_high].into_iter().flatten().map(span);
+    let narrowest = narrowest.min_by(|a, b| (a.1 - a.0).total_cmp(&(b.1 - b.0)));
+    let Some((low, high)) = narrowest else { return false };
+    let room = (high - low).max(BEYOND * noise);
+    let is_near = |y: &&f64| (low - room..=high + room).contains(*y);
+    if before.last().filter(is_near).is_none() || behind.first().filter(is_near).is_none() {
+        return false;
+    }
+    let above = suspects.iter().all(|y| *y > high + room);
+    above || suspects.iter().all(|y| *y < low - room)
+}
+
+/// The lowest and the highest of `values`.
+fn span(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::MAX, f64::MIN), |(low, high), y| (low.min(*y), high.max(*y)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::testing::noise as noisy;
+
+    fn found(output: &[f64], noise: f64) -> Vec<usize> {
+        let weights = of_trial(output, noise);
+        (0..output.len()).filter(|k| weights[*k] <= 0.0).collect()
+    }
+
+    #[test]
+    fn one_and_two_samples_far_off_are_spikes_and_three_are_motion() {
+        let mut output = noisy(3, 0.0, 400);
+        output[50] += 30.0;
+        output[53] -= 30.0;
+        output[100..102].iter_mut().for_each(|y| *y -= 40.0);
+        output[200..203].iter_mut().for_each(|y| *y += 40.0);
+        assert_eq!(found(&output, 1.0), [50, 53, 100, 101]);
+    }
+
+    #[test]
+    fn noise_a_step_and_the_peak_of_a_motion_are_none() {
+        assert_eq!(found(&noisy(5, 0.9, 20_000), 0.265), [0; 0]);
+        let motion: Vec<f64> = (0..400).map(|k| (0.3 * f64::from(k)).sin()).collect();
+        assert_eq!(found(&motion, 1e-9), [0; 0]);
+        let step: Vec<f64> = (0..40).map(|k| if k < 20 { 0.0 } else { 9.0 }).collect();
+        assert_eq!(found(&step, 0.01), [0; 0]);
+    }
+}
