@@ -3,7 +3,7 @@
 use super::extension::components_of;
 use super::separation::Separation;
 use crate::diagnosis::ErrorFigures;
-use crate::effect::{Dimension, Parameter};
+use crate::effect::{Dimension, Parameter, Stage};
 use crate::fit::{Fit, Status};
 use crate::model::Component;
 
@@ -103,7 +103,7 @@ impl Candidate {
         self.added().all(|component| {
             let spec = component.effect().spec();
             let limits = spec.parameters.iter().filter(|parameter| match parameter.dimension {
-                Dimension::Input => true,
+                Dimension::Input => spec.stage == Stage::Input,
                 Dimension::Output => spec.acts_on_state,
                 _ => false,
             });

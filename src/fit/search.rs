@@ -22,7 +22,7 @@ pub(super) struct Search<'p, 'r> {
 }
 
 /// To see which of several starts leads down.
-pub(super) const ROUGH: Limits = Limits { relative_gain: 3e-3, patience: 12, sure: false };
+pub(super) const ROUGH: Limits = Limits { relative_gain: 3e-3, patience: 16, sure: false };
 
 /// To compare models: what could still be gained is far below the noise.
 pub(super) fn comparing(samples: usize) -> Limits {

@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::bounds::Bounds;
 use super::covariance::Covariance;
 use super::result::Status;
-use crate::effect::{Dimension, Parameter, RecordRange};
+use crate::effect::{Dimension, Parameter, RecordRange, Stage};
 use crate::model::{Component, JointModel};
 
 /// The free parameters of a model and their bounds.
@@ -106,10 +106,12 @@ fn reach(model: &JointModel, index: usize, range: &RecordRange<'_>) -> Bounds {
     const NOISE: f64 = 0.01;
     let all = Bounds { low: f64::NEG_INFINITY, high: f64::INFINITY };
     let Some((component, parameter)) = place(model, index) else { return all };
-    let is_limit = component.effect().spec().acts_on_state;
+    let spec = component.effect().spec();
     match parameter.dimension {
-        Dimension::Input => Bounds { low: -range.input_abs_max, high: range.input_abs_max },
-        Dimension::Output if is_limit => {
+        Dimension::Input if spec.stage == Stage::Input => {
+            Bounds { low: -range.input_abs_max, high: range.input_abs_max }
+        }
+        Dimension::Output if spec.acts_on_state => {
             let noise = NOISE * range.output_span();
             Bounds { low: range.output_min - noise, high: range.output_max + noise }
         }
