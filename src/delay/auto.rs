@@ -154,13 +154,15 @@ impl<'a> Record<'a> {
         let hinge = Settings {
             max_delay: settings.max_delay,
             min_step: settings.min_step,
+            input: settings.input.judged(trials),
+            every_change: settings.every_change,
             first_last: FirstLast::Keep,
             ..Settings::of(Method::HINGE)
         };
         let period = trials.first().map(Trial::period);
-        let alike: Vec<_> = trials.iter().filter(|t| Some(t.period()) == period).collect();
+        let alike = trials.iter().filter(|trial| Some(trial.period()) == period);
         let mut record = Self {
-            outputs: alike.iter().map(|trial| trial.output()).collect(),
+            outputs: alike.map(|trial| trial.output()).collect(),
             period_s: period.map_or(1.0, crate::units::SamplePeriod::seconds),
             delays: Vec::new(),
             holds: Vec::new(),
@@ -169,7 +171,7 @@ impl<'a> Record<'a> {
             noise: NoiseModel::white(),
             innovations: 0.0,
         };
-        for trial in alike {
+        for trial in trials.iter().filter(|trial| Some(trial.period()) == period) {
             // Without a low-pass nothing can fail to fit.
             let Ok(prepared) = Prepared::of(trial, &hinge) else { continue };
             if prepared.steps.is_empty() {

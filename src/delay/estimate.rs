@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::input_motion::InputKind;
 use super::lag::Lag;
 use super::method::{DelayMethod, implementation};
 use super::prepared::Prepared;
@@ -36,23 +37,27 @@ pub fn estimate_joint(
 }
 
 /// Estimates the trials of a joint, which share what the method finds out from all of them.
-pub struct Estimator<'a> {
-    settings: &'a Settings,
+pub struct Estimator {
+    /// Those that were asked for, with what the input is taken for.
+    settings: Settings,
     method: &'static dyn DelayMethod,
     lag: Option<Lag>,
 }
 
-impl<'a> Estimator<'a> {
+impl Estimator {
     /// Looks at all trials of a joint.
     ///
     /// # Errors
     /// [`EstimateError::Settings`] when the settings make no sense.
-    pub fn of(trials: &[Trial], settings: &'a Settings) -> Result<Self, EstimateError> {
+    pub fn of(trials: &[Trial], settings: &Settings) -> Result<Self, EstimateError> {
         settings.check()?;
+        let is_continuous = settings.input.is_continuous(trials);
+        let input = if is_continuous { InputKind::Continuous } else { InputKind::Steps };
+        let settings = Settings { input, ..settings.clone() };
         let method = implementation(settings.method);
         let lag = (settings.method.spec().scope == Scope::Joint).then(|| {
-            let prepared = trials.iter().filter_map(|trial| Prepared::of(trial, settings).ok());
-            method.shared_lag(&prepared.collect::<Vec<_>>(), settings)
+            let prepared = trials.iter().filter_map(|trial| Prepared::of(trial, &settings).ok());
+            method.shared_lag(&prepared.collect::<Vec<_>>(), &settings)
         });
         Ok(Self { settings, method, lag: lag.flatten() })
     }
@@ -62,16 +67,16 @@ impl<'a> Estimator<'a> {
     /// # Errors
     /// [`EstimateError::Filter`] when the filter does not fit this trial.
     pub fn estimate(&self, trial: &Trial) -> Result<TrialEstimate, EstimateError> {
-        let prepared = Prepared::of(trial, self.settings)?;
-        let decisions = self.method.decide(&prepared, self.lag.as_ref(), self.settings);
+        let prepared = Prepared::of(trial, &self.settings)?;
+        let decisions = self.method.decide(&prepared, self.lag.as_ref(), &self.settings);
         let profile = DelayProfile::of(&decisions, trial.len(), self.settings.interpolation);
         let (lag, smoothed) = (self.lag.clone(), prepared.smoothed);
         Ok(TrialEstimate { label: trial.label().to_owned(), smoothed, decisions, profile, lag })
     }
 }
 
-impl fmt::Debug for Estimator<'_> {
+impl fmt::Debug for Estimator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Estimator").field("settings", self.settings).finish_non_exhaustive()
+        f.debug_struct("Estimator").field("settings", &self.settings).finish_non_exhaustive()
     }
 }

@@ -8,6 +8,7 @@
 //! - [`steps`](InputStep): where the input changes
 //! - [`Neutral`], [`Transition`]: the level at which a joint rests, and what kind of step
 //!   leaves it or leads there
+//! - [`InputMotion`]: whether the input is made of steps or moves all the time
 //! - [`Segment`]: which samples belong to a step
 //! - [`Candidates`]: every pair of lines, with its squared error
 //! - [`Check`]: the conditions, with the numbers compared
@@ -36,6 +37,7 @@ mod decision;
 mod estimate;
 mod growing;
 mod hold;
+mod input_motion;
 mod interval;
 mod lag;
 mod margin;
@@ -69,6 +71,7 @@ pub use decision::{Breakpoint, Decision, Verdict};
 pub use estimate::{Estimator, estimate, estimate_joint};
 pub use growing::{Growing, check_growing, final_part};
 pub use hold::level_tolerance;
+pub use input_motion::{InputKind, InputMotion};
 pub use interval::FineDelay;
 pub use lag::{Lag, LagPart};
 pub use margin::{Remedy, RunnerUp};
@@ -83,5 +86,6 @@ pub use step_delay::{StepDelay, step_delays};
 pub use steps::{InputStep, input_steps};
 pub use table::{CurvePoint, DelayCurve, DelayRow, DelayTable, KindDelay};
 pub use transition::Transition;
+pub use steps::{InputStep, input_steps, joint_steps};
 pub use trial_estimate::{EstimateError, TrialEstimate};
 pub use typical::TypicalDelay;

@@ -1,8 +1,9 @@
 //! A trial as a method sees it: its steps, and its output smoothed as asked.
 
+use super::input_motion::InputKind;
 use super::motion::{StepMotion, motions};
 use super::settings::Settings;
-use super::steps::{InputStep, input_steps};
+use super::steps::{InputStep, trial_steps};
 use crate::experiment::Trial;
 use crate::numerics::{FilterError, LowPass};
 use crate::units::SamplePeriod;
@@ -21,7 +22,10 @@ impl<'a> Prepared<'a> {
     pub(super) fn of(trial: &'a Trial, settings: &Settings) -> Result<Self, FilterError> {
         let smooth = |filter: LowPass| filter.smooth(trial.output(), trial.period());
         let smoothed = settings.low_pass_at(trial.period()).map(smooth).transpose()?;
-        let steps = input_steps(trial.input(), settings.min_step);
+        let steps = match settings.input {
+            InputKind::Continuous => Vec::new(),
+            InputKind::Auto | InputKind::Steps => trial_steps(trial, settings),
+        };
         let (raw, period) = (trial.output(), trial.period());
         let motions = motions(raw, &steps, period, settings);
         Ok(Self { raw, smoothed, period, steps, motions })

@@ -1,5 +1,6 @@
 //! What is asked for: a method, and its settings.
 
+use super::input_motion::InputKind;
 use super::spec::Method;
 use crate::numerics::LowPass;
 use crate::units::SamplePeriod;
@@ -78,6 +79,11 @@ pub struct Settings {
     pub paper: bool,
     /// Smallest change of the input that is a step, input units; 0 for any change.
     pub min_step: f64,
+    /// Whether the input is taken as steps or as moving all the time.
+    pub input: InputKind,
+    /// Every change of the input is a step, to the letter of the paper: noise of the input
+    /// counts, and an edge of several samples is several steps.
+    pub every_change: bool,
     /// How `τ_k` goes on between two steps.
     pub interpolation: Interpolation,
     /// Reject a step as `nothing_happened` unless its change of slope is this unlikely to
@@ -111,6 +117,8 @@ impl Settings {
             first_last: FirstLast::Auto,
             paper: false,
             min_step: 0.0,
+            input: InputKind::Auto,
+            every_change: false,
             interpolation: Interpolation::Hold,
             confidence: spec.confidence,
             interval: 0.95,

@@ -3,7 +3,7 @@
 use super::grid::{Factor, Grid};
 use super::run::{LevelSummary, RunDelays, RunSummary};
 use super::step::SweptStep;
-use crate::delay::{InputStep, input_steps};
+use crate::delay::{InputStep, Settings, joint_steps};
 use crate::experiment::Trial;
 
 /// The delays of a joint over all settings.
@@ -22,10 +22,11 @@ impl JointSweep {
     /// run failed. Delays that differ by `tolerance` samples more than each of them allows
     /// still agree.
     pub fn of(grid: &Grid, trials: &[Trial], runs: &[Option<RunDelays>], tolerance: f64) -> Self {
-        let min_step = grid.runs().first().map_or(0.0, |settings| settings.min_step);
+        let settings = grid.runs().first().cloned().unwrap_or_else(Settings::default);
         let ran: Vec<bool> = runs.iter().map(Option::is_some).collect();
-        let steps = trials.iter().flat_map(|trial| {
-            let steps = input_steps(trial.input(), min_step).into_iter().zip(1..);
+        let of_trials = trials.iter().zip(joint_steps(trials, &settings));
+        let steps = of_trials.flat_map(|(trial, steps)| {
+            let steps = steps.into_iter().zip(1..);
             steps.map(move |(step, number)| (trial, step, number))
         });
         let judged = |(index, (trial, step, number)): (usize, (&Trial, InputStep, usize))| {
@@ -69,7 +70,7 @@ impl JointSweep {
 mod tests {
     use super::super::{Base, ReportedDelay};
     use super::*;
-    use crate::delay::{Method, Settings};
+    use crate::delay::Method;
     use crate::numerics::LowPass;
     use crate::units::SamplePeriod;
 

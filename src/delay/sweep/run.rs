@@ -3,7 +3,7 @@
 use super::agreement::ReportedDelay;
 use super::grid::Combination;
 use super::step::{SweptStep, mean};
-use crate::delay::{Lag, Settings, TrialEstimate, input_steps};
+use crate::delay::{Lag, Settings, TrialEstimate, joint_steps};
 use crate::experiment::Trial;
 use crate::numerics::median;
 
@@ -24,14 +24,14 @@ impl RunDelays {
         settings: &Settings,
     ) -> Self {
         let mut found = Self { steps: Vec::new(), lag: None };
-        for (trial, estimate) in trials.iter().zip(estimates) {
+        let steps = joint_steps(trials, settings);
+        for (steps, estimate) in steps.iter().zip(estimates) {
             if let Some(estimate) = estimate {
                 let decisions = estimate.decisions.iter();
                 found.steps.extend(decisions.map(|decision| ReportedDelay::of(decision, settings)));
                 found.lag = found.lag.or_else(|| estimate.lag.clone());
             } else {
-                let steps = input_steps(trial.input(), settings.min_step).len();
-                found.steps.resize(found.steps.len() + steps, None);
+                found.steps.resize(found.steps.len() + steps.len(), None);
             }
         }
         found
