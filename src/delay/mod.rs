@@ -17,6 +17,7 @@
 //! - [`Lag`]: what all steps of a joint follow their dead times with
 //! - [`broken_line`], [`broken_regression`], [`stroke`]: one break in samples, in points, and
 //!   both ends of a stroke
+//! - [`dead_time`]: one dead time of a joint whose input moves all the time
 //! - [`delay_scan`]: one delay for a whole record
 //! - [`Remedy`], [`RunnerUp`]: how near a verdict was
 //! - [`step_delays`]: the delays alone, by the best method
@@ -33,6 +34,7 @@ mod against;
 mod auto;
 mod broken_line;
 mod condition;
+mod dead_time;
 mod decision;
 mod estimate;
 mod growing;
@@ -67,6 +69,8 @@ pub use broken_line::{
     BrokenLine, BrokenRegression, Stroke, broken_line, broken_regression, stroke,
 };
 pub use condition::{Check, Condition, Outcome};
+pub(crate) use dead_time::in_windows;
+pub use dead_time::{Bounds, CurvePoint, DeadTime, Feedback, Finding, Unknown, Window, dead_time};
 pub use decision::{Breakpoint, Decision, Verdict};
 pub use estimate::{Estimator, estimate, estimate_joint};
 pub use growing::{Growing, check_growing, final_part};

@@ -20,6 +20,7 @@ mod statistics;
 #[cfg(test)]
 pub(crate) mod testing;
 
+pub(crate) use autoregression::Autoregression;
 pub use filter::{FilterError, LowPass, MAX_ORDER};
 pub use line::Line;
 pub(crate) use line::RunningLine;

@@ -1,0 +1,85 @@
+//! Whether an input follows the output.
+
+use super::result::Feedback;
+use crate::numerics::{Autoregression, autocovariances, chi_square_tail};
+
+/// Samples after which an input may have answered.
+const LAGS: usize = 20;
+
+/// Longest memory of the input, samples.
+const MEMORY: usize = 20;
+
+/// Of `errors`, what a fit leaves of the output, and the `inputs` of the same samples.
+///
+/// With `r_l` the correlation of an error with what is new in the input `l` samples later,
+/// `n Σ r_l²` is `χ²` distributed where there is no feedback.
+pub(super) fn feedback(errors: &[Vec<f64>], inputs: &[Vec<f64>]) -> Feedback {
+    let news = innovations(inputs);
+    let power = |all: &[Vec<f64>]| all.iter().flatten().map(|x| x * x).sum::<f64>();
+    let scale = (power(errors) * power(&news)).sqrt();
+    let samples: usize = errors.iter().map(Vec::len).sum();
+    let correlation = |lag: usize| {
+        let products = errors.iter().zip(&news).map(|(errors, news)| {
+            errors.iter().zip(news.iter().skip(lag)).map(|(e, w)| e * w).sum::<f64>()
+        });
+        products.sum::<f64>() / scale
+    };
+    let correlations: Vec<f64> = (1..=LAGS).map(correlation).filter(|r| r.is_finite()).collect();
+    let statistic = samples as f64 * correlations.iter().map(|r| r * r).sum::<f64>();
+    Feedback {
+        p_value: chi_square_tail(statistic, LAGS).unwrap_or(1.0),
+        largest: correlations.iter().fold(0.0, |largest, r| largest.max(r.abs())),
+    }
+}
+
+/// What the past of the changes of the inputs does not predict.
+fn innovations(inputs: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let change = |input: &Vec<f64>| {
+        let pairs = input.iter().zip(input.iter().skip(1));
+        std::iter::once(0.0).chain(pairs.map(|(from, to)| to - from)).collect::<Vec<f64>>()
+    };
+    let changes: Vec<Vec<f64>> = inputs.iter().map(change).collect();
+    let samples: usize = changes.iter().map(Vec::len).sum();
+    let memory = Autoregression::of(&autocovariances(&changes, MEMORY.min(samples / 20)), samples);
+    let new = |changes: &Vec<f64>| {
+        let of = |k: usize| {
+            let past = changes.get(..k).unwrap_or_default().iter().rev();
+            let predicted: f64 = memory.coefficients.iter().zip(past).map(|(a, x)| a * x).sum();
+            changes.get(k).map_or(0.0, |change| change - predicted)
+        };
+        (0..changes.len()).map(of).collect()
+    };
+    changes.iter().map(new).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn noise(seed: u32) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / f64::from(1_u32 << 24) - 0.5
+        }
+    }
+
+    #[test]
+    fn an_input_that_follows_the_output_is_told_from_one_that_does_not() {
+        let (mut one, mut other) = (noise(5), noise(11));
+        let errors: Vec<f64> = (0..2000).map(|_| one()).collect();
+        let mut at = 0.0;
+        let free: Vec<f64> = (0..2000)
+            .map(|_| {
+                at = 0.9 * at + other();
+                at
+            })
+            .collect();
+        let follows: Vec<f64> = (0..2000_usize)
+            .map(|k| free[k] + k.checked_sub(3).map_or(0.0, |k| errors[k]))
+            .collect();
+        let of = |input: &[f64]| feedback(&[errors.clone()], &[input.to_vec()]);
+        assert!(!of(&free).is_present(), "{:?}", of(&free));
+        assert!(of(&follows).is_present(), "{:?}", of(&follows));
+    }
+}

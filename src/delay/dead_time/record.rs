@@ -1,0 +1,111 @@
+//! The rows of the regression: changes of the output, and what the input stands for.
+
+use std::ops::Range;
+
+use super::curve::Curve;
+use super::response::{Lags, NUMERATORS, Numerators};
+use crate::experiment::Trial;
+
+/// Shortest period that is worked at: faster logs are averaged over as many samples. A dead
+/// time is found between samples, so that this is no limit to it.
+const SHORTEST_PERIOD_S: f64 = 0.005;
+
+/// Samples of a trial, averaged where they come fast.
+#[derive(Clone, Debug)]
+pub(super) struct Samples {
+    /// Samples of the log in one of these.
+    pub(super) averaged: usize,
+    pub(super) period_s: f64,
+    pub(super) output: Vec<f64>,
+    /// A column per part of the curve.
+    pub(super) columns: Vec<Vec<f64>>,
+}
+
+impl Samples {
+    pub(super) fn of(trial: &Trial, curve: &Curve) -> Self {
+        let period_s = trial.period().seconds();
+        let averaged = averaged(period_s);
+        let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / averaged as f64;
+        let output = trial.output().chunks_exact(averaged);
+        let output = output.map(|chunk| mean(&mut chunk.iter().copied())).collect();
+        let column = |index: usize| {
+            let chunks = trial.input().chunks_exact(averaged);
+            chunks.map(|chunk| mean(&mut chunk.iter().map(|u| curve.at(index, *u)))).collect()
+        };
+        let columns = (0..curve.columns()).map(column).collect();
+        Self { averaged, period_s: period_s * averaged as f64, output, columns }
+    }
+}
+
+/// Samples of the log that are averaged.
+pub(super) fn averaged(period_s: f64) -> usize {
+    /// What a quotient may be below a whole number by rounding.
+    const ROUNDING: f64 = 1e-9;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative")]
+    let samples = (SHORTEST_PERIOD_S / period_s + ROUNDING).min(1e6) as usize;
+    samples.max(1)
+}
+
+/// A trial whose noise was whitened by `w_k = Σ a_i x_(k−i)`, `a_0 = 1`, and the rows of it
+/// that are regressed.
+#[derive(Clone, Debug)]
+pub(super) struct Whitened {
+    /// Changes of the output.
+    pub(super) changes: Vec<f64>,
+    /// What the input stands for.
+    columns: Vec<Vec<f64>>,
+    /// Rows; no delay that is tried reaches back beyond the first sample.
+    pub(super) rows: Vec<Range<usize>>,
+}
+
+impl Whitened {
+    /// With the coefficients `1, a_1, …`; the input is taken to have been held before.
+    pub(super) fn of(samples: &Samples, filter: &[f64], rows: &[Range<usize>]) -> Self {
+        let output = &samples.output;
+        let changes = output.iter().zip(output.iter().skip(1)).map(|(from, to)| to - from);
+        let changes: Vec<f64> = std::iter::once(0.0).chain(changes).collect();
+        Self {
+            changes: whiten(&changes, filter),
+            columns: samples.columns.iter().map(|column| whiten(column, filter)).collect(),
+            rows: rows.to_vec(),
+        }
+    }
+
+    /// Number of columns.
+    pub(super) fn lagged_columns(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// The columns behind the poles of `lags`: `v_k = x_k + (a + b) v_(k−1) − a b v_(k−2)`.
+    pub(super) fn lagged(&self, lags: Lags) -> Vec<Vec<f64>> {
+        let [a, b] = lags.poles();
+        let steady = ((1.0 - a) * (1.0 - b)).recip();
+        let lag = |column: &Vec<f64>| {
+            let start = steady * column.first().copied().unwrap_or(0.0);
+            let (mut before, mut before_that) = (start, start);
+            let next = |value: &f64| {
+                let next = value + (a + b) * before - a * b * before_that;
+                (before_that, before) = (before, next);
+                next
+            };
+            column.iter().map(next).collect()
+        };
+        self.columns.iter().map(lag).collect()
+    }
+}
+
+fn whiten(values: &[f64], filter: &[f64]) -> Vec<f64> {
+    let first = values.first().copied().unwrap_or(0.0);
+    let at = |k: usize, back: usize| {
+        k.checked_sub(back).and_then(|k| values.get(k)).copied().unwrap_or(first)
+    };
+    let value = |k: usize| filter.iter().enumerate().map(|(back, a)| a * at(k, back)).sum();
+    (0..values.len()).map(value).collect()
+}
+
+/// What `numerators` make of a lagged column, at sample `k`.
+pub(super) fn driven(column: &[f64], numerators: &Numerators, k: usize) -> f64 {
+    let past = (k + 1).checked_sub(numerators.first + NUMERATORS);
+    let past = past.and_then(|from| column.get(from..from + NUMERATORS)).unwrap_or_default();
+    past.iter().rev().zip(numerators.values).map(|(value, n)| value * n).sum()
+}

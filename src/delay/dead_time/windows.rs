@@ -1,0 +1,209 @@
+//! The dead time in windows of the record, lags and curve being those of the whole.
+
+use super::record::{Samples, Whitened, driven};
+use super::response::Numerators;
+use super::result::{Bounds, CurvePoint, Window};
+use super::search::Fitted;
+use crate::numerics::chi_square_tail;
+
+/// What windows are estimated with: what the whole record says.
+pub(super) struct Known<'a> {
+    pub(super) best: Fitted,
+    /// Of the curve's columns.
+    pub(super) coefficients: &'a [f64],
+    /// Longest dead time, samples.
+    pub(super) longest: usize,
+    /// Rows of a window.
+    pub(super) rows: usize,
+    /// Threshold of the likelihood, widened as over the record.
+    pub(super) threshold: f64,
+    /// Half the interval that the lags alone give the dead time, samples.
+    pub(super) by_lags: f64,
+    /// Half of the widest interval that is worth a word, samples.
+    pub(super) widest: f64,
+}
+
+/// Parts of a window; the next window begins this many parts later.
+const PARTS: usize = 4;
+const HOP: usize = 2;
+
+/// Dead times tried, per sample.
+const PER_SAMPLE: usize = 2;
+
+/// Sums over one part of a trial.
+#[derive(Clone, Debug)]
+struct Sums {
+    rows: f64,
+    change: f64,
+    squared_change: f64,
+    /// Per dead time: the prediction, its square, and its product with the change.
+    predictions: Vec<[f64; 3]>,
+}
+
+/// A window, and its interval with the lags taken for known.
+pub(super) struct Estimated {
+    pub(super) window: Window,
+    pub(super) alone: Option<Bounds>,
+}
+
+impl Known<'_> {
+    /// The windows of one trial.
+    pub(super) fn windows(&self, number: usize, samples: &Samples, trial: &Whitened) -> Vec<Estimated> {
+        let rows = trial.rows.iter().cloned().reduce(|all, next| all.start..next.end);
+        let Some(rows) = rows.filter(|rows| rows.len() >= self.rows) else { return Vec::new() };
+        let parts = rows.len() * PARTS / self.rows;
+        let border = |part: usize| rows.start + rows.len() * part / parts;
+        let prediction = self.prediction(trial);
+        let sums: Vec<Sums> =
+            (0..parts).map(|p| self.sums(trial, &prediction, border(p), border(p + 1))).collect();
+        let starts = (0..=parts - PARTS).step_by(HOP);
+        let window = |start: usize| {
+            let sum = Sums::total(sums.get(start..start + PARTS).unwrap_or_default());
+            let (curve, alone) = self.estimate(&sum, samples.period_s);
+            let averaged = samples.averaged;
+            let (first, last) = (border(start) * averaged + 1, border(start + PARTS) * averaged);
+            let estimate = alone.map(|bounds| self.with_lags(bounds, samples.period_s));
+            Estimated { window: Window { trial: number, first, last, estimate, curve }, alone }
+        };
+        starts.map(window).collect()
+    }
+
+    /// What the input stands for, behind the lags.
+    fn prediction(&self, trial: &Whitened) -> Vec<f64> {
+        let lagged = trial.lagged(self.best.lags);
+        let mut sum = vec![0.0; trial.changes.len()];
+        for (column, c) in lagged.iter().zip(self.coefficients) {
+            sum.iter_mut().zip(column).for_each(|(slot, value)| *slot += c * value);
+        }
+        sum
+    }
+
+    fn sums(&self, trial: &Whitened, prediction: &[f64], start: usize, end: usize) -> Sums {
+        let changes = trial.changes.get(start..end).unwrap_or_default();
+        let of_delay = |k: usize| {
+            let delay = k as f64 / PER_SAMPLE as f64;
+            let numerators = Numerators::of(self.best.structure, delay, self.best.lags);
+            let mut sums = [0.0; 3];
+            for (change, k) in changes.iter().zip(start..) {
+                let x = driven(prediction, &numerators, k);
+                sums[0] += x;
+                sums[1] += x * x;
+                sums[2] += x * change;
+            }
+            sums
+        };
+        Sums {
+            rows: changes.len() as f64,
+            change: changes.iter().sum(),
+            squared_change: changes.iter().map(|change| change * change).sum(),
+            predictions: (0..=self.longest * PER_SAMPLE).map(of_delay).collect(),
+        }
+    }
+
+    /// The error of each dead time, and the dead time with its interval where one stands out.
+    fn estimate(&self, sums: &Sums, period_s: f64) -> (Vec<CurvePoint>, Option<Bounds>) {
+        let fits: Vec<(f64, f64)> = sums.predictions.iter().map(|p| sums.fit(p)).collect();
+        let errors: Vec<f64> = fits.iter().map(|(error, _)| *error).collect();
+        let best = (0..errors.len()).min_by(|a, b| errors[*a].total_cmp(&errors[*b]));
+        let Some(best) = best.filter(|best| errors[*best] > 0.0) else { return Default::default() };
+        let least = errors[best];
+        let likelihood = |index: usize| sums.rows * (errors[index] / least).ln();
+        let curve = errors.iter().enumerate().map(|(index, error)| CurvePoint {
+            delay_s: index as f64 / PER_SAMPLE as f64 * period_s,
+            error: (error / least).sqrt(),
+        });
+        let end = |direction: bool| {
+            let mut inside = best;
+            loop {
+                let next = if direction { inside + 1 } else { inside.checked_sub(1)? };
+                errors.get(next)?;
+                if likelihood(next) > self.threshold {
+                    let (from, to) = (likelihood(inside).sqrt(), likelihood(next).sqrt());
+                    let part = (self.threshold.sqrt() - from) / (to - from);
+                    let sign = if direction { part } else { -part };
+                    return Some((inside as f64 + sign) / PER_SAMPLE as f64);
+                }
+                inside = next;
+            }
+        };
+        let (low, high) = (end(false), end(true));
+        let value = vertex(&errors, best) / PER_SAMPLE as f64;
+        let bounds = high.map(|high| (value, low.unwrap_or(0.0), high)).filter(|(_, low, high)| {
+            fits[best].1 > 0.0 && 0.5 * (high - low) <= self.widest
+        });
+        let seconds = |(value, low, high): (f64, f64, f64)| Bounds {
+            value_s: value * period_s,
+            low_s: low.min(value) * period_s,
+            high_s: high.max(value) * period_s,
+        };
+        (curve.collect(), bounds.map(seconds))
+    }
+
+    /// The interval with what the lags add to it.
+    fn with_lags(&self, alone: Bounds, period_s: f64) -> Bounds {
+        let wider = |side: f64| side.hypot(self.by_lags * period_s);
+        let value_s = alone.value_s;
+        Bounds {
+            value_s,
+            low_s: (value_s - wider(value_s - alone.low_s)).max(0.0),
+            high_s: value_s + wider(alone.high_s - value_s),
+        }
+    }
+}
+
+/// Where the parabola through the least value and its neighbours is least.
+fn vertex(errors: &[f64], best: usize) -> f64 {
+    let sides = best.checked_sub(1).and_then(|b| errors.get(b)).zip(errors.get(best + 1));
+    let shift = sides.zip(errors.get(best)).map_or(0.0, |((before, after), least)| {
+        let bend = before - 2.0 * least + after;
+        if bend > 0.0 { 0.5 * (before - after) / bend } else { 0.0 }
+    });
+    best as f64 + shift
+}
+
+impl Sums {
+    fn total(parts: &[Self]) -> Self {
+        let delays = parts.first().map_or(0, |part| part.predictions.len());
+        let sum = |of: fn(&Self) -> f64| parts.iter().map(of).sum::<f64>();
+        let mut predictions = vec![[0.0; 3]; delays];
+        for part in parts {
+            for (slots, values) in predictions.iter_mut().zip(&part.predictions) {
+                slots.iter_mut().zip(values).for_each(|(slot, value)| *slot += value);
+            }
+        }
+        Self {
+            rows: sum(|part| part.rows),
+            change: sum(|part| part.change),
+            squared_change: sum(|part| part.squared_change),
+            predictions,
+        }
+    }
+
+    /// The squared error of a constant and a gain on a prediction, and the gain.
+    fn fit(&self, [sum, square, product]: &[f64; 3]) -> (f64, f64) {
+        let rows = self.rows.max(1.0);
+        let spread = square - sum * sum / rows;
+        let together = product - sum * self.change / rows;
+        let total = self.squared_change - self.change * self.change / rows;
+        if spread <= 1e-12 * square {
+            return (total, 0.0);
+        }
+        ((total - together * together / spread).max(0.0), together / spread)
+    }
+}
+
+/// The p-value of dead times so far apart in windows that share no row, were it the same in all;
+/// `quantile` is by how many standard deviations an interval reaches to either side.
+pub(super) fn same_in_all(windows: &[Estimated], quantile: f64) -> Option<f64> {
+    let apart = windows.iter().enumerate().filter(|(number, _)| number % HOP == 0);
+    let known = apart.filter_map(|(_, estimated)| {
+        let Bounds { value_s, low_s, high_s } = estimated.alone?;
+        let deviation = 0.5 * (high_s - low_s) / quantile;
+        (deviation > 0.0 && low_s > 0.0).then_some((value_s, deviation.powi(-2)))
+    });
+    let known: Vec<(f64, f64)> = known.collect();
+    let weight: f64 = known.iter().map(|(_, weight)| weight).sum();
+    let mean = known.iter().map(|(value, weight)| value * weight).sum::<f64>() / weight;
+    let spread = known.iter().map(|(value, weight)| weight * (value - mean).powi(2)).sum();
+    chi_square_tail(spread, known.len().checked_sub(1).filter(|freedom| *freedom > 0)?)
+}
