@@ -77,7 +77,9 @@ const PLANTS: [Plant; 10] = [
 /// A stick that somebody moves: sines that come and go, rests in between.
 fn joystick(random: &mut ChaCha8Rng, samples: usize, plant: &Plant) -> Vec<f64> {
     let waves: Vec<(f64, f64)> = (0..6)
-        .map(|k| (0.08 * 1.7_f64.powi(k) * random.random_range(0.8..1.25), random.random_range(0.0..6.3)))
+        .map(|k| {
+            (0.08 * 1.7_f64.powi(k) * random.random_range(0.8..1.25), random.random_range(0.0..6.3))
+        })
         .collect();
     let rest = random.random_range(0.3..1.0);
     let stick = |k: usize| {

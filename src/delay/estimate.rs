@@ -53,7 +53,9 @@ impl Estimator {
         settings.check()?;
         let is_continuous = settings.input.is_continuous(trials);
         let input = if is_continuous { InputKind::Continuous } else { InputKind::Steps };
-        let settings = Settings { input, ..settings.clone() };
+        // Without steps nothing is smoothed: no filter has to fit.
+        let low_pass = settings.low_pass.filter(|_| !is_continuous);
+        let settings = Settings { input, low_pass, ..settings.clone() };
         let method = implementation(settings.method);
         let lag = (settings.method.spec().scope == Scope::Joint).then(|| {
             let prepared = trials.iter().filter_map(|trial| Prepared::of(trial, &settings).ok());

@@ -202,7 +202,8 @@ fn holds(input: &[f64], tolerance: f64, shortest: usize) -> Vec<Hold> {
         let samples = stays.count().max(1);
         if samples >= shortest {
             let level = rest.iter().take(samples).sum::<f64>() / samples as f64;
-            let level = if tolerance > 0.0 { level } else { rest.first().copied().unwrap_or(level) };
+            let level =
+                if tolerance > 0.0 { level } else { rest.first().copied().unwrap_or(level) };
             holds.push(Hold { start, end: start + samples, level });
             start += samples;
         } else {
@@ -232,9 +233,8 @@ mod tests {
     const LEVELS: [f64; 7] = [0.0, 1.0, -2.0, 0.5, 2.0, -1.0, -0.5];
 
     fn motion(period_s: f64, input: impl Fn(f64) -> f64) -> InputMotion {
-        let input: Vec<f64> = (0..ceil_to_index(40.0 / period_s))
-            .map(|k| input(k as f64 * period_s))
-            .collect();
+        let input: Vec<f64> =
+            (0..ceil_to_index(40.0 / period_s)).map(|k| input(k as f64 * period_s)).collect();
         let (period, output) = (SamplePeriod::from_seconds(period_s).unwrap(), input.clone());
         InputMotion::of(&[Trial::new("1", 0.0, period, input, output).unwrap()])
     }
@@ -258,16 +258,15 @@ mod tests {
     fn steps_stay_steps_at_any_rate_with_noise_dither_and_ramped_edges() {
         for period_s in [0.1, 0.02, 0.01, 0.001] {
             let dither = |t: f64| 0.02 * (t / period_s * 2.1).sin().signum();
-            let inputs: [&dyn Fn(f64) -> f64; 4] = [
-                &steps,
-                &|t| steps(t) + 0.05 * noise(t),
-                &|t| steps(t) + dither(t),
-                &|t| {
+            let inputs: [&dyn Fn(f64) -> f64; 4] =
+                [&steps, &|t| steps(t) + 0.05 * noise(t), &|t| steps(t) + dither(t), &|t| {
                     let edge = 2.0 * period_s;
-                    [0.0, 0.5, 1.0].iter().map(|part| steps((t - part * edge).max(0.0))).sum::<f64>()
+                    [0.0, 0.5, 1.0]
+                        .iter()
+                        .map(|part| steps((t - part * edge).max(0.0)))
+                        .sum::<f64>()
                         / 3.0
-                },
-            ];
+                }];
             for (number, input) in inputs.iter().enumerate() {
                 let found = motion(period_s, input);
                 assert!(!found.is_continuous(), "{period_s} {number} {found:?}");
@@ -305,7 +304,8 @@ mod tests {
     #[test]
     fn levels_that_are_exact_have_no_noise() {
         assert!(tolerance(&[0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 1.0]) == 0.0);
-        let flickers: Vec<f64> = (0..100).map(|k| f64::from(k / 50) + 0.01 * f64::from(k % 2)).collect();
+        let flickers: Vec<f64> =
+            (0..100).map(|k| f64::from(k / 50) + 0.01 * f64::from(k % 2)).collect();
         assert!((tolerance(&flickers) - 0.015).abs() < 1e-12);
     }
 }

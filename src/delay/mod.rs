@@ -69,7 +69,6 @@ pub use broken_line::{
     BrokenLine, BrokenRegression, Stroke, broken_line, broken_regression, stroke,
 };
 pub use condition::{Check, Condition, Outcome};
-pub(crate) use dead_time::in_windows;
 pub use dead_time::{Bounds, CurvePoint, DeadTime, Feedback, Finding, Unknown, Window, dead_time};
 pub use decision::{Breakpoint, Decision, Verdict};
 pub use estimate::{Estimator, estimate, estimate_joint};
@@ -87,9 +86,8 @@ pub use segment::Segment;
 pub use settings::{FirstLast, Interpolation, Settings, SettingsError};
 pub use spec::{Method, MethodSpec, Scope};
 pub use step_delay::{StepDelay, step_delays};
-pub use steps::{InputStep, input_steps};
+pub use steps::{InputStep, input_steps, joint_steps};
 pub use table::{CurvePoint, DelayCurve, DelayRow, DelayTable, KindDelay};
 pub use transition::Transition;
-pub use steps::{InputStep, input_steps, joint_steps};
 pub use trial_estimate::{EstimateError, TrialEstimate};
 pub use typical::TypicalDelay;

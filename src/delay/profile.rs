@@ -1,7 +1,9 @@
 //! The delay of every sample: `τ_k`.
 
+use super::dead_time::Window;
 use super::decision::Decision;
 use super::settings::Interpolation;
+use crate::experiment::Trial;
 
 /// The delay of every sample in samples; empty where none was recorded.
 #[derive(Clone, Debug)]
@@ -34,6 +36,20 @@ impl DelayProfile {
             }
         }
         Self { tau }
+    }
+
+    /// The profile of the trial with this `number`, from 0, of a joint whose dead time was
+    /// estimated in `windows`: that of the window whose middle is nearest.
+    pub(crate) fn of_windows(windows: &[Window], number: usize, trial: &Trial) -> Self {
+        let own: Vec<&Window> = windows.iter().filter(|window| window.trial == number).collect();
+        let period_s = trial.period().seconds();
+        let of = |sample: usize| {
+            let inside = own.iter().filter(|w| (w.first..=w.last).contains(&sample));
+            let nearest = inside.min_by_key(|w| (w.first + w.last).abs_diff(2 * sample));
+            let bounds = nearest.and_then(|window| window.estimate);
+            bounds.map_or(f64::NAN, |bounds| bounds.value_s / period_s)
+        };
+        Self { tau: (1..=trial.len()).map(of).collect() }
     }
 
     /// `τ_k` in samples at the sample number `k`, counted from 1.

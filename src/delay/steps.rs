@@ -127,8 +127,7 @@ mod tests {
     fn noise_is_no_step() {
         let wild = |k: f64| (k * 12.9898 + 0.3).sin() * 43_758.545;
         let noise = |k: u32| wild(f64::from(k)).fract() - 0.5;
-        let noisy: Vec<f64> =
-            (0..200).map(|k| f64::from(k / 50) + 0.02 * noise(k)).collect();
+        let noisy: Vec<f64> = (0..200).map(|k| f64::from(k / 50) + 0.02 * noise(k)).collect();
         let found = steps(0.01, &noisy);
         assert_eq!(found.iter().map(|(sample, ..)| *sample).collect::<Vec<_>>(), [51, 101, 151]);
     }

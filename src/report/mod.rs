@@ -5,6 +5,7 @@ mod against;
 mod columns;
 mod compare;
 mod conclusion;
+mod dead_time;
 mod decisions;
 mod delay_table;
 mod delays;
@@ -36,6 +37,7 @@ pub(crate) use against::variable_text;
 pub(crate) use columns::columns_table;
 pub use compare::ComparedJoint;
 pub(crate) use compare::compare_table;
+pub(crate) use dead_time::{dead_time_sentences, input_note};
 pub use decisions::DecisionRow;
 pub use decisions::decision_rows;
 pub(crate) use decisions::{

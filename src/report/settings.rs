@@ -37,6 +37,7 @@ pub(crate) fn settings_rows(settings: &Settings) -> Vec<(&'static str, String)> 
             .to_owned(),
         ),
         ("smallest input step", settings.min_step.to_string()),
+        ("input", format!("{:?}", settings.input).to_lowercase()),
         ("τ between steps", format!("{:?}", settings.interpolation).to_lowercase()),
         ("confidence of a reaction", settings.confidence.map_or_else(not_tested, percent)),
         ("interval of a delay", percent(settings.interval)),

@@ -18,6 +18,8 @@ pub(crate) struct JointSummary {
     pub(crate) delay_samples: Option<DelayRange>,
     /// The accepted delays in seconds.
     pub(crate) delay_s: Option<DelayRange>,
+    /// Whether the input moves all the time, so that there are no steps.
+    pub(crate) is_continuous: bool,
 }
 
 /// The least, the middle and the greatest of the accepted delays.
@@ -59,6 +61,7 @@ impl JointSummary {
             rejected: Condition::ALL.map(count).into_iter().filter(|(_, n)| *n > 0).collect(),
             delay_samples: DelayRange::of(samples.collect()),
             delay_s: DelayRange::of(seconds.collect()),
+            is_continuous: joint.estimate.dead_time.is_some(),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Tables for the terminal.
 
 use super::text_table::TextTable;
-use super::{DelayRange, EstimatedJoint, JointSummary};
+use super::{DelayRange, EstimatedJoint, JointSummary, dead_time_sentences};
 use crate::delay::{Automatic, Chosen, Condition, FirstLast, Interpolation, LagPart, Settings};
 use crate::numerics::LowPass;
 use crate::wording::{measure, percent, rounded};
@@ -12,11 +12,18 @@ pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings)
     for joint in joints {
         table.row(summary_cells(&joint.joint.name, &JointSummary::of(*joint)));
     }
+    let dead_times: String = joints.iter().flat_map(dead_time_lines).collect();
     let lags: String = joints.iter().filter_map(lag_line).collect();
     let chosen: String = joints.iter().filter_map(chosen_line).collect();
     let automatic = joints.iter().find_map(|joint| joint.estimate.chosen);
     let automatic = automatic.map(|chosen| chosen.automatic).unwrap_or_default();
-    format!("{table}\n{lags}{chosen}{}\n", settings_line(settings, automatic))
+    format!("{table}\n{dead_times}{lags}{chosen}{}\n", settings_line(settings, automatic))
+}
+
+/// What is said of the dead time of a joint, a line each.
+fn dead_time_lines<'a>(joint: &EstimatedJoint<'a>) -> impl Iterator<Item = String> + use<'a> {
+    let name = joint.joint.name.as_str();
+    dead_time_sentences(joint).into_iter().map(move |sentence| format!("{name}: {sentence}\n"))
 }
 
 /// The settings that were chosen for a joint, and why, where any were.
@@ -93,6 +100,7 @@ pub(crate) fn summary_cells(name: &str, summary: &JointSummary) -> [String; 7] {
         _ => format!("{accepted} ({})", percent(*accepted as f64 / *steps as f64)),
     };
     let why = match (steps, rejected.is_empty()) {
+        (0, _) if summary.is_continuous => "the input moves all the time".to_owned(),
         (0, _) => "the input never changes".to_owned(),
         (_, true) => "none".to_owned(),
         (_, false) => reasons(rejected),

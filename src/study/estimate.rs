@@ -1,6 +1,9 @@
 //! The delays of all joints: which settings are chosen for each, and when a joint fails.
 
-use crate::delay::{Automatic, Chosen, EstimateError, Estimator, Settings, TrialEstimate, choose};
+use crate::delay::{
+    Automatic, Chosen, DeadTime, DelayProfile, EstimateError, Estimator, InputMotion, Settings,
+    TrialEstimate, choose, dead_time,
+};
 use crate::experiment::{Joint, Trial};
 use crate::explain::Workers;
 
@@ -13,6 +16,11 @@ pub struct JointEstimate {
     pub settings: Settings,
     /// Which of them were chosen from the record, and from what.
     pub chosen: Option<Chosen>,
+    /// How the input moves.
+    pub motion: InputMotion,
+    /// The dead time over the record, instead of one per step, where the input moves all the
+    /// time.
+    pub dead_time: Option<DeadTime>,
 }
 
 impl JointEstimate {
@@ -61,7 +69,29 @@ pub fn estimate_joints_with(
     workers.map(joints, one_joint)
 }
 
-pub(super) fn estimate_one(
+/// Estimates one joint, and its dead time where its input moves all the time.
+fn estimate_one(
+    joint: &Joint,
+    settings: &Settings,
+    done: &(impl Fn() + Sync),
+    workers: &impl Workers,
+) -> Result<JointEstimate, EstimateError> {
+    let mut estimate = estimate_steps(joint, settings, done, workers)?;
+    if settings.input.is_continuous(&joint.trials) {
+        let found = dead_time(&joint.trials, settings);
+        let trials = joint.trials.iter().zip(&mut estimate.trials).enumerate();
+        for (number, (trial, estimate)) in trials {
+            if let Ok(estimate) = estimate {
+                estimate.profile = DelayProfile::of_windows(&found.windows, number, trial);
+            }
+        }
+        estimate.dead_time = Some(found);
+    }
+    Ok(estimate)
+}
+
+/// Estimates the delay of every step of one joint.
+pub(super) fn estimate_steps(
     joint: &Joint,
     settings: &Settings,
     done: &(impl Fn() + Sync),
@@ -81,6 +111,12 @@ pub(super) fn estimate_one(
     let trials = workers.map(&joint.trials, one_trial);
     match trials.first() {
         Some(Err(first)) if trials.iter().all(Result::is_err) => Err(first.clone()),
-        _ => Ok(JointEstimate { trials, settings: settings.clone(), chosen: None }),
+        _ => Ok(JointEstimate {
+            trials,
+            settings: settings.clone(),
+            chosen: None,
+            motion: InputMotion::of(&joint.trials),
+            dead_time: None,
+        }),
     }
 }

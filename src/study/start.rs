@@ -26,7 +26,8 @@ pub(super) fn starts(
     }
 }
 
-/// The median of the accepted delays of a joint in seconds; 0 without any.
+/// The median of the accepted delays of a joint in seconds, or its dead time over the record;
+/// 0 without any.
 pub(super) fn typical_delay_s(
     (joint, estimate): (&Joint, &Result<JointEstimate, EstimateError>),
 ) -> f64 {
@@ -38,7 +39,8 @@ pub(super) fn typical_delay_s(
         accepted.map(move |samples| samples * period_s)
     });
     let delays: Vec<f64> = delays.collect();
-    median(&delays).unwrap_or(0.0)
+    let over_record = || Some(estimate.as_ref().ok()?.dead_time.as_ref()?.bounds()?.value_s);
+    median(&delays).or_else(over_record).unwrap_or(0.0)
 }
 
 /// The best of the fits from several starts.

@@ -1,6 +1,6 @@
 //! The delays of all joints with every setting of a grid.
 
-use super::estimate::estimate_one;
+use super::estimate::estimate_steps;
 use crate::delay::EstimateError;
 use crate::delay::Settings;
 use crate::delay::sweep::{Grid, JointSweep, RunDelays};
@@ -28,7 +28,7 @@ pub fn sweep_joints(
     workers: &impl Workers,
 ) -> Vec<Result<SweptJoint, EstimateError>> {
     let one_run = |joint: &Joint, settings: &Settings| {
-        let estimate = estimate_one(joint, settings, &|| (), workers);
+        let estimate = estimate_steps(joint, settings, &|| (), workers);
         done();
         let estimate = estimate?;
         let trials = estimate.trials.iter().map(|trial| trial.as_ref().ok());

@@ -1,7 +1,7 @@
 //! The settings that every command takes whose delays are asked for.
 
 use super::number::{at_least_one, probability, threshold};
-use crate::delay::{FirstLast, Method, MethodSpec, Settings};
+use crate::delay::{FirstLast, InputKind, Method, MethodSpec, Settings};
 use crate::numerics::LowPass;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
@@ -59,6 +59,29 @@ pub(crate) struct ConditionArgs {
     /// that was measured
     #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = threshold, allow_negative_numbers = true)]
     min_step: f64,
+
+    /// Take the input as steps, each of which has a delay, or as moving all the time, with one
+    /// dead time over the record; `auto` decides it for each joint from the record
+    #[arg(long, value_name = "KIND", value_enum, default_value_t = Input::Auto)]
+    input: Input,
+}
+
+/// How inputs are taken.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Input {
+    Auto,
+    Steps,
+    Continuous,
+}
+
+impl From<Input> for InputKind {
+    fn from(input: Input) -> Self {
+        match input {
+            Input::Auto => Self::Auto,
+            Input::Steps => Self::Steps,
+            Input::Continuous => Self::Continuous,
+        }
+    }
 }
 
 /// The methods that say so of themselves.
@@ -170,6 +193,7 @@ impl ConditionArgs {
             first_last: self.first_last(),
             paper: self.paper,
             min_step: self.min_step,
+            input: self.input.into(),
             confidence,
             interval: self.interval,
             ..usual

@@ -3,7 +3,7 @@
 use crate::cli::failure::{read_failures, said};
 use crate::delay::{Condition, EstimateError};
 use crate::experiment::{Experiment, Joint, Trial};
-use crate::report::{EstimatedJoint, JointSummary};
+use crate::report::{EstimatedJoint, JointSummary, input_note};
 use crate::study::JointEstimate;
 
 /// The delays of each joint.
@@ -47,8 +47,9 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
     for EstimatedJoint { joint, estimate } in joints {
         let name = &joint.name;
         let steps: usize = estimate.estimated().map(|trial| trial.decisions.len()).sum();
-        let samples: usize = joint.trials.iter().map(Trial::len).sum();
-        notes.extend(unsmoothed(joint, estimate));
+        if estimate.dead_time.is_none() {
+            notes.extend(unsmoothed(joint, estimate));
+        }
         let summary = JointSummary::of(EstimatedJoint { joint, estimate });
         if steps > 0 && summary.rejected == [(Condition::FirstOrLast, steps)] {
             notes.push(format!(
@@ -56,12 +57,7 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
                  `--keep-first-last` judges them like the others"
             ));
         }
-        if 2 * steps > samples {
-            notes.push(format!(
-                "joint `{name}`: the input changes at {steps} of {samples} samples, so it is \
-                 hardly held; `--min-step X` counts only changes above X"
-            ));
-        }
+        notes.extend(input_note(&EstimatedJoint { joint, estimate }));
     }
     notes
 }

@@ -7,7 +7,7 @@ use super::feedback::feedback;
 use super::profile::Profile;
 use super::record::{Samples, Whitened, averaged};
 use super::response::NUMERATORS;
-use super::result::{Bounds, CurvePoint, DeadTime, Feedback, Finding, Unknown, Window};
+use super::result::{Bounds, CurvePoint, DeadTime, Feedback, Finding, Unknown};
 use super::search::{Fitted, grid, least, profiles};
 use super::uncertainty::{Assessed, PARTS, errors};
 use super::windows::{Estimated, Known, same_in_all};
@@ -54,7 +54,8 @@ impl Record {
     fn of(trials: &[Trial], settings: &Settings) -> Option<Self> {
         let period = trials.iter().max_by_key(|trial| trial.len())?.period();
         let alike = || trials.iter().enumerate().filter(move |(_, trial)| trial.period() == period);
-        let curve = Curve::of(alike().map(|(_, trial)| trial.input()).collect::<Vec<_>>().into_iter())?;
+        let curve =
+            Curve::of(alike().map(|(_, trial)| trial.input()).collect::<Vec<_>>().into_iter())?;
         let samples: Vec<(usize, Samples)> =
             alike().map(|(number, trial)| (number, Samples::of(trial, &curve))).collect();
         let most = samples.iter().map(|(_, samples)| samples.output.len()).max()?;
@@ -79,7 +80,8 @@ impl Record {
         let every = total.div_ceil(enough).max(1);
         let mut chunk = 0;
         let taken = |rows: &Range<usize>| {
-            let chunks = rows.clone().step_by(CHUNK).map(|start| start..rows.end.min(start + CHUNK));
+            let chunks =
+                rows.clone().step_by(CHUNK).map(|start| start..rows.end.min(start + CHUNK));
             let taken = chunks.filter(|_| {
                 chunk += 1;
                 (chunk - 1) % every == 0
@@ -178,7 +180,10 @@ fn noise(record: &Record, rows: &[Vec<Range<usize>>]) -> (Vec<f64>, Option<Fitte
     for _ in 0..TURNS {
         let trials = record.whitened(&filter, rows);
         let found = profiles(&trials, record.longest, &lags);
-        best = found.iter().filter_map(|profile| least(profile)).min_by(|a, b| a.error.total_cmp(&b.error));
+        best = found
+            .iter()
+            .filter_map(|profile| least(profile))
+            .min_by(|a, b| a.error.total_cmp(&b.error));
         let Some(best) = best.filter(|best| best.error.is_finite()) else { break };
         let left = errors(&plain, best);
         let samples: usize = left.iter().map(Vec::len).sum();
@@ -208,7 +213,8 @@ impl Solved<'_> {
         let threshold = quantile * quantile * assessed.widened;
         let (low, high) = profile.ends(best, best.error * (threshold / rows).exp());
         let explained = self.explained(best);
-        let finding = self.finding(best, (low, high), rows * -(1.0 - explained).ln() / assessed.widened);
+        let finding =
+            self.finding(best, (low, high), rows * -(1.0 - explained).ln() / assessed.widened);
         let mut found = DeadTime {
             finding,
             lag_s: Some(best.lags.mean() * record.period_s),
@@ -275,7 +281,9 @@ impl Solved<'_> {
     fn inputs(&self) -> Vec<Vec<f64>> {
         let rows = self.record.rows(ENOUGH);
         let of_trial = |(input, rows): (&Vec<f64>, Vec<Range<usize>>)| {
-            rows.into_iter().map(|rows| input.get(rows).unwrap_or_default().to_vec()).collect::<Vec<_>>()
+            rows.into_iter()
+                .map(|rows| input.get(rows).unwrap_or_default().to_vec())
+                .collect::<Vec<_>>()
         };
         self.record.inputs.iter().zip(rows).flat_map(of_trial).collect()
     }
@@ -310,19 +318,4 @@ impl Solved<'_> {
         };
         all.iter().map(point).filter(|point| point.error.is_finite()).collect()
     }
-}
-
-/// The dead time of every sample of a trial, in samples of the log: that of the window whose
-/// middle is nearest.
-pub(crate) fn in_windows(windows: &[Window], trial: usize, trial_samples: &Trial) -> Vec<Option<f64>> {
-    let own: Vec<&Window> = windows.iter().filter(|window| window.trial == trial).collect();
-    let middle = |window: &Window| 0.5 * (window.first + window.last) as f64;
-    let period_s = trial_samples.period().seconds();
-    let of = |sample: usize| {
-        let inside = own.iter().filter(|w| (w.first..=w.last).contains(&sample));
-        let distance = |window: &Window| (middle(window) - sample as f64).abs();
-        let nearest = inside.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-        Some(nearest.estimate?.value_s / period_s)
-    };
-    (1..=trial_samples.len()).map(of).collect()
 }

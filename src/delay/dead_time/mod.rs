@@ -20,5 +20,4 @@ mod uncertainty;
 mod windows;
 
 pub use fit::dead_time;
-pub(crate) use fit::in_windows;
 pub use result::{Bounds, CurvePoint, DeadTime, Feedback, Finding, Unknown, Window};

@@ -162,7 +162,9 @@ pub(super) fn error_of(trials: &[Whitened], numerators: &Numerators, lags: Lags)
     let columns = trials.first().map_or(0, Whitened::lagged_columns);
     let lagged: Vec<_> = trials.iter().map(|trial| (trial, trial.lagged(lags))).collect();
     let rows = || {
-        lagged.iter().flat_map(|(trial, columns)| trial.rows.iter().map(move |r| (trial, columns, r)))
+        lagged
+            .iter()
+            .flat_map(|(trial, columns)| trial.rows.iter().map(move |r| (trial, columns, r)))
     };
     let samples: usize = rows().map(|(_, _, rows)| rows.len()).sum();
     let mut all = vec![1.0; samples];

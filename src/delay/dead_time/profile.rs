@@ -28,16 +28,16 @@ impl<'a> Profile<'a> {
     /// The fit with the best lags at `delay`.
     fn at(&mut self, delay: f64) -> Option<Fitted> {
         let distance = |fitted: &Fitted| (fitted.delay - delay).abs();
-        let nearest = |all: &[Fitted]| {
-            all.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)))
-        };
+        let nearest =
+            |all: &[Fitted]| all.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         if let Some(known) = nearest(&self.refined).filter(|one| distance(one) < 1e-9) {
             return Some(known);
         }
         let starts = [nearest(self.coarse), nearest(&self.refined)];
-        let tried = starts.into_iter().flatten().map(|start| {
-            at_lags(self.trials, Fitted { delay, ..start }, start.lags)
-        });
+        let tried = starts
+            .into_iter()
+            .flatten()
+            .map(|start| at_lags(self.trials, Fitted { delay, ..start }, start.lags));
         let best = tried.min_by(|a, b| a.error.total_cmp(&b.error))?;
         let best = with_best_lags(self.trials, best, self.longest_lag);
         let place = self.refined.partition_point(|one| one.delay < delay);

@@ -198,7 +198,10 @@ mod tests {
                 let found = changes(structure, delay, lags, &input);
                 let fine = by_steps(structure, delay, lags, &input);
                 for (k, (found, fine)) in found.iter().zip(&fine).enumerate() {
-                    assert!((found - fine).abs() < 3e-3, "{structure:?} {delay} {k} {found} {fine}");
+                    assert!(
+                        (found - fine).abs() < 3e-3,
+                        "{structure:?} {delay} {k} {found} {fine}"
+                    );
                 }
             }
         }

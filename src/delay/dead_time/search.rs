@@ -22,7 +22,8 @@ pub(super) fn profiles(trials: &[Whitened], longest: usize, lags: &[Lags]) -> Ve
         (0..=longest * PER_SAMPLE).map(|k| k as f64 / PER_SAMPLE as f64).collect();
     let nothing = Lags::new(NO_LAG, NO_LAG);
     let unknown = |structure| {
-        let of = |delay: &f64| Fitted { structure, delay: *delay, lags: nothing, error: f64::INFINITY };
+        let of =
+            |delay: &f64| Fitted { structure, delay: *delay, lags: nothing, error: f64::INFINITY };
         delays.iter().map(of).collect::<Vec<_>>()
     };
     let mut found = Structure::ALL.map(unknown);
@@ -61,7 +62,13 @@ pub(super) fn with_best_lags(trials: &[Whitened], start: Fitted, longest: f64) -
     const FIRST: f64 = 0.24;
     const LAST: f64 = 0.05;
     const DIRECTIONS: [(f64, f64); 8] = [
-        (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0),
+        (1.0, 0.0),
+        (-1.0, 0.0),
+        (0.0, 1.0),
+        (0.0, -1.0),
+        (1.0, -1.0),
+        (-1.0, 1.0),
+        (1.0, 1.0),
         (-1.0, -1.0),
     ];
     let mut best = at_lags(trials, start, start.lags);

@@ -121,9 +121,9 @@ fn sensitivities_to_lags(best: Fitted) -> [(Fitted, Fitted); 2] {
 }
 
 fn combined(columns: &[Rows], coefficients: &[f64]) -> Rows {
-    let mut sum: Rows = columns.first().map_or_else(Vec::new, |column| {
-        column.iter().map(|rows| vec![0.0; rows.len()]).collect()
-    });
+    let mut sum: Rows = columns
+        .first()
+        .map_or_else(Vec::new, |column| column.iter().map(|rows| vec![0.0; rows.len()]).collect());
     for (column, c) in columns.iter().zip(coefficients) {
         let slots = sum.iter_mut().flatten().zip(column.iter().flatten());
         slots.for_each(|(slot, value)| *slot += c * value);

@@ -48,7 +48,12 @@ pub(super) struct Estimated {
 
 impl Known<'_> {
     /// The windows of one trial.
-    pub(super) fn windows(&self, number: usize, samples: &Samples, trial: &Whitened) -> Vec<Estimated> {
+    pub(super) fn windows(
+        &self,
+        number: usize,
+        samples: &Samples,
+        trial: &Whitened,
+    ) -> Vec<Estimated> {
         let rows = trial.rows.iter().cloned().reduce(|all, next| all.start..next.end);
         let Some(rows) = rows.filter(|rows| rows.len() >= self.rows) else { return Vec::new() };
         let parts = rows.len() * PARTS / self.rows;
@@ -128,9 +133,9 @@ impl Known<'_> {
         };
         let (low, high) = (end(false), end(true));
         let value = vertex(&errors, best) / PER_SAMPLE as f64;
-        let bounds = high.map(|high| (value, low.unwrap_or(0.0), high)).filter(|(_, low, high)| {
-            fits[best].1 > 0.0 && 0.5 * (high - low) <= self.widest
-        });
+        let bounds = high
+            .map(|high| (value, low.unwrap_or(0.0), high))
+            .filter(|(_, low, high)| fits[best].1 > 0.0 && 0.5 * (high - low) <= self.widest);
         let seconds = |(value, low, high): (f64, f64, f64)| Bounds {
             value_s: value * period_s,
             low_s: low.min(value) * period_s,

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::dead_time::{DeadTimeJson, InputJson};
 use super::header::Header;
 use super::settings::SettingsJson;
 use crate::delay::{
@@ -52,6 +53,9 @@ struct JointJson<'a> {
     rejected: serde_json::Map<String, serde_json::Value>,
     delay_samples: Option<DelayRange>,
     delay_s: Option<DelayRange>,
+    input: InputJson,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    dead_time: Option<DeadTimeJson<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     settings: Option<SettingsJson>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -227,7 +231,7 @@ impl<'a> JointJson<'a> {
     fn new(joint: EstimatedJoint<'a>) -> Self {
         let chosen = joint.estimate.chosen;
         let DelayTable { neutral, rows, kinds, .. } = joint.delay_table();
-        let JointSummary { steps, accepted, rejected, delay_samples, delay_s } =
+        let JointSummary { steps, accepted, rejected, delay_samples, delay_s, .. } =
             JointSummary::of(joint);
         let count = |(condition, count): (Condition, usize)| (condition.to_string(), count.into());
         Self {
@@ -239,6 +243,8 @@ impl<'a> JointJson<'a> {
             rejected: rejected.into_iter().map(count).collect(),
             delay_samples,
             delay_s,
+            input: InputJson::of(joint),
+            dead_time: DeadTimeJson::of(joint),
             settings: chosen.map(|_| (&joint.estimate.settings).into()),
             chosen: chosen.map(Into::into),
             lag: joint.lag().map(LagJson::new),

@@ -6,6 +6,7 @@ mod add;
 mod candidate;
 mod columns;
 mod compare;
+mod dead_time;
 mod design;
 mod effects;
 mod estimate;

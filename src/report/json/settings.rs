@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::delay::{FirstLast, Interpolation, Settings};
+use crate::delay::{FirstLast, InputKind, Interpolation, Settings};
 use crate::numerics::LowPass;
 
 #[derive(Debug, Serialize)]
@@ -20,6 +20,7 @@ pub(super) struct SettingsJson {
     keep_first_last: bool,
     paper: bool,
     min_step: f64,
+    input: &'static str,
     interpolation: &'static str,
     confidence: Option<f64>,
     interval: f64,
@@ -52,6 +53,11 @@ impl From<&Settings> for SettingsJson {
             keep_first_last: settings.first_last == FirstLast::Keep,
             paper: settings.paper,
             min_step: settings.min_step,
+            input: match settings.input {
+                InputKind::Auto => "auto",
+                InputKind::Steps => "steps",
+                InputKind::Continuous => "continuous",
+            },
             interpolation: match settings.interpolation {
                 Interpolation::Hold => "hold",
                 Interpolation::Linear => "linear",

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::batch::Threads;
-use crate::delay::{Settings, check_growing, final_part};
+use crate::delay::{InputKind, Settings, check_growing, final_part};
 use crate::experiment::{Experiment, GrowingLog, Joint};
 use crate::report::{DecisionRow, EstimatedJoint, decision_rows, step_line};
 use crate::study::{JointEstimate, estimate_joints};
@@ -32,6 +32,7 @@ const REST: u32 = 4;
 pub(crate) fn follow(args: &Args, runs: &[Settings], stream: &Stream) -> anyhow::Result<Reported> {
     let [settings] = runs else { bail!("--method: only one method at a time can be followed") };
     check_growing(settings).context("--follow")?;
+    let settings = &as_it_grows(settings);
     if args.algorithm.automatic().any() {
         bail!("--follow: `auto` looks at the whole record; give a number");
     }
@@ -42,6 +43,11 @@ pub(crate) fn follow(args: &Args, runs: &[Settings], stream: &Stream) -> anyhow:
     let work = || watch(args, settings, stream, &mut log, interrupt, &mut reported);
     args.output.run.in_threads(work)??;
     Ok(reported)
+}
+
+/// What the whole record decides is not known yet: each change of the input is a step.
+fn as_it_grows(settings: &Settings) -> Settings {
+    Settings { input: InputKind::Steps, every_change: true, ..settings.clone() }
 }
 
 fn watch(

@@ -1,0 +1,85 @@
+//! The dead time of a joint whose input moves all the time, in words.
+
+use super::EstimatedJoint;
+use crate::delay::{Bounds, DeadTime, Finding, InputMotion, Unknown};
+use crate::wording::percent;
+
+/// That the input of a joint moves all the time, and what follows from it.
+pub(crate) fn input_note(joint: &EstimatedJoint<'_>) -> Option<String> {
+    joint.estimate.dead_time.as_ref()?;
+    let name = &joint.joint.name;
+    let changes = percent(joint.estimate.motion.changes);
+    Some(format!(
+        "joint `{name}`: the input moves all the time (it changes at {changes} of its samples): \
+         one dead time over the record instead of one per step"
+    ))
+}
+
+/// What is said of the dead time of a joint: that its input moves, its dead time and lag, what
+/// windows say, and what may bias it. Empty for a joint whose input is made of steps.
+pub(crate) fn dead_time_sentences(joint: &EstimatedJoint<'_>) -> Vec<String> {
+    let Some(found) = joint.estimate.dead_time.as_ref() else { return Vec::new() };
+    let mut sentences = vec![moves(&joint.estimate.motion), finding(found)];
+    sentences.extend(windows(found));
+    sentences.extend(feedback(found));
+    sentences
+}
+
+fn moves(motion: &InputMotion) -> String {
+    let changes = percent(motion.changes);
+    let steps = motion.travel_in_steps.map_or_else(String::new, |share| {
+        format!("; {} of its travel is steps between levels that it holds", percent(share))
+    });
+    format!(
+        "the input moves all the time (it changes at {changes} of its samples{steps}): \
+         one dead time over the record instead of one per step"
+    )
+}
+
+fn seconds(Bounds { value_s, low_s, high_s }: Bounds) -> String {
+    format!("{value_s:.3} s ({low_s:.3} to {high_s:.3} s)")
+}
+
+fn finding(found: &DeadTime) -> String {
+    let lag = found.lag_s.unwrap_or(0.0);
+    let what = if found.integrates { "the speed" } else { "the output" };
+    let confidence = percent(found.confidence);
+    match found.finding {
+        Finding::Known(bounds) => format!(
+            "dead time {} at {confidence}, then {what} follows with a lag of {lag:.3} s",
+            seconds(bounds)
+        ),
+        Finding::LagOnly(Bounds { high_s, .. }) => format!(
+            "a lag of {lag:.3} s without dead time: {what} follows at once, or within {high_s:.3} s \
+             at {confidence}"
+        ),
+        Finding::Unknown(Unknown::TooShort) => {
+            "no dead time: the record is too short, or the input hardly moves".to_owned()
+        }
+        Finding::Unknown(Unknown::NotExplained) => {
+            "no dead time: the input does not explain what the output does".to_owned()
+        }
+        Finding::Unknown(Unknown::TooLong(longest_s)) => format!(
+            "no dead time: it would be longer than the {longest_s:.3} s that are looked through; \
+             `--max-delay` looks further"
+        ),
+    }
+}
+
+fn windows(found: &DeadTime) -> Option<String> {
+    /// Below it, dead times in windows differ by more than chance.
+    const SAME: f64 = 0.01;
+    let known: Vec<Bounds> = found.windows.iter().filter_map(|window| window.estimate).collect();
+    let least = known.iter().map(|bounds| bounds.value_s).min_by(f64::total_cmp)?;
+    let most = known.iter().map(|bounds| bounds.value_s).max_by(f64::total_cmp)?;
+    let differ = found.same_in_all.map_or("", |p| {
+        if p < SAME { ", more apart than by chance" } else { ", no more apart than by chance" }
+    });
+    let (count, all) = (known.len(), found.windows.len());
+    Some(format!("in {count} of {all} windows {least:.3} to {most:.3} s{differ}"))
+}
+
+fn feedback(found: &DeadTime) -> Option<String> {
+    let bias = "the input follows the output (feedback), so that the dead time may be biased";
+    found.feedback.is_present().then(|| bias.to_owned())
+}
