@@ -82,7 +82,7 @@ impl InputMotion {
     /// Of the input of all `trials` of a joint.
     pub fn of(trials: &[Trial]) -> Self {
         let found: Vec<Moved> = trials.iter().map(Moved::of).collect();
-        let sum = |part: fn(&Moved) -> f64| found.iter().map(part).sum::<f64>();
+        let sum = |part: fn(&Moved) -> f64| found.iter().map(part).fold(0.0, |sum, one| sum + one);
         let (samples, travel) = (sum(|one| one.samples).max(1.0), sum(|one| one.travel));
         let in_steps = sum(|one| one.in_steps);
         let moves = travel > 0.0 && sum(|one| one.changes) >= FEWEST_CHANGES;
@@ -141,7 +141,9 @@ impl Moved {
             changes: pairs.filter(|(before, after)| before != after).count() as f64,
             held: holds.iter().map(|hold| (hold.end - hold.start) as f64).sum(),
             travel: travel(input, tolerance),
-            in_steps: steps.filter(|step| *step > 2.0 * tolerance).sum(),
+            in_steps: steps
+                .filter(|step| *step > 2.0 * tolerance)
+                .fold(0.0, |sum, step| sum + step),
         }
     }
 }

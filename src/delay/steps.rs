@@ -61,6 +61,10 @@ pub(super) fn trial_steps(trial: &Trial, settings: &Settings) -> Vec<InputStep> 
     with_edges_merged(input_steps(input, min_step), edge_samples(trial.period().seconds()))
 }
 
+/// Part of the largest step below which one is no step, where the input was interpolated: such
+/// an input has bumps that are put back over a few samples.
+const SMALLEST_PART: f64 = 0.01;
+
 /// `steps` with those of one edge merged: the same direction, at most `longest` samples from
 /// the first to the last, and no level between them that lasts.
 fn with_edges_merged(steps: Vec<InputStep>, longest: usize) -> Vec<InputStep> {
@@ -68,6 +72,7 @@ fn with_edges_merged(steps: Vec<InputStep>, longest: usize) -> Vec<InputStep> {
     /// seen at twice its rate.
     const LASTS: usize = 2;
     let rises = |step: &InputStep| step.after > step.before;
+    let found = steps.len();
     let mut merged: Vec<InputStep> = Vec::new();
     let mut last = 0;
     for step in steps {
@@ -82,6 +87,11 @@ fn with_edges_merged(steps: Vec<InputStep>, longest: usize) -> Vec<InputStep> {
             _ => merged.push(step),
         }
         last = step.sample;
+    }
+    if merged.len() < found {
+        let size = |step: &InputStep| (step.after - step.before).abs();
+        let largest = merged.iter().map(size).fold(0.0, f64::max);
+        merged.retain(|step| size(step) >= SMALLEST_PART * largest);
     }
     merged
 }

@@ -295,8 +295,11 @@ impl Solved<'_> {
         /// Fewest rows, in all and for each sample of dead time and lag.
         const FEWEST_ROWS: f64 = 60.0;
         const PER_LAG: f64 = 20.0;
+        /// Most windows of a record, half of which share no row.
+        const MOST: f64 = 60.0;
+        let samples: f64 = self.record.inputs.iter().map(|input| input.len() as f64).sum();
         let shortest = (PER_LAG * (best.delay + best.lags.mean().min(20.0))).max(FEWEST_ROWS);
-        ceil_to_index((SPARE * needed).max(shortest))
+        ceil_to_index((SPARE * needed).max(shortest).max(2.0 * samples / MOST))
     }
 
     fn windows(&self, known: &Known<'_>) -> Vec<Estimated> {
