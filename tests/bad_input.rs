@@ -414,8 +414,9 @@ fn a_constant_input_gives_an_empty_result_that_says_so() {
 fn an_input_that_changes_at_every_sample_works_with_a_note() {
     let workspace = Workspace::new().with_log(&boom().column("boom.input", |k| k.to_string()));
     let outcome = workspace.estimate("log.csv --format json");
-    outcome.is_whole().says(&["note: ", "`boom`", "299 of 300", "`--min-step X`"]);
-    assert_eq!(outcome.joints()[0]["steps"], 299);
+    outcome.is_whole().says(&["note: ", "`boom`", "the input moves all the time", "100 %"]);
+    assert_eq!(outcome.joints()[0]["steps"], 0);
+    assert_eq!(workspace.estimate("log.csv --input steps --format json").joints()[0]["steps"], 299);
     assert_eq!(workspace.estimate("log.csv --quiet").is_whole().stderr, "");
 }
 

@@ -70,7 +70,7 @@ fn add_joint(
     signals::add(chunks, &root, joint, layout)?;
     decisions::add(chunks, &root, layout)?;
     let others = recording.others(joint);
-    verdict::add(chunks, &root, joint, layout, (&estimated.estimate.settings, &others))?;
+    verdict::add(chunks, &root, estimated, layout, &others)?;
     segment_view::add(chunks, &root, joint, layout, (recording.settings.method, &others))?;
     overview::add(chunks, &root, layout)?;
     delay_state::add(chunks, &root, estimated, layout)?;

@@ -12,16 +12,18 @@ use super::paths::{self, at};
 use crate::delay::{Check, Condition, Decision, FineDelay, Lag, LagPart, Outcome};
 use crate::delay::{Settings, Verdict};
 use crate::experiment::Joint;
+use crate::report::{EstimatedJoint, dead_time_sentences};
 use crate::wording::{number, remedy_text};
 
 /// Adds `/verdict` (text, log line and lane), `/segment` and `/trial` (lanes).
 pub(super) fn add(
     chunks: &mut Chunks,
     root: &EntityPath,
-    joint: &Joint,
+    estimated: EstimatedJoint<'_>,
     layout: &JointLayout<'_>,
-    (settings, others): (&Settings, &[Other<'_>]),
+    others: &[Other<'_>],
 ) -> Result<(), RecordError> {
+    let (joint, settings) = (estimated.joint, &estimated.estimate.settings);
     let segments: Vec<_> = layout.segments().collect();
     let opening: Index = segments.iter().map(|(trial, segment)| trial.opening(segment)).collect();
     let text = |(trial, segment): &Placed<'_, '_>| {
@@ -38,7 +40,10 @@ pub(super) fn add(
     let entity = at(root, paths::VERDICT);
     if segments.is_empty() {
         let name = plain(&joint.name);
-        let text = format!("### {name}\n## nothing to decide: the input never changes\n");
+        let text = match dead_time_sentences(&estimated).as_slice() {
+            [] => format!("### {name}\n## nothing to decide: the input never changes\n"),
+            sentences => format!("### {name}\n- {}\n", sentences.join("\n- ")),
+        };
         chunks.push_static(entity.clone(), &TextDocument::from_markdown(text))?;
     }
     let columns = documents.columns_of_unit_batches()?.chain(states);

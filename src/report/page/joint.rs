@@ -3,14 +3,16 @@
 use super::document::Block;
 use super::plot::PlotError;
 use super::report::Report;
-use super::{delays, model, record, segment};
+use super::{dead_time, delays, model, record, segment};
 use crate::delay::{AgainstState, Condition, DelayTable, MethodSpec};
 use crate::report::against::{AGAINST_HEADER, against_rows};
 use crate::report::decisions::detailed_rows;
 use crate::report::delay_table::{LEVEL_HEADER, kind_sentence, level_cells, neutral_sentence};
 use crate::report::text::lag_line;
 use crate::report::text_table::TextTable;
-use crate::report::{DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary};
+use crate::report::{
+    DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary, dead_time_sentences,
+};
 use crate::wording::number;
 
 /// Rows of a table that a reader may still want to scroll through.
@@ -26,6 +28,7 @@ pub(super) fn blocks(
         Block::Lead(sentences(report, estimated)),
         Block::Figures(vec![record::figure(estimated, format!("{file}-record"))?]),
     ];
+    blocks.extend(dead_time::blocks(estimated, file)?);
     let segments = segment::figures(estimated, &format!("{file}-segment"))?;
     if !segments.is_empty() {
         blocks.push(Block::part("Single decisions"));
@@ -37,7 +40,9 @@ pub(super) fn blocks(
         blocks.extend(level_blocks(estimated, file, &found)?);
     }
     blocks.extend(rejections(estimated));
-    blocks.push(decisions(report, estimated));
+    if estimated.estimate.dead_time.is_none() {
+        blocks.push(decisions(report, estimated));
+    }
     if let Some(improved) = report.model_of(estimated.joint) {
         blocks.extend(model::blocks(report, improved, file)?);
     }
@@ -46,9 +51,22 @@ pub(super) fn blocks(
 
 /// Delays, steps and model of a joint, in a sentence each.
 pub(super) fn sentences(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> String {
-    let delay = delay_sentence(&JointSummary::of(estimated));
+    let delay = over_record(estimated);
+    let delay = delay.unwrap_or_else(|| delay_sentence(&JointSummary::of(estimated)));
     let model = report.model_of(estimated.joint).map(model::sentence);
     [delay].into_iter().chain(model).collect::<Vec<_>>().join(" ")
+}
+
+/// Why there are no steps, and the dead time instead.
+fn over_record(estimated: EstimatedJoint<'_>) -> Option<String> {
+    let sentences = dead_time_sentences(&estimated);
+    let capital = |sentence: String| {
+        let mut letters = sentence.chars();
+        let first = letters.next().map(|letter| letter.to_uppercase().to_string());
+        format!("{}{}.", first.unwrap_or_default(), letters.as_str())
+    };
+    let all: Vec<String> = sentences.into_iter().take(2).map(capital).collect();
+    (!all.is_empty()).then(|| all.join(" "))
 }
 
 fn delay_sentence(summary: &JointSummary) -> String {
