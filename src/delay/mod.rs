@@ -69,7 +69,7 @@ pub use broken_line::{
     BrokenLine, BrokenRegression, Stroke, broken_line, broken_regression, stroke,
 };
 pub use condition::{Check, Condition, Outcome};
-pub use dead_time::{Bounds, CurvePoint, DeadTime, Feedback, Finding, Unknown, Window, dead_time};
+pub use dead_time::{Bounds, DeadTime, ErrorPoint, Feedback, Finding, Unknown, Window, dead_time};
 pub use decision::{Breakpoint, Decision, Verdict};
 pub use estimate::{Estimator, estimate, estimate_joint};
 pub use growing::{Growing, check_growing, final_part};

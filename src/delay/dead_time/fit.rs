@@ -7,7 +7,7 @@ use super::feedback::feedback;
 use super::profile::Profile;
 use super::record::{Samples, Whitened, averaged};
 use super::response::NUMERATORS;
-use super::result::{Bounds, CurvePoint, DeadTime, Feedback, Finding, Unknown};
+use super::result::{Bounds, DeadTime, ErrorPoint, Feedback, Finding, Unknown};
 use super::search::{Fitted, grid, least, profiles};
 use super::uncertainty::{Assessed, PARTS, errors};
 use super::windows::{Estimated, Known, same_in_all};
@@ -311,11 +311,11 @@ impl Solved<'_> {
         trials.flat_map(of_trial).collect()
     }
 
-    fn curve(&self, coarse: &[Fitted], refined: &[Fitted], least: f64) -> Vec<CurvePoint> {
+    fn curve(&self, coarse: &[Fitted], refined: &[Fitted], least: f64) -> Vec<ErrorPoint> {
         let mut all: Vec<&Fitted> = coarse.iter().chain(refined).collect();
         all.sort_by(|a, b| a.delay.total_cmp(&b.delay).then(a.error.total_cmp(&b.error)));
         all.dedup_by(|a, b| (a.delay - b.delay).abs() < 1e-9);
-        let point = |fitted: &&Fitted| CurvePoint {
+        let point = |fitted: &&Fitted| ErrorPoint {
             delay_s: fitted.delay * self.record.period_s,
             error: (fitted.error / least).sqrt(),
         };

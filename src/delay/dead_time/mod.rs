@@ -20,4 +20,4 @@ mod uncertainty;
 mod windows;
 
 pub use fit::dead_time;
-pub use result::{Bounds, CurvePoint, DeadTime, Feedback, Finding, Unknown, Window};
+pub use result::{Bounds, DeadTime, ErrorPoint, Feedback, Finding, Unknown, Window};

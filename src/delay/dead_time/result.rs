@@ -17,7 +17,7 @@ pub struct DeadTime {
     /// Whether the input follows the output.
     pub feedback: Feedback,
     /// The error of each dead time, the best lags being taken.
-    pub curve: Vec<CurvePoint>,
+    pub curve: Vec<ErrorPoint>,
     /// Windows of the record in which the dead time was estimated by itself.
     pub windows: Vec<Window>,
     /// The p-value of windows so far apart, if the dead time were the same in all.
@@ -84,7 +84,7 @@ impl Feedback {
 
 /// The error of a dead time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CurvePoint {
+pub struct ErrorPoint {
     /// The dead time.
     pub delay_s: f64,
     /// The root mean square of the whitened prediction error, over that of the best.
@@ -103,7 +103,7 @@ pub struct Window {
     /// None where the input does not excite enough.
     pub estimate: Option<Bounds>,
     /// The error of each dead time, over the least of them.
-    pub curve: Vec<CurvePoint>,
+    pub curve: Vec<ErrorPoint>,
 }
 
 impl DeadTime {

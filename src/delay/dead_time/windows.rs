@@ -2,7 +2,7 @@
 
 use super::record::{Samples, Whitened, driven};
 use super::response::Numerators;
-use super::result::{Bounds, CurvePoint, Window};
+use super::result::{Bounds, ErrorPoint, Window};
 use super::search::Fitted;
 use crate::numerics::chi_square_tail;
 
@@ -111,14 +111,14 @@ impl Known<'_> {
     }
 
     /// The error of each dead time, and the dead time with its interval where one stands out.
-    fn estimate(&self, sums: &Sums, period_s: f64) -> (Vec<CurvePoint>, Option<Bounds>) {
+    fn estimate(&self, sums: &Sums, period_s: f64) -> (Vec<ErrorPoint>, Option<Bounds>) {
         let fits: Vec<(f64, f64)> = sums.predictions.iter().map(|p| sums.fit(p)).collect();
         let errors: Vec<f64> = fits.iter().map(|(error, _)| *error).collect();
         let best = (0..errors.len()).min_by(|a, b| errors[*a].total_cmp(&errors[*b]));
         let Some(best) = best.filter(|best| errors[*best] > 0.0) else { return Default::default() };
         let least = errors[best];
         let likelihood = |index: usize| sums.rows * (errors[index] / least).ln();
-        let curve = errors.iter().enumerate().map(|(index, error)| CurvePoint {
+        let curve = errors.iter().enumerate().map(|(index, error)| ErrorPoint {
             delay_s: index as f64 / PER_SAMPLE as f64 * period_s,
             error: (error / least).sqrt(),
         });

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::delay::{Bounds, CurvePoint, DeadTime, Finding, Unknown, Window};
+use crate::delay::{Bounds, DeadTime, ErrorPoint, Finding, Unknown, Window};
 use crate::experiment::Joint;
 use crate::report::{EstimatedJoint, dead_time_sentences};
 
@@ -113,8 +113,8 @@ fn numbers(bounds: Option<Bounds>) -> [Option<f64>; 3] {
     [part(|b| b.value_s), part(|b| b.low_s), part(|b| b.high_s)]
 }
 
-impl From<CurvePoint> for PointJson {
-    fn from(CurvePoint { delay_s, error }: CurvePoint) -> Self {
+impl From<ErrorPoint> for PointJson {
+    fn from(ErrorPoint { delay_s, error }: ErrorPoint) -> Self {
         Self { delay_s, error }
     }
 }
