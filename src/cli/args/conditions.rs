@@ -193,7 +193,8 @@ impl ConditionArgs {
             first_last: self.first_last(),
             paper: self.paper,
             min_step: self.min_step,
-            input: self.input.into(),
+            input: if self.paper { InputKind::Steps } else { self.input.into() },
+            every_change: self.paper,
             confidence,
             interval: self.interval,
             ..usual
