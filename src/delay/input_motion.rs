@@ -159,7 +159,7 @@ pub(super) fn tolerance(input: &[f64]) -> f64 {
     /// Multiples of the 95 % quantile and of the largest such change. Of normal noise the first
     /// is seven standard deviations, which no two samples of a long record are apart.
     const TIMES_USUAL: f64 = 3.5;
-    const TIMES_LARGEST: f64 = 1.5;
+    const TIMES_LARGEST: f64 = 2.5;
     /// Part of the range that steps must exceed.
     const OF_RANGE: f64 = 0.08;
     let pairs = input.iter().zip(input.iter().skip(1)).zip(1..);

@@ -485,8 +485,8 @@ mod tests {
 
     #[test]
     fn rounded_stamps_are_even() {
-        // 128 Hz in steps of 10 ms; 50 Hz in whole seconds.
-        for (period, grain, rows) in [(1.0 / 128.0, 0.01, 2000), (0.02, 1.0, 2000)] {
+        // 128 Hz in steps of 10 ms; 50 Hz in tenths of a second.
+        for (period, grain, rows) in [(1.0 / 128.0, 0.01, 2000), (0.02, 0.1, 2000)] {
             let clock = read(&stamps(rows, |k| (k as f64 * period / grain).floor() * grain));
             assert!(matches!(clock.evenness, Evenness::Rounded { .. }), "{clock:?}");
             assert!((clock.period / period - 1.0).abs() < 5e-3, "{}", clock.period);

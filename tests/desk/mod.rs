@@ -48,7 +48,7 @@ impl Desk {
             match rows {
                 _ if line.starts_with('#') => line.to_owned(),
                 1 => format!("{line},broken.input,broken.output"),
-                9 => format!("{line},1,"),
+                9 => format!("{line},1,x"),
                 _ => format!("{line},1,0"),
             }
         };

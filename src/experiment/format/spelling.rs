@@ -34,16 +34,17 @@ impl Spelling {
         };
         let first =
             lines.iter().find(|line| is_row(line)).map_or(0, |line| cells(line, plain.delimiter));
-        let (agree, width) = agreeing(plain.delimiter);
-        if agree < 2 && first > 1 || first == width {
-            return plain;
-        }
+        let (own, own_width) = agreeing(plain.delimiter);
         let best = [b'\t', b';', b','].map(|delimiter| (agreeing(delimiter), delimiter));
         let Some(&((agree, width), delimiter)) =
             best.iter().max_by_key(|((agree, width), _)| (*agree, *width))
         else {
             return plain;
         };
+        // A decimal comma parts some rows as evenly as what does part them, but not the header.
+        if own < 2 && first > 1 || first == own_width && own >= agree {
+            return plain;
+        }
         let counts = counts(delimiter);
         let header = counts.windows(2).position(|pair| pair == [width, width]);
         match header.filter(|_| agree > 2) {

@@ -1,0 +1,136 @@
+#!/usr/bin/env python3
+"""How a build of tauscope does on logs of real machines, without a flag but the columns.
+
+    real_machines.py TAUSCOPE FOLDER > docs/real_machines.md
+
+FOLDER holds the logs named in LOGS, each with a page that says where it is from. Needs numpy.
+
+The independent estimate of a start from rest knows nothing of tauscope: the first sample at which
+the output has left the mean of its last 20 samples before the step by 0.2 deg, in the direction in
+which it is driven.
+"""
+import csv
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+RC = ["boom=u_boom_duty:y_boom", "stick=u_stick_duty:y_stick", "bucket=u_bucket_duty:y_bucket"]
+LOGS = {
+    "excavator_full_arm_single": ["arm=u_duty_pct:angle_deg"],
+    "excavator_full_bucket_single": ["bucket=u_duty_pct:angle_deg"],
+    "excavator_rc_steps": RC,
+    "excavator_rc_manual": RC,
+    "emps_train": ["axis=force_N:q_m"],
+    "mataveid_hydmotor": [],
+    "mataveid_hangload": ["lift"],
+    "mataveid_cylinders": [],
+    "faster_rig": ["actuator"],
+    "dart_steering": ["steer"],
+    "davinci_tool": ["jaw"],
+}
+STROKES = ["excavator_full_arm_single", "excavator_full_bucket_single"]
+METHODS = ["two-line", "hinge", "lag-aware"]
+DEPARTED_DEG = 0.2
+
+
+def run(tauscope, *arguments):
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    done = subprocess.run([tauscope, *arguments], capture_output=True, text=True, check=False)
+    return done, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+
+
+def arguments(folder, name):
+    joints = [part for joint in LOGS[name] for part in ("--joint", joint)]
+    return [os.path.join(folder, name + ".csv"), *joints]
+
+
+def trials(path):
+    """Time, input and output of each trial."""
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    found = {}
+    for row in rows:
+        numbers = [float(row[column]) for column in ("t_s", "u_duty_pct", "angle_deg")]
+        found.setdefault(row["test"], []).append(numbers)
+    return {label: np.array(numbers).T for label, numbers in found.items()}
+
+
+def onset(t, u, y):
+    """Seconds from the first step to the departure; nan where there is none."""
+    p = np.flatnonzero(np.diff(u))[0] + 1
+    rest = y[max(0, p - 20):p].mean()
+    away = np.flatnonzero((y[p:] - rest) * np.sign(u[p]) > DEPARTED_DEG)
+    return t[p + away[0]] - t[p] if len(away) else np.nan
+
+
+def at_rest(t, u, y):
+    """Numbers of the later steps before which the output stood still."""
+    steps = np.flatnonzero(np.diff(u)) + 1
+    speed = np.ptp(y[steps[0]:]) / (t[-1] - t[steps[0]])
+    found = set()
+    for number, p in enumerate(steps[1:], 2):
+        before = y[(t > t[p] - 0.5) & (t <= t[p])]
+        if abs(before[-1] - before[0]) / 0.5 < 0.05 * speed:
+            found.add(number)
+    return found
+
+
+def strokes(tauscope, folder, name):
+    measured = trials(os.path.join(folder, name + ".csv"))
+    truth = {label: onset(*columns) for label, columns in measured.items()}
+    resting = {(label, i) for label, columns in measured.items() for i in at_rest(*columns)}
+    for method in METHODS:
+        with tempfile.TemporaryDirectory() as temporary:
+            table = os.path.join(temporary, "decisions.csv")
+            run(tauscope, "estimate", *arguments(folder, name), "--method", method, "--decisions", table)
+            with open(table, newline="") as file:
+                accepted = [row for row in csv.DictReader(file) if row["verdict"] == "accepted"]
+        starts = [row for row in accepted if row["i"] == "1"]
+        errors = np.abs([float(row["delta_s"]) - truth[row["trial"]] for row in starts])
+        wrong = sum((row["trial"], int(row["i"])) in resting for row in accepted)
+        print(f"| `{name}` | `{method}` | {len(starts)} of {len(truth)} | {np.nanmedian(errors):.3f} s | {np.nanquantile(errors, 0.9):.3f} s | {wrong} of {len(resting)} |")
+
+
+def as_it_comes(tauscope, folder, name):
+    done, seconds = run(tauscope, "estimate", *arguments(folder, name), "--format", "json", "--quiet")
+    if not done.stdout:
+        print(f"| `{name}` | - | refused: {done.stderr.strip().splitlines()[0]} | | | |")
+        return
+    for joint in json.loads(done.stdout)["joints"]:
+        dead = joint.get("dead_time")
+        if dead:
+            value, low, high = (dead.get(key) for key in ("value_s", "low_s", "high_s"))
+            known = "none" if value is None else f"{value:.3f} s ({low:.3f} to {high:.3f})"
+            print(f"| `{name}` | {joint['joint']} | the input moves all the time | | {known} | {seconds:.1f} s |")
+            continue
+        delay = joint["delay_s"]
+        known = "none" if not delay else f"{delay['median']:.3f} s ({delay['min']:.3f} to {delay['max']:.3f})"
+        print(f"| `{name}` | {joint['joint']} | {joint['steps']} steps | {joint['accepted']} | {known} | {seconds:.1f} s |")
+
+
+def main():
+    tauscope, folder = sys.argv[1:3]
+    print("# On real machines\n")
+    print("Logs of other people's machines, with no option but which columns are which joint.")
+    print("`tests/real/real_machines.py` makes this page; the logs are not part of the project.\n")
+    print("## Strokes\n")
+    print("Starts from rest of a full-size excavator's joints, 28 strokes each, beside an estimate that")
+    print("knows nothing of tauscope: when the angle has left its rest by 0.2 deg.")
+    print("Last, steps at which the joint stood still and that were accepted all the same.\n")
+    print("| log | method | starts accepted | median difference | 90 % below | accepted at rest |\n|---|---|---|---|---|---|")
+    for name in STROKES:
+        strokes(tauscope, folder, name)
+    print("\n## Every log as it comes\n")
+    print("Median delay with the least and the largest accepted one; where the input never holds, one dead")
+    print("time with its 95 % interval.\n")
+    print("| log | joint | input | accepted | delay | processor time |\n|---|---|---|---|---|---|")
+    for name in LOGS:
+        as_it_comes(tauscope, folder, name)
+
+
+main()
