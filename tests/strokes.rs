@@ -16,7 +16,7 @@ fn stroke(seed: u32, level: f64, delay_s: f64) -> Trial {
     let rest = 110 + (seed as usize * 37) % 80;
     let back = rest + 1200;
     let input = InputSpec::Steps { steps: vec![(rest, level), (back, 0.0)], initial: 0.0 };
-    let cylinder = CylinderSpec { time_step_s: 2e-4, ..CylinderSpec::default() };
+    let cylinder = CylinderSpec::default();
     let [low, high] = cylinder.angle_limits_deg;
     let start = if level > 0.0 { low + 1.0 } else { high - 1.0 };
     let delay = DelayLaw::Constant { seconds: delay_s };

@@ -118,7 +118,7 @@ impl Clock {
             runs.extend(parts.into_iter().filter(|run| run.rows.len() > 1));
         }
         let period = least_squares_period(&runs, times).ok_or(ClockFault::SingleRow)?;
-        let deviations = Deviations::of(&runs, times, period, block_rows(&typical));
+        let deviations = Deviations::of(&runs, times, period, block_rows(&typical, period));
         let evenness = deviations.evenness(&runs, &typical, period)?;
         Ok(Self {
             gaps: short_gaps(&runs),
@@ -395,8 +395,8 @@ impl Deviations {
 }
 
 /// Rows of a block: whole grains of stamps that are rounded, whose sawtooth is no drift.
-fn block_rows(typical: &Typical) -> usize {
-    let grain = crate::units::floor_to_index((typical.grain_s / typical.seconds).round()).max(1);
+fn block_rows(typical: &Typical, period: f64) -> usize {
+    let grain = crate::units::floor_to_index((typical.grain_s / period).round()).max(1);
     grain.saturating_mul(BLOCK.div_ceil(grain))
 }
 
@@ -485,8 +485,9 @@ mod tests {
 
     #[test]
     fn rounded_stamps_are_even() {
-        // 128 Hz in steps of 10 ms; 50 Hz in tenths of a second.
-        for (period, grain, rows) in [(1.0 / 128.0, 0.01, 2000), (0.02, 0.1, 2000)] {
+        // 128 Hz in steps of 10 ms; 50 Hz in tenths of a second and in whole seconds.
+        for (period, grain) in [(1.0 / 128.0, 0.01), (0.02, 0.1), (0.02, 1.0)] {
+            let rows = 2000;
             let clock = read(&stamps(rows, |k| (k as f64 * period / grain).floor() * grain));
             assert!(matches!(clock.evenness, Evenness::Rounded { .. }), "{clock:?}");
             assert!((clock.period / period - 1.0).abs() < 5e-3, "{}", clock.period);

@@ -1,6 +1,6 @@
 //! C99, without dependencies beyond its standard library.
 
-use super::{JointLookup, Lookup, numbers, quoted, side};
+use super::contents::{JointLookup, Lookup, numbers, quoted, side};
 use crate::delay::DelayCurve;
 
 const HEAD: &str = r" *

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{JointLookup, Lookup, side};
+use super::contents::{JointLookup, Lookup, side};
 use crate::delay::{CurvePoint, DelayCurve};
 
 #[derive(Serialize)]

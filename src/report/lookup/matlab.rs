@@ -1,6 +1,6 @@
 //! A function of MATLAB and GNU Octave.
 
-use super::{JointLookup, Lookup, numbers, side};
+use super::contents::{JointLookup, Lookup, numbers, side};
 use crate::delay::DelayCurve;
 
 const TAIL: &str = "\

@@ -1,6 +1,6 @@
 //! A module of Python 3, without dependencies.
 
-use super::{JointLookup, Lookup, numbers, quoted, side};
+use super::contents::{JointLookup, Lookup, numbers, quoted, side};
 use crate::delay::DelayCurve;
 
 const TAIL: &str = r#"

@@ -62,8 +62,8 @@ impl<'a> Files<'a> {
         if let Some(path) = &self.args.export {
             let (language, name) = named_lookup(path)?;
             let Estimated { experiment, joints, settings, .. } = *result;
-            let source =
-                Lookup::new(&experiment.sources, joints, settings).source(language, name)?;
+            let lookup = Lookup::new(&experiment.sources, joints, settings);
+            let source = language.source(&lookup, name)?;
             write_file(path, |file| Ok(file.write_all(source.as_bytes())?))?;
         }
         let contents = Contents {
