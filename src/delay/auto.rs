@@ -154,7 +154,7 @@ impl<'a> Record<'a> {
         let hinge = Settings {
             max_delay: settings.max_delay,
             min_step: settings.min_step,
-            input: settings.input.judged(trials),
+            input: settings.with_input_of(trials).input,
             every_change: settings.every_change,
             first_last: FirstLast::Keep,
             ..Settings::of(Method::HINGE)

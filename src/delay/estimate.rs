@@ -51,11 +51,11 @@ impl Estimator {
     /// [`EstimateError::Settings`] when the settings make no sense.
     pub fn of(trials: &[Trial], settings: &Settings) -> Result<Self, EstimateError> {
         settings.check()?;
-        let is_continuous = settings.input.is_continuous(trials);
-        let input = if is_continuous { InputKind::Continuous } else { InputKind::Steps };
-        // Without steps nothing is smoothed: no filter has to fit.
-        let low_pass = settings.low_pass.filter(|_| !is_continuous);
-        let settings = Settings { input, low_pass, ..settings.clone() };
+        let mut settings = settings.with_input_of(trials);
+        if settings.input == InputKind::Continuous {
+            // Without steps nothing is smoothed: no filter has to fit.
+            settings.low_pass = None;
+        }
         let method = implementation(settings.method);
         let lag = (settings.method.spec().scope == Scope::Joint).then(|| {
             let prepared = trials.iter().filter_map(|trial| Prepared::of(trial, &settings).ok());

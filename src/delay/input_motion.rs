@@ -100,11 +100,6 @@ impl InputMotion {
 }
 
 impl InputKind {
-    /// The kind that this is for these `trials`: never [`Auto`](Self::Auto).
-    pub(super) fn judged(self, trials: &[Trial]) -> Self {
-        if self.is_continuous(trials) { Self::Continuous } else { Self::Steps }
-    }
-
     /// Whether the input of `trials` is taken as moving all the time.
     pub fn is_continuous(self, trials: &[Trial]) -> bool {
         match self {

@@ -18,9 +18,9 @@
 //!
 //! It has *departed* once the output stays beyond that line by more than `6·s`, by more than the
 //! part [`PLAIN`] of the motion to come, and by more than as much drift again as before. It has
-//! *arrived* at a stop when it rests before the next step, although it was plainly driven: it
-//! came faster than it went before the step, or from the other side. A joint whose rest is not
-//! shown, as behind much noise, is left alone.
+//! *arrived* at a stop when it rests before the next step, although it was plainly driven: its
+//! input was not eased, and it came faster than it went before the step, or from the other side.
+//! A joint whose rest is not shown, as behind much noise, is left alone.
 
 use super::settings::Settings;
 use super::steps::InputStep;
@@ -239,14 +239,15 @@ impl Hold<'_> {
         limit.max(BEYOND_NOISE * before.noise)
     }
 
-    /// In motion, and at a stop before the next step.
+    /// In motion, and at a stop before the next step. An input that is eased needs no stop to
+    /// bring the joint to rest.
     fn into_stop(&self, so_far: &SoFar) -> Option<StepMotion> {
         let held = self.held();
-        let before = Quiet::before(self.output, self.step, self.look_back)?;
-        let at_stop = self.quiet_at(self.end()).find(|quiet| quiet.rests(so_far))?;
-        if held.len() < 2 * self.look_back {
+        if self.is_eased || held.len() < 2 * self.look_back {
             return None;
         }
+        let before = Quiet::before(self.output, self.step, self.look_back)?;
+        let at_stop = self.quiet_at(self.end()).find(|quiet| quiet.rests(so_far))?;
         let near = (PLAIN * so_far.range()).max(BEYOND_NOISE * at_stop.noise);
         let arrived = held.iter().rposition(|y| (y - at_stop.level).abs() > near)? + 1;
         // A joint that only ends its motion comes no faster than it went.

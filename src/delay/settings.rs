@@ -2,6 +2,7 @@
 
 use super::input_motion::InputKind;
 use super::spec::Method;
+use crate::experiment::Trial;
 use crate::numerics::LowPass;
 use crate::units::SamplePeriod;
 
@@ -167,6 +168,20 @@ impl Settings {
     pub fn low_pass_at(&self, period: SamplePeriod) -> Option<LowPass> {
         let fits = |low_pass: &LowPass| low_pass.cutoff_hz < period.nyquist_hz();
         self.low_pass.filter(|low_pass| self.low_pass_required || fits(low_pass))
+    }
+
+    /// Whether the input of these `trials` of a joint is taken as moving all the time. One whose
+    /// smallest step is given has steps.
+    pub fn takes_as_continuous(&self, trials: &[Trial]) -> bool {
+        let has_steps = self.input == InputKind::Auto && self.min_step > 0.0;
+        !has_steps && self.input.is_continuous(trials)
+    }
+
+    /// These settings with the kind of input that `trials` have.
+    pub(super) fn with_input_of(&self, trials: &[Trial]) -> Self {
+        let is_continuous = self.takes_as_continuous(trials);
+        let input = if is_continuous { InputKind::Continuous } else { InputKind::Steps };
+        Self { input, ..self.clone() }
     }
 
     /// Checks what can be checked without a log.

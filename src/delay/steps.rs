@@ -43,7 +43,7 @@ pub fn input_steps(input: &[f64], min_step: f64) -> Vec<InputStep> {
 /// The steps of each of the `trials` of a joint, as `settings` ask for: none of an input that
 /// moves all the time.
 pub fn joint_steps(trials: &[Trial], settings: &Settings) -> Vec<Vec<InputStep>> {
-    if settings.input.is_continuous(trials) {
+    if settings.takes_as_continuous(trials) {
         return trials.iter().map(|_| Vec::new()).collect();
     }
     trials.iter().map(|trial| trial_steps(trial, settings)).collect()

@@ -77,7 +77,7 @@ fn estimate_one(
     workers: &impl Workers,
 ) -> Result<JointEstimate, EstimateError> {
     let mut estimate = estimate_steps(joint, settings, done, workers)?;
-    if settings.input.is_continuous(&joint.trials) {
+    if settings.takes_as_continuous(&joint.trials) {
         let found = dead_time(&joint.trials, settings);
         let trials = joint.trials.iter().zip(&mut estimate.trials).enumerate();
         for (number, (trial, estimate)) in trials {

@@ -56,7 +56,7 @@ pub(crate) struct ConditionArgs {
     paper: bool,
 
     /// Count a change of the input as a step when it is more than this: for an input
-    /// that was measured
+    /// that was measured, and that has steps
     #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = threshold, allow_negative_numbers = true)]
     min_step: f64,
 
