@@ -48,6 +48,7 @@ fn on_reading(error: &ReadError) -> String {
         ReadError::TrialNotContiguous { .. } => {
             ", or choose `--trial none` if the column does not name trials"
         }
+        ReadError::TooLarge { .. } => ", or allow more with `--max-memory`",
         ReadError::TooManySamples { .. } => ", or choose a longer `--resample`",
         _ => "",
     };

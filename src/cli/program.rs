@@ -10,6 +10,7 @@ use crate::cli::command::{
     merge, report, simulate, sweep,
 };
 use crate::cli::console::message;
+use crate::cli::each_log::end_with_parent;
 use crate::cli::exit::Completion;
 use crate::cli::failure::said;
 
@@ -44,6 +45,7 @@ enum Command {
 ///
 /// Exit status: 0 all done; 1 some joints or files failed; 2 nothing usable.
 pub fn run() -> ExitCode {
+    end_with_parent();
     let outcome = perform(Cli::parse().command);
     match outcome {
         Ok(Completion::Whole) => ExitCode::SUCCESS,

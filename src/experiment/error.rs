@@ -40,6 +40,19 @@ pub enum ReadError {
         /// What to do about it.
         remedy: &'static str,
     },
+    /// The log would take more memory than it may.
+    #[error(
+        "{}: it would take {} of memory to read it, and {} are allowed; check that the file is \
+         what it should be", path.display(), bytes(*needed), bytes(*limit)
+    )]
+    TooLarge {
+        /// The log.
+        path: PathBuf,
+        /// Bytes that are needed at least.
+        needed: u64,
+        /// Bytes that are allowed.
+        limit: u64,
+    },
     /// This build cannot read the format.
     #[error(
         "{}: {format} is not in this build of tauscope; build it with `--features {feature}`",
@@ -387,6 +400,15 @@ pub enum ReadError {
         /// What is wrong with them.
         source: TrialError,
     },
+}
+
+/// A number of bytes for people: `1.5 GB`.
+fn bytes(count: u64) -> String {
+    match count as f64 {
+        count @ 1e9.. => format!("{:.1} GB", count / 1e9),
+        count @ 1e6.. => format!("{:.0} MB", count / 1e6),
+        count => format!("{count} bytes"),
+    }
 }
 
 /// Where a header stands, in a file that has lines.

@@ -7,6 +7,7 @@ use sha2::{Digest as _, Sha256};
 use super::error::ReadError;
 use super::format::{GrowingRows, is_text};
 use super::log::Log;
+use super::memory::Budget;
 use super::read::{Experiment, Failure, ReadOptions, laid_out};
 use super::source::{Source, hashed};
 use super::table::{Head, Wanted};
@@ -38,6 +39,7 @@ impl GrowingLog {
 
     /// The log at `path`, of which nothing has come yet.
     pub fn new(path: &Path, options: ReadOptions) -> Self {
+        let rows = GrowingRows::new(Budget::new(options.memory));
         Self {
             path: path.to_owned(),
             options,
@@ -45,7 +47,7 @@ impl GrowingLog {
             hasher: Sha256::new(),
             bytes: 0,
             head: None,
-            rows: GrowingRows::default(),
+            rows,
         }
     }
 
@@ -101,7 +103,8 @@ impl GrowingLog {
         if table.rows.is_empty() {
             return Err(ReadError::HeaderOnly { path: path() });
         }
-        let log = Log { head, numeric: &numeric, table };
+        let budget = Budget::new(self.options.memory);
+        let log = Log { head, numeric: &numeric, table, budget: &budget };
         found.add_log(&log, &layout, None, self.options.repair)?;
         Ok(found)
     }

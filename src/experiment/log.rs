@@ -4,15 +4,21 @@ use super::error::ReadError;
 use super::even;
 use super::joint::{Joint, Signal, Trial};
 use super::layout::{JointLayout, TimeSource};
+use super::memory::Budget;
 use super::sampling::{Fault, Grid, Piece, Repair, Signals};
 use super::table::{BadCell, Column, Head, Table, TrialRows};
 use crate::units::SamplePeriod;
+
+/// Memory of a sample of a signal: the number as it was read, on its grid and in its trial, and
+/// what is made of it until its delays are known.
+const SAMPLE_SIZE: usize = 8 * size_of::<f64>();
 
 /// A table that was read, with what is needed to speak of its cells.
 pub(super) struct Log<'a> {
     pub(super) head: &'a Head,
     pub(super) numeric: &'a [usize],
     pub(super) table: &'a Table,
+    pub(super) budget: &'a Budget,
 }
 
 impl Log<'_> {
@@ -188,7 +194,10 @@ impl Log<'_> {
             covariates: layout.covariates.iter().map(|c| c.signal.clone()).collect::<Vec<Signal>>(),
             trials: Vec::new(),
         };
+        let size = (2 + joint.covariates.len()) * SAMPLE_SIZE;
         for (rows, grid) in trials.iter().zip(grids) {
+            let taken = self.budget.take_values(grid.samples(), size);
+            taken.map_err(|error| error.refuse(&self.head.path))?;
             let pieces = grid.pieces(&self.signals(layout, rows));
             let labels = part_labels(&rows.label, pieces.len(), trials);
             for (label, piece) in labels.into_iter().zip(pieces) {

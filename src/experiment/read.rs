@@ -10,6 +10,7 @@ use super::format::{self, is_named_like_a_log};
 use super::joint::Joint;
 use super::layout::Layout;
 use super::log::Log;
+use super::memory::{Budget, MemoryLimit};
 use super::sampling::Repair;
 use super::source::{Source, source_of};
 use super::table::{Head, OpenTable};
@@ -24,6 +25,9 @@ pub struct ReadOptions {
     pub joints: Vec<String>,
     /// What may be done to gaps and to uneven sampling.
     pub repair: Repair,
+    /// How much memory they may take.
+    #[serde(skip)]
+    pub memory: MemoryLimit,
 }
 
 /// Everything that was measured, of one file or many.
@@ -57,10 +61,11 @@ impl Experiment {
     /// where the file names its trials itself.
     pub fn read(paths: &[PathBuf], options: &ReadOptions) -> Self {
         let mut experiment = Self { options: options.clone(), ..Self::default() };
+        let budget = Budget::new(options.memory);
         let mut stems: Vec<String> = Vec::new();
         for path in paths {
             let stem = (paths.len() > 1).then(|| unique_stem(path, &stems));
-            match read_log(path, stem.as_deref(), options) {
+            match read_log(path, stem.as_deref(), options, &budget) {
                 Ok(log) => experiment.add(log, path),
                 Err(error) => experiment.failures.push(Failure { joint: None, error }),
             }
@@ -175,14 +180,16 @@ fn read_log(
     path: &Path,
     stem: Option<&str>,
     options: &ReadOptions,
+    budget: &Budget,
 ) -> Result<Experiment, ReadError> {
-    let table = format::open(path)?;
+    let open = || format::open(path, budget.rest());
+    let table = open()?;
     let (layout, mut found) = laid_out(&table.head, options)?;
     let mut next = Some(table);
     for layout in layout.by_clock() {
         // Each clock has rows of its own, and is read in a pass of its own.
-        let table = next.take().map_or_else(|| format::open(path), Ok)?;
-        found.read_clock(table, &layout, stem, options.repair)?;
+        let table = next.take().map_or_else(open, Ok)?;
+        found.read_clock(table, &layout, stem, options.repair, budget)?;
     }
     Ok(found)
 }
@@ -213,6 +220,7 @@ impl Experiment {
         layout: &Layout,
         stem: Option<&str>,
         repair: Repair,
+        budget: &Budget,
     ) -> Result<(), ReadError> {
         let head = table.head.clone();
         if layout.joints.is_empty() {
@@ -221,7 +229,7 @@ impl Experiment {
         }
         let numeric = layout.numeric_columns();
         let table = table.read(&numeric, layout.trial, layout.time.column(), layout.clock())?;
-        let log = Log { head: &head, numeric: &numeric, table: &table };
+        let log = Log { head: &head, numeric: &numeric, table: &table, budget };
         self.add_log(&log, layout, stem, repair)
     }
 

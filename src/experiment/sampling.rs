@@ -157,6 +157,27 @@ impl Grid {
         self.period
     }
 
+    /// Samples that the grid may have, its short gaps filled.
+    pub(super) fn samples(&self) -> usize {
+        let bridged = |steps: f64, count: usize| {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 0")]
+            let steps = steps as usize;
+            steps.saturating_add(count)
+        };
+        match &self.placement {
+            Placement::Rows { places, fill, .. } => {
+                let gaps = places.windows(2).map(|pair| (pair[1] - pair[0]) as f64);
+                bridged(gaps.filter(|gap| is_within(*gap, *fill)).sum(), places.len())
+            }
+            Placement::Resampled { times, longest_gap_s } => {
+                let gaps = times.windows(2).map(|pair| pair[1] - pair[0]);
+                let bridges = gaps.filter(|gap| is_within(*gap, *longest_gap_s));
+                bridged(bridges.sum::<f64>() / self.period.seconds(), 1)
+            }
+            Placement::Parts(parts) => parts.iter().map(|part| part.grid.samples()).sum(),
+        }
+    }
+
     /// The signals of a joint on the grid, cut at its long gaps.
     pub(super) fn pieces(&self, signals: &Signals) -> Vec<Piece> {
         let mut signals = signals.clone();

@@ -7,6 +7,7 @@ use super::columns::{ColumnMap, JointColumns};
 use super::error::ReadError;
 use super::format;
 use super::layout::{find_time_column, find_trial};
+use super::memory::{Budget, MemoryLimit};
 use super::table::{Column, Head, Header};
 use super::unit;
 
@@ -52,12 +53,12 @@ pub enum Role {
 }
 
 impl Survey {
-    /// Looks at the log at `path`.
+    /// Looks at the log at `path`, with no more than `memory`.
     ///
     /// # Errors
     /// [`ReadError`] when it cannot be read at all.
-    pub fn of(path: &Path) -> Result<Self, ReadError> {
-        let table = format::open(path)?;
+    pub fn of(path: &Path, memory: MemoryLimit) -> Result<Self, ReadError> {
+        let table = format::open(path, Budget::new(memory))?;
         let head = table.head.clone();
         let (time, trial) = (find_time_column(&head), find_trial(&head));
         let numeric: Vec<usize> = (0..head.headers.len()).filter(|i| Some(*i) != trial).collect();
@@ -444,7 +445,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log.csv");
         std::fs::write(&path, log(header)).unwrap();
-        Survey::of(&path).unwrap()
+        Survey::of(&path, MemoryLimit::default()).unwrap()
     }
 
     #[test]
@@ -469,7 +470,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log.csv");
         std::fs::write(&path, "a,b\n1,5\n2,3\n3,9\n4,1\n").unwrap();
-        let survey = Survey::of(&path).unwrap();
+        let survey = Survey::of(&path, MemoryLimit::default()).unwrap();
         assert_eq!((survey.map.joints.len(), survey.open.len()), (0, 2), "{survey:#?}");
     }
 

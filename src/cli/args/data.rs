@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::number;
 use crate::cli::failure::said;
-use crate::experiment::{ColumnMap, Experiment, JointColumns, ReadOptions, Repair, expand_folders};
+use crate::experiment::{
+    ColumnMap, Experiment, JointColumns, MemoryLimit, ReadOptions, Repair, expand_folders,
+};
 use crate::units::SamplePeriod;
 use anyhow::{Context as _, bail};
 use clap::Args;
@@ -54,6 +56,24 @@ pub(crate) struct DataArgs {
         help_heading = "Reading logs"
     )]
     fill: Option<f64>,
+
+    #[command(flatten)]
+    memory: MemoryArgs,
+}
+
+/// How much memory logs may take.
+#[derive(Args, Debug)]
+pub(crate) struct MemoryArgs {
+    /// The most memory that reading logs may take, in bytes or as `500MB` or `4GB`: a log that
+    /// needs more is refused [default: half of the machine's]
+    #[arg(long, value_name = "SIZE", value_parser = number::bytes, help_heading = "Reading logs")]
+    max_memory: Option<u64>,
+}
+
+impl MemoryArgs {
+    pub(crate) fn limit(&self) -> MemoryLimit {
+        self.max_memory.map_or_else(MemoryLimit::default, MemoryLimit::of_bytes)
+    }
 }
 
 impl DataArgs {
@@ -133,6 +153,7 @@ impl DataArgs {
             ("--columns", self.columns.as_ref().map(path)),
             ("--resample", self.resample.map(seconds)),
             ("--fill", self.fill.map(|fill| fill.to_string())),
+            ("--max-memory", self.memory.max_memory.map(|bytes| bytes.to_string())),
         ];
         let joints = joints.into_iter().map(|joint| ("--joint", Some(joint)));
         let given = joints.chain(options).filter_map(|(name, value)| Some((name, value?)));
@@ -168,6 +189,6 @@ impl DataArgs {
             }
         }
         let repair = Repair { resample: self.resample, fill_s: self.fill, as_it_stands: false };
-        Ok(ReadOptions { columns, joints, repair })
+        Ok(ReadOptions { columns, joints, repair, memory: self.memory.limit() })
     }
 }

@@ -46,6 +46,12 @@ impl ModelFileArgs {
         self.write.is_some()
     }
 
+    /// The model file, where it is to stay as it is.
+    pub(crate) fn kept(&self) -> Vec<PathBuf> {
+        let is_other = |model: &&PathBuf| target_of(model) != target_of(self.target());
+        self.model.iter().filter(is_other).cloned().collect()
+    }
+
     /// Where the revised file goes.
     pub(crate) fn target(&self) -> &Path {
         self.write.as_ref().or(self.model.as_ref()).map_or(Path::new(DEFAULT), PathBuf::as_path)

@@ -14,6 +14,19 @@ pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     seconds.ok_or_else(|| "expected a number of seconds from zero up".to_owned())
 }
 
+/// A number of bytes, alone or in kilobytes and so on.
+pub(crate) fn bytes(text: &str) -> Result<u64, String> {
+    const UNITS: [(&str, f64); 6] =
+        [("kB", 1e3), ("KB", 1e3), ("MB", 1e6), ("GB", 1e9), ("TB", 1e12), ("B", 1.0)];
+    let with_unit = UNITS.iter().find_map(|(unit, size)| Some((text.strip_suffix(unit)?, *size)));
+    let (number, size) = with_unit.unwrap_or((text, 1.0));
+    let bytes = number.trim().parse().ok().map(|number: f64| number * size);
+    let bytes = bytes.filter(|bytes| *bytes >= 1.0 && *bytes < 2_f64.powi(63));
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it was checked")]
+    let bytes = bytes.map(|bytes| bytes as u64);
+    bytes.ok_or_else(|| "expected a number of bytes, as in 500MB or 4GB".to_owned())
+}
+
 /// A number of threads.
 pub(crate) fn threads(text: &str) -> Result<usize, String> {
     /// More than any machine has processors for.
@@ -24,7 +37,9 @@ pub(crate) fn threads(text: &str) -> Result<usize, String> {
 
 /// A count.
 pub(crate) fn at_least_one(text: &str) -> Result<usize, String> {
-    let number = text.parse().ok().filter(|number: &usize| *number > 0);
+    /// More than any log has samples, and far from where sums of counts overflow.
+    const MOST: usize = 1 << 40;
+    let number = text.parse().ok().filter(|number| (1..=MOST).contains(number));
     number.ok_or_else(|| "expected a whole number from 1 up".to_owned())
 }
 
@@ -38,4 +53,19 @@ pub(crate) fn threshold(text: &str) -> Result<f64, String> {
 pub(crate) fn probability(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|x: &f64| *x > 0.0 && *x < 1.0);
     number.ok_or_else(|| "expected a number between 0 and 1, as in 0.99".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_are_read_with_and_without_a_unit() {
+        let texts = ["500MB", "4 GB", "1.5kB", "77", "77B"];
+        let expected = [500_000_000, 4_000_000_000, 1500, 77, 77];
+        assert_eq!(texts.map(|text| bytes(text).unwrap()), expected);
+        for wrong in ["", "0", "-1GB", "GB", "1e30", "NaN", "4 cats"] {
+            assert!(bytes(wrong).is_err(), "{wrong}");
+        }
+    }
 }

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
 
-use crate::cli::args::{RunArgs, quoted};
+use crate::cli::args::{MemoryArgs, RunArgs, quoted};
 use crate::cli::exit::Completion;
-use crate::cli::output::write_file;
+use crate::cli::output::{check_outputs, write_file};
 use crate::experiment::Survey;
 use crate::report::{ColumnsJson, columns_table};
 
@@ -26,12 +26,16 @@ pub(crate) struct Args {
     write: Option<PathBuf>,
 
     #[command(flatten)]
+    memory: MemoryArgs,
+
+    #[command(flatten)]
     run: RunArgs,
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
-    let survey = Survey::of(&args.log)?;
+    let survey = Survey::of(&args.log, args.memory.limit())?;
     if let Some(path) = &args.write {
+        check_outputs(&[path], std::slice::from_ref(&args.log))?;
         write_file(path, |file| Ok(file.write_all(survey.map.to_toml().as_bytes())?))?;
     }
     let options = options(&survey);

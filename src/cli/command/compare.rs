@@ -52,7 +52,7 @@ struct Named {
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let models = models(&args.model)?;
     if let Some(path) = &args.output.recording {
-        check_outputs(&[path.as_path()], &args.data.files())?;
+        check_outputs(&[path.as_path()], &[args.data.files(), args.model.clone()].concat())?;
     }
     let stream = args.output.stream.open(args.output.run.verbosity())?;
     let session = Session::begin(&args.data, &args.output.run, stream)?;

@@ -50,7 +50,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let effects = args.effects.effects(file.candidates())?;
     let options = Options { effects, ..Options::default() };
     if let Some(path) = &args.output.recording {
-        check_outputs(&[path.as_path()], &args.data.files())?;
+        let inputs: Vec<_> = args.data.files().into_iter().chain(args.model.clone()).collect();
+        check_outputs(&[path.as_path()], &inputs)?;
     }
     let stream = args.output.stream.open(args.output.run.verbosity())?;
     let session = Session::begin(&args.data, &args.output.run, stream)?;

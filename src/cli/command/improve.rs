@@ -80,7 +80,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let target = args.model.target();
     let recording = args.output.recording.as_deref();
     let outputs: Vec<_> = std::iter::once(target).chain(recording).collect();
-    check_outputs(&outputs, &args.data.files())?;
+    check_outputs(&outputs, &[args.data.files(), args.model.kept()].concat())?;
     let stream = args.output.stream.open(args.output.run.verbosity())?.expecting_revisions()?;
     let interrupt = Interrupt::watch(STOPPING);
     let session = Session::begin(&args.data, &args.output.run, stream)?;

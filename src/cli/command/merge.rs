@@ -7,8 +7,9 @@ use clap::Args as ClapArgs;
 
 use crate::cli::args::Format;
 use crate::cli::console::Verbosity;
-use crate::cli::each_log::{Tables, present, read_folders};
+use crate::cli::each_log::{Tables, present, read_folders, results_in};
 use crate::cli::exit::Completion;
+use crate::cli::output::CsvText;
 
 /// Make the tables of all logs from folders of results
 ///
@@ -28,6 +29,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     summary: Option<PathBuf>,
 
+    /// Write texts in CSV so that a spreadsheet program computes nothing: an apostrophe stands
+    /// before what it would take for a formula
+    #[arg(long)]
+    safe_csv: bool,
+
     /// How results are printed
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -38,8 +44,9 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
-    let tables = Tables { decisions: args.decisions.as_deref(), summary: args.summary.as_deref() };
-    tables.check(&[])?;
+    let (decisions, summary) = (args.decisions.as_deref(), args.summary.as_deref());
+    let tables = Tables { decisions, summary, text: CsvText::safe_if(args.safe_csv) };
+    tables.check(&results_in(&args.folders)?)?;
     let (command, results, missing) = read_folders(&args.folders)?;
     let report = FolderReport::new(&command, results);
     if command != "estimate" && tables.decisions.is_some() {

@@ -105,7 +105,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let file = args.model.file()?;
     let effects = args.model.effects.effects(file.candidates())?;
     let target = args.output.target()?;
-    target.check(&args.data.files())?;
+    let inputs: Vec<_> = args.data.files().into_iter().chain(args.model.model.clone()).collect();
+    target.check(&inputs)?;
     let stream = args.output.stream.open(args.output.run.verbosity())?;
     let session = Session::begin(&args.data, &args.output.run, stream)?;
     let study = Study::of(session, settings, |begun| args.model.improved(&file, begun, effects))?;

@@ -12,6 +12,43 @@ use serde::Serialize;
 
 use super::progress;
 
+/// `text` with its control characters shown, not sent: names in a log may hold what moves a
+/// terminal's cursor, renames its window or turns the direction of writing.
+pub(super) fn shown(text: &str) -> String {
+    let is_sent = |letter: char| {
+        let is_turn = matches!(letter, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        letter == '\n' || letter == '\t' || !(letter.is_control() || is_turn)
+    };
+    if text.chars().all(is_sent) {
+        return text.to_owned();
+    }
+    let letter = |letter: char| match letter {
+        _ if is_sent(letter) => letter.to_string(),
+        _ => letter.escape_unicode().to_string(),
+    };
+    text.chars().map(letter).collect()
+}
+
+/// The same of a text with words that are [`toned`], whose colours are sent.
+fn shown_in_tones(text: &str) -> String {
+    let tones = [Tone::Good, Tone::Notice, Tone::Bad].map(Tone::style);
+    let mut codes: Vec<String> = tones.iter().map(ToString::to_string).collect();
+    codes.push(format!("{:#}", Tone::Good.style()));
+    let mut pieces = text.split(ESCAPE);
+    let mut all = shown(pieces.next().unwrap_or_default());
+    for piece in pieces {
+        let piece = format!("{ESCAPE}{piece}");
+        let code = codes.iter().find(|code| piece.starts_with(code.as_str()));
+        let (code, rest) = piece.split_at(code.map_or(0, String::len));
+        all += code;
+        all += &shown(rest);
+    }
+    all
+}
+
+/// What colours and all else that a terminal does begin with.
+const ESCAPE: char = '\u{1b}';
+
 /// What a word is coloured for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Tone {
@@ -49,6 +86,7 @@ pub(crate) fn message(kind: &str, text: &str) {
         "warning" | "stopping" => Tone::Notice.style(),
         _ => AnsiColor::Cyan.on_default(),
     };
+    let text = shown_in_tones(text);
     progress::aside(|| {
         writeln!(anstream::stderr().lock(), "{style}{kind}:{style:#} {text}").unwrap_or_default();
     });
@@ -64,7 +102,8 @@ pub(crate) fn warn(failures: &[String]) {
 /// Prints results on stdout, tables with their frames dimmed.
 pub(crate) fn print(text: &str) -> anyhow::Result<()> {
     let mut out = anstream::stdout().lock();
-    let painted = if has_colors() { painted(text) } else { text.to_owned() };
+    let text = shown_in_tones(text);
+    let painted = if has_colors() { painted(&text) } else { text };
     let written = out.write_all(painted.as_bytes()).and_then(|()| out.flush());
     written.context("standard output cannot be written")
 }
@@ -118,6 +157,19 @@ fn painted_line(line: &str, style: Style) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn control_characters_are_shown_and_own_colours_sent() {
+        let name = "a\u{1b}]0;mine\u{7}\u{9b}2J\u{202e}b\u{1b}[8m";
+        let said = format!("{}\n{}\tend", toned(Tone::Good, name), toned(Tone::Bad, "lost"));
+        let found = shown_in_tones(&said);
+        let hidden = "a\\u{1b}]0;mine\\u{7}\\u{9b}2J\\u{202e}b\\u{1b}[8m";
+        assert_eq!(
+            found,
+            format!("{}\n{}\tend", toned(Tone::Good, hidden), toned(Tone::Bad, "lost"))
+        );
+        assert_eq!(shown("plain °, 日本"), "plain °, 日本");
+    }
 
     #[test]
     fn paint_adds_nothing_but_colours() {

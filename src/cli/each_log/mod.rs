@@ -6,6 +6,7 @@
 mod each;
 mod store;
 mod typed;
+mod with_parent;
 mod work;
 
 use std::path::{Path, PathBuf};
@@ -17,10 +18,11 @@ use clap::Args;
 use crate::cli::args::Format;
 use crate::cli::console::{self, Verbosity, message, warn};
 use crate::cli::exit::Completion;
-use crate::cli::output::{check_outputs, check_tables, write_table};
+use crate::cli::output::{CsvText, check_outputs, check_tables, write_table};
 
 pub(crate) use each::Each;
-pub(crate) use store::read_folders;
+pub(crate) use store::{read_folders, results_in};
+pub(crate) use with_parent::end_with_parent;
 
 /// Many logs, each by itself.
 #[derive(Args, Debug)]
@@ -39,6 +41,11 @@ pub(crate) struct FolderArgs {
     /// Write a row per log and joint, as CSV or Parquet
     #[arg(long, value_name = "FILE", requires = "results")]
     summary: Option<PathBuf>,
+
+    /// Write texts in CSV so that a spreadsheet program computes nothing: an apostrophe stands
+    /// before what it would take for a formula
+    #[arg(long, help_heading = "Output")]
+    safe_csv: bool,
 }
 
 /// A part of the logs: every `of`-th, from the `number`-th on.
@@ -71,6 +78,7 @@ impl Shard {
 pub(crate) struct Tables<'a> {
     pub(crate) decisions: Option<&'a Path>,
     pub(crate) summary: Option<&'a Path>,
+    pub(crate) text: CsvText,
 }
 
 impl FolderArgs {
@@ -79,27 +87,33 @@ impl FolderArgs {
         self.results.is_some()
     }
 
+    /// How texts in CSV are written.
+    pub(crate) fn csv_text(&self) -> CsvText {
+        CsvText::safe_if(self.safe_csv)
+    }
+
     /// Runs the command for each log that has no result yet.
     pub(crate) fn run(&self, each: &Each<'_>) -> anyhow::Result<Completion> {
         let results = self.results.as_deref().unwrap_or(Path::new("."));
         if let Some((name, _)) = each.refused.iter().find(|(_, given)| *given) {
             bail!("{name}: it is for one log; leave it out, or leave out `--results`");
         }
-        let tables = Tables { decisions: each.decisions, summary: self.summary.as_deref() };
+        let (decisions, summary) = (each.decisions, self.summary.as_deref());
+        let tables = Tables { decisions, summary, text: self.csv_text() };
         if self.shard.is_some() && tables.files().next().is_some() {
             bail!(
                 "--shard: a part of the logs makes no table of all; leave out `--decisions` and \
                  `--summary`, and give them to `tauscope merge` when all parts are done"
             );
         }
-        tables.check(&each.data.files())?;
+        let typed = typed::options(each.program, each.command)?;
+        tables.check(&[each.data.files(), typed.files.clone()].concat())?;
         std::fs::create_dir_all(results)
             .with_context(|| format!("{}: cannot be made", results.display()))?;
         let (all, mut failures) = each.data.logs();
         if all.is_empty() {
             bail!(failures.into_iter().next().unwrap_or_else(|| "no log is given".to_owned()));
         }
-        let typed = typed::options(each.program, each.command)?;
         let part =
             |(index, _): &(usize, &PathBuf)| self.shard.is_none_or(|shard| shard.has(*index));
         let logs: Vec<&PathBuf> = all.iter().enumerate().filter(part).map(|(_, log)| log).collect();
@@ -154,10 +168,10 @@ pub(crate) fn present(
         message("note", "`--summary FILE` writes a row per log and joint");
     }
     if let Some(path) = tables.decisions {
-        write_table(&report.decisions(), path)?;
+        write_table(&report.decisions(), path, tables.text)?;
     }
     if let Some(path) = tables.summary {
-        write_table(&report.summary(), path)?;
+        write_table(&report.summary(), path, tables.text)?;
     }
     match format {
         Format::Text => console::print(&report.text())?,

@@ -1,6 +1,7 @@
 //! The folder of results: a file per log, written when the log is done.
 
 use std::collections::BTreeMap;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 use crate::report::LogResult;
@@ -41,7 +42,7 @@ impl Kept {
         document: Value,
     ) -> Self {
         let (schema, version) = (SCHEMA.to_owned(), env!("CARGO_PKG_VERSION").to_owned());
-        let (command, file) = (command.to_owned(), log.display().to_string());
+        let (command, file) = (command.to_owned(), text_of(log.as_os_str()));
         Self { schema, version, command, file, of, settings, key, document }
     }
 
@@ -70,16 +71,27 @@ impl Kept {
 /// The name of a log's file in the folder, without its ending: readable, and its own also
 /// where logs of several folders have one name.
 pub(crate) fn name_of(log: &Path) -> String {
-    let stem = log.file_name().unwrap_or_default().to_string_lossy();
-    let hash = base16ct::lower::encode_string(&Sha256::digest(log.display().to_string()));
+    /// Bytes of the log's name that are shown: file systems allow 255 with what is added.
+    const LONGEST: usize = 200;
+    let name = text_of(log.file_name().unwrap_or_default());
+    let stem = name.get(..name.floor_char_boundary(LONGEST)).unwrap_or_default();
+    let hash = Sha256::digest(log.as_os_str().as_encoded_bytes());
+    let hash = base16ct::lower::encode_string(&hash);
     format!("{stem}-{}", hash.get(..12).unwrap_or_default())
+}
+
+/// A name as text, of which there is only one: bytes that are no text are written as `\xff`.
+pub(crate) fn text_of(name: &OsStr) -> String {
+    let escaped = || name.as_encoded_bytes().escape_ascii().to_string();
+    name.to_str().map_or_else(escaped, str::to_owned)
 }
 
 /// All results of some folders, by the names of their logs; and what is not as it should be.
 pub(crate) fn read_folders(
     folders: &[PathBuf],
 ) -> anyhow::Result<(String, Vec<LogResult>, Vec<String>)> {
-    let mut found: BTreeMap<String, (PathBuf, Kept)> = BTreeMap::new();
+    // A result is told by the name of its file, too, which has a hash of the log's.
+    let mut found: BTreeMap<(String, OsString), (PathBuf, Kept)> = BTreeMap::new();
     for path in results_in(folders)? {
         let kept = Kept::read(&path)?;
         let different = found.values().next().filter(|(_, first)| !first.is_like(&kept));
@@ -91,7 +103,8 @@ pub(crate) fn read_folders(
                 other.display()
             );
         }
-        let twice = found.get(&kept.file).filter(|(_, other)| other.key != kept.key);
+        let name = (kept.file.clone(), path.file_name().unwrap_or_default().to_owned());
+        let twice = found.get(&name).filter(|(_, other)| other.key != kept.key);
         if let Some((other, _)) = twice {
             bail!(
                 "{}: another result of {} is in {}; remove the older one",
@@ -100,7 +113,7 @@ pub(crate) fn read_folders(
                 other.display()
             );
         }
-        found.insert(kept.file.clone(), (path, kept));
+        found.insert(name, (path, kept));
     }
     let of = found.values().map(|(_, kept)| kept.of).max().unwrap_or_default();
     let Some(command) = found.values().next().map(|(_, kept)| kept.command.clone()) else {
@@ -122,7 +135,8 @@ impl Kept {
     }
 }
 
-fn results_in(folders: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
+/// The files of results in some folders.
+pub(crate) fn results_in(folders: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for folder in folders {
         let unread = || format!("{}: cannot be read as a folder of results", folder.display());

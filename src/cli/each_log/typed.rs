@@ -8,8 +8,8 @@ use clap::parser::ValueSource;
 use clap::{ArgAction, Command};
 
 /// Options that do not change the result of a log.
-const WITHOUT_EFFECT: [&str; 7] =
-    ["results", "shard", "summary", "decisions", "format", "threads", "quiet"];
+const WITHOUT_EFFECT: [&str; 8] =
+    ["results", "shard", "summary", "safe_csv", "decisions", "format", "threads", "quiet"];
 
 /// Options that name a file, whose content counts.
 const FILES: [&str; 2] = ["columns", "model"];

@@ -13,8 +13,9 @@ use anyhow::{Context as _, anyhow};
 use sha2::{Digest as _, Sha256};
 
 use super::each::Each;
-use super::store::{Kept, name_of};
+use super::store::{Kept, name_of, text_of};
 use super::typed::Typed;
+use super::with_parent;
 use crate::cli::console::{Bar, Verbosity, message};
 
 /// What is to be done, and where results are kept.
@@ -86,11 +87,11 @@ impl Work<'_> {
     fn is_done(&self, logs: &[&PathBuf], keys: &[anyhow::Result<String>], index: usize) -> bool {
         let (Some(log), Some(Ok(key))) = (logs.get(index), keys.get(index)) else { return false };
         let kept = Kept::read(&self.place(log));
-        kept.is_ok_and(|kept| kept.key == *key && kept.file == log.display().to_string())
+        kept.is_ok_and(|kept| kept.key == *key && kept.file == text_of(log.as_os_str()))
     }
 
     fn settings(&self) -> String {
-        let words: Vec<_> = self.typed.words.iter().map(|word| word.to_string_lossy()).collect();
+        let words: Vec<_> = self.typed.words.iter().map(|word| text_of(word)).collect();
         words.join(" ")
     }
 
@@ -124,7 +125,8 @@ impl Work<'_> {
             write.push(self.place(log).with_extension("toml"));
             command.arg(write);
         }
-        let output = command.arg("--").arg(log).output().context("this program cannot be run")?;
+        let output = with_parent::output(command.arg("--").arg(log));
+        let output = output.context("this program cannot be run")?;
         let said = String::from_utf8_lossy(&output.stderr);
         if !matches!(output.status.code(), Some(0 | 1)) {
             let error = said.lines().find_map(|line| line.strip_prefix("error: "));

@@ -1,8 +1,11 @@
 //! Files that bear their final name only when they are whole.
 
+use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::time::Duration;
 
 use anyhow::{Context as _, bail};
 use tempfile::NamedTempFile;
@@ -25,11 +28,20 @@ enum Target {
 
 /// The file that `path` leads to: a link is written through, not replaced.
 pub(crate) fn target_of(path: &Path) -> PathBuf {
+    // A pipe that a shell names, as `/dev/fd/63`, has no other name.
+    if is_pipe_or_device(path) {
+        return path.to_owned();
+    }
     // The target of a link may not be there yet.
     let path = path.read_link().map_or_else(|_| path.to_owned(), |to| folder_of(path).join(to));
     let parent = folder_of(&path).canonicalize().ok();
     let place = parent.zip(path.file_name()).map(|(folder, name)| folder.join(name));
     path.canonicalize().ok().or(place).unwrap_or(path)
+}
+
+/// Whether something is there that can be written to, and not replaced.
+fn is_pipe_or_device(path: &Path) -> bool {
+    path.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir())
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -40,7 +52,12 @@ fn folder_of(path: &Path) -> &Path {
 impl OutputFile {
     /// Whether `path` can be written to, found out by trying: a folder that is missing is
     /// reported before the work is done.
+    ///
+    /// A pipe is left alone: to open and close it would tell who reads it that this was all.
     pub(crate) fn probe(path: &Path) -> anyhow::Result<()> {
+        if is_pipe_or_device(path) {
+            return Ok(());
+        }
         Self::create(path).map(drop)
     }
 
@@ -56,12 +73,13 @@ impl OutputFile {
         if path.is_dir() {
             return Err(io::Error::from(io::ErrorKind::IsADirectory));
         }
-        if path.exists() && !path.is_file() {
+        if is_pipe_or_device(path) {
             let device = OpenOptions::new().write(true).open(path)?;
             return Ok(Target::Direct(BufWriter::new(device)));
         }
+        remove_left_parts(folder_of(path));
         let mut builder = tempfile::Builder::new();
-        builder.prefix(".tauscope-").suffix(".part");
+        builder.prefix(PART.0).suffix(PART.1);
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt as _;
@@ -69,6 +87,8 @@ impl OutputFile {
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
         let file = builder.tempfile_in(folder_of(path))?;
+        // Who holds the lock still writes. Where there are no locks, parts stay.
+        file.as_file().lock().unwrap_or_default();
         if let Ok(existing) = path.metadata() {
             file.as_file().set_permissions(existing.permissions())?;
         }
@@ -82,6 +102,8 @@ impl OutputFile {
                 Target::Direct(mut device) => device.flush(),
                 Target::Temporary(file) => {
                     let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
+                    // The content is on the disk before its name is.
+                    file.as_file().sync_all()?;
                     file.persist(&self.path).map_err(|error| error.error)?;
                     Ok(())
                 }
@@ -91,8 +113,35 @@ impl OutputFile {
     }
 }
 
+/// How the name of a file begins and ends that is not whole yet.
+const PART: (&str, &str) = (".tauscope-", ".part");
+
+/// Removes parts that were left in a folder by a program that was killed: nobody has a lock on
+/// them. Looked for once in each folder.
+fn remove_left_parts(folder: &Path) {
+    /// Time that another program has for taking the lock on its part.
+    const YOUNG: Duration = Duration::from_secs(60);
+    static SEEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+    let is_new = SEEN.lock().is_ok_and(|mut seen| seen.insert(folder.to_owned()));
+    for entry in folder.read_dir().into_iter().filter(|_| is_new).flatten().flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let is_part = name.starts_with(PART.0) && name.ends_with(PART.1);
+        let modified = entry.metadata().and_then(|found| found.modified());
+        let is_old = modified.is_ok_and(|time| time.elapsed().is_ok_and(|age| age > YOUNG));
+        if !(is_part && is_old) {
+            continue;
+        }
+        let is_left = OpenOptions::new().write(true).open(entry.path());
+        if is_left.is_ok_and(|file| file.try_lock().is_ok()) {
+            std::fs::remove_file(entry.path()).unwrap_or_default();
+        }
+    }
+}
+
 /// Refuses outputs that cannot be written, or would replace an input or one another.
 pub(crate) fn check_outputs(outputs: &[&Path], inputs: &[PathBuf]) -> anyhow::Result<()> {
+    let inputs: Vec<PathBuf> = inputs.iter().map(|path| target_of(path)).collect();
     let mut taken: Vec<PathBuf> = Vec::new();
     for path in outputs {
         let target = target_of(path);

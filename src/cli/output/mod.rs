@@ -8,4 +8,4 @@ pub(crate) use file::{OutputFile, check_outputs, target_of, write_file};
 #[cfg(not(feature = "rrd"))]
 pub(crate) use recording::left_out;
 pub(crate) use recording::{Contents, Detail, PreviewContents, SweepContents, check_recordings};
-pub(crate) use table::{FileKind, check_tables, write_parquet, write_table};
+pub(crate) use table::{CsvText, FileKind, check_tables, write_csv, write_parquet, write_table};

@@ -1,5 +1,6 @@
 //! Tables as CSV or Parquet, by the ending of the file's name.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use crate::report::DataTable;
@@ -46,10 +47,74 @@ pub(crate) fn write_parquet(_: &DataTable, _: &mut OutputFile) -> anyhow::Result
     anyhow::bail!("Parquet is not in this build of tauscope")
 }
 
+/// Whether texts in CSV are written so that a spreadsheet program computes nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum CsvText {
+    /// As it is: what reads the file again finds the names of the log.
+    #[default]
+    Plain,
+    /// With an apostrophe before what such a program would take for a formula.
+    Safe,
+}
+
+impl CsvText {
+    pub(crate) fn safe_if(asked: bool) -> Self {
+        if asked { Self::Safe } else { Self::Plain }
+    }
+}
+
+/// Lets `write` write CSV to `file`.
+pub(crate) fn write_csv(
+    file: &mut OutputFile,
+    text: CsvText,
+    write: impl FnOnce(&mut dyn Write) -> anyhow::Result<()>,
+) -> anyhow::Result<()> {
+    if text == CsvText::Plain {
+        return write(file);
+    }
+    let mut table = Vec::new();
+    write(&mut table)?;
+    Ok(copy_safe(&table, file)?)
+}
+
+/// Copies CSV, texts that begin like a formula with an apostrophe before them.
+fn copy_safe(table: &[u8], out: impl Write) -> csv::Result<()> {
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(table);
+    let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(out);
+    for record in reader.byte_records() {
+        for cell in &record? {
+            let is_formula =
+                matches!(cell.first(), Some(b'=' | b'+' | b'-' | b'@' | b'\t' | b'\r'));
+            let is_number = std::str::from_utf8(cell).is_ok_and(|text| text.parse::<f64>().is_ok());
+            if is_formula && !is_number {
+                writer.write_field([b"'", cell].concat())?;
+            } else {
+                writer.write_field(cell)?;
+            }
+        }
+        writer.write_record(None::<&[u8]>)?;
+    }
+    Ok(writer.flush()?)
+}
+
 /// Writes a table as what its name says.
-pub(crate) fn write_table(table: &DataTable, path: &Path) -> anyhow::Result<()> {
+pub(crate) fn write_table(table: &DataTable, path: &Path, text: CsvText) -> anyhow::Result<()> {
     write_file(path, |file| match FileKind::of(path) {
-        FileKind::Csv => Ok(table.write_csv(file)?),
+        FileKind::Csv => write_csv(file, text, |out| Ok(table.write_csv(out)?)),
         FileKind::Parquet => write_parquet(table, file),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_begins_like_a_formula_is_text_and_numbers_stay() {
+        let table = "joint,delay\n\"=HYPERLINK(\"\"x\"\",1)\",-1.5e-3\n@a,+3\n-a,\nplain,4\n";
+        let mut safe = Vec::new();
+        copy_safe(table.as_bytes(), &mut safe).unwrap();
+        let expected = "joint,delay\n\"'=HYPERLINK(\"\"x\"\",1)\",-1.5e-3\n'@a,+3\n'-a,\nplain,4\n";
+        assert_eq!(String::from_utf8(safe).unwrap(), expected);
+    }
 }

@@ -8,6 +8,7 @@ use std::path::Path;
 use super::spelling::{Spelling, are_units, bare_unit, parse_cell, parse_time, sniff_delimiter};
 use super::text::{Bytes, SNIFFED_BYTES};
 use crate::experiment::error::ReadError;
+use crate::experiment::memory::Budget;
 use crate::experiment::source::Source;
 use crate::experiment::table::{
     Column, Head, Header, Labels, OpenTable, RowNumbers, Rows, Table, Wanted,
@@ -17,22 +18,38 @@ use crate::experiment::table::{
 /// be counted.
 type Lines<R> = io::Chain<LineEnds<R>, &'static [u8]>;
 
+/// Bytes of a row, with comments and blank lines before it: what is longer is no table of text,
+/// or a quotation that is never closed.
+const LONGEST_ROW: u64 = 1 << 24;
+
+/// Lines of the same.
+const MOST_LINES: usize = 1 << 20;
+
+/// Memory of a number: itself, and what its vector has to spare.
+const NUMBER_SIZE: usize = 2 * size_of::<f64>();
+
 /// What follows the header, still unread.
 struct Unread {
     reader: csv::Reader<Lines<Bytes>>,
     delimiter: u8,
     /// The first row, where it had to be looked at.
     first: Option<(csv::ByteRecord, Place)>,
+    budget: Budget,
 }
 
 /// Opens the log and reads its header.
-pub(super) fn open(path: &Path) -> Result<OpenTable, ReadError> {
+pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
     let (bytes, start) = Bytes::open(path)?;
-    table(path, bytes, &start)
+    table(path, bytes, &start, budget)
 }
 
 /// Reads the header of a text that begins with `start`.
-pub(super) fn table(path: &Path, mut bytes: Bytes, start: &[u8]) -> Result<OpenTable, ReadError> {
+pub(super) fn table(
+    path: &Path,
+    mut bytes: Bytes,
+    start: &[u8],
+    budget: Budget,
+) -> Result<OpenTable, ReadError> {
     let io_error = |source| ReadError::Io { path: path.to_owned(), source };
     let Spelling { delimiter, preamble: (before, lines) } = Spelling::of(start);
     io::copy(&mut bytes.by_ref().take(before as u64), &mut io::sink()).map_err(io_error)?;
@@ -51,7 +68,7 @@ pub(super) fn table(path: &Path, mut bytes: Bytes, start: &[u8]) -> Result<OpenT
             first = Some((record, place));
         }
     }
-    Ok(OpenTable { head, rows: Box::new(Unread { reader, delimiter, first }) })
+    Ok(OpenTable { head, rows: Box::new(Unread { reader, delimiter, first, budget }) })
 }
 
 /// The units of a row below the header, where the header has none.
@@ -95,7 +112,7 @@ fn next<R: Read>(
 
 impl Rows for Unread {
     fn read(mut self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
-        let mut gathered = Gathered::new(wanted, self.delimiter);
+        let mut gathered = Gathered::new(wanted, self.delimiter, self.budget.rest());
         if let Some((record, place)) = self.first.take() {
             gathered.take(&record, &place, wanted)?;
         }
@@ -138,10 +155,11 @@ struct Gathered {
     delimiter: u8,
     table: Table,
     labels: Option<Labels>,
+    budget: Budget,
 }
 
 impl Gathered {
-    fn new(wanted: &Wanted<'_>, delimiter: u8) -> Self {
+    fn new(wanted: &Wanted<'_>, delimiter: u8, budget: Budget) -> Self {
         let path = wanted.path().to_owned();
         let table = Table {
             source: Source { path, sha256: String::new(), bytes: 0 },
@@ -150,7 +168,8 @@ impl Gathered {
             trials: Vec::new(),
             notes: Vec::new(),
         };
-        Self { delimiter, table, labels: wanted.label.map(|_| Labels::default()) }
+        let labels = wanted.label.map(|_| Labels::default());
+        Self { delimiter, table, labels, budget }
     }
 
     fn take(
@@ -161,18 +180,21 @@ impl Gathered {
     ) -> Result<(), ReadError> {
         check_width(wanted, place, record.len())?;
         let row = place.row;
+        let cell = |index: usize| record.get(index).unwrap_or_default().trim_ascii();
         if self.table.rows.is_empty() && are_units(record) {
             return Ok(());
         }
+        let label = wanted.label.map_or(&b""[..], cell);
+        let size = wanted.numeric.len() * NUMBER_SIZE + label.len();
+        self.budget.take_values(1, size).map_err(|error| error.refuse(wanted.path()))?;
         self.table.rows.push(row);
-        let cell = |index: usize| record.get(index).unwrap_or_default().trim_ascii();
         for (column, index) in self.table.columns.iter_mut().zip(wanted.numeric) {
             let is_time = wanted.time == Some(*index);
             let parse = if is_time { parse_time } else { parse_cell };
             column.push(parse(cell(*index), self.delimiter), row);
         }
-        if let (Some(labels), Some(index)) = (&mut self.labels, wanted.label) {
-            labels.push(&String::from_utf8_lossy(cell(index)), row, wanted.path())?;
+        if let Some(labels) = &mut self.labels {
+            labels.push(&String::from_utf8_lossy(label), row, wanted.path())?;
         }
         Ok(())
     }
@@ -186,8 +208,8 @@ impl Gathered {
 }
 
 /// The rows of a text that still grows: each is parsed once, when it has come whole.
-#[derive(Default)]
 pub(in crate::experiment) struct GrowingRows {
+    budget: Budget,
     delimiter: u8,
     /// What was not parsed yet.
     text: Vec<u8>,
@@ -197,6 +219,11 @@ pub(in crate::experiment) struct GrowingRows {
 }
 
 impl GrowingRows {
+    /// Nothing has come yet.
+    pub(in crate::experiment) fn new(budget: Budget) -> Self {
+        Self { budget, delimiter: b',', text: Vec::new(), lines: 0, gathered: None }
+    }
+
     /// Adds whole lines.
     pub(in crate::experiment) fn push(&mut self, lines: &[u8]) {
         self.text.extend_from_slice(lines);
@@ -225,7 +252,9 @@ impl GrowingRows {
         source: Source,
     ) -> Result<&Table, ReadError> {
         let gathered = self.gathered.take();
-        let mut gathered = gathered.unwrap_or_else(|| Gathered::new(wanted, self.delimiter));
+        let budget = || self.budget.rest();
+        let mut gathered =
+            gathered.unwrap_or_else(|| Gathered::new(wanted, self.delimiter, budget()));
         let result = self.each(wanted.path(), |record, place| {
             gathered.take(record, place, wanted).map(ControlFlow::Continue)
         });
@@ -304,16 +333,19 @@ struct LineEnds<R> {
     /// Places of the line ends that no record has passed yet.
     ends: VecDeque<u64>,
     passed: u64,
+    /// The end of the last row.
+    row_end: u64,
 }
 
 impl<R: Read> LineEnds<R> {
     /// Bytes that come after so many `lines`.
     fn after(inner: R, lines: u64) -> Self {
-        Self { inner, bytes: 0, last: b'\n', ends: VecDeque::new(), passed: lines }
+        Self { inner, bytes: 0, last: b'\n', ends: VecDeque::new(), passed: lines, row_end: 0 }
     }
 
     /// Number of line ends before the byte `place`, which never goes back.
     fn lines_before(&mut self, place: u64) -> u64 {
+        self.row_end = place;
         while self.ends.pop_front_if(|end| *end < place).is_some() {
             self.passed += 1;
         }
@@ -323,6 +355,15 @@ impl<R: Read> LineEnds<R> {
 
 impl<R: Read> Read for LineEnds<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let waiting = self.bytes.saturating_sub(self.row_end);
+        if waiting > LONGEST_ROW || self.ends.len() > MOST_LINES {
+            return Err(io::Error::other(format!(
+                "the row behind line {} does not end within {} MB and {MOST_LINES} lines; is a \
+                 quotation mark never closed?",
+                self.passed,
+                LONGEST_ROW >> 20
+            )));
+        }
         let count = self.inner.read(buffer)?;
         let new = buffer.get(..count).unwrap_or_default();
         let ends = new.iter().zip(self.bytes..).filter(|(byte, _)| **byte == b'\n');
@@ -336,6 +377,7 @@ impl<R: Read> Read for LineEnds<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::experiment::MemoryLimit;
     use crate::experiment::table::BadCell;
 
     #[test]
@@ -346,7 +388,7 @@ mod tests {
         let mixed = text.replacen('\n', "\r\n", 2);
         for text in [text.to_owned(), format!("{text}\n"), text.replace('\n', "\r\n"), mixed] {
             std::fs::write(&path, &text).unwrap();
-            let open = open(&path).unwrap();
+            let open = open(&path, Budget::new(MemoryLimit::default())).unwrap();
             assert_eq!(open.head.header_row, 2, "{text:?}");
             let table = open.read(&[0, 1], None, Some(0), 0).unwrap();
             let rows = [0, 1, 2].map(|index| table.rows.number(index));

@@ -14,15 +14,23 @@ use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
 use crate::experiment::error::ReadError;
+use crate::experiment::memory::{Budget, TooLarge};
 use crate::experiment::table::{Column, Head, Header, Labels, OpenTable, Rows, Table, Wanted};
+
+/// Memory of a number: itself, and what its vector has to spare.
+const NUMBER_SIZE: usize = 2 * size_of::<f64>();
+
+/// Memory of a short text.
+const LABEL_SIZE: usize = 64;
 
 /// A file whose footer was read.
 struct Unread {
     reader: SerializedFileReader<File>,
+    budget: Budget,
 }
 
 /// Opens the log and reads its schema.
-pub(super) fn open(path: &Path) -> Result<OpenTable, ReadError> {
+pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
     let io_error = |source| ReadError::Io { path: path.to_owned(), source };
     let file = File::open(path).map_err(io_error)?;
     let size = file.metadata().map_err(io_error)?.len();
@@ -34,7 +42,7 @@ pub(super) fn open(path: &Path) -> Result<OpenTable, ReadError> {
     let columns = reader.metadata().file_metadata().schema_descr().columns();
     let headers = columns.iter().map(|column| header(column)).collect();
     let head = Head { path: path.to_owned(), headers, header_row: 0 };
-    Ok(OpenTable { head, rows: Box::new(Unread { reader }) })
+    Ok(OpenTable { head, rows: Box::new(Unread { reader, budget }) })
 }
 
 /// Whether the columns of a group of rows lie in a file of `size` bytes, as they are said to.
@@ -85,7 +93,11 @@ impl Rows for Unread {
         let mut columns = vec![Column::default(); wanted.numeric.len()];
         let mut labels = Labels::default();
         let mut rows = 0;
+        let refuse = |error: TooLarge| error.refuse(wanted.path());
         for group in 0..self.reader.num_row_groups() {
+            let count = self.reader.metadata().row_group(group).num_rows();
+            let count = usize::try_from(count).unwrap_or_default();
+            self.budget.take_values(count, wanted.numeric.len() * NUMBER_SIZE).map_err(refuse)?;
             let read = |index, cells: &mut dyn FnMut(Cell)| {
                 self.group(group, index, cells).map_err(|error| damaged(wanted.path(), &error))
             };
@@ -97,13 +109,13 @@ impl Rows for Unread {
             }
             if let Some(index) = wanted.label {
                 let mut texts = Vec::new();
+                self.budget.take_values(count, LABEL_SIZE).map_err(refuse)?;
                 read(index, &mut |cell| texts.push(cell.label()))?;
                 for (text, row) in texts.iter().zip(rows + 1..) {
                     labels.push(text, row as u64, wanted.path())?;
                 }
             }
-            let count = self.reader.metadata().row_group(group).num_rows();
-            rows += usize::try_from(count).unwrap_or_default();
+            rows += count;
         }
         Table::counted(wanted.path(), rows, columns, &labels)
     }
@@ -134,6 +146,7 @@ impl Unread {
     ) -> Result<(), ParquetError> {
         let schema = self.reader.metadata().file_metadata().schema_descr();
         let full = schema.column(column).max_def_level();
+        let rows = self.reader.metadata().row_group(group).num_rows();
         let unsigned = matches!(
             schema.column(column).logical_type_ref(),
             Some(LogicalType::Integer(int)) if !int.is_signed
@@ -141,25 +154,27 @@ impl Unread {
         #[expect(clippy::cast_sign_loss, reason = "the bits are those of an unsigned number")]
         match self.reader.get_row_group(group)?.get_column_reader(column)? {
             ColumnReader::BoolColumnReader(reader) => {
-                each(reader, full, |value| Cell::Number(f64::from(u8::from(value))), cells)
+                each(reader, full, |value| Cell::Number(f64::from(u8::from(value))), rows, cells)
             }
             ColumnReader::Int32ColumnReader(reader) if unsigned => {
-                each(reader, full, |value| Cell::Number(f64::from(value as u32)), cells)
+                each(reader, full, |value| Cell::Number(f64::from(value as u32)), rows, cells)
             }
             ColumnReader::Int32ColumnReader(reader) => {
-                each(reader, full, |value| Cell::Number(f64::from(value)), cells)
+                each(reader, full, |value| Cell::Number(f64::from(value)), rows, cells)
             }
             ColumnReader::Int64ColumnReader(reader) if unsigned => {
-                each(reader, full, |value| Cell::Number(value as u64 as f64), cells)
+                each(reader, full, |value| Cell::Number(value as u64 as f64), rows, cells)
             }
             ColumnReader::Int64ColumnReader(reader) => {
-                each(reader, full, |value| Cell::Number(value as f64), cells)
+                each(reader, full, |value| Cell::Number(value as f64), rows, cells)
             }
             ColumnReader::FloatColumnReader(reader) => {
-                each(reader, full, |value| Cell::Number(f64::from(value)), cells)
+                each(reader, full, |value| Cell::Number(f64::from(value)), rows, cells)
             }
-            ColumnReader::DoubleColumnReader(reader) => each(reader, full, Cell::Number, cells),
-            ColumnReader::ByteArrayColumnReader(reader) => each(reader, full, text, cells),
+            ColumnReader::DoubleColumnReader(reader) => {
+                each(reader, full, Cell::Number, rows, cells)
+            }
+            ColumnReader::ByteArrayColumnReader(reader) => each(reader, full, text, rows, cells),
             _ => Err(ParquetError::NYI("a column of another type".to_owned())),
         }
     }
@@ -191,21 +206,27 @@ fn text(value: ByteArray) -> Cell {
     Cell::Text(String::from_utf8_lossy(value.data()).trim().to_owned())
 }
 
-/// Hands on the values of a column as cells; where the level is not `full` there is none.
+/// Hands on the values of the `rows` of a column as cells; where the level is not `full` there
+/// is none.
 fn each<T: DataType>(
     mut reader: ColumnReaderImpl<T>,
     full: i16,
     cell: impl Fn(T::T) -> Cell,
+    rows: i64,
     cells: &mut dyn FnMut(Cell),
 ) -> Result<(), ParquetError> {
     /// Rows that are read at once.
     const ROWS: usize = 8192;
+    // Pages may hold more rows than their group says it has, for which there is no memory.
+    let mut left = usize::try_from(rows).unwrap_or_default();
+    let unequal = || ParquetError::General(format!("a column has more or fewer than {rows} rows"));
     loop {
         let (mut levels, mut values) = (Vec::new(), Vec::new());
-        let (rows, _, _) = reader.read_records(ROWS, Some(&mut levels), None, &mut values)?;
-        if rows == 0 {
-            return Ok(());
+        let (count, _, _) = reader.read_records(ROWS, Some(&mut levels), None, &mut values)?;
+        if count == 0 {
+            return if left == 0 { Ok(()) } else { Err(unequal()) };
         }
+        left = left.checked_sub(count).ok_or_else(unequal)?;
         let mut values = values.into_iter().map(&cell);
         if full == 0 {
             values.by_ref().for_each(&mut *cells);

@@ -13,6 +13,7 @@ use super::parquet;
 #[cfg(feature = "xlsx")]
 use super::xlsx;
 use crate::experiment::error::ReadError;
+use crate::experiment::memory::Budget;
 use crate::experiment::table::OpenTable;
 
 /// A format of logs.
@@ -25,7 +26,7 @@ struct Format {
     starts: fn(&[u8]) -> bool,
     /// What to do with a file that is named so but does not start so.
     remedy: &'static str,
-    open: fn(&Path) -> Result<OpenTable, ReadError>,
+    open: fn(&Path, Budget) -> Result<OpenTable, ReadError>,
 }
 
 /// All formats. The last one is text, which any bytes may be.
@@ -38,7 +39,7 @@ const FORMATS: [Format; 8] = [
         #[cfg(feature = "parquet")]
         open: parquet::open,
         #[cfg(not(feature = "parquet"))]
-        open: |path| left_out(path, "Parquet", "parquet"),
+        open: |path, _| left_out(path, "Parquet", "parquet"),
     },
     Format {
         name: "MATLAB",
@@ -48,7 +49,7 @@ const FORMATS: [Format; 8] = [
         #[cfg(feature = "mat")]
         open: mat::open,
         #[cfg(not(feature = "mat"))]
-        open: |path| left_out(path, "MATLAB", "mat"),
+        open: |path, _| left_out(path, "MATLAB", "mat"),
     },
     Format {
         name: "MCAP",
@@ -58,7 +59,7 @@ const FORMATS: [Format; 8] = [
         #[cfg(feature = "mcap")]
         open: mcap::open,
         #[cfg(not(feature = "mcap"))]
-        open: |path| left_out(path, "MCAP", "mcap"),
+        open: |path, _| left_out(path, "MCAP", "mcap"),
     },
     Format {
         name: "XLSX",
@@ -68,14 +69,14 @@ const FORMATS: [Format; 8] = [
         #[cfg(feature = "xlsx")]
         open: xlsx::open,
         #[cfg(not(feature = "xlsx"))]
-        open: |path| left_out(path, "XLSX", "xlsx"),
+        open: |path, _| left_out(path, "XLSX", "xlsx"),
     },
     Format {
         name: "rosbag2 in SQLite",
         endings: &[],
         starts: |start| start.starts_with(b"SQLite format 3\0"),
         remedy: "",
-        open: |path| {
+        open: |path, _| {
             let remedy = "convert it to MCAP: `ros2 bag convert -i BAG -o out.yaml`, with \
                           `storage_id: mcap` in out.yaml";
             Err(unread(path, "a log", "it is an SQLite database, as rosbag2 writes", remedy))
@@ -86,7 +87,7 @@ const FORMATS: [Format; 8] = [
         endings: &[],
         starts: |start| start.starts_with(b"#ROSBAG V"),
         remedy: "",
-        open: |path| {
+        open: |path, _| {
             let remedy = "convert it to MCAP: `mcap convert in.bag out.mcap`";
             Err(unread(path, "a log", "it is a recording of ROS 1", remedy))
         },
@@ -96,7 +97,7 @@ const FORMATS: [Format; 8] = [
         endings: &[],
         starts: |start| start.starts_with(b"\xd0\xcf\x11\xe0"),
         remedy: "",
-        open: |path| {
+        open: |path, _| {
             let remedy = "save it as .xlsx, or as CSV";
             Err(unread(path, "a log", "it is a file of an old spreadsheet program", remedy))
         },
@@ -126,10 +127,10 @@ fn left_out(
 
 /// Opens a log. Its first bytes identify the format, so that a name may be anything; but a name
 /// that promises a format is kept to it.
-pub(in crate::experiment) fn open(path: &Path) -> Result<OpenTable, ReadError> {
+pub(in crate::experiment) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
     // A pipe gives its bytes once: it is taken for text.
     if path.metadata().is_ok_and(|metadata| !metadata.is_file()) {
-        return csv::open(path);
+        return csv::open(path, budget);
     }
     let start = start_of(path)?;
     if start.is_empty() {
@@ -140,9 +141,9 @@ pub(in crate::experiment) fn open(path: &Path) -> Result<OpenTable, ReadError> {
     match FORMATS.iter().find(|format| (format.starts)(&start)) {
         Some(found) => match named.filter(|named| !(named.starts)(&start)) {
             Some(named) if (found.starts)(b"") => Err(named.refuse(path)),
-            _ => (found.open)(path),
+            _ => (found.open)(path, budget),
         },
-        None => csv::open(path),
+        None => csv::open(path, budget),
     }
 }
 

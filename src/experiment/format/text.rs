@@ -5,6 +5,7 @@ use std::io::{self, Chain, Cursor, Read};
 use std::path::{Path, PathBuf};
 
 use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
+use encoding_rs_io::DecodeReaderBytesBuilder;
 use flate2::read::MultiGzDecoder;
 
 use super::first_bytes::is_gzip;
@@ -62,17 +63,18 @@ impl Bytes {
         (Self::Made(Box::new(Cursor::new(text)), path.to_owned()), start)
     }
 
+    /// Decoded piece by piece: bytes that never end are never held.
     fn decoded(
         path: &Path,
-        mut whole: impl Read,
+        whole: impl Read + 'static,
         encoding: &'static Encoding,
     ) -> Result<(Self, Vec<u8>), ReadError> {
         let io_error = |source| ReadError::Io { path: path.to_owned(), source };
-        let mut bytes = Vec::new();
-        whole.read_to_end(&mut bytes).map_err(io_error)?;
-        let text = encoding.decode(&bytes).0.into_owned().into_bytes();
-        let start = text.get(..SNIFFED_BYTES).unwrap_or(&text).to_vec();
-        Ok((Self::Made(Box::new(Cursor::new(text)), path.to_owned()), start))
+        let mut builder = DecodeReaderBytesBuilder::new();
+        let mut text = builder.encoding(Some(encoding)).bom_override(true).build(whole);
+        let start = start_of(&mut text).map_err(io_error)?;
+        let whole = Cursor::new(start.clone()).chain(text);
+        Ok((Self::Made(Box::new(whole), path.to_owned()), start))
     }
 
     /// The file that was read, all of it.

@@ -1,16 +1,19 @@
 //! Sheets of a spreadsheet program: the first one with rows, as text.
 
+use std::fs::File;
+use std::io::BufReader;
 use std::path::Path;
 
-use calamine::{Data, Range, Reader as _, Xlsx, open_workbook};
+use calamine::{Data, Range, Reader as _, Xlsx, XlsxError, open_workbook};
 
 use super::csv::table;
 use super::text::Bytes;
 use crate::experiment::error::ReadError;
+use crate::experiment::memory::{Budget, TooLarge};
 use crate::experiment::table::OpenTable;
 
 /// Opens the workbook and reads the header of its first sheet that holds rows.
-pub(super) fn open(path: &Path) -> Result<OpenTable, ReadError> {
+pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
     let damaged = |reason: String| ReadError::Format {
         path: path.to_owned(),
         format: "XLSX",
@@ -18,16 +21,58 @@ pub(super) fn open(path: &Path) -> Result<OpenTable, ReadError> {
         remedy: "save it again as .xlsx, or as CSV",
     };
     let mut workbook: Xlsx<_> =
-        open_workbook(path).map_err(|error: calamine::XlsxError| damaged(error.to_string()))?;
+        open_workbook(path).map_err(|error: XlsxError| damaged(error.to_string()))?;
     for name in workbook.sheet_names() {
+        check_size(&mut workbook, &name, &budget)
+            .map_err(|error| damaged(error.to_string()))?
+            .map_err(|error| error.refuse(path))?;
         let range = workbook.worksheet_range(&name).map_err(|error| damaged(error.to_string()))?;
         if range.height() > 1 {
             let text = text_of(&range).map_err(|error| damaged(error.to_string()))?;
             let (bytes, start) = Bytes::made(text, path);
-            return table(path, bytes, &start);
+            return table(path, bytes, &start, budget);
         }
     }
     Err(damaged("no sheet has a header and a row".to_owned()))
+}
+
+/// Asks for the memory of a sheet, between whose first and last cell the crate calamine 0.38
+/// keeps all others, those that are not there as well.
+fn check_size(
+    workbook: &mut Xlsx<BufReader<File>>,
+    name: &str,
+    budget: &Budget,
+) -> Result<Result<(), TooLarge>, XlsxError> {
+    /// Memory of a cell: itself, its place and its text.
+    const CELL_SIZE: u64 = 96;
+    let mut cells = workbook.worksheet_cells_reader(name)?;
+    let mut count = 0;
+    let (mut rows, mut columns) = (Span::default(), Span::default());
+    while let Some(cell) = cells.next_cell()? {
+        let (row, column) = cell.get_position();
+        rows.add(row);
+        columns.add(column);
+        count += 1;
+        if let Err(error) = budget.check(count * CELL_SIZE) {
+            return Ok(Err(error));
+        }
+    }
+    Ok(budget.check(rows.length().saturating_mul(columns.length()).saturating_mul(CELL_SIZE)))
+}
+
+/// The least and the greatest of some numbers.
+#[derive(Default)]
+struct Span(Option<(u32, u32)>);
+
+impl Span {
+    fn add(&mut self, place: u32) {
+        let (least, greatest) = self.0.unwrap_or((place, place));
+        self.0 = Some((least.min(place), greatest.max(place)));
+    }
+
+    fn length(&self) -> u64 {
+        self.0.map_or(0, |(least, greatest)| u64::from(greatest - least) + 1)
+    }
 }
 
 /// The cells of a sheet, each row on the line of its number.

@@ -14,24 +14,29 @@ use super::args::OutputArgs;
 use super::estimated::Estimated;
 use crate::cli::console::Verbosity;
 use crate::cli::output::{
-    Contents, FileKind, check_outputs, check_tables, write_file, write_parquet,
+    Contents, CsvText, FileKind, check_outputs, check_tables, write_csv, write_file, write_parquet,
 };
 use crate::cli::viewer::Stream;
 
 /// The files that were asked for, found to be writable before the work starts.
 pub(crate) struct Files<'a> {
     args: &'a OutputArgs,
+    text: CsvText,
 }
 
 impl<'a> Files<'a> {
     /// Refuses what cannot be written, or would replace an input or another output.
-    pub(crate) fn check(args: &'a OutputArgs, inputs: &[PathBuf]) -> anyhow::Result<Self> {
+    pub(crate) fn check(
+        args: &'a OutputArgs,
+        inputs: &[PathBuf],
+        text: CsvText,
+    ) -> anyhow::Result<Self> {
         let outputs = [&args.recording, &args.decisions, &args.delays, &args.table, &args.export];
         let outputs = outputs.into_iter().flatten();
         check_outputs(&outputs.map(PathBuf::as_path).collect::<Vec<_>>(), inputs)?;
         check_tables(args.decisions.iter().chain(&args.delays).chain(&args.table))?;
         args.export.as_deref().map(named_lookup).transpose()?;
-        Ok(Self { args })
+        Ok(Self { args, text })
     }
 
     /// Writes each file whole and gives it its name; shows the recording to who looks on.
@@ -43,19 +48,25 @@ impl<'a> Files<'a> {
     ) -> anyhow::Result<()> {
         if let Some(path) = &self.args.decisions {
             write_file(path, |file| match FileKind::of(path) {
-                FileKind::Csv => Ok(write_decisions(result.runs, file)?),
+                FileKind::Csv => {
+                    write_csv(file, self.text, |out| Ok(write_decisions(result.runs, out)?))
+                }
                 FileKind::Parquet => write_parquet(&decision_table(result.runs)?, file),
             })?;
         }
         if let Some(path) = &self.args.delays {
             write_file(path, |file| match FileKind::of(path) {
-                FileKind::Csv => Ok(write_delays(result.joints, file)?),
+                FileKind::Csv => {
+                    write_csv(file, self.text, |out| Ok(write_delays(result.joints, out)?))
+                }
                 FileKind::Parquet => write_parquet(&delay_table(result.joints), file),
             })?;
         }
         if let Some(path) = &self.args.table {
             write_file(path, |file| match FileKind::of(path) {
-                FileKind::Csv => Ok(write_level_table(result.joints, file)?),
+                FileKind::Csv => {
+                    write_csv(file, self.text, |out| Ok(write_level_table(result.joints, out)?))
+                }
                 FileKind::Parquet => write_parquet(&level_table(result.joints)?, file),
             })?;
         }

@@ -22,7 +22,8 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     }
     let verbosity = args.output.run.verbosity();
     let settings = args.algorithm.runs();
-    let files = Files::check(&args.output, &args.data.files())?;
+    let csv_text = args.folder.csv_text();
+    let files = Files::check(&args.output, &args.data.files(), csv_text)?;
     let stream = args.output.stream.open(verbosity)?;
     let followed =
         args.follow.is_on.then(|| follow::follow(args, &settings, &stream)).transpose()?;

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use super::variable::{Content, Numbers, Variable, damaged};
+use super::variable::{Content, Numbers, Variable};
 use super::{v5, v73};
 use crate::experiment::error::ReadError;
 use crate::experiment::format::first_bytes::{is_matlab_73, start_of};
+use crate::experiment::memory::Budget;
 use crate::experiment::table::{Column, Head, Labels, OpenTable, Rows, Table, Wanted};
 
 /// What a header stands for.
@@ -20,12 +21,17 @@ struct Place {
 struct Unread {
     variables: Vec<Variable>,
     places: Vec<Place>,
+    budget: Budget,
 }
 
 /// Opens the log and lists its variables.
-pub(in crate::experiment::format) fn open(path: &Path) -> Result<OpenTable, ReadError> {
+pub(in crate::experiment::format) fn open(
+    path: &Path,
+    budget: Budget,
+) -> Result<OpenTable, ReadError> {
     let start = start_of(path)?;
-    let variables = if is_matlab_73(&start) { v73::variables(path)? } else { v5::variables(path)? };
+    let variables = if is_matlab_73(&start) { v73::variables } else { v5::variables };
+    let variables = variables(path, &budget)?;
     let mut headers = Vec::new();
     let mut places = Vec::new();
     for (index, variable) in variables.iter().enumerate() {
@@ -35,7 +41,7 @@ pub(in crate::experiment::format) fn open(path: &Path) -> Result<OpenTable, Read
             places.push(Place { variable: index, column, rows });
         }
     }
-    let rows = Box::new(Unread { variables, places });
+    let rows = Box::new(Unread { variables, places, budget });
     let head = Head { path: path.to_owned(), headers, header_row: 0 };
     Ok(OpenTable { head, rows })
 }
@@ -97,7 +103,7 @@ impl Unread {
             ),
             Content::Numbers(Numbers::Read(values)) => cut(values),
             Content::Numbers(Numbers::Stored(dataset)) => {
-                cut(&dataset.read_f64().map_err(|error| damaged(path, &error))?)
+                Column::of(v73::column(dataset, place.column, path, &self.budget)?)
             }
             Content::Texts(_) => Column::not_numbers("text"),
             Content::Other(kind) => Column::not_numbers(kind),

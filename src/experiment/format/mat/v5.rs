@@ -10,6 +10,7 @@ use flate2::read::ZlibDecoder;
 
 use super::variable::{Content, Numbers, Variable, damaged};
 use crate::experiment::error::ReadError;
+use crate::experiment::memory::{Budget, TooLarge};
 
 /// Structures may lie in structures, but not without end.
 const DEEPEST: usize = 32;
@@ -21,28 +22,61 @@ const CELL: u32 = 1;
 const STRUCTURE: u32 = 2;
 const CHARACTERS: u32 = 4;
 
+/// Letters of a name at most; MATLAB allows 63. Names are repeated with each part of a structure.
+const LONGEST_NAME: usize = 255;
+
+/// Memory of a number: itself, and its copy as a column.
+const NUMBER_SIZE: usize = 2 * size_of::<f64>();
+
 /// The variables of a file, their numbers read.
-pub(super) fn variables(path: &Path) -> Result<Vec<Variable>, ReadError> {
+pub(super) fn variables(path: &Path, budget: &Budget) -> Result<Vec<Variable>, ReadError> {
     let file =
         File::open(path).map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
-    read(BufReader::new(file)).map_err(|fault| damaged(path, &fault.0))
+    read(BufReader::new(file), budget).map_err(|fault| fault.refuse(path))
 }
 
-/// What is wrong with a file.
+/// Why a file is refused.
 #[derive(Debug)]
-struct Fault(String);
+enum Fault {
+    /// What is wrong with it.
+    Damaged(String),
+    TooLarge(TooLarge),
+}
+
+impl Fault {
+    fn refuse(self, path: &Path) -> ReadError {
+        match self {
+            Self::Damaged(reason) => damaged(path, &reason),
+            Self::TooLarge(error) => error.refuse(path),
+        }
+    }
+
+    /// Says in what part of the file it is.
+    fn within(self, place: &str) -> Self {
+        match self {
+            Self::Damaged(reason) => Self::Damaged(format!("{place}: {reason}")),
+            Self::TooLarge(_) => self,
+        }
+    }
+}
 
 impl From<io::Error> for Fault {
     fn from(error: io::Error) -> Self {
-        Self(error.to_string())
+        Self::Damaged(error.to_string())
+    }
+}
+
+impl From<TooLarge> for Fault {
+    fn from(error: TooLarge) -> Self {
+        Self::TooLarge(error)
     }
 }
 
 fn fault<T>(text: &str) -> Result<T, Fault> {
-    Err(Fault(text.to_owned()))
+    Err(Fault::Damaged(text.to_owned()))
 }
 
-fn read(mut file: impl Read) -> Result<Vec<Variable>, Fault> {
+fn read(mut file: impl Read, budget: &Budget) -> Result<Vec<Variable>, Fault> {
     let mut head = [0; 128];
     file.read_exact(&mut head)?;
     let big = &head[126..] == b"MI";
@@ -53,29 +87,39 @@ fn read(mut file: impl Read) -> Result<Vec<Variable>, Fault> {
             || "the first variable".to_owned(),
             |last: &Variable| format!("the variable behind `{}`", last.name),
         );
-        let ends = |_| Fault(format!("the file ends in {place}"));
+        let ends = |_| Fault::Damaged(format!("the file ends in {place}"));
         file.read_exact(&mut tag[1..]).map_err(ends)?;
-        let mut tag = Bytes { data: &tag, big };
+        let mut tag = Bytes { data: &tag, big, budget };
         let (kind, size) = (tag.u32()?, u64::from(tag.u32()?));
         let mut data = Vec::new();
         file.by_ref().take(size).read_to_end(&mut data)?;
         if (data.len() as u64) < size {
-            return Err(Fault(format!("the file ends in {place}")));
+            return Err(Fault::Damaged(format!("the file ends in {place}")));
         }
-        let within = |fault: Fault| Fault(format!("in {place}: {}", fault.0));
+        let within = |fault: Fault| fault.within(&format!("in {place}"));
         if kind == COMPRESSED {
-            let mut inside = Vec::new();
-            ZlibDecoder::new(data.as_slice())
-                .read_to_end(&mut inside)
-                .map_err(Fault::from)
-                .map_err(within)?;
-            let (kind, data) = Bytes { data: &inside, big }.element().map_err(within)?;
-            add(kind, Bytes { data, big }, &mut variables).map_err(within)?;
+            let inside = unpacked(&data, budget).map_err(within)?;
+            let (kind, data) = Bytes { data: &inside, big, budget }.element().map_err(within)?;
+            add(kind, Bytes { data, big, budget }, &mut variables).map_err(within)?;
         } else {
-            add(kind, Bytes { data: &data, big }, &mut variables).map_err(within)?;
+            add(kind, Bytes { data: &data, big, budget }, &mut variables).map_err(within)?;
         }
     }
     Ok(variables)
+}
+
+/// The bytes that are packed, as they are found to be: what they say is not asked.
+fn unpacked(packed: &[u8], budget: &Budget) -> Result<Vec<u8>, Fault> {
+    const PIECE: u64 = 1 << 20;
+    let mut decoder = ZlibDecoder::new(packed);
+    let mut inside = Vec::new();
+    // A vector that grows is copied to one of twice its size.
+    while budget.check(3 * inside.len() as u64 + PIECE).map(|()| true)? {
+        if decoder.by_ref().take(PIECE).read_to_end(&mut inside)? == 0 {
+            break;
+        }
+    }
+    Ok(inside)
 }
 
 fn add(kind: u32, data: Bytes<'_>, variables: &mut Vec<Variable>) -> Result<(), Fault> {
@@ -86,7 +130,7 @@ fn add(kind: u32, data: Bytes<'_>, variables: &mut Vec<Variable>) -> Result<(), 
     // What has no name belongs to MATLAB's objects.
     if !array.name.is_empty() {
         let name = array.name.clone();
-        array.flatten(name, variables);
+        array.flatten(name, data.budget, variables)?;
     }
     Ok(())
 }
@@ -96,6 +140,7 @@ fn add(kind: u32, data: Bytes<'_>, variables: &mut Vec<Variable>) -> Result<(), 
 struct Bytes<'a> {
     data: &'a [u8],
     big: bool,
+    budget: &'a Budget,
 }
 
 impl<'a> Bytes<'a> {
@@ -137,7 +182,7 @@ impl<'a> Bytes<'a> {
 
     /// The numbers of an element of the type `kind`.
     fn numbers(self, kind: u32) -> Result<Vec<f64>, Fault> {
-        Ok(match kind {
+        match kind {
             1 => self.each(|[byte]| f64::from(byte.cast_signed())),
             2 | 16 => self.each(|[byte]| f64::from(byte)),
             3 => self.each(|bytes| f64::from(i16::from_le_bytes(bytes))),
@@ -148,20 +193,21 @@ impl<'a> Bytes<'a> {
             9 => self.each(f64::from_le_bytes),
             12 => self.each(|bytes| i64::from_le_bytes(bytes) as f64),
             13 => self.each(|bytes| u64::from_le_bytes(bytes) as f64),
-            _ => return Err(Fault(format!("numbers of the unknown type {kind}"))),
-        })
+            _ => Err(Fault::Damaged(format!("numbers of the unknown type {kind}"))),
+        }
     }
 
     /// Each number of `N` bytes, the lowest byte first.
-    fn each<const N: usize>(self, number: impl Fn([u8; N]) -> f64) -> Vec<f64> {
+    fn each<const N: usize>(self, number: impl Fn([u8; N]) -> f64) -> Result<Vec<f64>, Fault> {
         let (numbers, _) = self.data.as_chunks::<N>();
+        self.budget.take_values(numbers.len(), NUMBER_SIZE)?;
         let lowest_first = |mut bytes: [u8; N]| {
             if self.big {
                 bytes.reverse();
             }
             bytes
         };
-        numbers.iter().map(|bytes| number(lowest_first(*bytes))).collect()
+        Ok(numbers.iter().map(|bytes| number(lowest_first(*bytes))).collect())
     }
 }
 
@@ -207,22 +253,28 @@ impl Array {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it saturates")]
         let dims: Vec<usize> = dims.into_iter().map(|length| length as usize).collect();
         let (_, name) = data.element()?;
-        let name = String::from_utf8_lossy(name).into_owned();
+        let name = name_of(name)?;
         let size = dims.iter().try_fold(1_usize, |size, length| size.checked_mul(*length));
         let Some(size) = size else { return fault("it is larger than any memory") };
         let value = Value::read(data, flags & 0xff, size, depth)
-            .map_err(|fault| Fault(format!("array `{name}`: {}", fault.0)))?;
+            .map_err(|fault| fault.within(&format!("array `{name}`")))?;
         Ok(Self { name, dims, value })
     }
 
     fn opaque(mut data: Bytes<'_>) -> Result<Self, Fault> {
         let (_, name) = data.element()?;
-        let name = String::from_utf8_lossy(name).into_owned();
+        let name = name_of(name)?;
         Ok(Self { name, dims: Vec::new(), value: Value::Other(OBJECT) })
     }
 
     /// Adds this array, and what lies in it, under `name`.
-    fn flatten(self, name: String, variables: &mut Vec<Variable>) {
+    fn flatten(
+        self,
+        name: String,
+        budget: &Budget,
+        variables: &mut Vec<Variable>,
+    ) -> Result<(), Fault> {
+        budget.take_values(1, size_of::<Variable>() + 2 * name.len())?;
         let content = match self.value {
             Value::Numbers(values) => Content::Numbers(Numbers::Read(values)),
             Value::Text(_) => Content::Other("text"),
@@ -233,14 +285,24 @@ impl Array {
                 for (element, number) in elements.into_iter().zip(1..) {
                     let name = if one { name.clone() } else { format!("{name}({number})") };
                     for (field, array) in element {
-                        array.flatten(format!("{name}.{field}"), variables);
+                        array.flatten(format!("{name}.{field}"), budget, variables)?;
                     }
                 }
-                return;
+                return Ok(());
             }
         };
         variables.push(Variable { name, dims: self.dims, content });
+        Ok(())
     }
+}
+
+const TOO_LONG: &str = "a name is too long";
+
+fn name_of(bytes: &[u8]) -> Result<String, Fault> {
+    if bytes.len() > LONGEST_NAME {
+        return fault(TOO_LONG);
+    }
+    Ok(String::from_utf8_lossy(bytes).into_owned())
 }
 
 const OBJECT: &str = "an object of MATLAB (a timeseries or a table; save its parts as arrays)";
@@ -255,6 +317,7 @@ impl Value {
             STRUCTURE => Self::structures(data, size, depth),
             CHARACTERS => {
                 let (kind, text) = data.element()?;
+                data.budget.take_values(text.len(), 4)?;
                 let text = if matches!(kind, 4 | 17) {
                     #[expect(
                         clippy::cast_possible_truncation,
@@ -279,7 +342,10 @@ impl Value {
                 if values.len() == size {
                     return Ok(Self::Numbers(values));
                 }
-                Err(Fault(format!("it has {} values but should have {size}", values.len())))
+                Err(Fault::Damaged(format!(
+                    "it has {} values but should have {size}",
+                    values.len()
+                )))
             }
             5 => Ok(Self::Other("a sparse matrix")),
             _ => Ok(Self::Other(OBJECT)),
@@ -297,7 +363,12 @@ impl Value {
             String::from_utf8_lossy(bytes.get(..end).unwrap_or_default()).into_owned()
         };
         let names: Vec<String> = names.chunks(length).map(name).collect();
+        if names.iter().any(|name| name.len() > LONGEST_NAME) {
+            return fault(TOO_LONG);
+        }
+        let budget = data.budget;
         let mut element = |_| {
+            budget.take_values(names.len(), 2 * size_of::<Array>() + LONGEST_NAME)?;
             let field = |name: &String| Ok((name.clone(), data.array(depth)?));
             names.iter().map(field).collect::<Result<Vec<_>, Fault>>()
         };
@@ -315,7 +386,8 @@ impl Bytes<'_> {
         if kind != MATRIX {
             return fault("an array is missing");
         }
-        Array::read(Self { data, big: self.big }, depth + 1)
+        self.budget.take_values(1, size_of::<Array>())?;
+        Array::read(Self { data, ..*self }, depth + 1)
     }
 }
 
@@ -332,6 +404,15 @@ fn texts(cells: Vec<Array>) -> Content {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::experiment::MemoryLimit;
+
+    fn of(file: &[u8]) -> Result<Vec<Variable>, Fault> {
+        read(file, &Budget::new(MemoryLimit::default()))
+    }
+
+    fn reason(fault: Fault) -> String {
+        fault.refuse(Path::new("log.mat")).to_string()
+    }
 
     /// A data element of the type `kind`.
     fn element(kind: u32, data: &[u8]) -> Vec<u8> {
@@ -361,7 +442,7 @@ mod tests {
 
     #[test]
     fn an_array_is_read_with_its_name_and_shape() {
-        let found = read(file("u", [3, 1], &[1.0, 2.0, -3.0]).as_slice()).unwrap();
+        let found = of(&file("u", [3, 1], &[1.0, 2.0, -3.0])).unwrap();
         assert_eq!((found[0].name.as_str(), found[0].shape()), ("u", (3, 1)));
         let Content::Numbers(Numbers::Read(values)) = &found[0].content else { panic!() };
         assert_eq!(values, &[1.0, 2.0, -3.0]);
@@ -370,7 +451,8 @@ mod tests {
     #[test]
     fn a_small_element_stands_in_its_tag() {
         let bytes = [2, 0, 2, 0, 7, 9, 0, 0];
-        let mut data = Bytes { data: &bytes, big: false };
+        let mut data =
+            Bytes { data: &bytes, big: false, budget: &Budget::new(MemoryLimit::default()) };
         assert_eq!(data.element().unwrap(), (2, &[7, 9][..]));
         assert!(data.data.is_empty());
     }
@@ -379,12 +461,12 @@ mod tests {
     fn a_file_that_ends_too_early_says_where() {
         let whole = file("u", [3, 1], &[1.0, 2.0, -3.0]);
         for end in 129..whole.len() {
-            let fault = read(&whole[..end]).map(|_| ()).unwrap_err();
-            assert_eq!(fault.0, "the file ends in the first variable");
+            let fault = of(&whole[..end]).map(|_| ()).unwrap_err();
+            assert!(reason(fault).contains(": the file ends in the first variable;"));
         }
         let lies = file("u", [4, 1], &[1.0, 2.0, -3.0]);
-        let fault = read(lies.as_slice()).map(|_| ()).unwrap_err();
-        assert!(fault.0.ends_with("array `u`: it has 3 values but should have 4"), "{}", fault.0);
-        assert!(read(file("u", [u32::MAX, u32::MAX], &[]).as_slice()).is_err());
+        let fault = of(&lies).map(|_| ()).unwrap_err();
+        assert!(reason(fault).contains("array `u`: it has 3 values but should have 4;"));
+        assert!(of(&file("u", [u32::MAX, u32::MAX], &[])).is_err());
     }
 }

@@ -1,59 +1,202 @@
 //! MATLAB 7.3 (`save -v7.3`): HDF5, with a class on every object.
+//!
+//! The crate hdf5-pure 0.47 follows hard links in circles and takes memory for what a dataset
+//! says of its size, so both are checked before it is asked.
 
 use std::path::Path;
 
-use hdf5_pure::{AttrValue, Dataset, Error, File, Group};
+use hdf5_pure::{AttrValue, Chunk, Dataset, Error, File, Group};
 
 use super::variable::{Content, Numbers, Variable, damaged};
 use crate::experiment::error::ReadError;
+use crate::experiment::memory::{Budget, TooLarge};
 
 /// Structures may lie in structures, but not without end.
 const DEEPEST: usize = 32;
 
+/// Letters of a name at most; MATLAB allows 63. Names are repeated with each part of a structure.
+const LONGEST_NAME: usize = 255;
+
+/// Bytes of a file for each object in it, at the least: where there are more, links lead in
+/// circles.
+const OBJECT_SIZE: u64 = 16;
+
+/// Objects that a file of any size may have.
+const FEW_OBJECTS: u64 = 256;
+
+/// Bytes that a byte of a file may stand for: `gzip`, by which MATLAB packs, makes at most 1032
+/// of one.
+const LARGEST_RATIO: u64 = 1100;
+
+/// Why a file is refused.
+#[derive(Debug)]
+enum Fault {
+    /// What is wrong with it.
+    Damaged(String),
+    TooLarge(TooLarge),
+}
+
+impl From<Error> for Fault {
+    fn from(error: Error) -> Self {
+        Self::Damaged(error.to_string())
+    }
+}
+
+impl From<TooLarge> for Fault {
+    fn from(error: TooLarge) -> Self {
+        Self::TooLarge(error)
+    }
+}
+
+impl Fault {
+    fn refuse(self, path: &Path) -> ReadError {
+        match self {
+            Self::Damaged(reason) => damaged(path, &reason),
+            Self::TooLarge(error) => error.refuse(path),
+        }
+    }
+}
+
+/// A file whose variables are being listed.
+struct Listing<'a> {
+    /// Bytes of the file.
+    size: u64,
+    budget: &'a Budget,
+    /// Objects that may still be looked at.
+    objects: u64,
+    found: Vec<Variable>,
+}
+
 /// The variables of a file, their numbers still stored.
-pub(super) fn variables(path: &Path) -> Result<Vec<Variable>, ReadError> {
-    let mut found = Vec::new();
-    File::open_streaming(path)
-        .and_then(|file| group(&file.root(), "", 0, &mut found))
-        .map_err(|error| damaged(path, &error))?;
-    Ok(found)
-}
-
-/// Adds what lies in a group, which is a structure; by name, so that the order is certain.
-fn group(
-    group_: &Group,
-    prefix: &str,
-    depth: usize,
-    found: &mut Vec<Variable>,
-) -> Result<(), Error> {
-    let mut datasets = group_.datasets()?;
-    datasets.sort();
-    for name in datasets {
-        found.push(variable(format!("{prefix}{name}"), group_.dataset(&name)?)?);
-    }
-    let mut groups = group_.groups()?;
-    groups.sort();
-    // A name with a number sign is MATLAB's own: what cells refer to.
-    groups.retain(|name| !name.starts_with('#'));
-    for name in groups.iter().filter(|_| depth < DEEPEST) {
-        group(&group_.group(name)?, &format!("{prefix}{name}."), depth + 1, found)?;
-    }
-    Ok(())
-}
-
-fn variable(name: String, dataset: Dataset) -> Result<Variable, Error> {
-    let attributes = dataset.attrs()?;
-    let class = match attributes.get("MATLAB_class") {
-        Some(AttrValue::AsciiString(class) | AttrValue::String(class)) => class.as_str(),
-        _ => "",
+pub(super) fn variables(path: &Path, budget: &Budget) -> Result<Vec<Variable>, ReadError> {
+    let list = || {
+        let file = File::open_streaming(path)?;
+        let size = file.file_size();
+        let objects = size / OBJECT_SIZE + FEW_OBJECTS;
+        let mut listing = Listing { size, budget, objects, found: Vec::new() };
+        listing.group(&file.root(), "", 0)?;
+        Ok(listing.found)
     };
-    // HDF5 counts the longest stride first, MATLAB the shortest.
-    let mut dims = Vec::new();
-    for length in dataset.shape()?.iter().rev() {
-        dims.push(usize::try_from(*length).unwrap_or(usize::MAX));
+    list().map_err(|fault: Fault| fault.refuse(path))
+}
+
+/// The numbers of a column of a matrix that is stored, as it lies in the file.
+pub(super) fn column(
+    dataset: &Dataset,
+    column: usize,
+    path: &Path,
+    budget: &Budget,
+) -> Result<Vec<f64>, ReadError> {
+    let io_error = |source| ReadError::Io { path: path.to_owned(), source };
+    let size = path.metadata().map_err(io_error)?.len();
+    let read = || {
+        check_chunks(dataset, size)?;
+        let shape = dataset.shape()?;
+        let count = shape.iter().try_fold(1_u64, |count, length| count.checked_mul(*length));
+        let bytes = count.and_then(|count| count.checked_mul(2 * size_of::<f64>() as u64));
+        // A vector is one column, whichever way it lies.
+        match *shape.as_slice() {
+            [columns, rows] if columns > 1 && rows > 1 => {
+                budget.take(bytes.map_or(u64::MAX, |bytes| bytes / columns))?;
+                return Ok(dataset.read_f64_rows(column as u64, 1)?);
+            }
+            _ => {}
+        }
+        budget.take(bytes.unwrap_or(u64::MAX))?;
+        Ok(dataset.read_f64()?)
+    };
+    read().map_err(|fault: Fault| fault.refuse(path))
+}
+
+/// Refuses chunks that lie outside of a file of `size` bytes: memory is taken for each before it
+/// is read.
+fn check_chunks(dataset: &Dataset, size: u64) -> Result<(), Fault> {
+    if !dataset.is_chunked() {
+        return Ok(());
     }
-    let empty = attributes.contains_key("MATLAB_empty");
-    let content = match class {
+    let ends = |chunk: &Chunk| chunk.address.checked_add(chunk.storage_size);
+    let lies_within = |chunk: &Chunk| ends(chunk).is_some_and(|end| end <= size);
+    if dataset.chunks()?.iter().all(lies_within) {
+        return Ok(());
+    }
+    Err(Fault::Damaged("a part of its numbers lies outside of the file".to_owned()))
+}
+
+impl Listing<'_> {
+    /// Adds what lies in a group, which is a structure; by name, so that the order is certain.
+    fn group(&mut self, group: &Group, prefix: &str, depth: usize) -> Result<(), Fault> {
+        let mut datasets = group.datasets()?;
+        datasets.sort();
+        let mut groups = group.groups()?;
+        groups.sort();
+        self.count(prefix, datasets.iter().chain(&groups))?;
+        for name in datasets {
+            let found = self.variable(format!("{prefix}{name}"), group.dataset(&name)?)?;
+            self.found.push(found);
+        }
+        // A name with a number sign is MATLAB's own: what cells refer to.
+        groups.retain(|name| !name.starts_with('#'));
+        for name in groups.iter().filter(|_| depth < DEEPEST) {
+            self.group(&group.group(name)?, &format!("{prefix}{name}."), depth + 1)?;
+        }
+        Ok(())
+    }
+
+    /// Counts objects by their names, so that there is an end to them.
+    fn count<'n>(
+        &mut self,
+        prefix: &str,
+        names: impl Iterator<Item = &'n String>,
+    ) -> Result<(), Fault> {
+        for name in names {
+            if name.len() > LONGEST_NAME {
+                return Err(Fault::Damaged("a name is too long".to_owned()));
+            }
+            let circle = || Fault::Damaged("its groups lie in one another in a circle".to_owned());
+            self.objects = self.objects.checked_sub(1).ok_or_else(circle)?;
+            self.budget.take_values(1, size_of::<Variable>() + prefix.len() + name.len())?;
+        }
+        Ok(())
+    }
+
+    fn variable(&self, name: String, dataset: Dataset) -> Result<Variable, Fault> {
+        let shape = dataset.shape()?;
+        self.check_size(&name, &dataset, &shape)?;
+        let attributes = dataset.attrs()?;
+        let class = match attributes.get("MATLAB_class") {
+            Some(AttrValue::AsciiString(class) | AttrValue::String(class)) => class.as_str(),
+            _ => "",
+        };
+        // HDF5 counts the longest stride first, MATLAB the shortest.
+        let mut dims = Vec::new();
+        for length in shape.iter().rev() {
+            dims.push(usize::try_from(*length).unwrap_or(usize::MAX));
+        }
+        let empty = attributes.contains_key("MATLAB_empty");
+        Ok(Variable { name, dims, content: content(class, empty, dataset) })
+    }
+
+    /// Refuses a dataset that says it is larger than this file can hold.
+    fn check_size(&self, name: &str, dataset: &Dataset, shape: &[u64]) -> Result<(), Fault> {
+        let most = self.size.saturating_mul(LARGEST_RATIO);
+        let element = dataset.element_size()?;
+        let bytes =
+            |shape: &[u64]| shape.iter().try_fold(element, |bytes, n| bytes.checked_mul(*n));
+        let chunk = dataset.chunk_shape()?.unwrap_or_default();
+        for what in [shape, &chunk] {
+            if bytes(what).is_none_or(|bytes| bytes > most) {
+                return Err(Fault::Damaged(format!(
+                    "`{name}` says that it is larger than a file of {} bytes can be",
+                    self.size
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn content(class: &str, empty: bool, dataset: Dataset) -> Content {
+    match class {
         "char" => Content::Other("text"),
         "cell" => Content::Other("a cell array, which is read of files saved with `save -v7` only"),
         "struct" => Content::Other(
@@ -66,6 +209,5 @@ fn variable(name: String, dataset: Dataset) -> Result<Variable, Error> {
             Content::Numbers(Numbers::Stored(dataset))
         }
         _ => Content::Other("an object of MATLAB, or nothing"),
-    };
-    Ok(Variable { name, dims, content })
+    }
 }

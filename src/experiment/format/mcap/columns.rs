@@ -1,7 +1,7 @@
 //! The columns of a file: its topics found, and the messages of those that are wanted.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Seek as _};
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -13,6 +13,7 @@ use super::fault::Fault;
 use super::series::{self, Series};
 use super::stream;
 use crate::experiment::error::ReadError;
+use crate::experiment::memory::Budget;
 use crate::experiment::source::Hashing;
 use crate::experiment::table::{Head, Labels, OpenTable, RowNumbers, Rows, Table, Wanted};
 
@@ -20,24 +21,31 @@ use crate::experiment::table::{Head, Labels, OpenTable, RowNumbers, Rows, Table,
 struct Unread {
     contents: Contents,
     places: Vec<Place>,
+    budget: Budget,
 }
 
 /// Opens the log and looks at the first messages of each topic.
-pub(in crate::experiment::format) fn open(path: &Path) -> Result<OpenTable, ReadError> {
+pub(in crate::experiment::format) fn open(
+    path: &Path,
+    budget: Budget,
+) -> Result<OpenTable, ReadError> {
     let io_error = |source| ReadError::Io { path: path.to_owned(), source };
-    let file = File::open(path).map_err(io_error)?;
-    let summary = stream::summary(&file);
+    let mut file = File::open(path).map_err(io_error)?;
+    let size = file.metadata().map_err(io_error)?.len();
+    let summary = stream::summary(&file, size, &budget);
     let start = summary.as_ref().and_then(|summary| summary.start);
     let mut contents = Contents { zero: [start, None, None], ..Contents::default() };
-    let file = File::open(path).map_err(io_error)?;
-    stream::each_record(BufReader::new(file), |record| contents.look_at(record, summary.as_ref()))
-        .map_err(|fault| fault.refuse(path))?;
+    file.rewind().map_err(io_error)?;
+    stream::each_record(BufReader::new(file), size, &budget, |record| {
+        contents.look_at(record, summary.as_ref(), &budget)
+    })
+    .map_err(|fault| fault.refuse(path))?;
     if contents.topics.iter().all(|topic| topic.fields.is_empty()) {
         return Err(contents.nothing().refuse(path));
     }
     let places = contents.places();
     let headers = places.iter().map(|place| contents.header(place)).collect();
-    let rows = Box::new(Unread { contents, places });
+    let rows = Box::new(Unread { contents, places, budget });
     let head = Head { path: path.to_owned(), headers, header_row: 0 };
     Ok(OpenTable { head, rows })
 }
@@ -45,12 +53,13 @@ pub(in crate::experiment::format) fn open(path: &Path) -> Result<OpenTable, Read
 impl Rows for Unread {
     fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
         let refuse = |fault: Fault| fault.refuse(wanted.path());
-        let file = File::open(wanted.path())
-            .map_err(|source| ReadError::Io { path: wanted.path().to_owned(), source })?;
+        let io_error = |source| ReadError::Io { path: wanted.path().to_owned(), source };
+        let file = File::open(wanted.path()).map_err(io_error)?;
+        let size = file.metadata().map_err(io_error)?.len();
         let clock = self.clock(wanted);
         let mut series = self.series(wanted);
         let mut file = Hashing::new(BufReader::new(file));
-        stream::each_record(&mut file, |record| {
+        stream::each_record(&mut file, size, &self.budget, |record| {
             if let Record::Message { header, data } = record {
                 self.collect(&header, &data, clock, &mut series)?;
             }
@@ -125,12 +134,12 @@ impl Unread {
         let name = self.contents.name(*topic);
         let value = decoder.decode(data).map_err(|reason| broken(name, header, &reason))?;
         let Some(time) = clock.time(header, &value) else {
-            return Err(Fault {
-                reason: format!("the messages of `{name}` have no {}", clock.name()),
-                remedy: "choose another time column; `log_time` is the time of recording",
-            });
+            return Err(Fault::new(
+                format!("the messages of `{name}` have no {}", clock.name()),
+                "choose another time column; `log_time` is the time of recording",
+            ));
         };
-        series.push(time, &value);
+        series.push(time, &value, &self.budget)?;
         Ok(())
     }
 }

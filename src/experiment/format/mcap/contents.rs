@@ -1,6 +1,6 @@
 //! What is known of a file before its messages are read: topics, their fields, times.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::ControlFlow;
 
 use mcap::records::{MessageHeader, Record};
@@ -9,6 +9,7 @@ use super::clock::Clock;
 use super::fault::Fault;
 use super::message::{self, Decoder, Field};
 use super::stream::Summary;
+use crate::experiment::memory::Budget;
 use crate::experiment::names::listed;
 use crate::experiment::table::Header;
 
@@ -17,7 +18,16 @@ use crate::experiment::table::Header;
 pub(super) struct Topic {
     pub(super) name: String,
     pub(super) fields: Vec<Field>,
+    /// The same by their names.
+    known: HashSet<String>,
 }
+
+/// Topics that cannot be read and are listed by name.
+const MOST_LEFT: usize = 100;
+
+/// Memory of a decoder per byte of its definition, and of a field per byte of its name, at most.
+const DECODER_SIZE: usize = 20;
+const FIELD_SIZE: usize = 40;
 
 /// What a header stands for.
 #[derive(Clone, Debug)]
@@ -30,6 +40,8 @@ pub(super) enum Place {
 #[derive(Debug, Default)]
 pub(super) struct Contents {
     pub(super) topics: Vec<Topic>,
+    /// Places of the topics by their names.
+    pub(super) by_name: HashMap<String, usize>,
     /// Topic and decoder of each channel that can be read.
     pub(super) channels: HashMap<u16, (usize, Decoder)>,
     pub(super) schemas: HashMap<u16, (String, String, Vec<u8>)>,
@@ -48,6 +60,7 @@ impl Contents {
         &mut self,
         record: Record<'_>,
         summary: Option<&Summary>,
+        budget: &Budget,
     ) -> Result<ControlFlow<()>, Fault> {
         /// Messages of a topic that show what it holds. Nodes that take turns on one topic
         /// name their own joints.
@@ -62,18 +75,19 @@ impl Contents {
             let seen = self.seen.entry(header.channel_id).or_default();
             *seen += 1;
             if *seen <= ENOUGH {
-                self.learn(&header, &data)?;
+                self.learn(&header, &data, budget)?;
             }
         } else {
-            self.register(record)?;
+            self.register(record, budget)?;
         }
         Ok(ControlFlow::Continue(()))
     }
 
     /// Keeps definitions and channels.
-    pub(super) fn register(&mut self, record: Record<'_>) -> Result<(), Fault> {
+    pub(super) fn register(&mut self, record: Record<'_>, budget: &Budget) -> Result<(), Fault> {
         match record {
             Record::Schema { header, data } => {
+                budget.take(data.len() as u64)?;
                 self.schemas.insert(header.id, (header.name, header.encoding, data.into_owned()));
             }
             Record::Channel(channel) if !self.channels.contains_key(&channel.id) => {
@@ -81,15 +95,17 @@ impl Contents {
                 let (name, encoding) = schema.map_or(("", ""), |(name, e, _)| (name, e));
                 if (encoding, channel.message_encoding.as_str()) != ("ros2msg", "cdr") {
                     let what = format!("{} ({} {name})", channel.topic, channel.message_encoding);
-                    if !self.left.contains(&what) {
+                    if self.left.len() < MOST_LEFT && !self.left.contains(&what) {
                         self.left.push(what);
                     }
                     return Ok(());
                 }
                 let definition = schema.map(|(_, _, text)| text.as_slice()).unwrap_or_default();
-                let decoder = Decoder::new(name, definition).map_err(|reason| Fault {
-                    reason: format!("topic `{}`: definition of {name}: {reason}", channel.topic),
-                    remedy: "record it again with the definitions of its messages",
+                budget.take_values(definition.len(), DECODER_SIZE)?;
+                let decoder = Decoder::new(name, definition).map_err(|reason| {
+                    let topic = &channel.topic;
+                    let reason = format!("topic `{topic}`: definition of {name}: {reason}");
+                    Fault::new(reason, "record it again with the definitions of its messages")
                 })?;
                 let topic = self.topic(channel.topic);
                 self.channels.insert(channel.id, (topic, decoder));
@@ -101,20 +117,25 @@ impl Contents {
 
     /// The place of the topic with this name, which may be new.
     pub(super) fn topic(&mut self, name: String) -> usize {
-        let known = self.topics.iter().position(|topic| topic.name == name);
-        known.unwrap_or_else(|| {
-            self.topics.push(Topic { name, fields: Vec::new() });
+        *self.by_name.entry(name.clone()).or_insert_with(|| {
+            self.topics.push(Topic { name, fields: Vec::new(), known: HashSet::new() });
             self.topics.len() - 1
         })
     }
 
     /// Learns the fields and the times of a message.
-    pub(super) fn learn(&mut self, header: &MessageHeader, data: &[u8]) -> Result<(), Fault> {
+    pub(super) fn learn(
+        &mut self,
+        header: &MessageHeader,
+        data: &[u8],
+        budget: &Budget,
+    ) -> Result<(), Fault> {
         let Some((topic, decoder)) = self.channels.get(&header.channel_id) else { return Ok(()) };
         let Some(topic) = self.topics.get_mut(*topic) else { return Ok(()) };
         let value = decoder.decode(data).map_err(|reason| broken(&topic.name, header, &reason))?;
         for field in message::fields(&value) {
-            if !topic.fields.contains(&field) {
+            if topic.known.insert(field.text.clone()) {
+                budget.take_values(field.text.len() + 1, FIELD_SIZE)?;
                 topic.fields.push(field);
             }
         }
@@ -134,7 +155,7 @@ impl Contents {
                 listed(left.iter().map(String::as_str))
             ),
         };
-        Fault { reason, remedy: "record topics of ROS 2 with `ros2 bag record -s mcap`" }
+        Fault::new(reason, "record topics of ROS 2 with `ros2 bag record -s mcap`")
     }
 
     /// The times, and the fields of all topics.
@@ -173,11 +194,9 @@ impl Contents {
 
 pub(super) fn broken(topic: &str, header: &MessageHeader, reason: &str) -> Fault {
     let number = header.sequence;
-    Fault {
-        reason: format!(
-            "the message of `{topic}` with the sequence number {number}, logged at {} ns: {reason}",
-            header.log_time
-        ),
-        remedy: "check that it was recorded with the definition that the file holds",
-    }
+    let reason = format!(
+        "the message of `{topic}` with the sequence number {number}, logged at {} ns: {reason}",
+        header.log_time
+    );
+    Fault::new(reason, "check that it was recorded with the definition that the file holds")
 }

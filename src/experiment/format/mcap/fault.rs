@@ -3,17 +3,34 @@
 use std::path::Path;
 
 use crate::experiment::error::ReadError;
+use crate::experiment::memory::TooLarge;
 
-/// What is wrong with a file, and what to do about it.
+/// Why a file is refused.
 #[derive(Debug)]
-pub(super) struct Fault {
-    pub(super) reason: String,
-    pub(super) remedy: &'static str,
+pub(super) enum Fault {
+    /// What is wrong with it, and what to do about it.
+    Damaged { reason: String, remedy: &'static str },
+    /// It takes too much memory.
+    TooLarge(TooLarge),
 }
 
 impl Fault {
+    pub(super) fn new(reason: String, remedy: &'static str) -> Self {
+        Self::Damaged { reason, remedy }
+    }
+
     pub(super) fn refuse(self, path: &Path) -> ReadError {
-        let (reason, remedy) = (self.reason, self.remedy);
-        ReadError::Format { path: path.to_owned(), format: "MCAP", reason, remedy }
+        match self {
+            Self::Damaged { reason, remedy } => {
+                ReadError::Format { path: path.to_owned(), format: "MCAP", reason, remedy }
+            }
+            Self::TooLarge(error) => error.refuse(path),
+        }
+    }
+}
+
+impl From<TooLarge> for Fault {
+    fn from(error: TooLarge) -> Self {
+        Self::TooLarge(error)
     }
 }

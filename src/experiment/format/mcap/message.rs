@@ -1,17 +1,22 @@
 //! Messages of ROS 2: decoded by their definition, and their numbers by name.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
-use re_cdr::{BigEndian, CdrReader, LittleEndian};
+use re_cdr::{BigEndian, LittleEndian};
 use re_ros_msg::MessageSchema;
+use re_ros_msg::deserialize::Value;
 use re_ros_msg::deserialize::primitive_array::PrimitiveArray;
-use re_ros_msg::deserialize::{TypeResolver, Value, decode_message};
-use re_ros_msg::message_spec::{ComplexType, MessageSpecification, message_package};
+use re_ros_msg::message_spec::MessageSpecification;
+
+use super::decode::{Decoding, Types, key};
 
 type Fields = BTreeMap<String, Value>;
 
 /// Arrays longer than this are images and the like, not joints.
 const MOST_ELEMENTS: usize = 64;
+
+/// Letters of a field's name: messages repeat it with each value.
+const LONGEST_NAME: usize = 255;
 
 /// Decodes the messages of one type.
 #[derive(Debug)]
@@ -20,38 +25,18 @@ pub(super) struct Decoder {
     types: Types,
 }
 
-/// The types that a message is made of, by `package/Name`.
-#[derive(Debug)]
-struct Types(HashMap<String, MessageSpecification>);
-
-impl TypeResolver for Types {
-    fn resolve(
-        &self,
-        scope: &MessageSpecification,
-        wanted: &ComplexType,
-    ) -> Option<&MessageSpecification> {
-        match wanted {
-            ComplexType::Absolute { package, name } => {
-                self.0.get(&key(&format!("{package}/{name}")))
-            }
-            ComplexType::Relative { name } => {
-                let package = message_package(&scope.name).unwrap_or_default();
-                self.0.get(&key(&format!("{package}/{name}")))
-            }
-        }
-    }
-}
-
-/// `std_msgs/msg/Header` is `std_msgs/Header` too.
-fn key(name: &str) -> String {
-    name.replacen("/msg/", "/", 1)
-}
-
 impl Decoder {
     /// Reads the definition of the type `name`, with those of the types in it.
     pub(super) fn new(name: &str, definition: &[u8]) -> Result<Self, String> {
         let text = std::str::from_utf8(definition).map_err(|error| error.to_string())?;
         let schema = MessageSchema::parse(name, text).map_err(|error| format!("{error:#}"))?;
+        let specs = std::iter::once(&schema.spec).chain(&schema.dependencies);
+        if let Some(field) =
+            specs.flat_map(|spec| &spec.fields).find(|field| field.name.len() > LONGEST_NAME)
+        {
+            let start: String = field.name.chars().take(20).collect();
+            return Err(format!("the name of the field `{start}…` is too long"));
+        }
         let types = schema.dependencies.into_iter().map(|part| (key(&part.name), part)).collect();
         Ok(Self { message: schema.spec, types: Types(types) })
     }
@@ -61,18 +46,13 @@ impl Decoder {
         let Some(([_, kind, _, _], content)) = data.split_first_chunk::<4>() else {
             return Err("it is too short".to_owned());
         };
-        let decoded = match kind {
-            0 => {
-                let mut reader = CdrReader::<BigEndian>::new(content);
-                decode_message(&mut reader, &self.message, &self.types)
-            }
-            1 => {
-                let mut reader = CdrReader::<LittleEndian>::new(content);
-                decode_message(&mut reader, &self.message, &self.types)
-            }
-            other => return Err(format!("its encoding {other} is not plain CDR")),
-        };
-        decoded.map_err(|error| error.to_string())
+        match kind {
+            0 => Decoding::<BigEndian>::new(content, &self.types, MOST_ELEMENTS)
+                .message(&self.message, 0),
+            1 => Decoding::<LittleEndian>::new(content, &self.types, MOST_ELEMENTS)
+                .message(&self.message, 0),
+            other => Err(format!("its encoding {other} is not plain CDR")),
+        }
     }
 }
 

@@ -12,6 +12,7 @@
 mod clock;
 mod columns;
 mod contents;
+mod decode;
 mod fault;
 mod message;
 mod series;

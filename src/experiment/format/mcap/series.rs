@@ -5,7 +5,11 @@ use re_ros_msg::deserialize::Value;
 use super::clock::Clock;
 use super::fault::Fault;
 use super::message::Field;
+use crate::experiment::memory::{Budget, TooLarge};
 use crate::experiment::table::Column;
+
+/// Memory of a number: itself, a copy, and what its vector has to spare.
+const NUMBER_SIZE: usize = 3 * size_of::<f64>();
 
 /// The times and values of the messages of one topic.
 #[derive(Debug)]
@@ -38,16 +42,23 @@ impl Series {
     }
 
     /// Takes the numbers of a message, if it has any of those that are wanted.
-    pub(super) fn push(&mut self, time: i64, message: &Value) {
+    pub(super) fn push(
+        &mut self,
+        time: i64,
+        message: &Value,
+        budget: &Budget,
+    ) -> Result<(), TooLarge> {
         let numbers = self.columns.iter().map(|column| column.field.number(message));
         if numbers.clone().all(|number| number.is_none()) {
-            return;
+            return Ok(());
         }
+        budget.take_values(self.columns.len() + 1, NUMBER_SIZE)?;
         let numbers: Vec<f64> = numbers.map(|number| number.unwrap_or(f64::NAN)).collect();
         for (column, number) in self.columns.iter_mut().zip(numbers) {
             column.values.push(number);
         }
         self.times.push(time);
+        Ok(())
     }
 
     /// Puts the messages in the order of their times: files need not have them so.
@@ -102,10 +113,8 @@ pub(super) fn align<'a>(
     let mut times = clock.times;
     if start == times.len() && start > 0 {
         let (topic, others) = (name(topic), others.join("`, `"));
-        return Err(Fault {
-            reason: format!("no message of `{topic}` comes after the first ones of `{others}`"),
-            remedy: "choose topics that were recorded together",
-        });
+        let reason = format!("no message of `{topic}` comes after the first ones of `{others}`");
+        return Err(Fault::new(reason, "choose topics that were recorded together"));
     }
     times.drain(..start);
     for (_, values) in &mut columns {

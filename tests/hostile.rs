@@ -1,0 +1,239 @@
+//! Files that lie about themselves: each is refused with one message, soon, and without the
+//! memory that it claims to need; beside others it keeps none of them from being read.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
+
+#[path = "hostile/bytes.rs"]
+mod bytes;
+#[path = "hostile/run.rs"]
+mod run;
+
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use run::{refused, tauscope};
+use tempfile::TempDir;
+
+/// A file of these bytes.
+fn file(folder: &TempDir, name: &str, bytes: &[u8]) -> PathBuf {
+    let path = folder.path().join(name);
+    fs::write(&path, bytes).unwrap();
+    path
+}
+
+/// Whether the message holds this.
+fn assert_says(path: &Path, arguments: &[&str], expected: &str) {
+    let said = refused(path, arguments);
+    assert!(said.contains(expected), "`{expected}` is not in: {said}");
+}
+
+#[cfg(feature = "mcap")]
+const JOINT: [&str; 2] = ["--joint", "j=/j.input:/j.output"];
+
+#[test]
+#[cfg(feature = "mcap")]
+fn a_chunk_of_another_size_than_it_says_is_refused() {
+    use bytes::mcap;
+    let folder = TempDir::new().unwrap();
+    for compression in ["zstd", "lz4", ""] {
+        let of = |more: i64| {
+            let records = [mcap::topic(mcap::JOINT), mcap::messages()].concat();
+            mcap::file(&mcap::chunk(&records, compression, more))
+        };
+        let whole = file(&folder, "whole.mcap", &of(0));
+        let name = whole.to_str().unwrap();
+        assert_eq!(tauscope(&["estimate", name, JOINT[0], JOINT[1]]).status, Some(0));
+        for more in [1, -1, 255, 1 << 40, i64::MAX] {
+            refused(&file(&folder, "wrong.mcap", &of(more)), &JOINT);
+        }
+    }
+}
+
+#[test]
+#[cfg(feature = "mcap")]
+fn a_summary_that_leads_into_a_chunk_of_another_size_has_an_end() {
+    use bytes::mcap;
+    let records = [mcap::topic(mcap::JOINT), mcap::messages()].concat();
+    let mut bytes = mcap::file(&mcap::chunk(&records, "zstd", 1));
+    let start = 8 + mcap::record(1, &[mcap::string("ros2"), mcap::string("x")].concat()).len();
+    let summary = bytes.len() - 8 - 20;
+    bytes[summary..summary + 8].copy_from_slice(&(start as u64).to_le_bytes());
+    let folder = TempDir::new().unwrap();
+    refused(&file(&folder, "summary.mcap", &bytes), &JOINT);
+}
+
+#[test]
+#[cfg(feature = "mcap")]
+fn a_record_longer_than_its_file_or_its_chunk_is_refused() {
+    use bytes::mcap;
+    let long = [&[5][..], &(1_u64 << 30).to_le_bytes(), &[0; 30]].concat();
+    let folder = TempDir::new().unwrap();
+    refused(&file(&folder, "long.mcap", &mcap::file(&long)), &JOINT);
+    let inside = mcap::file(&mcap::chunk(&long, "zstd", 1 << 31));
+    refused(&file(&folder, "inside.mcap", &inside), &JOINT);
+}
+
+#[test]
+#[cfg(feature = "mcap")]
+fn a_definition_that_contains_itself_or_has_no_bytes_has_an_end() {
+    use bytes::mcap;
+    const LINE: &str = "\n================================================================\n";
+    let folder = TempDir::new().unwrap();
+    let definitions = [
+        ("itself", format!("A a{LINE}MSG: demo/A\nA a\n")),
+        ("each other", format!("A a{LINE}MSG: demo/A\nB b{LINE}MSG: demo/B\nA a\n")),
+        ("twice", format!("A a\nA b{LINE}MSG: demo/A\nA a\nA b\n")),
+        ("empty", format!("A[] a{LINE}MSG: demo/A\nuint8[0] x\n")),
+        ("fixed", format!("A[4000000000] a{LINE}MSG: demo/A\nuint8[0] x\n")),
+        ("largest", format!("float64[{}] a\n", u64::MAX)),
+        (
+            "halves",
+            (0..40).fold("T0[2] a".to_owned(), |text, k| {
+                format!("{text}{LINE}MSG: demo/T{k}\nT{n} a\nT{n} b", n = k + 1)
+            }),
+        ),
+    ];
+    for (what, definition) in definitions {
+        // As many elements as the message may say that it has.
+        let message = mcap::message(0, &100_000_000_u32.to_le_bytes());
+        let records = [mcap::topic(&definition), message].concat();
+        let said = refused(&file(&folder, "definition.mcap", &mcap::file(&records)), &JOINT);
+        assert!(said.contains("MCAP"), "{what}: {said}");
+    }
+}
+
+#[test]
+#[cfg(feature = "mat")]
+fn a_dataset_larger_than_its_file_can_be_is_refused() {
+    use bytes::mat;
+    let folder = TempDir::new().unwrap();
+    for size in [100_000_000_000, 1 << 60, u64::MAX] {
+        let path = file(&folder, "large.mat", &mat::v73_with(400, size));
+        assert_says(&path, &[], "larger than a file of");
+    }
+}
+
+#[test]
+#[cfg(feature = "mat")]
+fn groups_that_lie_in_one_another_have_an_end() {
+    let folder = TempDir::new().unwrap();
+    assert_says(&file(&folder, "circle.mat", &bytes::mat::v73_in_a_circle()), &[], "in a circle");
+}
+
+#[test]
+#[cfg(feature = "mat")]
+fn what_is_packed_is_refused_when_it_grows_past_the_limit() {
+    use bytes::mat;
+    let zeros = mat::packed(&mat::array("a", 60_000_000, &vec![0; 60_000_000]));
+    assert!(zeros.len() < 100_000);
+    let folder = TempDir::new().unwrap();
+    let path = file(&folder, "bomb.mat", &mat::file(&zeros));
+    assert_says(&path, &["--max-memory", "100MB"], "--max-memory");
+    let few = mat::file(&mat::packed(&mat::array("a", 1 << 30, &[1, 2, 3])));
+    assert_says(&file(&folder, "few.mat", &few), &[], "it has 3 values but should have");
+    let long = mat::file(&mat::array(&"a".repeat(100_000), 1, &[1]));
+    assert_says(&file(&folder, "long.mat", &long), &[], "too long");
+}
+
+#[test]
+fn gaps_are_filled_within_the_limit_only() {
+    let folder = TempDir::new().unwrap();
+    let text =
+        "time_s,a.input,a.output\n0,0,0\n0.01,1,1\n0.02,1,1\n0.03,1,1\n0.04,1,1\n9999999,1,1\n";
+    let path = file(&folder, "fill.csv", text.as_bytes());
+    assert_says(&path, &["--fill", "1e7", "--max-memory", "4GB"], "--max-memory");
+    assert_says(&path, &["--resample", "1e-7", "--fill", "1e7"], "samples");
+}
+
+#[test]
+fn a_limit_that_is_too_small_is_said_of_each_format() {
+    let folder = TempDir::new().unwrap();
+    let csv = file(&folder, "log.csv", bytes::log_text().as_bytes());
+    assert_says(&csv, &["--max-memory", "5kB"], "or allow more with `--max-memory`");
+    #[cfg(feature = "mat")]
+    assert_says(&whole("v7.mat"), &["--max-memory", "2kB"], "--max-memory");
+    #[cfg(feature = "mat")]
+    assert_says(&whole("v73.mat"), &["--max-memory", "1kB"], "--max-memory");
+    #[cfg(feature = "mcap")]
+    assert_says(&whole("zstd.mcap"), &["--max-memory", "2kB"], "--max-memory");
+    #[cfg(feature = "parquet")]
+    assert_says(
+        &whole("zstd.parquet"),
+        &["--max-memory", "2kB", "--joint", "boom=boom.input:boom.output"],
+        "--max-memory",
+    );
+}
+
+#[cfg(any(feature = "mat", feature = "mcap", feature = "parquet"))]
+fn whole(name: &str) -> PathBuf {
+    Path::new("tests/golden/formats").join(name)
+}
+
+#[test]
+fn a_packed_text_and_a_row_without_end_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+    packed.write_all(b"time_s,a.input,a.output\n").unwrap();
+    for row in 0..500_000_u32 {
+        packed.write_all(format!("{row},1,1\n").as_bytes()).unwrap();
+    }
+    let path = file(&folder, "bomb.csv.gz", &packed.finish().unwrap());
+    assert_says(&path, &["--max-memory", "20MB"], "--max-memory");
+    let endless = format!("time_s,a.input,a.output\n0,1,1\n1,\"{}", "\n".repeat(18 << 20));
+    assert_says(&file(&folder, "quoted.csv", endless.as_bytes()), &[], "quotation mark");
+}
+
+#[test]
+#[cfg(unix)]
+fn a_device_without_end_is_no_log() {
+    assert_says(Path::new("/dev/zero"), &[], "/dev/zero");
+    assert_says(Path::new("/dev/urandom"), &[], "/dev/urandom");
+}
+
+#[test]
+fn the_other_logs_of_a_folder_are_done() {
+    let folder = TempDir::new().unwrap();
+    let logs = folder.path().join("logs");
+    fs::create_dir(&logs).unwrap();
+    fs::write(logs.join("whole.csv"), bytes::log_text()).unwrap();
+    #[cfg(feature = "mcap")]
+    {
+        let records = [bytes::mcap::topic(bytes::mcap::JOINT), bytes::mcap::messages()].concat();
+        let chunk = bytes::mcap::file(&bytes::mcap::chunk(&records, "zstd", 1));
+        fs::write(logs.join("chunk.mcap"), chunk).unwrap();
+    }
+    #[cfg(feature = "mat")]
+    {
+        fs::write(logs.join("circle.mat"), bytes::mat::v73_in_a_circle()).unwrap();
+        fs::write(logs.join("large.mat"), bytes::mat::v73_with(400, 1 << 60)).unwrap();
+    }
+    fs::write(logs.join("other.csv"), "time_s,a.input,a.output\n0,0,\"").unwrap();
+    let logs = logs.to_str().unwrap();
+    assert_eq!(tauscope(&["estimate", logs]).status, Some(1));
+    let results = folder.path().join("results");
+    let ended = tauscope(&["estimate", logs, "--results", results.to_str().unwrap()]);
+    assert_eq!(ended.status, Some(1), "{ended:?}");
+    assert_eq!(fs::read_dir(&results).unwrap().count(), 1);
+}
+
+/// Files that broke an earlier version and are no part of this project: in `hostile` of the
+/// folder `TAUSCOPE_REAL_LOGS`, or of `../shared/data`.
+#[test]
+#[cfg(all(feature = "mat", feature = "mcap"))]
+fn files_that_broke_an_earlier_version_are_refused() {
+    let folder = std::env::var_os("TAUSCOPE_REAL_LOGS");
+    let folder = folder.map_or_else(|| PathBuf::from("../shared/data"), PathBuf::from);
+    let folder = ["", ".."].iter().map(|up| Path::new(up).join(&folder).join("hostile"));
+    let Some(folder) = folder.into_iter().find(|folder| folder.is_dir()) else {
+        // Not `eprintln`, which the test runner keeps to itself.
+        writeln!(std::io::stderr(), "skipped: the folder of hostile files is not here").unwrap();
+        return;
+    };
+    let mut files: Vec<PathBuf> =
+        fs::read_dir(folder).unwrap().map(|f| f.unwrap().path()).collect();
+    files.retain(|file| file.extension().is_some_and(|ending| ending != "md"));
+    assert!(!files.is_empty());
+    for path in files {
+        refused(&path, &["--fill", "1e7"]);
+    }
+}

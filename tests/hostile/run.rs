@@ -1,0 +1,51 @@
+//! The program on a file, with an end to its time and its memory.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// What came of it.
+#[derive(Debug)]
+pub(crate) struct Ended {
+    /// `None` where it was ended from outside.
+    pub(crate) status: Option<i32>,
+    pub(crate) said: String,
+}
+
+/// Far longer than any of these files takes, also on a machine that is busy.
+const LONGEST: Duration = Duration::from_secs(20);
+
+/// Kilobytes of address space, of which threads and libraries take a part.
+const MEMORY: u32 = 800_000;
+
+/// Runs the program.
+pub(crate) fn tauscope(arguments: &[&str]) -> Ended {
+    let mut command = Command::new("sh");
+    command.args(["-c", &format!("ulimit -v {MEMORY}; exec \"$0\" \"$@\"")]);
+    command.arg(env!("CARGO_BIN_EXE_tauscope")).args(arguments).args(["--threads", "2"]);
+    let mut child =
+        command.stdout(Stdio::null()).stderr(Stdio::piped()).stdin(Stdio::null()).spawn().unwrap();
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if start.elapsed() > LONGEST {
+            child.kill().unwrap();
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let output = child.wait_with_output().unwrap();
+    Ended {
+        status: output.status.code(),
+        said: String::from_utf8_lossy(&output.stderr).into_owned(),
+    }
+}
+
+/// Runs `estimate` on a file that must be refused with one message, which names it.
+pub(crate) fn refused(path: &Path, arguments: &[&str]) -> String {
+    let name = path.to_str().unwrap();
+    let ended = tauscope(&[&["estimate", name][..], arguments].concat());
+    assert_eq!(ended.status, Some(2), "{name}: {ended:?}");
+    let errors: Vec<_> = ended.said.lines().filter(|line| line.starts_with("error: ")).collect();
+    assert_eq!(errors.len(), 1, "{name}: {ended:?}");
+    assert!(errors[0].contains(name), "{name}: {ended:?}");
+    errors[0].to_owned()
+}

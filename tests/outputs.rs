@@ -1,0 +1,194 @@
+//! Where outputs go: never over what is read, whole or not at all, into pipes, and nothing is
+//! left by who was killed.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
+#![cfg(unix)]
+
+#[path = "hostile/bytes.rs"]
+#[expect(dead_code, reason = "it builds files for other tests, too")]
+mod bytes;
+
+use std::ffi::OsStr;
+use std::fs::{self, File};
+use std::os::unix::ffi::OsStrExt as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant, SystemTime};
+
+use tempfile::TempDir;
+
+/// A folder with a log.
+fn folder() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("log.csv"), bytes::log_text()).unwrap();
+    folder
+}
+
+fn tauscope(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tauscope"));
+    command.current_dir(folder).stdin(Stdio::null());
+    command
+}
+
+#[test]
+fn a_model_file_is_never_replaced_by_another_output() {
+    let folder = folder();
+    let made = tauscope(folder.path()).args(["improve", "log.csv", "-w", "model.toml"]).output();
+    assert!(made.unwrap().status.code().is_some_and(|status| status < 2));
+    for name in ["m.html", "m.rrd", "m.toml"] {
+        fs::copy(folder.path().join("model.toml"), folder.path().join(name)).unwrap();
+    }
+    let commands = [
+        "report log.csv -m m.html -o m.html",
+        "report log.csv -m m.rrd -o m.html",
+        "compare log.csv -m m.toml -o m.toml",
+        "explain log.csv -m m.toml -o m.toml",
+        "improve log.csv -m m.toml -w n.toml -o m.toml",
+        "add direction_gain log.csv -m m.toml -w n.toml -o m.toml",
+        "improve log.csv --results r -m m.toml --summary m.toml",
+        "columns log.csv -w log.csv",
+    ];
+    let before = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    let kept = ["m.html", "m.rrd", "m.toml", "log.csv"].map(before);
+    for command in commands {
+        // Without recordings a report writes none.
+        if command.contains("m.rrd") && cfg!(not(feature = "rrd")) {
+            continue;
+        }
+        let ended = tauscope(folder.path()).args(command.split(' ')).output().unwrap();
+        let said = String::from_utf8_lossy(&ended.stderr);
+        assert_eq!(ended.status.code(), Some(2), "{command}: {said}");
+        assert!(said.contains("a file that is read"), "{command}: {said}");
+    }
+    assert_eq!(["m.html", "m.rrd", "m.toml", "log.csv"].map(before), kept);
+}
+
+#[test]
+fn logs_whose_names_differ_in_bytes_that_are_no_text_have_a_result_each() {
+    let folder = TempDir::new().unwrap();
+    let log =
+        |byte: u8| folder.path().join(OsStr::from_bytes(&[b'l', byte, b'.', b'c', b's', b'v']));
+    if fs::write(log(0xff), bytes::log_text()).is_err() {
+        // Some file systems hold texts only.
+        return;
+    }
+    let other = bytes::log_text().replace(",1,", ",2,");
+    fs::write(log(0xfe), other).unwrap();
+    let mut command = tauscope(folder.path());
+    command.arg("estimate").args([log(0xff), log(0xfe)]);
+    let ended = command.args(["--results", "r", "--summary", "s.csv", "--quiet"]).output().unwrap();
+    assert_eq!(ended.status.code(), Some(0), "{}", String::from_utf8_lossy(&ended.stderr));
+    assert_eq!(fs::read_dir(folder.path().join("r")).unwrap().count(), 2);
+    let merged = tauscope(folder.path()).args(["merge", "r", "--summary", "t.csv"]).output();
+    assert_eq!(merged.unwrap().status.code(), Some(0));
+    let summary = |name| fs::read_to_string(folder.path().join(name)).unwrap();
+    assert_eq!(summary("s.csv").lines().count(), 3);
+    assert!(summary("t.csv").contains(r"\xfe") && summary("t.csv").contains(r"\xff"));
+}
+
+#[test]
+fn a_name_as_long_as_can_be_has_a_result() {
+    let folder = TempDir::new().unwrap();
+    let name = format!("{}.csv", "n".repeat(251));
+    fs::write(folder.path().join(&name), bytes::log_text()).unwrap();
+    let ended = tauscope(folder.path()).args(["estimate", &name, "--results", "r"]).output();
+    assert_eq!(ended.unwrap().status.code(), Some(0));
+}
+
+#[test]
+fn a_pipe_is_written_to_and_neither_probed_nor_replaced() {
+    let folder = folder();
+    let pipe = folder.path().join("pipe");
+    if !Command::new("mkfifo").arg(&pipe).status().is_ok_and(|status| status.success()) {
+        return;
+    }
+    let mut child = tauscope(folder.path())
+        .args(["estimate", "log.csv", "--decisions", "pipe", "--quiet"])
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let piped = fs::read_to_string(&pipe).unwrap();
+    assert!(child.wait().unwrap().success());
+    let mut plain = tauscope(folder.path());
+    plain.args(["estimate", "log.csv", "--decisions", "plain.csv"]);
+    assert!(plain.output().unwrap().status.success());
+    assert_eq!(piped, fs::read_to_string(folder.path().join("plain.csv")).unwrap());
+    let program = env!("CARGO_BIN_EXE_tauscope");
+    let shell =
+        format!("'{program}' estimate log.csv --decisions >(cat > sub.csv) --quiet; sleep 1");
+    let bash = Command::new("bash").args(["-c", &shell]).current_dir(folder.path()).output();
+    if bash.is_ok_and(|bash| bash.status.success()) {
+        assert_eq!(piped, fs::read_to_string(folder.path().join("sub.csv")).unwrap());
+    }
+}
+
+#[test]
+fn parts_that_nobody_writes_are_removed_and_others_stay() {
+    let folder = folder();
+    let part = |name: &str, age: u64| -> PathBuf {
+        let path = folder.path().join(format!(".tauscope-{name}.part"));
+        let time = SystemTime::now() - Duration::from_secs(age);
+        File::create(&path).unwrap().set_modified(time).unwrap();
+        path
+    };
+    let (left, young, held) = (part("left", 3600), part("young", 0), part("held", 3600));
+    let lock = File::options().write(true).open(&held).unwrap();
+    lock.lock().unwrap();
+    let ended =
+        tauscope(folder.path()).args(["estimate", "log.csv", "--decisions", "d.csv"]).output();
+    assert!(ended.unwrap().status.success());
+    assert_eq!((left.exists(), young.exists(), held.exists()), (false, true, true));
+}
+
+#[test]
+fn programs_of_a_folder_end_with_the_one_that_started_them() {
+    let program = env!("CARGO_BIN_EXE_tauscope");
+    // A log that is never whole: its reader waits, and only its parent's end can end it.
+    let folder = TempDir::new().unwrap();
+    let pipe = folder.path().join("log.csv");
+    if !Command::new("mkfifo").arg(&pipe).status().is_ok_and(|status| status.success()) {
+        return;
+    }
+    let mut child = Command::new(program)
+        .args(["estimate", "log.csv"])
+        .env("TAUSCOPE_ENDS_WITH_STDIN", "1")
+        .current_dir(folder.path())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(Duration::from_millis(300));
+    assert!(child.try_wait().unwrap().is_none());
+    drop(child.stdin.take());
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if start.elapsed() > Duration::from_secs(10) {
+            child.kill().unwrap();
+            panic!("it goes on without its parent");
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+#[test]
+fn names_that_control_a_terminal_or_compute_are_shown() {
+    let folder = folder();
+    let name = "=a\u{1b}]0;mine\u{7}";
+    let text =
+        bytes::log_text().replacen("a.input,a.output", &format!("{name}.input,{name}.output"), 1);
+    fs::write(folder.path().join("log.csv"), text).unwrap();
+    let mut command = tauscope(folder.path());
+    command.args(["estimate", "log.csv", "--decisions", "d.csv", "--safe-csv"]);
+    let ended = command.env("CLICOLOR_FORCE", "1").output().unwrap();
+    assert!(ended.status.success());
+    for stream in [&ended.stdout, &ended.stderr] {
+        assert!(!String::from_utf8_lossy(stream).contains("\u{1b}]"));
+    }
+    assert!(String::from_utf8_lossy(&ended.stdout).contains(r"\u{1b}]0;mine\u{7}"));
+    let decisions = fs::read_to_string(folder.path().join("d.csv")).unwrap();
+    assert!(decisions.lines().skip(1).all(|line| line.contains("'=a")), "{decisions}");
+    let number = tauscope(folder.path())
+        .args(["estimate", "log.csv", "--alpha", &u64::MAX.to_string()])
+        .output();
+    assert_eq!(number.unwrap().status.code(), Some(2));
+}
