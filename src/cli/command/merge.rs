@@ -45,7 +45,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let (decisions, summary) = (args.decisions.as_deref(), args.summary.as_deref());
-    let tables = Tables { decisions, summary, text: CsvText::safe_if(args.safe_csv) };
+    let tables = Tables { decisions, summary, text: CsvText::from(args.safe_csv) };
     tables.check(&results_in(&args.folders)?)?;
     let (command, results, missing) = read_folders(&args.folders)?;
     let report = FolderReport::new(&command, results);

@@ -89,7 +89,7 @@ impl FolderArgs {
 
     /// How texts in CSV are written.
     pub(crate) fn csv_text(&self) -> CsvText {
-        CsvText::safe_if(self.safe_csv)
+        CsvText::from(self.safe_csv)
     }
 
     /// Runs the command for each log that has no result yet.

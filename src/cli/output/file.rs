@@ -120,7 +120,7 @@ const PART: (&str, &str) = (".tauscope-", ".part");
 /// them. Looked for once in each folder.
 fn remove_left_parts(folder: &Path) {
     /// Time that another program has for taking the lock on its part.
-    const YOUNG: Duration = Duration::from_secs(60);
+    const YOUNG: Duration = Duration::from_mins(1);
     static SEEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
     let is_new = SEEN.lock().is_ok_and(|mut seen| seen.insert(folder.to_owned()));
     for entry in folder.read_dir().into_iter().filter(|_| is_new).flatten().flatten() {

@@ -57,9 +57,9 @@ pub(crate) enum CsvText {
     Safe,
 }
 
-impl CsvText {
-    pub(crate) fn safe_if(asked: bool) -> Self {
-        if asked { Self::Safe } else { Self::Plain }
+impl From<bool> for CsvText {
+    fn from(is_safe: bool) -> Self {
+        if is_safe { Self::Safe } else { Self::Plain }
     }
 }
 

@@ -172,8 +172,8 @@ impl Listing<'_> {
         for length in shape.iter().rev() {
             dims.push(usize::try_from(*length).unwrap_or(usize::MAX));
         }
-        let empty = attributes.contains_key("MATLAB_empty");
-        Ok(Variable { name, dims, content: content(class, empty, dataset) })
+        let class = if attributes.contains_key("MATLAB_empty") { NOTHING } else { class };
+        Ok(Variable { name, dims, content: content(class, dataset) })
     }
 
     /// Refuses a dataset that says it is larger than this file can hold.
@@ -195,7 +195,10 @@ impl Listing<'_> {
     }
 }
 
-fn content(class: &str, empty: bool, dataset: Dataset) -> Content {
+/// Stands for the class of an array without elements.
+const NOTHING: &str = "nothing";
+
+fn content(class: &str, dataset: Dataset) -> Content {
     match class {
         "char" => Content::Other("text"),
         "cell" => Content::Other("a cell array, which is read of files saved with `save -v7` only"),
@@ -203,11 +206,7 @@ fn content(class: &str, empty: bool, dataset: Dataset) -> Content {
             "an array of structures, which is read of files saved with `save -v7` only",
         ),
         "double" | "single" | "logical" | "int8" | "int16" | "int32" | "int64" | "uint8"
-        | "uint16" | "uint32" | "uint64" | ""
-            if !empty =>
-        {
-            Content::Numbers(Numbers::Stored(dataset))
-        }
+        | "uint16" | "uint32" | "uint64" | "" => Content::Numbers(Numbers::Stored(dataset)),
         _ => Content::Other("an object of MATLAB, or nothing"),
     }
 }
