@@ -5,6 +5,8 @@
 //! stick of 8 bits that is read at its own rate. Usage: `dead_time_coverage [RECORDS [PLANT...]]`
 #![expect(clippy::print_stdout, reason = "an example prints")]
 
+use std::f64::consts::TAU;
+
 use anyhow::Context as _;
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -84,7 +86,7 @@ fn joystick(random: &mut ChaCha8Rng, samples: usize, plant: &Plant) -> Vec<f64> 
     let rest = random.random_range(0.3..1.0);
     let stick = |k: usize| {
         let time_s = (k / plant.stick * plant.stick) as f64 * plant.period_s;
-        let sum: f64 = waves.iter().map(|(hz, phase)| (6.283 * hz * time_s + phase).sin()).sum();
+        let sum: f64 = waves.iter().map(|(hz, phase)| (TAU * hz * time_s + phase).sin()).sum();
         let moved = sum.signum() * (sum.abs() - rest).max(0.0);
         (moved.clamp(-2.0, 2.0) * 64.0).round() / 64.0
     };

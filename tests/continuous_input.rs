@@ -13,7 +13,8 @@ const DEAD_TIME_S: f64 = 0.12;
 /// A stick that somebody moves.
 fn stick(time_s: f64) -> f64 {
     let waves = [(0.11, 0.3), (0.23, 1.0), (0.41, 2.0), (0.77, 4.0)];
-    let sum: f64 = waves.iter().map(|(hz, phase)| (6.28 * hz * time_s + phase).sin()).sum();
+    let sum: f64 =
+        waves.iter().map(|(hz, phase)| (std::f64::consts::TAU * hz * time_s + phase).sin()).sum();
     (sum.signum() * (sum.abs() - 0.5).max(0.0)).clamp(-1.5, 1.5)
 }
 

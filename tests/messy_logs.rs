@@ -108,9 +108,8 @@ fn read_file(log: &Messy) -> Experiment {
     Experiment::read(&[path], &options)
 }
 
-fn utf16(text: &str, mark: bool) -> Vec<u8> {
-    let marked = if mark { format!("\u{feff}{text}") } else { text.to_owned() };
-    marked.encode_utf16().flat_map(u16::to_le_bytes).collect()
+fn utf16(text: &str) -> Vec<u8> {
+    text.encode_utf16().flat_map(u16::to_le_bytes).collect()
 }
 
 fn gzip(text: &str) -> Vec<u8> {
@@ -125,20 +124,28 @@ fn date(k: usize) -> String {
     format!("2024-05-01 12:{:02}:{:02}.{hundredths:02}", seconds / 60, seconds % 60)
 }
 
+/// Sampled when there was time: the output is that of the moment.
+fn uneven() -> Vec<Row> {
+    let clean = clean();
+    let mut now = 0.0_f64;
+    let mut rows = Vec::new();
+    for k in 0..ROWS {
+        let before = (1..ROWS).take_while(|row| *row as f64 <= now).count();
+        let after = (before + 1).min(ROWS - 1);
+        let part = now.fract();
+        let output = (1.0 - part) * clean[before].output + part * clean[after].output;
+        rows.push(Row { time: now * PERIOD, input: clean[before].input, output });
+        now += 1.0 + 0.4 * noise(k);
+        if now > (ROWS - 1) as f64 {
+            break;
+        }
+    }
+    rows
+}
+
+/// Clocks that run, but not evenly.
 fn clocks() -> Vec<Messy> {
     let at = |k: usize| PERIOD * k as f64;
-    let lost: Vec<Row> = clean()
-        .into_iter()
-        .enumerate()
-        .filter(|(k, _)| k % 401 != 300)
-        .map(|(_, row)| row)
-        .collect();
-    let pause = timed(|k| at(k) + if k < 870 { 0.0 } else { 12.34 });
-    let anew = timed(|k| at(if k < 870 { k } else { k - 870 }));
-    let mut twice = clean();
-    twice.insert(700, twice[699]);
-    let mut swapped = clean();
-    swapped.swap(500, 501);
     vec![
         messy(
             "jitter.csv",
@@ -161,27 +168,26 @@ fn clocks() -> Vec<Messy> {
             plain(&timed(|k| if k % 300 > 290 { at(k - k % 300 + 300) - 1e-5 } else { at(k) })),
             read(0.002, "the clock jitters by"),
         ),
-        messy(
-            "uneven.csv",
-            plain(&{
-                // Sampled when there was time: the output is that of the moment.
-                let clean = clean();
-                let mut now = 0.0_f64;
-                let mut rows = Vec::new();
-                for k in 0..ROWS {
-                    let (before, after) = (now as usize, (now as usize + 1).min(ROWS - 1));
-                    let part = now.fract();
-                    let output = (1.0 - part) * clean[before].output + part * clean[after].output;
-                    rows.push(Row { time: now * PERIOD, input: clean[before].input, output });
-                    now += 1.0 + 0.4 * noise(k);
-                    if now > (ROWS - 1) as f64 {
-                        break;
-                    }
-                }
-                rows
-            }),
-            read(0.055, "interpolated"),
-        ),
+        messy("uneven.csv", plain(&uneven()), read(0.055, "interpolated")),
+    ]
+}
+
+/// Clocks that jump, and rows at the wrong place.
+fn jumps() -> Vec<Messy> {
+    let at = |k: usize| PERIOD * k as f64;
+    let lost: Vec<Row> = clean()
+        .into_iter()
+        .enumerate()
+        .filter(|(k, _)| k % 401 != 300)
+        .map(|(_, row)| row)
+        .collect();
+    let pause = timed(|k| at(k) + if k < 870 { 0.0 } else { 12.34 });
+    let anew = timed(|k| at(if k < 870 { k } else { k - 870 }));
+    let mut twice = clean();
+    twice.insert(700, twice[699]);
+    let mut swapped = clean();
+    swapped.swap(500, 501);
+    vec![
         messy("lost_rows.csv", plain(&lost), read(0.051, "rows are lost in 4 gaps")),
         messy("pause.csv", plain(&pause), read(0.051, "is split in 2")),
         messy(
@@ -241,28 +247,29 @@ fn units_and_names() -> Vec<Messy> {
     ]
 }
 
+/// `text` with another cell at this row and column.
+fn cell(text: &str, row: usize, column: usize, with: &str) -> String {
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let mut cells: Vec<&str> = lines[row - 1].split(',').collect();
+    cells[column] = with;
+    lines[row - 1] = cells.join(",");
+    lines.join("\n") + "\n"
+}
+
 fn texts() -> Vec<Messy> {
     let rows = clean();
     let comma = |x: f64| format!("{x:.6}").replace('.', ",");
     let semicolon = HEADER.replace(',', ";");
-    let dated: String = rows
-        .iter()
-        .enumerate()
-        .map(|(k, row)| format!("{},{},{}\n", date(k), row.input, row.output))
-        .collect();
+    let mut dated = String::new();
+    for (k, row) in rows.iter().enumerate() {
+        writeln!(dated, "{},{},{}", date(k), row.input, row.output).unwrap();
+    }
     let degrees = format!("time_s;boom.input [%];boom.output [°]\n{}", {
         let text = table("", &rows, ";", |x| format!("{x:.6}"));
         text.trim_start().to_owned()
     });
     let latin1: Vec<u8> = degrees.chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect();
     let all = plain(&rows);
-    let cell = |row: usize, column: usize, with: &str| {
-        let mut lines: Vec<String> = all.lines().map(str::to_owned).collect();
-        let mut cells: Vec<&str> = lines[row - 1].split(',').collect();
-        cells[column] = with;
-        lines[row - 1] = cells.join(",");
-        lines.join("\n") + "\n"
-    };
     vec![
         messy("decimal_comma.csv", table(&semicolon, &rows, ";", comma), SAME),
         messy("tabs_and_commas.txt", table(&HEADER.replace(',', "\t"), &rows, "\t", comma), SAME),
@@ -274,24 +281,31 @@ fn texts() -> Vec<Messy> {
         ),
         messy("row_of_units.csv", all.replacen('\n', "\ns,V,deg\n", 1), SAME),
         messy("latin1.csv", latin1, SAME),
-        messy("utf16.csv", utf16(&degrees, true), SAME),
-        messy("utf16_unmarked.csv", utf16(&degrees, false), SAME),
+        messy("utf16.csv", utf16(&format!("\u{feff}{degrees}")), SAME),
+        messy("utf16_unmarked.csv", utf16(&degrees), SAME),
         messy("packed.csv.gz", gzip(&all), SAME),
         messy("cut_off.csv", &all[..all.len() - 12], read(0.011, "cut off")),
-        messy("empty_cell.csv", cell(617, 2, ""), read(0.051, "1 cell is empty or NaN")),
+        messy("empty_cell.csv", cell(&all, 617, 2, ""), read(0.051, "1 cell is empty or NaN")),
+    ]
+}
+
+/// What no number can be made of.
+fn broken() -> Vec<Messy> {
+    let all = plain(&clean());
+    vec![
         messy(
             "no_number.csv",
-            cell(617, 2, "#REF!"),
+            cell(&all, 617, 2, "#REF!"),
             Expected::Refused(&["row 617", "`boom.output`", "#REF!", "write a number"]),
         ),
         messy(
             "infinite.csv",
-            cell(617, 1, "inf"),
+            cell(&all, 617, 1, "inf"),
             Expected::Refused(&["row 617", "`boom.input`", "infinite", "remove the row"]),
         ),
         messy(
             "short_row.csv",
-            cell(617, 1, "").replacen(",,", ",", 1),
+            cell(&all, 617, 1, "").replacen(",,", ",", 1),
             Expected::Refused(&["row 617", "2 cells", "has 3"]),
         ),
         messy(
@@ -312,7 +326,13 @@ fn texts() -> Vec<Messy> {
 fn every_messy_log_is_read_as_the_clean_one_or_refused_with_the_remedy() {
     let expected = delays(&read_file(&messy("clean.csv", plain(&clean()), SAME)));
     assert!(expected.len() > 15 && expected.iter().all(Option::is_some), "{expected:?}");
-    let logs: Vec<Messy> = clocks().into_iter().chain(units_and_names()).chain(texts()).collect();
+    let logs: Vec<Messy> = clocks()
+        .into_iter()
+        .chain(jumps())
+        .chain(units_and_names())
+        .chain(texts())
+        .chain(broken())
+        .collect();
     assert!(logs.len() >= 30);
     let wrong: Vec<String> = logs.iter().filter_map(|log| complaint(log, &expected)).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));

@@ -80,7 +80,7 @@ impl Reading {
         self
     }
 
-    fn as_it_stands(mut self) -> Self {
+    fn unrepaired(mut self) -> Self {
         self.options.repair.as_it_stands = true;
         self
     }
@@ -239,7 +239,7 @@ fn sample_numbers_need_the_period_between_them() {
 fn a_lost_sample_number_is_noticed_and_can_be_filled() {
     let text = "sample,boom.input,boom.output\n1,5,1\n2,5,2\n4,6,4\n5,6,5\n";
     let lost = Reading::of(text).sample_period(0.02);
-    let strict = Reading::of(text).sample_period(0.02).as_it_stands();
+    let strict = Reading::of(text).sample_period(0.02).unrepaired();
     assert!(matches!(strict.error(), ReadError::NotUniform { row: 4, .. }));
     let joint = lost.fill(0.04).the_joint();
     assert_eq!(outputs(&joint), [[1.0, 2.0, 3.0, 4.0, 5.0]]);
@@ -394,7 +394,7 @@ fn names_of_joints_may_hold_dots_spaces_and_slashes() {
 fn a_jittered_log_keeps_its_rows_unless_another_grid_is_asked_for() {
     let text =
         "time_s,boom.input,boom.output\n0,1,0\n0.009,2,9\n0.021,3,21\n0.03,4,30\n0.04,4,40\n";
-    let error = Reading::of(text).as_it_stands().error();
+    let error = Reading::of(text).unrepaired().error();
     assert!(matches!(error, ReadError::NotUniform { row: 3, .. }), "{error}");
     let experiment = Reading::of(text).read();
     assert_eq!(periods(&experiment.joints[0]), ["0.01 s"]);
@@ -466,7 +466,7 @@ fn a_missing_value_is_filled_with_a_note_and_refused_where_a_log_is_to_stand_as_
         assert_eq!(labels(&experiment.joints[0]), ["a"]);
         assert!(experiment.notes[0].contains("1 cell is empty or NaN"), "{:?}", experiment.notes);
         let text = PLAIN.replace("1.25", cell);
-        let error = Reading::of(text).as_it_stands().error();
+        let error = Reading::of(text).unrepaired().error();
         let ReadError::Missing { row, column, .. } = &error else { panic!("{error}") };
         assert_eq!((*row, column.as_str()), (3, "boom.output"));
     }

@@ -25,7 +25,7 @@ fn stroke(seed: u32, level: f64, delay_s: f64) -> Trial {
     let made = simulate(&PlantSpec::new(seed.into(), 16.0, vec![joint])).unwrap();
     let trial = &made.joints[0].trials[0];
     let (input, output) = (trial.input().to_vec(), trial.output().to_vec());
-    Trial::new(&seed.to_string(), 0.0, trial.period(), input, output).unwrap()
+    Trial::new(seed.to_string(), 0.0, trial.period(), input, output).unwrap()
 }
 
 /// Eight strokes both ways and their delays, samples.
@@ -95,7 +95,7 @@ fn measured(log: &str, columns: &str) -> Option<Vec<Trial>> {
 /// Seconds from the first step until the output has left its rest by 0.2 degrees.
 fn departure_s(trial: &Trial) -> Option<f64> {
     let (input, output) = (trial.input(), trial.output());
-    let step = input.windows(2).position(|pair| pair[0] != pair[1])? + 1;
+    let step = input.windows(2).position(|pair| (pair[0] - pair[1]).abs() > 0.0)? + 1;
     let rest: f64 = output[step - 20..step].iter().sum::<f64>() / 20.0;
     let away = |y: &f64| (y - rest) * input[step].signum() > 0.2;
     Some(output[step..].iter().position(away)? as f64 * trial.period().seconds())

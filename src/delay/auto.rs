@@ -162,7 +162,7 @@ impl<'a> Record<'a> {
         let period = trials.first().map(Trial::period);
         let alike = trials.iter().filter(|trial| Some(trial.period()) == period);
         let mut record = Self {
-            outputs: alike.map(|trial| trial.output()).collect(),
+            outputs: alike.map(Trial::output).collect(),
             period_s: period.map_or(1.0, crate::units::SamplePeriod::seconds),
             delays: Vec::new(),
             holds: Vec::new(),

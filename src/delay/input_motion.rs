@@ -133,7 +133,7 @@ impl Moved {
         let pairs = input.iter().zip(input.iter().skip(1));
         Self {
             samples: input.len() as f64,
-            changes: pairs.filter(|(before, after)| before != after).count() as f64,
+            changes: pairs.filter(|(before, after)| (*before - *after).abs() > 0.0).count() as f64,
             held: holds.iter().map(|hold| (hold.end - hold.start) as f64).sum(),
             travel: travel(input, tolerance),
             in_steps: steps
@@ -224,6 +224,8 @@ fn travel(input: &[f64], tolerance: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
     use crate::units::SamplePeriod;
 
@@ -247,7 +249,7 @@ mod tests {
     }
 
     fn joystick(time_s: f64) -> f64 {
-        let sum: f64 = [0.13, 0.31, 0.47, 0.7, 1.1].iter().map(|f| (6.28 * f * time_s).sin()).sum();
+        let sum: f64 = [0.13, 0.31, 0.47, 0.7, 1.1].iter().map(|f| (TAU * f * time_s).sin()).sum();
         sum.signum() * (sum.abs() - 1.0).clamp(0.0, 2.0)
     }
 
@@ -278,7 +280,7 @@ mod tests {
             let slow = |t: f64| joystick((t / 0.05).floor() * 0.05);
             let inputs: [&dyn Fn(f64) -> f64; 5] = [
                 &joystick,
-                &|t| (6.28 * 0.3 * t).sin(),
+                &|t| (TAU * 0.3 * t).sin(),
                 &|t| (joystick(t) * 30.0).round() / 30.0,
                 &|t| joystick(t) + 0.02 * noise(t),
                 &slow,

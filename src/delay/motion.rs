@@ -190,8 +190,8 @@ impl Hold<'_> {
 
     fn motion(&self, so_far: &SoFar) -> Option<StepMotion> {
         match self.quiet_at(self.step).find(|quiet| quiet.rests(so_far)) {
-            Some(rest) => self.from_rest(&rest, so_far),
-            None => self.into_stop(so_far),
+            Some(rest) => self.leaving(&rest, so_far),
+            None => self.stopping(so_far),
         }
     }
 
@@ -206,7 +206,7 @@ impl Hold<'_> {
 
     /// From rest: not far behind the departure, where the joint does not go on as it started
     /// until the next step. Where it does, nothing needs to be known.
-    fn from_rest(&self, before: &Quiet, so_far: &SoFar) -> Option<StepMotion> {
+    fn leaving(&self, before: &Quiet, so_far: &SoFar) -> Option<StepMotion> {
         let moved = self.held().iter().map(|y| (y - before.level).abs()).fold(0.0, f64::max);
         let rest = Rest { moved, limit: self.limit_at_rest(before, so_far) };
         let first = self.step.saturating_sub(self.reach);
@@ -241,7 +241,7 @@ impl Hold<'_> {
 
     /// In motion, and at a stop before the next step. An input that is eased needs no stop to
     /// bring the joint to rest.
-    fn into_stop(&self, so_far: &SoFar) -> Option<StepMotion> {
+    fn stopping(&self, so_far: &SoFar) -> Option<StepMotion> {
         let held = self.held();
         if self.is_eased || held.len() < 2 * self.look_back {
             return None;
@@ -292,7 +292,9 @@ impl Quiet {
         let values = output.get(end.saturating_sub(look_back)..end)?;
         let origin = *values.first().filter(|_| values.len() >= FEWEST)?;
         let mut line = RunningLine::default();
-        values.iter().for_each(|y| line.push(y - origin));
+        for y in values {
+            line.push(y - origin);
+        }
         let samples = values.len() as f64;
         let level = origin + line.mean() + line.slope() * (samples - 1.0) / 2.0;
         let noise = (line.sse() / (samples - 2.0)).sqrt();

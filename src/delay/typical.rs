@@ -183,7 +183,7 @@ mod tests {
             let sample = |_| {
                 let z = normals.next();
                 let own = error * normals.next();
-                let delay_s = 5.0 + scatter * ((skew * z).exp() - 1.0) / skew + own;
+                let delay_s = 5.0 + scatter * (skew * z).exp_m1() / skew + own;
                 let reach = 1.96 * error;
                 let own_s = (error > 0.0).then_some((delay_s - reach, delay_s + reach));
                 StepSample { delay_s, own_s }

@@ -17,7 +17,7 @@ pub struct ErrorFigures {
 impl ErrorFigures {
     /// The error of an evaluated model on `part`; `None` where it has no sample.
     pub fn of(record: &FitRecord<'_>, evaluation: &Evaluation, part: Part) -> Option<Self> {
-        let (mut samples, mut squares, mut spread, mut max) = (0, 0.0, 0.0, 0.0_f64);
+        let (mut samples, mut squares, mut spread, mut max) = (0_usize, 0.0, 0.0, 0.0_f64);
         for window in record.part(part) {
             let residuals =
                 evaluation.residuals.get(window.trial)?.get(window.start..window.end)?;

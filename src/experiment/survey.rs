@@ -426,6 +426,8 @@ fn correlation(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::fmt::Write as _;
+
     use super::*;
 
     /// A joint that integrates what its input was 10 rows before.
@@ -436,7 +438,7 @@ mod tests {
         for k in 0..600 {
             angle += 0.01 * f64::from(level(k - 10));
             let noise = f64::from(k * 7919 % 97) * 1e-4;
-            text += &format!("{},{},{},{}\n", k * 10, level(k), angle + noise, 100.0 + noise);
+            writeln!(text, "{},{},{},{}", k * 10, level(k), angle + noise, 100.0 + noise).unwrap();
         }
         text
     }

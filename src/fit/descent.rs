@@ -241,7 +241,7 @@ impl Normal {
                 (*index, goal, bounds[*index].clamped(goal))
             };
             let goals: Vec<_> = free.iter().enumerate().map(there).collect();
-            let beyond = goals.iter().filter(|(_, goal, bound)| goal != bound);
+            let beyond = goals.iter().filter(|(_, goal, bound)| goal.total_cmp(bound).is_ne());
             let beyond: Vec<_> = beyond.map(|(index, _, bound)| (*index, *bound)).collect();
             if beyond.is_empty() {
                 free.iter().enumerate().for_each(|(k, index)| step[*index] = solved[k]);

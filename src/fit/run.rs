@@ -51,15 +51,15 @@ impl Run<'_> {
     /// The simulation from `starts` and its residuals; what the starts are still wrong by
     /// is taken off as far as it is linear.
     pub(super) fn from(&self, starts: &[f64], slope: Option<&[f64]>) -> (Simulated, Vec<f64>) {
-        self.from_by(starts, slope, simulate)
+        self.by(starts, slope, simulate)
     }
 
     /// The residuals of the simulation from `starts`, as [`from`](Self::from) has them.
     pub(super) fn residuals_from(&self, starts: &[f64], slope: Option<&[f64]>) -> Vec<f64> {
-        self.from_by(starts, slope, simulate_output).1
+        self.by(starts, slope, simulate_output).1
     }
 
-    fn from_by(
+    fn by(
         &self,
         starts: &[f64],
         slope: Option<&[f64]>,

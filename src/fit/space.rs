@@ -68,7 +68,7 @@ impl Space {
     pub(super) fn status(&self, covariance: &Covariance, free: usize, value: f64) -> Status {
         let is_lost = |error| self.bounds[free].is_lost_in(error);
         match covariance.std_error(free) {
-            _ if self.reach[free].clamped(value) != value => Status::BeyondReach,
+            _ if self.reach[free].clamped(value).total_cmp(&value).is_ne() => Status::BeyondReach,
             _ if covariance.is_at_bound(free) => Status::AtBound,
             Some(error) if !is_lost(error) => Status::Fitted,
             _ => Status::Undetermined,

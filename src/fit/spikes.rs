@@ -75,8 +75,8 @@ fn is_spike(output: &[f64], place: std::ops::Range<usize>, noise: f64) -> bool {
     let narrowest = narrowest.min_by(|a, b| (a.1 - a.0).total_cmp(&(b.1 - b.0)));
     let Some((low, high)) = narrowest else { return false };
     let room = (high - low).max(BEYOND * noise);
-    let is_near = |y: &&f64| (low - room..=high + room).contains(*y);
-    if before.last().filter(is_near).is_none() || behind.first().filter(is_near).is_none() {
+    let is_near = |y: &f64| (low - room..=high + room).contains(y);
+    if !(before.last().is_some_and(is_near) && behind.first().is_some_and(is_near)) {
         return false;
     }
     let above = suspects.iter().all(|y| *y > high + room);

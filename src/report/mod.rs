@@ -67,7 +67,7 @@ pub(crate) use page::{Document, RecordingFile, Report, report_text};
 #[cfg(feature = "rrd")]
 pub(crate) use settings::settings_rows;
 pub(crate) use steps::{step_line, steps_table};
-pub(crate) use summary::{DelayRange, JointSummary};
+pub(crate) use summary::{DelayRange, Headline, JointSummary};
 pub use sweep::ReportedSweep;
 pub(crate) use sweep::{StepsShown, sweep_text};
 #[cfg(feature = "rrd")]

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{EstimatedJoint, decision_rows};
-use crate::delay::Condition;
+use crate::delay::{Condition, KindDelay};
 
 /// How many steps were accepted, why the others were not, and what the delays are.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +20,49 @@ pub(crate) struct JointSummary {
     pub(crate) delay_s: Option<DelayRange>,
     /// Whether the input moves all the time, so that there are no steps.
     pub(crate) is_continuous: bool,
+    /// Whether the trials, or the parts between gaps, hold different levels.
+    pub(crate) levels_differ: bool,
+    /// What stands for the delays in one line.
+    pub(crate) headline: Headline,
+}
+
+/// What stands for the delays of a joint in one line.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Headline {
+    /// All of them.
+    All(DelayRange),
+    /// A typical delay for each kind of step: their medians differ by more than is uncertain.
+    Kinds(Vec<KindDelay>),
+    /// Nothing: of no kind of step enough were accepted.
+    None(Vec<KindDelay>),
+}
+
+impl Headline {
+    fn of(all: Option<DelayRange>, kinds: Vec<KindDelay>) -> Self {
+        let typical = || kinds.iter().filter_map(|kind| kind.typical?.interval_s);
+        let apart = typical().any(|(low, _)| typical().any(|(_, high)| high < low));
+        match all {
+            _ if apart => Self::Kinds(kinds),
+            Some(range) if kinds.iter().any(|kind| kind.typical.is_some()) => Self::All(range),
+            _ => Self::None(kinds),
+        }
+    }
+
+    /// The delays of all steps, where they stand for the joint.
+    pub(crate) fn range(&self) -> Option<&DelayRange> {
+        match self {
+            Self::All(range) => Some(range),
+            Self::Kinds(_) | Self::None(_) => None,
+        }
+    }
+
+    /// The kinds of steps that have to be told apart, or of which nothing is typical.
+    pub(crate) fn kinds(&self) -> &[KindDelay] {
+        match self {
+            Self::All(_) => &[],
+            Self::Kinds(kinds) | Self::None(kinds) => kinds,
+        }
+    }
 }
 
 /// The least, the middle and the greatest of the accepted delays.
@@ -55,13 +98,35 @@ impl JointSummary {
             let verdict = condition.id();
             (condition, rows.iter().filter(|row| row.verdict == verdict).count())
         };
+        let delay_s = DelayRange::of(seconds.collect());
         Self {
+            headline: Headline::of(delay_s, joint.delay_table().kinds),
             steps: rows.len(),
             accepted: accepted.len(),
             rejected: Condition::ALL.map(count).into_iter().filter(|(_, n)| *n > 0).collect(),
             delay_samples: DelayRange::of(samples.collect()),
-            delay_s: DelayRange::of(seconds.collect()),
+            delay_s,
             is_continuous: joint.estimate.dead_time.is_some(),
+            levels_differ: levels_differ(joint),
+        }
+    }
+}
+
+fn levels_differ(joint: EstimatedJoint<'_>) -> bool {
+    let mut levels = joint.joint.trials.iter().filter_map(|trial| trial.input().first());
+    let first = levels.next();
+    levels.any(|level| Some(level) != first)
+}
+
+impl JointSummary {
+    /// Why there are no steps.
+    pub(crate) fn without_steps(&self) -> &'static str {
+        match (self.is_continuous, self.levels_differ) {
+            (true, _) => "the input moves all the time",
+            (false, true) => {
+                "the input changes only between trials or in gaps; `--fill` joins what gaps part"
+            }
+            (false, false) => "the input never changes",
         }
     }
 }
@@ -69,6 +134,7 @@ impl JointSummary {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::delay::{Transition, TypicalDelay};
 
     #[test]
     fn the_median_of_an_even_number_is_between_the_middle_two() {
@@ -76,5 +142,31 @@ mod tests {
         assert_eq!((range.min.to_string(), range.max.to_string()), ("1".into(), "10".into()));
         assert!((range.median - 3.0).abs() < 1e-15);
         assert_eq!(DelayRange::of(Vec::new()), None);
+    }
+
+    #[test]
+    fn kinds_that_differ_and_kinds_without_delays_have_no_common_one() {
+        let typical = |low: f64, high: f64| TypicalDelay {
+            median_s: f64::midpoint(low, high),
+            interval_s: Some((low, high)),
+            min_s: low,
+            max_s: high,
+        };
+        let kind = |transition, typical| KindDelay {
+            transition,
+            steps: 20,
+            accepted: 10,
+            typical,
+            rejected: None,
+        };
+        let start = kind(Transition::Start, Some(typical(0.2, 0.3)));
+        let stop = kind(Transition::Stop, Some(typical(0.4, 0.5)));
+        let near = kind(Transition::Stop, Some(typical(0.25, 0.5)));
+        let nothing = kind(Transition::Change, None);
+        let all = DelayRange::of(vec![0.1, 0.2]);
+        let headline = |kinds: &[KindDelay]| Headline::of(all, kinds.to_vec());
+        assert_eq!(headline(&[start, stop]), Headline::Kinds(vec![start, stop]));
+        assert_eq!(headline(&[start, near, nothing]).range(), all.as_ref());
+        assert_eq!(headline(&[nothing]), Headline::None(vec![nothing]));
     }
 }

@@ -1,7 +1,8 @@
 //! Tables for the terminal.
 
+use super::delay_table::kind_sentence;
 use super::text_table::TextTable;
-use super::{DelayRange, EstimatedJoint, JointSummary, dead_time_sentences};
+use super::{DelayRange, EstimatedJoint, Headline, JointSummary, dead_time_sentences};
 use crate::delay::{Automatic, Chosen, Condition, FirstLast, Interpolation, LagPart, Settings};
 use crate::numerics::LowPass;
 use crate::wording::{measure, percent, rounded};
@@ -9,15 +10,19 @@ use crate::wording::{measure, percent, rounded};
 /// The table of `estimate`: a row per joint, and the settings below it.
 pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings) -> String {
     let mut table = TextTable::new(SUMMARY_HEADER, &[1, 2, 4, 5, 6]);
+    let mut kinds = String::new();
     for joint in joints {
-        table.row(summary_cells(&joint.joint.name, &JointSummary::of(*joint)));
+        let (name, summary) = (&joint.joint.name, JointSummary::of(*joint));
+        table.row(summary_cells(name, &summary));
+        let sentences = summary.headline.kinds().iter().map(kind_sentence);
+        kinds.extend(sentences.map(|sentence| format!("{name}: {sentence}\n")));
     }
     let dead_times: String = joints.iter().flat_map(dead_time_lines).collect();
     let lags: String = joints.iter().filter_map(lag_line).collect();
     let chosen: String = joints.iter().filter_map(chosen_line).collect();
     let automatic = joints.iter().find_map(|joint| joint.estimate.chosen);
     let automatic = automatic.map(|chosen| chosen.automatic).unwrap_or_default();
-    format!("{table}\n{dead_times}{lags}{chosen}{}\n", settings_line(settings, automatic))
+    format!("{table}\n{kinds}{dead_times}{lags}{chosen}{}\n", settings_line(settings, automatic))
 }
 
 /// What is said of the dead time of a joint, a line each.
@@ -94,21 +99,23 @@ pub(crate) const SUMMARY_HEADER: [&str; 7] =
 
 /// A joint in one row, for people.
 pub(crate) fn summary_cells(name: &str, summary: &JointSummary) -> [String; 7] {
-    let JointSummary { steps, accepted, rejected, delay_s, .. } = summary;
+    let JointSummary { steps, accepted, rejected, headline, .. } = summary;
     let accepted = match steps {
         0 => "-".to_owned(),
         _ => format!("{accepted} ({})", percent(*accepted as f64 / *steps as f64)),
     };
     let why = match (steps, rejected.is_empty()) {
-        (0, _) if summary.is_continuous => "the input moves all the time".to_owned(),
-        (0, _) => "the input never changes".to_owned(),
+        (0, _) => summary.without_steps().to_owned(),
         (_, true) => "none".to_owned(),
         (_, false) => reasons(rejected),
     };
     let seconds = |value: fn(&DelayRange) -> f64| {
-        delay_s.as_ref().map_or_else(|| "-".to_owned(), |range| format!("{:.3} s", value(range)))
+        headline.range().map_or_else(|| "-".to_owned(), |range| format!("{:.3} s", value(range)))
     };
-    let [min, median, max] = [seconds(|r| r.min), seconds(|r| r.median), seconds(|r| r.max)];
+    let [min, mut median, max] = [seconds(|r| r.min), seconds(|r| r.median), seconds(|r| r.max)];
+    if let Headline::Kinds(_) = headline {
+        "by kind".clone_into(&mut median);
+    }
     [name.to_owned(), steps.to_string(), accepted, why, min, median, max]
 }
 

@@ -1,5 +1,7 @@
 //! Small builders of files that lie about themselves.
 
+use std::fmt::Write as _;
+
 /// The text of a log of one joint that steps and follows.
 pub(crate) fn log_text() -> String {
     let mut text = "time_s,a.input,a.output\n".to_owned();
@@ -7,7 +9,7 @@ pub(crate) fn log_text() -> String {
     for k in 0..300_u32 {
         let level = |k: u32| f64::from((k / 60) % 2);
         angle += 0.1 * level(k.saturating_sub(15));
-        text += &format!("{:.2},{},{angle:.3}\n", f64::from(k) * 0.01, level(k));
+        writeln!(text, "{:.2},{},{angle:.3}", f64::from(k) * 0.01, level(k)).unwrap();
     }
     text
 }

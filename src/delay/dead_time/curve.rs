@@ -20,7 +20,7 @@ impl Curve {
     pub(super) fn of<'a>(inputs: impl Iterator<Item = &'a [f64]> + Clone) -> Option<Self> {
         let moving = inputs.flat_map(|input| {
             let pairs = input.iter().zip(input.iter().skip(1));
-            pairs.filter(|(before, after)| before != after).map(|(_, after)| *after)
+            pairs.filter(|(before, after)| (*before - *after).abs() > 0.0).map(|(_, after)| *after)
         });
         let moving: Vec<f64> = moving.collect();
         let middle = quantile(&moving, 0.5)?;

@@ -78,7 +78,7 @@ mod tests {
         let follows: Vec<f64> = (0..2000_usize)
             .map(|k| free[k] + k.checked_sub(3).map_or(0.0, |k| errors[k]))
             .collect();
-        let of = |input: &[f64]| feedback(&[errors.clone()], &[input.to_vec()]);
+        let of = |input: &[f64]| feedback(std::slice::from_ref(&errors), &[input.to_vec()]);
         assert!(!of(&free).is_present(), "{:?}", of(&free));
         assert!(of(&follows).is_present(), "{:?}", of(&follows));
     }

@@ -125,6 +125,8 @@ impl Record {
 /// assert!((found.value_s - 0.12).abs() < 0.005);
 /// ```
 pub fn dead_time(trials: &[Trial], settings: &Settings) -> DeadTime {
+    /// Ratio of neighbouring lags; those of the least error are refined.
+    const FINE: f64 = 1.8;
     let confidence = settings.interval;
     let record = Record::of(trials, settings);
     let Some(record) = record else { return unknown(Unknown::TooShort, confidence) };
@@ -135,8 +137,6 @@ pub fn dead_time(trials: &[Trial], settings: &Settings) -> DeadTime {
     let (filter, start) = noise(&record, &rows);
     let Some(start) = start else { return unknown(Unknown::NotExplained, confidence) };
     let trials = record.whitened(&filter, &rows);
-    /// Ratio of neighbouring lags; those of the least error are refined.
-    const FINE: f64 = 1.8;
     let longest_lag = longest_lag(&record);
     let all = profiles(&trials, record.longest, &grid(FINE, longest_lag));
     let coarse = all.into_iter().min_by(|a, b| {
@@ -250,6 +250,8 @@ impl Solved<'_> {
     /// What a dead time with these ends is; `evidence` is twice the logarithm of the likelihood
     /// that the input has to do with the output.
     fn finding(&self, best: Fitted, ends: (Option<f64>, Option<f64>), evidence: f64) -> Finding {
+        /// Part of a sample that no record can tell from nothing.
+        const NOTHING: f64 = 0.02;
         /// Evidence of an input that has nothing to do with the output, with ten parameters and
         /// hundreds of dead times to choose from: seen once in a thousand such logs.
         const LEAST_EVIDENCE: f64 = 40.0;
@@ -266,8 +268,6 @@ impl Solved<'_> {
             low_s: low.min(best.delay) * period_s,
             high_s: high.max(best.delay) * period_s,
         };
-        /// Part of a sample that no record can tell from nothing.
-        const NOTHING: f64 = 0.02;
         if low > NOTHING { Finding::Known(bounds) } else { Finding::LagOnly(bounds) }
     }
 

@@ -28,7 +28,7 @@ pub(super) struct Moments {
 impl Moments {
     /// For dead times from `from` up to `to` samples.
     pub(super) fn of(trials: &[Whitened], lags: Lags, from: usize, to: usize) -> Self {
-        let columns = trials.first().map_or(0, |trial| trial.lagged_columns());
+        let columns = trials.first().map_or(0, Whitened::lagged_columns);
         let delays = to.saturating_sub(from) + NUMERATORS;
         let square = columns * columns;
         let mut found = Self {

@@ -145,6 +145,7 @@ fn step_response(time: f64, integrals: i32, lags: Lags) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::units::floor_to_index;
 
     /// The changes of the output to `input`, by the recursion.
     fn changes(structure: Structure, delay: f64, lags: Lags, input: &[f64]) -> Vec<f64> {
@@ -169,7 +170,7 @@ mod tests {
                 return 0.0;
             }
             let (k, part) = (time.floor(), time - time.floor());
-            let at = |k: f64| if k < 0.0 { 0.0 } else { input[k as usize] };
+            let at = |k: f64| if k < 0.0 { 0.0 } else { input[floor_to_index(k)] };
             if structure.is_linear { at(k) + part * (at(k + 1.0) - at(k)) } else { at(k) }
         };
         let (mut x, mut speed, mut angle) = (0.0, 0.0, 0.0);

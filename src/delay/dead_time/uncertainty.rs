@@ -82,6 +82,8 @@ pub(super) fn errors(trials: &[Whitened], fitted: Fitted) -> Rows {
 
 impl Assessed {
     pub(super) fn of(trials: &[Whitened], best: Fitted) -> Self {
+        /// Samples between two predictions whose difference is a derivative.
+        const APART: f64 = 0.1;
         let target = target(trials);
         let constant = ones(&target);
         let columns = regressors(trials, best);
@@ -91,8 +93,6 @@ impl Assessed {
         let errors = residuals_of(&target, &own).unwrap_or_else(|| target.clone());
         let by = |fitted| combined(&regressors(trials, fitted), &coefficients);
         let [slow, fast] = sensitivities_to_lags(best).map(|(up, down)| less(by(up), &by(down)));
-        /// Samples between two predictions whose difference is a derivative.
-        const APART: f64 = 0.1;
         let below = (best.delay - 0.5 * APART).max(0.0);
         let at = |delay| Fitted { delay, ..best };
         let mut by_delay = less(by(at(below + APART)), &by(at(below)));

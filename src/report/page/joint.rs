@@ -11,7 +11,8 @@ use crate::report::delay_table::{LEVEL_HEADER, kind_sentence, level_cells, neutr
 use crate::report::text::lag_line;
 use crate::report::text_table::TextTable;
 use crate::report::{
-    DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary, dead_time_sentences,
+    DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, Headline, JointSummary,
+    dead_time_sentences,
 };
 use crate::wording::number;
 
@@ -70,9 +71,9 @@ fn over_record(estimated: EstimatedJoint<'_>) -> Option<String> {
 }
 
 fn delay_sentence(summary: &JointSummary) -> String {
-    let JointSummary { steps, accepted, rejected, delay_s, .. } = summary;
+    let JointSummary { steps, accepted, rejected, headline, .. } = summary;
     if *steps == 0 {
-        return "The input never changes.".to_owned();
+        return format!("No step: {}.", summary.without_steps());
     }
     let counted = |(why, count): &(Condition, usize)| format!("{}: {count}", why.meaning());
     let why = match rejected.as_slice() {
@@ -81,12 +82,21 @@ fn delay_sentence(summary: &JointSummary) -> String {
         several => format!(" ({})", several.iter().map(counted).collect::<Vec<_>>().join(", ")),
     };
     let rest = steps - accepted;
-    match delay_s {
-        Some(DelayRange { min, median, max }) => format!(
+    let kinds: Vec<_> = headline.kinds().iter().map(kind_sentence).collect();
+    let kinds = kinds.join("; ");
+    match headline {
+        Headline::All(DelayRange { min, median, max }) => format!(
             "Delay {median:.3} s (median; {min:.3} to {max:.3} s); {accepted} of {steps} steps \
              accepted, {rest} rejected{why}."
         ),
-        None => format!("No delay: all {steps} steps were rejected{why}."),
+        Headline::Kinds(_) => format!(
+            "The delay differs by kind of step: {kinds}. In all {accepted} of {steps} steps \
+             accepted, {rest} rejected{why}."
+        ),
+        Headline::None(_) if *accepted == 0 => {
+            format!("No delay: all {steps} steps were rejected{why}.")
+        }
+        Headline::None(_) => format!("No typical delay: {kinds}."),
     }
 }
 
