@@ -266,6 +266,22 @@ pub enum ReadError {
         /// The column.
         column: String,
     },
+    /// A number is so large that its squares cannot be computed with.
+    #[error(
+        "{}, row {row}, column `{column}`: {value:e} is beyond what double precision can square; \
+         write it in a larger unit, or leave the cell empty where it stands for nothing",
+        path.display()
+    )]
+    BeyondPrecision {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file.
+        row: u64,
+        /// The column.
+        column: String,
+        /// What the cell holds.
+        value: f64,
+    },
     /// A cell is empty or NaN.
     #[error(
         "{}, row {row}, column `{column}`: the cell is empty or NaN", path.display()

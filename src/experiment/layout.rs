@@ -1,6 +1,6 @@
 //! Which column of a table is time, trial, and which signal of which joint.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use super::columns::{ColumnMap, JointColumns};
@@ -103,17 +103,18 @@ impl Layout {
         map: &ColumnMap,
         period: Option<SamplePeriod>,
     ) -> Result<Self, ReadError> {
+        let columns = Columns::of(head);
         let trial = match map.trial.as_deref() {
             Some(NO_TRIAL) => None,
-            Some(name) => Some(find(head, name)?),
+            Some(name) => Some(columns.find(name)?),
             None => find_trial(head),
         };
-        let time = find_time(head, map, period)?;
+        let time = find_time(&columns, map, period)?;
         let mut layout = Self { time, trial, joints: Vec::new(), incomplete: Vec::new() };
         if map.joints.is_empty() {
-            layout.add_native_joints(head)?;
+            layout.add_native_joints(&columns)?;
         } else {
-            layout.add_mapped_joints(head, &map.joints)?;
+            layout.add_mapped_joints(&columns, &map.joints)?;
         }
         Ok(layout)
     }
@@ -173,15 +174,19 @@ impl Layout {
         columns
     }
 
-    fn add_mapped_joints(&mut self, head: &Head, joints: &[JointColumns]) -> Result<(), ReadError> {
+    fn add_mapped_joints(
+        &mut self,
+        columns: &Columns<'_>,
+        joints: &[JointColumns],
+    ) -> Result<(), ReadError> {
         let mut names: Vec<_> = joints.iter().map(|joint| &joint.name).collect();
         names.sort();
         if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
-            let (path, joint) = (head.path.clone(), pair[0].clone());
+            let (path, joint) = (columns.head.path.clone(), pair[0].clone());
             return Err(ReadError::DuplicateJoint { path, joint });
         }
         for joint in joints {
-            match mapped_joint(head, joint) {
+            match mapped_joint(columns, joint) {
                 Ok(layout) => self.joints.push(layout),
                 Err(error) => self.incomplete.push((joint.name.clone(), error)),
             }
@@ -189,10 +194,15 @@ impl Layout {
         Ok(())
     }
 
-    fn add_native_joints(&mut self, head: &Head) -> Result<(), ReadError> {
+    fn add_native_joints(&mut self, columns: &Columns<'_>) -> Result<(), ReadError> {
+        let head = columns.head;
         let mut names: Vec<&str> = Vec::new();
+        let mut seen = HashSet::new();
+        let mut covariates: HashMap<&str, Vec<&str>> = HashMap::new();
         for (name, signal) in head.headers.iter().filter_map(native_name) {
-            if ["input", "output"].contains(&signal) && !names.contains(&name) {
+            if !["input", "output"].contains(&signal) {
+                covariates.entry(name).or_default().push(signal);
+            } else if seen.insert(name) {
                 names.push(name);
             }
         }
@@ -201,7 +211,8 @@ impl Layout {
             return Err(ReadError::NoJoints { path, row, available: head.names() });
         }
         for name in names {
-            match native_joint(head, name) {
+            let covariates = covariates.get(name).map_or(&[][..], Vec::as_slice);
+            match native_joint(columns, name, covariates) {
                 Ok(layout) => self.joints.push(layout),
                 Err(error) => self.incomplete.push((name.to_owned(), error)),
             }
@@ -215,57 +226,57 @@ fn native_name(header: &Header) -> Option<(&str, &str)> {
     header.name.rsplit_once('.').filter(|(joint, signal)| !joint.is_empty() && !signal.is_empty())
 }
 
-fn native_joint(head: &Head, name: &str) -> Result<JointLayout, ReadError> {
-    let signal = |kind: &str| signal_column(head, &format!("{name}.{kind}"), kind, None);
-    let is_covariate = |header: &Header| {
-        native_name(header)
-            .filter(|(joint, kind)| *joint == name && !["input", "output"].contains(kind))
-            .map(|(_, kind)| kind.to_owned())
-    };
-    let covariates = head.headers.iter().filter_map(is_covariate).map(|kind| signal(&kind));
+fn native_joint(
+    columns: &Columns<'_>,
+    name: &str,
+    covariates: &[&str],
+) -> Result<JointLayout, ReadError> {
+    let signal = |kind: &str| signal_column(columns, &format!("{name}.{kind}"), kind, None);
     Ok(JointLayout {
         name: name.to_owned(),
         input: signal("input")?,
         output: signal("output")?,
-        covariates: covariates.collect::<Result<_, _>>()?,
+        covariates: covariates.iter().map(|kind| signal(kind)).collect::<Result<_, _>>()?,
     })
 }
 
-fn mapped_joint(head: &Head, joint: &JointColumns) -> Result<JointLayout, ReadError> {
-    let covariate = |(name, column): &(String, String)| signal_column(head, column, name, None);
+fn mapped_joint(columns: &Columns<'_>, joint: &JointColumns) -> Result<JointLayout, ReadError> {
+    let covariate = |(name, column): &(String, String)| signal_column(columns, column, name, None);
     Ok(JointLayout {
         name: joint.name.clone(),
-        input: signal_column(head, &joint.input, "input", joint.input_unit.as_ref())?,
-        output: signal_column(head, &joint.output, "output", joint.output_unit.as_ref())?,
+        input: signal_column(columns, &joint.input, "input", joint.input_unit.as_ref())?,
+        output: signal_column(columns, &joint.output, "output", joint.output_unit.as_ref())?,
         covariates: joint.covariates.iter().map(covariate).collect::<Result<_, _>>()?,
     })
 }
 
 fn signal_column(
-    head: &Head,
+    columns: &Columns<'_>,
     column: &str,
     name: &str,
     unit: Option<&String>,
 ) -> Result<SignalColumn, ReadError> {
-    let column = find(head, column)?;
-    let stated = head.headers.get(column).and_then(|header| header.unit.as_ref());
-    let named = || head.headers.get(column).and_then(|header| unit::of_signal(&header.name));
+    let column = columns.find(column)?;
+    let header = columns.head.headers.get(column);
+    let stated = header.and_then(|header| header.unit.as_ref());
+    let named = || header.and_then(|header| unit::of_signal(&header.name));
     let unit = unit.or(stated).cloned().or_else(named);
     let signal = Signal { name: name.to_owned(), unit };
-    let clock = head.headers.get(column).map_or(0, |header| header.clock);
+    let clock = header.map_or(0, |header| header.clock);
     Ok(SignalColumn { signal, column, clock })
 }
 
 fn find_time(
-    head: &Head,
+    columns: &Columns<'_>,
     map: &ColumnMap,
     period: Option<SamplePeriod>,
 ) -> Result<TimeSource, ReadError> {
+    let head = columns.head;
     if let Some(name) = &map.time {
         // `t [ms]` says the unit of a column `t`.
-        return match (find(head, name), unit::parted(name)) {
-            (Err(_), (name, Some(unit))) if find(head, name).is_ok() => {
-                find(head, name).and_then(|column| times(head, column, Some(&unit)))
+        return match (columns.find(name), unit::parted(name)) {
+            (Err(_), (name, Some(unit))) if columns.find(name).is_ok() => {
+                columns.find(name).and_then(|column| times(head, column, Some(&unit)))
             }
             (found, _) => found.and_then(|column| times(head, column, None)),
         };
@@ -312,23 +323,51 @@ pub(super) fn find_time_column(head: &Head) -> Option<usize> {
     find_any(head, &TIME_NAMES).or_else(|| named.min().map(|(_, column)| column))
 }
 
-/// The column whose whole header is `wanted`, else the one whose name it is.
-fn find(head: &Head, wanted: &str) -> Result<usize, ReadError> {
-    let matching = |is_match: fn(&Header) -> &str| {
-        let headers = head.headers.iter().enumerate();
-        headers.filter(|(_, header)| is_match(header) == wanted).map(|(index, _)| index).collect()
-    };
-    let whole: Vec<usize> = matching(|header| &header.text);
-    let found = if whole.is_empty() { matching(|header| &header.name) } else { whole };
-    let (path, row, column) = (head.path.clone(), head.header_row, wanted.to_owned());
-    match found.as_slice() {
-        [index] => Ok(*index),
-        [_, ..] => Err(ReadError::DuplicateColumn { path, row, column }),
-        [] => {
-            let names = head.headers.iter().map(|header| header.name.as_str());
-            let nearest = nearest_name(wanted, names).map(str::to_owned);
-            let available = head.names();
-            Err(ReadError::MissingColumn { path, row, column, nearest, available })
+/// Columns among which a name is looked for that is nearly the one that is missing: each joint
+/// of a log may lack one.
+const MOST_COMPARED: usize = 1000;
+
+/// The columns of a log by their names: logs may have very many.
+struct Columns<'a> {
+    head: &'a Head,
+    by_text: HashMap<&'a str, Named>,
+    by_name: HashMap<&'a str, Named>,
+}
+
+/// The columns that share a name.
+#[derive(Clone, Copy)]
+enum Named {
+    One(usize),
+    Several,
+}
+
+impl<'a> Columns<'a> {
+    fn of(head: &'a Head) -> Self {
+        let named = |of: fn(&Header) -> &str| {
+            let mut columns = HashMap::new();
+            for (index, header) in head.headers.iter().enumerate() {
+                let several = |named: &mut Named| *named = Named::Several;
+                columns.entry(of(header)).and_modify(several).or_insert(Named::One(index));
+            }
+            columns
+        };
+        Self { head, by_text: named(|header| &header.text), by_name: named(|header| &header.name) }
+    }
+
+    /// The column whose whole header is `wanted`, else the one whose name it is.
+    fn find(&self, wanted: &str) -> Result<usize, ReadError> {
+        let head = self.head;
+        let (path, row, column) = (head.path.clone(), head.header_row, wanted.to_owned());
+        match self.by_text.get(wanted).or_else(|| self.by_name.get(wanted)) {
+            Some(Named::One(index)) => Ok(*index),
+            Some(Named::Several) => Err(ReadError::DuplicateColumn { path, row, column }),
+            None => {
+                let few = Some(&head.headers).filter(|headers| headers.len() <= MOST_COMPARED);
+                let names = few.into_iter().flatten().map(|header| header.name.as_str());
+                let nearest = nearest_name(wanted, names).map(str::to_owned);
+                let available = head.names();
+                Err(ReadError::MissingColumn { path, row, column, nearest, available })
+            }
         }
     }
 }

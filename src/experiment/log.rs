@@ -361,6 +361,7 @@ impl Log<'_> {
             BadCell::Kind(found) => ReadError::NotNumbers { path, column, found },
             BadCell::Text(text) => ReadError::NotANumber { path, row, column, text },
             BadCell::Infinite => ReadError::Infinite { path, row, column },
+            BadCell::TooLarge(value) => ReadError::BeyondPrecision { path, row, column, value },
         })
     }
 }

@@ -1,5 +1,6 @@
 //! Logs into an [`Experiment`]; what cannot be read is listed beside what can.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -78,8 +79,11 @@ impl Experiment {
         self.sources.extend(log.sources);
         self.failures.extend(log.failures);
         self.notes.extend(log.notes);
+        let names = self.joints.iter().map(|joint| joint.name.clone());
+        let mut places: HashMap<String, usize> = names.zip(0..).collect();
         for joint in log.joints {
-            match self.joints.iter_mut().find(|known| known.name == joint.name) {
+            let place = *places.entry(joint.name.clone()).or_insert(self.joints.len());
+            match self.joints.get_mut(place) {
                 None => self.joints.push(joint),
                 Some(known) => {
                     if let Err(error) = merge(known, joint, path) {

@@ -216,6 +216,9 @@ impl Column {
     pub(super) fn push(&mut self, cell: Result<f64, BadCell>, row: u64) {
         match cell {
             _ if self.error.is_some() => {}
+            Ok(value) if value.abs() > LARGEST => {
+                self.error = Some((row, BadCell::TooLarge(value)));
+            }
             Ok(value) => self.values.push(value),
             Err(bad) => self.error = Some((row, bad)),
         }
@@ -223,7 +226,7 @@ impl Column {
 }
 
 /// A cell that is neither a finite number nor missing.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum BadCell {
     /// The whole column holds something else.
     #[cfg_attr(
@@ -233,7 +236,12 @@ pub(super) enum BadCell {
     Kind(String),
     Text(String),
     Infinite,
+    /// Its squares, and sums of products of them, are beyond double precision.
+    TooLarge(f64),
 }
+
+/// The largest number of a log: products of squares of ten million of them are still numbers.
+const LARGEST: f64 = 1e75;
 
 /// The labels of rows as they come, as runs.
 #[derive(Debug, Default)]

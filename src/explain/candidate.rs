@@ -56,7 +56,7 @@ pub struct Candidate {
     /// two tests', times two (see `evidence`).
     pub p_value: f64,
     /// Share of the misfit that it explains: of the mean square error of the training part
-    /// beyond the noise of the measurement.
+    /// beyond the noise of the measurement; from −1 (as much worse) to 1 (all of it).
     pub share_of_misfit: f64,
     /// Twice the difference in log-likelihood to the best candidate, both parts of the
     /// record, with Schwarz's penalty: 0 for the best.

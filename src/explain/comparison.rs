@@ -80,7 +80,8 @@ impl Judged {
             error_reduction_percent: 100.0 * (1.0 - after / before),
             training_reduction_percent: 100.0 * (1.0 - (square / base_square).sqrt()),
             p_value,
-            share_of_misfit: (base_square - square) / misfit,
+            // Where the error is that of the noise there is hardly a misfit to share.
+            share_of_misfit: ((base_square - square) / misfit).clamp(-1.0, 1.0),
             behind,
             deviance,
             indistinguishable_from: Vec::new(),

@@ -117,6 +117,13 @@ impl DataArgs {
         if path.is_dir() {
             bail!("{}: expected a log, and this is a folder", path.display());
         }
+        if path.metadata().is_ok_and(|found| !found.is_file()) {
+            bail!(
+                "{}: a pipe or a device has no end that grows; write it to a file, as with `tee`, \
+                 and follow that",
+                path.display()
+            );
+        }
         if self.fill.is_some() {
             bail!("`--fill` names trials anew at each gap; leave it out until the log has ended");
         }
