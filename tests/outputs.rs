@@ -190,8 +190,17 @@ fn names_that_control_a_terminal_or_compute_are_shown() {
     assert!(String::from_utf8_lossy(&ended.stdout).contains(r"\u{1b}]0;mine\u{7}"));
     let decisions = fs::read_to_string(folder.path().join("d.csv")).unwrap();
     assert!(decisions.lines().skip(1).all(|line| line.contains("'=a")), "{decisions}");
-    let number = tauscope(folder.path())
-        .args(["estimate", "log.csv", "--alpha", &u64::MAX.to_string()])
-        .output();
-    assert_eq!(number.unwrap().status.code(), Some(2));
+}
+
+#[test]
+fn a_window_as_long_as_can_be_is_that_of_the_whole_trial() {
+    let folder = folder();
+    let delays = |alpha: &str| {
+        let mut command = tauscope(folder.path());
+        command.args(["estimate", "log.csv", "--quiet", "--method", "hinge", "--alpha", alpha]);
+        let ended = command.output().unwrap();
+        assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+        String::from_utf8(ended.stdout).unwrap().lines().take(5).collect::<Vec<_>>().join("\n")
+    };
+    assert_eq!(delays("18446744073709551615"), delays("100000"));
 }

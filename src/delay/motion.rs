@@ -227,7 +227,7 @@ impl Hold<'_> {
         if !arrives && before.moves_evenly(moving, delay) {
             return None;
         }
-        let end = (departed + (delay / 2).max(self.reach)).min(self.end());
+        let end = departed.saturating_add((delay / 2).max(self.reach)).min(self.end());
         Some(StepMotion { first, latest: departed, end, rest: Some(rest) })
     }
 

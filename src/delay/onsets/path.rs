@@ -175,7 +175,8 @@ fn onsets(samples: usize, steps: &[InputStep], settings: &Settings) -> Vec<Onset
         let within = match settings.max_delay {
             None => (0, samples),
             Some(delay) => {
-                let last = origin.saturating_add(delay).saturating_add(settings.alpha + 1);
+                let last =
+                    origin.saturating_add(delay).saturating_add(settings.alpha).saturating_add(1);
                 (origin.saturating_sub(settings.alpha), last.min(samples))
             }
         };
