@@ -1,5 +1,6 @@
 //! What a model says will happen, and how sure that is.
 
+use super::free_run::FreeRunError;
 use super::schedule::Schedule;
 use crate::effect::UNLIMITED;
 use crate::experiment::{Joint, Trial};
@@ -33,6 +34,8 @@ pub struct Uncertain {
     pub deviations: Vec<f64>,
     /// Models that the record holds for as likely, where there is a record.
     pub draws: Vec<JointModel>,
+    /// How far its predictions were off where it was not fitted, where that is known.
+    pub free_run: Option<FreeRunError>,
 }
 
 /// The angle at each sample.
@@ -40,7 +43,8 @@ pub struct Uncertain {
 pub struct Prediction {
     /// What the model says, output units.
     pub output: Vec<f64>,
-    /// Two standard deviations of that, output units.
+    /// How far it may be off, output units: two standard deviations of what models do that are
+    /// as likely, or what predictions of this joint were off, whichever is more.
     pub margin: Vec<f64>,
 }
 
@@ -52,7 +56,7 @@ impl Uncertain {
     pub fn by_share(model: JointModel, share: f64) -> Self {
         let off = |value: f64| if value.abs() < UNLIMITED { share * value.abs() } else { 0.0 };
         let deviations = model.values().iter().map(|value| off(value.value)).collect();
-        Self { model, deviations, draws: Vec::new() }
+        Self { model, deviations, draws: Vec::new(), free_run: None }
     }
 
     /// The model with the parameter at `place` off by so many standard deviations.
@@ -75,9 +79,9 @@ impl TestRig {
         simulate_input(model, &schedule.input(), period_s, self.start, &surroundings).output
     }
 
-    /// The same with its margin: what the models do that a record holds for as likely. Where
-    /// there is no record, the deviations of all parameters, each by itself, added as
-    /// independent ones are.
+    /// The same with its margin: what the models do that a record holds for as likely, and no
+    /// less than predictions were off where the model was not fitted. Where there is no record,
+    /// the deviations of all parameters, each by itself, added as independent ones are.
     pub fn prediction(&self, uncertain: &Uncertain, schedule: &Schedule) -> Prediction {
         /// Models that are looked at.
         const LIKELY: usize = 12;
@@ -97,7 +101,26 @@ impl TestRig {
         for (place, _) in off.filter(|(_, off)| **off > 0.0 && likely == 0) {
             add(&uncertain.with_off(place, 1.0), 1.0);
         }
-        let margin = variance.iter().map(|variance| DEVIATIONS * variance.sqrt()).collect();
+        let mut margin: Vec<f64> =
+            variance.iter().map(|variance| DEVIATIONS * variance.sqrt()).collect();
+        if let Some(free_run) = &uncertain.free_run {
+            let measured = measured_margin(free_run, &output, self.period.seconds());
+            for (margin, measured) in margin.iter_mut().zip(measured) {
+                *margin = margin.max(measured);
+            }
+        }
+        Prediction { output, margin }
+    }
+
+    /// What is foreseen while an input is drawn, one level after the other: the
+    /// [prediction](Self::prediction), of whose margin only the measured part is computed where
+    /// there is one.
+    pub(super) fn foreseen(&self, uncertain: &Uncertain, schedule: &Schedule) -> Prediction {
+        let Some(free_run) = &uncertain.free_run else {
+            return self.prediction(uncertain, schedule);
+        };
+        let output = self.output(&uncertain.model, schedule);
+        let margin = measured_margin(free_run, &output, self.period.seconds());
         Prediction { output, margin }
     }
 
@@ -125,6 +148,18 @@ impl TestRig {
         let record = FitRecord::new(&joint, Split::Time(1.0), Horizon::FreeRun);
         record.range(&[], 0.0).radians_per_output_unit
     }
+}
+
+/// How far the prediction `output` may be off at each sample, by predictions that were made.
+fn measured_margin(free_run: &FreeRunError, output: &[f64], period_s: f64) -> Vec<f64> {
+    let mut way = 0.0;
+    let mut before = output.first().copied().unwrap_or(0.0);
+    let margin = |(sample, angle): (usize, &f64)| {
+        way += (angle - before).abs();
+        before = *angle;
+        free_run.margin(sample as f64 * period_s, way)
+    };
+    output.iter().enumerate().map(margin).collect()
 }
 
 impl Prediction {

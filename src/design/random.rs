@@ -4,6 +4,7 @@ use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
 use super::predict::{TestRig, Uncertain};
+use super::response::response_s;
 use super::schedule::{Hold, Schedule, samples_in};
 
 /// What is drawn.
@@ -42,6 +43,31 @@ pub fn random_steps(
     Schedule::new(rig.period, drawing.holds)
 }
 
+/// Draws an input as [`random_steps`] does, within `range`, which ends before its time where
+/// no level is left after which the joint surely stays there.
+///
+/// Beyond half the way from the middle of the range to its ends, levels come first that lead
+/// back; so they do towards the end, and the last level is rest.
+pub(super) fn random_steps_within(
+    steps: &RandomSteps,
+    rig: &TestRig,
+    model: &Uncertain,
+    range: (f64, f64),
+    index: usize,
+) -> Schedule {
+    let mut drawing = Drawing::new(steps, rig, Some(model), index);
+    let rest = samples_in(steps.hold_s.0, rig.period);
+    drawing.samples = drawing.samples.saturating_sub(rest);
+    drawing.push(Hold { level: 0.0, samples: rest });
+    while drawing.left() > 0 {
+        let Some(hold) = drawing.next_within(model, range) else { break };
+        drawing.push(hold);
+    }
+    drawing.samples += rest;
+    drawing.rest(rest);
+    Schedule::new(rig.period, drawing.holds)
+}
+
 /// An input that is being drawn.
 struct Drawing<'a> {
     steps: &'a RandomSteps,
@@ -50,6 +76,18 @@ struct Drawing<'a> {
     random: ChaCha8Rng,
     samples: usize,
     holds: Vec<Hold>,
+    /// Time in which a level acts, seconds.
+    settling_s: f64,
+}
+
+/// Where a joint comes to by a level.
+#[derive(Clone, Copy)]
+struct Leading {
+    hold: Hold,
+    /// How far it may leave the range on its way, output units.
+    excess: f64,
+    /// Distance from the middle of the range at the end.
+    off_middle: f64,
 }
 
 impl<'a> Drawing<'a> {
@@ -62,7 +100,10 @@ impl<'a> Drawing<'a> {
         let mut random = ChaCha8Rng::seed_from_u64(steps.seed);
         random.set_stream(index as u64);
         let samples = samples_in(steps.duration_s, rig.period);
-        Self { steps, rig, model, random, samples, holds: Vec::new() }
+        let levels = steps.levels.iter();
+        let largest = levels.fold(0.0, |largest: f64, level| largest.max(level.abs()));
+        let settling_s = model.map_or(0.0, |known| response_s(&known.model, rig, largest));
+        Self { steps, rig, model, random, samples, holds: Vec::new(), settling_s }
     }
 
     /// Samples that are not drawn yet.
@@ -89,6 +130,57 @@ impl<'a> Drawing<'a> {
         let excess = |level: &&f64| self.excess(**level, samples);
         let least = levels.iter().min_by(|a, b| excess(a).total_cmp(&excess(b)));
         Hold { level: least.copied().unwrap_or(0.0), samples }
+    }
+
+    /// A hold after which the joint surely stays in `range`, be it followed by rest.
+    fn next_within(&mut self, model: &Uncertain, range: (f64, f64)) -> Option<Hold> {
+        /// Part of the way from the middle to the ends beyond which levels lead back.
+        const OUT: f64 = 0.5;
+        /// Longest holds that are left when it is time to go back.
+        const CLOSING: usize = 2;
+        let (shortest, longest) = self.steps.hold_s;
+        let seconds = shortest + (longest - shortest) * self.random.random::<f64>();
+        let levels = self.by_rarity();
+        let [shortest, longest, drawn] =
+            [shortest, longest, seconds].map(|seconds| samples_in(seconds, self.rig.period));
+        let now = self.leading(Hold { level: 0.0, samples: 1 }, model, range).off_middle;
+        let is_out = now > OUT * 0.5 * (range.1 - range.0);
+        let is_closing = self.left() <= CLOSING * longest;
+        for samples in [drawn, shortest] {
+            let samples = samples.min(self.left());
+            let leading = levels.iter().map(|level| Hold { level: *level, samples });
+            let leading = leading.map(|hold| self.leading(hold, model, range));
+            let mut kept: Vec<Leading> = leading.filter(|found| found.excess <= 0.0).collect();
+            if is_closing {
+                kept.sort_by(|a, b| a.off_middle.total_cmp(&b.off_middle));
+            } else if is_out {
+                kept.sort_by_key(|found| found.off_middle >= now);
+            }
+            if let Some(found) = kept.first() {
+                return Some(found.hold);
+            }
+        }
+        None
+    }
+
+    /// Where the joint comes to by `hold` when it rests after it, until that acts.
+    fn leading(&self, hold: Hold, model: &Uncertain, range: (f64, f64)) -> Leading {
+        let rest = samples_in(self.settling_s.max(self.steps.hold_s.0), self.rig.period);
+        let mut holds = self.holds.clone();
+        let from = holds.iter().map(|hold| hold.samples).sum();
+        holds.extend([hold, Hold { level: 0.0, samples: rest }]);
+        let foreseen = self.rig.foreseen(model, &Schedule::new(self.rig.period, holds));
+        let end = foreseen.output.last().copied().unwrap_or(self.rig.start);
+        let off_middle = (end - 0.5 * (range.0 + range.1)).abs();
+        Leading { hold, excess: foreseen.excess(range, from), off_middle }
+    }
+
+    /// Rest for so many samples at the end, as a part of the last hold where that is rest.
+    fn rest(&mut self, samples: usize) {
+        match self.holds.last_mut() {
+            Some(last) if !differ(last.level, 0.0) => last.samples += samples,
+            _ => self.push(Hold { level: 0.0, samples }),
+        }
     }
 
     /// The levels but the one at hand, rarest transition first.

@@ -84,6 +84,13 @@ impl Schedule {
         ends.take_while(|end| *end <= most).count()
     }
 
+    /// The same with `rest` added to each level.
+    #[must_use]
+    pub fn about(&self, rest: f64) -> Self {
+        let about = |hold: &Hold| Hold { level: hold.level + rest, ..*hold };
+        Self { period: self.period, holds: self.holds.iter().map(about).collect() }
+    }
+
     /// The first `count` holds.
     #[must_use]
     pub(super) fn first(&self, count: usize) -> Self {

@@ -245,7 +245,8 @@ impl<'a> FitRecord<'a> {
         commands.arriving(model, self.start_s(trial), delays.map(Vec::as_slice))
     }
 
-    fn start_s(&self, trial: usize) -> f64 {
+    /// Seconds from the start of the record to that of `trial`.
+    pub(crate) fn start_s(&self, trial: usize) -> f64 {
         self.starts_s[trial]
     }
 

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use super::decisions::tidy_seconds;
-use crate::design::{Design, Hold, Order, Prediction, Schedule, TestRig};
+use crate::design::{Design, FreeRunError, Hold, Order, Prediction, Schedule, TestRig};
 use crate::explain::Pattern;
 
 /// The input of one joint, and what is expected of it.
@@ -13,12 +13,27 @@ pub(crate) struct DesignedJoint {
     pub(crate) rig: TestRig,
     /// The input.
     pub(crate) schedule: Schedule,
+    /// The input at which the joint rests.
+    pub(crate) rest: f64,
     /// What the joint will do, where a model says so: for two suspects the first's.
     pub(crate) prediction: Option<Prediction>,
     /// What it is to distinguish, if that is what it is for.
     pub(crate) discrimination: Option<Discrimination>,
+    /// What the expectation rests on, of random steps.
+    pub(crate) basis: Option<Basis>,
     /// What whoever plays it should know.
     pub(crate) notes: Vec<String>,
+}
+
+/// What is known of a joint for which random steps are designed.
+#[derive(Clone, Debug)]
+pub(crate) struct Basis {
+    /// Ids of the effects of its model.
+    pub(crate) effects: Vec<&'static str>,
+    /// How far its predictions were off where it was not fitted.
+    pub(crate) free_run: Option<FreeRunError>,
+    /// Where the joint is kept.
+    pub(crate) within: Option<(f64, f64)>,
 }
 
 /// Two suspects that an input distinguishes.
@@ -85,7 +100,7 @@ pub(super) fn order(order: Order) -> &'static str {
 pub(crate) fn write_input(joints: &[DesignedJoint], out: impl Write) -> csv::Result<()> {
     let columns = joints.iter().map(|joint| {
         let name = format!("{}.input", joint.rig.name);
-        (name, joint.schedule.input(), 0.0)
+        (name, joint.schedule.input(), joint.rest)
     });
     write_columns(joints, &columns.collect::<Vec<_>>(), out)
 }
@@ -101,7 +116,7 @@ pub(crate) fn write_preview(joints: &[DesignedJoint], out: impl Write) -> csv::R
         let mut add = |name: &str, values: Vec<f64>, after: f64| {
             columns.push((format!("{}.{name}", joint.rig.name), values, after));
         };
-        add("input", joint.schedule.input(), 0.0);
+        add("input", joint.schedule.input(), joint.rest);
         let Some(Prediction { output, margin }) = &joint.prediction else { continue };
         let with = |sign: f64| output.iter().zip(margin).map(|(y, m)| y + sign * m).collect();
         add("output", output.clone(), f64::NAN);

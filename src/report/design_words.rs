@@ -1,8 +1,8 @@
 //! The next experiment in words.
 
-use super::design::{DesignedJoint, Discrimination, holds, kept_until_s, order};
+use super::design::{Basis, DesignedJoint, Discrimination, holds, kept_until_s, order};
 use super::text_table::TextTable;
-use crate::design::{Expected, OpenThreshold, Prediction, Rehearsal, Schedule, transitions};
+use crate::design::{Expected, RESERVE, OpenThreshold, Prediction, Rehearsal, Schedule, transitions};
 use crate::wording::{listed, measure, rounded, unit_suffix, wrapped};
 
 /// What is to be played on each joint, and what is expected of it.
@@ -137,7 +137,7 @@ fn explanation(joint: &DesignedJoint, found: &Discrimination) -> Vec<String> {
     sentences
 }
 
-/// Where the joint will be, whichever suspect is there.
+/// Where the joint will be, whichever suspect is there, and how sure that is.
 fn foreseen(joint: &DesignedJoint, prediction: &Prediction) -> String {
     let unit = joint.rig.output_unit.as_deref();
     let expected = joint.expected();
@@ -147,19 +147,74 @@ fn foreseen(joint: &DesignedJoint, prediction: &Prediction) -> String {
     let margins = expected.iter().map(|(_, prediction)| prediction.largest_margin());
     let margin = measure(margins.fold(0.0, f64::max), unit);
     let start = measure(joint.rig.start, unit);
-    let from = format!(
-        "From {start} the joint is expected within {} to {}, a margin of up to {margin} \
-         (two standard deviations) included.",
-        rounded(low),
-        measure(high, unit)
-    );
-    match (joint.rig.range, kept_until_s(joint, prediction)) {
-        (Some(_), Some(until)) => format!(
-            "{from} After {} the model cannot promise that it stays in its range.",
-            measure(until, Some("s"))
-        ),
-        _ => from,
-    }
+    let (low, high) = (rounded(low), measure(high, unit));
+    let Some(basis) = &joint.basis else {
+        return format!(
+            "From {start} the joint is expected within {low} to {high}, a margin of up to \
+             {margin} (two standard deviations) included."
+        );
+    };
+    let kept = match joint.rig.range {
+        Some(range) if kept_until_s(joint, prediction).is_none() => {
+            format!(" It keeps to {} to {}.", rounded(range.0), measure(range.1, unit))
+        }
+        _ => String::new(),
+    };
+    format!(
+        "Bring the joint to {start} and let it rest there. It is then expected within {low} to \
+         {high}, a margin included that grows to {margin}.{kept} {}",
+        margin_text(basis, unit)
+    )
+}
+
+/// Where the margin comes from.
+fn margin_text(Basis { effects, free_run, within: _ }: &Basis, unit: Option<&str>) -> String {
+    let effects: Vec<String> = effects.iter().map(|id| (*id).to_owned()).collect();
+    let model = match effects.as_slice() {
+        [] => "an integrator".to_owned(),
+        effects => format!("an integrator with {}", listed(effects, "and")),
+    };
+    let Some(free_run) = free_run else {
+        return format!(
+            "The model is {model}; the margin is two standard deviations of what its parameters may \
+             be off (--uncertainty)."
+        );
+    };
+    let (largest, longest) = (measure(free_run.largest(), unit), free_run.longest_s());
+    format!(
+        "The model is {model}. On parts of the log that were left out of its fit it was off by up \
+         to {largest} within {}; the margin is {} times as much, and grows with time.",
+        measure(longest, Some("s")),
+        rounded(RESERVE)
+    )
+}
+
+/// Why holds may be too short.
+pub(crate) fn hold_note(shortest_s: f64, response_s: f64) -> String {
+    format!(
+        "Holds from {shortest_s} s are shorter than the {response_s:.2} s in which the model \
+         responds: a level may be over before it shows."
+    )
+}
+
+/// Which levels a wider range would allow.
+pub(crate) fn left_out_note(levels: &[f64], unit: Option<&str>) -> String {
+    let levels: Vec<String> = levels.iter().map(|level| rounded(*level)).collect();
+    let levels = listed(&levels, "and") + &unit_suffix(unit);
+    format!("The range is too narrow for {levels}, which the log has.")
+}
+
+/// Why the input is no longer.
+pub(crate) fn shortened_note(duration_s: f64, usual_s: f64) -> String {
+    format!(
+        "It ends after {duration_s:.0} s instead of {usual_s:.0} s: for longer the range cannot be \
+         promised. Bring the joint back to the start and play it again, or another with --seed."
+    )
+}
+
+/// That nothing was said of where the joint may go.
+pub(crate) fn no_range_note() -> String {
+    "No range is kept: --output-range LO,HI says where the joint may go.".to_owned()
 }
 
 /// `0 V for 0.55 s, 1 V for 1 s, …`, as far as anybody reads it.

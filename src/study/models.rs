@@ -4,13 +4,13 @@ use super::estimate::JointEstimate;
 use super::protocol::{Mode, Protocol, Watched};
 use super::start::{as_it_is, best_fit, starts, typical_delay_s};
 use crate::delay::EstimateError;
-use crate::design::{Suspects, SuspectsError, Uncertain};
+use crate::design::{FreeRunError, Suspects, SuspectsError, Uncertain};
 use crate::diagnosis::{Comparison, compare, compare_unfitted, floor_of};
 use crate::effect::Effect;
 use crate::experiment::{Joint, activity};
 use crate::explain::{AddError, Addition, Explanation, Improvement, Options, Revision, Workers};
 use crate::explain::{add, explain, improve};
-use crate::fit::{Fit, FitError, FitRecord, Split};
+use crate::fit::{Fit, FitError, FitRecord, Horizon, Split};
 use crate::model::JointModel;
 
 /// What came of each joint: `None` where it has no model.
@@ -85,8 +85,14 @@ pub fn improve_joints<'a>(
     for_each_joint((joints, estimates), models, watched, workers, (best_fit, work))
 }
 
-/// Fits each joint's model and says how well its log knows the numbers; what it does not
-/// determine is off by `share` of its value.
+/// Says what each joint's model is, how well its log knows the numbers, and how far its
+/// predictions are off where it was not fitted; what the log does not determine is off by `share`
+/// of its value.
+///
+/// A model that is given is fitted. Where none is, it is the one with which [`improve`] ends, or
+/// the plain integrator if that is no farther off on parts of the log that are left out: a model
+/// may follow a record better and predict it worse. Other joints are taken to be at rest, as it
+/// is not known what they will do.
 pub fn know_joints(
     joints: &[Joint],
     estimates: &[Result<JointEstimate, EstimateError>],
@@ -95,11 +101,47 @@ pub fn know_joints(
     share: f64,
     workers: &impl Workers,
 ) -> OfJoints<Uncertain> {
-    let work = |_: usize, record: &FitRecord<'_>, fit: Fit| {
-        let noise = floor_of(record, &fit).unwrap_or(0.0).max(f64::MIN_POSITIVE);
-        Uncertain::of_fit(record, &fit, noise, share)
+    let work = |_: usize, record: &FitRecord<'_>, given: Fit| {
+        let joint = record.joint();
+        let record = FitRecord::new(joint, Split::Time(1.0), protocol.horizon);
+        let improved = match models(joint) {
+            Some(_) => None,
+            None => improved(&record, &given.model, protocol.horizon, workers),
+        };
+        let given = (FreeRunError::of(joint, &given.model), given);
+        let (free_run, fit) = surer(given, improved);
+        let noise = floor_of(&record, &fit).unwrap_or(0.0).max(f64::MIN_POSITIVE);
+        Uncertain { free_run, ..Uncertain::of_fit(&record, &fit, noise, share) }
     };
-    for_each_joint((joints, estimates), models, protocol.into(), workers, (best_fit, work))
+    for_each_joint((joints, estimates), &models, protocol.into(), workers, (best_fit, work))
+}
+
+/// A model with what its predictions were off.
+type Judged = (Option<FreeRunError>, Fit);
+
+/// The one whose predictions were nearer.
+fn surer(plain: Judged, improved: Option<Judged>) -> Judged {
+    let largest = |judged: &Judged| judged.0.as_ref().map_or(f64::MAX, FreeRunError::largest);
+    match improved {
+        Some(improved) if largest(&improved) < largest(&plain) => improved,
+        _ => plain,
+    }
+}
+
+/// The model with which [`improve`] ends, fitted to the whole of `record`.
+fn improved(
+    record: &FitRecord<'_>,
+    plain: &JointModel,
+    horizon: Horizon,
+    workers: &impl Workers,
+) -> Option<Judged> {
+    let joint = record.joint();
+    let judged = FitRecord::new(joint, Split::of(joint), horizon);
+    let start = best_fit(&judged, std::slice::from_ref(plain))?.ok()?;
+    let improvement = improve(&judged, start, &Options::default(), workers, |_| true);
+    let last = improvement.revisions.into_iter().last()?.comparison.fit.model;
+    let fit = best_fit(record, &[last])?.ok()?;
+    Some((FreeRunError::of(joint, &fit.model), fit))
 }
 
 /// Fits two effects to each joint, each beside its model: see [`Suspects::of_record`].

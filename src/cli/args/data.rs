@@ -18,6 +18,13 @@ pub(crate) struct DataArgs {
     #[arg(required = true, value_name = "DATA")]
     data: Vec<PathBuf>,
 
+    #[command(flatten)]
+    reading: ReadingArgs,
+}
+
+/// How logs are read.
+#[derive(Args, Debug)]
+pub(crate) struct ReadingArgs {
     /// A joint to use, by name; or `NAME=INPUT_COLUMN:OUTPUT_COLUMN` in a foreign log.
     /// May be repeated
     #[arg(long, value_name = "NAME[=IN:OUT]", help_heading = "Reading logs")]
@@ -82,20 +89,7 @@ impl DataArgs {
     /// # Errors
     /// When no joint at all can be read.
     pub(crate) fn read(&self) -> anyhow::Result<Experiment> {
-        let (files, unlisted) = expand_folders(&self.data);
-        let mut experiment = Experiment::read(&files, &self.options()?);
-        experiment.failures.splice(0..0, unlisted);
-        if !experiment.joints.is_empty() {
-            return Ok(experiment);
-        }
-        let others = experiment.failures.len().saturating_sub(1);
-        let first = experiment.failures.drain(..).next().context("no joint in the logs")?;
-        let error = anyhow::Error::from(first.error);
-        Err(match others {
-            0 => error,
-            1 => error.context("nothing could be read (and one more failed)"),
-            _ => error.context(format!("nothing could be read (and {others} more failed)")),
-        })
+        self.reading.read(&self.data)
     }
 
     /// The logs by their names, each once; and messages on folders without any.
@@ -124,10 +118,15 @@ impl DataArgs {
                 path.display()
             );
         }
-        if self.fill.is_some() {
+        if self.reading.fill.is_some() {
             bail!("`--fill` names trials anew at each gap; leave it out until the log has ended");
         }
         Ok(path.clone())
+    }
+
+    /// How logs are read.
+    pub(crate) fn options(&self) -> anyhow::Result<ReadOptions> {
+        self.reading.options()
     }
 
     /// Reads `path` in place of all logs.
@@ -138,34 +137,73 @@ impl DataArgs {
     /// The files that are read, where they really are.
     pub(crate) fn files(&self) -> Vec<PathBuf> {
         let (files, _) = expand_folders(&self.data);
-        let files = files.iter().chain(&self.columns);
+        let files = files.iter().chain(&self.reading.columns);
         files.filter_map(|file| file.canonicalize().ok()).collect()
     }
 
     /// These options as they are typed, for one joint of several where it is named.
     pub(crate) fn typed(&self, joint: Option<&str>) -> Vec<String> {
+        let ReadingArgs {
+            joint: joints,
+            time,
+            trial,
+            sample_period,
+            columns,
+            resample,
+            fill,
+            memory,
+        } = &self.reading;
         let is_mapped = |given: &&String| {
             joint.is_none_or(|name| given.split_once('=').is_some_and(|(own, _)| own == name))
         };
-        let mut joints: Vec<String> = self.joint.iter().filter(is_mapped).cloned().collect();
+        let mut joints: Vec<String> = joints.iter().filter(is_mapped).cloned().collect();
         if joints.is_empty() {
             joints.extend(joint.map(str::to_owned));
         }
         let path = |path: &PathBuf| path.display().to_string();
         let seconds = |period: SamplePeriod| period.seconds().to_string();
         let options = [
-            ("--time", self.time.clone()),
-            ("--trial", self.trial.clone()),
-            ("--sample-period", self.sample_period.map(seconds)),
-            ("--columns", self.columns.as_ref().map(path)),
-            ("--resample", self.resample.map(seconds)),
-            ("--fill", self.fill.map(|fill| fill.to_string())),
-            ("--max-memory", self.memory.max_memory.map(|bytes| bytes.to_string())),
+            ("--time", time.clone()),
+            ("--trial", trial.clone()),
+            ("--sample-period", sample_period.map(seconds)),
+            ("--columns", columns.as_ref().map(path)),
+            ("--resample", resample.map(seconds)),
+            ("--fill", fill.map(|fill| fill.to_string())),
+            ("--max-memory", memory.max_memory.map(|bytes| bytes.to_string())),
         ];
         let joints = joints.into_iter().map(|joint| ("--joint", Some(joint)));
         let given = joints.chain(options).filter_map(|(name, value)| Some((name, value?)));
         let options = given.flat_map(|(name, value)| [name.to_owned(), value]);
         self.data.iter().map(path).chain(options).collect()
+    }
+}
+
+impl ReadingArgs {
+    /// Reads the logs `data`. Failures of single files and joints are in the result.
+    ///
+    /// # Errors
+    /// When no joint at all can be read.
+    pub(crate) fn read(&self, data: &[PathBuf]) -> anyhow::Result<Experiment> {
+        let (files, unlisted) = expand_folders(data);
+        let mut experiment = Experiment::read(&files, &self.options()?);
+        experiment.failures.splice(0..0, unlisted);
+        if !experiment.joints.is_empty() {
+            return Ok(experiment);
+        }
+        let others = experiment.failures.len().saturating_sub(1);
+        let first = experiment.failures.drain(..).next().context("no joint in the logs")?;
+        let error = anyhow::Error::from(first.error);
+        Err(match others {
+            0 => error,
+            1 => error.context("nothing could be read (and one more failed)"),
+            _ => error.context(format!("nothing could be read (and {others} more failed)")),
+        })
+    }
+
+    /// The joints that are named.
+    pub(crate) fn joints(&self) -> Vec<String> {
+        let name = |joint: &String| joint.split('=').next().unwrap_or_default().to_owned();
+        self.joint.iter().map(name).collect()
     }
 
     /// How logs are read.

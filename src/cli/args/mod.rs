@@ -12,7 +12,7 @@ mod typed;
 
 pub(crate) use algorithm::AlgorithmArgs;
 pub(crate) use conditions::{ConditionArgs, Passband, ids_with, passband};
-pub(crate) use data::{DataArgs, MemoryArgs};
+pub(crate) use data::{DataArgs, MemoryArgs, ReadingArgs};
 pub(crate) use effects::{EffectArgs, find};
 pub(crate) use model_file::{ModelFileArgs, fresh_name, name_of, note_missing};
 pub(crate) use protocol::ProtocolArgs;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args as ClapArgs;
 
 use super::values::{self, BandChoice, Levels};
-use crate::cli::args::RunArgs;
+use crate::cli::args::{ReadingArgs, RunArgs};
 
 /// Design the next experiment: an input to play
 ///
@@ -15,9 +15,13 @@ use crate::cli::args::RunArgs;
 /// effects, and says how surely.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct Args {
-    /// Logs of earlier experiments (CSV): what they show of the joints is used
+    /// Logs of earlier experiments (CSV, Parquet, MATLAB, MCAP), or folders of logs: what they show of
+    /// the joints is used
     #[arg(value_name = "DATA")]
     pub(super) data: Vec<PathBuf>,
+
+    #[command(flatten)]
+    pub(super) reading: ReadingArgs,
 
     /// The model file (TOML, schema `tauscope/model/1`)
     #[arg(short, long, value_name = "MODEL.toml", help_heading = "Model")]
@@ -30,11 +34,6 @@ pub(crate) struct Args {
     )]
     pub(super) uncertainty: f64,
 
-    /// A joint that is driven, by name. May be repeated [default: those of the logs or of the
-    /// model file]
-    #[arg(long, value_name = "NAME", help_heading = "Input")]
-    pub(super) joint: Vec<String>,
-
     /// The levels: a list, or a range with its step, as in -2,-1,0,1,2 or -2..2:0.5
     #[arg(
         long, value_name = "LIST", value_parser = values::levels, allow_hyphen_values = true,
@@ -42,8 +41,8 @@ pub(crate) struct Args {
     )]
     pub(super) levels: Option<Levels>,
 
-    /// Largest magnitude of the input, where levels are not given [default: that of the logs,
-    /// else what suits the model, else 2]
+    /// Largest magnitude of the input, or of its difference to where the joint rests, where levels
+    /// are not given [default: that of the logs, else what suits the model, else 2]
     #[arg(
         long, value_name = "X", value_parser = values::above_zero, allow_negative_numbers = true,
         help_heading = "Input"
@@ -58,7 +57,8 @@ pub(crate) struct Args {
     )]
     pub(super) hold: Option<(f64, f64)>,
 
-    /// Length in seconds; with `--separate` the longest that is tried [default: 120, or 60]
+    /// Length in seconds; with `--separate` the longest that is tried [default: 120, or less where
+    /// the range cannot be kept as long; with `--separate` 60]
     #[arg(
         long, value_name = "SECONDS", value_parser = values::above_zero,
         allow_negative_numbers = true, help_heading = "Input"
@@ -76,15 +76,16 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 1, help_heading = "Input")]
     pub(super) seed: u64,
 
-    /// Lowest and highest output that the joint may come to; needs a model or a log [default
-    /// with `--separate` and a log: where the log has been]
+    /// Lowest and highest output that the joint may come to; needs a model or a log. It is kept, by
+    /// as much as predictions of the joint were off on parts of the log, or refused [default with
+    /// `--separate` and a log: where the log has been]
     #[arg(
         long, value_name = "LO,HI", value_parser = values::ascending,
         allow_hyphen_values = true, help_heading = "Input"
     )]
     pub(super) output_range: Option<(f64, f64)>,
 
-    /// The output at which it starts [default: 0, or the middle of the range]
+    /// The output at which it starts [default: the middle of the range; without one, of the log, or 0]
     #[arg(long, value_name = "X", allow_negative_numbers = true, help_heading = "Input")]
     pub(super) start: Option<f64>,
 

@@ -2,8 +2,8 @@
 
 use crate::batch::Threads;
 use crate::delay::Settings;
-use crate::design::TestRig;
-use crate::experiment::{Experiment, Joint, ReadOptions, Trial, expand_folders};
+use crate::design::{Logged, TestRig, reach};
+use crate::experiment::{Experiment, Joint, Trial};
 use crate::fit::{Horizon, Split};
 use crate::model::{JointModel, ModelFile};
 use crate::study::{Mode, Protocol, estimate_joints};
@@ -24,6 +24,11 @@ pub(crate) struct Known {
     pub(crate) file: ModelFile,
     pub(crate) experiment: Option<Experiment>,
     pub(crate) names: Vec<String>,
+    /// The joints of the logs with their inputs as differences to where they rest, but for those
+    /// whose model is given, which knows.
+    joints: Vec<Joint>,
+    /// What was played on each.
+    logged: Vec<Logged>,
     period: SamplePeriod,
 }
 
@@ -47,13 +52,31 @@ impl Known {
         let usual = SamplePeriod::from_seconds(1.0 / RATE_HZ).context("a sample period")?;
         let period = given.transpose()?.or(logged).unwrap_or(usual);
         let names = names(args, &file, experiment.as_ref())?;
-        Ok(Self { file, experiment, names, period })
+        let read = experiment.iter().flat_map(|experiment| &experiment.joints);
+        let centred = |joint: &Joint| {
+            let logged = Logged::of(joint);
+            let has_model = file.joint(&joint.name).is_some();
+            let logged = if has_model { logged.as_it_is() } else { logged };
+            (logged.centred(joint), logged)
+        };
+        let (joints, logged) = read.map(centred).unzip();
+        Ok(Self { file, experiment, names, joints, logged, period })
     }
 
     /// The joint `name` in the logs.
-    pub(crate) fn joint(&self, name: &str) -> Option<&Joint> {
-        let mut joints = self.experiment.iter().flat_map(|experiment| &experiment.joints);
-        joints.find(|joint| joint.name == name)
+    fn joint(&self, name: &str) -> Option<&Joint> {
+        self.joints.iter().find(|joint| joint.name == name)
+    }
+
+    /// What was played on the joint `name`.
+    pub(crate) fn logged(&self, name: &str) -> Option<&Logged> {
+        let place = self.joints.iter().position(|joint| joint.name == name)?;
+        self.logged.get(place)
+    }
+
+    /// The input at which the joint `name` is meant to rest.
+    pub(crate) fn rest(&self, name: &str) -> f64 {
+        self.logged(name).map_or(0.0, |logged| logged.rest)
     }
 
     /// The model of `name` in the file.
@@ -63,7 +86,10 @@ impl Known {
 
     /// All joints of the logs and their delays, where there are logs.
     pub(crate) fn estimated(&self) -> Option<(&[Joint], Estimates)> {
-        let joints = self.experiment.as_ref()?.joints.as_slice();
+        let joints = self.joints.as_slice();
+        if joints.is_empty() {
+            return None;
+        }
         Some((joints, estimate_joints(joints, &Settings::default(), || (), &Threads)))
     }
 
@@ -71,8 +97,10 @@ impl Known {
     pub(crate) fn rig(&self, args: &Args, name: &str, range: Option<(f64, f64)>) -> TestRig {
         let joint = self.joint(name);
         let unit = |of: fn(&Joint) -> Option<&String>| joint.and_then(of).cloned();
-        let is_inside = |(low, high): (f64, f64)| low <= 0.0 && high >= 0.0;
-        let middle = range.filter(|range| !is_inside(*range)).map(|(low, high)| 0.5 * (low + high));
+        let logged = self.logged(name);
+        let within = range.map(|range| reach(range, logged).unwrap_or(range));
+        let middle = within.or(logged.map(|logged| logged.extent));
+        let middle = middle.map(|(low, high)| 0.5 * (low + high));
         TestRig {
             name: name.to_owned(),
             input_unit: unit(|joint| joint.input_unit.as_ref()),
@@ -89,15 +117,7 @@ fn read(args: &Args) -> anyhow::Result<Option<Experiment>> {
     if args.data.is_empty() {
         return Ok(None);
     }
-    let (files, unlisted) = expand_folders(&args.data);
-    let options = ReadOptions { joints: args.joint.clone(), ..ReadOptions::default() };
-    let mut experiment = Experiment::read(&files, &options);
-    experiment.failures.splice(0..0, unlisted);
-    if experiment.joints.is_empty() {
-        let first = experiment.failures.drain(..).next().context("no joint in the logs")?;
-        return Err(anyhow::Error::from(first.error).context("nothing could be read"));
-    }
-    Ok(Some(experiment))
+    args.reading.read(&args.data).map(Some)
 }
 
 /// The joints that are driven.
@@ -110,32 +130,20 @@ fn names(
         return Ok(experiment.joints.iter().map(|joint| joint.name.clone()).collect());
     }
     let known: Vec<String> = file.names().map(str::to_owned).collect();
-    if let Some(unknown) = args.joint.iter().find(|name| !known.is_empty() && !known.contains(name))
+    let named = args.reading.joints();
+    if let Some(unknown) = named.iter().find(|name| !known.is_empty() && !known.contains(name))
     {
         let known = known.join(", ");
         return Err(anyhow!("joint `{unknown}`: not in the model file, which has {known}"));
     }
-    for (index, name) in args.joint.iter().enumerate() {
-        if args.joint.iter().take(index).any(|other| other == name) {
+    for (index, name) in named.iter().enumerate() {
+        if named.iter().take(index).any(|other| other == name) {
             bail!("--joint {name}: named twice");
         }
     }
-    match (args.joint.as_slice(), known.as_slice()) {
+    match (named.as_slice(), known.as_slice()) {
         ([], []) => Ok(vec![NAME.to_owned()]),
         ([], known) => Ok(known.to_vec()),
         (named, _) => Ok(named.to_vec()),
     }
-}
-
-/// The largest magnitude of the input in the log of `joint`.
-pub(crate) fn largest(joint: &Joint) -> f64 {
-    let inputs = joint.trials.iter().flat_map(Trial::input);
-    inputs.fold(0.0, |largest: f64, input| largest.max(input.abs()))
-}
-
-/// Lowest and highest output in the log of `joint`.
-pub(crate) fn extent(joint: &Joint) -> (f64, f64) {
-    let outputs = joint.trials.iter().flat_map(Trial::output);
-    let none = (f64::INFINITY, f64::NEG_INFINITY);
-    outputs.fold(none, |(low, high), y| (low.min(*y), high.max(*y)))
 }

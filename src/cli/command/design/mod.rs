@@ -51,6 +51,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     }
     let (known, joints, failures) = args.run.in_threads(|| {
         let known = Known::new(args)?;
+        if args.run.verbosity() == Verbosity::Normal {
+            let notes = known.experiment.iter().flat_map(|experiment| &experiment.notes);
+            notes.for_each(|note| message("note", note));
+        }
         let (joints, failures) = designed(args, &known)?;
         anyhow::Ok((known, joints, failures))
     })??;
@@ -81,7 +85,7 @@ fn is_recording(path: &Path) -> bool {
 fn designed(args: &Args, known: &Known) -> anyhow::Result<(Vec<DesignedJoint>, Vec<String>)> {
     let bar = Bar::spinner(args.run.verbosity(), "designing");
     let results = if args.separate.is_empty() {
-        random::designed(args, known)
+        random::designed(args, known, &bar)
     } else {
         separate::designed(args, known, &bar)?
     };

@@ -2,25 +2,29 @@
 
 use crate::batch::Threads;
 use crate::design::{
-    Band, RandomSteps, TestRig, Uncertain, default_hold_s, default_largest, default_levels,
-    random_steps, response_s, resting_band,
+    Band, Logged, Plan, TestRig, Uncertain, Wishes, default_largest, plan, reach, resting_band,
+    response_s,
 };
 use crate::experiment::Joint;
-use crate::report::DesignedJoint;
+use crate::report::{Basis, DesignedJoint, hold_note, left_out_note, no_range_note, shortened_note};
 use crate::study::{OfJoints, know_joints};
 use anyhow::{anyhow, bail};
 
 use super::args::Args;
-use super::known::{Known, PROTOCOL, largest};
-use super::values::BandChoice;
+use super::known::{Known, PROTOCOL};
+use super::values::{BandChoice, Levels};
+use crate::cli::console::Bar;
 use crate::cli::failure::said;
 
-/// Length of the input where none is given.
-const DURATION_S: f64 = 120.0;
-
 /// The input of each joint, or why it has none.
-pub(crate) fn designed(args: &Args, known: &Known) -> Vec<anyhow::Result<DesignedJoint>> {
+pub(crate) fn designed(
+    args: &Args,
+    known: &Known,
+    bar: &Bar,
+) -> Vec<anyhow::Result<DesignedJoint>> {
+    bar.say("finding the best model that the log supports".to_owned());
     let uncertain = uncertainties(args, known);
+    bar.say("planning".to_owned());
     let one = |(index, name): (usize, &String)| {
         let uncertain = match uncertain.get(index) {
             Some(Some(Ok(found))) => Some(found.clone()),
@@ -51,47 +55,75 @@ fn steps_of(
     uncertain: Option<&Uncertain>,
     index: usize,
 ) -> anyhow::Result<DesignedJoint> {
-    let model = uncertain.map(|uncertain| &uncertain.model);
-    if args.output_range.is_some() && model.is_none() {
+    if args.output_range.is_some() && uncertain.is_none() {
         bail!(
             "--output-range: where the joint goes is known from a model only; give --model or a log"
         );
     }
-    let logged = known.joint(&rig.name).map(largest).filter(|largest| *largest > 0.0);
-    let given = args.levels.as_ref().map(super::values::Levels::largest);
-    let largest = given.or(args.largest).or(logged);
-    let largest = largest.unwrap_or_else(|| default_largest(model, &rig));
-    let levels = match &args.levels {
-        Some(levels) => levels.0.clone(),
-        None => default_levels(model, &rig, largest),
-    };
-    let levels = match args.dead_band {
-        Some(choice) => band(choice, uncertain, &rig, largest)?.applied(&levels),
-        None => levels,
-    };
-    if levels.len() < 2 {
-        bail!("--levels: fewer than two are left; an input needs two different levels or more");
-    }
-    let hold_s = args.hold.unwrap_or_else(|| default_hold_s(model, &rig, largest));
-    let duration_s = args.duration.unwrap_or(DURATION_S);
-    if hold_s.0 > duration_s {
-        bail!("--hold {}: longer than the whole input of {duration_s} s", hold_s.0);
-    }
-    let steps = RandomSteps { levels, hold_s, duration_s, seed: args.seed };
-    let schedule = random_steps(&steps, &rig, uncertain, index);
-    let prediction = uncertain.map(|uncertain| rig.prediction(uncertain, &schedule));
-    let notes = model.and_then(|model| {
-        let response = response_s(model, &rig, largest);
-        (hold_s.0 < response).then(|| {
-            format!(
-                "Holds from {} s are shorter than the {response:.2} s in which the model responds: \
-                 a level may be over before it shows.",
-                hold_s.0
-            )
-        })
-    });
-    let notes = notes.into_iter().collect();
-    Ok(DesignedJoint { rig, schedule, prediction, discrimination: None, notes })
+    let logged = known.logged(&rig.name);
+    let rest = known.rest(&rig.name);
+    let wishes = wishes(args, uncertain, &rig, logged)?;
+    let planned = plan(&wishes, &rig, uncertain, logged, index)?;
+    let notes = notes(&planned, &rig, uncertain, rest);
+    let basis = uncertain.map(|known| basis(known, &rig, logged));
+    let Plan { schedule, prediction, .. } = planned;
+    let schedule = schedule.about(rest);
+    Ok(DesignedJoint { rig, schedule, rest, prediction, discrimination: None, basis, notes })
+}
+
+/// What is asked for, in differences to rest.
+fn wishes(
+    args: &Args,
+    uncertain: Option<&Uncertain>,
+    rig: &TestRig,
+    logged: Option<&Logged>,
+) -> anyhow::Result<Wishes> {
+    let rest = logged.map_or(0.0, |logged| logged.rest);
+    let levels = args.levels.as_ref();
+    let levels = levels.map(|Levels(levels)| levels.iter().map(|u| u - rest).collect::<Vec<_>>());
+    let magnitude = |levels: &Vec<f64>| levels.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+    let largest = levels.as_ref().map(magnitude).or(args.largest);
+    let largest = largest.or(logged.map(Logged::largest).filter(|largest| *largest > 0.0));
+    let largest = largest.unwrap_or_else(|| default_largest(model(uncertain), rig));
+    let band = args.dead_band.map(|choice| band(choice, uncertain, rig, (largest, rest)));
+    Ok(Wishes {
+        levels,
+        largest: args.largest,
+        band: band.transpose()?,
+        hold_s: args.hold,
+        duration_s: args.duration,
+        seed: args.seed,
+    })
+}
+
+fn model(uncertain: Option<&Uncertain>) -> Option<&crate::model::JointModel> {
+    uncertain.map(|uncertain| &uncertain.model)
+}
+
+/// What the expectation rests on.
+fn basis(known: &Uncertain, rig: &TestRig, logged: Option<&Logged>) -> Basis {
+    let effects = known.model.components().iter().map(|component| component.effect().spec().id);
+    let within = rig.range.and_then(|range| reach(range, logged).ok());
+    Basis { effects: effects.collect(), free_run: known.free_run.clone(), within }
+}
+
+/// What whoever plays it should know.
+fn notes(
+    plan: &Plan,
+    rig: &TestRig,
+    uncertain: Option<&Uncertain>,
+    rest: f64,
+) -> Vec<String> {
+    let response = model(uncertain).map(|model| response_s(model, rig, plan.largest));
+    let short = response.filter(|response| plan.hold_s.0 < *response);
+    let short = short.map(|response| hold_note(plan.hold_s.0, response));
+    let unit = rig.input_unit.as_deref();
+    let left_out: Vec<f64> = plan.left_out.iter().map(|level| level + rest).collect();
+    let left_out = (!left_out.is_empty()).then(|| left_out_note(&left_out, unit));
+    let shortened = plan.shortened_from_s;
+    let shortened = shortened.map(|from_s| shortened_note(plan.schedule.duration_s(), from_s));
+    let no_range = (rig.range.is_none() && uncertain.is_some()).then(no_range_note);
+    [short, left_out, shortened, no_range].into_iter().flatten().collect()
 }
 
 /// What is to become of which dead band.
@@ -99,10 +131,10 @@ fn band(
     choice: BandChoice,
     uncertain: Option<&Uncertain>,
     rig: &TestRig,
-    largest: f64,
+    (largest, rest): (f64, f64),
 ) -> anyhow::Result<Band> {
     let of_model = || {
-        let model = uncertain.map(|uncertain| &uncertain.model);
+        let model = model(uncertain);
         let band = model.and_then(|model| resting_band(model, rig, largest));
         band.ok_or_else(|| match model {
             Some(_) => anyhow!("--dead-band: the model has none; give its ends, as in -0.4,0.4"),
@@ -114,6 +146,6 @@ fn band(
     Ok(match choice {
         BandChoice::Cross => of_model().map(|(lower, upper)| Band::Cross(lower, upper))?,
         BandChoice::Avoid => of_model().map(|(lower, upper)| Band::Avoid(lower, upper))?,
-        BandChoice::Given(lower, upper) => Band::Avoid(lower, upper),
+        BandChoice::Given(lower, upper) => Band::Avoid(lower - rest, upper - rest),
     })
 }

@@ -3,7 +3,7 @@
 use crate::batch::Threads;
 use crate::design::shortest;
 use crate::design::{
-    Limits, RandomSteps, Suspects, TestRig, default_hold_s, default_largest, default_levels,
+    Limits, Logged, RandomSteps, Suspects, TestRig, default_hold_s, default_largest, default_levels,
 };
 use crate::effect::Effect;
 use crate::experiment::Joint;
@@ -13,7 +13,7 @@ use crate::study::suspect_joints;
 use anyhow::{Context as _, anyhow, bail};
 
 use super::args::Args;
-use super::known::{Known, PROTOCOL, extent, largest};
+use super::known::{Known, PROTOCOL};
 use crate::cli::args::find;
 use crate::cli::console::Bar;
 use crate::cli::failure::said;
@@ -75,8 +75,8 @@ fn without(model: &JointModel, effects: [&'static dyn Effect; 2]) -> JointModel 
 /// Where the joint may go: a tenth beyond where its log has been, unless that is said.
 fn range(args: &Args, known: &Known, name: &str) -> Option<(f64, f64)> {
     const BEYOND: f64 = 0.1;
-    let logged = known.joint(name).map(|joint| {
-        let (low, high) = extent(joint);
+    let logged = known.logged(name).map(|logged| {
+        let (low, high) = logged.extent;
         (low - BEYOND * (high - low), high + BEYOND * (high - low))
     });
     args.output_range.or(logged)
@@ -139,7 +139,7 @@ fn distinguish(
     bar: &Bar,
 ) -> anyhow::Result<DesignedJoint> {
     let [one, other] = &suspects.models;
-    let logged = known.joint(&rig.name).map(largest).filter(|largest| *largest > 0.0);
+    let logged = known.logged(&rig.name).map(Logged::largest).filter(|largest| *largest > 0.0);
     let largest = args.largest.or(logged);
     let limits = Limits {
         largest: largest.unwrap_or_else(|| default_largest(Some(&one.model), &rig)),
@@ -180,5 +180,7 @@ fn distinguish(
     };
     let notes = doubt.into_iter().chain([next]).collect();
     let discrimination = Some(Discrimination { ids, design, wanted, noise, other });
-    Ok(DesignedJoint { rig, schedule, prediction, discrimination, notes })
+    let rest = known.rest(&rig.name);
+    let schedule = schedule.about(rest);
+    Ok(DesignedJoint { rig, schedule, rest, prediction, discrimination, basis: None, notes })
 }

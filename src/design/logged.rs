@@ -1,0 +1,168 @@
+//! What a log shows of how a joint may be driven: where its input rests, which levels were
+//! played, and where the output has been.
+
+use crate::delay::{Neutral, level_tolerance};
+use crate::experiment::{Joint, Trial};
+use crate::numerics::quantile;
+
+/// What was played on a joint, and where it went.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Logged {
+    /// The input at which the joint is meant to rest, input units.
+    pub rest: f64,
+    /// Levels that were played, ascending, as differences to `rest`.
+    pub levels: Vec<f64>,
+    /// Lowest and highest output.
+    pub extent: (f64, f64),
+}
+
+/// Part of the record, at least, for which a level is held that was not played by chance.
+const LEAST_SHARE: f64 = 0.01;
+
+/// Part of the record that levels make up together, where it is one of levels.
+const MOSTLY: f64 = 0.8;
+
+impl Logged {
+    /// What the trials of `joint` show.
+    pub fn of(joint: &Joint) -> Self {
+        let tolerance = level_tolerance(&joint.trials);
+        let rest = Neutral::of(&joint.trials).map_or(0.0, |neutral| neutral.level);
+        // Zero is meant where a converter leaves a little.
+        let rest = if rest.abs() > tolerance { rest } else { 0.0 };
+        let outputs = joint.trials.iter().flat_map(Trial::output);
+        let none = (f64::INFINITY, f64::NEG_INFINITY);
+        let extent = outputs.fold(none, |(low, high), y| (low.min(*y), high.max(*y)));
+        let levels = levels(joint).into_iter().map(|level| level - rest).collect();
+        Self { rest, levels, extent }
+    }
+
+    /// The same with levels as they are in the log.
+    #[must_use]
+    pub fn as_it_is(self) -> Self {
+        let levels = self.levels.iter().map(|level| level + self.rest).collect();
+        Self { rest: 0.0, levels, ..self }
+    }
+
+    /// `joint` with its input as difference to where it rests.
+    #[must_use]
+    pub fn centred(&self, joint: &Joint) -> Joint {
+        let centred = |trial: &Trial| {
+            let input = trial.input().iter().map(|input| input - self.rest).collect();
+            let (start_s, output) = (trial.time_s(1), trial.output().to_vec());
+            Trial::new(trial.label(), start_s, trial.period(), input, output).ok()
+        };
+        let trials: Option<Vec<Trial>> = joint.trials.iter().map(centred).collect();
+        trials.map_or_else(|| joint.clone(), |trials| Joint { trials, ..joint.clone() })
+    }
+
+    /// The largest magnitude of a level, as a difference to rest.
+    pub fn largest(&self) -> f64 {
+        self.levels.iter().fold(0.0, |largest: f64, level| largest.max(level.abs()))
+    }
+
+    /// Levels of either sign, ascending: the highest that was played, and the one nearest to the
+    /// middle between it and the end of the band in which the joint rests.
+    ///
+    /// Played levels alone are taken: what a joint does between two of them is not known from
+    /// what it does at them.
+    pub(super) fn beyond(&self, (lower, upper): (f64, f64)) -> Vec<f64> {
+        let below = self.levels.iter().map(|level| -level);
+        let below: Vec<f64> = side(below, -lower).iter().rev().map(|level| -level).collect();
+        let above = side(self.levels.iter().copied(), upper);
+        below.into_iter().chain(above).collect()
+    }
+}
+
+/// Of the positive `levels`, the highest, and the one behind `edge` that is nearest to the middle
+/// between.
+fn side(levels: impl Iterator<Item = f64>, edge: f64) -> Vec<f64> {
+    /// As parts of the highest level: how far a level that surely moves the joint lies behind the
+    /// edge, and how far from the highest one that is another.
+    const BEHIND: f64 = 0.1;
+    const APART: f64 = 0.15;
+    let levels: Vec<f64> = levels.filter(|level| *level > 0.0).collect();
+    let highest = levels.iter().copied().fold(0.0, f64::max);
+    if highest <= edge {
+        return Vec::new();
+    }
+    let middle = 0.5 * (edge + highest);
+    let others = levels.into_iter().filter(|level| {
+        *level >= edge + BEHIND * highest && *level <= highest - APART * highest
+    });
+    let nearest = others.min_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()));
+    nearest.into_iter().chain([highest]).collect()
+}
+
+/// Levels of the input that were held, ascending; of an input that never holds, its tenths
+/// without the last parts of it.
+fn levels(joint: &Joint) -> Vec<f64> {
+    let mut inputs: Vec<f64> = joint.trials.iter().flat_map(Trial::input).copied().collect();
+    inputs.sort_by(f64::total_cmp);
+    let tolerance = level_tolerance(&joint.trials);
+    let mut rest = inputs.as_slice();
+    let (mut held, mut samples) = (Vec::new(), 0);
+    while let Some(least) = rest.first() {
+        let count = rest.partition_point(|input| *input <= least + tolerance).max(1);
+        let (same, others) = rest.split_at(count);
+        rest = others;
+        if count as f64 >= LEAST_SHARE * inputs.len() as f64 {
+            samples += count;
+            held.extend(same.get(count / 2));
+        }
+    }
+    if samples as f64 >= MOSTLY * inputs.len() as f64 && held.len() <= MOST_LEVELS {
+        return held;
+    }
+    let part = |k: u32| quantile(&inputs, 0.01 + 0.098 * f64::from(k));
+    (0..=10).filter_map(part).collect()
+}
+
+/// More levels are those of an input that never holds, which makes up bins of one percent.
+const MOST_LEVELS: usize = 30;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::SamplePeriod;
+
+    fn joint(input: Vec<f64>) -> Joint {
+        let mut angle = 50.0;
+        let output = input.iter().map(|u| {
+            angle += 0.1 * (u - 7.5);
+            angle
+        });
+        let output = output.collect();
+        let period = SamplePeriod::from_seconds(0.02).unwrap();
+        Joint {
+            name: "boom".to_owned(),
+            input_unit: None,
+            output_unit: None,
+            covariates: Vec::new(),
+            trials: vec![Trial::new("1", 0.0, period, input, output).unwrap()],
+        }
+    }
+
+    fn steps(levels: &[f64]) -> Vec<f64> {
+        levels.iter().flat_map(|level| std::iter::repeat_n(*level, 100)).collect()
+    }
+
+    #[test]
+    fn levels_are_those_that_were_played_about_the_one_at_rest() {
+        let joint = joint(steps(&[7.5, 9.0, 7.5, 5.0, 7.5, 10.0, 7.5, 6.0, 7.5, 8.0, 7.5]));
+        let logged = Logged::of(&joint);
+        assert_eq!((logged.rest, logged.largest()), (7.5, 2.5));
+        assert_eq!(logged.levels, [-2.5, -1.5, 0.0, 0.5, 1.5, 2.5]);
+        assert_eq!(logged.beyond((-0.4, 0.4)), [-2.5, -1.5, 1.5, 2.5]);
+        assert_eq!(logged.beyond((-2.0, 2.0)), [-2.5, 2.5]);
+        assert_eq!(logged.beyond((-3.0, 2.0)), [2.5]);
+        assert_eq!(logged.centred(&joint).trials[0].input()[0], 0.0);
+    }
+
+    #[test]
+    fn an_input_that_never_holds_has_levels_within_its_range() {
+        let input: Vec<f64> = (0..2000).map(|k| 7.5 + 2.0 * (f64::from(k) / 50.0).sin()).collect();
+        let levels = Logged::of(&joint(input)).levels;
+        assert_eq!(levels.len(), 11);
+        assert!(levels.iter().all(|level| level.abs() <= 9.5));
+    }
+}
