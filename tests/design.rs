@@ -5,7 +5,7 @@
 mod desk;
 
 use desk::{Desk, assert_fields, banded, joint, number};
-use tauscope::synthetic::{InputSpec, JointSpec, PlantSpec, simulate, write_log};
+use tauscope::synthetic::{CylinderSpec, InputSpec, JointSpec, PlantSpec, simulate, write_log};
 
 const MODEL: &str = r#"
 schema = "tauscope/model/1"
@@ -90,6 +90,115 @@ fn a_joint_stays_in_the_range_that_was_promised() {
         assert!(inside.count() * 100 >= 99 * output.len(), "seed {seed}");
     }
     assert!((15.0..40.0).contains(&farthest), "{farthest}");
+}
+
+/// What `joint` does with the input of `in.csv` from `start` on, 50 samples a second.
+fn driven(joint: &JointSpec, input: &[f64], start: f64) -> Vec<f64> {
+    let changes = (1..input.len()).filter(|k| (input[*k] - input[k - 1]).abs() > 0.0);
+    let steps = changes.map(|k| (k + 1, input[k])).collect();
+    let input_spec = InputSpec::Steps { steps, initial: input[0] };
+    let joint = JointSpec { input: input_spec, start, range: None, noise: 0.0, ..joint.clone() };
+    let plant = PlantSpec::new(99, input.len() as f64 * 0.02, vec![joint]);
+    let made = simulate(&PlantSpec { sample_period_s: 0.02, ..plant }).unwrap();
+    made.joints[0].trials[0].output().to_vec()
+}
+
+/// Joints with physics that share no equation with the models, and a range for each.
+fn others() -> Vec<(JointSpec, [f64; 2])> {
+    let hide = |mut joint: JointSpec, name: &str, numbers: &[(&str, f64)]| {
+        let numbers: Vec<_> = numbers.iter().map(|(name, x)| ((*name).to_owned(), *x)).collect();
+        joint.hide(name, &numbers).unwrap();
+        joint
+    };
+    let base = || JointSpec { range: Some([-40.0, 40.0]), lag_s: Some(0.1), ..banded("boom") };
+    let asymmetric = hide(base(), "direction_gain", &[("negative_factor", 0.7)]);
+    let sinking = hide(base(), "gravity_load", &[("kappa", 0.3), ("y0", 10.0), ("creep", 0.6)]);
+    let leaking = hide(asymmetric.clone(), "leakage", &[("rate", 0.05), ("y0", 0.0)]);
+    let soft = hide(base(), "input_saturation", &[("limit", 1.2), ("sharpness", 8.0)]);
+    let creeping = hide(asymmetric.clone(), "creep_memory", &[("share", 0.15)]);
+    let drifting =
+        hide(sinking.clone(), "thermal_drift", &[("change", 0.2), ("time_constant", 40.0)]);
+    let input = InputSpec::Levels { levels: vec![-8.0, -4.0, 0.0, 4.0, 8.0], hold_s: [0.5, 2.0] };
+    let cylinder = JointSpec {
+        start: 20.0,
+        range: Some([-15.0, 60.0]),
+        cylinder: Some(CylinderSpec::default()),
+        dead_band: None,
+        lag_s: None,
+        input,
+        ..base()
+    };
+    let small = [-20.0, 25.0];
+    vec![
+        (asymmetric, small),
+        (sinking, small),
+        (leaking, small),
+        (soft, [-25.0, 25.0]),
+        (creeping, small),
+        (drifting, [-30.0, 30.0]),
+        (cylinder, [-5.0, 50.0]),
+    ]
+}
+
+/// `examples/design_validation.rs` is the long form.
+#[test]
+fn joints_with_other_physics_than_the_model_stay_in_the_range_that_is_promised() {
+    for (index, (joint, [low, high])) in others().into_iter().enumerate() {
+        let desk = Desk::for_seconds(45.0, vec![joint.clone()]);
+        let options = format!("design log.csv --output-range={low},{high} -o in.csv -q");
+        let designed = &desk.json(&options, 0)["joints"][0];
+        let start = number(&designed["start"]);
+        let output = driven(&joint, &column(&desk.read("in.csv"), "boom.input"), start);
+        let lowest = output.iter().copied().fold(f64::INFINITY, f64::min);
+        let highest = output.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        assert!(lowest >= low && highest <= high, "{index}: {lowest} to {highest}");
+        // An input that hardly moves the joint is no answer.
+        assert!(highest - lowest > 0.3 * (high - low), "{index}: {lowest} to {highest}");
+        assert!(number(&designed["steps"]) >= 6.0, "{index}");
+    }
+}
+
+/// A servo valve of a hobby excavator: 7.5 % duty is neutral.
+#[test]
+fn a_foreign_log_whose_input_rests_at_a_level_of_its_own_is_driven_about_that() {
+    let desk = Desk::for_seconds(60.0, vec![JointSpec { range: Some([-40.0, 40.0]), ..resting() }]);
+    let text = desk.read("log.csv");
+    let rows = text.lines().filter(|line| !line.starts_with('#')).skip(1).map(|line| {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        format!("{},{},{}", 1e3 * cells[0], 7.5 + cells[1], 60.0 + cells[2])
+    });
+    let rows: Vec<String> = rows.collect();
+    desk.write("foreign.csv", &format!("t_ms,duty_pct,angle_deg\n{}\n", rows.join("\n")));
+    let options = "design foreign.csv --joint boom=duty_pct:angle_deg --output-range 40,80";
+    let designed = &desk.json(&format!("{options} -o in.csv -q"), 0)["joints"][0];
+    let input = column(&desk.read("in.csv"), "boom.input");
+    assert!((input[0] - 7.5).abs() < 1e-9 && (input[input.len() - 1] - 7.5).abs() < 1e-9);
+    let levels = designed["levels"].as_array().unwrap();
+    let levels: Vec<f64> = levels.iter().map(number).collect();
+    assert!(levels.first().unwrap() >= &6.0 && levels.last().unwrap() <= &9.0, "{levels:?}");
+    assert!((number(&designed["start"]) - 60.0).abs() < 2.0);
+}
+
+/// [`banded`], with rest among its levels.
+fn resting() -> JointSpec {
+    let levels = vec![-1.5, -1.0, 0.0, 1.0, 1.5];
+    JointSpec { input: InputSpec::Levels { levels, hold_s: [0.8, 1.6] }, ..banded("boom") }
+}
+
+#[test]
+fn a_range_that_cannot_be_kept_is_refused_with_a_remedy() {
+    let desk = desk();
+    let cases = [
+        ("--output-range=-3,3 --duration 120", "cannot be kept for 120 s"),
+        ("--output-range=500,600", "the log shows the joint only from"),
+        ("--output-range=-10,10 --start 10", "too near to the ends of the range"),
+    ];
+    for (options, expected) in cases {
+        let said = desk.refusal(&format!("design log.csv {options} -o none.csv"));
+        assert!(said.contains(expected), "{options}: {said}");
+        assert!(said.contains("give") || said.contains("start near"), "{options}: {said}");
+        assert!(!desk.has("none.csv"));
+    }
 }
 
 #[test]

@@ -4,6 +4,7 @@
 use crate::delay::{Neutral, level_tolerance};
 use crate::experiment::{Joint, Trial};
 use crate::numerics::quantile;
+use crate::units::SamplePeriod;
 
 /// What was played on a joint, and where it went.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,6 +56,35 @@ impl Logged {
         trials.map_or_else(|| joint.clone(), |trials| Joint { trials, ..joint.clone() })
     }
 
+    /// `joint` with its input as difference to where it rests, and no more samples than a model of
+    /// its motion needs: every so many of a log that has more than 100 a second, or very many.
+    #[must_use]
+    pub fn thinned(&self, joint: &Joint) -> Joint {
+        /// Shortest time between samples that is kept, seconds, and the longest that is made.
+        const SHORTEST_S: f64 = 0.01;
+        const LONGEST_S: f64 = 0.04;
+        /// Samples with which a model is found in some seconds.
+        const ENOUGH: f64 = 12_000.0;
+        let samples: usize = joint.trials.iter().map(Trial::len).sum();
+        let centred = self.centred(joint);
+        let thinned = |trial: &Trial| {
+            let period_s = trial.period().seconds();
+            let wanted = (samples as f64 / ENOUGH).min(LONGEST_S / period_s);
+            let wanted = wanted.max(SHORTEST_S / period_s).round().max(1.0);
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 1")]
+            let every = wanted as usize;
+            let period = SamplePeriod::from_seconds(period_s * wanted)?;
+            let thin = |values: &[f64]| values.iter().copied().step_by(every).collect();
+            let (input, output) = (thin(trial.input()), thin(trial.output()));
+            Trial::new(trial.label(), trial.time_s(1), period, input, output).ok()
+        };
+        let trials: Vec<Trial> = centred.trials.iter().filter_map(thinned).collect();
+        if trials.len() < centred.trials.len() {
+            return centred;
+        }
+        Joint { trials, covariates: Vec::new(), ..centred }
+    }
+
     /// The largest magnitude of a level, as a difference to rest.
     pub fn largest(&self) -> f64 {
         self.levels.iter().fold(0.0, |largest: f64, level| largest.max(level.abs()))
@@ -86,9 +116,9 @@ fn side(levels: impl Iterator<Item = f64>, edge: f64) -> Vec<f64> {
         return Vec::new();
     }
     let middle = 0.5 * (edge + highest);
-    let others = levels.into_iter().filter(|level| {
-        *level >= edge + BEHIND * highest && *level <= highest - APART * highest
-    });
+    let others = levels
+        .into_iter()
+        .filter(|level| *level >= edge + BEHIND * highest && *level <= highest - APART * highest);
     let nearest = others.min_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()));
     nearest.into_iter().chain([highest]).collect()
 }
@@ -155,7 +185,21 @@ mod tests {
         assert_eq!(logged.beyond((-0.4, 0.4)), [-2.5, -1.5, 1.5, 2.5]);
         assert_eq!(logged.beyond((-2.0, 2.0)), [-2.5, 2.5]);
         assert_eq!(logged.beyond((-3.0, 2.0)), [2.5]);
-        assert_eq!(logged.centred(&joint).trials[0].input()[0], 0.0);
+        let thinned = logged.thinned(&joint);
+        assert_eq!(thinned.trials[0].input()[..2], [0.0, 0.0]);
+        assert_eq!(thinned.trials[0].len(), joint.trials[0].len());
+    }
+
+    #[test]
+    fn a_log_with_many_samples_is_thinned() {
+        let slow = joint(steps(&[0.0, 2.0, 0.0, -1.0]));
+        let period = SamplePeriod::from_seconds(0.001).unwrap();
+        let (input, output) = (slow.trials[0].input().to_vec(), slow.trials[0].output().to_vec());
+        let trials = vec![Trial::new("1", 0.0, period, input, output).unwrap()];
+        let fast = Joint { trials, ..slow };
+        let thinned = Logged::of(&fast).thinned(&fast).trials.remove(0);
+        assert_eq!((thinned.len(), thinned.period().seconds()), (40, 0.01));
+        assert_eq!(thinned.output()[1], fast.trials[0].output()[10]);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::logged::Logged;
 use super::predict::{Prediction, TestRig, Uncertain};
 use super::random::{RandomSteps, random_steps, random_steps_within};
 use super::response::resting_band;
-use super::schedule::Schedule;
+use super::schedule::{Schedule, samples_in};
 
 /// What is asked of random steps; what is left open suits the joint.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -64,9 +64,9 @@ pub enum PlanError {
     ErrorUnknown,
     /// The range lies where the joint has not been.
     #[error(
-        "--output-range={},{}: the log shows the joint only from {:.4} to {:.4}, and nothing is \
-         known of it elsewhere; give a range there, or a log of this range",
-        .range.0, .range.1, .extent.0, .extent.1
+        "--output-range={},{}: the log shows the joint only from {} to {}, and nothing is known of it \
+         elsewhere; give a range there, or a log of this range",
+        rounded(.range.0), rounded(.range.1), rounded(.extent.0), rounded(.extent.1)
     )]
     Elsewhere {
         /// The range.
@@ -76,8 +76,8 @@ pub enum PlanError {
     },
     /// It starts too near to an end of the range, or beyond.
     #[error(
-        "--start {start}: too near to the ends of the range, {:.4} to {:.4}; start near {:.4}",
-        .range.0, .range.1, 0.5 * (.range.0 + .range.1)
+        "--start {start}: too near to the ends of the range, {} to {}, or beyond; start near {}",
+        rounded(.range.0), rounded(.range.1), rounded(0.5 * (.range.0 + .range.1))
     )]
     Start {
         /// Where it starts.
@@ -86,7 +86,7 @@ pub enum PlanError {
         range: (f64, f64),
     },
     /// The range cannot be kept.
-    #[error("--output-range={},{}: {}", .range.0, .range.1, .why)]
+    #[error("--output-range={},{}: {}", rounded(.range.0), rounded(.range.1), .why)]
     NotKept {
         /// The range.
         range: (f64, f64),
@@ -100,8 +100,9 @@ pub enum PlanError {
 pub struct NotKept {
     /// How long it was to be kept, seconds.
     pub duration_s: f64,
-    /// How far a prediction may be off then when the joint rests, output units.
-    pub margin: f64,
+    /// How far a prediction may be off then even if the joint rests, output units, where a log
+    /// shows that.
+    pub margin: Option<f64>,
     /// A length for which the range can be kept, seconds.
     pub shorter_s: Option<f64>,
     /// A range that can be kept for the whole time.
@@ -111,11 +112,11 @@ pub struct NotKept {
 impl std::fmt::Display for NotKept {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { duration_s, margin, shorter_s, wider } = self;
-        write!(
-            f,
-            "cannot be kept for {duration_s} s: after that time a prediction of this joint may be \
-             off by {margin:.3} even if it hardly moves"
-        )?;
+        write!(f, "cannot be kept for {duration_s} s")?;
+        if let Some(margin) = margin {
+            let margin = rounded(*margin);
+            write!(f, ": a prediction of this joint may be off by {margin} after that time")?;
+        }
         match (shorter_s, wider) {
             (Some(s), Some((low, high))) => {
                 write!(f, "; give --duration {s}, or --output-range={low},{high}")
@@ -123,11 +124,17 @@ impl std::fmt::Display for NotKept {
             (Some(s), None) => write!(f, "; give --duration {s}"),
             (None, Some((low, high))) => write!(f, "; give --output-range={low},{high}"),
             (None, None) => f.write_str(
-                "; no shorter input and no wider range will do: give a longer log, smaller levels \
-                 (--largest) or shorter holds (--hold)",
+                "; no shorter input and no wider range will do: give a log in which the joint is \
+                 driven for longer without a break, or smaller levels (--largest)",
             ),
         }
     }
+}
+
+/// `x` to four digits or so, as it is typed.
+fn rounded(x: f64) -> f64 {
+    let scale = 10_f64.powf(3.0 - x.abs().max(f64::MIN_POSITIVE).log10().floor().clamp(-9.0, 3.0));
+    (x * scale).round() / scale
 }
 
 /// Length of an input where none is asked for, seconds.
@@ -232,8 +239,8 @@ impl Planner<'_> {
         let largest = self.largest();
         let band = self.model().and_then(|model| resting_band(model, self.rig, largest));
         let mut levels = logged.beyond(band.unwrap_or((0.0, 0.0)));
-        let goes_both_ways = levels.iter().any(|level| *level < 0.0)
-            && levels.iter().any(|level| *level > 0.0);
+        let goes_both_ways =
+            levels.iter().any(|level| *level < 0.0) && levels.iter().any(|level| *level > 0.0);
         if !goes_both_ways {
             return default_levels(self.model(), self.rig, largest);
         }
@@ -243,7 +250,8 @@ impl Planner<'_> {
     }
 
     fn largest(&self) -> f64 {
-        let magnitude = |levels: &Vec<f64>| levels.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+        let magnitude =
+            |levels: &Vec<f64>| levels.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
         let Wishes { levels, largest, .. } = self.wishes;
         let logged = self.logged.map(Logged::largest).filter(|largest| *largest > 0.0);
         let given = levels.as_ref().map(magnitude).or(*largest).or(logged);
@@ -297,15 +305,15 @@ impl Planner<'_> {
     /// The narrowest wider range that will do.
     fn wider(&self, asked: (f64, f64), will_do: impl Fn((f64, f64)) -> bool) -> Option<(f64, f64)> {
         let (middle, half) = (0.5 * (asked.0 + asked.1), 0.5 * (asked.1 - asked.0));
-        let rounded = |x: f64| (x * 1e3).round() / 1e3;
-        let wider = WIDER.map(|times| (rounded(middle - times * half), rounded(middle + times * half)));
+        let wider =
+            WIDER.map(|times| (rounded(middle - times * half), rounded(middle + times * half)));
         let mut wider = wider.into_iter();
         wider.find(|range| reach(*range, self.logged).is_ok_and(&will_do))
     }
 
     /// How far a prediction may be off after so many seconds of rest.
-    fn margin_at_rest(&self, known: &Uncertain, seconds: f64) -> f64 {
-        known.free_run.as_ref().map_or(0.0, |free_run| free_run.margin(seconds, 0.0))
+    fn margin_at_rest(&self, known: &Uncertain, seconds: f64) -> Option<f64> {
+        known.free_run.as_ref().map(|free_run| free_run.margin(seconds, 0.0))
     }
 
     /// Levels and holds that are tried, best first: with shorter holds, and without the largest
@@ -313,9 +321,14 @@ impl Planner<'_> {
     fn ways(&self, levels: &[f64], hold_s: (f64, f64)) -> Vec<(Vec<f64>, (f64, f64))> {
         /// Longest hold over shortest of the shorter ones.
         const SHORT: f64 = 1.4;
+        /// Of shorter holds a fit sees little.
+        const SHORTEST_S: f64 = 0.5;
         let mut holds = vec![hold_s];
         if self.wishes.hold_s.is_none() {
             holds.push((hold_s.0, SHORT * hold_s.0));
+            // The usual ones are twice as long as the response.
+            let half = 0.5 * hold_s.0;
+            holds.extend((half >= SHORTEST_S).then_some((half, SHORT * half)));
         }
         let mut sets = vec![levels.to_vec()];
         let smaller: Vec<f64> = match levels {
@@ -329,7 +342,8 @@ impl Planner<'_> {
         ways.collect()
     }
 
-    /// The first of `ways` in which the joint is kept in `range` for the whole time.
+    /// The first of `ways` in which the joint is kept in `range` for the whole time; rather one in
+    /// which no level is rare.
     fn kept(
         &self,
         known: &Uncertain,
@@ -338,20 +352,29 @@ impl Planner<'_> {
         duration_s: f64,
     ) -> Option<Plan> {
         let all = ways.first().map_or(&[][..], |(levels, _)| levels.as_slice());
-        ways.iter().find_map(|(levels, hold_s)| {
+        let mut rare = None;
+        for (levels, hold_s) in ways {
             let seed = self.wishes.seed;
             let steps = RandomSteps { levels: levels.clone(), hold_s: *hold_s, duration_s, seed };
             let schedule = random_steps_within(&steps, self.rig, known, range, self.index);
-            let is_whole = schedule.duration_s() >= duration_s - self.rig.period.seconds();
-            let played = schedule.levels();
-            let plays_all = levels.iter().all(|level| played.contains(level));
-            if !is_whole || !plays_all || schedule.steps() < FEWEST_STEPS {
-                return None;
+            let is_whole = schedule.samples() == samples_in(duration_s, self.rig.period);
+            if !is_whole || schedule.steps() < FEWEST_STEPS || fewest_visits(&schedule, levels) == 0
+            {
+                continue;
             }
             let prediction = self.rig.prediction(known, &schedule);
-            let is_kept = prediction.kept_until(range).is_none();
-            is_kept.then(|| self.plan(schedule, Some(prediction), *hold_s, all))
-        })
+            if prediction.kept_until(range).is_some() {
+                continue;
+            }
+            let visits = fewest_visits(&schedule, levels) * levels.len() * RARE;
+            let is_even = visits >= schedule.holds().len();
+            let plan = self.plan(schedule, Some(prediction), *hold_s, all);
+            if is_even {
+                return Some(plan);
+            }
+            rare = rare.or(Some(plan));
+        }
+        rare
     }
 
     /// `schedule` as a plan, of which `all` levels would be played in a wide range.
@@ -370,6 +393,15 @@ impl Planner<'_> {
         let largest = played.iter().fold(0.0, |largest: f64, level| largest.max(level.abs()));
         Plan { schedule, prediction, hold_s, largest, left_out, shortened_from_s: None }
     }
+}
+
+/// A level is rare that is played so many times less often than on average.
+const RARE: usize = 3;
+
+/// How often that of `levels` is played which is played least often.
+fn fewest_visits(schedule: &Schedule, levels: &[f64]) -> usize {
+    let visits = |level: &f64| schedule.holds().iter().filter(|hold| hold.level == *level).count();
+    levels.iter().map(visits).min().unwrap_or(0)
 }
 
 #[cfg(test)]

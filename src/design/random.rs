@@ -59,10 +59,13 @@ pub(super) fn random_steps_within(
     let rest = samples_in(steps.hold_s.0, rig.period);
     drawing.samples = drawing.samples.saturating_sub(rest);
     drawing.push(Hold { level: 0.0, samples: rest });
-    while drawing.left() > 0 {
+    while drawing.left() >= rest {
         let Some(hold) = drawing.next_within(model, range) else { break };
         drawing.push(hold);
     }
+    // What is left is too short for a level.
+    let left = drawing.left();
+    let rest = if left < rest { rest + left } else { rest };
     drawing.samples += rest;
     drawing.rest(rest);
     Schedule::new(rig.period, drawing.holds)
@@ -148,6 +151,9 @@ impl<'a> Drawing<'a> {
         let is_closing = self.left() <= CLOSING * longest;
         for samples in [drawn, shortest] {
             let samples = samples.min(self.left());
+            // No level is played for less than the shortest hold.
+            let is_last = self.left() - samples < shortest;
+            let samples = if is_last { self.left() } else { samples };
             let leading = levels.iter().map(|level| Hold { level: *level, samples });
             let leading = leading.map(|hold| self.leading(hold, model, range));
             let mut kept: Vec<Leading> = leading.filter(|found| found.excess <= 0.0).collect();
@@ -165,7 +171,7 @@ impl<'a> Drawing<'a> {
 
     /// Where the joint comes to by `hold` when it rests after it, until that acts.
     fn leading(&self, hold: Hold, model: &Uncertain, range: (f64, f64)) -> Leading {
-        let rest = samples_in(self.settling_s.max(self.steps.hold_s.0), self.rig.period);
+        let rest = samples_in(self.settling_s.max(2.0 * self.steps.hold_s.0), self.rig.period);
         let mut holds = self.holds.clone();
         let from = holds.iter().map(|hold| hold.samples).sum();
         holds.extend([hold, Hold { level: 0.0, samples: rest }]);

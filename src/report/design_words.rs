@@ -2,7 +2,9 @@
 
 use super::design::{Basis, DesignedJoint, Discrimination, holds, kept_until_s, order};
 use super::text_table::TextTable;
-use crate::design::{Expected, RESERVE, OpenThreshold, Prediction, Rehearsal, Schedule, transitions};
+use crate::design::{
+    Expected, OpenThreshold, Prediction, RESERVE, Rehearsal, Schedule, transitions,
+};
 use crate::wording::{listed, measure, rounded, unit_suffix, wrapped};
 
 /// What is to be played on each joint, and what is expected of it.
@@ -14,7 +16,10 @@ fn joint_text(joint: &DesignedJoint) -> String {
     let mut sentences = design_sentences(joint);
     let mut parts = vec![wrapped(&sentences.remove(0))];
     parts.extend(joint.discrimination.as_ref().map(|found| side_table(found).to_string()));
-    if !sentences.is_empty() {
+    if joint.basis.is_some() {
+        let lines: Vec<String> = sentences.iter().map(|sentence| wrapped(sentence)).collect();
+        parts.push(lines.join("\n"));
+    } else if !sentences.is_empty() {
         parts.push(wrapped(&sentences.join(" ")));
     }
     parts.push(wrapped(&level_by_level(joint)));
@@ -26,7 +31,11 @@ fn joint_text(joint: &DesignedJoint) -> String {
 pub(crate) fn design_sentences(joint: &DesignedJoint) -> Vec<String> {
     let mut sentences = vec![headline(joint)];
     sentences.extend(joint.discrimination.iter().flat_map(|found| explanation(joint, found)));
-    sentences.extend(joint.prediction.as_ref().map(|prediction| foreseen(joint, prediction)));
+    match (&joint.prediction, &joint.basis) {
+        (Some(prediction), Some(basis)) => sentences.extend(promise(joint, prediction, basis)),
+        (Some(prediction), None) => sentences.push(foreseen(joint, prediction)),
+        (None, _) => {}
+    }
     sentences.extend(joint.notes.iter().cloned());
     sentences
 }
@@ -147,45 +156,68 @@ fn foreseen(joint: &DesignedJoint, prediction: &Prediction) -> String {
     let margins = expected.iter().map(|(_, prediction)| prediction.largest_margin());
     let margin = measure(margins.fold(0.0, f64::max), unit);
     let start = measure(joint.rig.start, unit);
-    let (low, high) = (rounded(low), measure(high, unit));
-    let Some(basis) = &joint.basis else {
-        return format!(
-            "From {start} the joint is expected within {low} to {high}, a margin of up to \
-             {margin} (two standard deviations) included."
-        );
-    };
-    let kept = match joint.rig.range {
-        Some(range) if kept_until_s(joint, prediction).is_none() => {
-            format!(" It keeps to {} to {}.", rounded(range.0), measure(range.1, unit))
-        }
-        _ => String::new(),
-    };
-    format!(
-        "Bring the joint to {start} and let it rest there. It is then expected within {low} to \
-         {high}, a margin included that grows to {margin}.{kept} {}",
-        margin_text(basis, unit)
-    )
+    let from = format!(
+        "From {start} the joint is expected within {} to {}, a margin of up to {margin} (two \
+         standard deviations) included.",
+        rounded(low),
+        measure(high, unit)
+    );
+    match (joint.rig.range, kept_until_s(joint, prediction)) {
+        (Some(_), Some(until)) => format!(
+            "{from} After {} the model cannot promise that it stays in its range.",
+            measure(until, Some("s"))
+        ),
+        _ => from,
+    }
 }
 
-/// Where the margin comes from.
-fn margin_text(Basis { effects, free_run, within: _ }: &Basis, unit: Option<&str>) -> String {
+/// Where random steps start, where the joint will be, and how sure that is.
+fn promise(joint: &DesignedJoint, prediction: &Prediction, basis: &Basis) -> [String; 3] {
+    let unit = joint.rig.output_unit.as_deref();
+    let from_to = |(low, high): (f64, f64)| format!("{} to {}", rounded(low), measure(high, unit));
+    let start = format!("Start: bring it to {} and let it rest.", measure(joint.rig.start, unit));
+    let none = (f64::INFINITY, f64::NEG_INFINITY);
+    let outputs = prediction.output.iter();
+    let alone = outputs.fold(none, |(low, high), y| (low.min(*y), high.max(*y)));
+    let expected =
+        format!("{} expected, {} with the margin", from_to(alone), from_to(prediction.extent()));
+    let range = match joint.rig.range {
+        Some(range) => {
+            let known = basis.within.filter(|within| *within != range).map(|known| {
+                let known = from_to(known);
+                format!(" Only {known} is used, about where the log has been.")
+            });
+            format!("Range: {} is kept: {expected}.{}", from_to(range), known.unwrap_or_default())
+        }
+        None => format!("Output: {expected}."),
+    };
+    [start, range, margin_text(prediction, basis, unit)]
+}
+
+/// How large the margin is, and where it comes from.
+fn margin_text(
+    prediction: &Prediction,
+    Basis { effects, free_run, .. }: &Basis,
+    unit: Option<&str>,
+) -> String {
     let effects: Vec<String> = effects.iter().map(|id| (*id).to_owned()).collect();
     let model = match effects.as_slice() {
         [] => "an integrator".to_owned(),
         effects => format!("an integrator with {}", listed(effects, "and")),
     };
+    let margin = measure(prediction.largest_margin(), unit);
     let Some(free_run) = free_run else {
         return format!(
-            "The model is {model}; the margin is two standard deviations of what its parameters may \
-             be off (--uncertainty)."
+            "Margin: up to {margin}, two standard deviations of what the parameters of the model, \
+             {model}, may be off (--uncertainty)."
         );
     };
     let (largest, longest) = (measure(free_run.largest(), unit), free_run.longest_s());
     format!(
-        "The model is {model}. On parts of the log that were left out of its fit it was off by up \
-         to {largest} within {}; the margin is {} times as much, and grows with time.",
-        measure(longest, Some("s")),
-        rounded(RESERVE)
+        "Margin: grows to {margin}. It is {} times the most by which the model, {model}, was off on \
+         parts of the log that its fit did not see: {largest} within {}, and in proportion beyond.",
+        rounded(RESERVE),
+        measure(longest, Some("s"))
     )
 }
 
@@ -201,14 +233,14 @@ pub(crate) fn hold_note(shortest_s: f64, response_s: f64) -> String {
 pub(crate) fn left_out_note(levels: &[f64], unit: Option<&str>) -> String {
     let levels: Vec<String> = levels.iter().map(|level| rounded(*level)).collect();
     let levels = listed(&levels, "and") + &unit_suffix(unit);
-    format!("The range is too narrow for {levels}, which the log has.")
+    format!("Levels: the range is too narrow for {levels}, which the log has.")
 }
 
 /// Why the input is no longer.
 pub(crate) fn shortened_note(duration_s: f64, usual_s: f64) -> String {
     format!(
-        "It ends after {duration_s:.0} s instead of {usual_s:.0} s: for longer the range cannot be \
-         promised. Bring the joint back to the start and play it again, or another with --seed."
+        "Length: {duration_s:.0} s instead of {usual_s:.0} s, since the range cannot be promised for \
+         longer. For more data, go back to the start and play another (--seed 2)."
     )
 }
 

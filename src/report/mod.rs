@@ -47,11 +47,11 @@ pub(crate) use delay_table::{delay_levels_text, level_table, write_level_table};
 pub(crate) use delays::delay_table;
 pub use delays::write_delays;
 pub(crate) use design::{Basis, DesignedJoint, Discrimination, write_input, write_preview};
+#[cfg(feature = "rrd")]
+pub(crate) use design_words::{SIDE_HEADER, design_sentences, side_rows};
 pub(crate) use design_words::{
     design_text, hold_note, left_out_note, no_range_note, shortened_note,
 };
-#[cfg(feature = "rrd")]
-pub(crate) use design_words::{SIDE_HEADER, design_sentences, side_rows};
 pub(crate) use effects::{listing, sheet};
 pub use estimated::EstimatedJoint;
 pub(crate) use explain::explain_text;

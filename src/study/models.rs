@@ -135,10 +135,13 @@ fn improved(
     horizon: Horizon,
     workers: &impl Workers,
 ) -> Option<Judged> {
+    /// Effects that are added at most: of later ones a prediction gains little.
+    const MOST_EFFECTS: usize = 5;
+    let options = Options { max_effects: MOST_EFFECTS, ..Options::default() };
     let joint = record.joint();
     let judged = FitRecord::new(joint, Split::of(joint), horizon);
     let start = best_fit(&judged, std::slice::from_ref(plain))?.ok()?;
-    let improvement = improve(&judged, start, &Options::default(), workers, |_| true);
+    let improvement = improve(&judged, start, &options, workers, |_| true);
     let last = improvement.revisions.into_iter().last()?.comparison.fit.model;
     let fit = best_fit(record, &[last])?.ok()?;
     Some((FreeRunError::of(joint, &fit.model), fit))

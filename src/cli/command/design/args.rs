@@ -65,7 +65,7 @@ pub(crate) struct Args {
     )]
     pub(super) duration: Option<f64>,
 
-    /// Samples per second [default: as the logs, else 100]
+    /// Samples per second [default: as the logs, but no more than 100 without `--separate`]
     #[arg(
         long, value_name = "HZ", value_parser = values::above_zero,
         allow_negative_numbers = true, help_heading = "Input"

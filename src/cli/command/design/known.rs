@@ -50,6 +50,8 @@ impl Known {
             .rate
             .map(|rate| SamplePeriod::from_seconds(1.0 / rate).context("--rate: out of range"));
         let usual = SamplePeriod::from_seconds(1.0 / RATE_HZ).context("a sample period")?;
+        let logged =
+            logged.map(|logged| if args.separate.is_empty() { at_most(logged) } else { logged });
         let period = given.transpose()?.or(logged).unwrap_or(usual);
         let names = names(args, &file, experiment.as_ref())?;
         let read = experiment.iter().flat_map(|experiment| &experiment.joints);
@@ -57,7 +59,12 @@ impl Known {
             let logged = Logged::of(joint);
             let has_model = file.joint(&joint.name).is_some();
             let logged = if has_model { logged.as_it_is() } else { logged };
-            (logged.centred(joint), logged)
+            let played = if args.separate.is_empty() {
+                logged.thinned(joint)
+            } else {
+                logged.centred(joint)
+            };
+            (played, logged)
         };
         let (joints, logged) = read.map(centred).unzip();
         Ok(Self { file, experiment, names, joints, logged, period })
@@ -112,6 +119,12 @@ impl Known {
     }
 }
 
+/// `logged`, or ten milliseconds where it is shorter: no level is held for less than half a second.
+fn at_most(logged: SamplePeriod) -> SamplePeriod {
+    let usual = SamplePeriod::from_seconds(1.0 / RATE_HZ);
+    usual.filter(|usual| usual.seconds() > logged.seconds()).unwrap_or(logged)
+}
+
 /// The logs, where there are any.
 fn read(args: &Args) -> anyhow::Result<Option<Experiment>> {
     if args.data.is_empty() {
@@ -131,8 +144,7 @@ fn names(
     }
     let known: Vec<String> = file.names().map(str::to_owned).collect();
     let named = args.reading.joints();
-    if let Some(unknown) = named.iter().find(|name| !known.is_empty() && !known.contains(name))
-    {
+    if let Some(unknown) = named.iter().find(|name| !known.is_empty() && !known.contains(name)) {
         let known = known.join(", ");
         return Err(anyhow!("joint `{unknown}`: not in the model file, which has {known}"));
     }

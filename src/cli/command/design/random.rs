@@ -2,11 +2,13 @@
 
 use crate::batch::Threads;
 use crate::design::{
-    Band, Logged, Plan, TestRig, Uncertain, Wishes, default_largest, plan, reach, resting_band,
-    response_s,
+    Band, Logged, Plan, TestRig, Uncertain, Wishes, default_largest, plan, reach, response_s,
+    resting_band,
 };
 use crate::experiment::Joint;
-use crate::report::{Basis, DesignedJoint, hold_note, left_out_note, no_range_note, shortened_note};
+use crate::report::{
+    Basis, DesignedJoint, hold_note, left_out_note, no_range_note, shortened_note,
+};
 use crate::study::{OfJoints, know_joints};
 use anyhow::{anyhow, bail};
 
@@ -108,12 +110,7 @@ fn basis(known: &Uncertain, rig: &TestRig, logged: Option<&Logged>) -> Basis {
 }
 
 /// What whoever plays it should know.
-fn notes(
-    plan: &Plan,
-    rig: &TestRig,
-    uncertain: Option<&Uncertain>,
-    rest: f64,
-) -> Vec<String> {
+fn notes(plan: &Plan, rig: &TestRig, uncertain: Option<&Uncertain>, rest: f64) -> Vec<String> {
     let response = model(uncertain).map(|model| response_s(model, rig, plan.largest));
     let short = response.filter(|response| plan.hold_s.0 < *response);
     let short = short.map(|response| hold_note(plan.hold_s.0, response));

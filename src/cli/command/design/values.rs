@@ -15,13 +15,6 @@ pub(crate) enum BandChoice {
     Given(f64, f64),
 }
 
-impl Levels {
-    /// The largest magnitude.
-    pub(crate) fn largest(&self) -> f64 {
-        self.0.iter().fold(0.0, |largest: f64, level| largest.max(level.abs()))
-    }
-}
-
 pub(crate) fn levels(text: &str) -> Result<Levels, String> {
     /// More than anybody plays.
     const MOST: usize = 100;

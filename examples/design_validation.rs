@@ -1,0 +1,57 @@
+//! Whether `design --output-range` keeps its promise on joints that are not its models.
+//!
+//! Each joint is drawn with physics of its own, in the synthetic plant, which shares no equation
+//! with the models: effects of the catalogue at random, effects outside it, and cylinders. It is
+//! logged for about a minute; from the log alone an input is designed that is to keep a range,
+//! as `tauscope design LOG --output-range LO,HI` does; and the input is played on the same joint.
+//! How often does it leave the range, how often is nothing designed, how much of the range is
+//! used? The page goes to standard output, progress to standard error.
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "an example prints")]
+
+#[path = "design_validation/case.rs"]
+mod case;
+#[path = "hidden_effect_table/in_order.rs"]
+mod in_order;
+#[path = "design_validation/page.rs"]
+mod page;
+#[path = "design_validation/plants.rs"]
+mod plants;
+
+use std::thread;
+
+use clap::Parser;
+use tauscope::batch::with_threads;
+
+use case::{Judged, examine};
+use in_order::in_order;
+use page::page;
+
+/// Design inputs that keep a range, play them on other physics, and count how often they do
+#[derive(Debug, Parser)]
+struct Args {
+    /// Joints
+    #[arg(long, default_value_t = 200)]
+    joints: u64,
+
+    /// Seed of the first joint
+    #[arg(long, default_value_t = 1)]
+    first_seed: u64,
+
+    /// Joints at the same time [default: as many as there are processors]
+    #[arg(long)]
+    threads: Option<usize>,
+}
+
+fn main() -> anyhow::Result<()> {
+    let args = Args::parse();
+    let processors = thread::available_parallelism().map_or(1, usize::from);
+    let seeds: Vec<u64> = (args.first_seed..args.first_seed + args.joints).collect();
+    let judged = in_order(&seeds, args.threads.unwrap_or(processors).max(1), |index, seed| {
+        // One thread for each joint: there are enough of them.
+        let judged: Judged = with_threads(Some(1), || examine(*seed))??;
+        eprintln!("{} of {}: {judged}", index + 1, seeds.len());
+        Ok(judged)
+    })?;
+    print!("{}", page(&judged));
+    Ok(())
+}

@@ -1,0 +1,223 @@
+//! One joint: logged, an input designed from the log, and the input played.
+
+use std::fmt;
+
+use anyhow::Context as _;
+use rand::RngExt as _;
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+use tauscope::Joint;
+use tauscope::batch::Threads;
+use tauscope::delay::Settings;
+use tauscope::design::{
+    Hold, Logged, Plan, RandomSteps, Schedule, TestRig, Uncertain, Wishes, plan, random_steps,
+    reach,
+};
+use tauscope::fit::{Horizon, Split};
+use tauscope::study::{Mode, Protocol, estimate_joints, know_joints};
+use tauscope::synthetic::{InputSpec, PlantSpec, simulate};
+
+use crate::plants::{Drawn, drawn};
+
+/// What became of a joint.
+#[derive(Debug)]
+pub(crate) struct Judged {
+    pub(crate) seed: u64,
+    pub(crate) kind: &'static str,
+    pub(crate) hidden: Vec<&'static str>,
+    /// Effects of the model that was designed with.
+    pub(crate) model: Vec<&'static str>,
+    pub(crate) range: (f64, f64),
+    /// What was played, or why nothing was.
+    pub(crate) outcome: Result<Played, String>,
+    /// Whether a plain integrator, whose margin is that of its parameters, leaves the range with
+    /// an input of the same length: `None` where nothing was designed.
+    pub(crate) integrator_leaves: Option<bool>,
+}
+
+/// An input that was played.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Played {
+    pub(crate) duration_s: f64,
+    pub(crate) steps: usize,
+    /// Part of the range through which the joint went.
+    pub(crate) used: f64,
+    /// How far it left the range, as a part of that; zero where it did not.
+    pub(crate) beyond: f64,
+    /// Part of the margin that was needed at most.
+    pub(crate) needed: f64,
+}
+
+impl Played {
+    pub(crate) fn is_kept(&self) -> bool {
+        self.beyond <= 0.0
+    }
+}
+
+impl fmt::Display for Judged {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { seed, kind, hidden, model, range, .. } = self;
+        let (hidden, model) = (hidden.join("+"), model.join("+"));
+        write!(
+            f,
+            "seed {seed}, {kind} {hidden}; model {model}; {:.1} to {:.1}: ",
+            range.0, range.1
+        )?;
+        match &self.outcome {
+            Ok(Played { duration_s, steps, used, beyond, needed }) => write!(
+                f,
+                "{duration_s:.0} s, {steps} steps, {:.0} % used, {:.2} of the margin needed, {}",
+                100.0 * used,
+                needed,
+                if *beyond > 0.0 {
+                    format!("LEFT by {:.1} %", 100.0 * beyond)
+                } else {
+                    "kept".into()
+                }
+            ),
+            Err(why) => write!(f, "refused: {why}"),
+        }
+    }
+}
+
+/// How the program fits the model of a log.
+const PROTOCOL: Protocol = Protocol {
+    mode: Mode::FitOrIntegrator,
+    split: Some(Split::Time(1.0)),
+    horizon: Horizon::Steps,
+};
+
+/// What becomes of the joint number `seed`.
+pub(crate) fn examine(seed: u64) -> anyhow::Result<Judged> {
+    let Drawn { plant, kind, hidden } = drawn(seed)?;
+    let log = simulate(&plant).with_context(|| format!("seed {seed}"))?.joints.remove(0);
+    let logged = Logged::of(&log);
+    let log = logged.thinned(&log);
+    let (range, duration_s) = wanted(seed, &logged);
+    let within = reach(range, Some(&logged))?;
+    let rig = rig(&log, range, 0.5 * (within.0 + within.1))?;
+    let known = known(&log)?;
+    let wishes = Wishes { duration_s, seed, ..Wishes::default() };
+    let effects = known.model.components().iter().map(|c| c.effect().spec().id).collect();
+    let planned = plan(&wishes, &rig, Some(&known), Some(&logged), 0);
+    let integrator_leaves = match &planned {
+        Ok(plan) => Some(integrator_leaves(&plant, &log, (&rig, &logged), plan, seed)?),
+        Err(_) => None,
+    };
+    let outcome = match planned {
+        Ok(plan) => Ok(played(&plant, &rig, &logged, &plan)?),
+        Err(why) => Err(why.to_string()),
+    };
+    Ok(Judged { seed, kind, hidden, model: effects, range, outcome, integrator_leaves })
+}
+
+/// The range that is to be kept, part of where the log has been or somewhat more, and the length
+/// of the input where one is asked for.
+fn wanted(seed: u64, logged: &Logged) -> ((f64, f64), Option<f64>) {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(1);
+    let (low, high) = logged.extent;
+    let width = (high - low) * (0.4 + 0.7 * random.random::<f64>());
+    let middle = 0.5 * (low + high) + 0.2 * (high - low) * (random.random::<f64>() - 0.5);
+    let duration_s = match random.random_range(0..4) {
+        0 => Some(30.0),
+        1 => Some(60.0),
+        _ => None,
+    };
+    ((middle - 0.5 * width, middle + 0.5 * width), duration_s)
+}
+
+fn rig(log: &Joint, range: (f64, f64), start: f64) -> anyhow::Result<TestRig> {
+    Ok(TestRig {
+        name: log.name.clone(),
+        input_unit: log.input_unit.clone(),
+        output_unit: log.output_unit.clone(),
+        period: log.trials.first().context("a trial")?.period(),
+        start,
+        range: Some(range),
+    })
+}
+
+/// The best model that the log supports.
+fn known(log: &Joint) -> anyhow::Result<Uncertain> {
+    /// As the program has it.
+    const SHARE: f64 = 0.1;
+    let joints = std::slice::from_ref(log);
+    let estimates = estimate_joints(joints, &Settings::default(), || (), &Threads);
+    let known = know_joints(joints, &estimates, |_| None, PROTOCOL, SHARE, &Threads);
+    Ok(known.into_iter().next().flatten().context("no model")??)
+}
+
+/// The angles of the joint, without noise, while `schedule` is played from `start` on.
+fn angles(plant: &PlantSpec, start: f64, schedule: &Schedule) -> anyhow::Result<Vec<f64>> {
+    /// The delays of the play are others than those of the log.
+    const ANOTHER: u64 = 1_000_000;
+    let mut plant = plant.clone();
+    let starts = schedule.holds().iter().scan(1, |next, hold: &Hold| {
+        let start = *next;
+        *next += hold.samples;
+        Some((start, hold.level))
+    });
+    let joint = plant.joints.first_mut().context("a joint")?;
+    joint.input = InputSpec::Steps { steps: starts.skip(1).collect(), initial: 0.0 };
+    (joint.start, joint.range, joint.noise) = (start, None, 0.0);
+    plant.duration_s = schedule.duration_s();
+    plant.seed += ANOTHER;
+    Ok(simulate(&plant)?.joints.remove(0).trials.remove(0).output().to_vec())
+}
+
+/// What the joint does with `plan`.
+fn played(
+    plant: &PlantSpec,
+    rig: &TestRig,
+    logged: &Logged,
+    plan: &Plan,
+) -> anyhow::Result<Played> {
+    let schedule = plan.schedule.about(logged.rest);
+    let angles = angles(plant, rig.start, &schedule)?;
+    let range = rig.range.context("a range")?;
+    let prediction = plan.prediction.as_ref().context("a prediction")?;
+    let width = range.1 - range.0;
+    let low = angles.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let off = angles.iter().zip(&prediction.output).map(|(angle, own)| (angle - own).abs());
+    let needed = off.zip(&prediction.margin).map(|(off, margin)| off / margin.max(1e-9));
+    Ok(Played {
+        duration_s: schedule.duration_s(),
+        steps: schedule.steps(),
+        used: (high - low) / width,
+        beyond: (range.0 - low).max(high - range.1).max(0.0) / width,
+        needed: needed.fold(0.0, f64::max),
+    })
+}
+
+/// Whether an input as long leaves the range that was drawn with a fitted integrator, within the
+/// margin of its parameters and no other.
+fn integrator_leaves(
+    plant: &PlantSpec,
+    log: &Joint,
+    (rig, logged): (&TestRig, &Logged),
+    plan: &Plan,
+    seed: u64,
+) -> anyhow::Result<bool> {
+    let joints = std::slice::from_ref(log);
+    let estimates = estimate_joints(joints, &Settings::default(), || (), &Threads);
+    let gain = |joint: &Joint| {
+        let trials = estimates.iter().flatten().flat_map(|estimate| estimate.estimated());
+        let trials: Vec<_> = trials.collect();
+        tauscope::model::integrators(joint, &trials).into_iter().next()
+    };
+    let fitted = know_joints(joints, &estimates, gain, PROTOCOL, 0.1, &Threads);
+    let known = fitted.into_iter().next().flatten().context("no model")??;
+    let known = Uncertain { free_run: None, ..known };
+    let steps = RandomSteps {
+        levels: plan.schedule.levels(),
+        hold_s: plan.hold_s,
+        duration_s: plan.schedule.duration_s(),
+        seed,
+    };
+    let schedule = random_steps(&steps, rig, Some(&known), 0).about(logged.rest);
+    let angles = angles(plant, rig.start, &schedule)?;
+    let (low, high) = rig.range.context("a range")?;
+    Ok(angles.iter().any(|angle| *angle < low || *angle > high))
+}

@@ -1,0 +1,47 @@
+//! The figures of all joints, as Markdown.
+
+use std::fmt::Write as _;
+
+use crate::case::{Judged, Played};
+
+/// The table, and what it says in sentences.
+pub(crate) fn page(judged: &[Judged]) -> String {
+    let mut page = String::from(
+        "| joints | designed | kept the range | left it | farthest | length | steps | range used | \
+         integrator leaves it |\n|---|---|---|---|---|---|---|---|---|\n",
+    );
+    for kind in ["catalogue", "outside the catalogue", "cylinder"] {
+        let own: Vec<&Judged> = judged.iter().filter(|judged| judged.kind == kind).collect();
+        page += &row(kind, &own);
+    }
+    page += &row("all", &judged.iter().collect::<Vec<_>>());
+    page
+}
+
+/// Figures of some joints.
+fn row(name: &str, judged: &[&Judged]) -> String {
+    let played = judged.iter().filter_map(|judged| judged.outcome.as_ref().ok());
+    let played: Vec<&Played> = played.collect();
+    let kept = played.iter().filter(|played| played.is_kept()).count();
+    let farthest = played.iter().map(|played| played.beyond).fold(0.0, f64::max);
+    let leaves = judged.iter().filter(|judged| judged.integrator_leaves == Some(true)).count();
+    let mut row = String::new();
+    let _ = writeln!(
+        row,
+        "| {name} | {} of {} | {kept} | {} | {:.1} % | {:.0} s | {:.0} | {:.0} % | {leaves} |",
+        played.len(),
+        judged.len(),
+        played.len() - kept,
+        100.0 * farthest,
+        median(played.iter().map(|played| played.duration_s)),
+        median(played.iter().map(|played| played.steps as f64)),
+        100.0 * median(played.iter().map(|played| played.used)),
+    );
+    row
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
