@@ -32,10 +32,13 @@ pub(crate) fn drawn(seed: u64) -> anyhow::Result<Drawn> {
     }
     let duration_s = chance.between(40.0, 70.0).round();
     let outside = ["creep_memory", "sticky_spot", "input_notch", "sensor_nonlinearity"];
-    let kind = match is_cylinder {
-        true => "cylinder",
-        false if hidden.iter().any(|name| outside.contains(name)) => "outside the catalogue",
-        false => "catalogue",
+    let is_outside = hidden.iter().any(|name| outside.contains(name));
+    let kind = if is_cylinder {
+        "cylinder"
+    } else if is_outside {
+        "outside the catalogue"
+    } else {
+        "catalogue"
     };
     let plant = PlantSpec::new(seed, duration_s, vec![joint]);
     Ok(Drawn { plant: PlantSpec { sample_period_s: 1.0 / RATE_HZ, ..plant }, kind, hidden })

@@ -89,6 +89,15 @@ impl FreeRunError {
         RESERVE * self.by_time.at(seconds).max(self.by_way.at(way))
     }
 
+    /// Errors that grow by so much in a second.
+    #[cfg(test)]
+    pub(super) fn growing(per_second: f64) -> Self {
+        let width = 0.1;
+        let largest = (1..=100).map(|bin| per_second * width * f64::from(bin)).collect();
+        let none = Growth { width: 1.0, largest: vec![0.0; 100] };
+        Self { by_time: Growth { width, largest }, by_way: none }
+    }
+
     /// Seconds of the longest run.
     pub fn longest_s(&self) -> f64 {
         self.by_time.width * self.by_time.largest.len() as f64

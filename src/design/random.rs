@@ -241,7 +241,7 @@ pub fn transitions(schedule: &Schedule) -> (usize, usize) {
 }
 
 /// Whether two levels are not the same.
-fn differ(a: f64, b: f64) -> bool {
+pub(super) fn differ(a: f64, b: f64) -> bool {
     #[expect(clippy::float_cmp, reason = "a step is any change")]
     let differ = a != b;
     differ
