@@ -94,10 +94,12 @@ impl Rows for Unread {
         let mut labels = Labels::default();
         let mut rows = 0;
         let refuse = |error: TooLarge| error.refuse(wanted.path());
-        for group in 0..self.reader.num_row_groups() {
-            let count = self.reader.metadata().row_group(group).num_rows();
-            let count = usize::try_from(count).unwrap_or_default();
-            self.budget.take_values(count, wanted.numeric.len() * NUMBER_SIZE).map_err(refuse)?;
+        let counts = self.reader.metadata().row_groups().iter();
+        let counts: Vec<usize> =
+            counts.map(|group| usize::try_from(group.num_rows()).unwrap_or_default()).collect();
+        let all = counts.iter().fold(0, |all: usize, count| all.saturating_add(*count));
+        self.budget.take_values(all, wanted.numeric.len() * NUMBER_SIZE).map_err(refuse)?;
+        for (group, count) in counts.into_iter().enumerate() {
             let read = |index, cells: &mut dyn FnMut(Cell)| {
                 self.group(group, index, cells).map_err(|error| damaged(wanted.path(), &error))
             };
