@@ -83,7 +83,8 @@ fn each_step_is_told_and_the_ladder_is_printed() {
     }
     let printed = String::from_utf8(output.stdout).unwrap();
     for part in [
-        "boom: no missing effect found",
+        "boom: dead_band explains ",
+        "; no missing effect found",
         "│ 0          integrator",
         "│ 1          + dead_band",
         "arm: ",

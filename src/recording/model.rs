@@ -263,6 +263,6 @@ fn headline(comparison: &Comparison) -> String {
         (_, Some(times)) => {
             format!("the error is {} times the noise", number(times.max(0.0).round()))
         }
-        _ => "the model fails".to_owned(),
+        _ => "there is an error that is no noise".to_owned(),
     }
 }

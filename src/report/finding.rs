@@ -2,6 +2,7 @@
 
 use super::ComparedJoint;
 use super::text_table::TextTable;
+use crate::diagnosis::Comparison;
 use crate::effect::Spec;
 use crate::experiment::Joint;
 use crate::explain::{Candidate, Verdict};
@@ -19,6 +20,8 @@ pub struct Finding<'a> {
     pub ranking: &'a [Candidate],
     /// What follows the effect on the command line that adds it.
     pub add_arguments: &'a str,
+    /// The model to which effects were added, where any were.
+    pub before: Option<&'a Comparison>,
 }
 
 /// The effects that a candidate added, in its order.

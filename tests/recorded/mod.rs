@@ -169,6 +169,7 @@ pub(crate) fn grown<'a>(joint: &'a Joint, improvement: &'a Improvement) -> Impro
     let comparison = &last.comparison;
     let compared = ComparedJoint { joint, model: "model", revision, comparison };
     let ranking = &last.ranking;
-    let finding = Finding { compared, verdict: *verdict, ranking, add_arguments: "log.csv" };
+    let finding =
+        Finding { compared, verdict: *verdict, ranking, add_arguments: "log.csv", before: None };
     ImprovedJoint::of(finding, revisions)
 }

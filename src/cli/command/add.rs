@@ -123,7 +123,8 @@ fn grown<'a>(added: &AddedJoint<'a>, revisions: &'a [Step]) -> ImprovedJoint<'a>
     let is_adequate = compared.comparison.lack_of_fit.is_none_or(|test| test.adequate);
     // What the model still lacks was not looked for.
     let verdict = if is_adequate { Verdict::Adequate } else { Verdict::MissingEffect };
-    let finding = Finding { compared, verdict, ranking: &[], add_arguments: "" };
+    let before = Some(&added.addition.before);
+    let finding = Finding { compared, verdict, ranking: &[], add_arguments: "", before };
     ImprovedJoint::of(finding, revisions)
 }
 

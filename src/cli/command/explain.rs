@@ -98,7 +98,7 @@ fn finding<'a>(
     let revision = file.revision(&joint.name).unwrap_or(0);
     let Explanation { base, verdict, ranking } = explanation;
     let compared = ComparedJoint { joint, model, revision, comparison: base };
-    Finding { compared, verdict: *verdict, ranking, add_arguments }
+    Finding { compared, verdict: *verdict, ranking, add_arguments, before: None }
 }
 
 /// The model as the only one of its revisions.

@@ -64,7 +64,9 @@ pub(crate) fn improved<'a>(
     let first_revision = file.revision(&joint.name).unwrap_or(0);
     let revision = (first_revision..).zip(revisions).last()?.0;
     let compared = ComparedJoint { joint, model, revision, comparison: &last.comparison };
-    let finding = Finding { compared, verdict: *verdict, ranking: &last.ranking, add_arguments };
+    let before = revisions.first().filter(|_| revisions.len() > 1).map(|first| &first.comparison);
+    let (verdict, ranking) = (*verdict, last.ranking.as_slice());
+    let finding = Finding { compared, verdict, ranking, add_arguments, before };
     Some(ImprovedJoint { finding, revisions, first_revision, interrupted: false })
 }
 
