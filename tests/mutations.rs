@@ -3,7 +3,6 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 #[path = "hostile/bytes.rs"]
-#[expect(dead_code, reason = "it builds files for other tests, too")]
 mod bytes;
 
 use std::fs;

@@ -172,7 +172,20 @@ pub(super) fn tolerance(input: &[f64]) -> f64 {
     let largest = taken_back.iter().copied().fold(0.0, f64::max);
     let tolerance = (TIMES_USUAL * usual).min(TIMES_LARGEST * largest);
     let (low, high) = range(input);
-    if tolerance < OF_RANGE * (high - low) { tolerance } else { 0.0 }
+    let is_small = tolerance < OF_RANGE * (high - low);
+    if is_small && goes_to_and_fro(&changes, tolerance) { tolerance } else { 0.0 }
+}
+
+/// Whether changes up to `largest` mostly take back the one before, as noise does and a smooth
+/// input does at its peaks only.
+///
+/// Of white noise two in three do. About a peak the changes of an even curve are `…, 3d, d, −d,
+/// −3d, …`; with `largest` 2.5 or 3.5 times `d`, one in four at most does.
+fn goes_to_and_fro(changes: &[(usize, f64)], largest: f64) -> bool {
+    const LEAST: f64 = 0.45;
+    let small = || changes.windows(2).filter(|pair| pair.iter().all(|(_, a)| a.abs() <= largest));
+    let back = small().filter(|pair| matches!(pair, [(_, a), (_, b)] if a * b < 0.0)).count();
+    back as f64 > LEAST * small().count() as f64
 }
 
 fn range(values: &[f64]) -> (f64, f64) {

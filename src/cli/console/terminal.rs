@@ -34,16 +34,20 @@ fn shown_in_tones(text: &str) -> String {
     let tones = [Tone::Good, Tone::Notice, Tone::Bad].map(Tone::style);
     let mut codes: Vec<String> = tones.iter().map(ToString::to_string).collect();
     codes.push(format!("{:#}", Tone::Good.style()));
-    let mut pieces = text.split(ESCAPE);
-    let mut all = shown(pieces.next().unwrap_or_default());
-    for piece in pieces {
-        let piece = format!("{ESCAPE}{piece}");
-        let code = codes.iter().find(|code| piece.starts_with(code.as_str()));
-        let (code, rest) = piece.split_at(code.map_or(0, String::len));
+    let (mut all, mut rest) = (String::new(), text);
+    while let Some(at) = rest.find(ESCAPE) {
+        let (before, escaped) = rest.split_at(at);
+        // A code may be made of several escapes, so that it is taken whole.
+        let code = codes.iter().find(|code| escaped.starts_with(code.as_str()));
+        let (code, letter) = code.map_or((0, ESCAPE.len_utf8()), |code| (code.len(), 0));
+        let (code, after) = escaped.split_at(code);
+        let (letter, after) = after.split_at(letter);
+        all += &shown(before);
         all += code;
-        all += &shown(rest);
+        all += &shown(letter);
+        rest = after;
     }
-    all
+    all + &shown(rest)
 }
 
 /// What colours and all else that a terminal does begin with.
