@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 #[path = "hostile/bytes.rs"]
+#[cfg_attr(feature = "mat", expect(dead_code, reason = "it builds files for other tests, too"))]
 mod bytes;
 
 use std::fs;

@@ -203,7 +203,7 @@ fn integrator_leaves(
     let joints = std::slice::from_ref(log);
     let estimates = estimate_joints(joints, &Settings::default(), || (), &Threads);
     let gain = |joint: &Joint| {
-        let trials = estimates.iter().flatten().flat_map(|estimate| estimate.estimated());
+        let trials = estimates.iter().flatten().flat_map(tauscope::study::JointEstimate::estimated);
         let trials: Vec<_> = trials.collect();
         tauscope::model::integrators(joint, &trials).into_iter().next()
     };

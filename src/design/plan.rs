@@ -293,7 +293,7 @@ impl Planner<'_> {
                 let asked = self.rig.range.unwrap_or(range);
                 let why = NotKept {
                     duration_s: longest_s,
-                    margin: self.margin_at_rest(known, longest_s),
+                    margin: known.free_run.as_ref().map(|free_run| free_run.margin(longest_s, 0.0)),
                     shorter_s,
                     wider: self.wider(asked, |range| kept(longest_s, range).is_some()),
                 };
@@ -309,11 +309,6 @@ impl Planner<'_> {
             WIDER.map(|times| (rounded(middle - times * half), rounded(middle + times * half)));
         let mut wider = wider.into_iter();
         wider.find(|range| reach(*range, self.logged).is_ok_and(&will_do))
-    }
-
-    /// How far a prediction may be off after so many seconds of rest.
-    fn margin_at_rest(&self, known: &Uncertain, seconds: f64) -> Option<f64> {
-        known.free_run.as_ref().map(|free_run| free_run.margin(seconds, 0.0))
     }
 
     /// Levels and holds that are tried, best first: with shorter holds, and without the largest
