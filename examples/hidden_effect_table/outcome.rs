@@ -116,7 +116,7 @@ fn outcome(
     named: Option<Named>,
     other_adequate: Option<bool>,
 ) -> anyhow::Result<Outcome> {
-    let Improvement { revisions, verdict } = improvement;
+    let Improvement { revisions, verdict, .. } = improvement;
     let first = revisions.first().context("no revision")?;
     let last = revisions.last().context("no revision")?;
     let effects = last.comparison.fit.model.components().iter();

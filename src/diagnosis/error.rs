@@ -1,6 +1,6 @@
 //! How large the error of a model is.
 
-use crate::fit::{Evaluation, FitRecord, Part};
+use crate::fit::{Evaluation, FitRecord, Part, Window};
 
 /// The error of a model on one part of a record, without isolated spikes of the sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,8 +17,21 @@ pub struct ErrorFigures {
 impl ErrorFigures {
     /// The error of an evaluated model on `part`; `None` where it has no sample.
     pub fn of(record: &FitRecord<'_>, evaluation: &Evaluation, part: Part) -> Option<Self> {
+        Self::over(record, evaluation, record.part(part))
+    }
+
+    /// The error of an evaluated model on both parts together.
+    pub(crate) fn of_record(record: &FitRecord<'_>, evaluation: &Evaluation) -> Option<Self> {
+        Self::over(record, evaluation, record.windows().iter())
+    }
+
+    fn over<'w>(
+        record: &FitRecord<'_>,
+        evaluation: &Evaluation,
+        windows: impl Iterator<Item = &'w Window>,
+    ) -> Option<Self> {
         let (mut samples, mut squares, mut spread, mut max) = (0_usize, 0.0, 0.0, 0.0_f64);
-        for window in record.part(part) {
+        for window in windows {
             let residuals =
                 evaluation.residuals.get(window.trial)?.get(window.start..window.end)?;
             let measured = record.joint().trials.get(window.trial)?.output();

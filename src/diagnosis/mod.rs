@@ -1,7 +1,8 @@
 //! Is a model good enough, and if not, where does it fail?
 //!
 //! - [`compare()`]: all figures of one model on one record
-//! - [`noise_floor`]: the noise of the measurement
+//! - [`noise_floor`]: the noise of the measurement, beside a model
+//! - [`sensor_noise`]: that of the sensor, from the record alone
 //! - [`lack_of_fit()`]: whether the residual is more than noise
 //! - [`whiteness()`], [`input_correlation()`]: how the residual is correlated, with itself and
 //!   with the input
@@ -28,7 +29,7 @@ pub use input_correlation::{CrossCorrelation, InputCorrelation, input_correlatio
 pub use lack_of_fit::{LackOfFit, NEGLIGIBLE, SIGNIFICANCE, TestColumns, lack_of_fit};
 pub use lags::{CONFIDENCE, TrialSignals};
 pub use local_misfit::LocalMisfit;
-pub use noise::noise_floor;
+pub use noise::{noise_floor, sensor_noise};
 pub use residual_size::ResidualSize;
 pub(crate) use residual_size::{BEYOND_NOISE, NEAR_NOISE};
 pub use shown_by::ShownBy;

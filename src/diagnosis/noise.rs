@@ -9,6 +9,12 @@ use crate::numerics::median;
 /// Seconds after a change of the input in which a joint may still settle.
 const SETTLING_S: f64 = 0.3;
 
+/// Seconds of a window: short beside the motion of a hydraulic joint.
+const WINDOW_S: f64 = 0.2;
+
+/// Fewest samples of a window: three go into its parabola.
+const FEWEST: usize = 8;
+
 /// Fewest samples of a stretch: three go into its parabola.
 const SHORTEST: usize = 20;
 
@@ -26,6 +32,42 @@ pub fn noise_floor<'a>(trials: impl Iterator<Item = (&'a Trial, &'a Arrivals)>) 
         steady.filter_map(|stretch| trial.output().get(stretch)).collect::<Vec<_>>()
     };
     of_stretches(trials.flat_map(values))
+}
+
+/// Standard deviation of the noise of the sensor, output units, from the record alone; `None`
+/// where every trial is too short.
+///
+/// Each window of 0.2 s is fitted by a parabola; the median of the residual variances
+/// `Σ r² / (n − 3)` is that of the noise. A sensor that shows none where the joint rests has at
+/// least that of its rounding, `q/√12` with the least change `q` (B. Widrow and I. Kollár,
+/// "Quantization Noise", 2008). Motion within fractions of 0.2 s counts as noise; noise that is
+/// slower than that does not.
+pub fn sensor_noise(trials: &[Trial]) -> Option<f64> {
+    let windows = trials.iter().flat_map(|trial| {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small")]
+        let samples = (WINDOW_S / trial.period().seconds()).round() as usize;
+        trial.output().chunks_exact(samples.max(FEWEST))
+    });
+    let variances: Vec<f64> =
+        windows.map(about_parabola).filter(|variance| variance.is_finite()).collect();
+    let seen = median(&variances)?.sqrt();
+    Some(seen.max(rounding(trials)))
+}
+
+/// Standard deviation of the rounding of an output: of its least change, where that is a step of
+/// its scale, so that all changes are multiples of it.
+fn rounding(trials: &[Trial]) -> f64 {
+    /// Part of a step by which a change may miss a multiple of it.
+    const OFF: f64 = 0.02;
+    let changes = || {
+        let outputs = trials.iter().map(Trial::output);
+        let changes = outputs.flat_map(|y| y.iter().zip(y.iter().skip(1)).map(|(a, b)| b - a));
+        changes.map(f64::abs).filter(|change| *change > 0.0)
+    };
+    let least = changes().fold(f64::INFINITY, f64::min);
+    let is_multiple = |change: f64| (change / least - (change / least).round()).abs() < OFF;
+    let is_step = least.is_finite() && changes().all(is_multiple);
+    if is_step { least / 12.0_f64.sqrt() } else { 0.0 }
 }
 
 /// The part of [`noise_floor`] that a model does not follow: that of the output less the
@@ -151,6 +193,26 @@ mod tests {
         assert!((0.08..0.1).contains(&part(1.0)), "{}", part(1.0));
         // What makes it worse is no reason for more noise.
         assert!((part(-1.0) - part(0.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_noise_of_the_sensor_needs_no_model() {
+        let made = |period_s: f64, output: &dyn Fn(f64) -> f64| {
+            let samples: Vec<f64> = (0..4000).map(|k| output(f64::from(k) * period_s)).collect();
+            let period = SamplePeriod::from_seconds(period_s).unwrap();
+            let trial = Trial::new("1", 0.0, period, vec![0.0; 4000], samples).unwrap();
+            sensor_noise(&[trial]).unwrap()
+        };
+        let white = noise(5, 0.0, 4000);
+        for period_s in [0.1, 0.01, 0.002] {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "inside")]
+            let index = |t: f64| (t / period_s).round() as usize;
+            let found = made(period_s, &|t| 20.0 * (0.3 * t).sin() + 0.05 * white[index(t)]);
+            assert!((found / 0.05 - 1.0).abs() < 0.1, "{period_s} {found}");
+        }
+        let rounded = made(0.01, &|t| (t - 30.0).clamp(0.0, 5.0).div_euclid(0.1) * 0.1);
+        assert!((rounded / (0.1 / 12.0_f64.sqrt()) - 1.0).abs() < 0.02, "{rounded}");
+        assert!(made(0.01, &|_| 7.0) == 0.0);
     }
 
     #[test]

@@ -1,9 +1,12 @@
 //! One effect more in a model, because a user says so.
 
+use super::attribution::Grown;
 use super::comparison::MUCH_LESS;
 use super::eligible::signal_range;
 use super::evidence::NoiseMemory;
+use super::options::Options;
 use super::revision::{AddError, Addition};
+use super::workers::Workers;
 use crate::diagnosis::{ErrorFigures, NEAR_NOISE, compare, floor_of};
 use crate::effect::Effect;
 use crate::fit::{Fit, FitRecord, Part, fit};
@@ -17,6 +20,7 @@ pub fn add(
     record: &FitRecord<'_>,
     base: Fit,
     effect: &'static dyn Effect,
+    workers: &impl Workers,
 ) -> Result<Addition, AddError> {
     check(&base.model, effect)?;
     let model = base.model.with(Component::neutral(effect));
@@ -34,10 +38,14 @@ pub fn add(
     });
     let with = better.unwrap_or(by_law);
     let p_value = evidence(&with).p_value_against(&evidence(&base));
+    let options = Options::default();
+    let grown = Grown { record, first: &base, whole: &with, options: &options };
+    let attribution = grown.attribution(workers);
     Ok(Addition {
         before: compare(record, base),
         after: compare(record, with),
         p_value: effect.nests().then_some(p_value),
+        attribution,
     })
 }
 

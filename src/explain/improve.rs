@@ -1,5 +1,6 @@
 //! Explain and add, until nothing significant is missing.
 
+use super::attribution::{Attribution, Grown, LeftOut};
 use super::extension::ids;
 use super::options::Options;
 use super::revision::{Change, Improvement, Revision};
@@ -11,8 +12,9 @@ use crate::fit::{Fit, FitRecord};
 
 /// Adds what is missing from the model of `fit`, one effect after the other.
 ///
-/// After each effect, those that were added before and have become useless are removed.
-/// `done` is called with each revision; where it says no, nothing more is tried.
+/// After each effect, those that were added before and have become useless are removed. At the
+/// end, unless [`Options::keeps_refinements`], those without practical consequence go, too: see
+/// [`Attribution`]. `done` is called with each revision; where it says no, nothing more is tried.
 pub fn improve(
     record: &FitRecord<'_>,
     fit: Fit,
@@ -21,9 +23,9 @@ pub fn improve(
     mut done: impl FnMut(&Revision) -> bool,
 ) -> Improvement {
     let given = ids(&fit.model);
-    let first = Step::new(record, Change::Start, fit);
+    let first = Step::new(record, Change::Start, fit.clone());
     let mut revisions = Vec::new();
-    let verdict = add_stepwise(record, first, &given, options, workers, |step| {
+    let mut visit = |step: &Step| {
         let Step { change, fit, lack_of_fit, mut ranking } = step.clone();
         separate(record, &mut ranking, workers);
         let comparison = compare_knowing(record, fit, lack_of_fit);
@@ -31,6 +33,39 @@ pub fn improve(
         let goes_on = done(&revision);
         revisions.push(revision);
         goes_on
-    });
-    Improvement { revisions, verdict }
+    };
+    let ended = add_stepwise(record, first, &given, options, workers, &mut visit);
+    let verdict = ended.verdict;
+    let attribution = if ended.was_stopped {
+        Attribution::default()
+    } else {
+        attributed(record, &fit, ended.fit, options, workers, visit)
+    };
+    Improvement { revisions, verdict, attribution }
+}
+
+/// What each effect of `whole` carries, without those of no consequence, which are removed one
+/// after the other, the least first. `visit` sees each model on the way.
+fn attributed(
+    record: &FitRecord<'_>,
+    first: &Fit,
+    mut whole: Fit,
+    options: &Options,
+    workers: &impl Workers,
+    mut visit: impl FnMut(&Step) -> bool,
+) -> Attribution {
+    let mut removed = Vec::new();
+    loop {
+        let grown = Grown { record, first, whole: &whole, options };
+        let mut left_out = grown.left_out(workers);
+        let may_go = |least: &_| !options.keeps_refinements && !LeftOut::has_consequence(least);
+        let Some(least) = left_out.pop_if(|least| may_go(least)) else {
+            return grown.attribution_of(&left_out, removed, workers);
+        };
+        removed.push(least.effect);
+        if !visit(&Step::new(record, Change::Removed(least.effect), least.fit.clone())) {
+            return Attribution::default();
+        }
+        whole = least.fit;
+    }
 }

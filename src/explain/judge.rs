@@ -1,5 +1,6 @@
 //! Which of the candidates is to be named: the verdict on a model.
 
+use super::attribution::{Attribution, Grown};
 use super::candidate::Candidate;
 use super::extension::ids;
 use super::options::Options;
@@ -32,14 +33,19 @@ pub fn explain(
     let mut step = Step::new(record, Change::Start, fit);
     let lacks = step.rank_missing(record, options, workers);
     let Step { fit, lack_of_fit, mut ranking, .. } = step;
-    let base = compare_knowing(record, fit, lack_of_fit);
+    let base = compare_knowing(record, fit.clone(), lack_of_fit);
+    let attribution = Attribution::default();
     if !lacks {
-        return Explanation { base, verdict: Verdict::Adequate, ranking };
+        return Explanation { base, verdict: Verdict::Adequate, ranking, attribution };
     }
     let named = accounts_for_it(record, &mut ranking, options, workers);
     separate(record, &mut ranking, workers);
+    let best = ranking.first().filter(|_| named);
+    let attribution = best.map_or(attribution, |best| {
+        Grown { record, first: &fit, whole: &best.fit, options }.attribution(workers)
+    });
     let verdict = if named { Verdict::MissingEffect } else { Verdict::Unexplained };
-    Explanation { base, verdict, ranking }
+    Explanation { base, verdict, ranking, attribution }
 }
 
 /// The candidates for what the model of `fit` lacks, best first, where the first is to be
@@ -70,12 +76,13 @@ fn accounts_for_it(
     let given: Vec<_> = ids(&best.fit.model).into_iter().filter(|given| *given != id).collect();
     let ahead = Options { max_effects: 1 + LOOK_AHEAD, ..options.clone() };
     let mut last = Vec::new();
-    let verdict = add_stepwise(record, first, &given, &ahead, workers, |step| {
+    let ended = add_stepwise(record, first, &given, &ahead, workers, |step| {
         last = ids(&step.fit.model);
         true
     });
-    let named = best.share_of_misfit >= MOST_OF_IT || verdict == Verdict::Adequate;
-    if verdict == Verdict::Adequate {
+    let is_adequate = ended.verdict == Verdict::Adequate;
+    let named = best.share_of_misfit >= MOST_OF_IT || is_adequate;
+    if is_adequate {
         let remains = |candidate: &Candidate| candidate.effects.iter().all(|id| last.contains(id));
         if let Some(index) = ranking.iter().position(remains) {
             ranking[..=index].rotate_right(1);

@@ -7,6 +7,7 @@
 //! - [`explain`]: verdict and ranking for one model
 //! - [`add()`]: an effect that the user chose
 //! - [`improve`]: explain and add until nothing significant is missing
+//! - [`Attribution`]: what each effect carries of the error, and what could stand in its place
 //! - [`Separation`]: the experiment that would separate two effects
 //! - [`Workers`]: who does the fits, one after the other or in parallel
 //!
@@ -22,6 +23,7 @@
 //! 43 (2011), 1511-1522.
 
 mod add;
+mod attribution;
 mod candidate;
 mod comparison;
 mod eligible;
@@ -42,6 +44,7 @@ mod verdict;
 mod workers;
 
 pub use add::add;
+pub use attribution::{Attribution, Contribution};
 pub use candidate::Candidate;
 pub(crate) use candidate::{ALIKE, BEYOND_DOUBT, BEYOND_DOUBT_PERCENT};
 pub(crate) use eligible::signal_range;

@@ -40,7 +40,7 @@ impl Removal<'_> {
         whole: &Fit,
         workers: &impl Workers,
     ) -> Option<(Change, Fit)> {
-        let tried = promising(record, whole, &self.changes(record, &whole.model), workers);
+        let tried = fitted_after(record, whole, &self.changes(record, &whole.model), workers);
         let noise = NoiseMemory::of(record, whole);
         let of_whole = noise.evidence(record, whole);
         let judged = tried.into_iter().filter_map(|(change, fit)| {
@@ -59,22 +59,28 @@ impl Removal<'_> {
     /// Removals of effects that may go, and exchanges for those that look like them.
     fn changes(&self, record: &FitRecord<'_>, model: &JointModel) -> Vec<Change> {
         let may_go = |id: &&'static str| !self.given.contains(id) && !self.kept.contains(id);
-        let others = |old: &'static str| {
-            let alike = self.options.effects.iter();
-            let alike = alike.filter(move |effect| looks_like(old, effect.spec().id));
-            let rest = model.without(old);
-            let able = alike.filter(|effect| {
-                could_be_missing(record, &rest, **effect)
-                    && is_due(&rest, effect.spec(), self.options)
-            });
-            let replaced =
-                |effect: &&'static dyn Effect| Change::Replaced { old, new: effect.spec().id };
-            able.map(replaced).collect::<Vec<_>>()
-        };
+        let others = |old: &'static str| replacements(record, model, old, self.options);
         let old: Vec<&'static str> = ids(model).into_iter().filter(may_go).collect();
         let removals = old.iter().map(|id| Change::Removed(id));
         removals.chain(old.iter().flat_map(|old| others(old))).collect()
     }
+}
+
+/// Exchanges of `old` for each effect that looks like it and could be in its place.
+pub(super) fn replacements(
+    record: &FitRecord<'_>,
+    model: &JointModel,
+    old: &'static str,
+    options: &Options,
+) -> Vec<Change> {
+    let alike = options.effects.iter();
+    let alike = alike.filter(move |effect| looks_like(old, effect.spec().id));
+    let rest = model.without(old);
+    let able = alike.filter(|effect| {
+        could_be_missing(record, &rest, **effect) && is_due(&rest, effect.spec(), options)
+    });
+    let replaced = |effect: &&'static dyn Effect| Change::Replaced { old, new: effect.spec().id };
+    able.map(replaced).collect()
 }
 
 /// Whether one effect is taken for the other, or contains it.
@@ -87,7 +93,7 @@ fn looks_like(one: &str, other: &str) -> bool {
 }
 
 /// The models after the best few of `changes` that a survey does not rule out, fitted.
-fn promising(
+pub(super) fn fitted_after(
     record: &FitRecord<'_>,
     whole: &Fit,
     changes: &[Change],

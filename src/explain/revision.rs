@@ -1,5 +1,6 @@
 //! Models as they change: what was added and removed, and the error before and after.
 
+use super::attribution::Attribution;
 use super::candidate::Candidate;
 use super::verdict::Verdict;
 use crate::diagnosis::Comparison;
@@ -41,6 +42,8 @@ pub struct Improvement {
     pub revisions: Vec<Revision>,
     /// What is to be said of the last.
     pub verdict: Verdict,
+    /// What each effect that was added carries; nothing where it was stopped.
+    pub attribution: Attribution,
 }
 
 /// A model before and after an effect was added.
@@ -53,6 +56,8 @@ pub struct Addition {
     /// Probability of so much or more when the effect is not there, as for a
     /// [`Candidate`]; `None` where the two models do not nest.
     pub p_value: Option<f64>,
+    /// What the effect carries.
+    pub attribution: Attribution,
 }
 
 /// Why an effect cannot be added.

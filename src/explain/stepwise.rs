@@ -72,6 +72,15 @@ impl Step {
     }
 }
 
+/// How stepwise addition ended.
+pub(super) struct Ended {
+    pub(super) verdict: Verdict,
+    /// The last model.
+    pub(super) fit: Fit,
+    /// Whether nothing more was to be tried.
+    pub(super) was_stopped: bool,
+}
+
 /// Adds to `first` what it lacks, one effect after the other, and removes what has become
 /// useless. `visit` sees each step once; where it says no, nothing more is tried.
 ///
@@ -83,31 +92,35 @@ pub(super) fn add_stepwise(
     options: &Options,
     workers: &impl Workers,
     mut visit: impl FnMut(&Step) -> bool,
-) -> Verdict {
+) -> Ended {
+    let ended = |verdict, fit, was_stopped| Ended { verdict, fit, was_stopped };
     let mut step = first;
     loop {
         if !step.rank_missing(record, options, workers) {
-            visit(&step);
-            return Verdict::Adequate;
+            let was_stopped = !visit(&step);
+            return ended(Verdict::Adequate, step.fit, was_stopped);
         }
         let found = step.ranking.first().filter(|best| best.is_significant()).cloned();
         let explained = found.is_some();
         let added = ids(&step.fit.model).len().saturating_sub(given.len());
-        let goes_on = visit(&step) && added < options.max_effects;
-        let Some(found) = found.filter(|_| goes_on) else {
-            return if explained { Verdict::MissingEffect } else { Verdict::Unexplained };
+        let goes_on = visit(&step);
+        let Some(found) = found.filter(|_| goes_on && added < options.max_effects) else {
+            let verdict = if explained { Verdict::MissingEffect } else { Verdict::Unexplained };
+            return ended(verdict, step.fit, !goes_on);
         };
         if let Some(alone) = first_of_pair(record, &found) {
             step = alone;
             if !visit(&step) {
-                return Verdict::MissingEffect;
+                return ended(Verdict::MissingEffect, step.fit, true);
             }
         }
         step = Step::new(record, Change::Added(found.newest()), found.fit);
         let mut removal = Removal { given, kept: found.effects, options };
         while let Some((change, fit)) = removal.better(record, &step.fit, workers) {
             if !visit(&step) {
-                return if step.is_adequate() { Verdict::Adequate } else { Verdict::MissingEffect };
+                let is_adequate = step.is_adequate();
+                let verdict = if is_adequate { Verdict::Adequate } else { Verdict::MissingEffect };
+                return ended(verdict, step.fit, true);
             }
             step = Step::new(record, change, fit);
         }

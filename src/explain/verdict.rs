@@ -1,5 +1,6 @@
 //! What is said of a model.
 
+use super::attribution::Attribution;
 use super::candidate::Candidate;
 use crate::diagnosis::Comparison;
 
@@ -10,7 +11,7 @@ pub enum Verdict {
     Adequate,
     /// The first of the ranking explains a significant part.
     MissingEffect,
-    /// The model fails, and no effect accounts for it.
+    /// An error remains that no effect accounts for.
     Unexplained,
 }
 
@@ -23,4 +24,6 @@ pub struct Explanation {
     pub verdict: Verdict,
     /// The candidates, best first; none where the model is adequate.
     pub ranking: Vec<Candidate>,
+    /// What the effects that are named would carry.
+    pub attribution: Attribution,
 }

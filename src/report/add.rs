@@ -1,6 +1,7 @@
 //! `add` as text: the error before and after.
 
 use super::compare::{ComparedJoint, compare_table};
+use super::consequence::Consequence;
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::explain::Addition;
@@ -37,6 +38,18 @@ impl<'a> AddedJoint<'a> {
         [before, compared(revision, &addition.after)]
     }
 
+    /// What the effect explains.
+    pub(super) fn consequence(&self) -> Consequence<'a> {
+        let Addition { before, after, attribution, .. } = self.addition;
+        Consequence {
+            joint: self.joint,
+            fit: &after.fit,
+            attribution: Some(attribution),
+            before: before.judged(),
+            after: after.judged(),
+        }
+    }
+
     /// Names of both models, as `revision 0, integrator` and `revision 1, + dead_band`.
     fn labels(&self) -> [String; 2] {
         let [before, after] = self.compared();
@@ -46,7 +59,7 @@ impl<'a> AddedJoint<'a> {
     }
 
     /// `boom: with dead_band the error falls from 2.9 to 0.4 deg, by 87 %`.
-    fn sentence(&self) -> String {
+    pub(super) fn sentence(&self) -> String {
         let error =
             |comparison: &Comparison| comparison.judged().map_or(f64::NAN, |error| error.rmse);
         let (before, after) = (error(&self.addition.before), error(&self.addition.after));

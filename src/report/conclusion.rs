@@ -32,7 +32,7 @@ const ABOVE_NOISE: f64 = 1.15;
 impl Finding<'_> {
     /// The verdict in words.
     pub(crate) fn conclusion(&self) -> Conclusion {
-        let best = self.ranking.first().filter(|_| self.verdict == Verdict::MissingEffect);
+        let best = self.proposed();
         let (headline, sentences) = match (self.verdict, best) {
             (_, Some(best)) => (self.missing_headline(best), self.missing(best)),
             (Verdict::Adequate, None) => (self.adequate_headline(), self.adequate()),
@@ -62,7 +62,7 @@ impl Finding<'_> {
     }
 
     fn noise(&self) -> Option<f64> {
-        self.comparison().noise_floor.filter(|noise| *noise > 0.0)
+        self.consequence().sensor_noise()
     }
 
     fn missing_headline(&self, best: &Candidate) -> String {
@@ -83,6 +83,7 @@ impl Finding<'_> {
         sentences.push(self.improvement(best));
         sentences.extend(self.where_it_fails());
         sentences.push(self.alternatives(best));
+        sentences.extend(self.consequence().sentences());
         sentences.extend(self.look_alikes(best));
         sentences
     }
@@ -97,12 +98,11 @@ impl Finding<'_> {
             "With it the error on data that were {part} falls from {before} to {after}, by \
              {reduction} % ({p_value})"
         );
-        // Its own: how steady a joint is depends on when its steps arrive.
-        let noise = best.noise_floor.filter(|noise| *noise > 0.0).or(self.noise());
-        let Some(noise) = noise else { return format!("{falls}.") };
-        let times = best.rmse() / noise;
-        if times > ABOVE_NOISE {
-            let times = rounded(times);
+        let Some(noise) = self.noise() else { return format!("{falls}.") };
+        // Noise with a memory is larger than what windows show of it, but not beside the model.
+        let floor = best.noise_floor.unwrap_or(0.0).max(noise);
+        if best.rmse() > ABOVE_NOISE * floor {
+            let times = rounded(best.rmse() / noise);
             let rest = "more is missing, to be sought with it in the model";
             return format!("{falls}; that is still {times} times the noise, so {rest}.");
         }
@@ -171,9 +171,6 @@ impl Finding<'_> {
 
     /// What the effects that were added explain of the error, where any were:
     /// `dead_band and end_stop explain 70 % of the error (2.89 to 0.88 deg)`.
-    ///
-    /// The share is `1 − (e − s)/(e₀ − s)` with the root-mean-square errors `e₀` before and `e`
-    /// now, and the noise `s`.
     fn came(&self) -> Option<String> {
         let before = self.before?;
         let had = effect_ids(&before.fit.model);
@@ -184,11 +181,8 @@ impl Finding<'_> {
             [] => (last.to_owned(), "explains"),
             others => (format!("{} and {last}", others.join(", ")), "explain"),
         };
-        let (from, to) = (before.judged()?.rmse, self.error());
-        let noise = self.noise().unwrap_or(0.0);
-        let share = 1.0 - (to - noise) / (from - noise).max(f64::MIN_POSITIVE);
-        let share = percent(share.clamp(0.0, 1.0));
-        let (from, to) = (rounded(from), self.output(to));
+        let share = percent(self.consequence().explained()?);
+        let (from, to) = (rounded(before.judged()?.rmse), self.output(self.error()));
         Some(format!("{names} {explain} {share} of the error ({from} to {to})"))
     }
 
@@ -204,17 +198,9 @@ impl Finding<'_> {
         }
     }
 
-    /// What is left of the error.
-    fn remains(&self) -> String {
-        let error = self.output(self.error());
-        self.noise().map_or_else(
-            || format!("{error} remain"),
-            |noise| format!("{error} remain, {} times the noise", rounded(self.error() / noise)),
-        )
-    }
-
     fn adequate(&self) -> Vec<String> {
         let mut sentences = vec![self.test(), self.size()];
+        sentences.extend(self.consequence().sentences());
         sentences.extend(self.misses_validation());
         sentences.extend(self.laws());
         sentences.push(self.limits());
@@ -286,7 +272,7 @@ impl Finding<'_> {
 
     fn unexplained_headline(&self) -> String {
         let explained = self.came().unwrap_or_else(|| self.follows());
-        let remains = self.remains();
+        let remains = self.consequence().remains();
         format!(
             "{}: {explained}; {remains}, which no effect that was tried accounts for",
             self.joint().name
@@ -294,7 +280,8 @@ impl Finding<'_> {
     }
 
     fn unexplained(&self) -> Vec<String> {
-        let mut sentences = self.fails();
+        let mut sentences = self.consequence().sentences();
+        sentences.extend(self.fails());
         sentences.extend(self.shape());
         sentences.extend(self.nearest());
         sentences
@@ -305,7 +292,7 @@ impl Finding<'_> {
         format!(
             "{}: {explained}; {}; what is missing was not looked for",
             self.joint().name,
-            self.remains()
+            self.consequence().remains()
         )
     }
 

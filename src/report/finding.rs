@@ -1,11 +1,12 @@
 //! What `explain` and `improve` have found of a joint, as a table.
 
 use super::ComparedJoint;
+use super::consequence::Consequence;
 use super::text_table::TextTable;
 use crate::diagnosis::Comparison;
 use crate::effect::Spec;
 use crate::experiment::Joint;
-use crate::explain::{Candidate, Verdict};
+use crate::explain::{Attribution, Candidate, Verdict};
 use crate::model::Component;
 use crate::wording::{p_text, with_unit};
 
@@ -22,6 +23,30 @@ pub struct Finding<'a> {
     pub add_arguments: &'a str,
     /// The model to which effects were added, where any were.
     pub before: Option<&'a Comparison>,
+    /// What each effect carries that was added, or is proposed, where that was found out.
+    pub attribution: Option<&'a Attribution>,
+}
+
+impl<'a> Finding<'a> {
+    /// The candidate that is proposed.
+    pub(super) fn proposed(&self) -> Option<&'a Candidate> {
+        self.ranking.first().filter(|_| self.verdict == Verdict::MissingEffect)
+    }
+
+    /// What the effects explain that were added, or that are proposed.
+    pub(super) fn consequence(&self) -> Consequence<'a> {
+        let comparison = self.compared.comparison;
+        let (fit, before, after) = match (self.before, self.proposed()) {
+            (None, Some(best)) => {
+                (&best.fit.assessment, comparison.judged(), best.validation.or(best.training))
+            }
+            (before, _) => {
+                (&comparison.fit, before.and_then(Comparison::judged), comparison.judged())
+            }
+        };
+        let (joint, attribution) = (self.compared.joint, self.attribution);
+        Consequence { joint, fit, attribution, before, after }
+    }
 }
 
 /// The effects that a candidate added, in its order.

@@ -68,8 +68,8 @@ impl<'a> ImprovedJoint<'a> {
         let compared =
             ComparedJoint { revision, comparison: &step.comparison, ..self.finding.compared };
         let ranking = self.ranking_behind(index);
-        let before = None;
-        let finding = Finding { compared, verdict, ranking, before, ..self.finding };
+        let (before, attribution) = (None, None);
+        let finding = Finding { compared, verdict, ranking, before, attribution, ..self.finding };
         match made_useless(next) {
             Some(why) => Conclusion {
                 headline: format!("{}: {why}", compared.joint.name),

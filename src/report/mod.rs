@@ -5,6 +5,7 @@ mod against;
 mod columns;
 mod compare;
 mod conclusion;
+mod consequence;
 mod dead_time;
 mod decisions;
 mod delay_table;

@@ -29,8 +29,8 @@ pub(crate) struct JointSummary {
 /// What stands for the delays of a joint in one line.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Headline {
-    /// All of them.
-    All(DelayRange),
+    /// All of them together.
+    All,
     /// A typical delay for each kind of step: their medians differ by more than is uncertain.
     Kinds(Vec<KindDelay>),
     /// Nothing: of no kind of step enough were accepted.
@@ -38,28 +38,22 @@ pub(crate) enum Headline {
 }
 
 impl Headline {
-    fn of(all: Option<DelayRange>, kinds: Vec<KindDelay>) -> Self {
+    fn of(kinds: Vec<KindDelay>) -> Self {
         let typical = || kinds.iter().filter_map(|kind| kind.typical?.interval_s);
         let apart = typical().any(|(low, _)| typical().any(|(_, high)| high < low));
-        match all {
-            _ if apart => Self::Kinds(kinds),
-            Some(range) if kinds.iter().any(|kind| kind.typical.is_some()) => Self::All(range),
-            _ => Self::None(kinds),
-        }
-    }
-
-    /// The delays of all steps, where they stand for the joint.
-    pub(crate) fn range(&self) -> Option<&DelayRange> {
-        match self {
-            Self::All(range) => Some(range),
-            Self::Kinds(_) | Self::None(_) => None,
+        if apart {
+            Self::Kinds(kinds)
+        } else if kinds.iter().any(|kind| kind.typical.is_some()) {
+            Self::All
+        } else {
+            Self::None(kinds)
         }
     }
 
     /// The kinds of steps that have to be told apart, or of which nothing is typical.
     pub(crate) fn kinds(&self) -> &[KindDelay] {
         match self {
-            Self::All(_) => &[],
+            Self::All => &[],
             Self::Kinds(kinds) | Self::None(kinds) => kinds,
         }
     }
@@ -100,7 +94,7 @@ impl JointSummary {
         };
         let delay_s = DelayRange::of(seconds.collect());
         Self {
-            headline: Headline::of(delay_s, joint.delay_table().kinds),
+            headline: Headline::of(joint.delay_table().kinds),
             steps: rows.len(),
             accepted: accepted.len(),
             rejected: Condition::ALL.map(count).into_iter().filter(|(_, n)| *n > 0).collect(),
@@ -163,10 +157,9 @@ mod tests {
         let stop = kind(Transition::Stop, Some(typical(0.4, 0.5)));
         let near = kind(Transition::Stop, Some(typical(0.25, 0.5)));
         let nothing = kind(Transition::Change, None);
-        let all = DelayRange::of(vec![0.1, 0.2]);
-        let headline = |kinds: &[KindDelay]| Headline::of(all, kinds.to_vec());
+        let headline = |kinds: &[KindDelay]| Headline::of(kinds.to_vec());
         assert_eq!(headline(&[start, stop]), Headline::Kinds(vec![start, stop]));
-        assert_eq!(headline(&[start, near, nothing]).range(), all.as_ref());
+        assert_eq!(headline(&[start, near, nothing]), Headline::All);
         assert_eq!(headline(&[nothing]), Headline::None(vec![nothing]));
     }
 }

@@ -99,7 +99,7 @@ pub(crate) const SUMMARY_HEADER: [&str; 7] =
 
 /// A joint in one row, for people.
 pub(crate) fn summary_cells(name: &str, summary: &JointSummary) -> [String; 7] {
-    let JointSummary { steps, accepted, rejected, headline, .. } = summary;
+    let JointSummary { steps, accepted, rejected, delay_s, headline, .. } = summary;
     let accepted = match steps {
         0 => "-".to_owned(),
         _ => format!("{accepted} ({})", percent(*accepted as f64 / *steps as f64)),
@@ -110,12 +110,14 @@ pub(crate) fn summary_cells(name: &str, summary: &JointSummary) -> [String; 7] {
         (_, false) => reasons(rejected),
     };
     let seconds = |value: fn(&DelayRange) -> f64| {
-        headline.range().map_or_else(|| "-".to_owned(), |range| format!("{:.3} s", value(range)))
+        delay_s.as_ref().map_or_else(|| "-".to_owned(), |range| format!("{:.3} s", value(range)))
     };
-    let [min, mut median, max] = [seconds(|r| r.min), seconds(|r| r.median), seconds(|r| r.max)];
-    if let Headline::Kinds(_) = headline {
-        "by kind".clone_into(&mut median);
-    }
+    let median = match headline {
+        Headline::All => seconds(|range| range.median),
+        Headline::Kinds(_) => "by kind".to_owned(),
+        Headline::None(_) => "-".to_owned(),
+    };
+    let [min, max] = [seconds(|range| range.min), seconds(|range| range.max)];
     [name.to_owned(), steps.to_string(), accepted, why, min, median, max]
 }
 

@@ -61,9 +61,11 @@ pub fn add_to_joints<'a>(
     effect: &'static dyn Effect,
     workers: &impl Workers,
 ) -> Vec<Option<Result<Addition, AddError>>> {
-    let work = |_: usize, record: &FitRecord<'_>, fit: Fit| add(record, fit, effect);
-    let added =
-        for_each_joint((joints, estimates), models, protocol.into(), workers, (best_fit, work));
+    let watched = protocol.into();
+    let work = |_: usize, record: &FitRecord<'_>, fit: Fit| {
+        add(record, fit, effect, &watched.workers(workers))
+    };
+    let added = for_each_joint((joints, estimates), models, watched, workers, (best_fit, work));
     added.into_iter().map(|result| Some(result?.map_err(AddError::from).flatten())).collect()
 }
 

@@ -139,7 +139,7 @@ impl Recorded {
         let horizon = Horizon::Steps;
         let protocol = Protocol { mode: Mode::FitOrIntegrator, split: None, horizon };
         let effects = ["dead_band", "actuator_lag", "thermal_drift"].map(|id| find(id).unwrap());
-        let options = Options { effects: effects.to_vec(), max_effects: 3 };
+        let options = Options { effects: effects.to_vec(), max_effects: 3, ..Options::default() };
         let start = |_: &Joint| None;
         let improved =
             improve_joints(joints, &estimates, start, protocol, &options, |_, _| true, &Threads);
@@ -163,13 +163,19 @@ impl Recorded {
 }
 
 pub(crate) fn grown<'a>(joint: &'a Joint, improvement: &'a Improvement) -> ImprovedJoint<'a> {
-    let Improvement { revisions, verdict } = improvement;
+    let Improvement { revisions, verdict, attribution } = improvement;
     let last = revisions.last().unwrap();
     let revision = u32::try_from(revisions.len() - 1).unwrap();
     let comparison = &last.comparison;
     let compared = ComparedJoint { joint, model: "model", revision, comparison };
     let ranking = &last.ranking;
-    let finding =
-        Finding { compared, verdict: *verdict, ranking, add_arguments: "log.csv", before: None };
+    let finding = Finding {
+        compared,
+        verdict: *verdict,
+        ranking,
+        add_arguments: "log.csv",
+        before: None,
+        attribution: Some(attribution),
+    };
     ImprovedJoint::of(finding, revisions)
 }

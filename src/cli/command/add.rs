@@ -124,7 +124,9 @@ fn grown<'a>(added: &AddedJoint<'a>, revisions: &'a [Step]) -> ImprovedJoint<'a>
     // What the model still lacks was not looked for.
     let verdict = if is_adequate { Verdict::Adequate } else { Verdict::MissingEffect };
     let before = Some(&added.addition.before);
-    let finding = Finding { compared, verdict, ranking: &[], add_arguments: "", before };
+    let attribution = Some(&added.addition.attribution);
+    let (ranking, add_arguments) = (&[][..], "");
+    let finding = Finding { compared, verdict, ranking, add_arguments, before, attribution };
     ImprovedJoint::of(finding, revisions)
 }
 

@@ -96,9 +96,10 @@ fn finding<'a>(
     add_arguments: &'a str,
 ) -> Finding<'a> {
     let revision = file.revision(&joint.name).unwrap_or(0);
-    let Explanation { base, verdict, ranking } = explanation;
+    let Explanation { base, verdict, ranking, attribution } = explanation;
+    let attribution = Some(attribution);
     let compared = ComparedJoint { joint, model, revision, comparison: base };
-    Finding { compared, verdict: *verdict, ranking, add_arguments, before: None }
+    Finding { compared, verdict: *verdict, ranking, add_arguments, before: None, attribution }
 }
 
 /// The model as the only one of its revisions.

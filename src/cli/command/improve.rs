@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use crate::batch::Threads;
 use crate::delay::Settings;
 use crate::experiment::Joint;
-use crate::explain::{Improvement, MAX_EFFECTS, Options, Revision as Step, Verdict};
+use crate::explain::{Attribution, Improvement, MAX_EFFECTS, Options, Revision as Step, Verdict};
 use crate::fit::Horizon;
 use crate::model::ModelFile;
 use crate::report::{ImproveJson, improve_text};
@@ -44,6 +44,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS, help_heading = "Model")]
     max_effects: usize,
 
+    /// Keep effects that statistics sees and that have no practical consequence: without them
+    /// the error grows by less than 1 % of the first
+    #[arg(long, help_heading = "Model")]
+    refine: bool,
+
     #[command(flatten)]
     protocol: ProtocolArgs,
 
@@ -76,7 +81,8 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     }
     let file = args.model.read()?;
     let effects = args.effects.effects(file.candidates())?;
-    let options = Options { effects, max_effects: args.max_effects };
+    let options =
+        Options { effects, max_effects: args.max_effects, keeps_refinements: args.refine };
     let target = args.model.target();
     let recording = args.output.recording.as_deref();
     let outputs: Vec<_> = std::iter::once(target).chain(recording).collect();
@@ -169,7 +175,8 @@ impl<'a> Stage<'a> {
         let Some((joint, steps)) = of_joint else { return };
         let Ok(mut steps) = steps.lock() else { return };
         steps.push(revision.clone());
-        let improvement = Improvement { revisions: steps.clone(), verdict: so_far(revision) };
+        let (revisions, attribution) = (steps.clone(), Attribution::default());
+        let improvement = Improvement { revisions, verdict: so_far(revision), attribution };
         let arguments = self.arguments.get(index).map_or("", String::as_str);
         let improved = improved(self.file, self.name, joint, &improvement, arguments);
         let revisions: Vec<_> = improved.into_iter().collect();

@@ -130,7 +130,7 @@ impl ModelArgs {
         effects: Vec<&'static dyn Effect>,
     ) -> Option<OfJoints<Improvement>> {
         let (joints, estimates) = (begun.joints, begun.estimates);
-        let options = Options { effects, max_effects: self.max_effects };
+        let options = Options { effects, max_effects: self.max_effects, ..Options::default() };
         let starts = |joint: &Joint| file.joint(&joint.name).cloned();
         let protocol = self.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
         if self.improve {
@@ -152,9 +152,10 @@ impl ModelArgs {
 }
 
 /// A model and what it lacks, as the only revision.
-fn as_it_is(Explanation { base, verdict, ranking }: Explanation) -> Improvement {
+fn as_it_is(explanation: Explanation) -> Improvement {
+    let Explanation { base, verdict, ranking, attribution } = explanation;
     let revisions = vec![Revision { change: Change::Start, comparison: base, ranking }];
-    Improvement { revisions, verdict }
+    Improvement { revisions, verdict, attribution }
 }
 
 impl OutputArgs {

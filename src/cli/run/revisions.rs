@@ -59,14 +59,15 @@ pub(crate) fn improved<'a>(
     improvement: &'a Improvement,
     add_arguments: &'a str,
 ) -> Option<ImprovedJoint<'a>> {
-    let Improvement { revisions, verdict } = improvement;
+    let Improvement { revisions, verdict, attribution } = improvement;
     let last = revisions.last()?;
     let first_revision = file.revision(&joint.name).unwrap_or(0);
     let revision = (first_revision..).zip(revisions).last()?.0;
     let compared = ComparedJoint { joint, model, revision, comparison: &last.comparison };
     let before = revisions.first().filter(|_| revisions.len() > 1).map(|first| &first.comparison);
     let (verdict, ranking) = (*verdict, last.ranking.as_slice());
-    let finding = Finding { compared, verdict, ranking, add_arguments, before };
+    let attribution = Some(attribution);
+    let finding = Finding { compared, verdict, ranking, add_arguments, before, attribution };
     Some(ImprovedJoint { finding, revisions, first_revision, interrupted: false })
 }
 

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::conclusion::ConclusionJson;
 use super::header::Header;
 use super::joint::{ErrorJson, JointJson};
 use crate::report::add::{AddedJoint, gone};
@@ -25,6 +26,7 @@ struct AddedJson<'a> {
     removed: Vec<&'static str>,
     p_value: Option<f64>,
     before: BeforeJson,
+    conclusion: ConclusionJson,
 }
 
 #[derive(Debug, Serialize)]
@@ -54,6 +56,7 @@ impl<'a> AddJson<'a> {
                     effects: effect_ids(model),
                     error: ErrorJson::new(before.comparison),
                 },
+                conclusion: ConclusionJson::new(added.sentence(), &added.consequence()),
             }
         };
         let joints = joints.iter().map(joint).collect();

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::candidate::CandidateJson;
+use super::conclusion::ConclusionJson;
 use super::header::Header;
 use super::joint::JointJson;
 use crate::explain::Verdict;
@@ -30,6 +31,7 @@ struct ExplainedJson<'a> {
 pub(super) struct FindingJson<'a> {
     verdict: &'static str,
     ranking: Vec<CandidateJson<'a>>,
+    conclusion: ConclusionJson,
     headline: String,
     in_words: String,
     commands: Vec<String>,
@@ -55,6 +57,7 @@ impl<'a> FindingJson<'a> {
         Self {
             verdict: verdict_id(finding.verdict),
             ranking: ranking.map(|candidate| CandidateJson::new(joint, candidate)).collect(),
+            conclusion: ConclusionJson::new(conclusion.headline.clone(), &finding.consequence()),
             headline: conclusion.headline,
             in_words: conclusion.paragraph,
             commands: conclusion.commands,

@@ -6,6 +6,7 @@ mod add;
 mod candidate;
 mod columns;
 mod compare;
+mod conclusion;
 mod dead_time;
 mod design;
 mod effects;

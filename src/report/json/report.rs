@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::conclusion::ConclusionJson;
 use super::header::Header;
 use crate::report::page::Report;
 
@@ -20,6 +21,8 @@ pub(crate) struct ReportJson<'a> {
 struct SentenceJson<'a> {
     joint: &'a str,
     sentence: String,
+    /// Of its model, where one is asked for.
+    conclusion: Option<ConclusionJson>,
 }
 
 impl<'a> ReportJson<'a> {
@@ -30,8 +33,15 @@ impl<'a> ReportJson<'a> {
             header: Header::of("tauscope/report/1"),
             report: path,
             recording,
-            joints: joints.map(|(joint, sentence)| SentenceJson { joint, sentence }).collect(),
+            joints: joints.map(|(joint, sentence)| of_joint(report, joint, sentence)).collect(),
             failures: report.failures,
         }
     }
+}
+
+fn of_joint<'a>(report: &Report<'_>, joint: &'a str, sentence: String) -> SentenceJson<'a> {
+    let mut models = report.models.iter().map(|improved| &improved.finding);
+    let finding = models.find(|finding| finding.compared.joint.name == joint);
+    let conclusion = finding.map(ConclusionJson::of);
+    SentenceJson { joint, sentence, conclusion }
 }

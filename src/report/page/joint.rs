@@ -71,7 +71,7 @@ fn over_record(estimated: EstimatedJoint<'_>) -> Option<String> {
 }
 
 fn delay_sentence(summary: &JointSummary) -> String {
-    let JointSummary { steps, accepted, rejected, headline, .. } = summary;
+    let JointSummary { steps, accepted, rejected, delay_s, headline, .. } = summary;
     if *steps == 0 {
         return format!("No step: {}.", summary.without_steps());
     }
@@ -84,19 +84,17 @@ fn delay_sentence(summary: &JointSummary) -> String {
     let rest = steps - accepted;
     let kinds: Vec<_> = headline.kinds().iter().map(kind_sentence).collect();
     let kinds = kinds.join("; ");
-    match headline {
-        Headline::All(DelayRange { min, median, max }) => format!(
+    match (headline, delay_s) {
+        (_, None) => format!("No delay: all {steps} steps were rejected{why}."),
+        (Headline::All, Some(DelayRange { min, median, max })) => format!(
             "Delay {median:.3} s (median; {min:.3} to {max:.3} s); {accepted} of {steps} steps \
              accepted, {rest} rejected{why}."
         ),
-        Headline::Kinds(_) => format!(
+        (Headline::Kinds(_), _) => format!(
             "The delay differs by kind of step: {kinds}. In all {accepted} of {steps} steps \
              accepted, {rest} rejected{why}."
         ),
-        Headline::None(_) if *accepted == 0 => {
-            format!("No delay: all {steps} steps were rejected{why}.")
-        }
-        Headline::None(_) => format!("No typical delay: {kinds}."),
+        (Headline::None(_), _) => format!("No typical delay: {kinds}."),
     }
 }
 

@@ -1,0 +1,145 @@
+//! What each effect of a model carries of the error, and what could stand in its place.
+//!
+//! The share of an effect is what the error grows by when that effect alone is left out and the
+//! rest is fitted again, in parts of the misfit of the model to which effects were added:
+//!
+//! ```text
+//! share = (e_without − e) / (e₀ − s)
+//! ```
+//!
+//! with the root-mean-square errors `e` of the model, `e_without` without the effect and `e₀` of
+//! the first model, on the whole record, and `s` the noise of the sensor. Effects that do the same
+//! work have small shares each, and shares need not sum up to one.
+//!
+//! # References
+//! J. Lei, M. G'Sell, A. Rinaldo, R. J. Tibshirani and L. Wasserman, "Distribution-free
+//! predictive inference for regression", Journal of the American Statistical Association 113
+//! (2018), 1094-1111 (leave-one-covariate-out).
+
+use super::eligible::signal_range;
+use super::extension::ids;
+use super::options::Options;
+use super::removal::{fitted_after, replacements};
+use super::revision::Change;
+use super::workers::Workers;
+use crate::diagnosis::{ErrorFigures, sensor_noise};
+use crate::fit::{Fit, FitRecord, fit_to_compare};
+
+/// The share of the misfit from which an effect has a practical consequence.
+const CONSEQUENCE: f64 = 0.01;
+
+/// What an effect of a model carries.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contribution {
+    /// Its id.
+    pub effect: &'static str,
+    /// What the error beyond the noise grows by without it, in parts of that of the first model.
+    pub error_share: f64,
+    /// Effects that leave as little in its place.
+    pub alternatives: Vec<&'static str>,
+}
+
+/// To which effects the fall of the error is attributed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Attribution {
+    /// Effects with consequence, the largest share first.
+    pub found: Vec<Contribution>,
+    /// Effects that statistics sees, and that have no practical consequence.
+    pub refinements: Vec<&'static str>,
+}
+
+/// A model, and the one to which its effects were added.
+pub(super) struct Grown<'a, 'r> {
+    pub(super) record: &'a FitRecord<'r>,
+    pub(super) first: &'a Fit,
+    pub(super) whole: &'a Fit,
+    pub(super) options: &'a Options,
+}
+
+/// An effect that was left out, its share, and the rest fitted again.
+pub(super) struct LeftOut {
+    pub(super) effect: &'static str,
+    pub(super) share: f64,
+    pub(super) fit: Fit,
+}
+
+impl LeftOut {
+    pub(super) fn has_consequence(&self) -> bool {
+        self.share >= CONSEQUENCE
+    }
+}
+
+impl Grown<'_, '_> {
+    /// Each effect that was added left out in turn, the largest share first.
+    pub(super) fn left_out(&self, workers: &impl Workers) -> Vec<LeftOut> {
+        let given = ids(&self.first.model);
+        let mut added = ids(&self.whole.model);
+        added.retain(|id| !given.contains(id));
+        let without = |effect: &&'static str| {
+            let fit = self.without(effect)?;
+            Some(LeftOut { effect, share: self.share(&fit), fit })
+        };
+        let mut left_out: Vec<_> = workers.map(&added, without).into_iter().flatten().collect();
+        left_out.sort_by(|a, b| b.share.total_cmp(&a.share));
+        left_out
+    }
+
+    /// What is attributed to which effect.
+    pub(super) fn attribution(&self, workers: &impl Workers) -> Attribution {
+        self.attribution_of(&self.left_out(workers), Vec::new(), workers)
+    }
+
+    /// The same, given what each leaves behind, and what was removed.
+    pub(super) fn attribution_of(
+        &self,
+        left_out: &[LeftOut],
+        removed: Vec<&'static str>,
+        workers: &impl Workers,
+    ) -> Attribution {
+        let (found, small): (Vec<_>, Vec<_>) =
+            left_out.iter().partition(|one| one.has_consequence());
+        let others =
+            |one: &&LeftOut| replacements(self.record, &self.whole.model, one.effect, self.options);
+        let changes: Vec<Change> = found.iter().flat_map(others).collect();
+        let tried = fitted_after(self.record, self.whole, &changes, workers);
+        let alternatives = |effect: &'static str| {
+            let as_little = tried.iter().filter_map(|(change, fit)| match *change {
+                Change::Replaced { old, new } if old == effect => {
+                    (self.share(fit) < CONSEQUENCE).then_some(new)
+                }
+                _ => None,
+            });
+            as_little.collect()
+        };
+        let contribution = |one: &LeftOut| Contribution {
+            effect: one.effect,
+            error_share: one.share,
+            alternatives: alternatives(one.effect),
+        };
+        let mut refinements = removed;
+        refinements.extend(small.iter().map(|one| one.effect));
+        Attribution { found: found.into_iter().map(contribution).collect(), refinements }
+    }
+
+    /// The model without `effect`, the rest fitted again.
+    fn without(&self, effect: &str) -> Option<Fit> {
+        let model = self.whole.model.without(effect);
+        if ids(&model) == ids(&self.first.model) {
+            return Some(self.first.clone());
+        }
+        let levels = self.record.input_levels();
+        let range = signal_range(self.record, &model, &levels);
+        fit_to_compare(self.record, &model, &range).ok()
+    }
+
+    /// What the error is larger in `fit` than in the whole model, in parts of the misfit of the
+    /// first.
+    fn share(&self, fit: &Fit) -> f64 {
+        let error = |fit: &Fit| {
+            ErrorFigures::of_record(self.record, &fit.evaluation).map_or(f64::NAN, |e| e.rmse)
+        };
+        let whole = error(self.whole);
+        let noise = sensor_noise(&self.record.joint().trials).unwrap_or(0.0).min(whole);
+        (error(fit) - whole) / (error(self.first) - noise).max(f64::MIN_POSITIVE)
+    }
+}

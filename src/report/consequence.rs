@@ -1,0 +1,78 @@
+//! What the effects of a model explain of the error, and what remains.
+
+use crate::diagnosis::{ErrorFigures, sensor_noise};
+use crate::experiment::Joint;
+use crate::explain::{Attribution, Contribution};
+use crate::fit::Assessment;
+use crate::wording::{measure, percent, rounded};
+
+/// A model with effects that were added, or are proposed, beside the model without them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Consequence<'a> {
+    pub(crate) joint: &'a Joint,
+    /// The model with the effects.
+    pub(crate) fit: &'a Assessment,
+    /// What each of them carries, where that was found out.
+    pub(crate) attribution: Option<&'a Attribution>,
+    /// The error without them, where there are any.
+    pub(crate) before: Option<ErrorFigures>,
+    /// The error with them.
+    pub(crate) after: Option<ErrorFigures>,
+}
+
+impl Consequence<'_> {
+    /// The noise of the sensor, from the record alone.
+    pub(crate) fn sensor_noise(&self) -> Option<f64> {
+        sensor_noise(&self.joint.trials).filter(|noise| *noise > 0.0)
+    }
+
+    /// The part of the error that the effects explain, 0 to 1: `1 − (e − s)/(e₀ − s)` with the
+    /// root-mean-square errors `e₀` before and `e` with them, and the noise `s`.
+    pub(crate) fn explained(&self) -> Option<f64> {
+        let (before, after) = (self.before?.rmse, self.after?.rmse);
+        let noise = self.sensor_noise().unwrap_or(0.0).min(after);
+        let share = 1.0 - (after - noise) / (before - noise).max(f64::MIN_POSITIVE);
+        Some(share.clamp(0.0, 1.0))
+    }
+
+    /// How many times the noise the remaining error is.
+    pub(crate) fn times_noise(&self) -> Option<f64> {
+        Some(self.after?.rmse / self.sensor_noise()?)
+    }
+
+    /// `0.88 deg remain, 17.6 times the noise`.
+    pub(super) fn remains(&self) -> String {
+        let error = self.after.map_or(f64::NAN, |error| error.rmse);
+        let error = measure(error, self.joint.output_unit.as_deref());
+        match self.times_noise() {
+            Some(times) => format!("{error} remain, {} times the noise", rounded(times)),
+            None => format!("{error} remain"),
+        }
+    }
+
+    /// What each of several effects carries, and what could stand in its place.
+    pub(super) fn sentences(&self) -> Vec<String> {
+        let Some(Attribution { found, refinements }) = self.attribution else { return Vec::new() };
+        let mut sentences = Vec::new();
+        if found.len() > 1 {
+            let share = |one: &Contribution| format!("{} {}", one.effect, percent(one.error_share));
+            let shares: Vec<String> = found.iter().map(share).collect();
+            let shares = shares.join(", ");
+            sentences.push(format!(
+                "What the error grows by when one is left out and the rest fitted again, in parts \
+                 of the first: {shares}."
+            ));
+        }
+        for one in found.iter().filter(|one| !one.alternatives.is_empty()) {
+            let others = one.alternatives.join(" or ");
+            sentences.push(format!("In the place of {}, {others} leaves as little.", one.effect));
+        }
+        if !refinements.is_empty() {
+            sentences.push(format!(
+                "Visible to statistics, but of no practical consequence: {}.",
+                refinements.join(", ")
+            ));
+        }
+        sentences
+    }
+}
