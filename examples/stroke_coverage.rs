@@ -1,8 +1,8 @@
 //! How often the interval of a delay holds the true one, on strokes of a simulated cylinder.
 //!
 //! Each trial rests, is driven by one step into its stop, and is let go. The true delay is read
-//! off the same trial without noise: from the step until the output has left its rest by the
-//! part `SEEN` of the sensor's noise. Usage: `stroke_coverage [TRIALS [FIRST_SEED]]`
+//! off the same trial without noise: from the step until the output is off that of a trial
+//! without the step by the part `SEEN` of the sensor's noise. Usage: `stroke_coverage [TRIALS [FIRST_SEED]]`
 #![expect(clippy::print_stdout, reason = "an example prints")]
 
 use anyhow::Context as _;
@@ -32,24 +32,25 @@ fn stroke(seed: u64) -> anyhow::Result<(Trial, f64)> {
     let [low, high] = cylinder.angle_limits_deg;
     let start = if level > 0.0 { low + 1.0 } else { high - 1.0 };
     let steps = vec![(rest, level), (rest + 1200, 0.0)];
-    let input = InputSpec::Steps { steps, initial: 0.0 };
-    let made = |noise: f64| -> anyhow::Result<Trial> {
+    let made = |steps: &[(usize, f64)], noise: f64| -> anyhow::Result<Trial> {
+        let input = InputSpec::Steps { steps: steps.to_vec(), initial: 0.0 };
         let joint = JointSpec {
             start,
             noise,
             cylinder: Some(cylinder.clone()),
-            ..JointSpec::new("boom", input.clone(), delay.clone())
+            ..JointSpec::new("boom", input, delay.clone())
         };
         let made = simulate(&PlantSpec::new(seed, 18.0, vec![joint]))?;
         let joint = made.joints.into_iter().next().context("a joint")?;
         joint.trials.into_iter().next().context("a trial")
     };
-    let (clean, noisy) = (made(0.0)?, made(noise)?);
-    let output = clean.output();
-    let still = output[rest - 1];
-    let away = |y: &f64| (y - still).abs() > SEEN * noise;
-    let onset = output[rest..].iter().position(away).context("it moves")?;
-    Ok((noisy, onset as f64 * PERIOD_S))
+    let (clean, noisy, still) = (made(&steps, 0.0)?, made(&steps, noise)?, made(&[], 0.0)?);
+    let apart = clean.output().iter().zip(still.output()).map(|(y, still)| (y - still).abs());
+    let apart: Vec<f64> = apart.collect();
+    let seen = SEEN * noise;
+    let after = apart.iter().position(|apart| *apart > seen).context("it moves")?;
+    let part = (seen - apart[after - 1]) / (apart[after] - apart[after - 1]);
+    Ok((noisy, ((after - 1 - rest) as f64 + part) * PERIOD_S))
 }
 
 fn main() -> anyhow::Result<()> {

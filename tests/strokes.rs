@@ -11,17 +11,45 @@ use tauscope::synthetic::{CylinderSpec, DelayLaw, InputSpec, JointSpec, PlantSpe
 
 const PERIOD_S: f64 = 0.01;
 
+const NOISE: f64 = 0.01;
+
+/// Samples before the step.
+fn rest(seed: u32) -> usize {
+    110 + (seed as usize * 37) % 80
+}
+
 /// A cylinder that rests, is driven by `level` into its stop after `delay_s`, and is let go.
 fn stroke(seed: u32, level: f64, delay_s: f64) -> Trial {
-    let rest = 110 + (seed as usize * 37) % 80;
-    let back = rest + 1200;
-    let input = InputSpec::Steps { steps: vec![(rest, level), (back, 0.0)], initial: 0.0 };
+    let steps = vec![(rest(seed), level), (rest(seed) + 1200, 0.0)];
+    simulated(seed, level > 0.0, steps, delay_s, NOISE)
+}
+
+/// Samples from the step until the output, without noise, is off that of a trial without the step
+/// by a tenth of the noise.
+fn first_motion(seed: u32, level: f64, delay_s: f64) -> f64 {
+    let clean = |steps| simulated(seed, level > 0.0, steps, delay_s, 0.0);
+    let (moves, rests) = (clean(vec![(rest(seed), level)]), clean(vec![]));
+    let pairs = moves.output().iter().zip(rests.output());
+    let apart: Vec<f64> = pairs.map(|(y, still)| (y - still).abs() - 0.1 * NOISE).collect();
+    let after = apart.iter().position(|apart| *apart > 0.0).unwrap();
+    let part = apart[after - 1] / (apart[after - 1] - apart[after]);
+    (after - 1 - rest(seed)) as f64 + part
+}
+
+fn simulated(
+    seed: u32,
+    is_upward: bool,
+    steps: Vec<(usize, f64)>,
+    delay_s: f64,
+    noise: f64,
+) -> Trial {
+    let input = InputSpec::Steps { steps, initial: 0.0 };
     let cylinder = CylinderSpec::default();
     let [low, high] = cylinder.angle_limits_deg;
-    let start = if level > 0.0 { low + 1.0 } else { high - 1.0 };
+    let start = if is_upward { low + 1.0 } else { high - 1.0 };
     let delay = DelayLaw::Constant { seconds: delay_s };
     let cylinder = Some(cylinder);
-    let joint = JointSpec { start, noise: 0.01, cylinder, ..JointSpec::new("boom", input, delay) };
+    let joint = JointSpec { start, noise, cylinder, ..JointSpec::new("boom", input, delay) };
     let made = simulate(&PlantSpec::new(seed.into(), 16.0, vec![joint])).unwrap();
     let trial = &made.joints[0].trials[0];
     let (input, output) = (trial.input().to_vec(), trial.output().to_vec());
@@ -40,6 +68,29 @@ fn strokes() -> (Vec<Trial>, Vec<f64>) {
 
 fn estimated(trials: &[Trial], settings: &Settings) -> Vec<TrialEstimate> {
     estimate_joint(trials, settings).into_iter().map(Result::unwrap).collect()
+}
+
+#[test]
+fn intervals_hold_the_first_motion_as_often_as_they_say() {
+    let of = |seed: u32| {
+        let level = f64::from(seed % 11) * 0.5 + 2.0;
+        let level = if seed % 2 == 0 { level } else { -level };
+        (level, 0.05 + 0.011 * f64::from(seed % 40))
+    };
+    let made = |seed: u32| {
+        let (level, delay_s) = of(seed);
+        (stroke(seed, level, delay_s), first_motion(seed, level, delay_s))
+    };
+    let (trials, delays): (Vec<Trial>, Vec<f64>) = (300..340).map(made).unzip();
+    for method in Method::all().filter(|method| method.spec().has_intervals) {
+        let held = estimated(&trials, &Settings::of(method)).into_iter().zip(&delays);
+        let held = held.filter(|(estimate, delay)| {
+            let fine = estimate.decisions[0].fine.unwrap();
+            (fine.low..=fine.high).contains(delay)
+        });
+        let held = held.count();
+        assert!(held >= 34, "{method}: {held} of 40");
+    }
 }
 
 #[test]

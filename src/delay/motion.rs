@@ -22,7 +22,7 @@
 //! input was not eased, and it came faster than it went before the step, or from the other side.
 //! A joint whose rest is not shown, as behind much noise, is left alone.
 
-use super::settings::Settings;
+use super::settings::{FirstLast, Settings};
 use super::steps::InputStep;
 use crate::numerics::RunningLine;
 use crate::units::{SamplePeriod, ceil_to_index};
@@ -108,6 +108,8 @@ pub(super) fn motions(
     let look_back =
         ceil_to_index(LOOK_BACK_S / period.seconds()).clamp(FEWEST, output.len().max(FEWEST));
     let origin = steps.first().map_or(0.0, |first| first.before);
+    let is_stroke =
+        settings.first_last == FirstLast::Auto && settings.first_last.are_judged(steps.len());
     let mut so_far = SoFar::default();
     let motion = |(index, step): (usize, &InputStep)| {
         let before = index.checked_sub(1).and_then(|before| steps.get(before));
@@ -119,6 +121,7 @@ pub(super) fn motions(
             look_back,
             reach: settings.alpha,
             is_eased: (step.after - origin).abs() < (step.before - origin).abs(),
+            is_stroke,
         };
         so_far.add(&hold);
         hold.motion(&so_far)
@@ -176,6 +179,8 @@ struct Hold<'a> {
     reach: usize,
     /// Whether the input comes nearer to where the trial began.
     is_eased: bool,
+    /// Whether the trial has so few steps that it is a stroke: its motion lasts long, and bends.
+    is_stroke: bool,
 }
 
 impl Hold<'_> {
@@ -223,8 +228,8 @@ impl Hold<'_> {
             return None;
         }
         let moving = self.output.get(departed..self.end())?;
-        let arrives = self.quiet_at(self.end()).any(|quiet| quiet.rests(so_far));
-        if !arrives && before.moves_evenly(moving, delay) {
+        let bends = self.is_stroke || self.quiet_at(self.end()).any(|quiet| quiet.rests(so_far));
+        if !bends && before.moves_evenly(moving, delay) {
             return None;
         }
         let end = departed.saturating_add((delay / 2).max(self.reach)).min(self.end());

@@ -40,13 +40,21 @@ impl Consequence<'_> {
         Some(self.after?.rmse / self.sensor_noise()?)
     }
 
-    /// `0.88 deg remain, 17.6 times the noise`.
+    /// `0.28 deg remain, 5.6 times the noise`; far above it, as a part of the motion:
+    /// `0.88 deg remain, 12 % of the motion`.
     pub(super) fn remains(&self) -> String {
-        let error = self.after.map_or(f64::NAN, |error| error.rmse);
-        let error = measure(error, self.joint.output_unit.as_deref());
+        /// Times the noise that say nothing to a person any more.
+        const MANY: f64 = 20.0;
+        let Some(after) = self.after else { return "an error remains".to_owned() };
+        let error = measure(after.rmse, self.joint.output_unit.as_deref());
         match self.times_noise() {
-            Some(times) => format!("{error} remain, {} times the noise", rounded(times)),
-            None => format!("{error} remain"),
+            Some(times) if times < MANY => {
+                format!("{error} remain, {} times the noise", rounded(times))
+            }
+            _ => {
+                let part = percent(1.0 - after.fit_percent / 100.0);
+                format!("{error} remain, {part} of the motion")
+            }
         }
     }
 

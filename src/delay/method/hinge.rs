@@ -72,7 +72,8 @@ fn decide(context: &StepContext<'_>, path: &OnsetPath, noise: &NoiseModel) -> De
     let StepContext { index, settings, .. } = *context;
     let output = context.output();
     let found = search(path, index, output, noise, settings.interval);
-    let fine = found.as_ref().map(|found| fine(found, &path.onsets[index], settings));
+    let fine =
+        found.as_ref().map(|found| from_rest(context, fine(found, &path.onsets[index], settings)));
     let p_value = found.as_ref().map(|found| found.line.p_value);
     let range = path.window(index);
     let segment = Segment::clipped(range.start + 1, range.end, output.len());
@@ -104,6 +105,15 @@ fn fine(found: &Found, onset: &Onset, settings: &Settings) -> FineDelay {
     let delay = |position: f64| found.start as f64 + position - onset.origin as f64;
     let BrokenLine { median, low, high, .. } = found.line;
     FineDelay::causal(delay(median), delay(low), delay(high), settings.interval)
+}
+
+/// `fine`, whose interval also holds the onsets of a joint that gathers speed from rest in a way
+/// of its own: the lines meet behind them.
+fn from_rest(context: &StepContext<'_>, fine: FineDelay) -> FineDelay {
+    let Some((gradual, start)) = context.gradual() else { return fine };
+    let origin = context.step().sample as f64 - 1.0 - start as f64;
+    let other = gradual.delay(origin, fine.confidence);
+    FineDelay { low: fine.low.min(other.low), high: fine.high.max(other.high), ..fine }
 }
 
 /// Every position that was tried, over the sample numbers of the trial.

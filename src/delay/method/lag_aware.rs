@@ -11,7 +11,7 @@ use crate::delay::broken_line;
 use crate::delay::decision::Decision;
 use crate::delay::interval::FineDelay;
 use crate::delay::lag::{FINE, FitWindow, Lag, LagModel, LagSearch, Linearised};
-use crate::delay::motion::{DEPARTED, StepMotion};
+use crate::delay::motion::DEPARTED;
 use crate::delay::onsets::{
     GradualOnset, Onset, OnsetPath, Precision, RefinedOnset, Refinement, fit_windows, located,
     thinned,
@@ -124,13 +124,13 @@ fn lag_of(trials: &[Prepared<'_>], settings: &Settings) -> Lag {
 }
 
 /// Whether enough steps can show a lag, where some cannot: those of a joint that rested, and
-/// does not go on as it starts.
+/// does not go on as it starts. They must be no fewer than those that cannot.
 fn is_shown<'a>(onsets: impl Iterator<Item = &'a Onset>) -> bool {
     /// Steps that say more than one of them alone (chosen).
     const FEWEST: usize = 3;
     let (unfit, fit): (Vec<&Onset>, Vec<&Onset>) =
         onsets.partition(|onset| onset.alone || onset.at_rest);
-    unfit.is_empty() || fit.len() >= FEWEST
+    unfit.is_empty() || fit.len() >= FEWEST.max(unfit.len())
 }
 
 /// The decisions on all steps where no lag is known: onsets from rest by the speed that they
@@ -146,15 +146,11 @@ fn without_a_lag(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
 fn from_rest(context: &StepContext<'_>) -> Option<Decision> {
     let StepContext { settings, .. } = *context;
     let output = context.output();
-    let motion = context.motion().filter(StepMotion::departs)?;
+    let (found, start) = context.gradual()?;
     let step = context.step().sample - 1;
-    let start = motion.first.max(step.saturating_sub(settings.alpha));
-    let end = motion.end.min(context.next_sample() - 1);
-    let values = output.get(start..end)?;
-    let found = GradualOnset::of(values, 0..motion.latest + 1 - start, settings.interval)?;
     let fine = found.delay((step - start) as f64, settings.interval);
-    let segment = Segment::clipped(start + 1, end, output.len());
-    let candidates = gradual_candidates(&found, values, start);
+    let segment = Segment::clipped(start + found.first + 1, start + found.len, output.len());
+    let candidates = gradual_candidates(&found, output.get(start..)?, start);
     let mut decision = context.decision(segment, 1, candidates, Some(fine));
     if let Some(confidence) = settings.confidence {
         decision.test_reaction(Some(DEPARTED), confidence);
@@ -162,14 +158,17 @@ fn from_rest(context: &StepContext<'_>) -> Option<Decision> {
     Some(decision)
 }
 
-/// The onset at every sample, with the level before it and the chord behind it.
+/// The onset at every sample, with the line before it and the chord behind it.
 fn gradual_candidates(found: &GradualOnset, values: &[f64], start: usize) -> Candidates {
     let number = |index: usize| (start + index + 1) as f64;
-    let last = values.len() - 1;
+    let last = found.len - 1;
+    // Over the sample numbers of the trial, counted from 1.
+    let before = found.before;
+    let before = Line { intercept: before.intercept - before.slope * number(0), ..before };
     let lines = (found.first..found.first + found.sse.len()).map(|index| {
-        let slope = (values[last] - found.level) / (last.max(index + 1) - index) as f64;
-        let before = Line { slope: 0.0, intercept: found.level };
-        (before, Line { slope, intercept: found.level - slope * number(index) })
+        let level = before.at(number(index));
+        let slope = (values[last] - level) / (last.max(index + 1) - index) as f64;
+        (before, Line { slope, intercept: level - slope * number(index) })
     });
     let best = ceil_to_index(found.position).saturating_sub(found.first);
     let best = best.min(found.sse.len().saturating_sub(1));

@@ -4,11 +4,17 @@ use crate::delay::condition::Facts;
 use crate::delay::decision::Decision;
 use crate::delay::interval::FineDelay;
 use crate::delay::motion::{DEPARTED, StepMotion};
+use crate::delay::onsets::{FromRest, GradualOnset};
 use crate::delay::prepared::Prepared;
 use crate::delay::search::Candidates;
 use crate::delay::segment::Segment;
 use crate::delay::settings::Settings;
 use crate::delay::steps::InputStep;
+use crate::units::ceil_to_index;
+
+/// Seconds before a step over which its rest is looked at, and samples, at least.
+const REST_S: f64 = 0.5;
+const FEWEST_AT_REST: usize = 30;
 
 /// A step among all of its trial.
 pub(super) struct StepContext<'a> {
@@ -36,6 +42,24 @@ impl StepContext<'_> {
     /// is known from there, while lines that do not fit make any noise look large.
     pub(super) fn departed(&self) -> Option<f64> {
         self.motion().filter(StepMotion::departs).map(|_| DEPARTED)
+    }
+
+    /// The onset of a joint that rested and departed, and the sample at which its window starts.
+    pub(super) fn gradual(&self) -> Option<(GradualOnset, usize)> {
+        let motion = self.motion().filter(StepMotion::departs)?;
+        let step = self.step().sample - 1;
+        let before = self.index.checked_sub(1).and_then(|before| self.trial.steps.get(before));
+        let since = before.map_or(0, |before| before.sample - 1);
+        let rest = ceil_to_index(REST_S / self.trial.period.seconds()).max(FEWEST_AT_REST);
+        let start = step.saturating_sub(rest).max(since);
+        let earliest = step.saturating_sub(self.settings.alpha).max(start);
+        let from = FromRest {
+            rest: step - start,
+            positions: earliest - start..motion.latest + 1 - start,
+            departed: motion.latest - start,
+        };
+        let values = self.output().get(start..self.next_sample() - 1)?;
+        Some((GradualOnset::of(values, &from, self.settings.interval)?, start))
     }
 
     /// `p_(i+1)`: the sample of the next step, or the one behind the trial's last.

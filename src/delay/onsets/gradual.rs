@@ -1,32 +1,67 @@
-//! The onset of a motion that gathers speed from rest: a power of the time since.
+//! The onset of a motion that gathers speed from rest: a ramp behind a lag of its own.
 //!
 //! ```text
-//! y_k = A + c·max(k − τ, 0)^m + e_k        1 ≤ m ≤ 4
+//! y_k = A + B·k + c·r((k − τ)/T; n) + e_k        n = 0, 1, … 5
+//! r(z; n) = z·P(n, z) − n·P(n + 1, z)            for z > 0, else 0
 //! ```
 //!
-//! Behind a dead time τ an output that rests starts in proportion to `(t − τ)^m`, whatever it does
-//! later: `m = 1` where its speed steps, 2 behind a first-order lag or at a constant acceleration,
-//! 3 behind two lags. So τ is found without a lag that other steps share, which strokes do not
-//! show. For every τ and `m` the rest is linear; the interval holds every τ whose squared error,
-//! at its best `m`, is within `t²·s²·g` of the least one, where `g = 1 + 2·Σ ρ_j` is how much
-//! less residuals that remember each other say than as many independent ones.
+//! Behind a dead time τ an output that rests, or creeps at an even speed `B`, starts in a way of
+//! its own: `r` is the answer of `n` equal lags in a row, of time constant `T`, to a ramp, with
+//! the incomplete gamma function `P(n, z) = 1 − e^(−z)·Σ_(j<n) z^j/j!`. It begins as `z^(n+1)`
+//! and goes over into a line: `n = 0` where the speed steps, 1 behind a first-order lag, and as
+//! `T` grows a power of the time. So τ is found without a lag that other steps share, which
+//! strokes do not show.
+//!
+//! Only the start is of that shape. The window ends as far behind the departure, the first sample
+//! that is plainly off the rest, as the departure is behind the onset; sooner, while what is left
+//! behind the step has more than [`LACKING`] times the variance of the rest before it. For every
+//! τ, `n` and `T` the rest is linear; the interval holds every τ whose squared error, at its best
+//! `n` and `T`, is within `t²·s²·g` of the least one, where `g = 1 + 2·Σ ρ_j` is how much less
+//! residuals that remember each other say than as many independent ones.
 
 use std::ops::Range;
 
 use crate::delay::interval::FineDelay;
-use crate::numerics::{autocovariances, student_quantile};
+use crate::numerics::{Line, autocovariances, student_quantile};
+use crate::units::ceil_to_index;
 
-/// Powers that are tried.
-const POWERS: [f64; 7] = [1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0];
+/// The order of the lag, at most. Chosen on simulated cylinders: with 4 intervals hold too little where
+/// the sensor is good, with 6 too much.
+const ORDERS: i32 = 5;
+
+/// The shortest time constant, in samples, and each over the one before it.
+const SHORTEST: f64 = 0.7;
+const RATIO: f64 = 1.5;
 
 /// Parts of a sample between two positions that are tried.
 const FINENESS: usize = 4;
 
-/// Level, size, power and onset.
-const PARAMETERS: usize = 4;
+/// Level, speed, size, shape and onset.
+const PARAMETERS: usize = 5;
 
-/// Fewest samples.
-const FEWEST: usize = 10;
+/// Fewest samples of rest.
+const FEWEST: usize = 8;
+
+/// Samples behind the departure, at least: as many as make one.
+const BEHIND: usize = 3;
+
+/// Each shorter window, in parts of what the one before reaches beyond the departure.
+const SHORTER: f64 = 0.7;
+
+/// Times the variance of the rest from which a window is too long. Chosen on simulated cylinders:
+/// with 1.5 intervals hold too little, 1.1 changes nothing.
+const LACKING: f64 = 1.3;
+
+/// What is known of a window before an onset is looked for; positions are its indices.
+#[derive(Clone, Debug)]
+pub(crate) struct FromRest {
+    /// Samples before the step, at which the joint rested.
+    pub(crate) rest: usize,
+    /// Where the onset may be.
+    pub(crate) positions: Range<usize>,
+    /// The first sample that is plainly off the rest.
+    pub(crate) departed: usize,
+}
 
 /// The onset in a window; positions are indices of the window.
 #[derive(Clone, Debug)]
@@ -35,46 +70,43 @@ pub(crate) struct GradualOnset {
     pub(crate) position: f64,
     pub(crate) low: f64,
     pub(crate) high: f64,
-    /// The level before it.
-    pub(crate) level: f64,
+    /// The line before it, over the indices of the window.
+    pub(crate) before: Line,
+    /// Samples of the window that were looked at.
+    pub(crate) len: usize,
     /// The first sample at which it was tried, and the least squared error there and at the
     /// samples behind it.
     pub(crate) first: usize,
     pub(crate) sse: Vec<f64>,
 }
 
-/// One onset with one power: what it leaves.
-#[derive(Clone, Copy, Debug)]
-struct Tried {
-    position: f64,
-    power: f64,
-    level: f64,
-    size: f64,
-    sse: f64,
-}
-
 impl GradualOnset {
-    /// The best onset of `values` within `positions`, with an interval that holds the true one
-    /// as often as `confidence` says. `None` for fewer than ten values or no position.
-    pub(crate) fn of(values: &[f64], positions: Range<usize>, confidence: f64) -> Option<Self> {
-        if values.len() < FEWEST || positions.is_empty() {
+    /// The best onset of `values`, with an interval that holds the true one as often as
+    /// `confidence` says. `None` for less than eight samples of rest, three behind the departure,
+    /// or no position.
+    pub(crate) fn of(values: &[f64], start: &FromRest, confidence: f64) -> Option<Self> {
+        let FromRest { rest, departed, .. } = *start;
+        let shortest = departed + BEHIND;
+        if rest < FEWEST || start.positions.is_empty() || values.len() < shortest {
             return None;
         }
-        let first = positions.start;
-        let count = (positions.end - first) * FINENESS;
-        let at = |n: usize| first as f64 + n as f64 / FINENESS as f64;
-        let profile: Vec<Tried> = (0..count).map(|n| best_at(values, at(n))).collect();
-        let best = *profile.iter().min_by(|a, b| a.sse.total_cmp(&b.sse))?;
-        let freedom = (values.len() - PARAMETERS) as f64;
-        let t = student_quantile(f64::midpoint(1.0, confidence), freedom);
-        let limit = best.sse * (1.0 + t * t * best.memory(values) / freedom);
-        let good = |tried: &&Tried| tried.sse <= limit;
-        let half = 0.5 / FINENESS as f64;
-        let low = profile.iter().find(good)?.position - half;
-        let high = profile.iter().rev().find(good)?.position + half;
-        let sse = profile.iter().step_by(FINENESS).map(|tried| tried.sse).collect();
-        let Tried { position, level, .. } = best;
-        Some(Self { position, low, high, level, first, sse })
+        let at_rest = Window::of(values.get(..rest)?);
+        let variance = at_rest.sse / (rest as f64 - 2.0);
+        let shapes = Shapes::up_to(values.len());
+        let tried = |end: usize| Some(Profile::of(Window::of(values.get(..end)?), start, &shapes));
+        let first = tried(shortest)?;
+        let mut behind = departed as f64 - first.best()?.position;
+        loop {
+            let end = (departed + ceil_to_index(behind)).clamp(shortest, values.len());
+            let profile = if end == shortest { first.clone() } else { tried(end)? };
+            let sse = profile.best()?.sse;
+            let freedom = ((end - rest) as f64 - (PARAMETERS - 2) as f64).max(1.0);
+            let lack = (sse - at_rest.sse).max(0.0) / freedom;
+            if lack <= LACKING * variance || end == shortest {
+                return profile.onset(variance.max(lack), confidence);
+            }
+            behind *= SHORTER;
+        }
     }
 
     /// As a delay of a step at the index `origin` of the window.
@@ -84,97 +116,268 @@ impl GradualOnset {
     }
 }
 
-/// The best power for an onset at `position`.
-fn best_at(values: &[f64], position: f64) -> Tried {
-    let all = POWERS.map(|power| Tried::of(values, position, power));
-    let least = all.into_iter().min_by(|a, b| a.sse.total_cmp(&b.sse));
-    least.unwrap_or(Tried { position, power: 1.0, level: 0.0, size: 0.0, sse: f64::INFINITY })
+/// Values, and the line through them over their indices.
+#[derive(Clone, Debug)]
+struct Window {
+    line: Line,
+    /// What it leaves.
+    left: Vec<f64>,
+    sse: f64,
 }
 
-impl Tried {
-    /// Level and size by least squares.
-    fn of(values: &[f64], position: f64, power: f64) -> Self {
-        let length = values.len() as f64;
-        let origin = values.first().copied().unwrap_or_default();
-        let (mut h1, mut h2, mut y1, mut y2, mut hy) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        for (k, value) in values.iter().enumerate() {
-            let (h, y) = (shape(k, position, power, length), value - origin);
-            (h1, h2, y1, y2, hy) = (h1 + h, h2 + h * h, y1 + y, y2 + y * y, hy + h * y);
+impl Window {
+    fn of(values: &[f64]) -> Self {
+        let middle = middle(values.len());
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let times = || (0..values.len()).map(|k| k as f64 - middle);
+        let with: f64 = times().zip(values).map(|(x, y)| x * (y - mean)).sum();
+        let slope = with / times().map(|x| x * x).sum::<f64>();
+        let left: Vec<f64> = times().zip(values).map(|(x, y)| y - mean - slope * x).collect();
+        let sse = left.iter().map(|r| r * r).sum();
+        Self { line: Line { slope, intercept: mean - slope * middle }, left, sse }
+    }
+
+    /// The size of `shape`, which is zero before `first`, beside the line, and the squared error.
+    fn with(&self, first: usize, shape: impl Iterator<Item = f64>) -> (f64, f64) {
+        let (middle, length) = (middle(self.left.len()), self.left.len() as f64);
+        let (mut sum, mut with_time, mut square, mut product) = (0.0, 0.0, 0.0, 0.0);
+        for ((k, left), h) in self.left.iter().enumerate().skip(first).zip(shape) {
+            sum += h;
+            with_time += h * (k as f64 - middle);
+            square += h * h;
+            product += h * left;
         }
-        let (spread, product) = (h2 - h1 * h1 / length, hy - h1 * y1 / length);
-        let size = if spread > 0.0 { product / spread } else { 0.0 };
-        let sse = (y2 - y1 * y1 / length - size * product).max(0.0);
-        let level = origin + (y1 - size * h1) / length;
-        Self { position, power, level, size, sse }
-    }
-
-    /// `1 + 2·Σ ρ_j` of what it leaves, up to the first correlation that is not positive.
-    fn memory(&self, values: &[f64]) -> f64 {
-        let length = values.len() as f64;
-        let fitted = |k| self.level + self.size * shape(k, self.position, self.power, length);
-        let left: Vec<f64> = values.iter().enumerate().map(|(k, y)| y - fitted(k)).collect();
-        let covariances = autocovariances(&[left], values.len() / 3);
-        let power = covariances.first().copied().unwrap_or_default();
-        let positive = covariances.iter().skip(1).take_while(|covariance| **covariance > 0.0);
-        let sum: f64 = positive.sum();
-        if power > 0.0 { 1.0 + 2.0 * sum / power } else { 1.0 }
+        // Σ (k − middle)².
+        let times = length * (length * length - 1.0) / 12.0;
+        let own = square - sum * sum / length - with_time * with_time / times;
+        if own <= f64::EPSILON * square {
+            return (0.0, self.sse);
+        }
+        let size = product / own;
+        (size, (self.sse - size * product).max(0.0))
     }
 }
 
-/// `max(k − τ, 0)^m`, as a part of the window to the same power.
-fn shape(k: usize, position: f64, power: f64, length: f64) -> f64 {
-    ((k as f64 - position).max(0.0) / length).powf(power)
+/// The middle of the indices of so many samples.
+fn middle(samples: usize) -> f64 {
+    (samples as f64 - 1.0) / 2.0
+}
+
+/// The shapes that are tried, each at every part of a sample.
+struct Shapes {
+    tables: Vec<Vec<f64>>,
+}
+
+impl Shapes {
+    fn up_to(samples: usize) -> Self {
+        let table = |shape: &dyn Fn(f64) -> f64| {
+            let parts = 0..samples * FINENESS;
+            parts.map(|part| shape(part as f64 / FINENESS as f64)).collect()
+        };
+        let longest = samples as f64 / 2.0;
+        let constants = std::iter::successors(Some(SHORTEST), |constant| Some(constant * RATIO));
+        let constants: Vec<f64> = constants.take_while(|constant| *constant < longest).collect();
+        let mut tables: Vec<Vec<f64>> = vec![table(&|time| time)];
+        for order in 1..=ORDERS {
+            let lagged = |constant: &f64| table(&|time| lagged_ramp(time / constant, order));
+            tables.extend(constants.iter().map(lagged));
+            tables.push(table(&|time| (time / longest).powi(order + 1)));
+        }
+        Self { tables }
+    }
+
+    /// The shape of a number for an onset at `position`, and the first sample behind it.
+    fn behind(&self, number: usize, position: f64) -> (usize, impl Iterator<Item = f64>) {
+        let first = ceil_to_index(position);
+        let part = ((first as f64 - position) * FINENESS as f64).round();
+        let table = self.tables.get(number).map(Vec::as_slice).unwrap_or_default();
+        (first, table.iter().skip(ceil_to_index(part)).step_by(FINENESS).copied())
+    }
+}
+
+/// `r(z; n)`, the answer of `n` equal lags in a row to a ramp, over the time constant.
+fn lagged_ramp(z: f64, order: i32) -> f64 {
+    let n = f64::from(order);
+    z * gamma_below(order, z) - n * gamma_below(order + 1, z)
+}
+
+/// `P(n, z)`, the regularised incomplete gamma function of a whole number.
+fn gamma_below(n: i32, z: f64) -> f64 {
+    let terms = (1..n).scan(1.0, |term, j| {
+        *term *= z / f64::from(j);
+        Some(*term)
+    });
+    1.0 - (-z).exp() * (1.0 + terms.sum::<f64>())
+}
+
+/// One onset with its best shape: what it leaves.
+#[derive(Clone, Copy, Debug)]
+struct Tried {
+    position: f64,
+    shape: usize,
+    size: f64,
+    sse: f64,
+}
+
+/// The best shape for every onset that is tried in a window.
+#[derive(Clone)]
+struct Profile<'a> {
+    window: Window,
+    first: usize,
+    tried: Vec<Tried>,
+    shapes: &'a Shapes,
+}
+
+impl<'a> Profile<'a> {
+    fn of(window: Window, start: &FromRest, shapes: &'a Shapes) -> Self {
+        let first = start.positions.start;
+        let best = |number: usize| {
+            let position = first as f64 + number as f64 / FINENESS as f64;
+            let tried = (0..shapes.tables.len()).map(|shape| {
+                let (first, values) = shapes.behind(shape, position);
+                let (size, sse) = window.with(first, values);
+                Tried { position, shape, size, sse }
+            });
+            tried.min_by(|a, b| a.sse.total_cmp(&b.sse))
+        };
+        let tried = (0..start.positions.len() * FINENESS).filter_map(best).collect();
+        Self { window, first, tried, shapes }
+    }
+
+    fn best(&self) -> Option<Tried> {
+        self.tried.iter().copied().min_by(|a, b| a.sse.total_cmp(&b.sse))
+    }
+
+    /// The best with its interval, where noise has at least this `variance`.
+    fn onset(&self, variance: f64, confidence: f64) -> Option<GradualOnset> {
+        let best = self.best()?;
+        let samples = self.window.left.len();
+        let freedom = (samples as f64 - PARAMETERS as f64).max(1.0);
+        let t = student_quantile(f64::midpoint(1.0, confidence), freedom);
+        let variance = variance.max(best.sse / freedom);
+        let shape = self.shape(&best);
+        let left = self.window.left.iter().zip(&shape.left).map(|(y, h)| y - best.size * h);
+        let left: Vec<f64> = left.collect();
+        let before = Line {
+            slope: self.window.line.slope - best.size * shape.line.slope,
+            intercept: self.window.line.intercept - best.size * shape.line.intercept,
+        };
+        let limit = best.sse + t * t * variance * memory(left);
+        let good = |tried: &&Tried| tried.sse <= limit;
+        // The ends lie between positions that were tried.
+        let between = 1.0 / FINENESS as f64;
+        Some(GradualOnset {
+            position: best.position,
+            low: self.tried.iter().find(good)?.position - between,
+            high: self.tried.iter().rev().find(good)?.position + between,
+            before,
+            len: samples,
+            first: self.first,
+            sse: self.tried.iter().step_by(FINENESS).map(|tried| tried.sse).collect(),
+        })
+    }
+
+    /// The shape of `tried` over the window.
+    fn shape(&self, tried: &Tried) -> Window {
+        let (first, behind) = self.shapes.behind(tried.shape, tried.position);
+        let values = std::iter::repeat_n(0.0, first).chain(behind);
+        Window::of(&values.take(self.window.left.len()).collect::<Vec<_>>())
+    }
+}
+
+/// `1 + 2·Σ ρ_j` of residuals, up to the first correlation that is not positive.
+fn memory(left: Vec<f64>) -> f64 {
+    let lags = left.len() / 3;
+    let covariances = autocovariances(&[left], lags);
+    let power = covariances.first().copied().unwrap_or_default();
+    let positive = covariances.iter().skip(1).take_while(|covariance| **covariance > 0.0);
+    let sum: f64 = positive.sum();
+    if power > 0.0 { 1.0 + 2.0 * sum / power } else { 1.0 }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::testing::noise;
 
-    fn noise(seed: u64) -> impl FnMut() -> f64 {
-        let mut state = seed;
-        move || {
-            let mut sum = 0.0;
-            for _ in 0..12 {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                sum += (state >> 40) as f64 / (1_u64 << 24) as f64;
-            }
-            sum - 6.0
-        }
+    /// A rest of 40 samples before the step, creeping, and a motion that starts at `onset`.
+    fn motion(onset: f64, start: impl Fn(f64) -> f64) -> Vec<f64> {
+        let value = |k: usize| {
+            let time = (k as f64 - onset).max(0.0);
+            40.0 - 0.001 * k as f64 + start(time)
+        };
+        (0..110).map(value).collect()
     }
 
-    fn motion(onset: f64, power: f64) -> impl Fn(usize) -> f64 {
-        move |k| 40.0 + 0.002 * (k as f64 - onset).max(0.0).powf(power)
+    fn found(values: &[f64], departed: usize) -> GradualOnset {
+        let start = FromRest { rest: 40, positions: 35..departed + 1, departed };
+        GradualOnset::of(values, &start, 0.95).unwrap()
+    }
+
+    fn departure(values: &[f64], plain: f64) -> usize {
+        values.iter().enumerate().position(|(k, y)| y - 40.0 + 0.001 * k as f64 > plain).unwrap()
     }
 
     #[test]
-    fn an_onset_of_any_power_is_found() {
-        for power in [1.0, 2.0, 3.0] {
-            let values: Vec<f64> = (0..80).map(motion(31.3, power)).collect();
-            let found = GradualOnset::of(&values, 10..45, 0.95).unwrap();
-            assert!((found.position - 31.3).abs() < 0.3, "{power}: {found:?}");
-            assert!((found.level - 40.0).abs() < 0.05);
+    fn a_lagged_ramp_answers_as_the_lags_do() {
+        // Order 1: z − 1 + e^(−z); in small steps for all.
+        assert!((lagged_ramp(1.3, 1) - (0.3 + (-1.3_f64).exp())).abs() < 1e-12);
+        for order in 1..=4 {
+            let (mut states, step) = (vec![0.0; order as usize], 1e-4);
+            for k in 0..30_000 {
+                let mut input = f64::from(k) * step;
+                for state in &mut states {
+                    *state += step * (input - *state);
+                    input = *state;
+                }
+            }
+            let last = *states.last().unwrap();
+            assert!((lagged_ramp(3.0, order) - last).abs() < 1e-3, "{order}");
+        }
+    }
+
+    #[test]
+    fn an_onset_of_any_shape_is_found() {
+        let starts: [&dyn Fn(f64) -> f64; 4] =
+            [&|t| 0.3 * t, &|t| 0.02 * t * t, &|t| 0.004 * t.powi(3), &|t| {
+                0.5 * (t - 4.0 * (1.0 - (-t / 4.0).exp()))
+            }];
+        for (number, start) in starts.into_iter().enumerate() {
+            let values = motion(61.3, start);
+            let found = found(&values, departure(&values, 0.05));
+            assert!((found.position - 61.3).abs() < 0.6, "{number}: {found:?}");
+            assert!((found.before.at(20.0) - 39.98).abs() < 0.01, "{number}: {found:?}");
         }
     }
 
     #[test]
     fn intervals_hold_the_onset_as_often_as_they_say() {
-        let mut noise = noise(5);
-        for power in [1.0, 2.0, 3.0] {
-            let clean: Vec<f64> = (0..90).map(motion(40.4, power)).collect();
-            let size = 0.01 * (clean[89] - clean[0]);
-            let mut held = 0;
-            for _ in 0..200 {
-                let values: Vec<f64> = clean.iter().map(|y| y + size * noise()).collect();
-                let found = GradualOnset::of(&values, 10..60, 0.95).unwrap();
-                held += usize::from(found.low <= 40.4 && 40.4 <= found.high);
-            }
-            assert!((180..=199).contains(&held), "{power}: {held} of 200");
+        let starts: [&dyn Fn(f64) -> f64; 4] =
+            [&|t| 0.3 * t, &|t| 0.02 * t * t, &|t| 0.002 * t.powi(3), &|t| {
+                0.5 * (t - 4.0 * (1.0 - (-t / 4.0).exp()))
+            }];
+        let white = noise(5, 0.0, 200 * 110);
+        for (number, start) in starts.into_iter().enumerate() {
+            let clean = motion(62.4, start);
+            let held = (0..200).filter(|run| {
+                let noise = white.iter().skip(run * clean.len());
+                let values: Vec<f64> = clean.iter().zip(noise).map(|(y, e)| y + 0.02 * e).collect();
+                let found = found(&values, departure(&clean, 0.12));
+                found.low <= 62.4 && 62.4 <= found.high
+            });
+            let held = held.count();
+            assert!((180..=200).contains(&held), "{number}: {held} of 200");
         }
     }
 
     #[test]
     fn what_is_too_short_has_none() {
-        assert!(GradualOnset::of(&[1.0; 9], 2..5, 0.95).is_none());
-        assert!(GradualOnset::of(&[1.0; 50], 5..5, 0.95).is_none());
+        let of = |rest, positions: Range<usize>, departed| {
+            let start = FromRest { rest, positions, departed };
+            GradualOnset::of(&[1.0; 50], &start, 0.95)
+        };
+        assert!(of(7, 8..12, 12).is_none());
+        assert!(of(20, 22..22, 30).is_none());
+        assert!(of(20, 15..49, 48).is_none());
     }
 }

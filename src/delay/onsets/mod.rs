@@ -8,7 +8,7 @@ mod path;
 mod refine;
 mod windows;
 
-pub(crate) use gradual::GradualOnset;
+pub(crate) use gradual::{FromRest, GradualOnset};
 pub(crate) use locate::{break_window, located};
 pub(crate) use onset::Onset;
 pub(crate) use path::OnsetPath;
