@@ -86,7 +86,7 @@ fn intervals_hold_the_first_motion_as_often_as_they_say() {
         let held = estimated(&trials, &Settings::of(method)).into_iter().zip(&delays);
         let held = held.filter(|(estimate, delay)| {
             let fine = estimate.decisions[0].fine.unwrap();
-            (fine.low..=fine.high).contains(delay)
+            (fine.low..=fine.high).contains(*delay)
         });
         let held = held.count();
         assert!(held >= 34, "{method}: {held} of 40");
