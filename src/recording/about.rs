@@ -11,7 +11,10 @@ use super::markdown::plain;
 use super::origin::made_from;
 use super::paths::ABOUT;
 use super::recorded::Recording;
-use crate::report::{JointSummary, SUMMARY_HEADER, chosen_line, settings_rows, summary_cells};
+use crate::report::{
+    EstimatedJoint, JointSummary, LEVEL_HEADER, SUMMARY_HEADER, chosen_line, dead_time_sentences,
+    kind_sentence, level_cells, settings_rows, summary_cells,
+};
 
 /// Adds the page at `/about`.
 pub(super) fn add(
@@ -33,6 +36,15 @@ fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String
         let cells = summary_cells(&plain(&joint.joint.name), &JointSummary::of(*joint));
         writeln!(page, "| {} |", cells.join(" | "))?;
     }
+    for joint in recording.joints {
+        let name = plain(&joint.joint.name);
+        let summary = JointSummary::of(*joint);
+        let sentences = summary.headline.kinds().iter().map(kind_sentence);
+        for sentence in sentences.chain(dead_time_sentences(joint)) {
+            writeln!(page, "- {name}: {sentence}")?;
+        }
+    }
+    delay_levels(&mut page, recording.joints)?;
     writeln!(page, "\n## Settings\n\n| setting | value |\n|---|---|")?;
     for (name, value) in settings_rows(recording.settings) {
         writeln!(page, "| {name} | {value} |")?;
@@ -56,6 +68,28 @@ fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String
     made_from(&mut page, recording.sources, recording.reading)?;
     writeln!(page, "{HOW_TO_READ}")?;
     Ok(page)
+}
+
+/// The delays by kind of step and levels.
+fn delay_levels(page: &mut String, joints: &[EstimatedJoint<'_>]) -> std::fmt::Result {
+    /// Rows that a person reads, at most.
+    const MOST: usize = 200;
+    let tables = joints.iter().map(|joint| (plain(&joint.joint.name), joint.delay_table().rows));
+    let tables: Vec<_> = tables.collect();
+    let rows = || tables.iter().flat_map(|(name, rows)| rows.iter().map(move |row| (name, row)));
+    let all = rows().count();
+    if all == 0 {
+        return Ok(());
+    }
+    writeln!(page, "\n## Delay table\n\n| joint | {} |", LEVEL_HEADER.join(" | "))?;
+    writeln!(page, "|---|{}", "---|".repeat(LEVEL_HEADER.len()))?;
+    for (name, row) in rows().take(MOST) {
+        writeln!(page, "| {name} | {} |", level_cells(row).join(" | "))?;
+    }
+    if all > MOST {
+        writeln!(page, "\n{MOST} of {all} rows; `--table FILE.csv` writes them all.")?;
+    }
+    Ok(())
 }
 
 const HOW_TO_READ: &str = "\

@@ -92,11 +92,11 @@ pub(crate) fn write_level_table(joints: &[EstimatedJoint<'_>], out: impl Write) 
 }
 
 /// What the cells of [`level_cells`] are.
-pub(super) const LEVEL_HEADER: [&str; 8] =
+pub(crate) const LEVEL_HEADER: [&str; 8] =
     ["transition", "from", "to", "steps", "accepted", "median", "95 % interval", "min to max"];
 
 /// A row for people.
-pub(super) fn level_cells(row: &DelayRow) -> [String; 8] {
+pub(crate) fn level_cells(row: &DelayRow) -> [String; 8] {
     let dash = || "-".to_owned();
     let level = |level: f64, (low, high): (f64, f64)| {
         if low < high { format!("{} to {}", number(low), number(high)) } else { number(level) }

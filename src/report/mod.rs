@@ -44,6 +44,8 @@ pub use decisions::decision_rows;
 pub(crate) use decisions::{
     DecisionDetail, Methods, decision_columns, decision_table, write_decisions,
 };
+#[cfg(feature = "rrd")]
+pub(crate) use delay_table::{LEVEL_HEADER, kind_sentence, level_cells};
 pub(crate) use delay_table::{delay_levels_text, level_table, write_level_table};
 pub(crate) use delays::delay_table;
 pub use delays::write_delays;
