@@ -1,6 +1,6 @@
 //! Which of the candidates is to be named: the verdict on a model.
 
-use super::attribution::{Attribution, Grown};
+use super::attribution::{Attribution, Grown, Misfit};
 use super::candidate::Candidate;
 use super::extension::ids;
 use super::options::Options;
@@ -74,9 +74,10 @@ fn accounts_for_it(
     let id = best.effects[0];
     let first = Step::new(record, Change::Added(id), best.fit.clone());
     let given: Vec<_> = ids(&best.fit.model).into_iter().filter(|given| *given != id).collect();
-    let ahead = Options { max_effects: 1 + LOOK_AHEAD, ..options.clone() };
+    let ahead = Options { max_effects: 1 + LOOK_AHEAD, keeps_refinements: true, ..options.clone() };
+    let misfit = Misfit::of(record, &best.fit);
     let mut last = Vec::new();
-    let ended = add_stepwise(record, first, &given, &ahead, workers, |step| {
+    let ended = add_stepwise(record, first, &given, &ahead, workers, misfit, |step| {
         last = ids(&step.fit.model);
         true
     });

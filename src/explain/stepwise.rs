@@ -6,6 +6,7 @@
 //! section 3.3.2 (forward stepwise selection); M. A. Efroymson, "Multiple regression analysis",
 //! 1960 (with removal).
 
+use super::attribution::Misfit;
 use super::candidate::Candidate;
 use super::eligible::signal_range;
 use super::extension::ids;
@@ -84,13 +85,15 @@ pub(super) struct Ended {
 /// Adds to `first` what it lacks, one effect after the other, and removes what has become
 /// useless. `visit` sees each step once; where it says no, nothing more is tried.
 ///
-/// Effects of `given` stay.
+/// Effects of `given` stay. Without [`Options::keeps_refinements`] only effects are added that
+/// have a practical consequence.
 pub(super) fn add_stepwise(
     record: &FitRecord<'_>,
     first: Step,
     given: &[&'static str],
     options: &Options,
     workers: &impl Workers,
+    misfit: Misfit,
     mut visit: impl FnMut(&Step) -> bool,
 ) -> Ended {
     let ended = |verdict, fit, was_stopped| Ended { verdict, fit, was_stopped };
@@ -100,7 +103,18 @@ pub(super) fn add_stepwise(
             let was_stopped = !visit(&step);
             return ended(Verdict::Adequate, step.fit, was_stopped);
         }
-        let found = step.ranking.first().filter(|best| best.is_significant()).cloned();
+        let counts = |candidate: &Candidate| {
+            let has_consequence = || misfit.has_consequence(record, &step.fit, &candidate.fit);
+            candidate.is_significant() && (options.keeps_refinements || has_consequence())
+        };
+        let found = step.ranking.iter().position(counts);
+        if let Some(index) = found {
+            step.ranking[..=index].rotate_right(1);
+        } else if misfit.is_explained(record, &step.fit) {
+            let was_stopped = !visit(&step);
+            return ended(Verdict::Adequate, step.fit, was_stopped);
+        }
+        let found = found.and(step.ranking.first().cloned());
         let explained = found.is_some();
         let added = ids(&step.fit.model).len().saturating_sub(given.len());
         let goes_on = visit(&step);
