@@ -16,90 +16,15 @@
 //! predictive inference for regression", Journal of the American Statistical Association 113
 //! (2018), 1094-1111 (leave-one-covariate-out).
 
+use super::contribution::{Attribution, Contribution};
 use super::eligible::signal_range;
 use super::extension::ids;
+use super::misfit::{CONSEQUENCE, Misfit};
 use super::options::Options;
 use super::removal::{fitted_after, replacements};
 use super::revision::Change;
 use super::workers::Workers;
-use crate::diagnosis::{ErrorFigures, sensor_noise};
 use crate::fit::{Fit, FitRecord, fit_to_compare};
-
-/// The share of the misfit from which an effect has a practical consequence.
-const CONSEQUENCE: f64 = 0.01;
-
-/// The part of the misfit below which what a model leaves is explained.
-const HARDLY: f64 = 0.05;
-
-/// Times the noise from which significance no longer chooses between effects. Chosen: simulated
-/// records with the noise of a joint's sensor are below, measured machines far above.
-const FAR: f64 = 100.0;
-
-/// What an effect of a model carries.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Contribution {
-    /// Its id.
-    pub effect: &'static str,
-    /// What the error beyond the noise grows by without it, in parts of that of the first model.
-    pub error_share: f64,
-    /// Effects that leave as little in its place.
-    pub alternatives: Vec<&'static str>,
-}
-
-/// To which effects the fall of the error is attributed.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Attribution {
-    /// Effects with consequence, the largest share first.
-    pub found: Vec<Contribution>,
-    /// Effects that statistics sees, and that have no practical consequence.
-    pub refinements: Vec<&'static str>,
-}
-
-/// How far the model was off to which effects are added: what shares are parts of.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Misfit {
-    /// The error of that model.
-    first: f64,
-    noise: f64,
-}
-
-impl Misfit {
-    pub(super) fn of(record: &FitRecord<'_>, first: &Fit) -> Self {
-        let first = error(record, first);
-        let noise = sensor_noise(&record.joint().trials).unwrap_or(0.0).min(first);
-        Self { first, noise }
-    }
-
-    /// What the error of `worse` is larger than that of `better`, in parts of the misfit.
-    pub(super) fn share(self, record: &FitRecord<'_>, worse: &Fit, better: &Fit) -> f64 {
-        self.part(error(record, worse) - error(record, better))
-    }
-
-    /// Whether an effect has a practical consequence with which the error falls from that of
-    /// `worse` to that of `better`.
-    pub(super) fn has_consequence(self, record: &FitRecord<'_>, worse: &Fit, better: &Fit) -> bool {
-        self.share(record, worse, better) >= CONSEQUENCE
-    }
-
-    /// Whether what `fit` leaves beside the noise is hardly a part of the misfit.
-    pub(super) fn is_explained(self, record: &FitRecord<'_>, fit: &Fit) -> bool {
-        self.part(error(record, fit) - self.noise) < HARDLY
-    }
-
-    /// Whether it is so far beyond the noise that any effect is significant.
-    pub(super) fn is_far_beyond_noise(self) -> bool {
-        self.first > FAR * self.noise
-    }
-
-    fn part(self, error: f64) -> f64 {
-        error / (self.first - self.noise).max(f64::MIN_POSITIVE)
-    }
-}
-
-/// The error on the whole record.
-fn error(record: &FitRecord<'_>, fit: &Fit) -> f64 {
-    ErrorFigures::of_record(record, &fit.evaluation).map_or(f64::NAN, |error| error.rmse)
-}
 
 /// A model, and the one to which its effects were added.
 pub(super) struct Grown<'a, 'r> {

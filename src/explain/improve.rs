@@ -1,8 +1,10 @@
 //! Explain and add, until nothing significant is missing.
 
-use super::attribution::{Attribution, Grown, LeftOut, Misfit};
+use super::attribution::{Grown, LeftOut};
+use super::contribution::Attribution;
 use super::eligible::{could_be_missing, signal_range};
 use super::extension::ids;
+use super::misfit::Misfit;
 use super::options::Options;
 use super::revision::{Change, Improvement, Revision};
 use super::separate::separate;

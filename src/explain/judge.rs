@@ -1,8 +1,10 @@
 //! Which of the candidates is to be named: the verdict on a model.
 
-use super::attribution::{Attribution, Grown, Misfit};
+use super::attribution::Grown;
 use super::candidate::Candidate;
+use super::contribution::Attribution;
 use super::extension::ids;
+use super::misfit::Misfit;
 use super::options::Options;
 use super::revision::Change;
 use super::separate::separate;

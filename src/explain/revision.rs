@@ -1,7 +1,7 @@
 //! Models as they change: what was added and removed, and the error before and after.
 
-use super::attribution::Attribution;
 use super::candidate::Candidate;
+use super::contribution::Attribution;
 use super::verdict::Verdict;
 use crate::diagnosis::Comparison;
 use crate::fit::FitError;

@@ -6,10 +6,10 @@
 //! section 3.3.2 (forward stepwise selection); M. A. Efroymson, "Multiple regression analysis",
 //! 1960 (with removal).
 
-use super::attribution::Misfit;
 use super::candidate::Candidate;
 use super::eligible::signal_range;
 use super::extension::ids;
+use super::misfit::Misfit;
 use super::options::Options;
 use super::ranking::{Scope, rank};
 use super::removal::Removal;

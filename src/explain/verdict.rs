@@ -1,7 +1,7 @@
 //! What is said of a model.
 
-use super::attribution::Attribution;
 use super::candidate::Candidate;
+use super::contribution::Attribution;
 use crate::diagnosis::Comparison;
 
 /// What is to be said of a model.

@@ -65,10 +65,10 @@ impl Consequence<'_> {
         if found.len() > 1 {
             let share = |one: &Contribution| format!("{} {}", one.effect, percent(one.error_share));
             let shares: Vec<String> = found.iter().map(share).collect();
-            let shares = shares.join(", ");
             sentences.push(format!(
-                "What the error grows by when one is left out and the rest fitted again, in parts \
-                 of the first: {shares}."
+                "Each left out in turn, and the rest fitted again, the error would grow by this \
+                 part of what it was at first: {}.",
+                shares.join(", ")
             ));
         }
         for one in found.iter().filter(|one| !one.alternatives.is_empty()) {

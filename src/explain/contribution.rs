@@ -1,0 +1,21 @@
+//! To which effects the fall of an error is attributed.
+
+/// What an effect of a model carries.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contribution {
+    /// Its id.
+    pub effect: &'static str,
+    /// What the error beyond the noise grows by without it, in parts of that of the first model.
+    pub error_share: f64,
+    /// Effects that leave as little in its place.
+    pub alternatives: Vec<&'static str>,
+}
+
+/// To which effects the fall of the error is attributed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Attribution {
+    /// Effects with consequence, the largest share first.
+    pub found: Vec<Contribution>,
+    /// Effects that statistics sees, and that have no practical consequence.
+    pub refinements: Vec<&'static str>,
+}
