@@ -21,13 +21,13 @@ fn rest(seed: u32) -> usize {
 /// A cylinder that rests, is driven by `level` into its stop after `delay_s`, and is let go.
 fn stroke(seed: u32, level: f64, delay_s: f64) -> Trial {
     let steps = vec![(rest(seed), level), (rest(seed) + 1200, 0.0)];
-    simulated(seed, level > 0.0, steps, delay_s, NOISE)
+    simulated(seed, level, steps, delay_s, NOISE)
 }
 
 /// Samples from the step until the output, without noise, is off that of a trial without the step
 /// by a tenth of the noise.
 fn first_motion(seed: u32, level: f64, delay_s: f64) -> f64 {
-    let clean = |steps| simulated(seed, level > 0.0, steps, delay_s, 0.0);
+    let clean = |steps| simulated(seed, level, steps, delay_s, 0.0);
     let (moves, rests) = (clean(vec![(rest(seed), level)]), clean(vec![]));
     let pairs = moves.output().iter().zip(rests.output());
     let apart: Vec<f64> = pairs.map(|(y, still)| (y - still).abs() - 0.1 * NOISE).collect();
@@ -36,17 +36,12 @@ fn first_motion(seed: u32, level: f64, delay_s: f64) -> f64 {
     (after - 1 - rest(seed)) as f64 + part
 }
 
-fn simulated(
-    seed: u32,
-    is_upward: bool,
-    steps: Vec<(usize, f64)>,
-    delay_s: f64,
-    noise: f64,
-) -> Trial {
+/// A cylinder that starts near the end from which `level` drives it away.
+fn simulated(seed: u32, level: f64, steps: Vec<(usize, f64)>, delay_s: f64, noise: f64) -> Trial {
     let input = InputSpec::Steps { steps, initial: 0.0 };
     let cylinder = CylinderSpec::default();
     let [low, high] = cylinder.angle_limits_deg;
-    let start = if is_upward { low + 1.0 } else { high - 1.0 };
+    let start = if level > 0.0 { low + 1.0 } else { high - 1.0 };
     let delay = DelayLaw::Constant { seconds: delay_s };
     let cylinder = Some(cylinder);
     let joint = JointSpec { start, noise, cylinder, ..JointSpec::new("boom", input, delay) };
@@ -74,7 +69,7 @@ fn estimated(trials: &[Trial], settings: &Settings) -> Vec<TrialEstimate> {
 fn intervals_hold_the_first_motion_as_often_as_they_say() {
     let of = |seed: u32| {
         let level = f64::from(seed % 11) * 0.5 + 2.0;
-        let level = if seed % 2 == 0 { level } else { -level };
+        let level = if seed.is_multiple_of(2) { level } else { -level };
         (level, 0.05 + 0.011 * f64::from(seed % 40))
     };
     let made = |seed: u32| {

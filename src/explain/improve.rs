@@ -27,8 +27,9 @@ pub fn improve(
     workers: &impl Workers,
     mut done: impl FnMut(&Revision) -> bool,
 ) -> Improvement {
-    let given = ids(&fit.model);
-    let first = Step::new(record, Change::Start, fit.clone());
+    let start = fit;
+    let given = ids(&start.model);
+    let first = Step::new(record, Change::Start, start.clone());
     let mut revisions = Vec::new();
     let mut visit = |step: &Step| {
         let Step { change, fit, lack_of_fit, mut ranking } = step.clone();
@@ -39,7 +40,7 @@ pub fn improve(
         revisions.push(revision);
         goes_on
     };
-    let misfit = Misfit::of(record, &fit);
+    let misfit = Misfit::of(record, &start);
     let (first, goes_on) = if misfit.is_far_beyond_noise() {
         climbed(record, first, options, &mut visit)
     } else {
@@ -54,7 +55,7 @@ pub fn improve(
     let attribution = if ended.was_stopped {
         Attribution::default()
     } else {
-        attributed(record, &fit, ended.fit, options, workers, visit)
+        attributed(record, &start, ended.fit, options, workers, visit)
     };
     Improvement { revisions, verdict, attribution }
 }

@@ -323,7 +323,7 @@ mod tests {
         // Order 1: z − 1 + e^(−z); in small steps for all.
         assert!((lagged_ramp(1.3, 1) - (0.3 + (-1.3_f64).exp())).abs() < 1e-12);
         for order in 1..=4 {
-            let (mut states, step) = (vec![0.0; order as usize], 1e-4);
+            let (mut states, step) = (vec![0.0; usize::try_from(order).unwrap()], 1e-4);
             for k in 0..30_000 {
                 let mut input = f64::from(k) * step;
                 for state in &mut states {
