@@ -9,10 +9,6 @@ pub(super) const CONSEQUENCE: f64 = 0.01;
 /// The part of the misfit below which what a model leaves is explained.
 const HARDLY: f64 = 0.05;
 
-/// Times the noise from which significance no longer chooses between effects. Chosen: simulated
-/// records with the noise of a joint's sensor are below, measured machines far above.
-const FAR: f64 = 100.0;
-
 /// How far the model was off to which effects are added: what shares are parts of.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Misfit {
@@ -42,11 +38,6 @@ impl Misfit {
     /// Whether what `fit` leaves beside the noise is hardly a part of the misfit.
     pub(super) fn is_explained(self, record: &FitRecord<'_>, fit: &Fit) -> bool {
         self.part(error(record, fit) - self.noise) < HARDLY
-    }
-
-    /// Whether it is so far beyond the noise that any effect is significant.
-    pub(super) fn is_far_beyond_noise(self) -> bool {
-        self.first > FAR * self.noise
     }
 
     fn part(self, error: f64) -> f64 {
