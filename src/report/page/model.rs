@@ -80,13 +80,13 @@ fn came(improved: &ImprovedJoint<'_>) -> Vec<&'static str> {
 
 /// What is still missing.
 fn missing(improved: &ImprovedJoint<'_>) -> String {
-    let (more, still) = if improved.revisions.len() > 1 { (" more", " still") } else { ("", "") };
+    let more = if improved.revisions.len() > 1 { " more" } else { "" };
     let best = improved.finding.ranking.first().map(Candidate::name);
     match (improved.finding.verdict, best) {
         (Verdict::Adequate, _) => format!("nothing{more} is missing"),
         (Verdict::MissingEffect, Some(best)) => format!("{best} is missing"),
         (Verdict::MissingEffect, None) => "more is missing".to_owned(),
-        (Verdict::Unexplained, _) => format!("it{still} fails, and no effect accounts for it"),
+        (Verdict::Unexplained, _) => "an error remains that no effect accounts for".to_owned(),
     }
 }
 
