@@ -97,6 +97,33 @@ fn each_step_is_told_and_the_ladder_is_printed() {
 }
 
 #[test]
+fn the_conclusion_says_what_each_effect_carries_and_what_remains() {
+    let desk = Desk::with(vec![banded("boom")]);
+    let explained = desk.json(&format!("explain log.csv {FEW}"), 0);
+    let improved = desk.json(&format!("improve log.csv --write one.toml {FEW}"), 0);
+    let [named, improved] = [&explained, &improved].map(|json| &json["joints"][0]);
+    let [of_named, conclusion] = [named, improved].map(|joint| &joint["conclusion"]);
+    assert_eq!(conclusion["found"][0]["effect"], "dead_band");
+    assert_eq!(conclusion["found"].as_array().unwrap().len(), 1);
+    assert!(conclusion["found"][0]["parameters"]["dead_band.upper"]["value"].is_f64());
+    assert_eq!(conclusion["headline"], improved["headline"]);
+    // What is said follows from the errors of the revisions and the one noise.
+    let error = |index: usize| number(&improved["revisions"][index]["error"]["validation"]["rmse"]);
+    let noise = number(&conclusion["sensor_noise"]);
+    assert!((number(&of_named["sensor_noise"]) - noise).abs() < 1e-15);
+    let (before, after) = (error(0), error(1));
+    let explained = 100.0 * (before - after) / (before - noise.min(after));
+    assert!((number(&conclusion["explained_percent"]) - explained).abs() < 1e-9);
+    assert!((number(&conclusion["remaining"]["rmse"]) - after).abs() < 1e-15);
+    let times = number(&conclusion["remaining"]["times_sensor_noise"]);
+    assert!((times - after / noise).abs() < 1e-9);
+    // The only effect carries nearly all.
+    let share = number(&conclusion["found"][0]["error_share_percent"]);
+    assert!((share - explained).abs() < 5.0, "{share} {explained}");
+    assert_eq!(of_named["found"][0]["effect"], "dead_band");
+}
+
+#[test]
 fn no_more_effects_are_added_than_allowed() {
     let desk = Desk::with(vec![slow("boom")]);
     let json = desk.json(&format!("improve log.csv --max-effects 1 --write one.toml {FEW}"), 0);

@@ -6,9 +6,7 @@ use anyhow::{Context as _, anyhow, bail};
 use tauscope::batch::Threads;
 use tauscope::delay::Settings;
 use tauscope::design::shortest;
-use tauscope::design::{
-    Design, Hold, Limits, RandomSteps, Schedule, Suspects, TestRig, random_steps,
-};
+use tauscope::design::{Design, Limits, RandomSteps, Schedule, Suspects, TestRig, random_steps};
 use tauscope::effect::{Effect, by_id};
 use tauscope::experiment::Joint;
 use tauscope::explain::{Explanation, Options, Verdict};
@@ -222,13 +220,9 @@ fn suspects(log: &Joint, case: &Case) -> anyhow::Result<Suspects> {
 /// What `plant` does with `schedule`, with other noise.
 fn played(plant: &PlantSpec, schedule: &Schedule, seed: u64) -> anyhow::Result<Joint> {
     let mut plant = plant.clone();
-    let starts = schedule.holds().iter().scan(1, |next, hold: &Hold| {
-        let start = *next;
-        *next += hold.samples;
-        Some((start, hold.level))
-    });
     let joint = plant.joints.first_mut().context("a joint")?;
-    joint.input = InputSpec::Steps { steps: starts.skip(1).collect(), initial: 0.0 };
+    joint.input =
+        InputSpec::Steps { steps: schedule.starts().into_iter().skip(1).collect(), initial: 0.0 };
     plant.duration_s = schedule.duration_s();
     plant.seed += seed;
     Ok(simulate(&plant)?.joints.remove(0))

@@ -10,8 +10,7 @@ use tauscope::Joint;
 use tauscope::batch::Threads;
 use tauscope::delay::Settings;
 use tauscope::design::{
-    Hold, Logged, Plan, RandomSteps, Schedule, TestRig, Uncertain, Wishes, plan, random_steps,
-    reach,
+    Logged, Plan, RandomSteps, Schedule, TestRig, Uncertain, Wishes, plan, random_steps, reach,
 };
 use tauscope::fit::{Horizon, Split};
 use tauscope::study::{Mode, Protocol, estimate_joints, know_joints};
@@ -153,13 +152,9 @@ fn angles(plant: &PlantSpec, start: f64, schedule: &Schedule) -> anyhow::Result<
     /// The delays of the play are others than those of the log.
     const ANOTHER: u64 = 1_000_000;
     let mut plant = plant.clone();
-    let starts = schedule.holds().iter().scan(1, |next, hold: &Hold| {
-        let start = *next;
-        *next += hold.samples;
-        Some((start, hold.level))
-    });
     let joint = plant.joints.first_mut().context("a joint")?;
-    joint.input = InputSpec::Steps { steps: starts.skip(1).collect(), initial: 0.0 };
+    joint.input =
+        InputSpec::Steps { steps: schedule.starts().into_iter().skip(1).collect(), initial: 0.0 };
     (joint.start, joint.range, joint.noise) = (start, None, 0.0);
     plant.duration_s = schedule.duration_s();
     plant.seed += ANOTHER;

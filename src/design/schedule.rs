@@ -50,6 +50,16 @@ impl Schedule {
         self.holds.iter().flat_map(hold).collect()
     }
 
+    /// Where each level begins, as the number of its first sample from 1, and the level.
+    pub fn starts(&self) -> Vec<(usize, f64)> {
+        let step = |next: &mut usize, hold: &Hold| {
+            let first = *next;
+            *next += hold.samples;
+            Some((first, hold.level))
+        };
+        self.holds.iter().scan(1, step).collect()
+    }
+
     /// The distinct levels, ascending.
     pub fn levels(&self) -> Vec<f64> {
         let mut levels: Vec<f64> = self.holds.iter().map(|hold| hold.level).collect();

@@ -31,6 +31,7 @@ pub(super) struct Grown<'a, 'r> {
     pub(super) record: &'a FitRecord<'r>,
     pub(super) first: &'a Fit,
     pub(super) whole: &'a Fit,
+    pub(super) misfit: Misfit,
     pub(super) options: &'a Options,
 }
 
@@ -67,11 +68,11 @@ impl Grown<'_, '_> {
         self.attribution_of(&self.left_out(workers), Vec::new(), workers)
     }
 
-    /// The same, given what each leaves behind, and what was removed.
+    /// The same, given what each leaves behind, and what has no consequence beside it.
     pub(super) fn attribution_of(
         &self,
         left_out: &[LeftOut],
-        removed: Vec<&'static str>,
+        mut refinements: Vec<&'static str>,
         workers: &impl Workers,
     ) -> Attribution {
         let (found, small): (Vec<_>, Vec<_>) =
@@ -94,7 +95,6 @@ impl Grown<'_, '_> {
             error_share: one.share,
             alternatives: alternatives(one.effect),
         };
-        let mut refinements = removed;
         refinements.extend(small.iter().map(|one| one.effect));
         Attribution { found: found.into_iter().map(contribution).collect(), refinements }
     }
@@ -113,6 +113,6 @@ impl Grown<'_, '_> {
     /// What the error is larger in `fit` than in the whole model, in parts of the misfit of the
     /// first.
     fn share(&self, fit: &Fit) -> f64 {
-        Misfit::of(self.record, self.first).share(self.record, fit, self.whole)
+        self.misfit.share(self.record, fit, self.whole)
     }
 }

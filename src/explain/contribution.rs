@@ -16,6 +16,6 @@ pub struct Contribution {
 pub struct Attribution {
     /// Effects with consequence, the largest share first.
     pub found: Vec<Contribution>,
-    /// Effects that statistics sees, and that have no practical consequence.
+    /// Effects that are significant, and that have no practical consequence.
     pub refinements: Vec<&'static str>,
 }

@@ -43,31 +43,31 @@ pub fn improve(
     let attribution = if ended.was_stopped {
         Attribution::default()
     } else {
-        attributed(record, &start, ended.fit, options, workers, visit)
+        let grown = Grown { record, first: &start, whole: &ended.fit, misfit, options };
+        attributed(&grown, ended.refinements, workers, visit)
     };
     Improvement { revisions, verdict, attribution }
 }
 
-/// What each effect of `whole` carries, without those of no consequence, which are removed one
-/// after the other, the least first. `visit` sees each model on the way.
+/// What each effect of the whole model carries, without those of no consequence, which are removed
+/// one after the other, the least first, and join the `refinements`. `visit` sees each model on the
+/// way.
 fn attributed(
-    record: &FitRecord<'_>,
-    first: &Fit,
-    mut whole: Fit,
-    options: &Options,
+    all: &Grown<'_, '_>,
+    mut refinements: Vec<&'static str>,
     workers: &impl Workers,
     mut visit: impl FnMut(&Step) -> bool,
 ) -> Attribution {
-    let mut removed = Vec::new();
+    let mut whole = all.whole.clone();
     loop {
-        let grown = Grown { record, first, whole: &whole, options };
+        let grown = Grown { whole: &whole, ..*all };
         let mut left_out = grown.left_out(workers);
-        let may_go = |least: &_| !options.keeps_refinements && !LeftOut::has_consequence(least);
+        let may_go = |least: &_| !all.options.keeps_refinements && !LeftOut::has_consequence(least);
         let Some(least) = left_out.pop_if(|least| may_go(least)) else {
-            return grown.attribution_of(&left_out, removed, workers);
+            return grown.attribution_of(&left_out, refinements, workers);
         };
-        removed.push(least.effect);
-        if !visit(&Step::new(record, Change::Removed(least.effect), least.fit.clone())) {
+        refinements.push(least.effect);
+        if !visit(&Step::new(all.record, Change::Removed(least.effect), least.fit.clone())) {
             return Attribution::default();
         }
         whole = least.fit;

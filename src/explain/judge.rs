@@ -44,7 +44,8 @@ pub fn explain(
     separate(record, &mut ranking, workers);
     let best = ranking.first().filter(|_| named);
     let attribution = best.map_or(attribution, |best| {
-        Grown { record, first: &fit, whole: &best.fit, options }.attribution(workers)
+        let misfit = Misfit::of(record, &fit);
+        Grown { record, first: &fit, whole: &best.fit, misfit, options }.attribution(workers)
     });
     let verdict = if named { Verdict::MissingEffect } else { Verdict::Unexplained };
     Explanation { base, verdict, ranking, attribution }

@@ -80,6 +80,14 @@ pub(super) struct Ended {
     pub(super) fit: Fit,
     /// Whether nothing more was to be tried.
     pub(super) was_stopped: bool,
+    /// What would have come next, had it a practical consequence.
+    pub(super) refinements: Vec<&'static str>,
+}
+
+impl Ended {
+    fn new(verdict: Verdict, fit: Fit, was_stopped: bool) -> Self {
+        Self { verdict, fit, was_stopped, refinements: Vec::new() }
+    }
 }
 
 /// Adds to `first` what it lacks, one effect after the other, and removes what has become
@@ -96,12 +104,11 @@ pub(super) fn add_stepwise(
     misfit: Misfit,
     mut visit: impl FnMut(&Step) -> bool,
 ) -> Ended {
-    let ended = |verdict, fit, was_stopped| Ended { verdict, fit, was_stopped };
     let mut step = first;
     loop {
         if !step.rank_missing(record, options, workers) {
             let was_stopped = !visit(&step);
-            return ended(Verdict::Adequate, step.fit, was_stopped);
+            return Ended::new(Verdict::Adequate, step.fit, was_stopped);
         }
         let counts = |candidate: &Candidate| {
             let has_consequence = || misfit.has_consequence(record, &step.fit, &candidate.fit);
@@ -110,9 +117,12 @@ pub(super) fn add_stepwise(
         let found = step.ranking.iter().position(counts);
         if let Some(index) = found {
             step.ranking[..=index].rotate_right(1);
-        } else if misfit.is_explained(record, &step.fit) {
+        } else if let Some(refused) = step.ranking.iter().find(|one| one.is_significant()) {
+            let refinements = refused.effects.clone();
+            let is_explained = misfit.is_explained(record, &step.fit);
+            let verdict = if is_explained { Verdict::Adequate } else { Verdict::Unexplained };
             let was_stopped = !visit(&step);
-            return ended(Verdict::Adequate, step.fit, was_stopped);
+            return Ended { refinements, ..Ended::new(verdict, step.fit, was_stopped) };
         }
         let found = found.and(step.ranking.first().cloned());
         let explained = found.is_some();
@@ -120,12 +130,12 @@ pub(super) fn add_stepwise(
         let goes_on = visit(&step);
         let Some(found) = found.filter(|_| goes_on && added < options.max_effects) else {
             let verdict = if explained { Verdict::MissingEffect } else { Verdict::Unexplained };
-            return ended(verdict, step.fit, !goes_on);
+            return Ended::new(verdict, step.fit, !goes_on);
         };
         if let Some(alone) = first_of_pair(record, &found) {
             step = alone;
             if !visit(&step) {
-                return ended(Verdict::MissingEffect, step.fit, true);
+                return Ended::new(Verdict::MissingEffect, step.fit, true);
             }
         }
         step = Step::new(record, Change::Added(found.newest()), found.fit);
@@ -134,7 +144,7 @@ pub(super) fn add_stepwise(
             if !visit(&step) {
                 let is_adequate = step.is_adequate();
                 let verdict = if is_adequate { Verdict::Adequate } else { Verdict::MissingEffect };
-                return ended(verdict, step.fit, true);
+                return Ended::new(verdict, step.fit, true);
             }
             step = Step::new(record, change, fit);
         }

@@ -32,13 +32,13 @@ fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String
     writeln!(page, "# Delays of {} joints\n", recording.joints.len())?;
     writeln!(page, "| {} |", SUMMARY_HEADER.join(" | "))?;
     writeln!(page, "|---|---|---|---|---|---|---|")?;
-    for joint in recording.joints {
-        let cells = summary_cells(&plain(&joint.joint.name), &JointSummary::of(*joint));
-        writeln!(page, "| {} |", cells.join(" | "))?;
+    let summary = |joint: &EstimatedJoint<'_>| JointSummary::of(*joint);
+    let summaries: Vec<JointSummary> = recording.joints.iter().map(summary).collect();
+    for (joint, summary) in recording.joints.iter().zip(&summaries) {
+        writeln!(page, "| {} |", summary_cells(&plain(&joint.joint.name), summary).join(" | "))?;
     }
-    for joint in recording.joints {
+    for (joint, summary) in recording.joints.iter().zip(&summaries) {
         let name = plain(&joint.joint.name);
-        let summary = JointSummary::of(*joint);
         let sentences = summary.headline.kinds().iter().map(kind_sentence);
         for sentence in sentences.chain(dead_time_sentences(joint)) {
             writeln!(page, "- {name}: {sentence}")?;

@@ -1,7 +1,7 @@
 //! `add` as text: the error before and after.
 
 use super::compare::{ComparedJoint, compare_table};
-use super::consequence::Consequence;
+use super::consequence::{Consequence, noise_of};
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::explain::Addition;
@@ -29,6 +29,11 @@ pub(crate) fn gone(before: &JointModel, after: &JointModel) -> Vec<&'static str>
     effect_ids(before).into_iter().filter(|id| !left.contains(id)).collect()
 }
 
+/// Ids of the effects that `after` has and `before` has not.
+pub(crate) fn gained(before: &JointModel, after: &JointModel) -> Vec<&'static str> {
+    gone(after, before)
+}
+
 impl<'a> AddedJoint<'a> {
     /// The model before and after, as revisions.
     pub(crate) fn compared(&self) -> [ComparedJoint<'a>; 2] {
@@ -47,6 +52,7 @@ impl<'a> AddedJoint<'a> {
             attribution: Some(attribution),
             before: before.judged(),
             after: after.judged(),
+            sensor_noise: noise_of(self.joint),
         }
     }
 

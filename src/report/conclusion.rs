@@ -1,5 +1,7 @@
 //! A verdict in words that an engineer can act on.
 
+use super::add::gained;
+use super::consequence::noise_of;
 use super::equation::filled_in;
 use super::finding::{Finding, added, specs};
 use super::separation::sentence;
@@ -10,7 +12,7 @@ use crate::explain::{Candidate, Verdict};
 use crate::fit::{Fit, Parameter, Status};
 use crate::model::Component;
 use crate::wording::{
-    certainty, effect_ids, effects_text, failure_sentences, measure, misfit_units, number, p_text,
+    certainty, effects_text, failure_sentences, measure, misfit_units, number, p_text,
     parameter_units, percent, region_text, remark, rounded, unit_suffix, with_error,
     worst_segment_text, wrapped,
 };
@@ -62,7 +64,7 @@ impl Finding<'_> {
     }
 
     fn noise(&self) -> Option<f64> {
-        self.consequence().sensor_noise()
+        noise_of(self.joint())
     }
 
     fn missing_headline(&self, best: &Candidate) -> String {
@@ -165,19 +167,18 @@ impl Finding<'_> {
     }
 
     fn adequate_headline(&self) -> String {
-        let came = self.came().map_or_else(String::new, |came| format!("{came}; "));
-        format!("{}: {came}no missing effect found", self.joint().name)
+        let explained =
+            self.explained().map_or_else(String::new, |explained| format!("{explained}; "));
+        format!("{}: {explained}no missing effect found", self.joint().name)
     }
 
     /// What the effects that were added explain of the error, where any were:
     /// `dead_band and end_stop explain 70 % of the error (2.89 to 0.88 deg)`.
-    fn came(&self) -> Option<String> {
+    fn explained(&self) -> Option<String> {
         let before = self.before?;
-        let had = effect_ids(&before.fit.model);
-        let mut came = effect_ids(&self.comparison().fit.model);
-        came.retain(|id| !had.contains(id));
-        let last = came.pop()?;
-        let (names, explain) = match came.as_slice() {
+        let mut gained = gained(&before.fit.model, &self.comparison().fit.model);
+        let last = gained.pop()?;
+        let (names, explain) = match gained.as_slice() {
             [] => (last.to_owned(), "explains"),
             others => (format!("{} and {last}", others.join(", ")), "explain"),
         };
@@ -271,7 +272,7 @@ impl Finding<'_> {
     }
 
     fn unexplained_headline(&self) -> String {
-        let explained = self.came().unwrap_or_else(|| self.follows());
+        let explained = self.explained().unwrap_or_else(|| self.follows());
         let remains = self.consequence().remains();
         format!(
             "{}: {explained}; {remains}, which no effect that was tried accounts for",
@@ -288,9 +289,9 @@ impl Finding<'_> {
     }
 
     fn open_headline(&self) -> String {
-        let explained = self.came().unwrap_or_else(|| self.follows());
+        let explained = self.explained().unwrap_or_else(|| self.follows());
         format!(
-            "{}: {explained}; {}; what is missing was not looked for",
+            "{}: {explained}; {}: `tauscope explain` looks for what is still missing",
             self.joint().name,
             self.consequence().remains()
         )

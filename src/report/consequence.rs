@@ -18,26 +18,28 @@ pub(crate) struct Consequence<'a> {
     pub(crate) before: Option<ErrorFigures>,
     /// The error with them.
     pub(crate) after: Option<ErrorFigures>,
+    /// The noise of the sensor, from the record alone.
+    pub(crate) sensor_noise: Option<f64>,
+}
+
+/// The noise of the sensor of a joint, where it has any.
+pub(super) fn noise_of(joint: &Joint) -> Option<f64> {
+    sensor_noise(&joint.trials).filter(|noise| *noise > 0.0)
 }
 
 impl Consequence<'_> {
-    /// The noise of the sensor, from the record alone.
-    pub(crate) fn sensor_noise(&self) -> Option<f64> {
-        sensor_noise(&self.joint.trials).filter(|noise| *noise > 0.0)
-    }
-
     /// The part of the error that the effects explain, 0 to 1: `1 − (e − s)/(e₀ − s)` with the
     /// root-mean-square errors `e₀` before and `e` with them, and the noise `s`.
     pub(crate) fn explained(&self) -> Option<f64> {
         let (before, after) = (self.before?.rmse, self.after?.rmse);
-        let noise = self.sensor_noise().unwrap_or(0.0).min(after);
+        let noise = self.sensor_noise.unwrap_or(0.0).min(after);
         let share = 1.0 - (after - noise) / (before - noise).max(f64::MIN_POSITIVE);
         Some(share.clamp(0.0, 1.0))
     }
 
     /// How many times the noise the remaining error is.
     pub(crate) fn times_noise(&self) -> Option<f64> {
-        Some(self.after?.rmse / self.sensor_noise()?)
+        Some(self.after?.rmse / self.sensor_noise?)
     }
 
     /// `0.28 deg remain, 5.6 times the noise`; far above it, as a part of the motion:
@@ -77,7 +79,7 @@ impl Consequence<'_> {
         }
         if !refinements.is_empty() {
             sentences.push(format!(
-                "Visible to statistics, but of no practical consequence: {}.",
+                "Statistically significant, but of no practical consequence: {}.",
                 refinements.join(", ")
             ));
         }

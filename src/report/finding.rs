@@ -1,7 +1,7 @@
 //! What `explain` and `improve` have found of a joint, as a table.
 
 use super::ComparedJoint;
-use super::consequence::Consequence;
+use super::consequence::{Consequence, noise_of};
 use super::text_table::TextTable;
 use crate::diagnosis::Comparison;
 use crate::effect::Spec;
@@ -45,7 +45,7 @@ impl<'a> Finding<'a> {
             }
         };
         let (joint, attribution) = (self.compared.joint, self.attribution);
-        Consequence { joint, fit, attribution, before, after }
+        Consequence { joint, fit, attribution, before, after, sensor_noise: noise_of(joint) }
     }
 }
 

@@ -44,7 +44,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS, help_heading = "Model")]
     max_effects: usize,
 
-    /// Keep effects that statistics sees and that have no practical consequence: without them
+    /// Keep effects that are significant and have no practical consequence: without them
     /// the error grows by less than 1 % of the first
     #[arg(long, help_heading = "Model")]
     refine: bool,

@@ -46,7 +46,7 @@ impl DelayMethod for Hinge {
     }
 
     fn decide(&self, trial: &Prepared<'_>, _: Option<&Lag>, settings: &Settings) -> Vec<Decision> {
-        decide_all(trial, settings)
+        decide_by_broken_lines(trial, settings)
     }
 }
 
@@ -62,9 +62,24 @@ struct Found {
 }
 
 /// The decisions on all steps of a trial.
-pub(in crate::delay) fn decide_all(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
+pub(in crate::delay) fn decide_by_broken_lines(
+    trial: &Prepared<'_>,
+    settings: &Settings,
+) -> Vec<Decision> {
+    decide_all(trial, settings, |_| None)
+}
+
+/// The decisions on all steps of a trial; by broken lines where there is no `other`.
+pub(super) fn decide_all(
+    trial: &Prepared<'_>,
+    settings: &Settings,
+    other: impl Fn(&StepContext<'_>) -> Option<Decision>,
+) -> Vec<Decision> {
     let (path, noise) = located(trial, settings, PASSES);
-    let decide = |index| decide(&StepContext { trial, index, settings }, &path, &noise);
+    let decide = |index| {
+        let context = StepContext { trial, index, settings };
+        other(&context).unwrap_or_else(|| decide(&context, &path, &noise))
+    };
     (0..trial.steps.len()).map(decide).collect()
 }
 

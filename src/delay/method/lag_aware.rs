@@ -4,7 +4,7 @@
 //! between its neighbours, together with them where holds are short, and with what earlier
 //! steps left as part of the fit. A joint without a lag is left to the broken line.
 
-use super::hinge::Hinge;
+use super::hinge::{self, Hinge};
 use super::interface::DelayMethod;
 use super::step_context::StepContext;
 use crate::delay::broken_line;
@@ -63,7 +63,8 @@ impl DelayMethod for LagAware {
             Some(lag) => decide_all(trial, lag, settings),
             // A joint that follows at once has a broken line.
             None if lag.is_none_or(Lag::is_determined) => Hinge.decide(trial, None, settings),
-            None => without_a_lag(trial, settings),
+            // Onsets from rest by the speed that they gather, all others by broken lines.
+            None => hinge::decide_all(trial, settings, from_rest),
         }
     }
 }
@@ -131,15 +132,6 @@ fn is_shown<'a>(onsets: impl Iterator<Item = &'a Onset>) -> bool {
     let (unfit, fit): (Vec<&Onset>, Vec<&Onset>) =
         onsets.partition(|onset| onset.alone || onset.at_rest);
     unfit.is_empty() || fit.len() >= FEWEST.max(unfit.len())
-}
-
-/// The decisions on all steps where no lag is known: onsets from rest by the speed that they
-/// gather, all others by broken lines.
-fn without_a_lag(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
-    let decide = |(index, hinged): (usize, Decision)| {
-        from_rest(&StepContext { trial, index, settings }).unwrap_or(hinged)
-    };
-    Hinge.decide(trial, None, settings).into_iter().enumerate().map(decide).collect()
 }
 
 /// The decision on a step at which the joint rested and then departed.

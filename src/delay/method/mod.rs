@@ -12,6 +12,6 @@ mod registry;
 mod step_context;
 mod two_line;
 
-pub(super) use hinge::decide_all as decide_by_broken_lines;
+pub(super) use hinge::decide_by_broken_lines;
 pub(super) use interface::DelayMethod;
 pub(super) use registry::implementation;

@@ -92,12 +92,15 @@ impl GradualOnset {
         }
         let at_rest = Window::of(values.get(..rest)?);
         let variance = at_rest.sse / (rest as f64 - 2.0);
-        let shapes = Shapes::up_to(values.len());
+        // No window reaches farther behind the departure than that is behind the first position.
+        let farthest = departed + BEHIND.max(departed.saturating_sub(start.positions.start) + 1);
+        let longest = farthest.min(values.len());
+        let shapes = Shapes::of(longest, values.len());
         let tried = |end: usize| Some(Profile::of(Window::of(values.get(..end)?), start, &shapes));
         let first = tried(shortest)?;
         let mut behind = departed as f64 - first.best()?.position;
         loop {
-            let end = (departed + ceil_to_index(behind)).clamp(shortest, values.len());
+            let end = (departed + ceil_to_index(behind)).clamp(shortest, longest);
             let profile = if end == shortest { first.clone() } else { tried(end)? };
             let sse = profile.best()?.sse;
             let freedom = ((end - rest) as f64 - (PARAMETERS - 2) as f64).max(1.0);
@@ -169,12 +172,13 @@ struct Shapes {
 }
 
 impl Shapes {
-    fn up_to(samples: usize) -> Self {
+    /// Over `samples`, with time constants up to half of `all`.
+    fn of(samples: usize, all: usize) -> Self {
         let table = |shape: &dyn Fn(f64) -> f64| {
             let parts = 0..samples * FINENESS;
             parts.map(|part| shape(part as f64 / FINENESS as f64)).collect()
         };
-        let longest = samples as f64 / 2.0;
+        let longest = all as f64 / 2.0;
         let constants = std::iter::successors(Some(SHORTEST), |constant| Some(constant * RATIO));
         let constants: Vec<f64> = constants.take_while(|constant| *constant < longest).collect();
         let mut tables: Vec<Vec<f64>> = vec![table(&|time| time)];

@@ -63,7 +63,7 @@ impl ConclusionJson {
             found: of.attribution.iter().flat_map(|one| &one.found).map(found).collect(),
             refinements: of.attribution.iter().flat_map(|one| &one.refinements).copied().collect(),
             explained_percent: of.explained().map(|share| 100.0 * share),
-            sensor_noise: of.sensor_noise(),
+            sensor_noise: of.sensor_noise,
             remaining,
         }
     }

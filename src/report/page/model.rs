@@ -9,6 +9,7 @@ use crate::effect::Stage;
 use crate::explain::{Candidate, Revision, Verdict};
 use crate::fit::{Parameter, Split};
 use crate::model::Component;
+use crate::report::add::gained;
 use crate::report::equation::filled_in;
 use crate::report::finding::ranking_table;
 use crate::report::text_table::TextTable;
@@ -71,11 +72,10 @@ pub(super) fn sentence(improved: &ImprovedJoint<'_>) -> String {
 }
 
 /// Effects that the last revision has and the first has not.
-fn came(improved: &ImprovedJoint<'_>) -> Vec<&'static str> {
-    let of = |revision: &Revision| effect_ids(&revision.comparison.fit.model);
-    let given = improved.revisions.first().map(of).unwrap_or_default();
-    let last = improved.revisions.last().map(of).unwrap_or_default();
-    last.into_iter().filter(|id| !given.contains(id)).collect()
+fn came<'a>(improved: &ImprovedJoint<'a>) -> Vec<&'static str> {
+    let ends = improved.revisions.first().zip(improved.revisions.last());
+    let model = |revision: &'a Revision| &revision.comparison.fit.model;
+    ends.map(|(first, last)| gained(model(first), model(last))).unwrap_or_default()
 }
 
 /// What is still missing.
