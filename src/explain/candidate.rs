@@ -116,6 +116,15 @@ impl Candidate {
         })
     }
 
+    /// Whether at least as many parameters are determined with it as in `base`: an effect that
+    /// does what others do already leaves them all undetermined.
+    pub(super) fn determines_as_much_as(&self, base: &Fit) -> bool {
+        let determined = |fit: &Fit| {
+            fit.parameters.iter().filter(|parameter| parameter.status == Status::Fitted).count()
+        };
+        determined(&self.fit) >= determined(base)
+    }
+
     /// Whether it is needed even where the model passes for adequate.
     pub(super) fn is_beyond_doubt(&self) -> bool {
         self.p_value < BEYOND_DOUBT && self.explains(BEYOND_DOUBT_PERCENT)

@@ -3,12 +3,15 @@
 use super::attribution::{Grown, LeftOut};
 use super::contribution::Attribution;
 use super::extension::ids;
+use super::ladder::climbed;
 use super::misfit::Misfit;
 use super::options::Options;
 use super::revision::{Change, Improvement, Revision};
 use super::separate::separate;
 use super::stepwise::{Step, add_stepwise};
+use super::verdict::Verdict;
 use super::workers::Workers;
+use crate::delay::are_strokes;
 use crate::diagnosis::compare_knowing;
 use crate::fit::{Fit, FitRecord};
 
@@ -38,6 +41,13 @@ pub fn improve(
         goes_on
     };
     let misfit = Misfit::of(record, &start);
+    let makes_strokes = are_strokes(&record.joint().trials);
+    let first =
+        if makes_strokes { climbed(record, first, options, &mut visit) } else { Some(first) };
+    let Some(first) = first else {
+        let attribution = Attribution::default();
+        return Improvement { revisions, verdict: Verdict::MissingEffect, attribution };
+    };
     let ended = add_stepwise(record, first, &given, options, workers, misfit, &mut visit);
     let verdict = ended.verdict;
     let attribution = if ended.was_stopped {

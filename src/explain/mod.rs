@@ -32,6 +32,7 @@ mod evidence;
 mod extension;
 mod improve;
 mod judge;
+mod ladder;
 mod misfit;
 mod options;
 mod pairs;

@@ -110,19 +110,24 @@ pub(super) fn add_stepwise(
             let was_stopped = !visit(&step);
             return Ended::new(Verdict::Adequate, step.fit, was_stopped);
         }
-        let counts = |candidate: &Candidate| {
-            let has_consequence = || misfit.has_consequence(record, &step.fit, &candidate.fit);
-            candidate.is_significant() && (options.keeps_refinements || has_consequence())
+        let has_consequence = |candidate: &Candidate| {
+            options.keeps_refinements || misfit.has_consequence(record, &step.fit, &candidate.fit)
         };
+        let is_sound = |candidate: &&Candidate| {
+            candidate.is_significant() && candidate.determines_as_much_as(&step.fit)
+        };
+        let counts = |candidate: &Candidate| is_sound(&candidate) && has_consequence(candidate);
         let found = step.ranking.iter().position(counts);
-        if let Some(index) = found {
-            step.ranking[..=index].rotate_right(1);
-        } else if let Some(refused) = step.ranking.iter().find(|one| one.is_significant()) {
-            let refinements = refused.effects.clone();
+        if found.is_none() && step.ranking.iter().any(Candidate::is_significant) {
+            let refused = step.ranking.iter().find(is_sound);
+            let refinements = refused.map(|refused| refused.effects.clone()).unwrap_or_default();
             let is_explained = misfit.is_explained(record, &step.fit);
             let verdict = if is_explained { Verdict::Adequate } else { Verdict::Unexplained };
             let was_stopped = !visit(&step);
             return Ended { refinements, ..Ended::new(verdict, step.fit, was_stopped) };
+        }
+        if let Some(index) = found {
+            step.ranking[..=index].rotate_right(1);
         }
         let found = found.and(step.ranking.first().cloned());
         let explained = found.is_some();

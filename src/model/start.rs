@@ -1,8 +1,9 @@
 //! The plain integrator that the estimated delays suggest: where a model begins.
 
 use super::JointModel;
-use crate::delay::{Decision, TrialEstimate, delay_scan};
+use crate::delay::{Decision, TrialEstimate, are_strokes, delay_scan};
 use crate::experiment::Joint;
+use crate::numerics::median;
 
 /// The delay of a joint of which nothing is known, in seconds.
 const UNKNOWN_DELAY_S: f64 = 0.1;
@@ -13,6 +14,10 @@ const UNKNOWN_DELAY_S: f64 = 0.1;
 /// input there, `Σ u·v / Σ u²`; the delays are the quartiles of the accepted ones.
 /// Without an accepted step they come from the whole record, as for an input that changes
 /// all the time.
+///
+/// Where the joint was driven in strokes, the delay is the median of the accepted ones, and fixed:
+/// each start from rest shows its delay to some hundredths of a second, while in a fit a speed
+/// that is wrong along a stroke moves the delay by tenths.
 pub fn integrators(joint: &Joint, estimates: &[&TrialEstimate]) -> Vec<JointModel> {
     let trials = joint.trials.iter().filter_map(|trial| {
         let estimate = estimates.iter().find(|estimate| estimate.label == trial.label())?;
@@ -28,6 +33,13 @@ pub fn integrators(joint: &Joint, estimates: &[&TrialEstimate]) -> Vec<JointMode
         }
     }
     let gain = if squared > 0.0 { with_speed / squared } else { overall_gain(joint) };
+    if are_strokes(&joint.trials)
+        && let Some(delay) = median(&delays)
+    {
+        let mut model = JointModel::integrator(gain, delay.max(0.0));
+        model.delay.fixed = true;
+        return vec![model];
+    }
     let mut delays: Vec<f64> = quartiles(delays);
     if delays.is_empty() {
         delays = scanned(joint).into_iter().chain([UNKNOWN_DELAY_S]).collect();

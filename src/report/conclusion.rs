@@ -1,9 +1,11 @@
 //! A verdict in words that an engineer can act on.
 
+use super::EstimatedJoint;
 use super::add::gained;
 use super::consequence::noise_of;
 use super::equation::filled_in;
 use super::finding::{Finding, added, specs};
+use super::model_delay::model_delay;
 use super::separation::sentence;
 use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ShownBy};
@@ -35,15 +37,23 @@ impl Finding<'_> {
     /// The verdict in words.
     pub(crate) fn conclusion(&self) -> Conclusion {
         let best = self.proposed();
-        let (headline, sentences) = match (self.verdict, best) {
+        let (headline, mut sentences) = match (self.verdict, best) {
             (_, Some(best)) => (self.missing_headline(best), self.missing(best)),
             (Verdict::Adequate, None) => (self.adequate_headline(), self.adequate()),
             (Verdict::MissingEffect, None) => (self.open_headline(), self.fails()),
             (_, None) => (self.unexplained_headline(), self.unexplained()),
         };
+        sentences.extend(self.delay());
         let command = |id: &&'static str| format!("tauscope add {id} {}", self.add_arguments);
         let commands = best.iter().flat_map(|best| &best.effects).map(command).collect();
         Conclusion { headline, paragraph: sentences.join(" "), commands }
+    }
+
+    /// The delay of the model beside those that were measured.
+    fn delay(&self) -> Option<String> {
+        let estimate = self.delays?;
+        let measured = EstimatedJoint { joint: self.joint(), estimate };
+        model_delay(self.consequence().fit, measured)
     }
 
     fn joint(&self) -> &Joint {

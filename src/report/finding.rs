@@ -8,6 +8,7 @@ use crate::effect::Spec;
 use crate::experiment::Joint;
 use crate::explain::{Attribution, Candidate, Verdict};
 use crate::model::Component;
+use crate::study::JointEstimate;
 use crate::wording::{p_text, with_unit};
 
 /// A joint, the verdict on its model, and the race behind it.
@@ -25,6 +26,8 @@ pub struct Finding<'a> {
     pub before: Option<&'a Comparison>,
     /// What each effect carries that was added, or is proposed, where that was found out.
     pub attribution: Option<&'a Attribution>,
+    /// The delays of its steps, where they were estimated.
+    pub delays: Option<&'a JointEstimate>,
 }
 
 impl<'a> Finding<'a> {

@@ -21,6 +21,7 @@ mod folder;
 mod improve;
 mod json;
 mod lookup;
+mod model_delay;
 mod page;
 mod separation;
 mod settings;

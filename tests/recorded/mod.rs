@@ -176,6 +176,7 @@ pub(crate) fn grown<'a>(joint: &'a Joint, improvement: &'a Improvement) -> Impro
         add_arguments: "log.csv",
         before: None,
         attribution: Some(attribution),
+        delays: None,
     };
     ImprovedJoint::of(finding, revisions)
 }

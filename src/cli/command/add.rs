@@ -125,8 +125,9 @@ fn grown<'a>(added: &AddedJoint<'a>, revisions: &'a [Step]) -> ImprovedJoint<'a>
     let verdict = if is_adequate { Verdict::Adequate } else { Verdict::MissingEffect };
     let before = Some(&added.addition.before);
     let attribution = Some(&added.addition.attribution);
-    let (ranking, add_arguments) = (&[][..], "");
-    let finding = Finding { compared, verdict, ranking, add_arguments, before, attribution };
+    let (ranking, add_arguments, delays) = (&[][..], "", None);
+    let finding =
+        Finding { compared, verdict, ranking, add_arguments, before, attribution, delays };
     ImprovedJoint::of(finding, revisions)
 }
 

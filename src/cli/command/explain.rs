@@ -10,7 +10,7 @@ use crate::explain::{Change, Explanation, Options, Revision};
 use crate::fit::Horizon;
 use crate::model::ModelFile;
 use crate::report::{ComparedJoint, ExplainJson, Finding, ImprovedJoint, explain_text};
-use crate::study::{Mode, OfJoints, compare_joints, explain_joints};
+use crate::study::{JointEstimate, Mode, OfJoints, compare_joints, explain_joints};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
@@ -18,7 +18,7 @@ use crate::cli::args::{
 };
 use crate::cli::exit::Completion;
 use crate::cli::output::check_outputs;
-use crate::cli::run::{Estimates, Session, Study, add_arguments, outcomes};
+use crate::cli::run::{Estimates, Session, Study, add_arguments, estimate_at, outcomes};
 
 /// Say which physical effect a model lacks
 ///
@@ -69,7 +69,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let arguments = args.add_arguments(joints);
     let name = name_of(args.model.as_deref());
     let finding = |index: usize, joint, explanation| {
-        finding(&file, &name, joint, explanation, arguments.get(index).map_or("", String::as_str))
+        let delays = estimate_at(&study.estimates, index);
+        let arguments = arguments.get(index).map_or("", String::as_str);
+        finding(&file, &name, joint, (explanation, delays), arguments)
     };
     let (explained, bests) = &study.result;
     let (findings, failures) = outcomes(study.experiment(), explained, finding)?;
@@ -92,14 +94,15 @@ fn finding<'a>(
     file: &ModelFile,
     model: &'a str,
     joint: &'a Joint,
-    explanation: &'a Explanation,
+    (explanation, delays): (&'a Explanation, Option<&'a JointEstimate>),
     add_arguments: &'a str,
 ) -> Finding<'a> {
     let revision = file.revision(&joint.name).unwrap_or(0);
     let Explanation { base, verdict, ranking, attribution } = explanation;
     let attribution = Some(attribution);
     let compared = ComparedJoint { joint, model, revision, comparison: base };
-    Finding { compared, verdict: *verdict, ranking, add_arguments, before: None, attribution }
+    let (verdict, before) = (*verdict, None);
+    Finding { compared, verdict, ranking, add_arguments, before, attribution, delays }
 }
 
 /// The model as the only one of its revisions.

@@ -20,8 +20,8 @@ use crate::cli::each_log::{Each, FolderArgs};
 use crate::cli::exit::Completion;
 use crate::cli::output::check_outputs;
 use crate::cli::run::{
-    Begun, Progress, Session, Study, add_arguments, improved, models, outcomes, revised,
-    revision_names,
+    Begun, Progress, Session, Study, add_arguments, estimate_at, improved, models, outcomes,
+    revised, revision_names,
 };
 
 /// Add to a model what it lacks, effect by effect
@@ -120,7 +120,8 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let improved = |index: usize, joint, improvement| {
         let stopped = stopped.get(index).copied().unwrap_or(false);
         let add_arguments = arguments.get(index).map_or("", String::as_str);
-        let mut improved = improved(&file, &name, joint, improvement, add_arguments)?;
+        let delays = estimate_at(&study.estimates, index);
+        let mut improved = improved(&file, &name, joint, (improvement, delays), add_arguments)?;
         improved.interrupted = stopped && improved.finding.verdict != Verdict::Adequate;
         Some(improved)
     };
@@ -178,7 +179,8 @@ impl<'a> Stage<'a> {
         let (revisions, attribution) = (steps.clone(), Attribution::default());
         let improvement = Improvement { revisions, verdict: so_far(revision), attribution };
         let arguments = self.arguments.get(index).map_or("", String::as_str);
-        let improved = improved(self.file, self.name, joint, &improvement, arguments);
+        let delays = estimate_at(self.begun.estimates, index);
+        let improved = improved(self.file, self.name, joint, (&improvement, delays), arguments);
         let revisions: Vec<_> = improved.into_iter().collect();
         if let Err(error) = self.begun.show(&[], &revisions, Some(&joint.name)) {
             message("warning", &format!("{error:#}"));

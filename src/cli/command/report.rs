@@ -26,7 +26,7 @@ use crate::cli::exit::Completion;
 use crate::cli::failure::{nothing_usable, said};
 use crate::cli::output::{check_outputs, write_file};
 use crate::cli::run::{
-    self, Begun, Progress, Session, Study, add_arguments, estimated, improved, revised,
+    self, Begun, Progress, Session, Study, add_arguments, estimate_at, estimated, improved, revised,
 };
 use crate::cli::viewer::StreamArgs;
 
@@ -261,9 +261,13 @@ impl Reported<'_> {
         let arguments = add_arguments(&args.data, protocol, &model, &experiment.joints);
         let mut models = Vec::new();
         let joints_of_models = experiment.joints.iter().zip(&arguments);
-        for ((joint, arguments), result) in joints_of_models.zip(study.result.iter().flatten()) {
+        let results = study.result.iter().flatten().enumerate();
+        for ((joint, arguments), (index, result)) in joints_of_models.zip(results) {
             match result {
-                Some(Ok(found)) => models.extend(improved(file, &name, joint, found, arguments)),
+                Some(Ok(found)) => {
+                    let delays = estimate_at(&study.estimates, index);
+                    models.extend(improved(file, &name, joint, (found, delays), arguments));
+                }
                 Some(Err(error)) => {
                     failures.push(format!("joint `{}`: no model: {}", joint.name, said(error)));
                 }

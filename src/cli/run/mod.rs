@@ -8,7 +8,7 @@ mod session;
 mod study;
 
 pub(crate) use add_command::add_arguments;
-pub(crate) use estimates::{Estimates, estimated, failures, notes};
+pub(crate) use estimates::{Estimates, estimate_at, estimated, failures, notes};
 pub(crate) use outcomes::outcomes;
 pub(crate) use revisions::{Progress, improved, models, revised, revision_names};
 pub(crate) use session::Session;

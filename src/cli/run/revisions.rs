@@ -7,6 +7,7 @@ use crate::experiment::Joint;
 use crate::explain::{Change, Improvement, Revision as Step};
 use crate::model::{ModelFile, Revision};
 use crate::report::{ComparedJoint, Finding, ImprovedJoint, gone, revision_line};
+use crate::study::JointEstimate;
 
 /// Which revisions there are so far, reported as they come.
 pub(crate) struct Progress<'a> {
@@ -56,7 +57,7 @@ pub(crate) fn improved<'a>(
     file: &ModelFile,
     model: &'a str,
     joint: &'a Joint,
-    improvement: &'a Improvement,
+    (improvement, delays): (&'a Improvement, Option<&'a JointEstimate>),
     add_arguments: &'a str,
 ) -> Option<ImprovedJoint<'a>> {
     let Improvement { revisions, verdict, attribution } = improvement;
@@ -67,7 +68,8 @@ pub(crate) fn improved<'a>(
     let before = revisions.first().filter(|_| revisions.len() > 1).map(|first| &first.comparison);
     let (verdict, ranking) = (*verdict, last.ranking.as_slice());
     let attribution = Some(attribution);
-    let finding = Finding { compared, verdict, ranking, add_arguments, before, attribution };
+    let finding =
+        Finding { compared, verdict, ranking, add_arguments, before, attribution, delays };
     Some(ImprovedJoint { finding, revisions, first_revision, interrupted: false })
 }
 

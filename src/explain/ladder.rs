@@ -1,0 +1,59 @@
+//! What an engineer tries first where a joint makes strokes between its stops.
+//!
+//! In a stroke the input has one level, and the joint runs over its whole way. So few levels
+//! are matched by many curves, and errors are far beyond the noise, where every effect is
+//! significant: the one that explains most by itself is then often a stand-in for several
+//! usual ones. These come first, in the order in which the oil meets them: the overlap of the
+//! valve and its largest flow, the areas of the cylinder, its ends; then the linkage. Which of
+//! them have no consequence is seen at the end.
+//!
+//! # References
+//! Merritt, H. E., 1967, Hydraulic Control Systems (valves and cylinders); Koivo, A. J., 1994,
+//! Journal of Aerospace Engineering 7 (linkages of excavators).
+
+use super::eligible::{could_be_missing, signal_range};
+use super::extension::ids;
+use super::options::Options;
+use super::revision::Change;
+use super::stepwise::Step;
+use crate::effect::Effect;
+use crate::fit::{FitRecord, fit_to_compare};
+use crate::model::Component;
+
+const LADDER: [&str; 5] =
+    ["dead_band", "input_saturation", "direction_gain", "end_stop", "position_gain"];
+
+/// The model of `first` with the usual effects that the options allow, one after the other.
+/// `visit` sees each step but the last; none where it says no.
+pub(super) fn climbed(
+    record: &FitRecord<'_>,
+    first: Step,
+    options: &Options,
+    visit: &mut impl FnMut(&Step) -> bool,
+) -> Option<Step> {
+    let given = ids(&first.fit.model).len();
+    let mut step = first;
+    for effect in usual(options) {
+        let model = &step.fit.model;
+        let is_full = ids(model).len() - given >= options.max_effects;
+        if is_full || !could_be_missing(record, model, effect) {
+            continue;
+        }
+        let with = model.with(Component::neutral(effect));
+        let levels = record.input_levels();
+        let Ok(fit) = fit_to_compare(record, &with, &signal_range(record, &with, &levels)) else {
+            continue;
+        };
+        if !visit(&step) {
+            return None;
+        }
+        step = Step::new(record, Change::Added(effect.spec().id), fit);
+    }
+    Some(step)
+}
+
+/// The usual effects among those that may be added.
+fn usual(options: &Options) -> impl Iterator<Item = &'static dyn Effect> {
+    let allowed = |id: &&str| options.effects.iter().find(|effect| effect.spec().id == *id);
+    LADDER.iter().filter_map(allowed).copied()
+}
