@@ -1,6 +1,7 @@
 //! The plain integrator that the estimated delays suggest: where a model begins.
 
 use super::JointModel;
+use super::settling::settling;
 use crate::delay::{Decision, TrialEstimate, are_strokes, delay_scan};
 use crate::experiment::Joint;
 use crate::numerics::median;
@@ -8,7 +9,8 @@ use crate::numerics::median;
 /// The delay of a joint of which nothing is known, in seconds.
 const UNKNOWN_DELAY_S: f64 = 0.1;
 
-/// Plain integrators for `joint`: one gain, and delays from short to long.
+/// Where a model of `joint` may begin: plain integrators with one gain, and delays from short to
+/// long.
 ///
 /// The gain is the regression of the output's slope behind each accepted step on the
 /// input there, `Σ u·v / Σ u²`; the delays are the quartiles of the accepted ones.
@@ -18,7 +20,35 @@ const UNKNOWN_DELAY_S: f64 = 0.1;
 /// Where the joint was driven in strokes, the delay is the median of the accepted ones, and fixed:
 /// each start from rest shows its delay to some hundredths of a second, while in a fit a speed
 /// that is wrong along a stroke moves the delay by tenths.
+///
+/// Where the output settles at a level that follows the input, they are first orders with dead
+/// time: integrators with leakage.
 pub fn integrators(joint: &Joint, estimates: &[&TrialEstimate]) -> Vec<JointModel> {
+    let (mut delays, gain) = accepted(joint, estimates);
+    let gain = gain.unwrap_or_else(|| overall_gain(joint));
+    if are_strokes(&joint.trials)
+        && let Some(delay) = median(&delays)
+    {
+        let mut model = JointModel::integrator(gain, delay.max(0.0));
+        model.delay.fixed = true;
+        return vec![model];
+    }
+    delays = quartiles(delays);
+    if delays.is_empty() {
+        delays = scanned(joint).into_iter().chain([UNKNOWN_DELAY_S]).collect();
+    }
+    delays.dedup();
+    let settling = settling(joint);
+    let model = |delay: f64| {
+        let first_order = settling.and_then(|settling| settling.first_order(joint, delay.max(0.0)));
+        first_order.unwrap_or_else(|| JointModel::integrator(gain, delay.max(0.0)))
+    };
+    delays.into_iter().map(model).collect()
+}
+
+/// The accepted delays in seconds, and the regression of the speed behind accepted steps on the
+/// input.
+fn accepted(joint: &Joint, estimates: &[&TrialEstimate]) -> (Vec<f64>, Option<f64>) {
     let trials = joint.trials.iter().filter_map(|trial| {
         let estimate = estimates.iter().find(|estimate| estimate.label == trial.label())?;
         Some((trial.period().seconds(), *estimate))
@@ -32,20 +62,7 @@ pub fn integrators(joint: &Joint, estimates: &[&TrialEstimate]) -> Vec<JointMode
             squared += decision.input_step.after.powi(2);
         }
     }
-    let gain = if squared > 0.0 { with_speed / squared } else { overall_gain(joint) };
-    if are_strokes(&joint.trials)
-        && let Some(delay) = median(&delays)
-    {
-        let mut model = JointModel::integrator(gain, delay.max(0.0));
-        model.delay.fixed = true;
-        return vec![model];
-    }
-    let mut delays: Vec<f64> = quartiles(delays);
-    if delays.is_empty() {
-        delays = scanned(joint).into_iter().chain([UNKNOWN_DELAY_S]).collect();
-    }
-    delays.dedup();
-    delays.into_iter().map(|delay| JointModel::integrator(gain, delay.max(0.0))).collect()
+    (delays, (squared > 0.0).then(|| with_speed / squared))
 }
 
 fn slope_after(decision: &Decision) -> f64 {

@@ -5,6 +5,7 @@ use super::add::gained;
 use super::consequence::noise_of;
 use super::equation::filled_in;
 use super::finding::{Finding, added, specs};
+use super::first_order::first_order;
 use super::model_delay::model_delay;
 use super::separation::sentence;
 use crate::diagnosis::failure::{Region, WorstSegment};
@@ -43,6 +44,7 @@ impl Finding<'_> {
             (Verdict::MissingEffect, None) => (self.open_headline(), self.fails()),
             (_, None) => (self.unexplained_headline(), self.unexplained()),
         };
+        sentences.extend(first_order(self.joint(), self.consequence().fit));
         sentences.extend(self.delay());
         let command = |id: &&'static str| format!("tauscope add {id} {}", self.add_arguments);
         let commands = best.iter().flat_map(|best| &best.effects).map(command).collect();

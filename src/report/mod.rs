@@ -17,6 +17,7 @@ mod equation;
 mod estimated;
 mod explain;
 mod finding;
+mod first_order;
 mod folder;
 mod improve;
 mod json;
