@@ -8,8 +8,9 @@
 //! ```
 //!
 //! with the root-mean-square errors `e` of the model, `e_without` without the effect and `e₀` of
-//! the first model, on the whole record, and `s` the noise of the sensor. Effects that do the same
-//! work have small shares each, and shares need not sum up to one.
+//! the first model, on the whole record or on the part that was not fitted, whichever grows more,
+//! and `s` the noise of the sensor. Effects that do the same work have small shares each, and
+//! shares need not sum up to one.
 //!
 //! # References
 //! J. Lei, M. G'Sell, A. Rinaldo, R. J. Tibshirani and L. Wasserman, "Distribution-free
@@ -113,6 +114,6 @@ impl Grown<'_, '_> {
     /// What the error is larger in `fit` than in the whole model, in parts of the misfit of the
     /// first.
     fn share(&self, fit: &Fit) -> f64 {
-        self.misfit.share(self.record, fit, self.whole)
+        self.misfit.share_of_either(self.record, fit, self.whole)
     }
 }

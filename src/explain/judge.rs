@@ -4,6 +4,7 @@ use super::attribution::Grown;
 use super::candidate::Candidate;
 use super::contribution::Attribution;
 use super::extension::ids;
+use super::ladder::{climbed, is_usual};
 use super::misfit::Misfit;
 use super::options::Options;
 use super::revision::Change;
@@ -11,6 +12,7 @@ use super::separate::separate;
 use super::stepwise::{Step, add_stepwise};
 use super::verdict::{Explanation, Verdict};
 use super::workers::Workers;
+use crate::delay::are_strokes;
 use crate::diagnosis::compare_knowing;
 use crate::fit::{Fit, FitRecord};
 
@@ -25,7 +27,8 @@ const LOOK_AHEAD: usize = 3;
 /// Says what is missing from the model of `fit`.
 ///
 /// The first of the ranking is named when the model with it is adequate, or would be with
-/// up to three more effects, or when it explains most of the misfit.
+/// up to three more effects, or when it explains most of the misfit. Of a joint that is driven in
+/// strokes, the best of the usual effects is named when these explain most of it together.
 pub fn explain(
     record: &FitRecord<'_>,
     fit: Fit,
@@ -40,7 +43,7 @@ pub fn explain(
     if !lacks {
         return Explanation { base, verdict: Verdict::Adequate, ranking, attribution };
     }
-    let named = accounts_for_it(record, &mut ranking, options, workers);
+    let named = is_named(record, &fit, &mut ranking, options, workers);
     separate(record, &mut ranking, workers);
     let best = ranking.first().filter(|_| named);
     let attribution = best.map_or(attribution, |best| {
@@ -61,8 +64,40 @@ pub(crate) fn named(
 ) -> Vec<Candidate> {
     let mut step = Step::new(record, Change::Start, fit);
     let lacks = step.rank_missing(record, options, workers);
-    let is_named = lacks && accounts_for_it(record, &mut step.ranking, options, workers);
+    let is_named = lacks && is_named(record, &step.fit, &mut step.ranking, options, workers);
     if is_named { step.ranking } else { Vec::new() }
+}
+
+/// Whether the best candidate is to be named; of strokes, the best of the usual ones.
+fn is_named(
+    record: &FitRecord<'_>,
+    fit: &Fit,
+    ranking: &mut [Candidate],
+    options: &Options,
+    workers: &impl Workers,
+) -> bool {
+    let usual = are_strokes(&record.joint().trials)
+        && usual_account_for_most(record, fit, options)
+        && brought_forward(ranking, |one| one.is_significant() && one.effects.iter().all(is_usual));
+    usual || accounts_for_it(record, ranking, options, workers)
+}
+
+/// Whether the usual effects together explain most of what the model of `fit` lacks.
+fn usual_account_for_most(record: &FitRecord<'_>, fit: &Fit, options: &Options) -> bool {
+    /// The share of the misfit that is most of it.
+    const MOST: f64 = 0.5;
+    let first = Step::new(record, Change::Start, fit.clone());
+    let with_all = climbed(record, first, options, &mut |_| true);
+    with_all.is_some_and(|all| Misfit::of(record, fit).share(record, fit, &all.fit) >= MOST)
+}
+
+/// Puts the first candidate that `is_it` in front; whether there is one.
+fn brought_forward(ranking: &mut [Candidate], is_it: impl Fn(&Candidate) -> bool) -> bool {
+    let found = ranking.iter().position(is_it);
+    if let Some(index) = found {
+        ranking[..=index].rotate_right(1);
+    }
+    found.is_some()
 }
 
 /// Whether the best candidate is to be named. An effect that further ones make useless
@@ -87,10 +122,7 @@ fn accounts_for_it(
     let is_adequate = ended.verdict == Verdict::Adequate;
     let named = best.share_of_misfit >= MOST_OF_IT || is_adequate;
     if is_adequate {
-        let remains = |candidate: &Candidate| candidate.effects.iter().all(|id| last.contains(id));
-        if let Some(index) = ranking.iter().position(remains) {
-            ranking[..=index].rotate_right(1);
-        }
+        brought_forward(ranking, |candidate| candidate.effects.iter().all(|id| last.contains(id)));
     }
     named
 }

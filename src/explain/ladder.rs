@@ -52,6 +52,11 @@ pub(super) fn climbed(
     Some(step)
 }
 
+/// Whether an engineer tries it first.
+pub(super) fn is_usual(id: &&'static str) -> bool {
+    LADDER.contains(id)
+}
+
 /// The usual effects among those that may be added.
 fn usual(options: &Options) -> impl Iterator<Item = &'static dyn Effect> {
     let allowed = |id: &&str| options.effects.iter().find(|effect| effect.spec().id == *id);

@@ -1,7 +1,7 @@
 //! How much of what a model lacked an effect explains, and when that is of consequence.
 
 use crate::diagnosis::{ErrorFigures, sensor_noise};
-use crate::fit::{Fit, FitRecord};
+use crate::fit::{Fit, FitRecord, Part};
 
 /// The share of the misfit from which an effect has a practical consequence.
 pub(super) const CONSEQUENCE: f64 = 0.01;
@@ -27,6 +27,14 @@ impl Misfit {
     /// What the error of `worse` is larger than that of `better`, in parts of the misfit.
     pub(super) fn share(self, record: &FitRecord<'_>, worse: &Fit, better: &Fit) -> f64 {
         self.part(error(record, worse) - error(record, better))
+    }
+
+    /// The same on the whole record or on the part that was not fitted, whichever is more: an
+    /// effect that only the unseen part needs is needed.
+    pub(super) fn share_of_either(self, record: &FitRecord<'_>, worse: &Fit, better: &Fit) -> f64 {
+        let unseen = |fit: &Fit| ErrorFigures::of(record, &fit.evaluation, Part::Validation);
+        let grown = unseen(worse).zip(unseen(better)).map(|(w, b)| self.part(w.rmse - b.rmse));
+        self.share(record, worse, better).max(grown.unwrap_or(f64::NEG_INFINITY))
     }
 
     /// Whether an effect has a practical consequence with which the error falls from that of
