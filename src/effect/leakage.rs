@@ -22,7 +22,7 @@ static SPEC: Spec = Spec::new("leakage", Stage::Load, "drifts toward an angle, w
     .source("Merritt, 1967, Hydraulic Control Systems")
     .parameters(&[
         Parameter::new("rate", "speed of the drift per distance", Dimension::PerSecond)
-            .between(0.0, 10.0),
+            .between(0.0, 100.0),
         Parameter::new("y0", "angle toward which it drifts", Dimension::Output),
     ])
     .confused_with(&["gravity_load", "input_offset"]);
@@ -35,6 +35,16 @@ impl Effect for Leakage {
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
         let &[rate, y0] = parameters else { return at.signal };
         at.signal - rate * (at.position - y0)
+    }
+
+    /// A drift that is over within two samples is not seen.
+    fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
+        /// Fastest drift of an angle by oil that passes the piston, 1/s: chosen.
+        const LEAKING: f64 = 10.0;
+        let seen = (0.5 / record.sample_period_s).max(LEAKING);
+        let [rate, y0] = &SPEC.parameters else { return Vec::new() };
+        let (low, high) = rate.bounds(record);
+        vec![(low, high.min(seen)), y0.bounds(record)]
     }
 
     /// Toward either end of the record and toward its middle.

@@ -1,7 +1,7 @@
 //! The plain integrator that the estimated delays suggest: where a model begins.
 
 use super::JointModel;
-use super::settling::settling;
+use super::self_regulation::{first_order, follows_input};
 use crate::delay::{Decision, TrialEstimate, are_strokes, delay_scan};
 use crate::experiment::Joint;
 use crate::numerics::median;
@@ -21,8 +21,8 @@ const UNKNOWN_DELAY_S: f64 = 0.1;
 /// each start from rest shows its delay to some hundredths of a second, while in a fit a speed
 /// that is wrong along a stroke moves the delay by tenths.
 ///
-/// Where the output settles at a level that follows the input, they are first orders with dead
-/// time: integrators with leakage.
+/// Where the output follows the input itself, they are first orders with dead time: integrators
+/// with leakage.
 pub fn integrators(joint: &Joint, estimates: &[&TrialEstimate]) -> Vec<JointModel> {
     let (mut delays, gain) = accepted(joint, estimates);
     let gain = gain.unwrap_or_else(|| overall_gain(joint));
@@ -38,10 +38,11 @@ pub fn integrators(joint: &Joint, estimates: &[&TrialEstimate]) -> Vec<JointMode
         delays = scanned(joint).into_iter().chain([UNKNOWN_DELAY_S]).collect();
     }
     delays.dedup();
-    let settling = settling(joint);
+    let follows = follows_input(joint).is_some();
     let model = |delay: f64| {
-        let first_order = settling.and_then(|settling| settling.first_order(joint, delay.max(0.0)));
-        first_order.unwrap_or_else(|| JointModel::integrator(gain, delay.max(0.0)))
+        let delay = delay.max(0.0);
+        let first_order = if follows { first_order(joint, delay) } else { None };
+        first_order.unwrap_or_else(|| JointModel::integrator(gain, delay))
     };
     delays.into_iter().map(model).collect()
 }

@@ -1,0 +1,186 @@
+//! A joint whose output follows its input itself and not its integral: a speed, a pressure, a
+//! temperature, a servo's position. It begins as a first order with dead time.
+//!
+//! ```text
+//! T y' + y = K u(t − τ) + y0
+//! ```
+//!
+//! As the models here are integrators, it is one of gain `K/T` with a leakage of rate `1/T`
+//! toward `y0`.
+//!
+//! # References
+//! Åström, K. J., and Hägglund, T., 2006, Advanced PID Control, section 2.4 (processes with
+//! self-regulation).
+
+use super::{Component, JointModel};
+use crate::effect::by_id;
+use crate::experiment::{Joint, Trial};
+
+/// Squared correlation of output and input from which the output follows the input. Chosen: of
+/// measured machines, servos and speeds have 0.94 and more, angles and positions that are driven
+/// by a speed 0.36 and less.
+const FOLLOWS: f64 = 0.7;
+
+/// Samples that a correlation needs.
+const FEWEST: usize = 200;
+
+/// The squared correlation of the output of `joint` with its input some samples before, where the
+/// output follows the input.
+///
+/// A joint that runs into its stops follows the sign of the input as well as the input, and is
+/// none of these.
+pub(crate) fn follows_input(joint: &Joint) -> Option<f64> {
+    let samples: usize = joint.trials.iter().map(Trial::len).sum();
+    if samples < FEWEST {
+        return None;
+    }
+    let best =
+        |of: fn(f64) -> f64| lags(joint).map(|lag| correlation(joint, lag, of)).fold(0.0, f64::max);
+    let (follows, by_sign) = (best(|input| input), best(sign));
+    (follows >= FOLLOWS && follows > by_sign).then_some(follows)
+}
+
+/// Samples that the output may lag behind.
+fn lags(joint: &Joint) -> impl Iterator<Item = usize> + use<> {
+    /// Longest lag as a part of the shortest trial, and each lag of the one before.
+    const PART: usize = 10;
+    const RATIO: f64 = 1.25;
+    let longest = joint.trials.iter().map(Trial::len).min().unwrap_or(0) / PART;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small, above 0")]
+    let next = |lag: &usize| Some((*lag as f64 * RATIO) as usize + 1);
+    std::iter::successors(Some(0), next).take_while(move |lag| *lag <= longest)
+}
+
+/// Squared correlation of the output with what `of` makes of the input `lag` samples before.
+fn correlation(joint: &Joint, lag: usize, of: fn(f64) -> f64) -> f64 {
+    let mut sums = Moments::default();
+    for trial in &joint.trials {
+        let behind = trial.output().get(lag..).unwrap_or_default();
+        trial.input().iter().zip(behind).for_each(|(input, output)| sums.push(of(*input), *output));
+    }
+    sums.r_squared()
+}
+
+fn sign(input: f64) -> f64 {
+    if input == 0.0 { 0.0 } else { input.signum() }
+}
+
+/// The first order with this dead time in seconds that follows the output of `joint` best.
+pub(super) fn first_order(joint: &Joint, delay_s: f64) -> Option<JointModel> {
+    /// Time constants: the shortest in sample periods, each of the one before, and how many.
+    const SHORTEST: f64 = 1.0;
+    const RATIO: f64 = 1.5;
+    const COUNT: usize = 16;
+    let period_s = joint.trials.iter().map(|trial| trial.period().seconds()).fold(0.0, f64::max);
+    let times = std::iter::successors(Some(SHORTEST * period_s), |time| Some(RATIO * time));
+    let tried = times.take(COUNT).map(|time_s| (time_s, filtered(joint, delay_s, time_s)));
+    let (time_s, sums) = tried.max_by(|a, b| a.1.r_squared().total_cmp(&b.1.r_squared()))?;
+    let (static_gain, at_zero) = sums.line();
+    let leakage = Component::new(by_id("leakage")?, vec![time_s.recip().into(), at_zero.into()])?;
+    Some(JointModel::integrator(static_gain / time_s, delay_s).with(leakage))
+}
+
+/// How the output goes with the input behind a dead time and a lag of the first order.
+fn filtered(joint: &Joint, delay_s: f64, time_s: f64) -> Moments {
+    let mut sums = Moments::default();
+    for trial in &joint.trials {
+        let (input, period_s) = (trial.input(), trial.period().seconds());
+        let left = (-period_s / time_s).exp();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 0")]
+        let late = (delay_s / period_s).round().max(0.0) as usize;
+        let Some(&first) = input.first() else { continue };
+        let delayed = std::iter::repeat_n(first, late).chain(input.iter().copied());
+        let mut state = first;
+        for (input, output) in delayed.zip(trial.output()) {
+            sums.push(state, *output);
+            state = input + (state - input) * left;
+        }
+    }
+    sums
+}
+
+/// Means, variances and covariance of pairs, updated one by one.
+#[derive(Clone, Copy, Debug, Default)]
+struct Moments {
+    count: f64,
+    mean: (f64, f64),
+    /// Sums of squares and of products about the means.
+    xx: f64,
+    yy: f64,
+    xy: f64,
+}
+
+impl Moments {
+    /// Welford's update; pairs that are not numbers are left out.
+    fn push(&mut self, x: f64, y: f64) {
+        if !(x.is_finite() && y.is_finite()) {
+            return;
+        }
+        self.count += 1.0;
+        let (dx, dy) = (x - self.mean.0, y - self.mean.1);
+        self.mean.0 += dx / self.count;
+        self.mean.1 += dy / self.count;
+        self.xx += dx * (x - self.mean.0);
+        self.yy += dy * (y - self.mean.1);
+        self.xy += dx * (y - self.mean.1);
+    }
+
+    fn r_squared(&self) -> f64 {
+        let scale = self.xx * self.yy;
+        if scale > 0.0 { self.xy * self.xy / scale } else { 0.0 }
+    }
+
+    /// Slope and intercept of the regression of the second on the first.
+    fn line(&self) -> (f64, f64) {
+        let slope = if self.xx > 0.0 { self.xy / self.xx } else { 0.0 };
+        (slope, self.mean.1 - slope * self.mean.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::SamplePeriod;
+
+    /// The output of `next`, from the input and the output before, at levels held 1 s.
+    fn joint(levels: &[f64], next: impl Fn(f64, f64) -> f64) -> Joint {
+        let input: Vec<f64> = levels.iter().flat_map(|level| [*level; 100]).collect();
+        let mut y = 0.0;
+        let step = |u: &f64| {
+            let now = y;
+            y = next(*u, y);
+            now
+        };
+        let output = input.iter().map(step).collect();
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let trials = vec![Trial::new("1", 0.0, period, input, output).unwrap()];
+        let (name, covariates) = ("motor".to_owned(), Vec::new());
+        Joint { name, input_unit: None, output_unit: None, covariates, trials }
+    }
+
+    const LEVELS: [f64; 8] = [0.0, 2.0, -1.0, 3.0, 1.0, -2.0, -3.0, 0.5];
+
+    #[test]
+    fn a_first_order_is_recognised_with_its_time_constant_and_gain() {
+        // y' = (3 u + 1 − y)/T with T = 0.1 s, sampled exactly.
+        let left = (-0.01_f64 / 0.1).exp();
+        let of = joint(&LEVELS, |u, y| 3.0 * u + 1.0 + (y - 3.0 * u - 1.0) * left);
+        assert!(follows_input(&of).unwrap() > 0.8);
+        let model = first_order(&of, 0.0).unwrap();
+        let [rate, y0] = model.components()[0].parameters() else { panic!("two parameters") };
+        assert!((0.8..1.3).contains(&(0.1 * rate.value)), "{rate:?}");
+        assert!((y0.value - 1.0).abs() < 0.3, "{y0:?}");
+        assert!((model.gain.value / rate.value - 3.0).abs() < 0.3, "{:?}", model.gain);
+    }
+
+    #[test]
+    fn an_integrator_and_a_joint_that_runs_into_its_stops_do_not_follow_their_input() {
+        assert_eq!(follows_input(&joint(&LEVELS, |u, y| y + 0.01 * u)), None);
+        let stops = joint(&LEVELS, |u, y| (y + 0.5 * u).clamp(-10.0, 10.0));
+        assert_eq!(follows_input(&stops), None);
+        // Two levels cannot tell the one from the other.
+        let relay = [1.0, -1.0, 1.0, -1.0, 1.0, -1.0];
+        assert_eq!(follows_input(&joint(&relay, |u, y| y + 0.05 * (u - y))), None);
+        assert_eq!(follows_input(&joint(&[1.0], |u, _| u)), None);
+    }
+}
