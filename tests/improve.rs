@@ -289,3 +289,50 @@ fn most_of_the_error_of_a_cylinder_is_taken_away() {
     assert!(after < 0.2 * before, "{after} is left of {before}");
     assert!(boom["effects"].as_array().unwrap().contains(&json!("oil_column")));
 }
+
+/// A motor's speed: first order of 0.3 s, 0.25 s late, integrated in steps of 1 ms.
+fn motor_log() -> String {
+    const PER_SAMPLE: usize = 20;
+    let (mut speed, mut log) = (0.0_f64, "time,motor.input,motor.output\n".to_owned());
+    let level = |ms: usize| [0.0, 2.0, 5.0, 3.0, 7.0, 1.0, 4.0, 6.0, 2.5, 0.5][ms / 2000 % 10];
+    let mut noise = simple_noise();
+    for ms in 0..40_000_usize {
+        if ms % PER_SAMPLE == 0 {
+            let (time, input) = (ms as f64 / 1000.0, level(ms));
+            let measured = 10.0 + speed + 0.05 * noise();
+            log += &format!("{time:.2},{input},{measured}\n");
+        }
+        let late = level(ms.saturating_sub(250));
+        speed += 0.001 * (40.0 * late - speed) / 0.3;
+    }
+    log
+}
+
+/// Sums of twelve uniform numbers, less six: nearly normal.
+fn simple_noise() -> impl FnMut() -> f64 {
+    let mut state = 7_u64;
+    move || {
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    }
+}
+
+#[test]
+fn a_speed_that_settles_is_a_first_order_with_dead_time() {
+    let desk = Desk::with(vec![joint("boom")]);
+    desk.write("motor.csv", &motor_log());
+    let improved = desk.json("improve motor.csv --write motor.toml", 0);
+    let motor = &improved["joints"][0];
+    let value = |name: &str| number(&motor["parameters"][name]["value"]);
+    assert_eq!(motor["effects"], json!(["leakage"]));
+    assert!((value("delay") - 0.25).abs() < 0.01, "{}", value("delay"));
+    assert!((value("leakage.rate") * 0.3 - 1.0).abs() < 0.03, "{}", value("leakage.rate"));
+    assert!((value("gain") / value("leakage.rate") - 40.0).abs() < 0.5);
+    assert!((value("leakage.y0") - 10.0).abs() < 0.5);
+    assert_eq!(motor["verdict"], "adequate");
+    let words = motor["in_words"].as_str().unwrap();
+    assert!(words.contains("first order with dead time, of time constant 0.3"), "{words}");
+}

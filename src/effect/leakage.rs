@@ -11,7 +11,7 @@
 //! # References
 //! Merritt, H. E., 1967, Hydraulic Control Systems (leakage past the piston).
 
-use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage};
+use super::{Dimension, Effect, FirstOrder, Moment, Parameter, RecordRange, Spec, Stage};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -47,12 +47,15 @@ impl Effect for Leakage {
         vec![(low, high.min(seen)), y0.bounds(record)]
     }
 
-    /// Toward either end of the record and toward its middle.
+    /// Toward either end of the record and toward its middle; where the output follows the input,
+    /// as the first order that it is.
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
         let speed = record.size(Dimension::OutputPerSecond);
         let rate = 0.05 * speed / record.output_span();
         let angles = [record.output_min, record.output_middle(), record.output_max];
-        angles.into_iter().map(|y0| vec![rate, y0]).collect()
+        let slow = angles.into_iter().map(|y0| vec![rate, y0]);
+        let of = |order: FirstOrder| vec![order.time_constant_s.recip(), order.at_zero];
+        record.first_order.map(of).into_iter().chain(slow).collect()
     }
 }
 

@@ -11,6 +11,7 @@ mod bounds;
 mod covariance;
 mod descent;
 mod evaluation;
+mod first_order;
 mod least_squares;
 mod problem;
 mod record;
@@ -26,6 +27,7 @@ mod thin;
 mod window;
 
 pub use evaluation::Evaluation;
+pub(crate) use first_order::follows_input;
 pub use least_squares::{assess, fit, fit_to_compare, fit_to_compare_beside, survey};
 pub use record::FitRecord;
 pub use result::{Assessment, Fit, FitError, Parameter, Status, Survey, Termination};

@@ -5,13 +5,14 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::DVector;
 
 use super::evaluation::Evaluation;
+use super::first_order::first_order;
 use super::run::Run;
 use super::speed;
 use super::spikes;
 use super::thin::thinned;
 use super::window::{Horizon, Part, Split, Window, changes, cut, shorter};
 use crate::delay::{StepDelay, step_delays};
-use crate::effect::RecordRange;
+use crate::effect::{FirstOrder, RecordRange};
 use crate::experiment::{Joint, Trial};
 use crate::model::{Arrivals, Commands, JointModel, Surroundings};
 
@@ -28,6 +29,8 @@ pub struct FitRecord<'a> {
     /// when a model first asks for it.
     delays: Arc<OnceLock<Delays>>,
     radians_per_output_unit: f64,
+    /// What the output follows, found when a fit first asks for it.
+    first_order: Arc<OnceLock<Option<FirstOrder>>>,
     /// Windows start at the measured speed.
     speeds_measured: bool,
     /// Seconds from the start of the record to that of each trial.
@@ -64,6 +67,7 @@ impl<'a> FitRecord<'a> {
             others,
             delays: Arc::default(),
             radians_per_output_unit,
+            first_order: Arc::default(),
             speeds_measured,
             starts_s: starts_s(&joint.trials),
             commands: joint.trials.iter().map(commands).collect(),
@@ -266,6 +270,7 @@ impl<'a> FitRecord<'a> {
             duration_s: ends.fold(0.0, f64::max),
             sample_period_s: periods.fold(f64::INFINITY, f64::min),
             radians_per_output_unit: self.radians_per_output_unit,
+            first_order: *self.first_order.get_or_init(|| first_order(self.joint)),
         }
     }
 

@@ -13,14 +13,12 @@
 mod arrivals;
 mod file;
 mod joint_model;
-mod self_regulation;
 mod simulate;
 mod start;
 
 pub use arrivals::{Arrival, Arrivals, Commands};
 pub use file::{ModelError, ModelFile, Revision};
 pub use joint_model::{Component, JointModel, Value};
-pub(crate) use self_regulation::follows_input;
 pub(crate) use simulate::simulate_output;
 pub use simulate::{Restart, Simulated, Surroundings, simulate, simulate_input};
 pub use start::integrators;

@@ -1,7 +1,6 @@
 //! The plain integrator that the estimated delays suggest: where a model begins.
 
 use super::JointModel;
-use super::self_regulation::{first_order, follows_input};
 use crate::delay::{Decision, TrialEstimate, are_strokes, delay_scan};
 use crate::experiment::Joint;
 use crate::numerics::median;
@@ -9,8 +8,7 @@ use crate::numerics::median;
 /// The delay of a joint of which nothing is known, in seconds.
 const UNKNOWN_DELAY_S: f64 = 0.1;
 
-/// Where a model of `joint` may begin: plain integrators with one gain, and delays from short to
-/// long.
+/// Plain integrators for `joint`: one gain, and delays from short to long.
 ///
 /// The gain is the regression of the output's slope behind each accepted step on the
 /// input there, `Σ u·v / Σ u²`; the delays are the quartiles of the accepted ones.
@@ -20,11 +18,8 @@ const UNKNOWN_DELAY_S: f64 = 0.1;
 /// Where the joint was driven in strokes, the delay is the median of the accepted ones, and fixed:
 /// each start from rest shows its delay to some hundredths of a second, while in a fit a speed
 /// that is wrong along a stroke moves the delay by tenths.
-///
-/// Where the output follows the input itself, they are first orders with dead time: integrators
-/// with leakage.
 pub fn integrators(joint: &Joint, estimates: &[&TrialEstimate]) -> Vec<JointModel> {
-    let (mut delays, gain) = accepted(joint, estimates);
+    let (delays, gain) = accepted(joint, estimates);
     let gain = gain.unwrap_or_else(|| overall_gain(joint));
     if are_strokes(&joint.trials)
         && let Some(delay) = median(&delays)
@@ -33,18 +28,12 @@ pub fn integrators(joint: &Joint, estimates: &[&TrialEstimate]) -> Vec<JointMode
         model.delay.fixed = true;
         return vec![model];
     }
-    delays = quartiles(delays);
+    let mut delays: Vec<f64> = quartiles(delays);
     if delays.is_empty() {
         delays = scanned(joint).into_iter().chain([UNKNOWN_DELAY_S]).collect();
     }
     delays.dedup();
-    let follows = follows_input(joint).is_some();
-    let model = |delay: f64| {
-        let delay = delay.max(0.0);
-        let first_order = if follows { first_order(joint, delay) } else { None };
-        first_order.unwrap_or_else(|| JointModel::integrator(gain, delay))
-    };
-    delays.into_iter().map(model).collect()
+    delays.into_iter().map(|delay| JointModel::integrator(gain, delay.max(0.0))).collect()
 }
 
 /// The accepted delays in seconds, and the regression of the speed behind accepted steps on the

@@ -1,8 +1,7 @@
 //! Why a model is a first order with dead time.
 
 use crate::experiment::Joint;
-use crate::fit::Assessment;
-use crate::model::follows_input;
+use crate::fit::{Assessment, follows_input};
 use crate::wording::rounded;
 
 /// `The output follows the input itself, not its integral (r² 0.93): the model is a first order

@@ -3,7 +3,8 @@
 
     real_machines.py TAUSCOPE FOLDER > docs/real_machines.md
 
-FOLDER holds the logs named in LOGS, each with a page that says where it is from. Needs numpy.
+FOLDER holds the logs named in LOGS, each with a page that says where it is from. Needs numpy and
+scipy; `scipy_ladder.py` is what an engineer would fit with these.
 
 The independent estimate of a start from rest knows nothing of tauscope: the first sample at which
 the output has left the mean of its last 20 samples before the step by 0.2 deg, in the direction in
@@ -18,6 +19,8 @@ import sys
 import tempfile
 
 import numpy as np
+
+from scipy_ladder import LADDER, ladder
 
 RC = ["boom=u_boom_duty:y_boom", "stick=u_stick_duty:y_stick", "bucket=u_bucket_duty:y_bucket"]
 LOGS = {
@@ -113,6 +116,46 @@ def as_it_comes(tauscope, folder, name):
         print(f"| `{name}` | {joint['joint']} | {joint['steps']} steps | {joint['accepted']} | {known} | {seconds:.1f} s |")
 
 
+def columns(name, joint):
+    """Names of the input and the output of a joint."""
+    for given in LOGS[name]:
+        label, _, pair = given.partition("=")
+        if label == joint and pair:
+            return pair.split(":")
+    return f"{joint}.input", f"{joint}.output"
+
+
+def digits(value):
+    return f"{value:.3g}"
+
+
+def models(tauscope, folder, name):
+    """What improve finds with no option, beside SciPy."""
+    with tempfile.TemporaryDirectory() as temporary:
+        written = os.path.join(temporary, "model.toml")
+        done, seconds = run(tauscope, "improve", *arguments(folder, name), "--write", written, "--format", "json", "--quiet")
+    if not done.stdout:
+        print(f"| `{name}` | - | refused: {done.stderr.strip().splitlines()[0]} | | | | |")
+        return
+    joints = json.loads(done.stdout)["joints"]
+    for joint in joints:
+        found = joint["conclusion"]["found"]
+        shares = []
+        for effect in found:
+            instead = effect["alternatives"]
+            instead = f" (or {', '.join(instead)})" if instead else ""
+            shares.append(f"{effect['effect']} {effect['error_share_percent']:.0f} %{instead}")
+        given = joint["revisions"][0]["effects"]
+        base = "first order" if any("leakage" in str(one) for one in given) else "integrator"
+        errors = [one["error"]["validation"] or one["error"]["train"] for one in joint["revisions"]]
+        steps = " → ".join(digits(error["rmse"]) for error in errors)
+        delay = joint["parameters"]["delay"]
+        path = os.path.join(folder, name + ".csv")
+        rungs, fitted, spent = ladder(path, *columns(name, joint["joint"]))
+        best = " → ".join(digits(error) for _, error in rungs)
+        print(f"| `{name}` | {joint['joint']} | {base}; {', '.join(shares) or 'nothing more'} | {delay['value']:.3f} s ({delay['status'].replace('_', ' ')}) | {steps} | {seconds / len(joints):.0f} s | {best}; {fitted['delay']:.3f} s | {spent:.0f} s |")
+
+
 def main():
     tauscope, folder = sys.argv[1:3]
     print("# On real machines\n")
@@ -131,6 +174,16 @@ def main():
     print("| log | joint | input | accepted | delay | processor time |\n|---|---|---|---|---|---|")
     for name in LOGS:
         as_it_comes(tauscope, folder, name)
+    print("\n## What is missing in the model\n")
+    print("`improve` with no option: with what the model begins, the effects that carry 1 % of the error or")
+    print("more, each with its share and with what leaves as little in its place, the delay of the model, and")
+    print("the error from revision to revision, on what was not fitted. Then what SciPy leaves with an")
+    print(f"engineer's ladder ({', '.join(LADDER).replace('_', ' ')}; `tests/real/scipy_ladder.py`), and its delay.")
+    print("Both restart where the input changes and at least every 200 samples. Processor time on one core of")
+    print("two; SciPy looks for five fixed models, `improve` for what is missing among all effects.\n")
+    print("| log | joint | effects | delay | error | time | SciPy | time |\n|---|---|---|---|---|---|---|---|")
+    for name in LOGS:
+        models(tauscope, folder, name)
 
 
 main()

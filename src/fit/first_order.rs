@@ -1,19 +1,16 @@
-//! A joint whose output follows its input itself and not its integral: a speed, a pressure, a
-//! temperature, a servo's position. It begins as a first order with dead time.
+//! Whether an output follows its input itself and not its integral: a speed, a pressure, a
+//! temperature, a servo's position. With an integrator its model is then a first order with dead
+//! time, by a leakage of rate `1/T` toward `y0`.
 //!
 //! ```text
 //! T y' + y = K u(t − τ) + y0
 //! ```
 //!
-//! As the models here are integrators, it is one of gain `K/T` with a leakage of rate `1/T`
-//! toward `y0`.
-//!
 //! # References
 //! Åström, K. J., and Hägglund, T., 2006, Advanced PID Control, section 2.4 (processes with
 //! self-regulation).
 
-use super::{Component, JointModel};
-use crate::effect::by_id;
+use crate::effect::FirstOrder;
 use crate::experiment::{Joint, Trial};
 
 /// Squared correlation of output and input from which the output follows the input. Chosen: of
@@ -65,33 +62,28 @@ fn sign(input: f64) -> f64 {
     if input == 0.0 { 0.0 } else { input.signum() }
 }
 
-/// The first order with this dead time in seconds that follows the output of `joint` best.
-pub(super) fn first_order(joint: &Joint, delay_s: f64) -> Option<JointModel> {
+/// The first order that follows the output of `joint` best, its dead time in its time constant;
+/// none where the output does not follow the input.
+pub(super) fn first_order(joint: &Joint) -> Option<FirstOrder> {
     /// Time constants: the shortest in sample periods, each of the one before, and how many.
     const SHORTEST: f64 = 1.0;
     const RATIO: f64 = 1.5;
     const COUNT: usize = 16;
+    follows_input(joint)?;
     let period_s = joint.trials.iter().map(|trial| trial.period().seconds()).fold(0.0, f64::max);
     let times = std::iter::successors(Some(SHORTEST * period_s), |time| Some(RATIO * time));
-    let tried = times.take(COUNT).map(|time_s| (time_s, filtered(joint, delay_s, time_s)));
+    let tried = times.take(COUNT).map(|time_s| (time_s, lagging(joint, time_s)));
     let (time_s, sums) = tried.max_by(|a, b| a.1.r_squared().total_cmp(&b.1.r_squared()))?;
-    let (static_gain, at_zero) = sums.line();
-    let leakage = Component::new(by_id("leakage")?, vec![time_s.recip().into(), at_zero.into()])?;
-    Some(JointModel::integrator(static_gain / time_s, delay_s).with(leakage))
+    Some(FirstOrder { time_constant_s: time_s, at_zero: sums.intercept() })
 }
 
-/// How the output goes with the input behind a dead time and a lag of the first order.
-fn filtered(joint: &Joint, delay_s: f64, time_s: f64) -> Moments {
+/// How the output goes with the input behind a lag of the first order.
+fn lagging(joint: &Joint, time_s: f64) -> Moments {
     let mut sums = Moments::default();
     for trial in &joint.trials {
-        let (input, period_s) = (trial.input(), trial.period().seconds());
-        let left = (-period_s / time_s).exp();
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 0")]
-        let late = (delay_s / period_s).round().max(0.0) as usize;
-        let Some(&first) = input.first() else { continue };
-        let delayed = std::iter::repeat_n(first, late).chain(input.iter().copied());
-        let mut state = first;
-        for (input, output) in delayed.zip(trial.output()) {
+        let left = (-trial.period().seconds() / time_s).exp();
+        let mut state = trial.input().first().copied().unwrap_or(0.0);
+        for (input, output) in trial.input().iter().zip(trial.output()) {
             sums.push(state, *output);
             state = input + (state - input) * left;
         }
@@ -130,10 +122,10 @@ impl Moments {
         if scale > 0.0 { self.xy * self.xy / scale } else { 0.0 }
     }
 
-    /// Slope and intercept of the regression of the second on the first.
-    fn line(&self) -> (f64, f64) {
+    /// The intercept of the regression of the second on the first.
+    fn intercept(&self) -> f64 {
         let slope = if self.xx > 0.0 { self.xy / self.xx } else { 0.0 };
-        (slope, self.mean.1 - slope * self.mean.0)
+        self.mean.1 - slope * self.mean.0
     }
 }
 
@@ -161,16 +153,14 @@ mod tests {
     const LEVELS: [f64; 8] = [0.0, 2.0, -1.0, 3.0, 1.0, -2.0, -3.0, 0.5];
 
     #[test]
-    fn a_first_order_is_recognised_with_its_time_constant_and_gain() {
+    fn a_first_order_is_recognised_with_its_time_constant() {
         // y' = (3 u + 1 − y)/T with T = 0.1 s, sampled exactly.
         let left = (-0.01_f64 / 0.1).exp();
         let of = joint(&LEVELS, |u, y| 3.0 * u + 1.0 + (y - 3.0 * u - 1.0) * left);
         assert!(follows_input(&of).unwrap() > 0.8);
-        let model = first_order(&of, 0.0).unwrap();
-        let [rate, y0] = model.components()[0].parameters() else { panic!("two parameters") };
-        assert!((0.8..1.3).contains(&(0.1 * rate.value)), "{rate:?}");
-        assert!((y0.value - 1.0).abs() < 0.3, "{y0:?}");
-        assert!((model.gain.value / rate.value - 3.0).abs() < 0.3, "{:?}", model.gain);
+        let found = first_order(&of).unwrap();
+        assert!((0.08..0.13).contains(&found.time_constant_s), "{found:?}");
+        assert!((found.at_zero - 1.0).abs() < 0.3, "{found:?}");
     }
 
     #[test]
