@@ -84,12 +84,6 @@ pub(super) struct Ended {
     pub(super) refinements: Vec<&'static str>,
 }
 
-impl Ended {
-    fn new(verdict: Verdict, fit: Fit, was_stopped: bool) -> Self {
-        Self { verdict, fit, was_stopped, refinements: Vec::new() }
-    }
-}
-
 /// Adds to `first` what it lacks, one effect after the other, and removes what has become
 /// useless. `visit` sees each step once; where it says no, nothing more is tried.
 ///
@@ -104,11 +98,13 @@ pub(super) fn add_stepwise(
     misfit: Misfit,
     mut visit: impl FnMut(&Step) -> bool,
 ) -> Ended {
+    let ended =
+        |verdict, fit, was_stopped| Ended { verdict, fit, was_stopped, refinements: Vec::new() };
     let mut step = first;
     loop {
         if !step.rank_missing(record, options, workers) {
             let was_stopped = !visit(&step);
-            return Ended::new(Verdict::Adequate, step.fit, was_stopped);
+            return ended(Verdict::Adequate, step.fit, was_stopped);
         }
         let has_consequence = |candidate: &Candidate| {
             options.keeps_refinements || misfit.has_consequence(record, &step.fit, &candidate.fit)
@@ -124,7 +120,7 @@ pub(super) fn add_stepwise(
             let is_explained = misfit.is_explained(record, &step.fit);
             let verdict = if is_explained { Verdict::Adequate } else { Verdict::Unexplained };
             let was_stopped = !visit(&step);
-            return Ended { refinements, ..Ended::new(verdict, step.fit, was_stopped) };
+            return Ended { refinements, ..ended(verdict, step.fit, was_stopped) };
         }
         if let Some(index) = found {
             step.ranking[..=index].rotate_right(1);
@@ -135,12 +131,12 @@ pub(super) fn add_stepwise(
         let goes_on = visit(&step);
         let Some(found) = found.filter(|_| goes_on && added < options.max_effects) else {
             let verdict = if explained { Verdict::MissingEffect } else { Verdict::Unexplained };
-            return Ended::new(verdict, step.fit, !goes_on);
+            return ended(verdict, step.fit, !goes_on);
         };
         if let Some(alone) = first_of_pair(record, &found) {
             step = alone;
             if !visit(&step) {
-                return Ended::new(Verdict::MissingEffect, step.fit, true);
+                return ended(Verdict::MissingEffect, step.fit, true);
             }
         }
         step = Step::new(record, Change::Added(found.newest()), found.fit);
@@ -149,7 +145,7 @@ pub(super) fn add_stepwise(
             if !visit(&step) {
                 let is_adequate = step.is_adequate();
                 let verdict = if is_adequate { Verdict::Adequate } else { Verdict::MissingEffect };
-                return Ended::new(verdict, step.fit, true);
+                return ended(verdict, step.fit, true);
             }
             step = Step::new(record, change, fit);
         }

@@ -115,13 +115,12 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     })?;
     let joints = &study.experiment().joints;
     note_missing(&file, joints, study.verbosity());
-    let (results, stopped) = &study.result;
-    let arguments = args.add_arguments(joints);
+    let ((results, stopped), arguments) = (&study.result, args.add_arguments(joints));
     let improved = |index: usize, joint, improvement| {
-        let stopped = stopped.get(index).copied().unwrap_or(false);
-        let add_arguments = arguments.get(index).map_or("", String::as_str);
-        let delays = estimate_at(&study.estimates, index);
-        let mut improved = improved(&file, &name, joint, (improvement, delays), add_arguments)?;
+        let stopped = stopped.get(index).is_some_and(|stopped| *stopped);
+        let add_arguments = arguments.get(index)?;
+        let found = (improvement, estimate_at(&study.estimates, index));
+        let mut improved = improved(&file, &name, joint, found, add_arguments)?;
         improved.interrupted = stopped && improved.finding.verdict != Verdict::Adequate;
         Some(improved)
     };
@@ -135,8 +134,8 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     args.model.write(&file, &revised(&file, &improved)?, study.verbosity())?;
     let text = || improve_text(&improved, &args.protocol.horizon(Horizon::Steps));
     let completion = study.end(&failures, text, || ImproveJson::new(&improved, &failures))?;
-    let is_cut_short = improved.iter().any(|joint| joint.interrupted);
-    Ok(if is_cut_short { Completion::Partial } else { completion })
+    let is_whole = improved.iter().all(|joint| !joint.interrupted);
+    Ok(if is_whole { completion } else { Completion::Partial })
 }
 
 /// What is said when somebody presses Ctrl-C.
