@@ -3,6 +3,8 @@
 
 mod desk;
 
+use std::fmt::Write as _;
+
 use desk::{Desk, assert_fields, banded, fields, joint, number};
 use serde_json::{Value, json};
 use tauscope::model::ModelFile;
@@ -300,7 +302,7 @@ fn motor_log() -> String {
         if ms % PER_SAMPLE == 0 {
             let (time, input) = (ms as f64 / 1000.0, level(ms));
             let measured = 10.0 + speed + 0.05 * noise();
-            log += &format!("{time:.2},{input},{measured}\n");
+            writeln!(log, "{time:.2},{input},{measured}").unwrap();
         }
         let late = level(ms.saturating_sub(250));
         speed += 0.001 * (40.0 * late - speed) / 0.3;
