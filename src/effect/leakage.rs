@@ -11,7 +11,7 @@
 //! # References
 //! Merritt, H. E., 1967, Hydraulic Control Systems (leakage past the piston).
 
-use super::{Dimension, Effect, FirstOrder, Moment, Parameter, RecordRange, Spec, Stage};
+use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -42,20 +42,17 @@ impl Effect for Leakage {
         /// Fastest drift of an angle by oil that passes the piston, 1/s: chosen.
         const LEAKING: f64 = 10.0;
         let seen = (0.5 / record.sample_period_s).max(LEAKING);
-        let [rate, y0] = &SPEC.parameters else { return Vec::new() };
+        let [rate, y0] = SPEC.parameters else { return Vec::new() };
         let (low, high) = rate.bounds(record);
         vec![(low, high.min(seen)), y0.bounds(record)]
     }
 
-    /// Toward either end of the record and toward its middle; where the output follows the input,
-    /// as the first order that it is.
+    /// Toward either end of the record and toward its middle.
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
         let speed = record.size(Dimension::OutputPerSecond);
         let rate = 0.05 * speed / record.output_span();
         let angles = [record.output_min, record.output_middle(), record.output_max];
-        let slow = angles.into_iter().map(|y0| vec![rate, y0]);
-        let of = |order: FirstOrder| vec![order.time_constant_s.recip(), order.at_zero];
-        record.first_order.map(of).into_iter().chain(slow).collect()
+        angles.into_iter().map(|y0| vec![rate, y0]).collect()
     }
 }
 

@@ -71,7 +71,7 @@ pub use parameter::{Parameter, UNLIMITED};
 pub use placebo::Placebo;
 pub use position_gain::PositionGain;
 pub use rate_limit::RateLimit;
-pub use record::{FirstOrder, RecordRange};
+pub use record::RecordRange;
 pub use registry::{REGISTRY, UnknownEffect, by_id, find, find_among};
 pub use resonance::Resonance;
 pub use spec::Spec;

@@ -21,18 +21,6 @@ pub struct RecordRange<'a> {
     pub sample_period_s: f64,
     /// The angle in radians of one output unit.
     pub radians_per_output_unit: f64,
-    /// The first order that the output follows, where it follows the input itself and not its
-    /// integral.
-    pub first_order: Option<FirstOrder>,
-}
-
-/// A first order `T y' + y = K u + y0`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FirstOrder {
-    /// Its time constant `T` in seconds.
-    pub time_constant_s: f64,
-    /// Its output `y0` without input, output units.
-    pub at_zero: f64,
 }
 
 /// A minute of a joint in degrees at 100 Hz, driven by one unit of input.
@@ -47,7 +35,6 @@ impl Default for RecordRange<'_> {
             duration_s: 60.0,
             sample_period_s: 0.01,
             radians_per_output_unit: 1_f64.to_radians(),
-            first_order: None,
         }
     }
 }

@@ -93,6 +93,11 @@ impl Search<'_, '_> {
         let fits = fit_best(self.record, surveyed, &models, self.range, kept, workers);
         let extension = |(id, fit)| Extension { effects: vec![id], fit };
         let mut extensions: Vec<Extension> = fits.into_iter().map(extension).collect();
+        if let Some(other) = self.as_first_order() {
+            extensions.retain(|one| one.effects != other.effects || one.fit.cost < other.fit.cost);
+            let is_known = extensions.iter().any(|one| one.effects == other.effects);
+            extensions.extend(Some(other).filter(|_| !is_known));
+        }
         if scope == Scope::Everything {
             extensions.extend(self.with_measured_delays(&extensions));
         }
@@ -108,6 +113,15 @@ impl Search<'_, '_> {
         let mut extensions = pairs(self.record, self.base, self.effects, self.range, workers);
         extensions.extend(ranking.iter().map(single));
         self.compared(extensions)
+    }
+
+    /// The base as the first order that the output follows, where it follows the input itself: too
+    /// far from an integrator for a descent to find it.
+    fn as_first_order(&self) -> Option<Extension> {
+        let (id, model) = self.record.first_order()?.started_at(&self.base.model)?;
+        self.effects.iter().find(|effect| effect.spec().id == id)?;
+        let fit = fit_to_compare(self.record, &model, self.range).ok()?;
+        Some(Extension { effects: vec![id], fit })
     }
 
     /// The base with each step's own delay as it was measured, where none of `extensions` comes

@@ -10,8 +10,9 @@
 //! Åström, K. J., and Hägglund, T., 2006, Advanced PID Control, section 2.4 (processes with
 //! self-regulation).
 
-use crate::effect::FirstOrder;
+use crate::effect::by_id;
 use crate::experiment::{Joint, Trial};
+use crate::model::{Component, JointModel};
 
 /// Squared correlation of output and input from which the output follows the input. Chosen: of
 /// measured machines, servos and speeds have 0.94 and more, angles and positions that are driven
@@ -62,19 +63,47 @@ fn sign(input: f64) -> f64 {
     if input == 0.0 { 0.0 } else { input.signum() }
 }
 
-/// The first order that follows the output of `joint` best, its dead time in its time constant;
-/// none where the output does not follow the input.
-pub(super) fn first_order(joint: &Joint) -> Option<FirstOrder> {
-    /// Time constants: the shortest in sample periods, each of the one before, and how many.
-    const SHORTEST: f64 = 1.0;
-    const RATIO: f64 = 1.5;
-    const COUNT: usize = 16;
-    follows_input(joint)?;
-    let period_s = joint.trials.iter().map(|trial| trial.period().seconds()).fold(0.0, f64::max);
-    let times = std::iter::successors(Some(SHORTEST * period_s), |time| Some(RATIO * time));
-    let tried = times.take(COUNT).map(|time_s| (time_s, lagging(joint, time_s)));
-    let (time_s, sums) = tried.max_by(|a, b| a.1.r_squared().total_cmp(&b.1.r_squared()))?;
-    Some(FirstOrder { time_constant_s: time_s, at_zero: sums.intercept() })
+/// A first order `T y' + y = K u + y0`, its dead time in its time constant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FirstOrder {
+    time_constant_s: f64,
+    static_gain: f64,
+    at_zero: f64,
+}
+
+impl FirstOrder {
+    /// The one that follows the output of `joint` best; none where the output does not follow the
+    /// input.
+    pub(super) fn of(joint: &Joint) -> Option<Self> {
+        /// Time constants: the shortest in sample periods, each of the one before, and how many.
+        const SHORTEST: f64 = 2.0;
+        const RATIO: f64 = 1.5;
+        const COUNT: usize = 16;
+        follows_input(joint)?;
+        let periods = joint.trials.iter().map(|trial| trial.period().seconds());
+        let shortest = SHORTEST * periods.fold(0.0, f64::max);
+        let times = std::iter::successors(Some(shortest), |time| Some(RATIO * time));
+        let tried = times.take(COUNT).map(|time_s| (time_s, lagging(joint, time_s)));
+        let best = tried.max_by(|a, b| a.1.r_squared().total_cmp(&b.1.r_squared()));
+        let (time_constant_s, sums) = best?;
+        let (static_gain, at_zero) = sums.line();
+        Some(Self { time_constant_s, static_gain, at_zero })
+    }
+
+    /// `model` as this first order, and the id of the effect that makes it one.
+    pub(crate) fn started_at(self, model: &JointModel) -> Option<(&'static str, JointModel)> {
+        let leakage = by_id("leakage")?;
+        let rate = self.time_constant_s.recip();
+        let component = Component::new(leakage, vec![rate.into(), self.at_zero.into()])?;
+        let mut model = model.with(component);
+        if !model.gain.fixed {
+            model.gain.value = self.static_gain * rate;
+        }
+        if !model.delay.fixed {
+            model.delay.value = 0.0;
+        }
+        Some((leakage.spec().id, model))
+    }
 }
 
 /// How the output goes with the input behind a lag of the first order.
@@ -122,10 +151,10 @@ impl Moments {
         if scale > 0.0 { self.xy * self.xy / scale } else { 0.0 }
     }
 
-    /// The intercept of the regression of the second on the first.
-    fn intercept(&self) -> f64 {
+    /// Slope and intercept of the regression of the second on the first.
+    fn line(&self) -> (f64, f64) {
         let slope = if self.xx > 0.0 { self.xy / self.xx } else { 0.0 };
-        self.mean.1 - slope * self.mean.0
+        (slope, self.mean.1 - slope * self.mean.0)
     }
 }
 
@@ -158,9 +187,10 @@ mod tests {
         let left = (-0.01_f64 / 0.1).exp();
         let of = joint(&LEVELS, |u, y| 3.0 * u + 1.0 + (y - 3.0 * u - 1.0) * left);
         assert!(follows_input(&of).unwrap() > 0.8);
-        let found = first_order(&of).unwrap();
+        let found = FirstOrder::of(&of).unwrap();
         assert!((0.08..0.13).contains(&found.time_constant_s), "{found:?}");
         assert!((found.at_zero - 1.0).abs() < 0.3, "{found:?}");
+        assert!((found.static_gain - 3.0).abs() < 0.3, "{found:?}");
     }
 
     #[test]

@@ -5,14 +5,14 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::DVector;
 
 use super::evaluation::Evaluation;
-use super::first_order::first_order;
+use super::first_order::FirstOrder;
 use super::run::Run;
 use super::speed;
 use super::spikes;
 use super::thin::thinned;
 use super::window::{Horizon, Part, Split, Window, changes, cut, shorter};
 use crate::delay::{StepDelay, step_delays};
-use crate::effect::{FirstOrder, RecordRange};
+use crate::effect::RecordRange;
 use crate::experiment::{Joint, Trial};
 use crate::model::{Arrivals, Commands, JointModel, Surroundings};
 
@@ -270,8 +270,12 @@ impl<'a> FitRecord<'a> {
             duration_s: ends.fold(0.0, f64::max),
             sample_period_s: periods.fold(f64::INFINITY, f64::min),
             radians_per_output_unit: self.radians_per_output_unit,
-            first_order: *self.first_order.get_or_init(|| first_order(self.joint)),
         }
+    }
+
+    /// The first order that the output follows, where it follows the input itself.
+    pub(crate) fn first_order(&self) -> Option<FirstOrder> {
+        *self.first_order.get_or_init(|| FirstOrder::of(self.joint))
     }
 
     /// The distinct magnitudes of the input, ascending.
