@@ -12,7 +12,7 @@ use super::recorded::Recording;
 use super::{
     about, decisions, delay_state, model, overview, revision, segment_view, signals, verdict, views,
 };
-use crate::report::EstimatedJoint;
+use crate::report::{EstimatedJoint, settings_in_short};
 
 impl<'a> Recording<'a> {
     /// Each joint and where it lies on the timelines.
@@ -25,7 +25,12 @@ impl<'a> Recording<'a> {
 
 impl<'a> Content for Recording<'a> {
     fn name(&self) -> String {
-        name_of(self.sources)
+        let each = std::iter::once(self.settings).chain(self.also.iter().map(|it| it.settings));
+        let settings: Vec<_> = each.map(settings_in_short).collect();
+        let chosen = self.joints.iter().any(|joint| joint.estimate.chosen.is_some());
+        let chosen = if chosen { ", more from the record" } else { "" };
+        let (log, command) = (name_of(self.sources), self.command);
+        format!("{log} · {command} · {}{chosen}", settings.join(" | "))
     }
 
     fn id(&self) -> String {
@@ -86,9 +91,11 @@ fn add_joint(
 /// recordings of one experiment lie side by side when any of it differs.
 fn recording_id(recording: &Recording<'_>) -> String {
     hashed(recording.sources, recording.joints.iter().map(|joint| joint.joint), |part| {
+        part(recording.command);
         for model in recording.models {
             let values: Vec<_> = model.comparison.fit.model.values();
             part(&format!("{} {:?} {values:?}", model.model, model.comparison.fit.model.names()));
+            part(&model.comparison.fit.evaluation.horizon.to_string());
         }
         for improved in recording.revisions {
             let changes: Vec<_> =

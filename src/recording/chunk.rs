@@ -1,7 +1,8 @@
 //! Columns of rows, with ids that are the same in every run.
 //!
 //! Rerun's own calls draw ids from the clock, so that two runs never compare equal. Here
-//! an id is a namespace (one per joint) and a counter.
+//! an id is a namespace (one per joint), a tag of the recording, and a counter: viewers keep
+//! state by id, so no two recordings share any.
 
 use std::sync::Arc;
 
@@ -96,19 +97,37 @@ impl Index {
     }
 }
 
+/// Ids of one recording: those of another one have another tag.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ids {
+    tag: u64,
+}
+
+impl Ids {
+    /// Those of the recording, or the blueprint, with this id.
+    pub(super) fn of(id: &str) -> Self {
+        use sha2::{Digest as _, Sha256};
+        let mut tag = [0; 8];
+        // 31 bits stay: above them is the mark of chunks, below 32 bits that count.
+        tag.iter_mut().skip(4).zip(Sha256::digest(id)).for_each(|(to, byte)| *to = byte);
+        Self { tag: u64::from_be_bytes(tag) & 0x7fff_ffff }
+    }
+
+    /// Collects chunks of `namespace`: those of one recording must differ; 0 is not allowed.
+    pub(super) fn chunks(self, namespace: u64) -> Chunks {
+        Chunks { namespace, tag: self.tag << 32, rows: 0, made: Vec::new() }
+    }
+}
+
 /// Collects chunks of one namespace.
 pub(super) struct Chunks {
     namespace: u64,
+    tag: u64,
     rows: u64,
     made: Vec<Chunk>,
 }
 
 impl Chunks {
-    /// Namespaces of one recording must differ; 0 is not allowed.
-    pub(super) fn new(namespace: u64) -> Self {
-        Self { namespace, rows: 0, made: Vec::new() }
-    }
-
     /// Rows of `columns` at the moments of `index`; nothing when there is none.
     pub(super) fn push(
         &mut self,
@@ -175,7 +194,7 @@ impl Chunks {
     }
 
     fn tuid(&self, counter: u64) -> Tuid {
-        Tuid::from_nanos_and_inc(self.namespace, counter)
+        Tuid::from_nanos_and_inc(self.namespace, self.tag | counter)
     }
 
     pub(super) fn into_chunks(self) -> Vec<Chunk> {

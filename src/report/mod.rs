@@ -70,6 +70,7 @@ pub(crate) use json::{
 pub(crate) use lookup::{Language, Lookup};
 pub(crate) use page::{Document, RecordingFile, Report, report_text};
 #[cfg(feature = "rrd")]
+pub(crate) use settings::settings_in_short;
 pub(crate) use settings::settings_rows;
 pub(crate) use steps::{step_line, steps_table};
 pub(crate) use summary::{DelayRange, Headline, JointSummary};

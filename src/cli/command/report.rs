@@ -108,7 +108,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let inputs: Vec<_> = args.data.files().into_iter().chain(args.model.model.clone()).collect();
     target.check(&inputs)?;
     let stream = args.output.stream.open(args.output.run.verbosity())?;
-    let session = Session::begin(&args.data, &args.output.run, stream)?;
+    let session = Session::begin("report", &args.data, &args.output.run, stream)?;
     let study = Study::of(session, settings, |begun| args.model.improved(&file, begun, effects))?;
     if study.result.is_some() {
         note_missing(&file, &study.experiment().joints, study.verbosity());

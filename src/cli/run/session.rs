@@ -16,14 +16,21 @@ use crate::study::{estimate_joints, estimate_joints_with};
 pub(crate) struct Session<'a> {
     pub(crate) experiment: Experiment,
     pub(crate) stream: Stream,
+    /// The name of the command.
+    pub(crate) command: &'static str,
     run: &'a RunArgs,
 }
 
 impl<'a> Session<'a> {
-    /// Reads `data`.
-    pub(crate) fn begin(data: &DataArgs, run: &'a RunArgs, stream: Stream) -> anyhow::Result<Self> {
+    /// Reads `data` for `command`.
+    pub(crate) fn begin(
+        command: &'static str,
+        data: &DataArgs,
+        run: &'a RunArgs,
+        stream: Stream,
+    ) -> anyhow::Result<Self> {
         let _bar = Bar::spinner(run.verbosity(), "reading");
-        Ok(Self { experiment: data.read()?, stream, run })
+        Ok(Self { experiment: data.read()?, stream, command, run })
     }
 
     pub(crate) fn verbosity(&self) -> Verbosity {

@@ -14,7 +14,7 @@ use crate::recording::paths::joint_root;
 
 impl Content for SweepRecording<'_> {
     fn name(&self) -> String {
-        format!("{}, sweep", name_of(self.sources))
+        format!("{} · sweep · {} settings", name_of(self.sources), self.grid.runs().len())
     }
 
     fn id(&self) -> String {

@@ -32,7 +32,7 @@ const WORST: &str = "Worst segments of the first model, restarted at every step:
 /// The tab of `joint`: its decisions, its record, its table; and before them the revisions
 /// of its model, and its models, where there are any.
 pub(super) fn tab(
-    builder: &mut Builder,
+    builder: &mut Builder<'_>,
     EstimatedJoint { joint, estimate }: EstimatedJoint<'_>,
     models: &[&ComparedJoint<'_>],
     revisions: usize,
@@ -54,8 +54,8 @@ pub(super) fn tab(
     views.builder.container(ContainerKind::Tabs, &joint.name, &pages, &[])
 }
 
-struct Views<'b> {
-    builder: &'b mut Builder,
+struct Views<'b, 'i> {
+    builder: &'b mut Builder<'i>,
     joint: &'b Joint,
     /// Whether some delay is known between samples.
     fine: bool,
@@ -84,7 +84,7 @@ const DECISION_COLUMNS: [&str; 13] = [
 const CANDIDATE_COLUMNS: [&str; 8] =
     ["i", "j", "q", "delta", "sse", "slope_before", "slope_after", "f"];
 
-impl Views<'_> {
+impl Views<'_, '_> {
     /// The entity at `path` below the joint.
     fn at(&self, path: &str) -> EntityPath {
         at(&joint_root(&self.joint.name), path)

@@ -78,6 +78,7 @@ impl<'a> Files<'a> {
             write_file(path, |file| Ok(file.write_all(source.as_bytes())?))?;
         }
         let contents = Contents {
+            command: "estimate",
             joints: result.joints,
             settings: result.settings,
             also: result.runs.get(1..).unwrap_or_default(),

@@ -27,7 +27,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let stream = args.output.stream.open(verbosity)?;
     let followed =
         args.follow.is_on.then(|| follow::follow(args, &settings, &stream)).transpose()?;
-    let session = Session::begin(&args.data, &args.output.run, stream)?;
+    let session = Session::begin("estimate", &args.data, &args.output.run, stream)?;
     let experiment = &session.experiment;
     let work = || session.estimates_by_each(&settings, args.algorithm.automatic());
     let results = session.in_threads(work)?;
