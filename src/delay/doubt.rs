@@ -105,7 +105,7 @@ impl Doubt {
 }
 
 impl Decision {
-    /// How doubtful this decision is; `output` is what the method looked at, the whole trial.
+    /// How doubtful the program's decision is; `output` is what the method looked at, the whole trial.
     pub fn doubt(&self, output: &[f64]) -> Doubt {
         let best = self.candidates.best();
         let range = range(output);
@@ -117,7 +117,7 @@ impl Decision {
             nearest: self.nearest(range.1 - range.0),
             flags: self.flags(output, range),
             hold: self.hold as f64,
-            is_accepted: self.verdict() == Verdict::Accepted,
+            is_accepted: self.program_verdict() == Verdict::Accepted,
         }
     }
 
@@ -165,9 +165,9 @@ impl Decision {
 
     fn crossing(&self, best: &Candidate) -> f64 {
         // Lines that meet between two samples cross where they break.
-        let q = self.fine.map_or(best.breakpoint as f64, |fine| {
-            self.input_step.sample as f64 + fine.delay
-        });
+        let q = self
+            .fine
+            .map_or(best.breakpoint as f64, |fine| self.input_step.sample as f64 + fine.delay);
         let jump = (best.after.at(q) - best.before.at(q)).abs();
         let turn = best.slope_change().abs();
         if turn > 0.0 { jump / turn } else { self.hold as f64 }
@@ -179,7 +179,7 @@ impl Decision {
         let margin = |check: &Check| Some((check.condition, self.margin(check, range)?));
         let by_margin = |a: &(Condition, f64), b: &(Condition, f64)| a.1.total_cmp(&b.1);
         let of = |outcome| self.checks.iter().filter(move |check| check.outcome == outcome);
-        match self.verdict() {
+        match self.program_verdict() {
             Verdict::Accepted => of(Outcome::Passed).filter_map(margin).min_by(by_margin),
             Verdict::Rejected(_) => {
                 let sure = |check: &Check| margin(check).unwrap_or((check.condition, 1.0));
@@ -194,10 +194,10 @@ impl Decision {
         let apart = (value - limit).abs();
         let of_sum = |near: f64| (apart / (value.abs() + limit.abs()) / near).min(1.0);
         match check.condition {
-            Condition::FirstOrLast | Condition::TooShort => None,
+            Condition::FirstOrLast | Condition::TooShort | Condition::Reviewer => None,
             Condition::OutputLimit => Some((apart / range / NEAR_STOP).min(1.0)),
             Condition::BeforeInput => {
-                Some((apart + 1.0) / (apart + 1.0 + self.spacing() as f64))
+                Some(((apart + 1.0) / (1.0 + self.spacing() as f64)).min(1.0))
             }
             // The probabilities of noise spread over many decades.
             Condition::NothingHappened => {

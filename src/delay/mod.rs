@@ -21,6 +21,7 @@
 //! - [`delay_scan`]: one delay for a whole record
 //! - [`Remedy`], [`RunnerUp`]: how near a verdict was
 //! - [`Doubt`]: how doubtful a decision is, from its own evidence
+//! - [`Word`]: what a reviewer says instead
 //! - [`step_delays`]: the delays alone, by the best method
 //! - [`DelayProfile`]: the delay of every sample
 //! - [`final_part`]: the part of a growing trial that more samples cannot change
@@ -63,6 +64,7 @@ mod table;
 mod transition;
 mod trial_estimate;
 mod typical;
+mod word;
 
 pub use crate::numerics::Line;
 pub use against::{AgainstOfKind, AgainstState, Correlation, Direction, StepState};
@@ -94,3 +96,4 @@ pub use table::{CurvePoint, DelayCurve, DelayRow, DelayTable, KindDelay};
 pub use transition::Transition;
 pub use trial_estimate::{EstimateError, TrialEstimate};
 pub use typical::TypicalDelay;
+pub use word::Word;

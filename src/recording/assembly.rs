@@ -1,16 +1,17 @@
 //! A recording of decisions and models, joint by joint.
 
-use rerun::ApplicationId;
 use rerun::log::LogMsg;
+use rerun::{ApplicationId, EntityPath};
 
-use super::chunk::Chunks;
+use super::chunk::{Chunks, Index};
 use super::content::{Content, Growth, Tab, hashed, name_of};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialStarts};
-use super::paths::joint_root;
+use super::paths::{self, against, at, drawing, joint_root, map};
 use super::recorded::Recording;
 use super::{
-    about, decisions, delay_state, model, overview, revision, segment_view, signals, verdict, views,
+    about, decisions, delay_state, doubt, model, overview, place, revision, segment_view, signals,
+    verdict, views,
 };
 use crate::report::{EstimatedJoint, settings_in_short};
 
@@ -18,7 +19,8 @@ impl<'a> Recording<'a> {
     /// Each joint and where it lies on the timelines.
     fn layouts(&self) -> impl Iterator<Item = (EstimatedJoint<'a>, JointLayout<'a>)> {
         let starts = TrialStarts::of(self.joints.iter().map(|joint| joint.joint));
-        let layout = move |joint| (joint, JointLayout::of(joint, &starts, self.detail));
+        let first = self.revisions.iter().map(|improved| i64::from(improved.first_revision)).min();
+        let layout = move |joint| (joint, JointLayout::of(joint, &starts, (self.detail, first)));
         self.joints.iter().copied().map(layout)
     }
 }
@@ -72,6 +74,7 @@ fn add_joint(
 ) -> Result<(), RecordError> {
     let joint = estimated.joint;
     let root = joint_root(&joint.name);
+    place::add(chunks, &root, layout)?;
     signals::add(chunks, &root, joint, layout)?;
     decisions::add(chunks, &root, layout)?;
     let others = recording.others(joint);
@@ -79,12 +82,44 @@ fn add_joint(
     segment_view::add(chunks, &root, joint, layout, (recording.settings.method, &others))?;
     overview::add(chunks, &root, layout)?;
     delay_state::add(chunks, &root, estimated, layout)?;
+    doubt::add(chunks, &root, joint, layout)?;
+    open_on_the_most_doubtful(chunks, &root, layout)?;
     let models = recording.models.iter().filter(|model| model.joint.name == joint.name);
-    model::add(chunks, &root, layout, &models.collect::<Vec<_>>())?;
-    match recording.revisions_of(joint) {
+    let models: Vec<_> = models.collect();
+    let revisions = recording.revisions_of(joint);
+    // Of several revisions the last one is what there is to judge.
+    let judged = if revisions.is_some() { models.last() } else { models.first() };
+    if let Some(judged) = judged {
+        model::add(chunks, &root, layout, &models, judged)?;
+    }
+    match revisions {
         Some(improved) => revision::add(chunks, &root, layout, improved),
         None => Ok(()),
     }
+}
+
+/// Shows the most doubtful decision before the first tick, where the viewer opens, and on the
+/// timeline of revisions.
+fn open_on_the_most_doubtful(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    layout: &JointLayout<'_>,
+) -> Result<(), RecordError> {
+    let Some((_, segment)) = layout.by_doubt().into_iter().next() else { return Ok(()) };
+    let map = format!("{}/{}", map::ROOT, map::HERE);
+    let [here, step] = [against::HERE, against::STEP].map(|p| format!("{}/{p}", against::ROOT));
+    let shown = [
+        (drawing::ROOT, ""),
+        (map.as_str(), ""),
+        (here.as_str(), ""),
+        (step.as_str(), ""),
+        (paths::VERDICT, "TextDocument"),
+    ];
+    let index = Index::before_all(layout.first_revision);
+    for (path, component) in shown {
+        chunks.repeat((&at(root, path), component), segment.opening, &index)?;
+    }
+    Ok(())
 }
 
 /// Equal for equal logs, read in the same way, equal settings and version, so that two

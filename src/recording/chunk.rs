@@ -32,6 +32,8 @@ pub(super) struct Index {
     revision: Vec<i64>,
     /// Settings of a sweep; likewise.
     pub(super) setting: Vec<i64>,
+    /// Ranks of decisions by doubt; likewise.
+    doubt: Vec<i64>,
 }
 
 /// Where one row lies on the timelines.
@@ -64,7 +66,41 @@ impl FromIterator<Moment> for Index {
 
 impl Index {
     pub(super) fn len(&self) -> usize {
-        self.sample.len().max(self.setting.len())
+        let Self { decision, segment, sample, revision, setting, .. } = self;
+        let lengths = [decision, segment, sample, revision, setting].map(Vec::len);
+        lengths.into_iter().max().unwrap_or(0)
+    }
+
+    /// The same rows on the timeline of doubt, too.
+    pub(super) fn with_doubt(self, ranks: impl Iterator<Item = i64>) -> Self {
+        Self { doubt: ranks.collect(), ..self }
+    }
+
+    /// The same rows, but for the timeline of segments: on it the samples of a segment would all
+    /// lie at one place, and a plot of them would be a comb.
+    pub(super) fn without_segment(self) -> Self {
+        Self { segment: Vec::new(), ..self }
+    }
+
+    /// The same rows on the timeline of revisions, too, all at one of them.
+    pub(super) fn at_revision(self, revision: Option<i64>) -> Self {
+        let revision = revision.map_or_else(Vec::new, |number| vec![number; self.len()]);
+        Self { revision, ..self }
+    }
+
+    /// One row, on the timeline of revisions alone.
+    pub(super) fn at_revision_alone(revision: Option<i64>) -> Self {
+        Self { revision: revision.into_iter().collect(), ..Self::default() }
+    }
+
+    /// One row before all others, on the timelines of decisions and of revisions alone.
+    pub(super) fn before_all(revision: Option<i64>) -> Self {
+        Self { decision: vec![0], ..Self::default() }.at_revision(revision)
+    }
+
+    /// One row on each timeline on which no sample lies.
+    pub(super) fn off_the_record(revision: Option<i64>) -> Self {
+        Self { segment: vec![1], doubt: vec![1], ..Self::default() }.at_revision(revision)
     }
 
     /// A row per setting of a sweep, on the timeline of settings alone.
@@ -86,6 +122,7 @@ impl Index {
             ("sample", self.sample),
             ("revision", self.revision),
             ("setting", self.setting),
+            ("doubt", self.doubt),
         ];
         let filled = sequences.into_iter().filter(|(_, values)| !values.is_empty());
         let mut columns: Vec<_> =
@@ -168,6 +205,38 @@ impl Chunks {
     ) -> Result<(), RecordError> {
         let columns = data.as_serialized_batches().into_iter().map(Into::into);
         self.push_rows(entity, 1, [TimeColumn::new_sequence("blueprint", [0])], columns)
+    }
+
+    /// Adds a row at `index` of what the entities below `root` have at the tick `decision`: only
+    /// of components whose name begins so.
+    pub(super) fn repeat(
+        &mut self,
+        (root, component): (&EntityPath, &str),
+        decision: i64,
+        index: &Index,
+    ) -> Result<(), RecordError> {
+        let shown = |chunk: &&Chunk| chunk.entity_path().starts_with(root);
+        let rows: Vec<_> = self
+            .made
+            .iter()
+            .filter(shown)
+            .filter_map(|chunk| {
+                let ticks = chunk.timelines().get(&"decision".into())?.times_raw();
+                let row = ticks.iter().rposition(|tick| *tick <= decision)?;
+                let columns = chunk.components().0.values();
+                let named =
+                    columns.filter(|c| c.descriptor.component.as_str().starts_with(component));
+                let slice = named.map(|column| {
+                    let (list, name) = (column.list_array.slice(row, 1), column.descriptor.clone());
+                    SerializedComponentColumn::new(list, name)
+                });
+                Some((chunk.entity_path().clone(), slice.collect::<Vec<_>>()))
+            })
+            .collect();
+        for (entity, columns) in rows.into_iter().filter(|(_, columns)| !columns.is_empty()) {
+            self.push(entity, index.clone(), columns)?;
+        }
+        Ok(())
     }
 
     fn push_rows(

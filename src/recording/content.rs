@@ -98,9 +98,19 @@ impl Part<'_> {
 
 /// The application that the recording `id` of this `name` belongs to in the viewer: one of its
 /// own, since all recordings of one application are shown in the views of the last one.
-pub(super) fn application(name: &str, id: &str) -> String {
+pub(super) fn application(name: &str, id: &str) -> ApplicationId {
     let short: String = id.chars().take(8).collect();
-    format!("{name} · tauscope {short}")
+    ApplicationId::new_or_unknown(format!("{} {short}", plain_words(name)))
+}
+
+/// A name of letters, digits and what else an application's may have.
+fn plain_words(name: &str) -> String {
+    /// Beyond it a name is cut off, and the id with it.
+    const LONGEST: usize = 100;
+    let name = name.replace('α', "alpha").replace('β', "beta");
+    let letter = |c: char| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { ' ' };
+    let name: String = name.chars().map(letter).take(LONGEST).collect();
+    name.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// The names of the files that were read.

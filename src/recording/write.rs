@@ -47,7 +47,7 @@ pub(crate) fn write_preview(
 
 fn write(content: &dyn Content, out: impl Write) -> Result<(), RecordError> {
     let (id, name) = (content.id(), content.name());
-    let application = ApplicationId::from(application(&name, &id));
+    let application = application(&name, &id);
     let options = EncodingOptions::PROTOBUF_COMPRESSED;
     let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, options, out)?;
     // The views come first: a viewer that has none yet makes its own of what it has read.

@@ -12,6 +12,7 @@ mod delay_table;
 mod delays;
 mod design;
 mod design_words;
+mod doubt;
 mod effects;
 mod equation;
 mod estimated;

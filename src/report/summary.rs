@@ -97,7 +97,12 @@ impl JointSummary {
             headline: Headline::of(joint.delay_table().kinds),
             steps: rows.len(),
             accepted: accepted.len(),
-            rejected: Condition::ALL.map(count).into_iter().filter(|(_, n)| *n > 0).collect(),
+            rejected: Condition::ALL
+                .into_iter()
+                .chain([Condition::Reviewer])
+                .map(count)
+                .filter(|(_, n)| *n > 0)
+                .collect(),
             delay_samples: DelayRange::of(samples.collect()),
             delay_s,
             is_continuous: joint.estimate.dead_time.is_some(),

@@ -3,6 +3,7 @@
 use rerun::datatypes::Vec2D;
 
 use crate::recording::canvas::{Labels, Plot, Span, Strips};
+use crate::report::ImprovedJoint;
 
 /// Columns and rows of the plot on the sheet.
 const PLACE: ((f32, f32), (f32, f32)) = ((760.0, 1235.0), (48.0, 450.0));
@@ -19,6 +20,11 @@ pub(super) struct Held {
     pub(super) level: f64,
     pub(super) speed: f64,
     pub(super) std_error: f64,
+}
+
+/// The noise of the sensor, one for all revisions: as the last one leaves it.
+pub(super) fn noise(improved: &ImprovedJoint<'_>) -> Option<f64> {
+    improved.revisions.last()?.comparison.noise_floor
 }
 
 /// Level of the input, and the speed that a model makes of it.

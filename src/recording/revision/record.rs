@@ -17,6 +17,8 @@ use crate::recording::sheet::Sheet;
 use crate::report::{ImprovedJoint, change_in_words};
 use crate::wording::bracketed;
 
+use super::figure::noise;
+
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 600.0);
 
@@ -34,10 +36,12 @@ pub(super) fn add(
 ) -> Result<(), RecordError> {
     let drawing = Drawing::of(layout, improved);
     let of_each = || improved.revisions.iter().map(|revision| &revision.comparison);
-    let (grid, labels) = drawing.sheet(improved).into_parts();
+    let residuals: Vec<Plot> = of_each().map(|c| drawing.residual_plot(c)).collect();
     let count = improved.revisions.len();
-    rows.strips(record::GRID, palette::GRID, 0.7, std::iter::repeat_n(grid, count))?;
-    rows.texts(record::TEXTS, palette::BORDER, std::iter::repeat_n(labels, count))?;
+    let sheets = residuals.iter().map(|plot| drawing.sheet(improved, plot).into_parts());
+    let (grids, texts): (Vec<_>, Vec<_>) = sheets.unzip();
+    rows.strips(record::GRID, palette::GRID, 0.7, grids.into_iter())?;
+    rows.texts(record::TEXTS, palette::BORDER, texts.into_iter())?;
     let window = std::iter::repeat_n(drawing.window_in_record(), count);
     rows.strips(record::WINDOW, palette::BORDER, 0.9, window)?;
     let measured = drawing.outputs(|trial| trial.trial.output());
@@ -48,8 +52,12 @@ pub(super) fn add(
         1.2,
         of_each().map(|c| drawing.simulated(c)),
     )?;
-    rows.strips(record::RESIDUAL, palette::REVISION, 1.0, of_each().map(|c| drawing.residual(c)))?;
-    rows.strips(record::NOISE, palette::NOISE, 1.0, of_each().map(|c| drawing.band(c)))?;
+    let of_plots = || of_each().zip(&residuals);
+    let curves = of_plots().map(|(comparison, plot)| drawing.residual(comparison, plot));
+    rows.strips(record::RESIDUAL, palette::REVISION, 1.0, curves)?;
+    // The noise is the sensor's, whatever the model: that of the last revision.
+    let noise = noise(improved).filter(|noise| *noise > 0.0);
+    rows.strips(record::NOISE, palette::NOISE, 1.0, residuals.iter().map(|p| band(p, noise)))?;
     rows.texts(record::NAMES, palette::REVISION, (0..count).map(|at| drawing.names(improved, at)))
 }
 
@@ -60,7 +68,8 @@ struct Drawing<'l, 'a> {
     /// The part of the record in which the first revision is worst.
     window: Window,
     close: Plot,
-    residual: Plot,
+    /// Seconds of the whole record.
+    x: Span,
     samples: usize,
 }
 
@@ -100,25 +109,30 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let ends = trials.iter().flat_map(|t| [seconds(t, 1), seconds(t, t.trial.len())]);
         let x = Span::around(ends, 0.005);
         let outputs = trials.iter().flat_map(|trial| trial.trial.output().iter().copied());
-        let residuals =
-            improved.revisions.iter().flat_map(|r| r.comparison.fit.evaluation.residuals.iter());
-        let residuals = residuals.flatten().copied();
         let window = Window::worst(&first_residuals(layout, improved));
         Self {
             layout,
             output: Plot::within((120.0, 900.0), 40.0..=290.0, x, Span::around(outputs, 0.08)),
             close: close_up(layout, &window),
             window,
-            residual: Plot::new(352.0..=560.0, x, Span::around(residuals, 0.05)),
+            x,
             samples: trials.iter().map(|trial| trial.trial.len()).sum(),
         }
     }
 
-    fn sheet(&self, improved: &ImprovedJoint<'_>) -> Sheet {
+    /// The residual of a revision at its own scale: the last one would be a line at the first
+    /// one's.
+    fn residual_plot(&self, comparison: &Comparison) -> Plot {
+        let residuals = comparison.fit.evaluation.residuals.iter().flatten().copied();
+        Plot::new(352.0..=560.0, self.x, Span::around(residuals, 0.05))
+    }
+
+    fn sheet(&self, improved: &ImprovedJoint<'_>, residual_plot: &Plot) -> Sheet {
         let unit = &improved.finding.compared.joint.output_unit;
         let unit = bracketed("", unit.as_deref());
         let mut sheet = Sheet::default();
-        let output = format!("measured (white) and simulated (orange){unit}");
+        let horizon = improved.finding.compared.comparison.fit.evaluation.horizon;
+        let output = format!("measured (white) and simulated (orange){unit}, {horizon}");
         sheet.frame(&self.output, &self.output.x_span().ticks(8.0), &ticks(&self.output), &output);
         let first = improved.first_revision;
         let close = format!("close up: where revision {first} was worst");
@@ -128,12 +142,13 @@ impl<'l, 'a> Drawing<'l, 'a> {
             sheet.put(self.close.below(end, 2.0), format!("{} s", short(end)));
         }
         let residual = format!(
-            "measured − simulated{unit}: noise alone stays between the blue lines; time [s]"
+            "measured − simulated{unit}, to its own scale: 95 % of the noise lies between the \
+             blue lines; time [s]"
         );
-        let x_ticks = self.residual.x_span().ticks(10.0);
-        sheet.frame(&self.residual, &x_ticks, &ticks(&self.residual), &residual);
+        let x_ticks = residual_plot.x_span().ticks(10.0);
+        sheet.frame(residual_plot, &x_ticks, &ticks(residual_plot), &residual);
         for x in x_ticks {
-            sheet.put(self.residual.below(x, 2.0), short(x));
+            sheet.put(residual_plot.below(x, 2.0), short(x));
         }
         sheet
     }
@@ -178,14 +193,9 @@ impl<'l, 'a> Drawing<'l, 'a> {
         })
     }
 
-    fn residual(&self, comparison: &Comparison) -> Strips {
+    fn residual(&self, comparison: &Comparison, plot: &Plot) -> Strips {
         let all = &comparison.fit.evaluation.residuals;
-        self.curves(&self.residual, |trial| all.get(trial.index).map_or(&[], Vec::as_slice))
-    }
-
-    fn band(&self, comparison: &Comparison) -> Strips {
-        let levels = comparison.noise_floor.map(|noise| [BAND * noise, -BAND * noise]);
-        levels.into_iter().flatten().map(|y| self.residual.level(y).to_vec()).collect()
+        self.curves(plot, |trial| all.get(trial.index).map_or(&[], Vec::as_slice))
     }
 
     /// What the revision is, and its error in multiples of the noise.
@@ -196,13 +206,19 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let left = self.output.x_span().low;
         labels.put_whole(beside(&self.output, left), name);
         let error = judged(&revision.comparison);
-        let noise = revision.comparison.noise_floor.filter(|noise| *noise > 0.0);
-        if let Some(noise) = noise {
+        if let Some(noise) = noise(improved).filter(|noise| *noise > 0.0) {
             let times = format!("error {} × noise", short(error / noise));
-            labels.put_whole(beside(&self.residual, left), times);
+            labels.put_whole(beside(&self.residual_plot(&revision.comparison), left), times);
         }
         labels
     }
+}
+
+/// Two levels between which 95 % of the noise lies.
+fn band(plot: &Plot, noise: Option<f64>) -> Strips {
+    let levels = noise.map(|noise| [BAND * noise, -BAND * noise]);
+    let inside = |y: &f64| (0.0..=1.0).contains(&plot.y_span().part(*y));
+    levels.into_iter().flatten().filter(inside).map(|y| plot.level(y).to_vec()).collect()
 }
 
 /// What the first revision leaves of each trial.

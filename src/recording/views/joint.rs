@@ -1,11 +1,8 @@
 //! The views of one joint: its decisions, its record, its table.
 
 use rerun::EntityPath;
-use rerun::components::Visible;
-use rerun::datatypes::{TimeInt, TimeRange, TimeRangeBoundary, Utf8, VisibleTimeRange};
-use rerun::external::re_sdk_types::blueprint::archetypes::{
-    DataframeQuery, PlotLegend, TimeAxis, VisibleTimeRanges,
-};
+use rerun::datatypes::Utf8;
+use rerun::external::re_sdk_types::blueprint::archetypes::{DataframeQuery, PlotLegend, TimeAxis};
 use rerun::external::re_sdk_types::blueprint::components::{
     ContainerKind, Corner2D, FilterIsNotNull, LinkAxis,
 };
@@ -23,11 +20,11 @@ use crate::recording::paths::revision::{record, share, sheet};
 use crate::recording::paths::{
     self, against, at, child, correlation, drawing, joint_root, map, of_model,
 };
-use crate::recording::{correlogram, delay_state, error_share, revision, scatter};
+use crate::recording::{correlogram, delay_state, error_share, revision, scatter, segment_view};
 use crate::report::{ComparedJoint, EstimatedJoint};
 
-/// What the lane of the worst segments is called.
-const WORST: &str = "Worst segments of the first model, restarted at every step: 1 is the worst";
+/// What the lane of the worst segments of the model that is judged is called.
+const WORST: &str = "Worst segments, restarted at every step: 1 is the worst";
 
 /// The tab of `joint`: its decisions, its record, its table; and before them the revisions
 /// of its model, and its models, where there are any.
@@ -102,24 +99,23 @@ impl Views<'_, '_> {
     /// What a reviewer steps through.
     fn decisions(&mut self) -> Result<Node, RecordError> {
         let drawing = self.view(self.drawing())?;
-        let errors = self.view(self.errors())?;
         let map = self.view(self.map())?;
         let lanes = self.view(self.lanes())?;
         let verdict = [self.path(paths::VERDICT)];
         let verdict = self.view(View::new("TextDocument", "Verdict", &verdict))?;
-        let list = self.view(self.list())?;
-        let left = [drawing, errors, map, lanes];
+        let lists = self.lists()?;
+        let left = [drawing, map, lanes];
         // A lane more needs a little more room.
-        let lanes_share = if self.joint.trials.len() > 1 { 2.4 } else { 1.8 };
+        let lanes_share = if self.joint.trials.len() > 1 { 2.3 } else { 1.7 };
         let builder = &mut *self.builder;
         let left = builder.container(
             ContainerKind::Vertical,
             "Segment",
             &left,
-            &[5.7, 1.1, 1.6, lanes_share],
+            &[6.5, 1.9, lanes_share],
         )?;
-        let right = [verdict, list];
-        let right = builder.container(ContainerKind::Vertical, "Verdicts", &right, &[7.0, 3.0])?;
+        let right = [verdict, lists];
+        let right = builder.container(ContainerKind::Vertical, "Verdicts", &right, &[7.2, 2.8])?;
         let columns = [left, right];
         builder.container(ContainerKind::Horizontal, "Decisions", &columns, &[7.1, 2.9])
     }
@@ -132,39 +128,13 @@ impl Views<'_, '_> {
         let others = others.iter().map(String::as_str);
         let parts: Vec<_> =
             drawing::PARTS.into_iter().chain(others).chain(first).chain(interval).collect();
-        let name = "The segment, its candidates, their squared error";
-        View::drawing(name, &self.at(drawing::ROOT), &parts, SHEET)
+        let name = "The segment, its candidates, what the chosen lines leave, the squared errors";
+        View::drawing(name, &self.at(drawing::ROOT), &parts, segment_view::SIZE)
     }
 
     fn map(&self) -> View<'static> {
         let name = "Whole record: the framed segment is shown above";
         View::drawing(name, &self.at(map::ROOT), &map::PARTS, (MAP_WIDTH, MAP_HEIGHT))
-    }
-
-    fn errors(&self) -> View<'static> {
-        let paths = [
-            self.path(paths::LOG10_SSE),
-            self.path(paths::MINIMUM_ACCEPTED),
-            self.path(paths::MINIMUM_REJECTED),
-        ];
-        let around = |timeline: &str, reach: i64| {
-            let at = |offset| TimeRangeBoundary::CursorRelative(TimeInt(offset));
-            let range = TimeRange { start: at(-reach), end: at(reach) };
-            VisibleTimeRange { timeline: Utf8::from(timeline), range }
-        };
-        let windows = [
-            around("decision", 80),
-            around("segment", 3),
-            around("sample", 500),
-            around("time", 5_000_000_000),
-        ];
-        View::new(
-            "TimeSeries",
-            "log10 of the squared error around the cursor (click to jump)",
-            &paths,
-        )
-        .with("VisibleTimeRanges", VisibleTimeRanges::new(windows))
-        .with("PlotLegend", PlotLegend::new().with_visible(Visible::from(false)))
     }
 
     fn lanes(&self) -> View<'static> {
@@ -175,10 +145,25 @@ impl Views<'_, '_> {
         View::new("StateTimeline", "Steps and verdicts", &paths)
     }
 
-    fn list(&self) -> View<'static> {
-        let paths = [self.path(paths::VERDICT_LOG)];
-        View::new("TextLog", "All decisions: click a number on the left to go there", &paths)
-            .with("TextLogColumns", clickable("decision"))
+    /// The decisions by doubt, in their order, and by doubt with the reasons.
+    fn lists(&mut self) -> Result<Node, RecordError> {
+        let list = |name, path, timeline| {
+            View::new("TextLog", name, &[path]).with("TextLogColumns", clickable(timeline))
+        };
+        let doubtful = self.path(paths::DOUBT_LOG);
+        let doubtful = self.view(list("Most doubtful first: click a number", doubtful, "doubt"))?;
+        let all = self.path(paths::VERDICT_LOG);
+        let all = self.view(list("All: click a number", all, "decision"))?;
+        let why = [self.path(paths::DOUBT)];
+        let why = self.view(View::new("TextDocument", "Doubts", &why))?;
+        let tabs = [doubtful, all, why];
+        self.builder.container(ContainerKind::Tabs, "Lists", &tabs, &[])
+    }
+
+    /// A line that says where the cursor is, or where to click.
+    fn place(&mut self) -> Result<Node, RecordError> {
+        let place = [self.path(paths::PLACE)];
+        self.view(View::new("TextDocument", "Where the cursor is", &place))
     }
 
     /// The whole record on the time axis.
@@ -200,8 +185,8 @@ impl Views<'_, '_> {
             "Delay [samples]",
             &[paths::TAU, paths::DELAY_ACCEPTED, paths::DELAY_REJECTED].map(|path| self.at(path)),
         )?;
-        let mut rows = vec![input, output, delay];
-        let mut shares = vec![1.2, 3.5, 1.8];
+        let mut rows = vec![self.place()?, input, output, delay];
+        let mut shares = vec![0.6, 1.2, 3.5, 1.8];
         if !self.joint.covariates.is_empty() {
             let root = self.at(paths::COVARIATE);
             let all = self.joint.covariates.iter().map(|signal| child(&root, &signal.name));
@@ -255,14 +240,23 @@ impl Views<'_, '_> {
         let noise = [paths::NOISE_UPPER, paths::NOISE_LOWER].map(|path| self.at(path));
         let residuals = [noise.to_vec(), residuals].concat();
         let rows = [
+            self.place()?,
             self.plot(&format!("Measured and simulated ({horizon})"), &outputs)?,
-            self.plot(&format!("Residual ({horizon}), and the band of the noise"), &residuals)?,
+            self.plot(
+                &format!("Residual ({horizon}); 95 % of the noise lies in the band"),
+                &residuals,
+            )?,
+            self.plot("Input", &[self.at(paths::INPUT)])?,
             self.view(View::new("StateTimeline", WORST, &[self.path(paths::WORST)]))?,
             self.residuals(models.len())?,
         ];
         let builder = &mut *self.builder;
-        let plots =
-            builder.container(ContainerKind::Vertical, "Plots", &rows, &[3.0, 2.4, 1.1, 4.0])?;
+        let plots = builder.container(
+            ContainerKind::Vertical,
+            "Plots",
+            &rows,
+            &[0.9, 3.0, 2.4, 1.0, 1.1, 3.6],
+        )?;
         let page = [self.path(paths::MODEL_PAGE)];
         let page = self.view(View::new("TextDocument", "Models", &page))?;
         let columns = [plots, page];
