@@ -284,7 +284,9 @@ mod tests {
         let rows = decision.segment.len() / 5 * 5;
         let part = &output[decision.segment.first - 1..][..rows];
         let mut line = crate::numerics::RunningLine::default();
-        part.iter().for_each(|y| line.push(*y));
+        for y in part {
+            line.push(*y);
+        }
         let expected = 1.0 - best.sse / line.sse();
         assert!((decision.doubt(&output).explained - expected).abs() < 1e-9);
     }

@@ -278,7 +278,7 @@ pub(super) fn numbers(name: &'static str, values: &[Option<f64>]) -> SerializedC
 }
 
 /// Names of the columns of [`fine_columns`].
-pub(super) const FINE: [&str; 3] = ["fine_delta", "delta_low", "delta_high"];
+const FINE: [&str; 3] = ["fine_delta", "delta_low", "delta_high"];
 
 /// Delays between samples with their intervals; no columns where there is none.
 pub(super) fn fine_columns(delays: &[Option<FineDelay>]) -> Vec<SerializedComponentColumn> {

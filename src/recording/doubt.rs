@@ -9,7 +9,7 @@ use super::markdown::plain;
 use super::paths::{self, at};
 use super::verdict::in_short;
 use crate::experiment::Joint;
-use crate::wording::{doubt_percent, doubt_sentence};
+use crate::wording::doubt_percent;
 
 /// Adds `/doubt` and `/doubt/log`.
 pub(super) fn add(
@@ -49,20 +49,14 @@ const SOME: f64 = 0.3;
 
 fn line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     let doubt = doubt_percent(&segment.doubt);
-    format!("{doubt:>5}  {}: {}", in_short(joint, trial, segment), reason(trial, segment))
-}
-
-/// What speaks most against the decision.
-pub(super) fn reason(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
-    let period_s = trial.trial.period().seconds();
-    doubt_sentence(&segment.doubt, segment.decision.program_verdict(), period_s)
+    format!("{doubt:>5}  {}: {}", in_short(joint, trial, segment), trial.reason(segment))
 }
 
 fn page(joint: &Joint, ranked: &[(&TrialLayout<'_>, &SegmentLayout<'_>)]) -> String {
     /// Decisions that a person reads.
     const MOST: usize = 25;
     let row = |(trial, segment): &(&TrialLayout<'_>, &SegmentLayout<'_>)| {
-        let (doubt, reason) = (doubt_percent(&segment.doubt), reason(trial, segment));
+        let (doubt, reason) = (doubt_percent(&segment.doubt), trial.reason(segment));
         let step = plain(&in_short(joint, trial, segment));
         format!("| {} | {doubt} | {step} | {reason} |", segment.rank)
     };

@@ -20,6 +20,7 @@ use crate::delay::{Decision, Doubt, TrialEstimate, Verdict};
 use crate::experiment::{Joint, Trial};
 use crate::report::EstimatedJoint;
 use crate::units::signed;
+use crate::wording::doubt_sentence;
 
 /// How many candidates of each segment are recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -282,6 +283,12 @@ impl<'a> TrialLayout<'a> {
     pub(super) fn moment(&self, segment: &SegmentLayout<'_>, decision: i64, k: usize) -> Moment {
         let (sample, time_ns) = (self.sample(k), self.time_ns(k));
         Moment { decision, segment: segment.number, sample, time_ns }
+    }
+
+    /// What speaks most against the decision on `segment`.
+    pub(super) fn reason(&self, segment: &SegmentLayout<'_>) -> String {
+        let (decision, period) = (segment.decision, self.trial.period());
+        doubt_sentence(&segment.doubt, decision.program_verdict(), period.seconds())
     }
 
     /// The opening tick, at the input step.

@@ -47,7 +47,7 @@ pub(super) fn add(
     sheet.strips(drawing::SMOOTHED, palette::SMOOTHED, 1.4, rows().map(|d| vec![d.smoothed()]))?;
     sheet.strips(drawing::BORDERS, palette::BORDER, 1.2, rows().map(Drawing::borders))?;
     sheet.strips(drawing::INPUT_STEP, palette::INPUT, 1.6, rows().map(Drawing::input_step))?;
-    sheet.strips(drawing::RESIDUAL, palette::SMOOTHED, 1.4, rows().map(|d| d.residual()))?;
+    sheet.strips(drawing::RESIDUAL, palette::SMOOTHED, 1.4, rows().map(Drawing::residual))?;
     sheet.strips(drawing::SSE, palette::ERROR, 1.6, rows().map(|d| vec![d.errors()]))?;
     sheet.strips(
         drawing::ACCEPTED,

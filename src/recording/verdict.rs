@@ -4,7 +4,6 @@ use rerun::{Color, EntityPath, StateChange, StateConfiguration, TextDocument, Te
 
 use super::beside::{Other, row};
 use super::chunk::{Chunks, Index};
-use super::doubt::reason;
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::markdown::plain;
@@ -232,7 +231,7 @@ impl Facts<'_, '_> {
         let all = if self.joint.trials.len() > 1 { "the joint's" } else { &of.to_string() };
         format!(
             "doubt **{percent}** (`doubt` {rank} of {all}): {}",
-            reason(self.trial, self.segment)
+            self.trial.reason(self.segment)
         )
     }
 

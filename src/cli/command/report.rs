@@ -13,13 +13,15 @@ use crate::fit::Horizon;
 use crate::model::ModelFile;
 use crate::report::{
     Document, EstimatedJoint, ImprovedJoint, RecordingFile, Report, ReportJson, report_text,
+    review_page,
 };
 use crate::study::{Mode, OfJoints, explain_joints, improve_joints};
 use anyhow::{Context as _, bail};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
-    AlgorithmArgs, DataArgs, EffectArgs, ProtocolArgs, RunArgs, name_of, note_missing, quoted,
+    AlgorithmArgs, DataArgs, EffectArgs, ProtocolArgs, ReviewArgs, RunArgs, name_of, note_missing,
+    quoted,
 };
 use crate::cli::console::{Bar, Verbosity, message};
 use crate::cli::exit::Completion;
@@ -44,6 +46,9 @@ pub(crate) struct Args {
 
     #[command(flatten)]
     algorithm: AlgorithmArgs,
+
+    #[command(flatten)]
+    review: ReviewArgs,
 
     #[command(flatten)]
     model: ModelArgs,
@@ -93,6 +98,11 @@ struct OutputArgs {
     #[arg(long)]
     no_recording: bool,
 
+    /// Write a page beside the report, `FILE_review.html`, on which a person goes through the
+    /// decisions, the most doubtful first, and saves a review
+    #[arg(long)]
+    interactive: bool,
+
     #[command(flatten)]
     stream: StreamArgs,
 
@@ -105,10 +115,13 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let file = args.model.file()?;
     let effects = args.model.effects.effects(file.candidates())?;
     let target = args.output.target()?;
-    let inputs: Vec<_> = args.data.files().into_iter().chain(args.model.model.clone()).collect();
+    let inputs = args.data.files().into_iter().chain(args.model.model.clone());
+    let inputs: Vec<_> = inputs.chain(args.review.review.clone()).collect();
     target.check(&inputs)?;
+    let review = args.review.read()?;
     let stream = args.output.stream.open(args.output.run.verbosity())?;
     let session = Session::begin("report", &args.data, &args.output.run, stream)?;
+    let session = session.reviewed(review);
     let study = Study::of(session, settings, |begun| args.model.improved(&file, begun, effects))?;
     if study.result.is_some() {
         note_missing(&file, &study.experiment().joints, study.verbosity());
@@ -175,7 +188,8 @@ impl OutputArgs {
         }
         let recording = has_recordings && !self.no_recording;
         let recording = recording.then(|| path.with_extension("rrd"));
-        Ok(Target { path, kind, recording })
+        let review = self.interactive.then(|| beside(&path, "_review.html"));
+        Ok(Target { path, kind, recording, review })
     }
 }
 
@@ -184,6 +198,8 @@ struct Target {
     path: PathBuf,
     kind: Kind,
     recording: Option<PathBuf>,
+    /// The page to review the decisions on.
+    review: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -196,6 +212,7 @@ impl Target {
     /// Refuses what cannot be written.
     fn check(&self, inputs: &[PathBuf]) -> anyhow::Result<()> {
         let outputs = [self.path.as_path()].into_iter().chain(self.recording.as_deref());
+        let outputs = outputs.chain(self.review.as_deref());
         check_outputs(&outputs.collect::<Vec<_>>(), inputs)?;
         let folder = self.folder();
         if self.kind == Kind::Markdown && folder.exists() && !folder.is_dir() {
@@ -206,8 +223,7 @@ impl Target {
 
     /// Where the drawings of Markdown go.
     fn folder(&self) -> PathBuf {
-        let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
-        self.path.with_file_name(format!("{stem}_files"))
+        beside(&self.path, "_files")
     }
 
     fn write(&self, document: &Document) -> anyhow::Result<()> {
@@ -226,6 +242,12 @@ impl Target {
         };
         write_text(&self.path, &text)
     }
+}
+
+/// The name of `path` with another ending.
+fn beside(path: &Path, ending: &str) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!("{stem}{ending}"))
 }
 
 fn write_text(path: &Path, text: &str) -> anyhow::Result<()> {
@@ -307,12 +329,18 @@ impl Reported<'_> {
         {
             let _bar = Bar::spinner(study.verbosity(), "writing the report");
             target.write(&report.document()?)?;
+            if let Some(path) = &target.review {
+                write_text(path, &review_page(&report)?)?;
+            }
         }
         if study.verbosity() == Verbosity::Normal {
             for note in &notes {
                 message("note", note);
             }
             message("report", &target.path.display().to_string());
+            if let Some(path) = &target.review {
+                message("review", &format!("{}; open it in a browser", path.display()));
+            }
         }
         let path = |path: &Path| path.display().to_string();
         let recording = target.recording.as_deref().map(path);

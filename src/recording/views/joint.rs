@@ -3,9 +3,7 @@
 use rerun::EntityPath;
 use rerun::datatypes::Utf8;
 use rerun::external::re_sdk_types::blueprint::archetypes::{DataframeQuery, PlotLegend, TimeAxis};
-use rerun::external::re_sdk_types::blueprint::components::{
-    ContainerKind, Corner2D, FilterIsNotNull, LinkAxis,
-};
+use rerun::external::re_sdk_types::blueprint::components::{ContainerKind, Corner2D, LinkAxis};
 use rerun::external::re_sdk_types::blueprint::datatypes::{
     ComponentColumnSelector, SelectedColumns,
 };
@@ -13,7 +11,6 @@ use rerun::external::re_sdk_types::blueprint::datatypes::{
 use crate::experiment::Joint;
 use crate::recording::blueprint::{Builder, Node, View, bounds, clickable};
 use crate::recording::canvas::SHEET;
-use crate::recording::chunk::FINE;
 use crate::recording::error::RecordError;
 use crate::recording::overview::{MAP_HEIGHT, MAP_WIDTH};
 use crate::recording::paths::revision::{record, share, sheet};
@@ -59,23 +56,6 @@ struct Views<'b, 'i> {
     /// Methods beside the first one.
     others: usize,
 }
-
-/// Columns of the table of decisions, in the order of `--decisions`.
-const DECISION_COLUMNS: [&str; 13] = [
-    "trial",
-    "i",
-    "p",
-    "r",
-    "end",
-    "f",
-    "q",
-    "delta",
-    "sse",
-    "slope_before",
-    "slope_after",
-    "accepted",
-    "verdict",
-];
 
 /// Columns of the table of candidates.
 const CANDIDATE_COLUMNS: [&str; 8] =
@@ -313,7 +293,6 @@ impl Views<'_, '_> {
     fn table(&mut self) -> Result<Node, RecordError> {
         let entity = self.at(paths::DECISION_TABLE);
         let path = entity.to_string();
-        let verdicts = FilterIsNotNull::new(true, &entity, "accepted".to_owned());
         let query = |columns: &[&str]| {
             let select = |name: &&str| ComponentColumnSelector::new(&entity, (*name).to_owned());
             let select = SelectedColumns {
@@ -325,15 +304,12 @@ impl Views<'_, '_> {
                 .with_auto_scroll(true)
                 .with_select(select)
         };
-        let fine = if self.fine { FINE.as_slice() } else { &[] };
-        let columns = [DECISION_COLUMNS.as_slice(), fine].concat();
-        let whole = query(&columns).with_filter_is_not_null(verdicts);
-        let decisions = View::new("Dataframe", "Decisions", &[&path]);
-        let decisions = self.view(decisions.with("DataframeQuery", whole))?;
+        let page = [self.path(paths::DECISION_PAGE)];
+        let decisions = self.view(View::new("TextDocument", "Decisions", &page))?;
         let candidates = View::new("Dataframe", "Candidates", &[&path]);
         let candidates = candidates.with("DataframeQuery", query(&CANDIDATE_COLUMNS));
         let candidates = self.view(candidates)?;
         let rows = [decisions, candidates];
-        self.builder.container(ContainerKind::Horizontal, "Table", &rows, &[1.1, 0.9])
+        self.builder.container(ContainerKind::Horizontal, "Table", &rows, &[1.2, 0.8])
     }
 }
