@@ -17,9 +17,10 @@ pub(super) fn add(
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
     let entity = at(root, paths::PLACE);
-    // The first row of all: a viewer that knows a timeline begins at its first tick.
+    // The first row of all: a viewer that knows a timeline begins at its first tick, and chooses
+    // among those that it knows.
     let opening = std::iter::once(OPENING.to_owned());
-    push(chunks, entity.clone(), Index::before_all(None), opening)?;
+    push(chunks, entity.clone(), Index::before_all(layout.first_revision), opening)?;
     let start = layout.trials.iter().filter_map(|trial| trial.moments(1).next());
     let steps = layout.segments().map(|(trial, segment)| trial.opening(segment));
     let index: Index = start.take(1).chain(steps).collect();

@@ -297,7 +297,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
             let text = format!("q = {place}, SSE = {}", number(best.sse));
             labels.put_whole(self.output.below(q, 2.0), text);
         }
-        labels.put_whole(self.output.below(p, 24.0), format!("p = {}", decision.input_step.sample));
+        labels.put_whole(self.output.below(p, 36.0), format!("p = {}", decision.input_step.sample));
         let (first, last) = (decision.segment.first, decision.segment.last);
         labels.put_whole(self.output.below(first as f64, 2.0), format!("r = {first}"));
         labels.put_whole(self.output.below(last as f64, 2.0), format!("end = {last}"));

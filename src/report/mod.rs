@@ -73,7 +73,7 @@ pub(crate) use json::{
     FolderJson, ImproveJson, ReportJson, SweepJson,
 };
 pub(crate) use lookup::{Language, Lookup};
-pub(crate) use page::{Document, RecordingFile, Report, report_text};
+pub(crate) use page::{Document, Heading, RecordingFile, Report, report_text};
 pub(crate) use review::{Words, write_review_sheet};
 #[cfg(feature = "rrd")]
 pub(crate) use settings::settings_in_short;

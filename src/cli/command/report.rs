@@ -12,8 +12,8 @@ use crate::explain::{Change, Explanation, Improvement, MAX_EFFECTS, Options, Rev
 use crate::fit::Horizon;
 use crate::model::ModelFile;
 use crate::report::{
-    Document, EstimatedJoint, ImprovedJoint, RecordingFile, Report, ReportJson, report_text,
-    review_page,
+    Document, EstimatedJoint, Heading, ImprovedJoint, RecordingFile, Report, ReportJson,
+    report_text, review_page,
 };
 use crate::study::{Mode, OfJoints, explain_joints, improve_joints};
 use anyhow::{Context as _, bail};
@@ -103,6 +103,18 @@ struct OutputArgs {
     #[arg(long)]
     interactive: bool,
 
+    /// The title of the report, instead of the log's name
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+
+    /// Whose report it is, written below the title
+    #[arg(long, value_name = "NAME")]
+    author: Option<String>,
+
+    /// The date, written below the title as it is given
+    #[arg(long, value_name = "TEXT")]
+    date: Option<String>,
+
     #[command(flatten)]
     stream: StreamArgs,
 
@@ -172,6 +184,11 @@ fn as_it_is(explanation: Explanation) -> Improvement {
 }
 
 impl OutputArgs {
+    fn heading(&self) -> Heading<'_> {
+        let Self { title, author, date, .. } = self;
+        Heading { title: title.as_deref(), author: author.as_deref(), date: date.as_deref() }
+    }
+
     fn target(&self) -> anyhow::Result<Target> {
         let path = self.report.clone();
         let kind = match path.extension().and_then(OsStr::to_str) {
@@ -313,6 +330,7 @@ impl Reported<'_> {
             .as_deref()
             .map(|name| RecordingFile { name, bytes: embedded.as_deref() });
         let report = Report {
+            heading: args.output.heading(),
             experiment,
             joints,
             settings: &study.settings,

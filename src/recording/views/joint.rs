@@ -1,6 +1,7 @@
 //! The views of one joint: its decisions, its record, its table.
 
 use rerun::EntityPath;
+use rerun::components::Visible;
 use rerun::datatypes::Utf8;
 use rerun::external::re_sdk_types::blueprint::archetypes::{DataframeQuery, PlotLegend, TimeAxis};
 use rerun::external::re_sdk_types::blueprint::components::{ContainerKind, Corner2D, LinkAxis};
@@ -46,6 +47,13 @@ pub(super) fn tab(
     let delay = views.view(delay)?;
     pages.extend([views.decisions()?, views.record()?, delay, views.table()?]);
     views.builder.container(ContainerKind::Tabs, &joint.name, &pages, &[])
+}
+
+/// Where a plot says what its curves are: a legend covers data.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Legend {
+    InTitle,
+    Apart,
 }
 
 struct Views<'b, 'i> {
@@ -97,7 +105,7 @@ impl Views<'_, '_> {
         let right = [verdict, lists];
         let right = builder.container(ContainerKind::Vertical, "Verdicts", &right, &[7.2, 2.8])?;
         let columns = [left, right];
-        builder.container(ContainerKind::Horizontal, "Decisions", &columns, &[7.1, 2.9])
+        builder.container(ContainerKind::Horizontal, "Decisions", &columns, &[6.8, 3.2])
     }
 
     fn drawing(&self) -> View<'static> {
@@ -148,9 +156,10 @@ impl Views<'_, '_> {
 
     /// The whole record on the time axis.
     fn record(&mut self) -> Result<Node, RecordError> {
-        let input = self.plot("Input", &[self.at(paths::INPUT)])?;
+        let input = self.plot("Input", &[self.at(paths::INPUT)], Legend::InTitle)?;
         let output = self.plot(
-            "Output, chosen lines, breakpoints",
+            "Output: measured grey, smoothed blue; chosen lines orange and green; breakpoints: dot \
+             accepted, cross rejected",
             &[
                 paths::OUTPUT_RAW,
                 paths::OUTPUT_SMOOTHED,
@@ -160,17 +169,19 @@ impl Views<'_, '_> {
                 paths::BREAKPOINT_REJECTED,
             ]
             .map(|path| self.at(path)),
+            Legend::InTitle,
         )?;
         let delay = self.plot(
-            "Delay [samples]",
+            "Delay [samples]: τ, dot accepted, cross rejected",
             &[paths::TAU, paths::DELAY_ACCEPTED, paths::DELAY_REJECTED].map(|path| self.at(path)),
+            Legend::InTitle,
         )?;
         let mut rows = vec![self.place()?, input, output, delay];
-        let mut shares = vec![0.6, 1.2, 3.5, 1.8];
+        let mut shares = vec![0.9, 1.2, 3.5, 1.8];
         if !self.joint.covariates.is_empty() {
             let root = self.at(paths::COVARIATE);
             let all = self.joint.covariates.iter().map(|signal| child(&root, &signal.name));
-            rows.push(self.plot("Covariates", &all.collect::<Vec<_>>())?);
+            rows.push(self.plot("Covariates", &all.collect::<Vec<_>>(), Legend::Apart)?);
             shares.push(1.5);
         }
         rows.push(self.view(self.lanes())?);
@@ -221,12 +232,13 @@ impl Views<'_, '_> {
         let residuals = [noise.to_vec(), residuals].concat();
         let rows = [
             self.place()?,
-            self.plot(&format!("Measured and simulated ({horizon})"), &outputs)?,
+            self.plot(&format!("Measured and simulated ({horizon})"), &outputs, Legend::Apart)?,
             self.plot(
                 &format!("Residual ({horizon}); 95 % of the noise lies in the band"),
                 &residuals,
+                Legend::Apart,
             )?,
-            self.plot("Input", &[self.at(paths::INPUT)])?,
+            self.plot("Input", &[self.at(paths::INPUT)], Legend::InTitle)?,
             self.view(View::new("StateTimeline", WORST, &[self.path(paths::WORST)]))?,
             self.residuals(models.len())?,
         ];
@@ -235,7 +247,7 @@ impl Views<'_, '_> {
             ContainerKind::Vertical,
             "Plots",
             &rows,
-            &[0.9, 3.0, 2.4, 1.0, 1.1, 3.6],
+            &[1.25, 3.0, 2.4, 1.0, 1.1, 3.6],
         )?;
         let page = [self.path(paths::MODEL_PAGE)];
         let page = self.view(View::new("TextDocument", "Models", &page))?;
@@ -281,11 +293,18 @@ impl Views<'_, '_> {
     }
 
     /// A plot whose time axis moves with those of the other plots.
-    fn plot(&mut self, name: &str, entities: &[EntityPath]) -> Result<Node, RecordError> {
+    fn plot(
+        &mut self,
+        name: &str,
+        entities: &[EntityPath],
+        legend: Legend,
+    ) -> Result<Node, RecordError> {
         let paths: Vec<_> = entities.iter().map(ToString::to_string).collect();
+        let shown = Visible::from(legend == Legend::Apart);
+        let legend = PlotLegend::new().with_corner(Corner2D::RightTop).with_visible(shown);
         let view = View::new("TimeSeries", name, &paths)
             .with("TimeAxis", TimeAxis::new().with_link(LinkAxis::LinkToGlobal))
-            .with("PlotLegend", PlotLegend::new().with_corner(Corner2D::RightTop));
+            .with("PlotLegend", legend);
         self.view(view)
     }
 

@@ -198,10 +198,10 @@ function say(verdict) {
   show();
 }
 
-// A breakpoint of the reviewer's own: the step is accepted with this delay.
+// A breakpoint of the reviewer's own, not before the input step: it is accepted with this delay.
 function place(q) {
   const s = steps[at], [r, end] = s.segment;
-  const kept = Math.min(Math.max(Math.round(q), r + 2), end - 1);
+  const kept = Math.min(Math.max(Math.round(q), r + 2, s.p), end - 1);
   words[key(s)] = Object.assign({ note: by("note").value, reviewer: by("reviewer").value }, words[key(s)], { verdict: "accepted", delay_s: Number(((kept - s.p) * s.period_s).toFixed(9)) });
   keep();
   show();
