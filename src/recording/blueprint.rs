@@ -111,6 +111,16 @@ impl<'i> Builder<'i> {
         Ok(node)
     }
 
+    /// Tabs, of which one is open.
+    fn tabs(&mut self, name: &str, tabs: &[Node], open: &Node) -> Result<Node, RecordError> {
+        let node = self.node("container");
+        let contents = tabs.iter().map(|tab| IncludedContent::from(tab.path.clone()));
+        let container = ContainerBlueprint::new(ContainerKind::Tabs).with_display_name(name);
+        let container = container.with_contents(contents).with_active_tab(open.path.clone());
+        self.log(&node.path, &container)?;
+        Ok(node)
+    }
+
     /// A container; `shares` are the parts of its height or width, or none.
     pub(super) fn container(
         &mut self,
@@ -119,16 +129,18 @@ impl<'i> Builder<'i> {
         children: &[Node],
         shares: &[f32],
     ) -> Result<Node, RecordError> {
+        if let (ContainerKind::Tabs, Some(first)) = (kind, children.first()) {
+            return self.tabs(name, children, first);
+        }
         let node = self.node("container");
         let contents = children.iter().map(|child| IncludedContent::from(child.path.clone()));
         let mut container =
             ContainerBlueprint::new(kind).with_display_name(name).with_contents(contents);
         let shares = shares.iter().copied();
-        container = match (kind, children.first()) {
-            (ContainerKind::Horizontal, _) => container.with_col_shares(shares),
-            (ContainerKind::Vertical, _) => container.with_row_shares(shares),
-            (ContainerKind::Tabs, Some(first)) => container.with_active_tab(first.path.clone()),
-            _ => container,
+        container = match kind {
+            ContainerKind::Horizontal => container.with_col_shares(shares),
+            ContainerKind::Vertical => container.with_row_shares(shares),
+            ContainerKind::Tabs | ContainerKind::Grid => container,
         };
         self.log(&node.path, &container)?;
         Ok(node)
@@ -142,9 +154,14 @@ impl<'i> Builder<'i> {
         opening: (&str, PlayState),
         application: &ApplicationId,
     ) -> Result<Vec<LogMsg>, RecordError> {
+        /// Tabs that a screen has room for: behind more of them nobody finds the page on all.
+        const SEEN: usize = 10;
         let about = EntityPath::from(ABOUT).to_string();
-        tabs.push(self.view(View::new("TextDocument", "About", &[about]))?);
-        let root = self.container(ContainerKind::Tabs, "Joints", &tabs, &[])?;
+        let about = self.view(View::new("TextDocument", "About", &[about]))?;
+        let place = if tabs.len() > SEEN { 0 } else { tabs.len() };
+        let opening_tab = tabs.first().unwrap_or(&about).clone();
+        tabs.insert(place, about);
+        let root = self.tabs("Joints", &tabs, &opening_tab)?;
         self.finish(&root, opening, application)
     }
 

@@ -5,6 +5,7 @@ use std::ops::Range;
 use rerun::datatypes::Vec2D;
 
 use crate::diagnosis::Comparison;
+use crate::diagnosis::failure::WorstSegment;
 use crate::figure::ladder::judged;
 use crate::recording::canvas::{Labels, Plot, SHEET, Span, Strips, simplified, thinned_to};
 use crate::recording::error::RecordError;
@@ -55,6 +56,8 @@ pub(super) fn add(
     let of_plots = || of_each().zip(&residuals);
     let curves = of_plots().map(|(comparison, plot)| drawing.residual(comparison, plot));
     rows.strips(record::RESIDUAL, palette::REVISION, 1.0, curves)?;
+    let worst = of_plots().map(|(comparison, plot)| worst(layout, comparison, plot));
+    rows.strips(record::WORST, palette::REJECTED, 3.0, worst)?;
     // The noise is the sensor's, whatever the model: that of the last revision.
     let noise = noise(improved).filter(|noise| *noise > 0.0);
     rows.strips(record::NOISE, palette::NOISE, 1.0, residuals.iter().map(|p| band(p, noise)))?;
@@ -143,7 +146,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         }
         let residual = format!(
             "measured − simulated{unit}, to its own scale: 95 % of the noise lies between the \
-             blue lines; time [s]"
+             blue lines, the worst segments below red bars; time [s]"
         );
         let x_ticks = residual_plot.x_span().ticks(10.0);
         sheet.frame(residual_plot, &x_ticks, &ticks(residual_plot), &residual);
@@ -212,6 +215,19 @@ impl<'l, 'a> Drawing<'l, 'a> {
         }
         labels
     }
+}
+
+/// A bar above each of the worst segments.
+fn worst(layout: &JointLayout<'_>, comparison: &Comparison, plot: &Plot) -> Strips {
+    let worst = comparison.failure.iter().flat_map(|failure| &failure.worst_segments);
+    let bar = |worst: &WorstSegment| {
+        let mut trials = layout.trials.iter();
+        let trial = trials.find(|trial| trial.trial.label() == worst.trial)?;
+        let shift = seconds(trial, 1) - trial.trial.time_s(1);
+        let ends = [worst.start_s, worst.end_s].map(|time_s| plot.above(time_s + shift, -4.0));
+        Some(ends.to_vec())
+    };
+    worst.filter_map(bar).collect()
 }
 
 /// Two levels between which 95 % of the noise lies.
