@@ -295,7 +295,7 @@ mod tests {
     fn a_jump_and_a_stop_are_flagged() {
         assert_eq!(doubt(0.2, 0.0, 99.0).flags, []);
         assert_eq!(doubt(0.02, 1.5, 99.0).flags, [Flag::Jump]);
-        assert!(doubt(0.2, 6.0, 6.0).flags.contains(&Flag::Stop));
+        assert!(doubt(0.2, 30.0, 30.0).flags.contains(&Flag::Stop));
     }
 
     #[test]

@@ -54,10 +54,11 @@ pub(super) fn add(
 }
 
 fn lane_colors() -> StateConfiguration {
-    let values = std::iter::once("accepted").chain(Condition::ALL.map(Condition::id));
-    let labels = Condition::ALL.map(|condition| format!("rejected: {condition}"));
+    let conditions = || Condition::ALL.into_iter().chain([Condition::Reviewer]);
+    let values = std::iter::once("accepted").chain(conditions().map(Condition::id));
+    let labels = conditions().map(|condition| format!("rejected: {condition}"));
     let labels = std::iter::once("accepted".to_owned()).chain(labels);
-    let rejected = std::iter::repeat_n(color(palette::REJECTED), Condition::ALL.len());
+    let rejected = conditions().map(|_| color(palette::REJECTED));
     let colors: Vec<Color> = std::iter::once(color(palette::ACCEPTED)).chain(rejected).collect();
     StateConfiguration::new().with_values(values).with_labels(labels).with_colors(colors)
 }
@@ -117,7 +118,7 @@ fn verdict(trial: &TrialLayout<'_>, decision: &Decision) -> String {
     let seconds = |delay: f64| format!("δ {}", seconds(decision, delay, period));
     let by = decision.word.as_ref().map_or("", |_| "by a reviewer ");
     match (decision.verdict(), decision.delay()) {
-        (Verdict::Rejected(Condition::Reviewer), _) => format!("✗ {by}"),
+        (Verdict::Rejected(Condition::Reviewer), _) => "✗ by a reviewer".to_owned(),
         (Verdict::Rejected(condition), _) => format!("✗ {}", condition.meaning()),
         (Verdict::Accepted, delay) => format!("✓ {by}{}", delay.map_or_else(String::new, seconds)),
     }

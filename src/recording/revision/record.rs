@@ -15,7 +15,7 @@ use crate::recording::palette;
 use crate::recording::paths::revision::record;
 use crate::recording::rows::Rows;
 use crate::recording::sheet::Sheet;
-use crate::report::{ImprovedJoint, change_in_words};
+use crate::report::ImprovedJoint;
 use crate::wording::bracketed;
 
 use super::figure::noise;
@@ -201,13 +201,11 @@ impl<'l, 'a> Drawing<'l, 'a> {
         self.curves(plot, |trial| all.get(trial.index).map_or(&[], Vec::as_slice))
     }
 
-    /// What the revision is, and its error in multiples of the noise.
+    /// The error of a revision in multiples of the noise.
     fn names(&self, improved: &ImprovedJoint<'_>, at: usize) -> Labels {
         let mut labels = Labels::default();
-        let Some((number, revision)) = improved.numbered().nth(at) else { return labels };
-        let name = format!("revision {number}: {}", change_in_words(revision));
+        let Some(revision) = improved.revisions.get(at) else { return labels };
         let left = self.output.x_span().low;
-        labels.put_whole(beside(&self.output, left), name);
         let error = judged(&revision.comparison);
         if let Some(noise) = noise(improved).filter(|noise| *noise > 0.0) {
             let times = format!("error {} × noise", short(error / noise));

@@ -100,7 +100,7 @@ impl Views<'_, '_> {
             ContainerKind::Vertical,
             "Segment",
             &left,
-            &[6.5, 1.9, lanes_share],
+            &[6.3, 2.1, lanes_share],
         )?;
         let right = [verdict, lists];
         let right = builder.container(ContainerKind::Vertical, "Verdicts", &right, &[7.2, 2.8])?;
@@ -228,15 +228,19 @@ impl Views<'_, '_> {
         let simulated: Vec<_> = of_each(paths::SIMULATED);
         let residuals: Vec<_> = of_each(paths::RESIDUAL);
         let outputs = [vec![self.at(paths::OUTPUT_RAW)], simulated].concat();
+        let (legend, colors) = match names.as_slice() {
+            [_] => (Legend::InTitle, ": grey and orange"),
+            _ => (Legend::Apart, ""),
+        };
         let noise = [paths::NOISE_UPPER, paths::NOISE_LOWER].map(|path| self.at(path));
         let residuals = [noise.to_vec(), residuals].concat();
         let rows = [
             self.place()?,
-            self.plot(&format!("Measured and simulated ({horizon})"), &outputs, Legend::Apart)?,
+            self.plot(&format!("Measured and simulated ({horizon}){colors}"), &outputs, legend)?,
             self.plot(
                 &format!("Residual ({horizon}); 95 % of the noise lies in the band"),
                 &residuals,
-                Legend::Apart,
+                legend,
             )?,
             self.plot("Input", &[self.at(paths::INPUT)], Legend::InTitle)?,
             self.view(View::new("StateTimeline", WORST, &[self.path(paths::WORST)]))?,
