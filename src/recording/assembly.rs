@@ -17,9 +17,14 @@ use crate::report::{EstimatedJoint, settings_in_short};
 
 impl<'a> Recording<'a> {
     /// Each joint and where it lies on the timelines.
-    fn layouts(&self) -> impl Iterator<Item = (EstimatedJoint<'a>, JointLayout<'a>)> {
+    fn layouts(
+        &self,
+        growth: Growth,
+    ) -> impl Iterator<Item = (EstimatedJoint<'a>, JointLayout<'a>)> {
         let starts = TrialStarts::of(self.joints.iter().map(|joint| joint.joint));
         let first = self.revisions.iter().map(|improved| i64::from(improved.first_revision)).min();
+        // Which one is the first is not known when the decisions are sent, and they are sent once.
+        let first = first.filter(|_| growth == Growth::Finished);
         let layout = move |joint| (joint, JointLayout::of(joint, &starts, (self.detail, first)));
         self.joints.iter().copied().map(layout)
     }
@@ -40,16 +45,16 @@ impl<'a> Content for Recording<'a> {
     }
 
     fn add_about(&self, chunks: &mut Chunks) -> Result<(), RecordError> {
-        let layouts: Vec<_> = self.layouts().map(|(_, layout)| layout).collect();
+        let layouts: Vec<_> = self.layouts(Growth::Finished).map(|(_, layout)| layout).collect();
         about::add(chunks, self, &layouts)
     }
 
-    fn tabs(&self) -> Vec<Tab<'_>> {
+    fn tabs(&self, growth: Growth) -> Vec<Tab<'_>> {
         let tab = |(joint, layout): (EstimatedJoint<'a>, JointLayout<'a>)| {
             let add = move |chunks: &mut Chunks| add_joint(chunks, self, joint, &layout);
             Tab { joint: &joint.joint.name, add: Box::new(add) }
         };
-        self.layouts().map(tab).collect()
+        self.layouts(growth).map(tab).collect()
     }
 
     fn views(

@@ -88,11 +88,6 @@ impl Index {
         Self { revision, ..self }
     }
 
-    /// One row, on the timeline of revisions alone.
-    pub(super) fn at_revision_alone(revision: Option<i64>) -> Self {
-        Self { revision: revision.into_iter().collect(), ..Self::default() }
-    }
-
     /// One row before all others, on the timelines of decisions and of revisions alone.
     pub(super) fn before_all(revision: Option<i64>) -> Self {
         Self { decision: vec![0], ..Self::default() }.at_revision(revision)

@@ -38,7 +38,7 @@ pub(super) trait Content {
     fn add_about(&self, chunks: &mut Chunks) -> Result<(), RecordError>;
 
     /// The joints in the order of their tabs.
-    fn tabs(&self) -> Vec<Tab<'_>>;
+    fn tabs(&self, growth: Growth) -> Vec<Tab<'_>>;
 
     /// The messages of its blueprint.
     fn views(
@@ -63,7 +63,7 @@ pub(super) fn for_each_chunk(
     if part.joint.is_none() {
         content.add_about(&mut chunks)?;
     }
-    let tabs = content.tabs();
+    let tabs = content.tabs(part.growth);
     let taken = tabs.len() as u64 + 1;
     for (namespace, tab) in (part.used + 3..).zip(tabs).filter(|(_, tab)| part.has(tab.joint)) {
         chunks.into_chunks().iter().try_for_each(&mut *take)?;
@@ -79,6 +79,7 @@ pub(super) fn for_each_chunk(
 pub(super) struct Part<'n> {
     /// The recording's.
     pub(super) ids: Ids,
+    pub(super) growth: Growth,
     /// Namespaces that are taken, beside the first one.
     pub(super) used: u64,
     /// All joints and what is about them all, or one joint.
@@ -88,7 +89,7 @@ pub(super) struct Part<'n> {
 impl Part<'_> {
     /// All of a recording.
     pub(super) fn whole(ids: Ids) -> Self {
-        Self { ids, used: 0, joint: None }
+        Self { ids, growth: Growth::Finished, used: 0, joint: None }
     }
 
     fn has(self, joint: &str) -> bool {

@@ -151,12 +151,9 @@ fn add_lanes(
         opening,
         StateChange::new().with_state(names).columns_of_unit_batches()?,
     )?;
-    if layout.first_revision.is_some() {
-        let hint = ["on `decision`, `segment`, `sample` or `time`: choose it at the bottom left"];
-        let hint = StateChange::new().with_state(hint).columns_of_unit_batches()?;
-        let revision = Index::at_revision_alone(layout.first_revision);
-        chunks.push(at(root, paths::SEGMENT), revision, hint)?;
-    }
+    let hint = ["on `decision`, `segment`, `sample` or `time`: choose it at the bottom left"];
+    let hint = StateChange::new().with_state(hint).columns_of_unit_batches()?;
+    chunks.push(at(root, paths::SEGMENT), Index::before_all(layout.first_revision), hint)?;
     let starts = layout.trials.iter().filter_map(|trial| trial.moments(1).next());
     let labels: Vec<_> = layout.trials.iter().map(|trial| trial.trial.label().to_owned()).collect();
     let states = StateChange::new().with_state(labels).columns_of_unit_batches()?;

@@ -149,7 +149,7 @@ impl Live {
             self.open(content)?;
         }
         let ids = Ids::of(self.store.recording_id().as_str());
-        let part = Part { ids, used: self.used, joint };
+        let part = Part { ids, growth: self.growth, used: self.used, joint };
         self.send_views(content)?;
         self.sent.begin();
         self.used += for_each_chunk(content, part, &mut |chunk| match self.sent.news_of(chunk) {

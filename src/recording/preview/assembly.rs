@@ -38,7 +38,7 @@ impl Content for PreviewRecording<'_> {
         about::add(chunks, self)
     }
 
-    fn tabs(&self) -> Vec<Tab<'_>> {
+    fn tabs(&self, _: Growth) -> Vec<Tab<'_>> {
         let tab = |joint| {
             let add = move |chunks: &mut Chunks| add(chunks, &Preview::of(joint));
             Tab { joint: &joint.rig.name, add: Box::new(add) }

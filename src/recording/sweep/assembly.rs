@@ -27,7 +27,7 @@ impl Content for SweepRecording<'_> {
         about::add(chunks, self)
     }
 
-    fn tabs(&self) -> Vec<Tab<'_>> {
+    fn tabs(&self, _: Growth) -> Vec<Tab<'_>> {
         let starts = TrialStarts::of(self.joints.iter().map(|joint| joint.joint));
         let tab = |joint| {
             let swept = Swept::of(self, joint, &starts);
