@@ -111,6 +111,23 @@ fn a_step_that_changed_is_said_and_a_review_that_is_none_names_its_place() {
 }
 
 #[test]
+fn a_report_has_the_word_beside_what_the_program_says() {
+    let desk = Desk::with(vec![joint("boom")]);
+    estimated(&desk, "--review-sheet sheet.csv");
+    let (text, [first, _]) = review(&desk.read("sheet.csv"));
+    desk.write("review.csv", &text);
+    let report =
+        "report log.csv -o r.md --no-recording --review review.csv --author Ann --date 1.2.";
+    assert!(desk.run(report).status.success());
+    let page = desk.read("r.md");
+    let row = page.lines().find(|line| line.contains("a wiggle")).unwrap();
+    let cells: Vec<_> = row.split('|').map(str::trim).collect();
+    assert_eq!(&cells[1..6], ["1", first.as_str(), "rejected", "-", "Ann"]);
+    assert_eq!(cells[7], "accepted");
+    assert!(page.contains("Ann, 1.2.") && page.contains("Doubtful decisions"), "{page}");
+}
+
+#[test]
 fn the_page_is_one_file_and_needs_no_network() {
     let desk = Desk::with(vec![joint("boom")]);
     desk.run("report log.csv -o r.html --interactive --no-recording");

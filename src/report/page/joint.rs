@@ -36,6 +36,7 @@ pub(super) fn blocks(
         blocks.push(Block::Figures(segments));
     }
     blocks.extend(doubtful(estimated));
+    blocks.extend(reviewed(estimated));
     let found = estimated.delay_table();
     blocks.extend(delay_blocks(estimated, file)?);
     if !found.rows.is_empty() {
@@ -177,6 +178,34 @@ fn doubtful(estimated: EstimatedJoint<'_>) -> Vec<Block> {
         ]);
     }
     vec![Block::part("Doubtful decisions"), Block::Table(table)]
+}
+
+/// What persons said, and what the program says of the same steps.
+fn reviewed(estimated: EstimatedJoint<'_>) -> Vec<Block> {
+    let header =
+        ["trial", "i", "verdict", "δ [s]", "by", "note", "the program's verdict", "its δ [s]"];
+    let mut table = TextTable::new(header, &[1, 3, 7]);
+    for Doubted { trial, decision, .. } in by_doubt(estimated) {
+        let Some(word) = &decision.word else { continue };
+        let period_s = trial.period().seconds();
+        let seconds = |delay: Option<f64>| {
+            delay.map_or_else(|| "-".to_owned(), |delay| number(delay * period_s))
+        };
+        table.row([
+            trial.label().to_owned(),
+            decision.number.to_string(),
+            if word.accepted { "accepted" } else { "rejected" }.to_owned(),
+            seconds(decision.accepted_delay()),
+            word.reviewer.clone(),
+            word.note.clone(),
+            decision.program_verdict().to_string(),
+            seconds(decision.program_delay()),
+        ]);
+    }
+    if table.rows.is_empty() {
+        return Vec::new();
+    }
+    vec![Block::part("Reviewed by a person"), Block::Table(table)]
 }
 
 /// How many steps were rejected for which reason.
