@@ -13,7 +13,7 @@ use super::{
     about, decisions, delay_state, doubt, model, overview, place, revision, segment_view, signals,
     verdict, views,
 };
-use crate::report::{EstimatedJoint, settings_in_short};
+use crate::report::{EstimatedJoint, ImprovedJoint, settings_in_short};
 
 impl<'a> Recording<'a> {
     /// Each joint and where it lies on the timelines.
@@ -22,10 +22,13 @@ impl<'a> Recording<'a> {
         growth: Growth,
     ) -> impl Iterator<Item = (EstimatedJoint<'a>, JointLayout<'a>)> {
         let starts = TrialStarts::of(self.joints.iter().map(|joint| joint.joint));
-        let first = self.revisions.iter().map(|improved| i64::from(improved.first_revision)).min();
+        let numbers = || self.revisions.iter().flat_map(ImprovedJoint::numbered);
+        let numbers = || numbers().map(|(number, _)| i64::from(number));
+        let revisions = numbers().min().zip(numbers().max());
         // Which one is the first is not known when the decisions are sent, and they are sent once.
-        let first = first.filter(|_| growth == Growth::Finished);
-        let layout = move |joint| (joint, JointLayout::of(joint, &starts, (self.detail, first)));
+        let revisions = revisions.filter(|_| growth == Growth::Finished);
+        let layout =
+            move |joint| (joint, JointLayout::of(joint, &starts, (self.detail, revisions)));
         self.joints.iter().copied().map(layout)
     }
 }

@@ -22,11 +22,14 @@ pub(super) fn add(
     if ranked.is_empty() {
         return Ok(());
     }
-    // All at the first moment of every other timeline: there the list keeps this order, and a
-    // click on a rank leads to the timeline of doubt.
-    let first = layout.trials.iter().find_map(|trial| trial.moments(1).next());
-    let index: Index = first.into_iter().cycle().take(ranked.len()).collect();
-    let index = index.at_revision(layout.first_revision);
+    // All at the last moment of every other timeline: there the list keeps this order, a viewer
+    // does not scroll it to the cursor, and a click on a rank leads to the timeline of doubt.
+    let last = layout
+        .segments()
+        .last()
+        .map(|(trial, segment)| trial.moment(segment, segment.verdict(), trial.trial.len()));
+    let index: Index = last.into_iter().cycle().take(ranked.len()).collect();
+    let index = index.at_revision(layout.last_revision);
     let index = index.with_doubt(ranked.iter().map(|(_, segment)| segment.rank));
     let lines: Vec<_> = ranked.iter().map(|(trial, segment)| line(joint, trial, segment)).collect();
     let level = |segment: &SegmentLayout<'_>| match segment.doubt.value() {

@@ -99,6 +99,8 @@ pub(super) struct JointLayout<'a> {
     pub(super) trials: Vec<TrialLayout<'a>>,
     /// The first revision of any model of the recording.
     pub(super) first_revision: Option<i64>,
+    /// The last one.
+    pub(super) last_revision: Option<i64>,
 }
 
 /// One trial of a joint on the timelines.
@@ -109,8 +111,6 @@ pub(super) struct TrialLayout<'a> {
     pub(super) trial: &'a Trial,
     pub(super) estimate: &'a TrialEstimate,
     pub(super) segments: Vec<SegmentLayout<'a>>,
-    /// As of the joint.
-    pub(super) first_revision: Option<i64>,
     start: Start,
     /// Tick and segment of the samples before the first step.
     idle: (i64, i64),
@@ -161,7 +161,7 @@ impl<'a> JointLayout<'a> {
     pub(super) fn of(
         joint: EstimatedJoint<'a>,
         starts: &TrialStarts,
-        (detail, first_revision): (Detail, Option<i64>),
+        (detail, revisions): (Detail, Option<(i64, i64)>),
     ) -> Self {
         let mut tick = 1;
         let mut number = 0;
@@ -182,11 +182,11 @@ impl<'a> JointLayout<'a> {
                 segments.push(segment);
             }
             let start = starts.of_trial(trial);
-            let trial =
-                TrialLayout { index, trial, estimate, segments, first_revision, start, idle };
+            let trial = TrialLayout { index, trial, estimate, segments, start, idle };
             trials.push(trial);
         }
-        let mut layout = Self { trials, first_revision };
+        let (first_revision, last_revision) = revisions.unzip();
+        let mut layout = Self { trials, first_revision, last_revision };
         layout.rank();
         layout
     }

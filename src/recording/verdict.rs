@@ -49,7 +49,7 @@ pub(super) fn add(
     let columns = documents.columns_of_unit_batches()?.chain(states);
     chunks.push(entity.clone(), opening.clone(), columns)?;
     chunks.push_static(entity, &lane_colors())?;
-    add_log(chunks, root, joint, &segments)?;
+    add_log(chunks, root, joint, (&segments, layout.last_revision))?;
     add_lanes(chunks, root, layout, &segments, opening)
 }
 
@@ -70,13 +70,12 @@ fn add_log(
     chunks: &mut Chunks,
     root: &EntityPath,
     joint: &Joint,
-    segments: &[Placed<'_, '_>],
+    (segments, last_revision): (&[Placed<'_, '_>], Option<i64>),
 ) -> Result<(), RecordError> {
     let index: Index = segments.iter().map(|(trial, segment)| trial.verdict(segment)).collect();
     let lines: Vec<_> = segments.iter().map(|(t, s)| log_line(joint, t, s)).collect();
     // On the timeline of revisions, too, where a click leads away from.
-    let first = segments.first().map(|(trial, _)| trial.first_revision);
-    let index = index.at_revision(first.flatten());
+    let index = index.at_revision(last_revision);
     let accepted = |segment: &SegmentLayout<'_>| segment.decision.verdict() == Verdict::Accepted;
     let levels = segments.iter().map(|(_, s)| if accepted(s) { "INFO" } else { "WARN" });
     let log = TextLog::update_fields().with_many_text(lines).with_many_level(levels);
