@@ -28,7 +28,7 @@ pub enum Flag {
     Edge,
     /// The lines jump apart at the breakpoint: they cross more than two rows away.
     Jump,
-    /// Behind the breakpoint the output stands at an end of its range.
+    /// The output stands at an end of its range, in the later half behind the breakpoint.
     Stop,
 }
 
@@ -214,10 +214,12 @@ impl Decision {
         let Some(best) = self.candidates.best() else { return Vec::new() };
         let is_edge = self.candidates.len() > 2 && (best.f == 1 || best.f == self.candidates.len());
         let is_jump = self.crossing(&best) > 2.0 * self.spacing() as f64;
+        // The joint may still be on its way at first.
+        let behind = usize::midpoint(best.breakpoint, self.segment.last);
         let found = [
             (Flag::Edge, is_edge && self.fine.is_none()),
             (Flag::Jump, is_jump && self.fine.is_none()),
-            (Flag::Stop, stands(output, (best.breakpoint, self.segment.last), range)),
+            (Flag::Stop, stands(output, (behind, self.segment.last), range)),
         ];
         found.into_iter().filter_map(|(flag, is_on)| is_on.then_some(flag)).collect()
     }

@@ -222,7 +222,7 @@ fn worst(layout: &JointLayout<'_>, comparison: &Comparison, plot: &Plot) -> Stri
         let mut trials = layout.trials.iter();
         let trial = trials.find(|trial| trial.trial.label() == worst.trial)?;
         let shift = seconds(trial, 1) - trial.trial.time_s(1);
-        let ends = [worst.start_s, worst.end_s].map(|time_s| plot.above(time_s + shift, -4.0));
+        let ends = [worst.start_s, worst.end_s].map(|time_s| plot.above(time_s + shift, -12.0));
         Some(ends.to_vec())
     };
     worst.filter_map(bar).collect()
