@@ -239,10 +239,9 @@ pub(crate) mod revision {
         pub(crate) const NOISE: &str = "noise";
         pub(crate) const SIMULATED: &str = "simulated";
         pub(crate) const RESIDUAL: &str = "residual";
-        pub(crate) const NAMES: &str = "names";
         pub(crate) const WORST: &str = "worst";
-        pub(crate) const PARTS: [&str; 9] =
-            [GRID, TEXTS, WINDOW, MEASURED, NOISE, WORST, SIMULATED, RESIDUAL, NAMES];
+        pub(crate) const PARTS: [&str; 8] =
+            [GRID, TEXTS, WINDOW, MEASURED, NOISE, WORST, SIMULATED, RESIDUAL];
     }
 
     /// The share of the error of a revision in each region.

@@ -2,12 +2,10 @@
 
 use std::ops::Range;
 
-use rerun::datatypes::Vec2D;
-
 use crate::diagnosis::Comparison;
 use crate::diagnosis::failure::WorstSegment;
 use crate::figure::ladder::judged;
-use crate::recording::canvas::{Labels, Plot, SHEET, Span, Strips, simplified, thinned_to};
+use crate::recording::canvas::{Plot, SHEET, Span, Strips, simplified, thinned_to};
 use crate::recording::error::RecordError;
 use crate::recording::error_share::short;
 use crate::recording::layout::{JointLayout, TrialLayout};
@@ -39,7 +37,8 @@ pub(super) fn add(
     let of_each = || improved.revisions.iter().map(|revision| &revision.comparison);
     let residuals: Vec<Plot> = of_each().map(|c| drawing.residual_plot(c)).collect();
     let count = improved.revisions.len();
-    let sheets = residuals.iter().map(|plot| drawing.sheet(improved, plot).into_parts());
+    let sheet = |(comparison, plot)| drawing.sheet(improved, comparison, plot).into_parts();
+    let sheets = of_each().zip(&residuals).map(sheet);
     let (grids, texts): (Vec<_>, Vec<_>) = sheets.unzip();
     rows.strips(record::GRID, palette::GRID, 0.7, grids.into_iter())?;
     rows.texts(record::TEXTS, palette::BORDER, texts.into_iter())?;
@@ -60,8 +59,7 @@ pub(super) fn add(
     rows.strips(record::WORST, palette::REJECTED, 3.0, worst)?;
     // The noise is the sensor's, whatever the model: that of the last revision.
     let noise = noise(improved).filter(|noise| *noise > 0.0);
-    rows.strips(record::NOISE, palette::NOISE, 1.0, residuals.iter().map(|p| band(p, noise)))?;
-    rows.texts(record::NAMES, palette::REVISION, (0..count).map(|at| drawing.names(improved, at)))
+    rows.strips(record::NOISE, palette::NOISE, 1.0, residuals.iter().map(|p| band(p, noise)))
 }
 
 /// Where the curves lie on the sheet.
@@ -130,7 +128,12 @@ impl<'l, 'a> Drawing<'l, 'a> {
         Plot::new(352.0..=560.0, self.x, Span::around(residuals, 0.05))
     }
 
-    fn sheet(&self, improved: &ImprovedJoint<'_>, residual_plot: &Plot) -> Sheet {
+    fn sheet(
+        &self,
+        improved: &ImprovedJoint<'_>,
+        comparison: &Comparison,
+        residual_plot: &Plot,
+    ) -> Sheet {
         let unit = &improved.finding.compared.joint.output_unit;
         let unit = bracketed("", unit.as_deref());
         let mut sheet = Sheet::default();
@@ -144,9 +147,11 @@ impl<'l, 'a> Drawing<'l, 'a> {
         for end in [close.low, close.high] {
             sheet.put(self.close.below(end, 2.0), format!("{} s", short(end)));
         }
+        let floor = noise(improved).filter(|noise| *noise > 0.0);
+        let times = floor.map(|noise| format!(" ({} × noise)", short(judged(comparison) / noise)));
         let residual = format!(
-            "measured − simulated{unit}, to its own scale: 95 % of the noise lies between the \
-             blue lines, the worst segments below red bars; time [s]"
+            "residual{unit}{}; between blue lines: 95 % of the noise; red: worst segments; time [s]",
+            times.unwrap_or_default()
         );
         let x_ticks = residual_plot.x_span().ticks(10.0);
         sheet.frame(residual_plot, &x_ticks, &ticks(residual_plot), &residual);
@@ -200,19 +205,6 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let all = &comparison.fit.evaluation.residuals;
         self.curves(plot, |trial| all.get(trial.index).map_or(&[], Vec::as_slice))
     }
-
-    /// The error of a revision in multiples of the noise.
-    fn names(&self, improved: &ImprovedJoint<'_>, at: usize) -> Labels {
-        let mut labels = Labels::default();
-        let Some(revision) = improved.revisions.get(at) else { return labels };
-        let left = self.output.x_span().low;
-        let error = judged(&revision.comparison);
-        if let Some(noise) = noise(improved).filter(|noise| *noise > 0.0) {
-            let times = format!("error {} × noise", short(error / noise));
-            labels.put_whole(beside(&self.residual_plot(&revision.comparison), left), times);
-        }
-        labels
-    }
 }
 
 /// A bar above each of the worst segments.
@@ -254,11 +246,6 @@ fn close_up(layout: &JointLayout<'_>, window: &Window) -> Plot {
     let output = output.unwrap_or_default().iter().copied();
     let x = Span::around(ends.into_iter().flatten(), 0.0);
     Plot::within((1010.0, SHEET.0 - 15.0), 40.0..=290.0, x, Span::around(output, 0.08))
-}
-
-/// Left, at the height of a plot's title.
-fn beside(plot: &Plot, left: f64) -> Vec2D {
-    plot.above(left, 26.0)
 }
 
 fn ticks(plot: &Plot) -> Vec<(f64, String)> {
