@@ -44,9 +44,9 @@ pub(super) fn add(
     chunks.push_static(at(root, paths::DOUBT), &page)
 }
 
-/// Doubts from which on a line is red, and yellow; of the synthetic records about every second
-/// accepted step above the first one errs by more than a row of β, and every tenth above the
-/// second.
+/// Doubts from which on a line is red, and yellow. Chosen: on synthetic records about every second
+/// accepted step above the first one is off by more than one and a half rows of β, of those in
+/// between every fifth, of the others one in fifty.
 const LIKELY: f64 = 0.6;
 const SOME: f64 = 0.3;
 
