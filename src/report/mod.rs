@@ -76,8 +76,7 @@ pub(crate) use lookup::{Language, Lookup};
 pub(crate) use page::{Document, Heading, RecordingFile, Report, report_text};
 pub(crate) use review::{Words, write_review_sheet};
 #[cfg(feature = "rrd")]
-pub(crate) use settings::settings_in_short;
-pub(crate) use settings::settings_rows;
+pub(crate) use settings::{settings_in_short, settings_rows};
 pub(crate) use steps::{step_line, steps_table};
 pub(crate) use summary::{DelayRange, Headline, JointSummary};
 pub use sweep::ReportedSweep;
