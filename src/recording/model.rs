@@ -13,7 +13,7 @@ use super::palette::{self, Rgb, color};
 use super::paths::{self, at, child};
 use super::{correlogram, error_share, scatter};
 use crate::diagnosis::failure::{Region, WorstSegment};
-use crate::diagnosis::{Comparison, ErrorFigures};
+use crate::diagnosis::{Comparison, ErrorFigures, sensor_noise};
 use crate::fit::Horizon;
 use crate::report::ComparedJoint;
 use crate::wording::{
@@ -50,7 +50,7 @@ pub(super) fn add(
         signal(chunks, entity, layout, residual)?;
         figures(chunks, &model, compared.comparison)?;
     }
-    band(chunks, root, layout, judged.comparison.noise_floor)?;
+    band(chunks, root, layout, sensor_noise(&judged.joint.trials))?;
     let page = page(layout, models, judged).unwrap_or_default();
     let document = TextDocument::from_markdown(page);
     chunks.push_static(at(root, paths::MODEL_PAGE), &document)?;
@@ -193,7 +193,7 @@ fn page(
     let mut page = String::new();
     let joint = judged.joint;
     let unit = joint.output_unit.as_deref().unwrap_or("");
-    writeln!(page, "### {}: {}\n", plain(&joint.name), headline(judged.comparison))?;
+    writeln!(page, "### {}: {}\n", plain(&joint.name), headline(judged))?;
     writeln!(page, "| model | training | validation | fit | lack of fit |\n|---|---|---|---|---|")?;
     for compared in models {
         let Comparison { training, validation, lack_of_fit, .. } = compared.comparison;
@@ -208,8 +208,8 @@ fn page(
     }
     let horizon = judged.comparison.fit.evaluation.horizon;
     writeln!(page, "\nErrors are root mean squares of simulations, {horizon}.")?;
-    if let Some(noise) = judged.comparison.noise_floor {
-        writeln!(page, "Noise of the measurement: {} {unit}.", number(noise))?;
+    if let Some(noise) = sensor_noise(&joint.trials) {
+        writeln!(page, "Noise of the sensor: {} {unit}.", number(noise))?;
     }
     for compared in models {
         for sentence in failure_sentences(compared.joint, compared.comparison) {
@@ -277,8 +277,9 @@ fn on_timeline(layout: &JointLayout<'_>, worst: &WorstSegment) -> String {
 }
 
 /// What a reviewer should know first.
-fn headline(comparison: &Comparison) -> String {
-    let times = comparison.validation.zip(comparison.noise_floor);
+fn headline(judged: &ComparedJoint<'_>) -> String {
+    let comparison = judged.comparison;
+    let times = comparison.validation.zip(sensor_noise(&judged.joint.trials));
     let times = times.map(|(error, noise)| error.rmse / noise.max(f64::MIN_POSITIVE));
     match (comparison.lack_of_fit, times) {
         (Some(test), _) if test.adequate => "the model is adequate".to_owned(),

@@ -2,6 +2,7 @@
 
 use rerun::datatypes::Vec2D;
 
+use crate::diagnosis::sensor_noise;
 use crate::recording::canvas::{Labels, Plot, Span, Strips};
 use crate::report::ImprovedJoint;
 
@@ -22,9 +23,9 @@ pub(super) struct Held {
     pub(super) std_error: f64,
 }
 
-/// The noise of the sensor, one for all revisions: as the last one leaves it.
+/// The noise of the sensor, from the record alone: one for all revisions.
 pub(super) fn noise(improved: &ImprovedJoint<'_>) -> Option<f64> {
-    improved.revisions.last()?.comparison.noise_floor
+    sensor_noise(&improved.finding.compared.joint.trials)
 }
 
 /// Level of the input, and the speed that a model makes of it.

@@ -57,7 +57,7 @@ pub(super) fn add(
     rows.strips(record::RESIDUAL, palette::REVISION, 1.0, curves)?;
     let worst = of_plots().map(|(comparison, plot)| worst(layout, comparison, plot));
     rows.strips(record::WORST, palette::REJECTED, 3.0, worst)?;
-    // The noise is the sensor's, whatever the model: that of the last revision.
+    // The noise is the sensor's, whatever the model.
     let noise = noise(improved).filter(|noise| *noise > 0.0);
     rows.strips(record::NOISE, palette::NOISE, 1.0, residuals.iter().map(|p| band(p, noise)))
 }
