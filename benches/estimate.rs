@@ -85,6 +85,7 @@ fn record(
         pairs.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect();
     for (name, detail) in [("full", Detail::Full), ("lean", Detail::Lean)] {
         let recording = Recording {
+            command: "estimate",
             joints: &joints,
             settings,
             sources: &[],

@@ -32,6 +32,7 @@ fn main() -> anyhow::Result<()> {
     let joints: Vec<_> =
         pairs.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect();
     let recording = Recording {
+        command: "estimate",
         joints: &joints,
         settings: &settings,
         sources: &experiment.sources,

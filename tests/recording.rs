@@ -7,7 +7,7 @@ mod read_back;
 #[expect(dead_code, reason = "other recordings have more in them")]
 mod recorded;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -15,10 +15,12 @@ use std::path::PathBuf;
 use read_back::{ReadBack, batches, whole};
 use recorded::{Recorded, samples};
 use rerun::external::arrow::array::AsArray as _;
+use rerun::external::re_log_encoding::DecoderApp;
+use rerun::log::{Chunk, LogMsg};
 use tauscope::batch::Threads;
 use tauscope::delay::{Decision, FineDelay, FirstLast, Method, Settings};
 use tauscope::experiment::{Experiment, ReadOptions};
-use tauscope::recording::{Beside, Detail, RecordError};
+use tauscope::recording::{Beside, Detail, RecordError, Recording, write_recording};
 use tauscope::report::{DecisionRow, EstimatedJoint, decision_rows};
 use tauscope::study::{JointEstimate, estimate_joints};
 use tauscope::wording::number;
@@ -293,6 +295,104 @@ fn two_runs_give_the_same_chunks_in_the_same_order() {
         batches(&bytes)
     };
     assert!(written() == written());
+}
+
+/// All messages in their order: the store, and the chunk's id with those of its rows.
+fn messages(bytes: &[u8]) -> Vec<(rerun::StoreId, Option<String>)> {
+    let all = DecoderApp::decode_lazy(io::Cursor::new(bytes)).map(Result::unwrap);
+    let named = all.map(|message| {
+        let chunk = match &message {
+            LogMsg::ArrowMsg(_, message) => Some(message.chunk_id.to_string()),
+            _ => None,
+        };
+        (message.store_id().clone(), chunk)
+    });
+    named.collect()
+}
+
+#[test]
+fn the_views_come_first() {
+    let recorded = Recorded::with(Settings::default());
+    let mut bytes = Vec::new();
+    recorded.write(Detail::Full, &mut bytes).unwrap();
+    let views: Vec<bool> = messages(&bytes).iter().map(|(store, _)| store.is_blueprint()).collect();
+    let count = views.iter().take_while(|is_view| **is_view).count();
+    assert!(count > 20 && views[count..].iter().all(|is_view| !is_view), "{count}");
+}
+
+#[test]
+fn two_recordings_share_no_id_and_say_what_they_are() {
+    let recorded = Recorded::with(Settings::default());
+    let written = |command| {
+        let joints = recorded.joints();
+        let mut bytes = Vec::new();
+        let recording = Recording {
+            command,
+            joints: &joints,
+            settings: &recorded.settings,
+            sources: &recorded.experiment.sources,
+            reading: &recorded.experiment.options,
+            detail: Detail::Full,
+            models: &[],
+            also: &[],
+            revisions: &[],
+        };
+        write_recording(&recording, &mut bytes).unwrap();
+        bytes
+    };
+    let (estimate, compare) = (written("estimate"), written("compare"));
+    let ids = |bytes: &[u8]| -> BTreeSet<String> {
+        let chunks = messages(bytes).into_iter().filter_map(|(_, chunk)| chunk);
+        let entities = blueprint_entities(bytes).into_iter();
+        chunks.chain(entities.filter(|path| path.starts_with("/view/"))).collect()
+    };
+    let shared: Vec<_> = ids(&estimate).intersection(&ids(&compare)).cloned().collect();
+    // The axis that linked plots share is the viewer's own.
+    assert!(shared.iter().all(|id| id.ends_with("/TimeAxis")), "{shared:?}");
+    let application = |bytes: &[u8]| messages(bytes)[0].0.application_id().as_str().to_owned();
+    let (one, other) = (application(&estimate), application(&compare));
+    assert!(one.starts_with("log estimate two-line alpha 10 beta 5 5 Hz "), "{one}");
+    assert_ne!(one, other);
+    let back = ReadBack::of(&estimate);
+    let name = back.fixed("/__properties", "RecordingInfo:name");
+    assert_eq!(name.as_string::<i32>().value(0), "log · estimate · two-line, α 10, β 5, 5 Hz");
+}
+
+/// The entities of the views.
+fn blueprint_entities(bytes: &[u8]) -> Vec<String> {
+    let all = DecoderApp::decode_lazy(io::Cursor::new(bytes)).map(Result::unwrap);
+    let entity = |message| match message {
+        LogMsg::ArrowMsg(store, message) if store.is_blueprint() => {
+            Some(Chunk::from_arrow_msg(&message).unwrap().entity_path().to_string())
+        }
+        _ => None,
+    };
+    all.filter_map(entity).collect()
+}
+
+#[test]
+fn it_opens_on_the_most_doubtful_decision_and_goes_by_doubt() {
+    let recorded = Recorded::with(Settings::default());
+    let back = recorded.read_back(Detail::Full);
+    for joint in recorded.joints() {
+        let name = &joint.joint.name;
+        let trial = joint.estimate.estimated().next().unwrap();
+        let output = trial.smoothed.as_deref().unwrap();
+        let doubts: Vec<f64> =
+            trial.decisions.iter().map(|decision| decision.doubt(output).value()).collect();
+        let texts = back.texts(&format!("/{name}/verdict"), "TextDocument:text");
+        let mut ranks: Vec<(i64, f64)> =
+            texts.iter().zip(&doubts).map(|((times, _), doubt)| (times["doubt"], *doubt)).collect();
+        ranks.sort_by_key(|(rank, _)| *rank);
+        assert!(ranks.iter().map(|(rank, _)| *rank).eq(1..=whole(doubts.len())));
+        assert!(ranks.is_sorted_by(|a, b| a.1 >= b.1), "{ranks:?}");
+        for entity in ["verdict", "drawing/borders", "place", "map/here"] {
+            let ticks = back.ticks(&format!("/{name}/{entity}"), "decision");
+            assert_eq!(ticks.iter().filter(|tick| **tick == 0).count(), 1, "{entity}");
+        }
+        // Plots of samples have no timeline on which they would be a comb.
+        assert!(back.ticks(&format!("/{name}/output/raw"), "segment").is_empty());
+    }
 }
 
 #[test]

@@ -95,9 +95,9 @@ fn the_step_under_the_cursor_is_marked_in_every_plot() {
                 .map(|(times, _)| times["segment"])
                 .eq(steps.iter().map(|s| whole(s.number)))
         );
-        // An empty row at a rejected step takes the mark away.
+        // An empty row at a rejected step takes the mark away; one row is before all others.
         let rows = back.chunks[&page("here")].iter().filter(|chunk| !chunk.is_static());
-        assert_eq!(rows.map(Chunk::num_rows).sum::<usize>(), decision_rows(joint).count());
+        assert_eq!(rows.map(Chunk::num_rows).sum::<usize>(), decision_rows(joint).count() + 1);
         for (times, places) in &marked {
             let name = format!("step {0} (segment {0})", times["segment"]);
             let of_step = drawn.iter().zip(&names).filter(|(_, other)| **other == name);

@@ -28,10 +28,12 @@ pub enum Condition {
     AtRest,
     /// The slope changes no more than noise makes it.
     NothingHappened,
+    /// A reviewer rejected the step: no condition of the program's, and never checked.
+    Reviewer,
 }
 
 impl Condition {
-    /// All conditions, in the order they are reported.
+    /// All conditions that are checked, in the order they are reported.
     pub const ALL: [Self; 9] = [
         Self::FirstOrLast,
         Self::OutputLimit,
@@ -56,6 +58,7 @@ impl Condition {
             Self::TooShort => "too_short",
             Self::AtRest => "at_rest",
             Self::NothingHappened => "nothing_happened",
+            Self::Reviewer => "reviewer",
         }
     }
 
@@ -71,6 +74,7 @@ impl Condition {
             Self::TooShort => "segment too short for two lines",
             Self::AtRest => "joint at rest, before and after",
             Self::NothingHappened => "no reaction beyond the noise",
+            Self::Reviewer => "rejected by a reviewer",
         }
     }
 }

@@ -7,6 +7,7 @@ use super::interval::FineDelay;
 use super::search::{Candidate, Candidates};
 use super::segment::Segment;
 use super::steps::InputStep;
+use super::word::Word;
 use crate::units::signed;
 
 /// The decision on one input step, with the evidence for it.
@@ -27,6 +28,8 @@ pub struct Decision {
     pub checks: Vec<Check>,
     /// The delay between samples, where the method gives it.
     pub fine: Option<FineDelay>,
+    /// What a reviewer said of it.
+    pub word: Option<Word>,
 }
 
 /// The best breakpoint of a segment, accepted or not.
@@ -69,8 +72,17 @@ impl Decision {
         self.input_step.sample + self.hold
     }
 
-    /// Accepted, or the first condition that failed.
+    /// What a reviewer said; where none did, [what the program says](Self::program_verdict).
     pub fn verdict(&self) -> Verdict {
+        match &self.word {
+            Some(word) if word.accepted => Verdict::Accepted,
+            Some(_) => Verdict::Rejected(Condition::Reviewer),
+            None => self.program_verdict(),
+        }
+    }
+
+    /// Accepted, or the first condition that failed, whatever a reviewer said.
+    pub fn program_verdict(&self) -> Verdict {
         self.failed().next().map_or(Verdict::Accepted, Verdict::Rejected)
     }
 
@@ -94,8 +106,15 @@ impl Decision {
         self.delay().filter(|_| accepted)
     }
 
-    /// The delay in samples, accepted or not, as finely as the method gives it.
+    /// The delay in samples, accepted or not: a reviewer's where one was said, else
+    /// [the program's](Self::program_delay).
     pub fn delay(&self) -> Option<f64> {
+        let said = self.word.as_ref().and_then(|word| word.delay);
+        said.or_else(|| self.program_delay())
+    }
+
+    /// The delay in samples, accepted or not, as finely as the method gives it.
+    pub fn program_delay(&self) -> Option<f64> {
         let fine = self.fine.map(|fine| fine.delay);
         fine.or_else(|| self.breakpoint().map(|best| best.delay as f64))
     }

@@ -52,7 +52,7 @@ impl Decision {
         match check.condition {
             Condition::FirstOrLast => Remedy::KeepFirstLast,
             Condition::OutputLimit => self.wider_limits(settings, output).unwrap_or(none),
-            Condition::BeforeInput | Condition::AtRest => none,
+            Condition::BeforeInput | Condition::AtRest | Condition::Reviewer => none,
             Condition::SlopeChange => Remedy::MinSlopeChange(at_most(value)),
             Condition::ShortHold => Remedy::MinDelay(self.hold),
             Condition::Sse => Remedy::MaxSse(above(value)),

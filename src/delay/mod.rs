@@ -20,6 +20,8 @@
 //! - [`dead_time`]: one dead time of a joint whose input moves all the time
 //! - [`delay_scan`]: one delay for a whole record
 //! - [`Remedy`], [`RunnerUp`]: how near a verdict was
+//! - [`Doubt`]: how doubtful a decision is, from its own evidence
+//! - [`Word`]: what a reviewer says instead
 //! - [`step_delays`]: the delays alone, by the best method
 //! - [`DelayProfile`]: the delay of every sample
 //! - [`final_part`]: the part of a growing trial that more samples cannot change
@@ -36,6 +38,7 @@ mod broken_line;
 mod condition;
 mod dead_time;
 mod decision;
+mod doubt;
 mod estimate;
 mod growing;
 mod hold;
@@ -62,6 +65,7 @@ mod table;
 mod transition;
 mod trial_estimate;
 mod typical;
+mod word;
 
 pub use crate::numerics::Line;
 pub use against::{AgainstOfKind, AgainstState, Correlation, Direction, StepState};
@@ -72,6 +76,7 @@ pub use broken_line::{
 pub use condition::{Check, Condition, Outcome};
 pub use dead_time::{Bounds, DeadTime, ErrorPoint, Feedback, Finding, Unknown, Window, dead_time};
 pub use decision::{Breakpoint, Decision, Verdict};
+pub use doubt::{Doubt, Flag};
 pub use estimate::{Estimator, estimate, estimate_joint};
 pub use growing::{Growing, check_growing, final_part};
 pub use hold::level_tolerance;
@@ -93,3 +98,4 @@ pub use table::{CurvePoint, DelayCurve, DelayRow, DelayTable, KindDelay};
 pub use transition::Transition;
 pub use trial_estimate::{EstimateError, TrialEstimate};
 pub use typical::TypicalDelay;
+pub use word::Word;

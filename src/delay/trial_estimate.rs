@@ -3,7 +3,8 @@
 use super::decision::Decision;
 use super::lag::Lag;
 use super::profile::DelayProfile;
-use super::settings::SettingsError;
+use super::settings::{Interpolation, SettingsError};
+use super::word::Word;
 use crate::numerics::FilterError;
 
 /// Why a trial has no estimate.
@@ -39,4 +40,18 @@ pub struct TrialEstimate {
     pub profile: DelayProfile,
     /// How the joint follows after its dead time, where the method looks for it.
     pub lag: Option<Lag>,
+}
+
+impl TrialEstimate {
+    /// Puts a reviewer's word above the decision on the step `number`; whether there is one. The
+    /// delay of every sample follows.
+    pub fn review(&mut self, number: usize, word: Word, between: Interpolation) -> bool {
+        let samples = self.profile.iter().len();
+        let Some(decision) = self.decisions.iter_mut().find(|known| known.number == number) else {
+            return false;
+        };
+        decision.word = Some(word);
+        self.profile = DelayProfile::of(&self.decisions, samples, between);
+        true
+    }
 }

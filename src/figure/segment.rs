@@ -67,6 +67,19 @@ impl<'a> SegmentFigure<'a> {
         [before, ends(&candidate.after, q, segment.last as f64)]
     }
 
+    /// What the chosen lines leave of `output`, the trial's that they were fitted to.
+    #[cfg(feature = "rrd")]
+    pub(crate) fn residual(&self, output: &[f64]) -> Vec<Place> {
+        let Some(best) = self.decision.candidates.best() else { return Vec::new() };
+        let segment = self.decision.segment;
+        let values = output.get(segment.indices()).unwrap_or_default();
+        let left = |(k, y): (usize, &f64)| {
+            let line = if k < best.breakpoint { best.before } else { best.after };
+            (k as f64, y - line.at(k as f64))
+        };
+        (segment.first..).zip(values).map(left).collect()
+    }
+
     /// The logarithm to base ten of a candidate's squared error, at its breakpoint.
     pub(crate) fn error(&self, candidate: &Candidate) -> Place {
         (candidate.breakpoint as f64, candidate.sse.max(self.least_error).log10())

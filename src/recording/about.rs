@@ -12,8 +12,8 @@ use super::origin::made_from;
 use super::paths::ABOUT;
 use super::recorded::Recording;
 use crate::report::{
-    EstimatedJoint, JointSummary, LEVEL_HEADER, SUMMARY_HEADER, chosen_line, dead_time_sentences,
-    kind_sentence, level_cells, settings_rows, summary_cells,
+    EstimatedJoint, JointSummary, LEVEL_HEADER, SUMMARY_HEADER, Words, chosen_line,
+    dead_time_sentences, kind_sentence, level_cells, settings_rows, summary_cells,
 };
 
 /// Adds the page at `/about`.
@@ -40,6 +40,7 @@ fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String
     for (joint, summary) in recording.joints.iter().zip(&summaries) {
         let name = plain(&joint.joint.name);
         let sentences = summary.headline.kinds().iter().map(kind_sentence);
+        let sentences = sentences.chain(summary.words.map(Words::sentence));
         for sentence in sentences.chain(dead_time_sentences(joint)) {
             writeln!(page, "- {name}: {sentence}")?;
         }

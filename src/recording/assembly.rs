@@ -1,31 +1,46 @@
 //! A recording of decisions and models, joint by joint.
 
-use rerun::ApplicationId;
 use rerun::log::LogMsg;
+use rerun::{ApplicationId, EntityPath};
 
-use super::chunk::Chunks;
+use super::chunk::{Chunks, Index};
 use super::content::{Content, Growth, Tab, hashed, name_of};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialStarts};
-use super::paths::joint_root;
+use super::paths::{self, against, at, drawing, joint_root, map};
 use super::recorded::Recording;
 use super::{
-    about, decisions, delay_state, model, overview, revision, segment_view, signals, verdict, views,
+    about, decisions, delay_state, doubt, model, overview, place, revision, segment_view, signals,
+    verdict, views,
 };
-use crate::report::EstimatedJoint;
+use crate::report::{EstimatedJoint, ImprovedJoint, settings_in_short};
 
 impl<'a> Recording<'a> {
     /// Each joint and where it lies on the timelines.
-    fn layouts(&self) -> impl Iterator<Item = (EstimatedJoint<'a>, JointLayout<'a>)> {
+    fn layouts(
+        &self,
+        growth: Growth,
+    ) -> impl Iterator<Item = (EstimatedJoint<'a>, JointLayout<'a>)> {
         let starts = TrialStarts::of(self.joints.iter().map(|joint| joint.joint));
-        let layout = move |joint| (joint, JointLayout::of(joint, &starts, self.detail));
+        let numbers = || self.revisions.iter().flat_map(ImprovedJoint::numbered);
+        let numbers = || numbers().map(|(number, _)| i64::from(number));
+        let revisions = numbers().min().zip(numbers().max());
+        // Which one is the first is not known when the decisions are sent, and they are sent once.
+        let revisions = revisions.filter(|_| growth == Growth::Finished);
+        let layout =
+            move |joint| (joint, JointLayout::of(joint, &starts, (self.detail, revisions)));
         self.joints.iter().copied().map(layout)
     }
 }
 
 impl<'a> Content for Recording<'a> {
     fn name(&self) -> String {
-        name_of(self.sources)
+        let each = std::iter::once(self.settings).chain(self.also.iter().map(|it| it.settings));
+        let settings: Vec<_> = each.map(settings_in_short).collect();
+        let chosen = self.joints.iter().any(|joint| joint.estimate.chosen.is_some());
+        let chosen = if chosen { ", more from the record" } else { "" };
+        let (log, command) = (name_of(self.sources), self.command);
+        format!("{log} · {command} · {}{chosen}", settings.join(" | "))
     }
 
     fn id(&self) -> String {
@@ -33,16 +48,16 @@ impl<'a> Content for Recording<'a> {
     }
 
     fn add_about(&self, chunks: &mut Chunks) -> Result<(), RecordError> {
-        let layouts: Vec<_> = self.layouts().map(|(_, layout)| layout).collect();
+        let layouts: Vec<_> = self.layouts(Growth::Finished).map(|(_, layout)| layout).collect();
         about::add(chunks, self, &layouts)
     }
 
-    fn tabs(&self) -> Vec<Tab<'_>> {
+    fn tabs(&self, growth: Growth) -> Vec<Tab<'_>> {
         let tab = |(joint, layout): (EstimatedJoint<'a>, JointLayout<'a>)| {
             let add = move |chunks: &mut Chunks| add_joint(chunks, self, joint, &layout);
             Tab { joint: &joint.joint.name, add: Box::new(add) }
         };
-        self.layouts().map(tab).collect()
+        self.layouts(growth).map(tab).collect()
     }
 
     fn views(
@@ -67,6 +82,7 @@ fn add_joint(
 ) -> Result<(), RecordError> {
     let joint = estimated.joint;
     let root = joint_root(&joint.name);
+    place::add(chunks, &root, layout)?;
     signals::add(chunks, &root, joint, layout)?;
     decisions::add(chunks, &root, layout)?;
     let others = recording.others(joint);
@@ -74,21 +90,55 @@ fn add_joint(
     segment_view::add(chunks, &root, joint, layout, (recording.settings.method, &others))?;
     overview::add(chunks, &root, layout)?;
     delay_state::add(chunks, &root, estimated, layout)?;
+    doubt::add(chunks, &root, joint, layout)?;
+    open_on_the_most_doubtful(chunks, &root, layout)?;
     let models = recording.models.iter().filter(|model| model.joint.name == joint.name);
-    model::add(chunks, &root, layout, &models.collect::<Vec<_>>())?;
-    match recording.revisions_of(joint) {
+    let models: Vec<_> = models.collect();
+    let revisions = recording.revisions_of(joint);
+    // Of several revisions the last one is what there is to judge.
+    let judged = if revisions.is_some() { models.last() } else { models.first() };
+    if let Some(judged) = judged {
+        model::add(chunks, &root, layout, &models, judged)?;
+    }
+    match revisions {
         Some(improved) => revision::add(chunks, &root, layout, improved),
         None => Ok(()),
     }
+}
+
+/// Shows the most doubtful decision before the first tick, where the viewer opens, and on the
+/// timeline of revisions.
+fn open_on_the_most_doubtful(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    layout: &JointLayout<'_>,
+) -> Result<(), RecordError> {
+    let Some((_, segment)) = layout.by_doubt().into_iter().next() else { return Ok(()) };
+    let map = format!("{}/{}", map::ROOT, map::HERE);
+    let [here, step] = [against::HERE, against::STEP].map(|p| format!("{}/{p}", against::ROOT));
+    let shown = [
+        (drawing::ROOT, ""),
+        (map.as_str(), ""),
+        (here.as_str(), ""),
+        (step.as_str(), ""),
+        (paths::VERDICT, "TextDocument"),
+    ];
+    let index = Index::before_all(layout.first_revision);
+    for (path, component) in shown {
+        chunks.repeat((&at(root, path), component), segment.opening, &index)?;
+    }
+    Ok(())
 }
 
 /// Equal for equal logs, read in the same way, equal settings and version, so that two
 /// recordings of one experiment lie side by side when any of it differs.
 fn recording_id(recording: &Recording<'_>) -> String {
     hashed(recording.sources, recording.joints.iter().map(|joint| joint.joint), |part| {
+        part(recording.command);
         for model in recording.models {
             let values: Vec<_> = model.comparison.fit.model.values();
             part(&format!("{} {:?} {values:?}", model.model, model.comparison.fit.model.names()));
+            part(&model.comparison.fit.evaluation.horizon.to_string());
         }
         for improved in recording.revisions {
             let changes: Vec<_> =

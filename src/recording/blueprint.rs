@@ -16,9 +16,11 @@ use rerun::external::re_sdk_types::blueprint::datatypes::{
 };
 use rerun::external::uuid::Uuid;
 use rerun::log::LogMsg;
+use sha2::{Digest as _, Sha256};
+
 use rerun::{ApplicationId, AsComponents, EntityPath, StoreId, StoreKind};
 
-use super::chunk::Chunks;
+use super::chunk::{Chunks, Ids};
 use super::error::RecordError;
 use super::message::{chunk_message, store_message};
 use super::paths::{ABOUT, at};
@@ -30,7 +32,9 @@ const NAMESPACE: u64 = 1;
 const LINKED_TIME_AXIS: &str = "view/5c0dca6a-e63f-9cf7-f657-2602590474cc/TimeAxis";
 
 /// Collects views and containers.
-pub(super) struct Builder {
+pub(super) struct Builder<'i> {
+    /// The recording's, from which those of views and containers are made.
+    id: &'i str,
     chunks: Chunks,
     nodes: u64,
 }
@@ -75,15 +79,20 @@ impl<'a> View<'a> {
     }
 }
 
-impl Builder {
-    pub(super) fn new() -> Self {
-        Self { chunks: Chunks::new(NAMESPACE), nodes: 0 }
+impl<'i> Builder<'i> {
+    /// Views of the recording `id`.
+    pub(super) fn new(id: &'i str) -> Self {
+        Self { id, chunks: Ids::of(&store(id)).chunks(NAMESPACE), nodes: 0 }
     }
 
     fn node(&mut self, kind: &str) -> Node {
         self.nodes += 1;
-        // Any id will do, as long as it is the same in every run.
-        let id = Uuid::from_u64_pair(0x7461_7573_636f_4070, 0x8000_0000_0000_0000 | self.nodes);
+        // The same in every run, and none of another recording's: a viewer keeps what it knows
+        // of a view by its id alone.
+        let digest = Sha256::digest(format!("{} {}", self.id, self.nodes));
+        let mut bytes = [0; 16];
+        bytes.iter_mut().zip(digest).for_each(|(to, byte)| *to = byte);
+        let id = Uuid::from_bytes(bytes);
         Node { id, path: format!("{kind}/{id}") }
     }
 
@@ -102,6 +111,16 @@ impl Builder {
         Ok(node)
     }
 
+    /// Tabs, of which one is open.
+    fn tabs(&mut self, name: &str, tabs: &[Node], open: &Node) -> Result<Node, RecordError> {
+        let node = self.node("container");
+        let contents = tabs.iter().map(|tab| IncludedContent::from(tab.path.clone()));
+        let container = ContainerBlueprint::new(ContainerKind::Tabs).with_display_name(name);
+        let container = container.with_contents(contents).with_active_tab(open.path.clone());
+        self.log(&node.path, &container)?;
+        Ok(node)
+    }
+
     /// A container; `shares` are the parts of its height or width, or none.
     pub(super) fn container(
         &mut self,
@@ -110,16 +129,18 @@ impl Builder {
         children: &[Node],
         shares: &[f32],
     ) -> Result<Node, RecordError> {
+        if let (ContainerKind::Tabs, Some(first)) = (kind, children.first()) {
+            return self.tabs(name, children, first);
+        }
         let node = self.node("container");
         let contents = children.iter().map(|child| IncludedContent::from(child.path.clone()));
         let mut container =
             ContainerBlueprint::new(kind).with_display_name(name).with_contents(contents);
         let shares = shares.iter().copied();
-        container = match (kind, children.first()) {
-            (ContainerKind::Horizontal, _) => container.with_col_shares(shares),
-            (ContainerKind::Vertical, _) => container.with_row_shares(shares),
-            (ContainerKind::Tabs, Some(first)) => container.with_active_tab(first.path.clone()),
-            _ => container,
+        container = match kind {
+            ContainerKind::Horizontal => container.with_col_shares(shares),
+            ContainerKind::Vertical => container.with_row_shares(shares),
+            ContainerKind::Tabs | ContainerKind::Grid => container,
         };
         self.log(&node.path, &container)?;
         Ok(node)
@@ -132,12 +153,16 @@ impl Builder {
         mut tabs: Vec<Node>,
         opening: (&str, PlayState),
         application: &ApplicationId,
-        id: &str,
     ) -> Result<Vec<LogMsg>, RecordError> {
+        /// Tabs that a screen has room for: behind more of them nobody finds the page on all.
+        const SEEN: usize = 10;
         let about = EntityPath::from(ABOUT).to_string();
-        tabs.push(self.view(View::new("TextDocument", "About", &[about]))?);
-        let root = self.container(ContainerKind::Tabs, "Joints", &tabs, &[])?;
-        self.finish(&root, opening, application, id)
+        let about = self.view(View::new("TextDocument", "About", &[about]))?;
+        let place = if tabs.len() > SEEN { 0 } else { tabs.len() };
+        let opening_tab = tabs.first().unwrap_or(&about).clone();
+        tabs.insert(place, about);
+        let root = self.tabs("Joints", &tabs, &opening_tab)?;
+        self.finish(&root, opening, application)
     }
 
     /// The messages of the whole blueprint, which opens on `timeline`.
@@ -146,7 +171,6 @@ impl Builder {
         root: &Node,
         (timeline, play): (&str, PlayState),
         application: &ApplicationId,
-        id: &str,
     ) -> Result<Vec<LogMsg>, RecordError> {
         let root = rerun::datatypes::Uuid { bytes: *root.id.as_bytes() };
         let viewport = ViewportBlueprint::new().with_root_container(RootContainer(root));
@@ -164,11 +188,16 @@ impl Builder {
         let infinite = TimeRangeBoundary::Infinite;
         let all = TimeRange { start: infinite, end: infinite };
         self.log(LINKED_TIME_AXIS, &TimeAxis::new().with_view_range(all))?;
-        let store = StoreId::new(StoreKind::Blueprint, application.clone(), format!("{id}-views"));
+        let store = StoreId::new(StoreKind::Blueprint, application.clone(), store(self.id));
         let chunks = self.chunks.into_chunks();
         let messages = chunks.iter().map(|chunk| chunk_message(&store, chunk));
         std::iter::once(Ok(store_message(&store))).chain(messages).collect()
     }
+}
+
+/// The id of the store that holds the views of the recording `id`.
+fn store(id: &str) -> String {
+    format!("{id}-views")
 }
 
 /// All of a sheet in view.

@@ -1,7 +1,8 @@
 //! Columns of rows, with ids that are the same in every run.
 //!
 //! Rerun's own calls draw ids from the clock, so that two runs never compare equal. Here
-//! an id is a namespace (one per joint) and a counter.
+//! an id is a namespace (one per joint), a tag of the recording, and a counter: viewers keep
+//! state by id, so no two recordings share any.
 
 use std::sync::Arc;
 
@@ -31,6 +32,8 @@ pub(super) struct Index {
     revision: Vec<i64>,
     /// Settings of a sweep; likewise.
     pub(super) setting: Vec<i64>,
+    /// Ranks of decisions by doubt; likewise.
+    doubt: Vec<i64>,
 }
 
 /// Where one row lies on the timelines.
@@ -63,7 +66,36 @@ impl FromIterator<Moment> for Index {
 
 impl Index {
     pub(super) fn len(&self) -> usize {
-        self.sample.len().max(self.setting.len())
+        let Self { decision, segment, sample, revision, setting, .. } = self;
+        let lengths = [decision, segment, sample, revision, setting].map(Vec::len);
+        lengths.into_iter().max().unwrap_or(0)
+    }
+
+    /// The same rows on the timeline of doubt, too.
+    pub(super) fn with_doubt(self, ranks: impl Iterator<Item = i64>) -> Self {
+        Self { doubt: ranks.collect(), ..self }
+    }
+
+    /// The same rows, but for the timeline of segments: on it the samples of a segment would all
+    /// lie at one place, and a plot of them would be a comb.
+    pub(super) fn without_segment(self) -> Self {
+        Self { segment: Vec::new(), ..self }
+    }
+
+    /// The same rows on the timeline of revisions, too, all at one of them.
+    pub(super) fn at_revision(self, revision: Option<i64>) -> Self {
+        let revision = revision.map_or_else(Vec::new, |number| vec![number; self.len()]);
+        Self { revision, ..self }
+    }
+
+    /// One row before all others, on the timelines of decisions and of revisions alone.
+    pub(super) fn before_all(revision: Option<i64>) -> Self {
+        Self { decision: vec![0], ..Self::default() }.at_revision(revision)
+    }
+
+    /// One row on each timeline on which no sample lies.
+    pub(super) fn off_the_record(revision: Option<i64>) -> Self {
+        Self { segment: vec![1], doubt: vec![1], ..Self::default() }.at_revision(revision)
     }
 
     /// A row per setting of a sweep, on the timeline of settings alone.
@@ -85,6 +117,7 @@ impl Index {
             ("sample", self.sample),
             ("revision", self.revision),
             ("setting", self.setting),
+            ("doubt", self.doubt),
         ];
         let filled = sequences.into_iter().filter(|(_, values)| !values.is_empty());
         let mut columns: Vec<_> =
@@ -96,19 +129,37 @@ impl Index {
     }
 }
 
+/// Ids of one recording: those of another one have another tag.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ids {
+    tag: u64,
+}
+
+impl Ids {
+    /// Those of the recording, or the blueprint, with this id.
+    pub(super) fn of(id: &str) -> Self {
+        use sha2::{Digest as _, Sha256};
+        let mut tag = [0; 8];
+        // 31 bits stay: above them is the mark of chunks, below 32 bits that count.
+        tag.iter_mut().skip(4).zip(Sha256::digest(id)).for_each(|(to, byte)| *to = byte);
+        Self { tag: u64::from_be_bytes(tag) & 0x7fff_ffff }
+    }
+
+    /// Collects chunks of `namespace`: those of one recording must differ; 0 is not allowed.
+    pub(super) fn chunks(self, namespace: u64) -> Chunks {
+        Chunks { namespace, tag: self.tag << 32, rows: 0, made: Vec::new() }
+    }
+}
+
 /// Collects chunks of one namespace.
 pub(super) struct Chunks {
     namespace: u64,
+    tag: u64,
     rows: u64,
     made: Vec<Chunk>,
 }
 
 impl Chunks {
-    /// Namespaces of one recording must differ; 0 is not allowed.
-    pub(super) fn new(namespace: u64) -> Self {
-        Self { namespace, rows: 0, made: Vec::new() }
-    }
-
     /// Rows of `columns` at the moments of `index`; nothing when there is none.
     pub(super) fn push(
         &mut self,
@@ -151,6 +202,38 @@ impl Chunks {
         self.push_rows(entity, 1, [TimeColumn::new_sequence("blueprint", [0])], columns)
     }
 
+    /// Adds a row at `index` of what the entities below `root` have at the tick `decision`: only
+    /// of components whose name begins so.
+    pub(super) fn repeat(
+        &mut self,
+        (root, component): (&EntityPath, &str),
+        decision: i64,
+        index: &Index,
+    ) -> Result<(), RecordError> {
+        let shown = |chunk: &&Chunk| chunk.entity_path().starts_with(root);
+        let rows: Vec<_> = self
+            .made
+            .iter()
+            .filter(shown)
+            .filter_map(|chunk| {
+                let ticks = chunk.timelines().get(&"decision".into())?.times_raw();
+                let row = ticks.iter().rposition(|tick| *tick <= decision)?;
+                let columns = chunk.components().0.values();
+                let named =
+                    columns.filter(|c| c.descriptor.component.as_str().starts_with(component));
+                let slice = named.map(|column| {
+                    let (list, name) = (column.list_array.slice(row, 1), column.descriptor.clone());
+                    SerializedComponentColumn::new(list, name)
+                });
+                Some((chunk.entity_path().clone(), slice.collect::<Vec<_>>()))
+            })
+            .collect();
+        for (entity, columns) in rows.into_iter().filter(|(_, columns)| !columns.is_empty()) {
+            self.push(entity, index.clone(), columns)?;
+        }
+        Ok(())
+    }
+
     fn push_rows(
         &mut self,
         entity: EntityPath,
@@ -175,7 +258,7 @@ impl Chunks {
     }
 
     fn tuid(&self, counter: u64) -> Tuid {
-        Tuid::from_nanos_and_inc(self.namespace, counter)
+        Tuid::from_nanos_and_inc(self.namespace, self.tag | counter)
     }
 
     pub(super) fn into_chunks(self) -> Vec<Chunk> {
@@ -190,7 +273,7 @@ pub(super) fn numbers(name: &'static str, values: &[Option<f64>]) -> SerializedC
 }
 
 /// Names of the columns of [`fine_columns`].
-pub(super) const FINE: [&str; 3] = ["fine_delta", "delta_low", "delta_high"];
+const FINE: [&str; 3] = ["fine_delta", "delta_low", "delta_high"];
 
 /// Delays between samples with their intervals; no columns where there is none.
 pub(super) fn fine_columns(delays: &[Option<FineDelay>]) -> Vec<SerializedComponentColumn> {

@@ -3,7 +3,7 @@
 use rerun::ApplicationId;
 use rerun::log::{Chunk, LogMsg};
 
-use super::chunk::Chunks;
+use super::chunk::{Chunks, Ids};
 use super::error::RecordError;
 use crate::experiment::{Joint, Source};
 
@@ -28,7 +28,7 @@ type Add<'c> = dyn Fn(&mut Chunks) -> Result<(), RecordError> + 'c;
 
 /// A recording of some kind.
 pub(super) trait Content {
-    /// Its name in the viewer.
+    /// Its name in the viewer: the log, the command, the settings.
     fn name(&self) -> String;
 
     /// Equal for equal content: see [`hashed`].
@@ -38,7 +38,7 @@ pub(super) trait Content {
     fn add_about(&self, chunks: &mut Chunks) -> Result<(), RecordError>;
 
     /// The joints in the order of their tabs.
-    fn tabs(&self) -> Vec<Tab<'_>>;
+    fn tabs(&self, growth: Growth) -> Vec<Tab<'_>>;
 
     /// The messages of its blueprint.
     fn views(
@@ -59,15 +59,15 @@ pub(super) fn for_each_chunk(
     part: Part<'_>,
     take: Take<'_>,
 ) -> Result<u64, RecordError> {
-    let mut chunks = Chunks::new(part.used + 2);
+    let mut chunks = part.ids.chunks(part.used + 2);
     if part.joint.is_none() {
         content.add_about(&mut chunks)?;
     }
-    let tabs = content.tabs();
+    let tabs = content.tabs(part.growth);
     let taken = tabs.len() as u64 + 1;
     for (namespace, tab) in (part.used + 3..).zip(tabs).filter(|(_, tab)| part.has(tab.joint)) {
         chunks.into_chunks().iter().try_for_each(&mut *take)?;
-        chunks = Chunks::new(namespace);
+        chunks = part.ids.chunks(namespace);
         (tab.add)(&mut chunks)?;
     }
     chunks.into_chunks().iter().try_for_each(take)?;
@@ -75,8 +75,11 @@ pub(super) fn for_each_chunk(
 }
 
 /// Which of a recording's chunks are made, and which ids they have.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Part<'n> {
+    /// The recording's.
+    pub(super) ids: Ids,
+    pub(super) growth: Growth,
     /// Namespaces that are taken, beside the first one.
     pub(super) used: u64,
     /// All joints and what is about them all, or one joint.
@@ -84,9 +87,31 @@ pub(super) struct Part<'n> {
 }
 
 impl Part<'_> {
+    /// All of a recording.
+    pub(super) fn whole(ids: Ids) -> Self {
+        Self { ids, growth: Growth::Finished, used: 0, joint: None }
+    }
+
     fn has(self, joint: &str) -> bool {
         self.joint.is_none_or(|name| joint == name)
     }
+}
+
+/// The application that the recording `id` of this `name` belongs to in the viewer: one of its
+/// own, since all recordings of one application are shown in the views of the last one.
+pub(super) fn application(name: &str, id: &str) -> ApplicationId {
+    let short: String = id.chars().take(8).collect();
+    ApplicationId::new_or_unknown(format!("{} {short}", plain_words(name)))
+}
+
+/// A name of letters, digits and what else an application's may have.
+fn plain_words(name: &str) -> String {
+    /// Beyond it a name is cut off, and the id with it.
+    const LONGEST: usize = 100;
+    let name = name.replace('α', "alpha").replace('β', "beta");
+    let letter = |c: char| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { ' ' };
+    let name: String = name.chars().map(letter).take(LONGEST).collect();
+    name.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// The names of the files that were read.

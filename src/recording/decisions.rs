@@ -1,14 +1,17 @@
 //! The numbers of every candidate and every decision.
 
-use rerun::{EntityPath, Scalars, SeriesLines, SeriesPoints, components::MarkerShape};
+use rerun::components::MarkerShape;
+use rerun::{EntityPath, Scalars, SeriesLines, SeriesPoints, TextDocument};
 
 use super::chunk::{Chunks, Index, fine_columns, integers, numbers, texts};
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
+use super::markdown::plain;
 use super::palette::{self, color};
 use super::paths::{self, at};
 use crate::delay::{Candidate, FineDelay, Verdict};
 use crate::units::signed;
+use crate::wording::{doubt_percent, number};
 
 /// Adds `/decision/sse`, its logarithm for the plot, and `/decision/table`.
 pub(super) fn add(
@@ -18,7 +21,51 @@ pub(super) fn add(
 ) -> Result<(), RecordError> {
     add_errors(chunks, root, layout)?;
     add_minimum(chunks, root, layout)?;
+    add_page(chunks, root, layout)?;
     add_table(chunks, root, layout)
+}
+
+/// All decisions as a person reads them: what the table has, in five digits.
+fn add_page(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    layout: &JointLayout<'_>,
+) -> Result<(), RecordError> {
+    /// Rows that a person still reads.
+    const MOST: usize = 1000;
+    let rows: Vec<_> = layout.segments().take(MOST).map(|(t, s)| page_row(t, s)).collect();
+    let all = layout.segments().count();
+    let more = if all > MOST { format!("\n\nThe first {MOST} of {all}.") } else { String::new() };
+    let page = format!("{PAGE_HEADER}\n{}{more}", rows.join("\n"));
+    let document = TextDocument::from_markdown(page);
+    chunks.push_static(at(root, paths::DECISION_PAGE), &document)
+}
+
+const PAGE_HEADER: &str = "\
+| trial | i | verdict | δ [s] | δ | p | q | SSE | slope before | slope after | doubt |
+|---|---|---|---|---|---|---|---|---|---|---|";
+
+fn page_row(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
+    let decision = segment.decision;
+    let best = decision.candidates.best();
+    let of = |value: Option<f64>| value.map_or_else(String::new, number);
+    let delay = decision.delay();
+    let period_s = trial.trial.period().seconds();
+    let mark = if decision.verdict() == Verdict::Accepted { "✓" } else { "✗" };
+    let cells = [
+        plain(trial.trial.label()),
+        decision.number.to_string(),
+        format!("{mark} {}", decision.verdict()),
+        of(delay.map(|delay| delay * period_s)),
+        of(delay),
+        decision.input_step.sample.to_string(),
+        segment.place().unwrap_or_default(),
+        of(best.map(|best| best.sse)),
+        of(best.map(|best| best.before.slope)),
+        of(best.map(|best| best.after.slope)),
+        doubt_percent(&segment.doubt),
+    ];
+    format!("| {} |", cells.join(" | "))
 }
 
 /// SSE at each candidate's tick; empty at the first and last tick of a segment.

@@ -6,18 +6,21 @@
 //! - `decision`: per segment an opening tick, one tick per recorded candidate and a
 //!   verdict tick, counted from 1 without a gap; each joint counts for itself.
 //! - `segment`: the number of the step, counted on over the trials.
+//! - `doubt`: the rank of the decision, the most doubtful being the first.
 //!
-//! Every row carries all four, so that one cursor moves all views and no view is empty
-//! when another timeline is chosen. The samples from one step to the next are spread over
+//! What is drawn of a decision carries the first four and `doubt`, so that one cursor moves all
+//! views; samples carry all but `segment` and `doubt`, on which a plot of them would be a comb.
+//! The samples from one step to the next are spread over
 //! the ticks of its segment.
 
 use std::collections::HashMap;
 
-use super::chunk::Moment;
-use crate::delay::{Decision, TrialEstimate, Verdict};
+use super::chunk::{Index, Moment};
+use crate::delay::{Decision, Doubt, TrialEstimate, Verdict};
 use crate::experiment::{Joint, Trial};
 use crate::report::EstimatedJoint;
 use crate::units::signed;
+use crate::wording::doubt_sentence;
 
 /// How many candidates of each segment are recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -94,6 +97,10 @@ impl TrialStarts {
 #[derive(Debug)]
 pub(super) struct JointLayout<'a> {
     pub(super) trials: Vec<TrialLayout<'a>>,
+    /// The first revision of any model of the recording.
+    pub(super) first_revision: Option<i64>,
+    /// The last one.
+    pub(super) last_revision: Option<i64>,
 }
 
 /// One trial of a joint on the timelines.
@@ -117,6 +124,10 @@ pub(super) struct SegmentLayout<'a> {
     pub(super) number: i64,
     /// Its first tick.
     pub(super) opening: i64,
+    /// How doubtful its decision is.
+    pub(super) doubt: Doubt,
+    /// Its place among all decisions of the joint by doubt, from 1.
+    pub(super) rank: i64,
     /// Indices of the candidates that are recorded, ascending.
     pub(super) kept: Vec<usize>,
 }
@@ -147,7 +158,11 @@ impl SegmentLayout<'_> {
 }
 
 impl<'a> JointLayout<'a> {
-    pub(super) fn of(joint: EstimatedJoint<'a>, starts: &TrialStarts, detail: Detail) -> Self {
+    pub(super) fn of(
+        joint: EstimatedJoint<'a>,
+        starts: &TrialStarts,
+        (detail, revisions): (Detail, Option<(i64, i64)>),
+    ) -> Self {
         let mut tick = 1;
         let mut number = 0;
         let mut trials = Vec::new();
@@ -156,17 +171,46 @@ impl<'a> JointLayout<'a> {
             let Ok(estimate) = result else { continue };
             let idle = (tick, number.max(1));
             let mut segments = Vec::with_capacity(estimate.decisions.len());
+            let output = estimate.smoothed.as_deref().unwrap_or(trial.output());
             for decision in &estimate.decisions {
                 number += 1;
                 let kept = kept(decision, detail);
-                let segment = SegmentLayout { decision, number, opening: tick, kept };
+                let doubt = decision.doubt(output);
+                let segment =
+                    SegmentLayout { decision, number, opening: tick, doubt, rank: 0, kept };
                 tick = segment.verdict() + 1;
                 segments.push(segment);
             }
             let start = starts.of_trial(trial);
-            trials.push(TrialLayout { index, trial, estimate, segments, start, idle });
+            let trial = TrialLayout { index, trial, estimate, segments, start, idle };
+            trials.push(trial);
         }
-        Self { trials }
+        let (first_revision, last_revision) = revisions.unzip();
+        let mut layout = Self { trials, first_revision, last_revision };
+        layout.rank();
+        layout
+    }
+
+    /// Counts all decisions by doubt, the most doubtful first.
+    fn rank(&mut self) {
+        let mut segments: Vec<_> = self.trials.iter_mut().flat_map(|t| &mut t.segments).collect();
+        segments.sort_by(|a, b| b.doubt.value().total_cmp(&a.doubt.value()));
+        for (segment, rank) in segments.into_iter().zip(1..) {
+            segment.rank = rank;
+        }
+    }
+
+    /// The opening ticks of all segments, with their ranks by doubt.
+    pub(super) fn openings(&self) -> Index {
+        let index: Index = self.segments().map(|(trial, segment)| trial.opening(segment)).collect();
+        index.with_doubt(self.segments().map(|(_, segment)| segment.rank))
+    }
+
+    /// All segments by doubt, the most doubtful first.
+    pub(super) fn by_doubt(&self) -> Vec<(&TrialLayout<'a>, &SegmentLayout<'a>)> {
+        let mut all: Vec<_> = self.segments().collect();
+        all.sort_by_key(|(_, segment)| segment.rank);
+        all
     }
 
     /// Whether some delay is known between samples.
@@ -239,6 +283,12 @@ impl<'a> TrialLayout<'a> {
     pub(super) fn moment(&self, segment: &SegmentLayout<'_>, decision: i64, k: usize) -> Moment {
         let (sample, time_ns) = (self.sample(k), self.time_ns(k));
         Moment { decision, segment: segment.number, sample, time_ns }
+    }
+
+    /// What speaks most against the decision on `segment`.
+    pub(super) fn reason(&self, segment: &SegmentLayout<'_>) -> String {
+        let (decision, period) = (segment.decision, self.trial.period());
+        doubt_sentence(&segment.doubt, decision.program_verdict(), period.seconds())
     }
 
     /// The opening tick, at the input step.

@@ -9,9 +9,6 @@ use rerun::log::{Chunk, LogMsg};
 
 use super::error::RecordError;
 
-/// The application's name in the viewer; blueprints are kept per application.
-pub(super) const APPLICATION: &str = "tauscope";
-
 /// What a store is and who made it: the first message of each.
 pub(super) fn store_message(store: &StoreId) -> LogMsg {
     let info = StoreInfo::new(

@@ -13,7 +13,7 @@ use super::palette::{self, Rgb, color};
 use super::paths::{self, at, child};
 use super::{correlogram, error_share, scatter};
 use crate::diagnosis::failure::{Region, WorstSegment};
-use crate::diagnosis::{Comparison, ErrorFigures};
+use crate::diagnosis::{Comparison, ErrorFigures, sensor_noise};
 use crate::fit::Horizon;
 use crate::report::ComparedJoint;
 use crate::wording::{
@@ -23,12 +23,14 @@ use crate::wording::{
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
 
-/// Adds `/model/<name>/simulated`, `/residual` and the rest of the models' page.
+/// Adds `/model/<name>/simulated`, `/residual` and the rest of the models' page, on which
+/// `judged` has the first word.
 pub(super) fn add(
     chunks: &mut Chunks,
     root: &EntityPath,
     layout: &JointLayout<'_>,
     models: &[&ComparedJoint<'_>],
+    judged: &ComparedJoint<'_>,
 ) -> Result<(), RecordError> {
     for (compared, rgb) in models.iter().zip(palette::models()) {
         let evaluation = &compared.comparison.fit.evaluation;
@@ -48,17 +50,14 @@ pub(super) fn add(
         signal(chunks, entity, layout, residual)?;
         figures(chunks, &model, compared.comparison)?;
     }
-    if let Some(first) = models.first() {
-        band(chunks, root, layout, first.comparison.noise_floor)?;
-        let page = page(layout, models).unwrap_or_default();
-        let document = TextDocument::from_markdown(page);
-        chunks.push_static(at(root, paths::MODEL_PAGE), &document)?;
-        scatter::add(chunks, &at(root, paths::scatter::ROOT), models)?;
-        error_share::add(chunks, &at(root, paths::error_share::ROOT), models)?;
-        correlogram::add(chunks, &at(root, paths::correlation::ROOT), models)?;
-        worst(chunks, root, layout, first.comparison)?;
-    }
-    Ok(())
+    band(chunks, root, layout, sensor_noise(&judged.joint.trials))?;
+    let page = page(layout, models, judged).unwrap_or_default();
+    let document = TextDocument::from_markdown(page);
+    chunks.push_static(at(root, paths::MODEL_PAGE), &document)?;
+    scatter::add(chunks, &at(root, paths::scatter::ROOT), models)?;
+    error_share::add(chunks, &at(root, paths::error_share::ROOT), models)?;
+    correlogram::add(chunks, &at(root, paths::correlation::ROOT), models)?;
+    worst(chunks, root, layout, judged.comparison)
 }
 
 /// Regions and correlations as lists of numbers, for programs.
@@ -123,10 +122,10 @@ fn signal<'a>(
         lengths.extend(std::iter::repeat_n(1, values.len()).chain([0]));
         all.extend(values);
     }
-    chunks.push(entity, index, Scalars::new(all).columns(lengths)?)
+    chunks.push(entity, index.without_segment(), Scalars::new(all).columns(lengths)?)
 }
 
-/// A lane that is marked where the first model's worst segments are.
+/// A lane that is marked where the model's worst segments are.
 fn worst(
     chunks: &mut Chunks,
     root: &EntityPath,
@@ -142,10 +141,15 @@ fn worst(
         marks.push((trial.moment_of(*samples.start()), rank.to_string()));
         marks.push((trial.moment_of(samples.end() + 1), String::new()));
     }
+    if marks.is_empty() {
+        let start = layout.trials.iter().find_map(|trial| trial.moments(1).next());
+        marks.extend(start.map(|start| (start, "none: the model is adequate".to_owned())));
+    }
     marks.sort_by_key(|(moment, name)| (moment.sample, !name.is_empty()));
     let (index, names): (Vec<_>, Vec<_>) = marks.into_iter().unzip();
     let states = StateChange::new().with_state(names).columns_of_unit_batches()?;
-    chunks.push(at(root, paths::WORST), index.into_iter().collect(), states)
+    let index: Index = index.into_iter().collect();
+    chunks.push(at(root, paths::WORST), index.without_segment(), states)
 }
 
 /// The samples of `worst` in its trial, counted from 1.
@@ -175,7 +179,7 @@ fn band(
         let ends = layout.trials.iter().flat_map(|t| [t.moment_of(1), t.moment_of(t.trial.len())]);
         let index: Index = ends.collect();
         let values = Scalars::new(vec![level; index.len()]);
-        chunks.push(entity, index, values.columns_of_unit_batches()?)?;
+        chunks.push(entity, index.without_segment(), values.columns_of_unit_batches()?)?;
     }
     Ok(())
 }
@@ -184,12 +188,12 @@ fn band(
 fn page(
     layout: &JointLayout<'_>,
     models: &[&ComparedJoint<'_>],
+    judged: &ComparedJoint<'_>,
 ) -> Result<String, std::fmt::Error> {
     let mut page = String::new();
-    let Some(first) = models.first() else { return Ok(page) };
-    let joint = first.joint;
+    let joint = judged.joint;
     let unit = joint.output_unit.as_deref().unwrap_or("");
-    writeln!(page, "### {}: {}\n", plain(&joint.name), headline(first.comparison))?;
+    writeln!(page, "### {}: {}\n", plain(&joint.name), headline(judged))?;
     writeln!(page, "| model | training | validation | fit | lack of fit |\n|---|---|---|---|---|")?;
     for compared in models {
         let Comparison { training, validation, lack_of_fit, .. } = compared.comparison;
@@ -202,10 +206,10 @@ fn page(
         let (train, valid) = (rmse(training), rmse(validation));
         writeln!(page, "| {} | {train} | {valid} | {percent} | {shown} |", compared.model)?;
     }
-    let horizon = first.comparison.fit.evaluation.horizon;
+    let horizon = judged.comparison.fit.evaluation.horizon;
     writeln!(page, "\nErrors are root mean squares of simulations, {horizon}.")?;
-    if let Some(noise) = first.comparison.noise_floor {
-        writeln!(page, "Noise of the measurement: {} {unit}.", number(noise))?;
+    if let Some(noise) = sensor_noise(&joint.trials) {
+        writeln!(page, "Noise of the sensor: {} {unit}.", number(noise))?;
     }
     for compared in models {
         for sentence in failure_sentences(compared.joint, compared.comparison) {
@@ -218,15 +222,20 @@ fn page(
             writeln!(page, "\n**Residual** ({}): {}", compared.model, plain(&residual))?;
         }
     }
-    if let Some(failure) = &first.comparison.failure {
-        writeln!(page, "\nWorst segments of {}, {}:", first.model, Horizon::Steps)?;
-        writeln!(page, "\n| rank | trial | time | `sample` | share |\n|---|---|---|---|---|")?;
+    if let Some(failure) = &judged.comparison.failure {
+        writeln!(page, "\nWorst segments of {}, {}:", judged.model, Horizon::Steps)?;
+        // What is listed restarts at every step; what is plotted may not.
+        let plotted = format!("in the plot ({horizon})");
+        writeln!(page, "\n| rank | trial | time | `sample` | share | {plotted} |")?;
+        writeln!(page, "|---|---|---|---|---|---|")?;
         for (rank, worst) in (1..).zip(&failure.worst_segments) {
             let (from, to) = (number(worst.start_s), number(worst.end_s));
             let share = 100.0 * worst.share_of_squared_error;
             let samples = on_timeline(layout, worst);
             let trial = plain(&worst.trial);
-            writeln!(page, "| {rank} | {trial} | {from} … {to} s | {samples} | {share:.0} % |")?;
+            let plotted = plotted_share(layout, judged.comparison, worst);
+            let shares = format!("{share:.0} % | {plotted:.1} %");
+            writeln!(page, "| {rank} | {trial} | {from} … {to} s | {samples} | {shares} |")?;
         }
     }
     for compared in models {
@@ -244,6 +253,19 @@ fn page(
     Ok(page)
 }
 
+/// The part of the plotted residual's squares that lies in `worst`, in percent.
+fn plotted_share(layout: &JointLayout<'_>, comparison: &Comparison, worst: &WorstSegment) -> f64 {
+    let residuals = &comparison.fit.evaluation.residuals;
+    let squares = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
+    let all: f64 = residuals.iter().map(|trial| squares(trial)).sum();
+    let of_label = layout.trials.iter().find(|trial| trial.trial.label() == worst.trial);
+    let inside = of_label.and_then(|trial| {
+        let samples = samples_of(worst, trial);
+        residuals.get(trial.index)?.get(samples.start() - 1..*samples.end())
+    });
+    100.0 * inside.map_or(0.0, squares) / all.max(f64::MIN_POSITIVE)
+}
+
 /// Where `worst` is on the timeline `sample`.
 fn on_timeline(layout: &JointLayout<'_>, worst: &WorstSegment) -> String {
     let of_label = layout.trials.iter().find(|trial| trial.trial.label() == worst.trial);
@@ -255,8 +277,9 @@ fn on_timeline(layout: &JointLayout<'_>, worst: &WorstSegment) -> String {
 }
 
 /// What a reviewer should know first.
-fn headline(comparison: &Comparison) -> String {
-    let times = comparison.validation.zip(comparison.noise_floor);
+fn headline(judged: &ComparedJoint<'_>) -> String {
+    let comparison = judged.comparison;
+    let times = comparison.validation.zip(sensor_noise(&judged.joint.trials));
     let times = times.map(|(error, noise)| error.rmse / noise.max(f64::MIN_POSITIVE));
     match (comparison.lack_of_fit, times) {
         (Some(test), _) if test.adequate => "the model is adequate".to_owned(),

@@ -100,6 +100,7 @@ impl Marks {
         let style = style.with_markers([self.marker]).with_marker_sizes([4.0]);
         chunks.push_static(entity.clone(), &style)?;
         let index: Index = marks.iter().map(|(moment, _)| *moment).collect();
+        let index = index.without_segment();
         let values = Scalars::new(marks.iter().map(|(_, value)| *value));
         chunks.push(entity, index, values.columns_of_unit_batches()?)
     }
@@ -146,7 +147,7 @@ fn add_lines(
         let style = SeriesLines::new().with_names([name]);
         let style = style.with_colors([color(rgb)]).with_widths([2.0]);
         chunks.push_static(entity.clone(), &style)?;
-        chunks.push(entity, index, Scalars::new(values).columns(lengths)?)?;
+        chunks.push(entity, index.without_segment(), Scalars::new(values).columns(lengths)?)?;
     }
     Ok(())
 }
@@ -258,10 +259,9 @@ impl Map {
         entity: &EntityPath,
         layout: &JointLayout<'_>,
     ) -> Result<(), RecordError> {
-        let mut index = Index::default();
+        let index = layout.openings();
         let (mut centers, mut halves) = (Vec::new(), Vec::new());
         for (trial, segment) in layout.segments() {
-            index.extend([trial.opening(segment)]);
             let ends = segment.decision.segment;
             let [left, right] =
                 [ends.first, ends.last].map(|k| self.output.x(trial.sample(k) as f64));

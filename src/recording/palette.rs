@@ -45,9 +45,22 @@ pub(super) const BAND: Rgb = rgb(40, 50, 58);
 /// Grid lines.
 pub(super) const GRID: Rgb = rgb(60, 62, 66);
 
-/// Models, one after the other; from the fifth on they repeat.
+/// Models, one after the other; from the eleventh on they repeat.
 pub(super) fn models() -> impl Iterator<Item = Rgb> {
-    [rgb(230, 159, 0), rgb(0, 158, 115), rgb(204, 121, 167), rgb(213, 94, 0)].into_iter().cycle()
+    [
+        rgb(230, 159, 0),
+        rgb(0, 158, 115),
+        rgb(204, 121, 167),
+        rgb(213, 94, 0),
+        rgb(120, 190, 255),
+        rgb(240, 228, 66),
+        rgb(160, 120, 240),
+        rgb(150, 220, 120),
+        rgb(255, 150, 150),
+        rgb(0, 200, 210),
+    ]
+    .into_iter()
+    .cycle()
 }
 
 /// Methods beside the first one; from the third on they repeat.

@@ -51,6 +51,12 @@ pub(crate) const VERDICT: &str = "verdict";
 pub(crate) const VERDICT_LOG: &str = "verdict/log";
 pub(crate) const SEGMENT: &str = "segment";
 pub(crate) const TRIAL: &str = "trial";
+/// Where the cursor is, in words.
+pub(crate) const PLACE: &str = "place";
+/// The decisions by doubt, in words and as lines to click.
+pub(crate) const DOUBT: &str = "doubt";
+pub(crate) const DOUBT_LOG: &str = "doubt/log";
+pub(crate) const DECISION_PAGE: &str = "decision/page";
 
 /// Chosen lines and breakpoints over the record.
 pub(crate) const LINE_BEFORE: &str = "line/before";
@@ -83,19 +89,22 @@ pub(crate) mod drawing {
     pub(crate) const INPUT_STEP: &str = "input_step";
     pub(crate) const MEASURED: &str = "measured";
     pub(crate) const SMOOTHED: &str = "smoothed";
+    /// What the chosen lines leave.
+    pub(crate) const RESIDUAL: &str = "residual";
     pub(crate) const SSE: &str = "sse";
     pub(crate) const ACCEPTED: &str = "accepted";
     pub(crate) const REJECTED: &str = "rejected";
     pub(crate) const NAMES: &str = "names";
     pub(crate) const CANDIDATE: &str = "candidate";
     pub(crate) const CANDIDATE_MARK: &str = "candidate/mark";
-    pub(crate) const PARTS: [&str; 12] = [
+    pub(crate) const PARTS: [&str; 13] = [
         GRID,
         TICKS,
         BORDERS,
         INPUT_STEP,
         MEASURED,
         SMOOTHED,
+        RESIDUAL,
         SSE,
         ACCEPTED,
         REJECTED,
@@ -230,9 +239,9 @@ pub(crate) mod revision {
         pub(crate) const NOISE: &str = "noise";
         pub(crate) const SIMULATED: &str = "simulated";
         pub(crate) const RESIDUAL: &str = "residual";
-        pub(crate) const NAMES: &str = "names";
+        pub(crate) const WORST: &str = "worst";
         pub(crate) const PARTS: [&str; 8] =
-            [GRID, TEXTS, WINDOW, MEASURED, NOISE, SIMULATED, RESIDUAL, NAMES];
+            [GRID, TEXTS, WINDOW, MEASURED, NOISE, WORST, SIMULATED, RESIDUAL];
     }
 
     /// The share of the error of a revision in each region.

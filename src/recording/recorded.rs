@@ -8,6 +8,8 @@ use crate::report::{ComparedJoint, EstimatedJoint, ImprovedJoint};
 /// Everything that a recording holds.
 #[derive(Clone, Copy, Debug)]
 pub struct Recording<'a> {
+    /// What was done, in a word: the name of the command.
+    pub command: &'a str,
     /// The joints, in the order of their tabs.
     pub joints: &'a [EstimatedJoint<'a>],
     /// The settings of the algorithm.

@@ -1,4 +1,5 @@
-//! The drawing of one decision: the segment, both lines, the error curve, the cursor.
+//! The drawing of one decision: the segment, both lines, what they leave, the error curve, the
+//! cursor.
 //!
 //! What belongs to the segment is set at its opening tick and stays until the next one;
 //! what belongs to a candidate is set at each of its ticks and cleared before and after,
@@ -10,7 +11,7 @@ use rerun::datatypes::Vec2D;
 use rerun::{EntityPath, LineStrips2D, Points2D};
 
 use super::beside::{Other, in_short};
-use super::canvas::{CURVE_POINTS, Labels, Plot, SHEET, Span, simplified};
+use super::canvas::{CURVE_POINTS, Labels, Plot, SHEET, Span, simplified, thinned_to};
 use super::chunk::{Chunks, Index};
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
@@ -24,6 +25,9 @@ use crate::figure::segment::SegmentFigure;
 use crate::units::signed;
 use crate::wording::{bracketed, number};
 
+/// Width and height of the sheet.
+pub(super) const SIZE: (f32, f32) = (SHEET.0, 750.0);
+
 /// Adds the drawings of all segments below `root`/drawing.
 pub(super) fn add(
     chunks: &mut Chunks,
@@ -35,8 +39,7 @@ pub(super) fn add(
     let drawings: Vec<_> =
         layout.segments().map(|(trial, segment)| Drawing::new(trial, segment)).collect();
     let root = at(root, drawing::ROOT);
-    let opening: Index = drawings.iter().map(|d| d.trial.opening(d.segment)).collect();
-    let mut sheet = Rows::new(chunks, root.clone(), opening);
+    let mut sheet = Rows::new(chunks, root.clone(), layout.openings());
     let rows = || drawings.iter();
     sheet.strips(drawing::GRID, palette::GRID, 0.8, rows().map(|d| d.grid().0))?;
     sheet.texts(drawing::TICKS, palette::BORDER, rows().map(|d| d.grid().1))?;
@@ -44,6 +47,7 @@ pub(super) fn add(
     sheet.strips(drawing::SMOOTHED, palette::SMOOTHED, 1.4, rows().map(|d| vec![d.smoothed()]))?;
     sheet.strips(drawing::BORDERS, palette::BORDER, 1.2, rows().map(Drawing::borders))?;
     sheet.strips(drawing::INPUT_STEP, palette::INPUT, 1.6, rows().map(Drawing::input_step))?;
+    sheet.strips(drawing::RESIDUAL, palette::SMOOTHED, 1.4, rows().map(Drawing::residual))?;
     sheet.strips(drawing::SSE, palette::ERROR, 1.6, rows().map(|d| vec![d.errors()]))?;
     sheet.strips(
         drawing::ACCEPTED,
@@ -110,7 +114,7 @@ struct Legend {
 
 impl Legend {
     fn entry(self, index: usize, text: Option<String>) -> Labels {
-        const ROW: f32 = 446.0;
+        const ROW: f32 = 450.0;
         let mut labels = Labels::default();
         let width = (SHEET.0 - 200.0) / self.entries as f32;
         let middle = 200.0 + width * (index as f32 + 0.5);
@@ -121,12 +125,15 @@ impl Legend {
     }
 }
 
-/// One segment on its sheet: the output above, the error curve below.
+/// One segment on its sheet: the output above, what both lines leave of it, the error curve
+/// below.
 struct Drawing<'l, 'a> {
     trial: &'l TrialLayout<'a>,
     segment: &'l SegmentLayout<'a>,
     figure: SegmentFigure<'l>,
     output: Plot,
+    /// What the chosen lines leave, with its plot.
+    residual: (Vec<(f64, f64)>, Plot),
     error: Plot,
 }
 
@@ -138,12 +145,16 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let measured = figure.visible(trial.trial.output());
         let values = measured.iter().chain(figure.visible(trial.output())).copied();
         let y = Span::around(values, 0.06);
+        let left = figure.residual(trial.output());
+        let heights = left.iter().map(|(_, y)| *y).chain([0.0]);
+        let residual = Plot::new(500.0..=568.0, x, Span::around(heights, 0.1));
         Self {
             trial,
             segment,
             figure,
             output: Plot::new(64.0..=400.0, x, y),
-            error: Plot::new(474.0..=598.0, x, figure.error_span()),
+            residual: (left, residual),
+            error: Plot::new(606.0..=712.0, x, figure.error_span()),
         }
     }
 
@@ -162,6 +173,10 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let named = |ticks: Vec<f64>| ticks.into_iter().map(|y| (y, number(y))).collect::<Vec<_>>();
         let y_ticks = named(self.output.y_span().ticks(5.0));
         let mut strips = self.output.grid(&x_ticks, &y_ticks, &mut labels);
+        let (_, residual) = &self.residual;
+        let ticks = named(residual.y_span().ticks(2.0));
+        strips.extend(residual.grid(&x_ticks, &ticks, &mut labels));
+        strips.push(residual.level(0.0).to_vec());
         let errors = self.error.y_span().ticks(3.0);
         let errors: Vec<_> = errors.into_iter().map(|e| (e, number(10f64.powf(e)))).collect();
         strips.extend(self.error.grid(&x_ticks, &errors, &mut labels));
@@ -180,6 +195,19 @@ impl<'l, 'a> Drawing<'l, 'a> {
     fn input_step(&self) -> Vec<Vec<Vec2D>> {
         let p = self.segment.decision.input_step.sample as f64;
         vec![self.output.vertical(p).to_vec(), self.error.vertical(p).to_vec()]
+    }
+
+    /// What the chosen lines leave, thinned; the line breaks where they do.
+    fn residual(&self) -> Vec<Vec<Vec2D>> {
+        let (all, plot) = &self.residual;
+        let q = self.segment.decision.candidates.best().map_or(0.0, |best| best.breakpoint as f64);
+        let parts = all.split_at(all.partition_point(|(k, _)| *k < q));
+        let curve = |part: &[(f64, f64)]| {
+            let heights: Vec<f64> = part.iter().map(|(_, y)| *y).collect();
+            let kept = thinned_to(&heights, CURVE_POINTS).into_iter();
+            simplified(plot.places(kept.filter_map(|index| part.get(index).copied())))
+        };
+        [parts.0, parts.1].map(curve).into_iter().filter(|curve| curve.len() > 1).collect()
     }
 
     fn errors(&self) -> Vec<Vec2D> {
@@ -269,13 +297,14 @@ impl<'l, 'a> Drawing<'l, 'a> {
             let text = format!("q = {place}, SSE = {}", number(best.sse));
             labels.put_whole(self.output.below(q, 2.0), text);
         }
-        labels.put_whole(self.output.below(p, 24.0), format!("p = {}", decision.input_step.sample));
+        labels.put_whole(self.output.below(p, 36.0), format!("p = {}", decision.input_step.sample));
         let (first, last) = (decision.segment.first, decision.segment.last);
         labels.put_whole(self.output.below(first as f64, 2.0), format!("r = {first}"));
         labels.put_whole(self.output.below(last as f64, 2.0), format!("end = {last}"));
         let output = bracketed("output", joint.output_unit.as_deref());
         labels.put(Vec2D::new(62.0, 22.0), output);
-        labels.put(Vec2D::new(62.0, 430.0), "SSE (log)".to_owned());
+        labels.put(Vec2D::new(190.0, 470.0), "residual".to_owned());
+        labels.put(Vec2D::new(190.0, 578.0), "SSE (log)".to_owned());
         labels
     }
 }

@@ -102,7 +102,7 @@ fn add_signal<'a>(
         lengths.extend(std::iter::repeat_n(1, values.len()));
         lengths.push(0);
     }
-    chunks.push(entity, index, Scalars::new(all).columns(lengths)?)
+    chunks.push(entity, index.without_segment(), Scalars::new(all).columns(lengths)?)
 }
 
 /// A signal that is not there at every sample: no row then, and one empty row where it
@@ -128,5 +128,5 @@ fn add_sparse<'a>(
             there = value.is_some();
         }
     }
-    chunks.push(entity, index, Scalars::new(all).columns(lengths)?)
+    chunks.push(entity, index.without_segment(), Scalars::new(all).columns(lengths)?)
 }

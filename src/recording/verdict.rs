@@ -13,7 +13,7 @@ use crate::delay::{Check, Condition, Decision, FineDelay, Lag, LagPart, Outcome}
 use crate::delay::{Settings, Verdict};
 use crate::experiment::Joint;
 use crate::report::{EstimatedJoint, dead_time_sentences};
-use crate::wording::{number, remedy_text};
+use crate::wording::{doubt_percent, number, remedy_text};
 
 /// Adds `/verdict` (text, log line and lane), `/segment` and `/trial` (lanes).
 pub(super) fn add(
@@ -25,7 +25,7 @@ pub(super) fn add(
 ) -> Result<(), RecordError> {
     let (joint, settings) = (estimated.joint, &estimated.estimate.settings);
     let segments: Vec<_> = layout.segments().collect();
-    let opening: Index = segments.iter().map(|(trial, segment)| trial.opening(segment)).collect();
+    let opening = layout.openings();
     let text = |(trial, segment): &Placed<'_, '_>| {
         let methods = methods(trial, segment, settings, others);
         document(Facts { joint, trial, segment, settings }, &methods)
@@ -49,15 +49,16 @@ pub(super) fn add(
     let columns = documents.columns_of_unit_batches()?.chain(states);
     chunks.push(entity.clone(), opening.clone(), columns)?;
     chunks.push_static(entity, &lane_colors())?;
-    add_log(chunks, root, joint, &segments)?;
+    add_log(chunks, root, joint, (&segments, layout.last_revision))?;
     add_lanes(chunks, root, layout, &segments, opening)
 }
 
 fn lane_colors() -> StateConfiguration {
-    let values = std::iter::once("accepted").chain(Condition::ALL.map(Condition::id));
-    let labels = Condition::ALL.map(|condition| format!("rejected: {condition}"));
+    let conditions = || Condition::ALL.into_iter().chain([Condition::Reviewer]);
+    let values = std::iter::once("accepted").chain(conditions().map(Condition::id));
+    let labels = conditions().map(|condition| format!("rejected: {condition}"));
     let labels = std::iter::once("accepted".to_owned()).chain(labels);
-    let rejected = std::iter::repeat_n(color(palette::REJECTED), Condition::ALL.len());
+    let rejected = conditions().map(|_| color(palette::REJECTED));
     let colors: Vec<Color> = std::iter::once(color(palette::ACCEPTED)).chain(rejected).collect();
     StateConfiguration::new().with_values(values).with_labels(labels).with_colors(colors)
 }
@@ -69,10 +70,12 @@ fn add_log(
     chunks: &mut Chunks,
     root: &EntityPath,
     joint: &Joint,
-    segments: &[Placed<'_, '_>],
+    (segments, last_revision): (&[Placed<'_, '_>], Option<i64>),
 ) -> Result<(), RecordError> {
     let index: Index = segments.iter().map(|(trial, segment)| trial.verdict(segment)).collect();
     let lines: Vec<_> = segments.iter().map(|(t, s)| log_line(joint, t, s)).collect();
+    // On the timeline of revisions, too, where a click leads away from.
+    let index = index.at_revision(last_revision);
     let accepted = |segment: &SegmentLayout<'_>| segment.decision.verdict() == Verdict::Accepted;
     let levels = segments.iter().map(|(_, s)| if accepted(s) { "INFO" } else { "WARN" });
     let log = TextLog::update_fields().with_many_text(lines).with_many_level(levels);
@@ -84,19 +87,40 @@ fn log_line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>)
     let trials =
         if joint.trials.len() > 1 { format!("{} ", trial.trial.label()) } else { String::new() };
     let step = format!("{trials}step {:>3}", decision.number);
-    let period = trial.trial.period().seconds();
-    let seconds = |delay: f64| format!("δ {}", seconds(decision, delay, period));
-    let verdict = match (decision.verdict(), decision.delay()) {
-        (Verdict::Rejected(condition), _) => format!("✗ {}", condition.meaning()),
-        (Verdict::Accepted, delay) => format!("✓ {}", delay.map_or_else(String::new, seconds)),
-    };
+    let verdict = verdict(trial, decision);
     let at = format!("p {}", decision.input_step.sample);
     let found = decision.candidates.best().zip(decision.delay());
     let found = found.map_or_else(String::new, |(best, delay)| {
         let (q, sse) = (segment.place().unwrap_or_default(), number(best.sse));
         format!(", q {q}, δ {}, SSE {sse}", number(delay))
     });
-    format!("{step}  {verdict}   ({at}{found})")
+    let doubt = doubt_percent(&segment.doubt);
+    format!("{step}  {verdict}   ({at}{found}; doubt {doubt})")
+}
+
+/// A step and its verdict.
+pub(super) fn in_short(
+    joint: &Joint,
+    trial: &TrialLayout<'_>,
+    segment: &SegmentLayout<'_>,
+) -> String {
+    let decision = segment.decision;
+    let in_trial = match joint.trials.len() {
+        1 => String::new(),
+        _ => format!("{}, ", trial.trial.label()),
+    };
+    format!("{in_trial}step {} {}", decision.number, verdict(trial, decision))
+}
+
+fn verdict(trial: &TrialLayout<'_>, decision: &Decision) -> String {
+    let period = trial.trial.period().seconds();
+    let seconds = |delay: f64| format!("δ {}", seconds(decision, delay, period));
+    let by = decision.word.as_ref().map_or("", |_| "by a reviewer ");
+    match (decision.verdict(), decision.delay()) {
+        (Verdict::Rejected(Condition::Reviewer), _) => "✗ by a reviewer".to_owned(),
+        (Verdict::Rejected(condition), _) => format!("✗ {}", condition.meaning()),
+        (Verdict::Accepted, delay) => format!("✓ {by}{}", delay.map_or_else(String::new, seconds)),
+    }
 }
 
 /// Seconds: to a millisecond, and finer where delays are between samples.
@@ -126,6 +150,9 @@ fn add_lanes(
         opening,
         StateChange::new().with_state(names).columns_of_unit_batches()?,
     )?;
+    let hint = ["on `decision`, `segment`, `sample` or `time`: choose it at the bottom left"];
+    let hint = StateChange::new().with_state(hint).columns_of_unit_batches()?;
+    chunks.push(at(root, paths::SEGMENT), Index::before_all(layout.first_revision), hint)?;
     let starts = layout.trials.iter().filter_map(|trial| trial.moments(1).next());
     let labels: Vec<_> = layout.trials.iter().map(|trial| trial.trial.label().to_owned()).collect();
     let states = StateChange::new().with_state(labels).columns_of_unit_batches()?;
@@ -144,7 +171,8 @@ fn document(facts: Facts<'_, '_>, methods: &str) -> String {
     let name = plain(&joint.name);
     let title = format!("### {name}{in_trial}: step {} of {of}", decision.number);
     let headline = facts.headline();
-    format!("{title}\n{headline}\n{methods}\n{}\n\n{}\n", facts.quantities(), facts.conditions())
+    let (doubt, conditions, quantities) = (facts.doubt(of), facts.conditions(), facts.quantities());
+    format!("{title}\n{headline}\n\n{doubt}\n{methods}\n{conditions}\n\n{quantities}\n")
 }
 
 /// The table of all methods, where there are several.
@@ -182,16 +210,50 @@ impl Facts<'_, '_> {
     }
 
     fn at(&self, sample: usize) -> String {
-        format!("sample {sample} = {:.3} s", self.trial.trial.time_s(sample))
+        let in_trial = format!("sample {sample} = {:.3} s", self.trial.trial.time_s(sample));
+        if self.joint.trials.len() < 2 {
+            return in_trial;
+        }
+        let joined = self.trial.time_ns(sample) as f64 * 1e-9;
+        format!("{in_trial} of the trial; {} = {joined:.3} s in a row", self.trial.sample(sample))
     }
 
     fn output(&self, value: f64) -> String {
         with_unit(value, self.joint.output_unit.as_deref(), "")
     }
 
+    /// How doubtful the decision is, and why.
+    fn doubt(&self, of: usize) -> String {
+        let (percent, rank) = (doubt_percent(&self.segment.doubt), self.segment.rank);
+        let all = if self.joint.trials.len() > 1 { "the joint's" } else { &of.to_string() };
+        format!(
+            "doubt **{percent}** (`doubt` {rank} of {all}): {}",
+            self.trial.reason(self.segment)
+        )
+    }
+
     fn headline(&self) -> String {
         let decision = self.segment.decision;
-        match (decision.verdict(), decision.delay()) {
+        match &decision.word {
+            None => self.program_headline(),
+            Some(word) => {
+                let said = match (word.accepted, decision.delay()) {
+                    (true, Some(delay)) => format!("✓ accepted: delay {}", self.delay(delay)),
+                    (true, None) => "✓ accepted".to_owned(),
+                    (false, _) => "✗ rejected".to_owned(),
+                };
+                let (by, note) = (plain(&word.reviewer), plain(&word.note));
+                let by = if by.is_empty() { "a reviewer".to_owned() } else { by };
+                let note = if note.is_empty() { note } else { format!("\n> {note}\n") };
+                let program = self.program_headline().replacen("## ", "", 1);
+                format!("## {said} (by {by})\n{note}\nThe program: {program}")
+            }
+        }
+    }
+
+    fn program_headline(&self) -> String {
+        let decision = self.segment.decision;
+        match (decision.program_verdict(), decision.program_delay()) {
             (Verdict::Accepted, Some(delay)) => {
                 format!("## ✓ accepted: delay {}", self.delay(delay))
             }
@@ -353,9 +415,10 @@ impl Facts<'_, '_> {
                 (moved, limit.map_or(not_set, |limit| format!("> {limit}{}", unit(""))))
             }
             Condition::NothingHappened => {
-                let p_value = value.map_or_else(missing, |p_value| format!("p = {p_value}"));
-                (p_value, format!("≤ {not_set}"))
+                let chance = |p: &str| format!("chance that noise does it: {p}");
+                (value.map_or_else(missing, |p| chance(&p)), format!("≤ {not_set}"))
             }
+            Condition::Reviewer => (missing(), missing()),
         }
     }
 }

@@ -5,12 +5,12 @@ use std::io::Write;
 use rerun::external::re_build_info::CrateVersion;
 use rerun::external::re_log_encoding::{Encoder, EncodingOptions};
 use rerun::log::LogMsg;
-use rerun::{EntityPath, RecordingInfo, RecordingStream, StoreId, StoreKind};
+use rerun::{ApplicationId, EntityPath, RecordingInfo, RecordingStream, StoreId, StoreKind};
 
-use super::chunk::Chunks;
-use super::content::{Content, Growth, Part, for_each_chunk};
+use super::chunk::Ids;
+use super::content::{Content, Growth, Part, application, for_each_chunk};
 use super::error::RecordError;
-use super::message::{APPLICATION, activation, chunk_message, store_message};
+use super::message::{activation, chunk_message, store_message};
 use super::preview::PreviewRecording;
 use super::recorded::Recording;
 use super::sweep::SweepRecording;
@@ -46,24 +46,27 @@ pub(crate) fn write_preview(
 }
 
 fn write(content: &dyn Content, out: impl Write) -> Result<(), RecordError> {
-    let id = content.id();
-    let store = StoreId::new(StoreKind::Recording, APPLICATION, id.clone());
+    let (id, name) = (content.id(), content.name());
+    let application = application(&name, &id);
     let options = EncodingOptions::PROTOBUF_COMPRESSED;
     let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, options, out)?;
+    // The views come first: a viewer that has none yet makes its own of what it has read.
+    for message in blueprint_messages(content, &application, &id)? {
+        encoder.append(&message)?;
+    }
+    let store = StoreId::new(StoreKind::Recording, application, id.clone());
     encoder.append(&store_message(&store))?;
-    let mut chunks = Chunks::new(1);
-    let info = RecordingInfo::new().with_name(content.name());
+    let ids = Ids::of(&id);
+    let mut chunks = ids.chunks(1);
+    let info = RecordingInfo::new().with_name(name);
     chunks.push_static(EntityPath::properties(), &info)?;
     for chunk in chunks.into_chunks() {
         encoder.append(&chunk_message(&store, &chunk)?)?;
     }
-    for_each_chunk(content, Part::default(), &mut |chunk| {
+    for_each_chunk(content, Part::whole(ids), &mut |chunk| {
         encoder.append(&chunk_message(&store, chunk)?)?;
         Ok(())
     })?;
-    for message in blueprint_messages(content, &id)? {
-        encoder.append(&message)?;
-    }
     encoder.finish()?;
     encoder.flush_blocking()?;
     Ok(())
@@ -80,24 +83,29 @@ pub fn log_recording(
     recording: &Recording<'_>,
     stream: &RecordingStream,
 ) -> Result<(), RecordError> {
-    for_each_chunk(recording, Part::default(), &mut |chunk| {
-        stream.send_chunk(chunk.clone());
-        Ok(())
-    })?;
     let Some(info) = stream.store_info() else {
         return Ok(());
     };
+    let id = recording.id();
     let application = info.store_id.application_id().clone();
-    let messages = recording.views(Growth::Finished, &application, &recording.id())?;
+    let messages = recording.views(Growth::Finished, &application, &id)?;
     if let Some(blueprint_id) = messages.first().map(|message| message.store_id().clone()) {
         let activation = activation(blueprint_id);
         stream.send_blueprint(messages, activation);
     }
+    for_each_chunk(recording, Part::whole(Ids::of(&id)), &mut |chunk| {
+        stream.send_chunk(chunk.clone());
+        Ok(())
+    })?;
     Ok(())
 }
 
-fn blueprint_messages(content: &dyn Content, id: &str) -> Result<Vec<LogMsg>, RecordError> {
-    let mut messages = content.views(Growth::Finished, &APPLICATION.into(), id)?;
+fn blueprint_messages(
+    content: &dyn Content,
+    application: &ApplicationId,
+    id: &str,
+) -> Result<Vec<LogMsg>, RecordError> {
+    let mut messages = content.views(Growth::Finished, application, id)?;
     let blueprint_id = messages.first().map(|message| message.store_id().clone());
     messages.extend(blueprint_id.map(|id| LogMsg::from(activation(id))));
     Ok(messages)

@@ -12,6 +12,8 @@ mod delay_table;
 mod delays;
 mod design;
 mod design_words;
+mod desk;
+mod doubt;
 mod effects;
 mod equation;
 mod estimated;
@@ -24,6 +26,7 @@ mod json;
 mod lookup;
 mod model_delay;
 mod page;
+mod review;
 mod separation;
 mod settings;
 mod steps;
@@ -57,6 +60,8 @@ pub(crate) use design_words::{SIDE_HEADER, design_sentences, side_rows};
 pub(crate) use design_words::{
     design_text, hold_note, left_out_note, no_range_note, shortened_note,
 };
+pub(crate) use desk::review_page;
+pub(crate) use doubt::{Doubted, by_doubt};
 pub(crate) use effects::{listing, sheet};
 pub use estimated::EstimatedJoint;
 pub(crate) use explain::explain_text;
@@ -70,9 +75,10 @@ pub(crate) use json::{
     FolderJson, ImproveJson, ReportJson, SweepJson,
 };
 pub(crate) use lookup::{Language, Lookup};
-pub(crate) use page::{Document, RecordingFile, Report, report_text};
+pub(crate) use page::{Document, Heading, RecordingFile, Report, report_text};
+pub(crate) use review::{Words, write_review_sheet};
 #[cfg(feature = "rrd")]
-pub(crate) use settings::settings_rows;
+pub(crate) use settings::{settings_in_short, settings_rows};
 pub(crate) use steps::{step_line, steps_table};
 pub(crate) use summary::{DelayRange, Headline, JointSummary};
 pub use sweep::ReportedSweep;

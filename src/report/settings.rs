@@ -44,6 +44,25 @@ pub(crate) fn settings_rows(settings: &Settings) -> Vec<(&'static str, String)> 
     ]
 }
 
+/// The settings in one line: the method with its lengths and its low-pass, and what is not as the
+/// method has it by itself.
+#[cfg(feature = "rrd")]
+pub(crate) fn settings_in_short(settings: &Settings) -> String {
+    /// Rows of [`settings_rows`] that are there in any case.
+    const ALWAYS: [&str; 4] = ["method", "α", "β", "low-pass"];
+    let Settings { method, alpha, beta, low_pass, .. } = settings;
+    let mut parts = vec![method.to_string()];
+    if method.spec().has_rows {
+        parts.push(format!("α {alpha}, β {beta}"));
+    }
+    parts.extend(low_pass.map(|filter| format!("{} Hz", number(filter.cutoff_hz))));
+    let usual = settings_rows(&Settings::of(*method));
+    let changed = settings_rows(settings).into_iter().zip(usual);
+    let changed = changed.filter(|(row, usual)| row != usual && !ALWAYS.contains(&row.0));
+    parts.extend(changed.map(|((name, value), _)| format!("{name} {value}")));
+    parts.join(", ")
+}
+
 fn method(method: Method) -> String {
     let spec = method.spec();
     spec.source.map_or_else(|| spec.fits.to_owned(), |source| format!("{} ({source})", spec.fits))

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{EstimatedJoint, decision_rows};
+use super::{EstimatedJoint, Words, decision_rows};
 use crate::delay::{Condition, KindDelay};
 
 /// How many steps were accepted, why the others were not, and what the delays are.
@@ -24,6 +24,8 @@ pub(crate) struct JointSummary {
     pub(crate) levels_differ: bool,
     /// What stands for the delays in one line.
     pub(crate) headline: Headline,
+    /// What persons said of the decisions, where any did.
+    pub(crate) words: Option<Words>,
 }
 
 /// What stands for the delays of a joint in one line.
@@ -97,11 +99,17 @@ impl JointSummary {
             headline: Headline::of(joint.delay_table().kinds),
             steps: rows.len(),
             accepted: accepted.len(),
-            rejected: Condition::ALL.map(count).into_iter().filter(|(_, n)| *n > 0).collect(),
+            rejected: Condition::ALL
+                .into_iter()
+                .chain([Condition::Reviewer])
+                .map(count)
+                .filter(|(_, n)| *n > 0)
+                .collect(),
             delay_samples: DelayRange::of(samples.collect()),
             delay_s,
             is_continuous: joint.estimate.dead_time.is_some(),
             levels_differ: levels_differ(joint),
+            words: Words::on(joint),
         }
     }
 }

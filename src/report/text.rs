@@ -16,6 +16,7 @@ pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings)
         table.row(summary_cells(name, &summary));
         let sentences = summary.headline.kinds().iter().map(kind_sentence);
         kinds.extend(sentences.map(|sentence| format!("{name}: {sentence}\n")));
+        kinds.extend(summary.words.map(|words| format!("{name}: {}\n", words.sentence())));
     }
     let dead_times: String = joints.iter().flat_map(dead_time_lines).collect();
     let lags: String = joints.iter().filter_map(lag_line).collect();

@@ -3,6 +3,7 @@
 //! - [`estimate_joints`]: the delays of every joint, with settings that may be chosen from its
 //!   record
 //! - [`sweep_joints`]: the delays with every setting of a grid
+//! - [`Review`]: what persons say of decisions
 //! - [`compare_joints`], [`explain_joints`], [`add_to_joints`], [`improve_joints`]: the model of
 //!   every joint, under a [`Protocol`]
 //! - [`know_joints`], [`suspect_joints`]: what an experiment is designed from
@@ -12,6 +13,7 @@
 mod estimate;
 mod models;
 mod protocol;
+mod review;
 mod start;
 mod sweep;
 
@@ -21,4 +23,5 @@ pub use models::{
     suspect_joints,
 };
 pub use protocol::{Mode, Protocol, Watch, Watched};
+pub use review::{Review, ReviewError, ReviewNote, Why};
 pub use sweep::{SweptJoint, sweep_joints};

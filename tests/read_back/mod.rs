@@ -23,6 +23,13 @@ pub(crate) struct ReadBack {
 }
 
 impl ReadBack {
+    /// The moments of a component, also before the first tick.
+    pub(crate) fn ticks(&self, entity: &str, timeline: &'static str) -> Vec<i64> {
+        let chunks = self.chunks.get(entity).into_iter().flatten();
+        let columns = chunks.filter_map(|chunk| chunk.timelines().get(&timeline.into()).cloned());
+        columns.flat_map(|column| column.times_raw().to_vec()).collect()
+    }
+
     pub(crate) fn of(bytes: &[u8]) -> Self {
         let mut chunks: BTreeMap<String, Vec<Chunk>> = BTreeMap::new();
         let (mut blueprint, mut opens_on) = (0, String::new());
@@ -64,7 +71,13 @@ impl ReadBack {
                 }
                 let times = chunk.timelines().iter();
                 let times = times.map(|(name, column)| (name.to_string(), column.times_raw()[row]));
-                rows.push((times.collect(), value(&list.value(row))));
+                let times: BTreeMap<String, i64> = times.collect();
+                // What is shown before the first tick is shown again in its place.
+                let is_before_all =
+                    times.get("decision") == Some(&0) && !times.contains_key("sample");
+                if !is_before_all {
+                    rows.push((times, value(&list.value(row))));
+                }
             }
         }
         rows

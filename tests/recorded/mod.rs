@@ -104,6 +104,7 @@ impl Recorded {
         let reading = &self.experiment.options;
         write_recording(
             &Recording {
+                command: "estimate",
                 joints: &joints,
                 settings,
                 sources,

@@ -8,6 +8,7 @@ mod model_file;
 pub(crate) mod number;
 mod protocol;
 mod results;
+mod review;
 mod typed;
 
 pub(crate) use algorithm::AlgorithmArgs;
@@ -17,4 +18,5 @@ pub(crate) use effects::{EffectArgs, find};
 pub(crate) use model_file::{ModelFileArgs, fresh_name, name_of, note_missing};
 pub(crate) use protocol::ProtocolArgs;
 pub(crate) use results::{Format, ResultArgs, RunArgs};
+pub(crate) use review::ReviewArgs;
 pub(crate) use typed::quoted;

@@ -54,7 +54,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         check_outputs(&[path.as_path()], &inputs)?;
     }
     let stream = args.output.stream.open(args.output.run.verbosity())?;
-    let session = Session::begin(&args.data, &args.output.run, stream)?;
+    let session = Session::begin("explain", &args.data, &args.output.run, stream)?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
     let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
     let study = Study::of(session, Settings::default(), |begun| {

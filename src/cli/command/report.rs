@@ -12,14 +12,16 @@ use crate::explain::{Change, Explanation, Improvement, MAX_EFFECTS, Options, Rev
 use crate::fit::Horizon;
 use crate::model::ModelFile;
 use crate::report::{
-    Document, EstimatedJoint, ImprovedJoint, RecordingFile, Report, ReportJson, report_text,
+    Document, EstimatedJoint, Heading, ImprovedJoint, RecordingFile, Report, ReportJson,
+    report_text, review_page,
 };
 use crate::study::{Mode, OfJoints, explain_joints, improve_joints};
 use anyhow::{Context as _, bail};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
-    AlgorithmArgs, DataArgs, EffectArgs, ProtocolArgs, RunArgs, name_of, note_missing, quoted,
+    AlgorithmArgs, DataArgs, EffectArgs, ProtocolArgs, ReviewArgs, RunArgs, name_of, note_missing,
+    quoted,
 };
 use crate::cli::console::{Bar, Verbosity, message};
 use crate::cli::exit::Completion;
@@ -44,6 +46,9 @@ pub(crate) struct Args {
 
     #[command(flatten)]
     algorithm: AlgorithmArgs,
+
+    #[command(flatten)]
+    review: ReviewArgs,
 
     #[command(flatten)]
     model: ModelArgs,
@@ -93,6 +98,23 @@ struct OutputArgs {
     #[arg(long)]
     no_recording: bool,
 
+    /// Write a page beside the report, `FILE_review.html`, on which a person goes through the
+    /// decisions, the most doubtful first, and saves a review
+    #[arg(long)]
+    interactive: bool,
+
+    /// The title of the report, instead of the log's name
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+
+    /// Whose report it is, written below the title
+    #[arg(long, value_name = "NAME")]
+    author: Option<String>,
+
+    /// The date, written below the title as it is given
+    #[arg(long, value_name = "TEXT")]
+    date: Option<String>,
+
     #[command(flatten)]
     stream: StreamArgs,
 
@@ -105,10 +127,13 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let file = args.model.file()?;
     let effects = args.model.effects.effects(file.candidates())?;
     let target = args.output.target()?;
-    let inputs: Vec<_> = args.data.files().into_iter().chain(args.model.model.clone()).collect();
+    let inputs = args.data.files().into_iter().chain(args.model.model.clone());
+    let inputs: Vec<_> = inputs.chain(args.review.review.clone()).collect();
     target.check(&inputs)?;
+    let review = args.review.read()?;
     let stream = args.output.stream.open(args.output.run.verbosity())?;
-    let session = Session::begin(&args.data, &args.output.run, stream)?;
+    let session = Session::begin("report", &args.data, &args.output.run, stream)?;
+    let session = session.reviewed(review);
     let study = Study::of(session, settings, |begun| args.model.improved(&file, begun, effects))?;
     if study.result.is_some() {
         note_missing(&file, &study.experiment().joints, study.verbosity());
@@ -159,6 +184,11 @@ fn as_it_is(explanation: Explanation) -> Improvement {
 }
 
 impl OutputArgs {
+    fn heading(&self) -> Heading<'_> {
+        let Self { title, author, date, .. } = self;
+        Heading { title: title.as_deref(), author: author.as_deref(), date: date.as_deref() }
+    }
+
     fn target(&self) -> anyhow::Result<Target> {
         let path = self.report.clone();
         let kind = match path.extension().and_then(OsStr::to_str) {
@@ -175,7 +205,8 @@ impl OutputArgs {
         }
         let recording = has_recordings && !self.no_recording;
         let recording = recording.then(|| path.with_extension("rrd"));
-        Ok(Target { path, kind, recording })
+        let review = self.interactive.then(|| beside(&path, "_review.html"));
+        Ok(Target { path, kind, recording, review })
     }
 }
 
@@ -184,6 +215,8 @@ struct Target {
     path: PathBuf,
     kind: Kind,
     recording: Option<PathBuf>,
+    /// The page to review the decisions on.
+    review: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -196,6 +229,7 @@ impl Target {
     /// Refuses what cannot be written.
     fn check(&self, inputs: &[PathBuf]) -> anyhow::Result<()> {
         let outputs = [self.path.as_path()].into_iter().chain(self.recording.as_deref());
+        let outputs = outputs.chain(self.review.as_deref());
         check_outputs(&outputs.collect::<Vec<_>>(), inputs)?;
         let folder = self.folder();
         if self.kind == Kind::Markdown && folder.exists() && !folder.is_dir() {
@@ -206,8 +240,7 @@ impl Target {
 
     /// Where the drawings of Markdown go.
     fn folder(&self) -> PathBuf {
-        let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
-        self.path.with_file_name(format!("{stem}_files"))
+        beside(&self.path, "_files")
     }
 
     fn write(&self, document: &Document) -> anyhow::Result<()> {
@@ -226,6 +259,12 @@ impl Target {
         };
         write_text(&self.path, &text)
     }
+}
+
+/// The name of `path` with another ending.
+fn beside(path: &Path, ending: &str) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!("{stem}{ending}"))
 }
 
 fn write_text(path: &Path, text: &str) -> anyhow::Result<()> {
@@ -295,6 +334,7 @@ impl Reported<'_> {
             .as_deref()
             .map(|name| RecordingFile { name, bytes: embedded.as_deref() });
         let report = Report {
+            heading: args.output.heading(),
             experiment,
             joints,
             settings: &study.settings,
@@ -311,12 +351,18 @@ impl Reported<'_> {
         {
             let _bar = Bar::spinner(study.verbosity(), "writing the report");
             target.write(&report.document()?)?;
+            if let Some(path) = &target.review {
+                write_text(path, &review_page(&report)?)?;
+            }
         }
         if study.verbosity() == Verbosity::Normal {
             for note in &notes {
                 message("note", note);
             }
             message("report", &target.path.display().to_string());
+            if let Some(path) = &target.review {
+                message("review", &format!("{}; open it in a browser", path.display()));
+            }
         }
         let path = |path: &Path| path.display().to_string();
         let recording = target.recording.as_deref().map(path);

@@ -22,6 +22,8 @@ pub(crate) enum Detail {
 /// What a recording holds.
 #[cfg_attr(not(feature = "rrd"), expect(dead_code, reason = "there is no recording then"))]
 pub(crate) struct Contents<'a> {
+    /// The name of the command.
+    pub(crate) command: &'a str,
     pub(crate) joints: &'a [EstimatedJoint<'a>],
     pub(crate) settings: &'a Settings,
     /// What other methods found.
@@ -54,15 +56,24 @@ impl Contents<'_> {
 
         let also = self.also.iter().map(|&(settings, joints)| Beside { settings, joints });
         let also: Vec<Beside<'_>> = also.collect();
-        let Self { joints, settings, sources, reading, models, revisions, detail, .. } = *self;
+        let Self { command, joints, settings, sources, reading, .. } = *self;
+        let Self { models, revisions, detail, .. } = *self;
         let detail = match detail {
             Detail::Full => recording::Detail::Full,
             Detail::Lean => recording::Detail::Lean,
         };
         let also = also.as_slice();
-        let recording =
-            Recording { joints, settings, sources, reading, detail, models, also, revisions };
-        work(&recording)
+        work(&Recording {
+            command,
+            joints,
+            settings,
+            sources,
+            reading,
+            detail,
+            models,
+            also,
+            revisions,
+        })
     }
 
     #[cfg(not(feature = "rrd"))]

@@ -10,20 +10,39 @@ use crate::cli::exit::Completion;
 use crate::cli::viewer::Stream;
 use crate::delay::{Automatic, Settings};
 use crate::experiment::Experiment;
-use crate::study::{estimate_joints, estimate_joints_with};
+use crate::study::{Review, estimate_joints, estimate_joints_with};
 
 /// Logs that were read, and where what becomes of them goes.
 pub(crate) struct Session<'a> {
     pub(crate) experiment: Experiment,
     pub(crate) stream: Stream,
+    /// The name of the command.
+    pub(crate) command: &'static str,
+    review: Review,
     run: &'a RunArgs,
 }
 
 impl<'a> Session<'a> {
-    /// Reads `data`.
-    pub(crate) fn begin(data: &DataArgs, run: &'a RunArgs, stream: Stream) -> anyhow::Result<Self> {
+    /// Reads `data` for `command`.
+    pub(crate) fn begin(
+        command: &'static str,
+        data: &DataArgs,
+        run: &'a RunArgs,
+        stream: Stream,
+    ) -> anyhow::Result<Self> {
         let _bar = Bar::spinner(run.verbosity(), "reading");
-        Ok(Self { experiment: data.read()?, stream, run })
+        Ok(Self { experiment: data.read()?, stream, command, review: Review::default(), run })
+    }
+
+    /// What persons said of the decisions stands above the conditions.
+    pub(crate) fn reviewed(self, review: Review) -> Self {
+        Self { review, ..self }
+    }
+
+    /// Hears what persons said, and says what of it was of no use.
+    fn hear(&self, estimates: &mut Estimates) {
+        let notes = self.review.apply(&self.experiment.joints, estimates);
+        warn(&notes.iter().map(ToString::to_string).collect::<Vec<_>>());
     }
 
     pub(crate) fn verbosity(&self) -> Verbosity {
@@ -38,7 +57,10 @@ impl<'a> Session<'a> {
     /// The delays of each joint.
     pub(crate) fn estimates(&self, settings: &Settings) -> Estimates {
         let bar = self.estimating(1);
-        estimate_joints(&self.experiment.joints, settings, || bar.step(), &Threads)
+        let joints = &self.experiment.joints;
+        let mut estimates = estimate_joints(joints, settings, || bar.step(), &Threads);
+        self.hear(&mut estimates);
+        estimates
     }
 
     /// The delays of each joint with each of the settings, of which some are chosen for each
@@ -52,7 +74,12 @@ impl<'a> Session<'a> {
         let joints = &self.experiment.joints;
         let one =
             |settings| estimate_joints_with(joints, settings, automatic, || bar.step(), &Threads);
-        settings.iter().map(one).collect()
+        let mut all: Vec<Estimates> = settings.iter().map(one).collect();
+        // A word is on the answer, not on what is reported beside it.
+        if let Some(answer) = all.first_mut() {
+            self.hear(answer);
+        }
+        all
     }
 
     /// A bar for all trials, each estimated `times` times.

@@ -90,8 +90,9 @@ impl<'a> Begun<'a> {
         revisions: &[ImprovedJoint<'_>],
         take: impl FnOnce(&Contents<'_>) -> anyhow::Result<()>,
     ) -> anyhow::Result<()> {
-        let Self { session: Session { experiment, .. }, estimates, settings, .. } = *self;
+        let Self { session: Session { experiment, command, .. }, estimates, settings, .. } = *self;
         take(&Contents {
+            command,
             joints: &estimated(experiment, estimates),
             settings,
             also: &[],

@@ -5,5 +5,5 @@ mod program;
 mod start;
 mod stream;
 
-pub(crate) use program::{PORT, VERSION, is_listening, on_path};
+pub(crate) use program::{NEWEST, PORT, VERSION, is_listening, on_path};
 pub(crate) use stream::{Stream, StreamArgs};

@@ -5,9 +5,12 @@ use std::net::{SocketAddr, TcpStream};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// The version of the viewer that recordings are made for: a viewer reads no recordings of
-/// other minor versions for certain.
+/// The version of the viewer that recordings are made for: an older one does not read them for
+/// certain.
 pub(crate) const VERSION: &str = "0.36.3";
+
+/// The newest version of the viewer in which recordings were looked at, and were right.
+pub(crate) const NEWEST: &str = "0.41.0";
 
 /// Where the viewer listens unless another port is given.
 pub(crate) const PORT: u16 = 9876;

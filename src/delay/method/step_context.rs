@@ -90,6 +90,6 @@ impl StepContext<'_> {
             fine,
         };
         let checks = facts.check(self.settings);
-        Decision { number, input_step, hold, segment, candidates, checks, fine }
+        Decision { number, input_step, hold, segment, candidates, checks, fine, word: None }
     }
 }

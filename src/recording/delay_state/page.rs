@@ -11,7 +11,7 @@ use crate::delay::{AgainstState, StepState};
 use crate::experiment::{Joint, Trial};
 use crate::figure::delay_against::Way;
 use crate::recording::canvas::{Labels, Plot, SHEET, Span};
-use crate::recording::chunk::{Chunks, Index};
+use crate::recording::chunk::Chunks;
 use crate::recording::error::RecordError;
 use crate::recording::layout::JointLayout;
 use crate::recording::palette::{self, Rgb, color};
@@ -42,7 +42,7 @@ pub(in crate::recording) fn add(
     let root = at(root, against::ROOT);
     page.add_plots(chunks, &root)?;
     page.add_texts(chunks, &root, joint.joint)?;
-    page.add_cursor(chunks, &root, joint.joint, &placed)
+    page.add_cursor(chunks, &root, joint.joint, (layout, &placed))
 }
 
 /// All plots on their sheet.
@@ -240,9 +240,9 @@ impl<'f> Page<'f> {
         chunks: &mut Chunks,
         root: &EntityPath,
         joint: &Joint,
-        placed: &[Placed<'_, '_>],
+        (layout, placed): (&JointLayout<'_>, &[Placed<'_, '_>]),
     ) -> Result<(), RecordError> {
-        let index: Index = placed.iter().map(|p| p.trial.opening(p.segment)).collect();
+        let index = layout.openings();
         let (mut points, mut lengths) = (Vec::new(), Vec::new());
         for placed in placed {
             let before = points.len();

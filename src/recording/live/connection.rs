@@ -10,10 +10,10 @@ use rerun::{EntityPath, MemoryLimit, RecordingInfo, ServerOptions, StoreId, Stor
 
 use super::address;
 use super::sent::Sent;
-use crate::recording::chunk::Chunks;
-use crate::recording::content::{Content, Growth, Part, for_each_chunk};
+use crate::recording::chunk::Ids;
+use crate::recording::content::{Content, Growth, Part, application, for_each_chunk};
 use crate::recording::error::RecordError;
-use crate::recording::message::{APPLICATION, activation, chunk_message, store_message};
+use crate::recording::message::{activation, chunk_message, store_message};
 use crate::recording::recorded::Recording;
 use crate::recording::sweep::SweepRecording;
 
@@ -31,6 +31,7 @@ pub(crate) struct Live {
     /// None once the viewer is lost.
     sink: Option<Sink>,
     url: String,
+    /// The recording; its application is known as soon as something is sent.
     store: StoreId,
     sent: Sent,
     /// Namespaces of ids that were used: what is sent later has higher ones, and wins.
@@ -93,7 +94,7 @@ impl Live {
 
     fn with(sink: Sink, url: String) -> Self {
         // A run of its own: two runs are side by side in the viewer.
-        let store = StoreId::random(StoreKind::Recording, APPLICATION);
+        let store = StoreId::random(StoreKind::Recording, "tauscope");
         let (sent, growth) = (Sent::default(), Growth::Finished);
         Self { sink: Some(sink), url, store, sent, used: 0, growth, views: None }
     }
@@ -147,20 +148,25 @@ impl Live {
         if self.used == 0 {
             self.open(content)?;
         }
-        let part = Part { used: self.used, joint };
+        let ids = Ids::of(self.store.recording_id().as_str());
+        let part = Part { ids, growth: self.growth, used: self.used, joint };
+        self.send_views(content)?;
         self.sent.begin();
         self.used += for_each_chunk(content, part, &mut |chunk| match self.sent.news_of(chunk) {
             Some(news) => self.send_chunk(&news),
             None => Ok(()),
         })?;
-        self.send_views(content)
+        Ok(())
     }
 
     /// What the recording is.
-    fn open(&self, content: &dyn Content) -> Result<(), RecordError> {
+    fn open(&mut self, content: &dyn Content) -> Result<(), RecordError> {
+        let (name, id) = (content.name(), self.store.recording_id().clone());
+        let application = application(&name, id.as_str());
+        self.store = StoreId::new(StoreKind::Recording, application, id.clone());
         self.post(store_message(&self.store));
-        let mut chunks = Chunks::new(1);
-        let info = RecordingInfo::new().with_name(content.name());
+        let mut chunks = Ids::of(id.as_str()).chunks(1);
+        let info = RecordingInfo::new().with_name(name);
         chunks.push_static(EntityPath::properties(), &info)?;
         chunks.into_chunks().iter().try_for_each(|chunk| self.send_chunk(chunk))
     }
@@ -186,7 +192,7 @@ impl Live {
             return Ok(());
         }
         let id = format!("{}-{}", self.store.recording_id().as_str(), self.used);
-        let messages = content.views(self.growth, &APPLICATION.into(), &id)?;
+        let messages = content.views(self.growth, self.store.application_id(), &id)?;
         let blueprint = messages.first().map(|message| message.store_id().clone());
         for message in messages {
             self.post(message);

@@ -85,10 +85,10 @@ mod tests {
     use rerun::{Scalars, TextDocument};
 
     use super::*;
-    use crate::recording::chunk::Chunks;
+    use crate::recording::chunk::Ids;
 
     fn chunk(values: &[f64]) -> Chunk {
-        let mut chunks = Chunks::new(1);
+        let mut chunks = Ids::of("1").chunks(1);
         let revisions = (0..).take(values.len()).collect();
         let columns = Scalars::new(values.iter().copied()).columns_of_unit_batches().unwrap();
         chunks.push_revisions("error".into(), revisions, columns).unwrap();
@@ -96,7 +96,7 @@ mod tests {
     }
 
     fn document(text: &str) -> Chunk {
-        let mut chunks = Chunks::new(1);
+        let mut chunks = Ids::of("1").chunks(1);
         chunks.push_static("page".into(), &TextDocument::new(text)).unwrap();
         chunks.into_chunks().pop().unwrap()
     }

@@ -22,7 +22,7 @@ impl Content for PreviewRecording<'_> {
         let model = self.model.and_then(Path::file_stem).map(|stem| stem.to_string_lossy());
         let parts = Some(from).filter(|from| !from.is_empty()).into_iter();
         let parts = parts.chain(model.map(Cow::into_owned));
-        parts.chain(["next experiment".to_owned()]).collect::<Vec<_>>().join(", ")
+        parts.chain(["design · next experiment".to_owned()]).collect::<Vec<_>>().join(" · ")
     }
 
     fn id(&self) -> String {
@@ -38,7 +38,7 @@ impl Content for PreviewRecording<'_> {
         about::add(chunks, self)
     }
 
-    fn tabs(&self) -> Vec<Tab<'_>> {
+    fn tabs(&self, _: Growth) -> Vec<Tab<'_>> {
         let tab = |joint| {
             let add = move |chunks: &mut Chunks| add(chunks, &Preview::of(joint));
             Tab { joint: &joint.rig.name, add: Box::new(add) }

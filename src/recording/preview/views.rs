@@ -18,16 +18,16 @@ pub(super) fn messages(
     application: &ApplicationId,
     id: &str,
 ) -> Result<Vec<LogMsg>, RecordError> {
-    let mut builder = Builder::new();
+    let mut builder = Builder::new(id);
     let mut tabs = Vec::new();
     for joint in preview.joints {
         tabs.push(tab(&mut builder, joint)?);
     }
-    builder.tabbed(tabs, ("time", PlayState::Paused), application, id)
+    builder.tabbed(tabs, ("time", PlayState::Paused), application)
 }
 
 /// The page of a joint and its signals; beside them what they distinguish, and the holds.
-fn tab(builder: &mut Builder, joint: &DesignedJoint) -> Result<Node, RecordError> {
+fn tab(builder: &mut Builder<'_>, joint: &DesignedJoint) -> Result<Node, RecordError> {
     let name = joint.rig.name.as_str();
     let root = joint_root(name);
     let path = |path: &str| at(&root, path).to_string();

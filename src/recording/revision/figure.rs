@@ -2,7 +2,9 @@
 
 use rerun::datatypes::Vec2D;
 
+use crate::diagnosis::sensor_noise;
 use crate::recording::canvas::{Labels, Plot, Span, Strips};
+use crate::report::ImprovedJoint;
 
 /// Columns and rows of the plot on the sheet.
 const PLACE: ((f32, f32), (f32, f32)) = ((760.0, 1235.0), (48.0, 450.0));
@@ -19,6 +21,11 @@ pub(super) struct Held {
     pub(super) level: f64,
     pub(super) speed: f64,
     pub(super) std_error: f64,
+}
+
+/// The noise of the sensor, from the record alone: one for all revisions.
+pub(super) fn noise(improved: &ImprovedJoint<'_>) -> Option<f64> {
+    sensor_noise(&improved.finding.compared.joint.trials)
 }
 
 /// Level of the input, and the speed that a model makes of it.

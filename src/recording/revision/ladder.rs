@@ -4,6 +4,7 @@ use rerun::Color;
 use rerun::datatypes::Vec2D;
 
 use super::bars::Bars;
+use super::figure::noise;
 use crate::figure::ladder::{self, Rung};
 use crate::recording::canvas::{Labels, Strips};
 use crate::recording::error::RecordError;
@@ -76,8 +77,7 @@ pub(super) fn around(
         let end = training.max(rung.error);
         bars.value(labels, row, end, format!("{} {unit}", short(rung.error)));
     }
-    let noise = rungs.get(at).and_then(|rung| rung.revision.comparison.noise_floor);
-    let Some(noise) = noise else { return Vec::new() };
+    let Some(noise) = noise(improved) else { return Vec::new() };
     bars.below(floor, noise, format!("noise {} {unit}", short(noise)));
     vec![bars.line(noise)]
 }

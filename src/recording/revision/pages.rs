@@ -7,7 +7,7 @@ use super::{evidence, ladder, ranking, record, words};
 use crate::diagnosis::Comparison;
 use crate::explain::{Change, Revision};
 use crate::recording::canvas::Labels;
-use crate::recording::chunk::{Chunks, Index, lists};
+use crate::recording::chunk::{Chunks, Index, Moment, lists};
 use crate::recording::error::RecordError;
 use crate::recording::error_share;
 use crate::recording::layout::{JointLayout, TrialLayout};
@@ -34,10 +34,10 @@ pub(in crate::recording) fn add(
     layout: &JointLayout<'_>,
     improved: &ImprovedJoint<'_>,
 ) -> Result<(), RecordError> {
-    let Some(moment) = layout.trials.first().map(|trial: &TrialLayout<'_>| trial.moment_of(1))
-    else {
-        return Ok(());
-    };
+    let start = layout.trials.first().map(|trial: &TrialLayout<'_>| trial.moment_of(1));
+    let Some(start) = start else { return Ok(()) };
+    // Before the first tick, where a viewer may open.
+    let moment = Moment { decision: 0, ..start };
     let numbers: Vec<i64> = improved.numbered().map(|(number, _)| i64::from(number)).collect();
     let index = Index::of_revisions(numbers.clone(), moment);
     let root = at(root, paths::ROOT);

@@ -4,6 +4,7 @@ use rerun::Color;
 use rerun::datatypes::Vec2D;
 
 use super::bars::Bars;
+use super::figure::noise;
 use crate::explain::{Candidate, Revision};
 use crate::figure::ladder::judged;
 use crate::recording::canvas::{Labels, Strips};
@@ -59,7 +60,7 @@ pub(super) fn around(
         bars.name(labels, row, &name);
         bars.value(labels, row, error, format!("{} {unit}", short(error)));
     }
-    let Some(noise) = revision.comparison.noise_floor else { return Vec::new() };
+    let Some(noise) = noise(improved) else { return Vec::new() };
     bars.below(floor, noise, format!("noise {} {unit}", short(noise)));
     vec![bars.line(noise)]
 }

@@ -2,11 +2,10 @@
 
 use std::ops::Range;
 
-use rerun::datatypes::Vec2D;
-
 use crate::diagnosis::Comparison;
+use crate::diagnosis::failure::WorstSegment;
 use crate::figure::ladder::judged;
-use crate::recording::canvas::{Labels, Plot, SHEET, Span, Strips, simplified, thinned_to};
+use crate::recording::canvas::{Plot, SHEET, Span, Strips, simplified, thinned_to};
 use crate::recording::error::RecordError;
 use crate::recording::error_share::short;
 use crate::recording::layout::{JointLayout, TrialLayout};
@@ -14,8 +13,10 @@ use crate::recording::palette;
 use crate::recording::paths::revision::record;
 use crate::recording::rows::Rows;
 use crate::recording::sheet::Sheet;
-use crate::report::{ImprovedJoint, change_in_words};
+use crate::report::ImprovedJoint;
 use crate::wording::bracketed;
+
+use super::figure::noise;
 
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 600.0);
@@ -34,10 +35,13 @@ pub(super) fn add(
 ) -> Result<(), RecordError> {
     let drawing = Drawing::of(layout, improved);
     let of_each = || improved.revisions.iter().map(|revision| &revision.comparison);
-    let (grid, labels) = drawing.sheet(improved).into_parts();
+    let residuals: Vec<Plot> = of_each().map(|c| drawing.residual_plot(c)).collect();
     let count = improved.revisions.len();
-    rows.strips(record::GRID, palette::GRID, 0.7, std::iter::repeat_n(grid, count))?;
-    rows.texts(record::TEXTS, palette::BORDER, std::iter::repeat_n(labels, count))?;
+    let sheet = |(comparison, plot)| drawing.sheet(improved, comparison, plot).into_parts();
+    let sheets = of_each().zip(&residuals).map(sheet);
+    let (grids, texts): (Vec<_>, Vec<_>) = sheets.unzip();
+    rows.strips(record::GRID, palette::GRID, 0.7, grids.into_iter())?;
+    rows.texts(record::TEXTS, palette::BORDER, texts.into_iter())?;
     let window = std::iter::repeat_n(drawing.window_in_record(), count);
     rows.strips(record::WINDOW, palette::BORDER, 0.9, window)?;
     let measured = drawing.outputs(|trial| trial.trial.output());
@@ -48,9 +52,14 @@ pub(super) fn add(
         1.2,
         of_each().map(|c| drawing.simulated(c)),
     )?;
-    rows.strips(record::RESIDUAL, palette::REVISION, 1.0, of_each().map(|c| drawing.residual(c)))?;
-    rows.strips(record::NOISE, palette::NOISE, 1.0, of_each().map(|c| drawing.band(c)))?;
-    rows.texts(record::NAMES, palette::REVISION, (0..count).map(|at| drawing.names(improved, at)))
+    let of_plots = || of_each().zip(&residuals);
+    let curves = of_plots().map(|(comparison, plot)| drawing.residual(comparison, plot));
+    rows.strips(record::RESIDUAL, palette::REVISION, 1.0, curves)?;
+    let worst = of_plots().map(|(comparison, plot)| worst(layout, comparison, plot));
+    rows.strips(record::WORST, palette::REJECTED, 3.0, worst)?;
+    // The noise is the sensor's, whatever the model.
+    let noise = noise(improved).filter(|noise| *noise > 0.0);
+    rows.strips(record::NOISE, palette::NOISE, 1.0, residuals.iter().map(|p| band(p, noise)))
 }
 
 /// Where the curves lie on the sheet.
@@ -60,7 +69,8 @@ struct Drawing<'l, 'a> {
     /// The part of the record in which the first revision is worst.
     window: Window,
     close: Plot,
-    residual: Plot,
+    /// Seconds of the whole record.
+    x: Span,
     samples: usize,
 }
 
@@ -100,25 +110,35 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let ends = trials.iter().flat_map(|t| [seconds(t, 1), seconds(t, t.trial.len())]);
         let x = Span::around(ends, 0.005);
         let outputs = trials.iter().flat_map(|trial| trial.trial.output().iter().copied());
-        let residuals =
-            improved.revisions.iter().flat_map(|r| r.comparison.fit.evaluation.residuals.iter());
-        let residuals = residuals.flatten().copied();
         let window = Window::worst(&first_residuals(layout, improved));
         Self {
             layout,
             output: Plot::within((120.0, 900.0), 40.0..=290.0, x, Span::around(outputs, 0.08)),
             close: close_up(layout, &window),
             window,
-            residual: Plot::new(352.0..=560.0, x, Span::around(residuals, 0.05)),
+            x,
             samples: trials.iter().map(|trial| trial.trial.len()).sum(),
         }
     }
 
-    fn sheet(&self, improved: &ImprovedJoint<'_>) -> Sheet {
+    /// The residual of a revision at its own scale: the last one would be a line at the first
+    /// one's.
+    fn residual_plot(&self, comparison: &Comparison) -> Plot {
+        let residuals = comparison.fit.evaluation.residuals.iter().flatten().copied();
+        Plot::new(352.0..=560.0, self.x, Span::around(residuals, 0.05))
+    }
+
+    fn sheet(
+        &self,
+        improved: &ImprovedJoint<'_>,
+        comparison: &Comparison,
+        residual_plot: &Plot,
+    ) -> Sheet {
         let unit = &improved.finding.compared.joint.output_unit;
         let unit = bracketed("", unit.as_deref());
         let mut sheet = Sheet::default();
-        let output = format!("measured (white) and simulated (orange){unit}");
+        let horizon = improved.finding.compared.comparison.fit.evaluation.horizon;
+        let output = format!("measured (white) and simulated (orange){unit}, {horizon}");
         sheet.frame(&self.output, &self.output.x_span().ticks(8.0), &ticks(&self.output), &output);
         let first = improved.first_revision;
         let close = format!("close up: where revision {first} was worst");
@@ -127,13 +147,16 @@ impl<'l, 'a> Drawing<'l, 'a> {
         for end in [close.low, close.high] {
             sheet.put(self.close.below(end, 2.0), format!("{} s", short(end)));
         }
+        let floor = noise(improved).filter(|noise| *noise > 0.0);
+        let times = floor.map(|noise| format!(" ({} × noise)", short(judged(comparison) / noise)));
         let residual = format!(
-            "measured − simulated{unit}: noise alone stays between the blue lines; time [s]"
+            "residual{unit}{}; between blue lines: 95 % of the noise; red: worst segments; time [s]",
+            times.unwrap_or_default()
         );
-        let x_ticks = self.residual.x_span().ticks(10.0);
-        sheet.frame(&self.residual, &x_ticks, &ticks(&self.residual), &residual);
+        let x_ticks = residual_plot.x_span().ticks(10.0);
+        sheet.frame(residual_plot, &x_ticks, &ticks(residual_plot), &residual);
         for x in x_ticks {
-            sheet.put(self.residual.below(x, 2.0), short(x));
+            sheet.put(residual_plot.below(x, 2.0), short(x));
         }
         sheet
     }
@@ -178,31 +201,30 @@ impl<'l, 'a> Drawing<'l, 'a> {
         })
     }
 
-    fn residual(&self, comparison: &Comparison) -> Strips {
+    fn residual(&self, comparison: &Comparison, plot: &Plot) -> Strips {
         let all = &comparison.fit.evaluation.residuals;
-        self.curves(&self.residual, |trial| all.get(trial.index).map_or(&[], Vec::as_slice))
+        self.curves(plot, |trial| all.get(trial.index).map_or(&[], Vec::as_slice))
     }
+}
 
-    fn band(&self, comparison: &Comparison) -> Strips {
-        let levels = comparison.noise_floor.map(|noise| [BAND * noise, -BAND * noise]);
-        levels.into_iter().flatten().map(|y| self.residual.level(y).to_vec()).collect()
-    }
+/// A bar above each of the worst segments.
+fn worst(layout: &JointLayout<'_>, comparison: &Comparison, plot: &Plot) -> Strips {
+    let worst = comparison.failure.iter().flat_map(|failure| &failure.worst_segments);
+    let bar = |worst: &WorstSegment| {
+        let mut trials = layout.trials.iter();
+        let trial = trials.find(|trial| trial.trial.label() == worst.trial)?;
+        let shift = seconds(trial, 1) - trial.trial.time_s(1);
+        let ends = [worst.start_s, worst.end_s].map(|time_s| plot.above(time_s + shift, -12.0));
+        Some(ends.to_vec())
+    };
+    worst.filter_map(bar).collect()
+}
 
-    /// What the revision is, and its error in multiples of the noise.
-    fn names(&self, improved: &ImprovedJoint<'_>, at: usize) -> Labels {
-        let mut labels = Labels::default();
-        let Some((number, revision)) = improved.numbered().nth(at) else { return labels };
-        let name = format!("revision {number}: {}", change_in_words(revision));
-        let left = self.output.x_span().low;
-        labels.put_whole(beside(&self.output, left), name);
-        let error = judged(&revision.comparison);
-        let noise = revision.comparison.noise_floor.filter(|noise| *noise > 0.0);
-        if let Some(noise) = noise {
-            let times = format!("error {} × noise", short(error / noise));
-            labels.put_whole(beside(&self.residual, left), times);
-        }
-        labels
-    }
+/// Two levels between which 95 % of the noise lies.
+fn band(plot: &Plot, noise: Option<f64>) -> Strips {
+    let levels = noise.map(|noise| [BAND * noise, -BAND * noise]);
+    let inside = |y: &f64| (0.0..=1.0).contains(&plot.y_span().part(*y));
+    levels.into_iter().flatten().filter(inside).map(|y| plot.level(y).to_vec()).collect()
 }
 
 /// What the first revision leaves of each trial.
@@ -224,11 +246,6 @@ fn close_up(layout: &JointLayout<'_>, window: &Window) -> Plot {
     let output = output.unwrap_or_default().iter().copied();
     let x = Span::around(ends.into_iter().flatten(), 0.0);
     Plot::within((1010.0, SHEET.0 - 15.0), 40.0..=290.0, x, Span::around(output, 0.08))
-}
-
-/// Left, at the height of a plot's title.
-fn beside(plot: &Plot, left: f64) -> Vec2D {
-    plot.above(left, 26.0)
 }
 
 fn ticks(plot: &Plot) -> Vec<(f64, String)> {

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::figure::noise;
 use crate::figure::ladder::judged;
 use crate::recording::error_share::short;
 use crate::recording::markdown::plain;
@@ -22,7 +23,9 @@ fn written(improved: &ImprovedJoint<'_>, place: usize) -> Result<String, std::fm
     writeln!(page, "**{}**\n", plain(&fall(improved, place)))?;
     let conclusion = improved.conclusion_at(place);
     writeln!(page, "### {}\n\n{}\n", plain(&conclusion.headline), plain(&conclusion.paragraph))?;
-    for command in &conclusion.commands {
+    // What an earlier revision lacks is in the next one.
+    let is_last = place + 1 == improved.revisions.len();
+    for command in conclusion.commands.iter().filter(|_| is_last) {
         writeln!(page, "    {command}\n")?;
     }
     writeln!(page, "| parameter | value | standard error |\n|---|---|---|")?;
@@ -45,8 +48,7 @@ fn fall(improved: &ImprovedJoint<'_>, place: usize) -> String {
     let unit = improved.finding.compared.joint.output_unit.as_deref().unwrap_or("");
     let error = |place: usize| Some(judged(&improved.revisions.get(place)?.comparison));
     let Some(now) = error(place) else { return String::new() };
-    let comparison = improved.revisions.get(place).map(|step| &step.comparison);
-    let floor = comparison.and_then(|c| c.noise_floor).filter(|noise| *noise > 0.0);
+    let floor = noise(improved).filter(|noise| *noise > 0.0);
     let times = floor.map_or_else(String::new, |n| format!(", {} times the noise", short(now / n)));
     match place.checked_sub(1).and_then(error) {
         Some(before) => {

@@ -14,7 +14,7 @@ use crate::recording::paths::joint_root;
 
 impl Content for SweepRecording<'_> {
     fn name(&self) -> String {
-        format!("{}, sweep", name_of(self.sources))
+        format!("{} · sweep · {} settings", name_of(self.sources), self.grid.runs().len())
     }
 
     fn id(&self) -> String {
@@ -27,7 +27,7 @@ impl Content for SweepRecording<'_> {
         about::add(chunks, self)
     }
 
-    fn tabs(&self) -> Vec<Tab<'_>> {
+    fn tabs(&self, _: Growth) -> Vec<Tab<'_>> {
         let starts = TrialStarts::of(self.joints.iter().map(|joint| joint.joint));
         let tab = |joint| {
             let swept = Swept::of(self, joint, &starts);

@@ -16,17 +16,17 @@ pub(super) fn messages(
     application: &ApplicationId,
     id: &str,
 ) -> Result<Vec<LogMsg>, RecordError> {
-    let mut builder = Builder::new();
+    let mut builder = Builder::new(id);
     let mut tabs = Vec::new();
     for joint in sweep.joints {
         tabs.push(tab(&mut builder, &joint.joint.name)?);
     }
-    builder.tabbed(tabs, ("setting", PlayState::Paused), application, id)
+    builder.tabbed(tabs, ("setting", PlayState::Paused), application)
 }
 
 /// All steps and one step; beside them what is found, what is under the cursor, and the
 /// steps to look at.
-fn tab(builder: &mut Builder, joint: &str) -> Result<Node, RecordError> {
+fn tab(builder: &mut Builder<'_>, joint: &str) -> Result<Node, RecordError> {
     let root = joint_root(joint);
     let path = |path: &str| at(&root, path).to_string();
     let all = at(&root, paths::sheet::ROOT);

@@ -2,13 +2,9 @@
 
 use rerun::EntityPath;
 use rerun::components::Visible;
-use rerun::datatypes::{TimeInt, TimeRange, TimeRangeBoundary, Utf8, VisibleTimeRange};
-use rerun::external::re_sdk_types::blueprint::archetypes::{
-    DataframeQuery, PlotLegend, TimeAxis, VisibleTimeRanges,
-};
-use rerun::external::re_sdk_types::blueprint::components::{
-    ContainerKind, Corner2D, FilterIsNotNull, LinkAxis,
-};
+use rerun::datatypes::Utf8;
+use rerun::external::re_sdk_types::blueprint::archetypes::{DataframeQuery, PlotLegend, TimeAxis};
+use rerun::external::re_sdk_types::blueprint::components::{ContainerKind, Corner2D, LinkAxis};
 use rerun::external::re_sdk_types::blueprint::datatypes::{
     ComponentColumnSelector, SelectedColumns,
 };
@@ -16,23 +12,22 @@ use rerun::external::re_sdk_types::blueprint::datatypes::{
 use crate::experiment::Joint;
 use crate::recording::blueprint::{Builder, Node, View, bounds, clickable};
 use crate::recording::canvas::SHEET;
-use crate::recording::chunk::FINE;
 use crate::recording::error::RecordError;
 use crate::recording::overview::{MAP_HEIGHT, MAP_WIDTH};
 use crate::recording::paths::revision::{record, share, sheet};
 use crate::recording::paths::{
     self, against, at, child, correlation, drawing, joint_root, map, of_model,
 };
-use crate::recording::{correlogram, delay_state, error_share, revision, scatter};
+use crate::recording::{correlogram, delay_state, error_share, revision, scatter, segment_view};
 use crate::report::{ComparedJoint, EstimatedJoint};
 
-/// What the lane of the worst segments is called.
-const WORST: &str = "Worst segments of the first model, restarted at every step: 1 is the worst";
+/// What the lane of the worst segments of the model that is judged is called.
+const WORST: &str = "Worst segments, restarted at every step: 1 is the worst";
 
 /// The tab of `joint`: its decisions, its record, its table; and before them the revisions
 /// of its model, and its models, where there are any.
 pub(super) fn tab(
-    builder: &mut Builder,
+    builder: &mut Builder<'_>,
     EstimatedJoint { joint, estimate }: EstimatedJoint<'_>,
     models: &[&ComparedJoint<'_>],
     revisions: usize,
@@ -54,8 +49,15 @@ pub(super) fn tab(
     views.builder.container(ContainerKind::Tabs, &joint.name, &pages, &[])
 }
 
-struct Views<'b> {
-    builder: &'b mut Builder,
+/// Where a plot says what its curves are: a legend covers data.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Legend {
+    InTitle,
+    Apart,
+}
+
+struct Views<'b, 'i> {
+    builder: &'b mut Builder<'i>,
     joint: &'b Joint,
     /// Whether some delay is known between samples.
     fine: bool,
@@ -63,28 +65,11 @@ struct Views<'b> {
     others: usize,
 }
 
-/// Columns of the table of decisions, in the order of `--decisions`.
-const DECISION_COLUMNS: [&str; 13] = [
-    "trial",
-    "i",
-    "p",
-    "r",
-    "end",
-    "f",
-    "q",
-    "delta",
-    "sse",
-    "slope_before",
-    "slope_after",
-    "accepted",
-    "verdict",
-];
-
 /// Columns of the table of candidates.
 const CANDIDATE_COLUMNS: [&str; 8] =
     ["i", "j", "q", "delta", "sse", "slope_before", "slope_after", "f"];
 
-impl Views<'_> {
+impl Views<'_, '_> {
     /// The entity at `path` below the joint.
     fn at(&self, path: &str) -> EntityPath {
         at(&joint_root(&self.joint.name), path)
@@ -102,26 +87,25 @@ impl Views<'_> {
     /// What a reviewer steps through.
     fn decisions(&mut self) -> Result<Node, RecordError> {
         let drawing = self.view(self.drawing())?;
-        let errors = self.view(self.errors())?;
         let map = self.view(self.map())?;
         let lanes = self.view(self.lanes())?;
         let verdict = [self.path(paths::VERDICT)];
         let verdict = self.view(View::new("TextDocument", "Verdict", &verdict))?;
-        let list = self.view(self.list())?;
-        let left = [drawing, errors, map, lanes];
+        let lists = self.lists()?;
+        let left = [drawing, map, lanes];
         // A lane more needs a little more room.
-        let lanes_share = if self.joint.trials.len() > 1 { 2.4 } else { 1.8 };
+        let lanes_share = if self.joint.trials.len() > 1 { 2.3 } else { 1.7 };
         let builder = &mut *self.builder;
         let left = builder.container(
             ContainerKind::Vertical,
             "Segment",
             &left,
-            &[5.7, 1.1, 1.6, lanes_share],
+            &[6.3, 2.1, lanes_share],
         )?;
-        let right = [verdict, list];
-        let right = builder.container(ContainerKind::Vertical, "Verdicts", &right, &[7.0, 3.0])?;
+        let right = [verdict, lists];
+        let right = builder.container(ContainerKind::Vertical, "Verdicts", &right, &[7.2, 2.8])?;
         let columns = [left, right];
-        builder.container(ContainerKind::Horizontal, "Decisions", &columns, &[7.1, 2.9])
+        builder.container(ContainerKind::Horizontal, "Decisions", &columns, &[6.8, 3.2])
     }
 
     fn drawing(&self) -> View<'static> {
@@ -132,39 +116,13 @@ impl Views<'_> {
         let others = others.iter().map(String::as_str);
         let parts: Vec<_> =
             drawing::PARTS.into_iter().chain(others).chain(first).chain(interval).collect();
-        let name = "The segment, its candidates, their squared error";
-        View::drawing(name, &self.at(drawing::ROOT), &parts, SHEET)
+        let name = "The segment, its candidates, what the chosen lines leave, the squared errors";
+        View::drawing(name, &self.at(drawing::ROOT), &parts, segment_view::SIZE)
     }
 
     fn map(&self) -> View<'static> {
         let name = "Whole record: the framed segment is shown above";
         View::drawing(name, &self.at(map::ROOT), &map::PARTS, (MAP_WIDTH, MAP_HEIGHT))
-    }
-
-    fn errors(&self) -> View<'static> {
-        let paths = [
-            self.path(paths::LOG10_SSE),
-            self.path(paths::MINIMUM_ACCEPTED),
-            self.path(paths::MINIMUM_REJECTED),
-        ];
-        let around = |timeline: &str, reach: i64| {
-            let at = |offset| TimeRangeBoundary::CursorRelative(TimeInt(offset));
-            let range = TimeRange { start: at(-reach), end: at(reach) };
-            VisibleTimeRange { timeline: Utf8::from(timeline), range }
-        };
-        let windows = [
-            around("decision", 80),
-            around("segment", 3),
-            around("sample", 500),
-            around("time", 5_000_000_000),
-        ];
-        View::new(
-            "TimeSeries",
-            "log10 of the squared error around the cursor (click to jump)",
-            &paths,
-        )
-        .with("VisibleTimeRanges", VisibleTimeRanges::new(windows))
-        .with("PlotLegend", PlotLegend::new().with_visible(Visible::from(false)))
     }
 
     fn lanes(&self) -> View<'static> {
@@ -175,17 +133,33 @@ impl Views<'_> {
         View::new("StateTimeline", "Steps and verdicts", &paths)
     }
 
-    fn list(&self) -> View<'static> {
-        let paths = [self.path(paths::VERDICT_LOG)];
-        View::new("TextLog", "All decisions: click a number on the left to go there", &paths)
-            .with("TextLogColumns", clickable("decision"))
+    /// The decisions by doubt, in their order, and by doubt with the reasons.
+    fn lists(&mut self) -> Result<Node, RecordError> {
+        let list = |name, path, timeline| {
+            View::new("TextLog", name, &[path]).with("TextLogColumns", clickable(timeline))
+        };
+        let doubtful = self.path(paths::DOUBT_LOG);
+        let doubtful = self.view(list("Most doubtful first: click a number", doubtful, "doubt"))?;
+        let all = self.path(paths::VERDICT_LOG);
+        let all = self.view(list("All: click a number", all, "decision"))?;
+        let why = [self.path(paths::DOUBT)];
+        let why = self.view(View::new("TextDocument", "Doubts", &why))?;
+        let tabs = [doubtful, all, why];
+        self.builder.container(ContainerKind::Tabs, "Lists", &tabs, &[])
+    }
+
+    /// A line that says where the cursor is, or where to click.
+    fn place(&mut self) -> Result<Node, RecordError> {
+        let place = [self.path(paths::PLACE)];
+        self.view(View::new("TextDocument", "Where the cursor is", &place))
     }
 
     /// The whole record on the time axis.
     fn record(&mut self) -> Result<Node, RecordError> {
-        let input = self.plot("Input", &[self.at(paths::INPUT)])?;
+        let input = self.plot("Input", &[self.at(paths::INPUT)], Legend::InTitle)?;
         let output = self.plot(
-            "Output, chosen lines, breakpoints",
+            "Output: measured grey, smoothed blue; chosen lines orange and green; breakpoints: dot \
+             accepted, cross rejected",
             &[
                 paths::OUTPUT_RAW,
                 paths::OUTPUT_SMOOTHED,
@@ -195,17 +169,19 @@ impl Views<'_> {
                 paths::BREAKPOINT_REJECTED,
             ]
             .map(|path| self.at(path)),
+            Legend::InTitle,
         )?;
         let delay = self.plot(
-            "Delay [samples]",
+            "Delay [samples]: τ, dot accepted, cross rejected",
             &[paths::TAU, paths::DELAY_ACCEPTED, paths::DELAY_REJECTED].map(|path| self.at(path)),
+            Legend::InTitle,
         )?;
-        let mut rows = vec![input, output, delay];
-        let mut shares = vec![1.2, 3.5, 1.8];
+        let mut rows = vec![self.place()?, input, output, delay];
+        let mut shares = vec![0.9, 1.2, 3.5, 1.8];
         if !self.joint.covariates.is_empty() {
             let root = self.at(paths::COVARIATE);
             let all = self.joint.covariates.iter().map(|signal| child(&root, &signal.name));
-            rows.push(self.plot("Covariates", &all.collect::<Vec<_>>())?);
+            rows.push(self.plot("Covariates", &all.collect::<Vec<_>>(), Legend::Apart)?);
             shares.push(1.5);
         }
         rows.push(self.view(self.lanes())?);
@@ -252,17 +228,31 @@ impl Views<'_> {
         let simulated: Vec<_> = of_each(paths::SIMULATED);
         let residuals: Vec<_> = of_each(paths::RESIDUAL);
         let outputs = [vec![self.at(paths::OUTPUT_RAW)], simulated].concat();
+        let (legend, colors) = match names.as_slice() {
+            [_] => (Legend::InTitle, ": grey and orange"),
+            _ => (Legend::Apart, ""),
+        };
         let noise = [paths::NOISE_UPPER, paths::NOISE_LOWER].map(|path| self.at(path));
         let residuals = [noise.to_vec(), residuals].concat();
         let rows = [
-            self.plot(&format!("Measured and simulated ({horizon})"), &outputs)?,
-            self.plot(&format!("Residual ({horizon}), and the band of the noise"), &residuals)?,
+            self.place()?,
+            self.plot(&format!("Measured and simulated ({horizon}){colors}"), &outputs, legend)?,
+            self.plot(
+                &format!("Residual ({horizon}); 95 % of the noise lies in the band"),
+                &residuals,
+                legend,
+            )?,
+            self.plot("Input", &[self.at(paths::INPUT)], Legend::InTitle)?,
             self.view(View::new("StateTimeline", WORST, &[self.path(paths::WORST)]))?,
             self.residuals(models.len())?,
         ];
         let builder = &mut *self.builder;
-        let plots =
-            builder.container(ContainerKind::Vertical, "Plots", &rows, &[3.0, 2.4, 1.1, 4.0])?;
+        let plots = builder.container(
+            ContainerKind::Vertical,
+            "Plots",
+            &rows,
+            &[1.25, 3.0, 2.4, 1.0, 1.1, 3.6],
+        )?;
         let page = [self.path(paths::MODEL_PAGE)];
         let page = self.view(View::new("TextDocument", "Models", &page))?;
         let columns = [plots, page];
@@ -307,11 +297,18 @@ impl Views<'_> {
     }
 
     /// A plot whose time axis moves with those of the other plots.
-    fn plot(&mut self, name: &str, entities: &[EntityPath]) -> Result<Node, RecordError> {
+    fn plot(
+        &mut self,
+        name: &str,
+        entities: &[EntityPath],
+        legend: Legend,
+    ) -> Result<Node, RecordError> {
         let paths: Vec<_> = entities.iter().map(ToString::to_string).collect();
+        let shown = Visible::from(legend == Legend::Apart);
+        let legend = PlotLegend::new().with_corner(Corner2D::RightTop).with_visible(shown);
         let view = View::new("TimeSeries", name, &paths)
             .with("TimeAxis", TimeAxis::new().with_link(LinkAxis::LinkToGlobal))
-            .with("PlotLegend", PlotLegend::new().with_corner(Corner2D::RightTop));
+            .with("PlotLegend", legend);
         self.view(view)
     }
 
@@ -319,7 +316,6 @@ impl Views<'_> {
     fn table(&mut self) -> Result<Node, RecordError> {
         let entity = self.at(paths::DECISION_TABLE);
         let path = entity.to_string();
-        let verdicts = FilterIsNotNull::new(true, &entity, "accepted".to_owned());
         let query = |columns: &[&str]| {
             let select = |name: &&str| ComponentColumnSelector::new(&entity, (*name).to_owned());
             let select = SelectedColumns {
@@ -331,15 +327,12 @@ impl Views<'_> {
                 .with_auto_scroll(true)
                 .with_select(select)
         };
-        let fine = if self.fine { FINE.as_slice() } else { &[] };
-        let columns = [DECISION_COLUMNS.as_slice(), fine].concat();
-        let whole = query(&columns).with_filter_is_not_null(verdicts);
-        let decisions = View::new("Dataframe", "Decisions", &[&path]);
-        let decisions = self.view(decisions.with("DataframeQuery", whole))?;
+        let page = [self.path(paths::DECISION_PAGE)];
+        let decisions = self.view(View::new("TextDocument", "Decisions", &page))?;
         let candidates = View::new("Dataframe", "Candidates", &[&path]);
         let candidates = candidates.with("DataframeQuery", query(&CANDIDATE_COLUMNS));
         let candidates = self.view(candidates)?;
         let rows = [decisions, candidates];
-        self.builder.container(ContainerKind::Horizontal, "Table", &rows, &[1.1, 0.9])
+        self.builder.container(ContainerKind::Horizontal, "Table", &rows, &[1.2, 0.8])
     }
 }

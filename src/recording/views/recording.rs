@@ -28,7 +28,7 @@ pub(in crate::recording) fn messages(
     application: &ApplicationId,
     id: &str,
 ) -> Result<Vec<LogMsg>, RecordError> {
-    let mut builder = Builder::new();
+    let mut builder = Builder::new(id);
     let mut tabs = Vec::new();
     for joint in recording.joints {
         let models = recording.models.iter().filter(|m| m.joint.name == joint.joint.name);
@@ -47,5 +47,5 @@ pub(in crate::recording) fn messages(
         Growth::Finished if is_ladder => ("revision", PlayState::Paused),
         Growth::Finished => ("decision", PlayState::Paused),
     };
-    builder.tabbed(tabs, opening, application, id)
+    builder.tabbed(tabs, opening, application)
 }

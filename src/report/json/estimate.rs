@@ -12,7 +12,7 @@ use crate::delay::{DelayRow, DelayTable, KindDelay, Neutral, Settings, StepState
 use crate::experiment::{Experiment, ReadOptions, Source};
 use crate::report::decisions::detailed_rows;
 use crate::report::delay_table::DelayTableRow;
-use crate::report::{DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary};
+use crate::report::{DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary, Words};
 
 /// The document of `estimate --format json`.
 #[derive(Debug, Serialize)]
@@ -51,6 +51,8 @@ struct JointJson<'a> {
     steps: usize,
     accepted: usize,
     rejected: serde_json::Map<String, serde_json::Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reviewed: Option<Words>,
     delay_samples: Option<DelayRange>,
     delay_s: Option<DelayRange>,
     input: InputJson,
@@ -231,7 +233,7 @@ impl<'a> JointJson<'a> {
     fn new(joint: EstimatedJoint<'a>) -> Self {
         let chosen = joint.estimate.chosen;
         let DelayTable { neutral, rows, kinds, .. } = joint.delay_table();
-        let JointSummary { steps, accepted, rejected, delay_samples, delay_s, .. } =
+        let JointSummary { steps, accepted, rejected, delay_samples, delay_s, words, .. } =
             JointSummary::of(joint);
         let count = |(condition, count): (Condition, usize)| (condition.to_string(), count.into());
         Self {
@@ -241,6 +243,7 @@ impl<'a> JointJson<'a> {
             steps,
             accepted,
             rejected: rejected.into_iter().map(count).collect(),
+            reviewed: words,
             delay_samples,
             delay_s,
             input: InputJson::of(joint),

@@ -14,7 +14,11 @@ impl Report<'_> {
     /// # Errors
     /// When a figure cannot be drawn.
     pub(crate) fn document(&self) -> Result<Document, PlotError> {
-        let mut blocks = vec![Block::text(self.extent()), Block::Contents(self.contents())];
+        let by = [self.heading.author, self.heading.date].into_iter().flatten();
+        let by = by.collect::<Vec<_>>().join(", ");
+        let by = Some(by).filter(|by| !by.is_empty()).map(Block::text);
+        let start = [Block::text(self.extent()), Block::Contents(self.contents())];
+        let mut blocks: Vec<_> = by.into_iter().chain(start).collect();
         blocks.extend(delays::overview(self.joints)?.map(|figure| Block::Figures(vec![figure])));
         if !self.failures.is_empty() {
             blocks.push(Block::Lead("Left out".to_owned()));
@@ -35,6 +39,9 @@ impl Report<'_> {
     }
 
     fn title(&self) -> String {
+        if let Some(title) = self.heading.title {
+            return title.to_owned();
+        }
         let files = self.experiment.sources.as_slice();
         let name = |path: &std::path::Path| {
             path.file_name().unwrap_or_default().to_string_lossy().into_owned()

@@ -95,7 +95,7 @@ fn table(table: &TextTable) -> Markup {
         div.table { table {
             thead { tr {
                 @for (column, cell) in table.header.iter().enumerate() {
-                    th class=[class(column)] { (cell) }
+                    th scope="col" class=[class(column)] { (cell) }
                 }
             } }
             tbody { @for row in &table.rows { tr {

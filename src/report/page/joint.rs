@@ -11,10 +11,10 @@ use crate::report::delay_table::{LEVEL_HEADER, kind_sentence, level_cells, neutr
 use crate::report::text::lag_line;
 use crate::report::text_table::TextTable;
 use crate::report::{
-    DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, Headline, JointSummary,
-    dead_time_sentences,
+    DecisionDetail, DecisionRow, DelayRange, Doubted, EstimatedJoint, Headline, JointSummary,
+    Words, by_doubt, dead_time_sentences,
 };
-use crate::wording::number;
+use crate::wording::{doubt_percent, doubt_sentence, number};
 
 /// Rows of a table that a reader may still want to scroll through.
 const MOST_ROWS: usize = 2000;
@@ -35,6 +35,8 @@ pub(super) fn blocks(
         blocks.push(Block::part("Single decisions"));
         blocks.push(Block::Figures(segments));
     }
+    blocks.extend(doubtful(estimated));
+    blocks.extend(reviewed(estimated));
     let found = estimated.delay_table();
     blocks.extend(delay_blocks(estimated, file)?);
     if !found.rows.is_empty() {
@@ -55,7 +57,8 @@ pub(super) fn sentences(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> S
     let delay = over_record(estimated);
     let delay = delay.unwrap_or_else(|| delay_sentence(&JointSummary::of(estimated)));
     let model = report.model_of(estimated.joint).map(model::sentence);
-    [delay].into_iter().chain(model).collect::<Vec<_>>().join(" ")
+    let words = Words::on(estimated).map(|words| format!("{}.", words.sentence()));
+    [delay].into_iter().chain(words).chain(model).collect::<Vec<_>>().join(" ")
 }
 
 /// Why there are no steps, and the dead time instead.
@@ -146,6 +149,63 @@ fn against(joint: &str, found: &AgainstState) -> TextTable {
         table.row(cells);
     }
     table
+}
+
+/// The decisions that a person looks at first, and what was said of those.
+fn doubtful(estimated: EstimatedJoint<'_>) -> Vec<Block> {
+    /// Decisions in the table.
+    const MOST: usize = 10;
+    let ranked = by_doubt(estimated);
+    let doubted = |doubted: &&Doubted<'_>| doubted.doubt.value() > 0.0;
+    let ranked: Vec<_> = ranked.iter().filter(doubted).take(MOST).collect();
+    if ranked.is_empty() {
+        return Vec::new();
+    }
+    let header = ["doubt", "trial", "i", "time [s]", "δ [s]", "verdict", "what speaks against it"];
+    let mut table = TextTable::new(header, &[0, 2, 3, 4]);
+    for Doubted { trial, decision, doubt, .. } in ranked {
+        let period_s = trial.period().seconds();
+        let delay = decision.delay().map(|delay| number(delay * period_s));
+        let by = if decision.word.is_some() { " by a person" } else { "" };
+        table.row([
+            doubt_percent(doubt),
+            trial.label().to_owned(),
+            decision.number.to_string(),
+            number(trial.time_s(decision.input_step.sample)),
+            delay.unwrap_or_else(|| "-".to_owned()),
+            format!("{}{by}", decision.verdict()),
+            doubt_sentence(doubt, decision.program_verdict(), period_s),
+        ]);
+    }
+    vec![Block::part("Doubtful decisions"), Block::Table(table)]
+}
+
+/// What persons said, and what the program says of the same steps.
+fn reviewed(estimated: EstimatedJoint<'_>) -> Vec<Block> {
+    let header =
+        ["trial", "i", "verdict", "δ [s]", "by", "note", "the program's verdict", "its δ [s]"];
+    let mut table = TextTable::new(header, &[1, 3, 7]);
+    for Doubted { trial, decision, .. } in by_doubt(estimated) {
+        let Some(word) = &decision.word else { continue };
+        let period_s = trial.period().seconds();
+        let seconds = |delay: Option<f64>| {
+            delay.map_or_else(|| "-".to_owned(), |delay| number(delay * period_s))
+        };
+        table.row([
+            trial.label().to_owned(),
+            decision.number.to_string(),
+            if word.accepted { "accepted" } else { "rejected" }.to_owned(),
+            seconds(decision.accepted_delay()),
+            word.reviewer.clone(),
+            word.note.clone(),
+            decision.program_verdict().to_string(),
+            seconds(decision.program_delay()),
+        ]);
+    }
+    if table.rows.is_empty() {
+        return Vec::new();
+    }
+    vec![Block::part("Reviewed by a person"), Block::Table(table)]
 }
 
 /// How many steps were rejected for which reason.

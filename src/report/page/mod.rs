@@ -25,4 +25,4 @@ mod timeline;
 
 pub(crate) use compose::report_text;
 pub(crate) use document::Document;
-pub(crate) use report::{RecordingFile, Report};
+pub(crate) use report::{Heading, RecordingFile, Report};

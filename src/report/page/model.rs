@@ -15,8 +15,8 @@ use crate::report::finding::ranking_table;
 use crate::report::text_table::TextTable;
 use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::wording::{
-    correlation_sentences, effect_ids, failure_sentences, measure, number, parameter_units, remark,
-    with_error, with_remark, with_unit,
+    correlation_sentences, effect_ids, failure_sentences, listed, measure, number, parameter_units,
+    remark, with_error, with_remark, with_unit,
 };
 
 /// All that is said of the model of a joint.
@@ -56,14 +56,16 @@ pub(super) fn sentence(improved: &ImprovedJoint<'_>) -> String {
     let model = ["integrator"].into_iter().chain(own).collect::<Vec<_>>().join(" + ");
     let (error, rest) = (error_of(improved, comparison), missing(improved));
     match (improved.revisions.first(), came(improved).as_slice()) {
-        (Some(first), [_, ..]) => {
-            let came = came(improved).join(" and ");
+        (Some(first), came @ [_, others @ ..]) => {
+            let (was, it) = if others.is_empty() { ("was", "it") } else { ("were", "them") };
+            let names: Vec<String> = came.iter().map(|name| (*name).to_owned()).collect();
+            let came = listed(&names, "and");
             let before = judged_error(improved, &first.comparison);
             // What is not shown to be the cause is not said to be.
             let is_cause = improved.finding.verdict != Verdict::Unexplained;
-            let what = if is_cause { "was missing" } else { "was tried" };
+            let what = if is_cause { "missing" } else { "tried" };
             format!(
-                "Model: {came} {what}; with it ({model}) the error falls from {before} to \
+                "Model: {came} {was} {what}; with {it} ({model}) the error falls from {before} to \
                  {error}; {rest}."
             )
         }

@@ -57,7 +57,7 @@ fn recording(recording: &RecordingFile<'_>) -> Vec<Block> {
     let mut blocks = vec![
         Block::part("Recording"),
         Block::text(format!(
-            "{name} {location}: every decision, to be stepped through in the Rerun viewer 0.36.3 \
+            "{name} {location}: every decision, to be stepped through in the Rerun viewer \
              (package rerun-sdk of PyPI), with:"
         )),
         Block::Code(format!("rerun {name}")),

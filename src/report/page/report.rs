@@ -9,6 +9,8 @@ use crate::report::{EstimatedJoint, ImprovedJoint};
 /// What a report is about.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Report<'a> {
+    /// What stands above it.
+    pub(crate) heading: Heading<'a>,
     /// What was read.
     pub(crate) experiment: &'a Experiment,
     /// The joints with their delays.
@@ -33,6 +35,18 @@ pub(crate) struct Report<'a> {
     pub(crate) notes: &'a [String],
     /// Messages on joints and files that failed.
     pub(crate) failures: &'a [String],
+}
+
+/// What stands above a report: each only where it is given, since the same log gives the same
+/// report on any day.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Heading<'a> {
+    /// Instead of the name of the log.
+    pub(crate) title: Option<&'a str>,
+    /// Whose report it is.
+    pub(crate) author: Option<&'a str>,
+    /// Its date, in any form.
+    pub(crate) date: Option<&'a str>,
 }
 
 /// A recording that belongs to a report.

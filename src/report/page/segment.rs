@@ -32,10 +32,10 @@ pub(super) fn figures(estimated: EstimatedJoint<'_>, file: &str) -> Result<Vec<F
 
 fn choices(estimated: EstimatedJoint<'_>) -> Vec<Choice<'_>> {
     let mut accepted: Vec<_> =
-        all(estimated).filter_map(|choice| Some((vagueness(choice.decision)?, choice))).collect();
+        all(estimated).filter_map(|choice| Some((choice.doubt()?, choice))).collect();
     accepted.sort_by(|a, b| a.0.total_cmp(&b.0));
     let last = accepted.len().saturating_sub(1);
-    let places = [(0, "Clearest"), (last / 2, "Typical"), (last, "Least clear")];
+    let places = [(0, "Clearest"), (last / 2, "Typical"), (last, "Most doubtful")];
     let mut chosen: Vec<Choice<'_>> = Vec::new();
     for (place, why) in places {
         let Some((_, choice)) = accepted.get(place) else { continue };
@@ -59,15 +59,6 @@ fn all(estimated: EstimatedJoint<'_>) -> impl Iterator<Item = Choice<'_>> {
     })
 }
 
-/// How vague the breakpoint of an accepted decision is, in samples: the error of the lines
-/// against the change of slope.
-fn vagueness(decision: &Decision) -> Option<f64> {
-    decision.accepted_delay()?;
-    let best = decision.breakpoint()?.candidate;
-    let rmse = (best.sse / decision.segment.len() as f64).sqrt();
-    Some(rmse / best.slope_change().abs()).filter(|vague| vague.is_finite())
-}
-
 /// The first rejected decision that says something: the first and the last step of a trial
 /// are never judged.
 fn rejected(estimated: EstimatedJoint<'_>) -> Option<Choice<'_>> {
@@ -80,6 +71,14 @@ fn rejected(estimated: EstimatedJoint<'_>) -> Option<Choice<'_>> {
 }
 
 impl Choice<'_> {
+    /// How doubtful an accepted decision with a breakpoint is.
+    fn doubt(&self) -> Option<f64> {
+        self.decision.accepted_delay()?;
+        self.decision.breakpoint()?;
+        let output = self.smoothed.unwrap_or(self.trial.output());
+        Some(self.decision.doubt(output).value())
+    }
+
     fn figure(&self, joint: &Joint, file: &str) -> Result<Figure, PlotError> {
         let x = Axis::new(self.window_s(), "time [s]", 5.0);
         let panels = [self.lines(joint, x.bare()), self.errors(joint, x)];
@@ -231,7 +230,7 @@ mod tests {
         let settings =
             Settings { low_pass: None, first_last: FirstLast::Keep, ..Settings::default() };
         let chosen = chosen(&settings);
-        assert_eq!(chosen, [("Clearest", 1), ("Typical", 3), ("Least clear", 5)]);
+        assert_eq!(chosen, [("Clearest", 1), ("Typical", 3), ("Most doubtful", 5)]);
     }
 
     #[test]

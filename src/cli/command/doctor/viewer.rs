@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use super::check::Check;
-use crate::cli::viewer::{PORT, VERSION, is_listening, on_path};
+use crate::cli::viewer::{NEWEST, PORT, VERSION, is_listening, on_path};
 
 /// Longest time that a program may take to report its version.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -47,18 +47,24 @@ fn viewer() -> Check {
     Check::missing(NAME, "no `rerun` on PATH, no package `rerun-sdk` of python3", remedy())
 }
 
-/// Whether `version` fits, the minor version being what counts.
+/// Whether `version` fits: an older minor version does not.
 fn judged(name: &'static str, version: &str, found: &str) -> Check {
-    let minor = |version: &str| version.rsplit_once('.').map(|(minor, _)| minor.to_owned());
-    if version == VERSION {
+    if [VERSION, NEWEST].contains(&version) {
         return Check::ok(name, found);
     }
-    let found = format!("{found}; recordings are made for {VERSION}");
-    if minor(version) == minor(VERSION) {
+    let made = format!("recordings are made for {VERSION} and were looked at in {NEWEST}");
+    let found = format!("{found}; {made}");
+    if minor(version) >= minor(VERSION) {
         Check::note(name, found, remedy())
     } else {
         Check::missing(name, found, remedy())
     }
+}
+
+/// The first two numbers of a version.
+fn minor(version: &str) -> Option<(u32, u32)> {
+    let mut numbers = version.split('.').map(|number| number.parse().ok());
+    numbers.next().flatten().zip(numbers.next().flatten())
 }
 
 fn running() -> Check {
@@ -116,7 +122,9 @@ mod tests {
         assert_eq!(version_in("no version"), None);
         let state = |version| judged("viewer", version, "").state;
         assert_eq!(state(VERSION), State::Ok);
+        assert_eq!(state(NEWEST), State::Ok);
         assert_eq!(state("0.36.9"), State::Note);
-        assert_eq!(state("0.37.0"), State::Missing);
+        assert_eq!(state("0.99.0"), State::Note);
+        assert_eq!(state("0.35.0"), State::Missing);
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
 
-use crate::cli::args::{AlgorithmArgs, DataArgs, RunArgs, number};
+use crate::cli::args::{AlgorithmArgs, DataArgs, ReviewArgs, RunArgs, number};
 use crate::cli::each_log::FolderArgs;
 use crate::cli::output::Detail;
 use crate::cli::viewer::StreamArgs;
@@ -19,6 +19,8 @@ pub(crate) struct Args {
     pub(super) data: DataArgs,
     #[command(flatten)]
     pub(crate) algorithm: AlgorithmArgs,
+    #[command(flatten)]
+    pub(crate) review: ReviewArgs,
     #[command(flatten)]
     pub(crate) follow: FollowArgs,
     #[command(flatten)]
@@ -62,6 +64,10 @@ pub(crate) struct OutputArgs {
     /// Write the table of decisions, as CSV or Parquet by the name's ending
     #[arg(long, value_name = "FILE.csv|FILE.parquet")]
     pub(crate) decisions: Option<PathBuf>,
+
+    /// Write a review sheet: a table for `--review` to fill in, the most doubtful decision first
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) review_sheet: Option<PathBuf>,
 
     /// Write the delay of every sample, as CSV or Parquet
     #[arg(long, value_name = "FILE.csv|FILE.parquet")]

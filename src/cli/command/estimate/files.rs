@@ -8,6 +8,7 @@ use anyhow::bail;
 use crate::report::{Language, Lookup};
 use crate::report::{
     decision_table, delay_table, level_table, write_decisions, write_delays, write_level_table,
+    write_review_sheet,
 };
 
 use super::args::OutputArgs;
@@ -31,8 +32,9 @@ impl<'a> Files<'a> {
         inputs: &[PathBuf],
         text: CsvText,
     ) -> anyhow::Result<Self> {
-        let outputs = [&args.recording, &args.decisions, &args.delays, &args.table, &args.export];
-        let outputs = outputs.into_iter().flatten();
+        let tables = [&args.decisions, &args.delays, &args.table, &args.review_sheet];
+        let outputs = [&args.recording, &args.export].into_iter().chain(tables);
+        let outputs = outputs.flatten();
         check_outputs(&outputs.map(PathBuf::as_path).collect::<Vec<_>>(), inputs)?;
         check_tables(args.decisions.iter().chain(&args.delays).chain(&args.table))?;
         args.export.as_deref().map(named_lookup).transpose()?;
@@ -52,6 +54,11 @@ impl<'a> Files<'a> {
                     write_csv(file, self.text, |out| Ok(write_decisions(result.runs, out)?))
                 }
                 FileKind::Parquet => write_parquet(&decision_table(result.runs)?, file),
+            })?;
+        }
+        if let Some(path) = &self.args.review_sheet {
+            write_file(path, |file| {
+                write_csv(file, self.text, |out| Ok(write_review_sheet(result.joints, out)?))
             })?;
         }
         if let Some(path) = &self.args.delays {
@@ -78,6 +85,7 @@ impl<'a> Files<'a> {
             write_file(path, |file| Ok(file.write_all(source.as_bytes())?))?;
         }
         let contents = Contents {
+            command: "estimate",
             joints: result.joints,
             settings: result.settings,
             also: result.runs.get(1..).unwrap_or_default(),

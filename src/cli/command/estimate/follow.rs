@@ -237,6 +237,7 @@ impl Reported {
             return Ok(());
         }
         let contents = Contents {
+            command: "estimate",
             also: &[],
             joints: &joints,
             settings,

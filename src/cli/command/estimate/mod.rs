@@ -23,11 +23,14 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let verbosity = args.output.run.verbosity();
     let settings = args.algorithm.runs();
     let csv_text = args.folder.csv_text();
-    let files = Files::check(&args.output, &args.data.files(), csv_text)?;
+    let inputs: Vec<_> = args.data.files().into_iter().chain(args.review.review.clone()).collect();
+    let files = Files::check(&args.output, &inputs, csv_text)?;
+    let review = args.review.read()?;
     let stream = args.output.stream.open(verbosity)?;
     let followed =
         args.follow.is_on.then(|| follow::follow(args, &settings, &stream)).transpose()?;
-    let session = Session::begin(&args.data, &args.output.run, stream)?;
+    let session = Session::begin("estimate", &args.data, &args.output.run, stream)?;
+    let session = session.reviewed(review);
     let experiment = &session.experiment;
     let work = || session.estimates_by_each(&settings, args.algorithm.automatic());
     let results = session.in_threads(work)?;
@@ -60,6 +63,8 @@ fn each_log(args: &Args, program: &clap::Command) -> anyhow::Result<Completion> 
             ("--output", output.recording.is_some()),
             ("--connect, --spawn or --serve", output.stream.is_asked()),
             ("--follow", args.follow.is_on),
+            ("--review", args.review.review.is_some()),
+            ("--review-sheet", output.review_sheet.is_some()),
             ("--delays", output.delays.is_some()),
             ("--table", output.table.is_some()),
             ("--export", output.export.is_some()),

@@ -83,7 +83,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let recording = args.output.recording.as_deref();
     check_outputs(&recording.into_iter().collect::<Vec<&Path>>(), &args.data.files())?;
     let stream = args.output.stream.open(verbosity)?;
-    let session = Session::begin(&args.data, &args.output.run, stream)?;
+    let session = Session::begin("sweep", &args.data, &args.output.run, stream)?;
     let experiment = &session.experiment;
     let joints = &experiment.joints;
     let runs = (joints.len() * grid.runs().len()) as u64;

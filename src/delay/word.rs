@@ -1,0 +1,14 @@
+//! What a person says of a decision: it stands above the conditions.
+
+/// A reviewer's word on a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Word {
+    /// Whether its delay counts.
+    pub accepted: bool,
+    /// The delay in samples, where the reviewer says it; else the method's own.
+    pub delay: Option<f64>,
+    /// Why.
+    pub note: String,
+    /// Who.
+    pub reviewer: String,
+}

@@ -1,0 +1,80 @@
+//! The decisions by doubt: lines to click, and a page with a table.
+
+use rerun::{EntityPath, TextDocument, TextLog};
+
+use super::chunk::{Chunks, Index};
+use super::error::RecordError;
+use super::layout::{JointLayout, SegmentLayout, TrialLayout};
+use super::markdown::plain;
+use super::paths::{self, at};
+use super::verdict::in_short;
+use crate::experiment::Joint;
+use crate::wording::doubt_percent;
+
+/// Adds `/doubt` and `/doubt/log`.
+pub(super) fn add(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    joint: &Joint,
+    layout: &JointLayout<'_>,
+) -> Result<(), RecordError> {
+    let ranked = layout.by_doubt();
+    if ranked.is_empty() {
+        return Ok(());
+    }
+    // All at the last moment of every other timeline: there the list keeps this order, a viewer
+    // does not scroll it to the cursor, and a click on a rank leads to the timeline of doubt.
+    let last = layout
+        .segments()
+        .last()
+        .map(|(trial, segment)| trial.moment(segment, segment.verdict(), trial.trial.len()));
+    let index: Index = last.into_iter().cycle().take(ranked.len()).collect();
+    let index = index.at_revision(layout.last_revision);
+    let index = index.with_doubt(ranked.iter().map(|(_, segment)| segment.rank));
+    let lines: Vec<_> = ranked.iter().map(|(trial, segment)| line(joint, trial, segment)).collect();
+    let level = |segment: &SegmentLayout<'_>| match segment.doubt.value() {
+        doubt if doubt >= LIKELY => "ERROR",
+        doubt if doubt >= SOME => "WARN",
+        _ => "INFO",
+    };
+    let levels: Vec<_> = ranked.iter().map(|(_, segment)| level(segment)).collect();
+    let log = TextLog::update_fields().with_many_text(lines).with_many_level(levels);
+    chunks.push(at(root, paths::DOUBT_LOG), index, log.columns_of_unit_batches()?)?;
+    let page = TextDocument::from_markdown(page(joint, &ranked));
+    chunks.push_static(at(root, paths::DOUBT), &page)
+}
+
+/// Doubts from which on a line is red, and yellow. Chosen: on synthetic records about every second
+/// accepted step above the first one is off by more than one and a half rows of β, of those in
+/// between every fifth, of the others one in fifty.
+const LIKELY: f64 = 0.6;
+const SOME: f64 = 0.3;
+
+fn line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
+    let doubt = doubt_percent(&segment.doubt);
+    format!("{doubt:>5}  {}: {}", in_short(joint, trial, segment), trial.reason(segment))
+}
+
+fn page(joint: &Joint, ranked: &[(&TrialLayout<'_>, &SegmentLayout<'_>)]) -> String {
+    /// Decisions that a person reads.
+    const MOST: usize = 25;
+    let row = |(trial, segment): &(&TrialLayout<'_>, &SegmentLayout<'_>)| {
+        let (doubt, reason) = (doubt_percent(&segment.doubt), trial.reason(segment));
+        let step = plain(&in_short(joint, trial, segment));
+        format!("| {} | {doubt} | {step} | {reason} |", segment.rank)
+    };
+    let rows: Vec<_> = ranked.iter().take(MOST).map(row).collect();
+    let (name, shown, all) = (plain(&joint.name), rows.len(), ranked.len());
+    format!(
+        "## {name}: the {shown} most doubtful of {all} decisions\n\n\
+         | `doubt` | doubt | step | what speaks against it |\n|---|---|---|---|\n{}\n\n{HOW}",
+        rows.join("\n")
+    )
+}
+
+const HOW: &str = "\
+On the timeline `doubt` (bottom left) the right arrow goes through the decisions in this order; \
+a click on a number in the list does, too. The doubt of an accepted step is 1 − what the break \
+removes of the squared error of one line × how surely the breakpoint is placed × how well the \
+lines meet × the distance of the nearest condition from its limit; that of a rejected one is how \
+near the conditions that failed are to their limits.";

@@ -1,0 +1,120 @@
+//! What persons said of the decisions: the sheet they fill in, and the count of their words.
+
+use std::io::Write;
+
+use serde::Serialize;
+
+use super::decisions::tidy_seconds;
+use super::{Doubted, EstimatedJoint, by_doubt};
+use crate::delay::Verdict;
+use crate::wording::{counted, doubt_sentence};
+
+/// A row of a review sheet: what to fill in, and what the program says.
+#[derive(Debug, Serialize)]
+pub(crate) struct SheetRow<'a> {
+    joint: &'a str,
+    trial: &'a str,
+    i: usize,
+    /// `accepted` or `rejected`; empty as long as nobody said anything.
+    verdict: &'static str,
+    delay_s: Option<f64>,
+    note: &'a str,
+    reviewer: &'a str,
+    p: usize,
+    program_verdict: String,
+    program_delay_s: Option<f64>,
+    /// From 0 to 1, to three digits.
+    doubt: f64,
+    why: String,
+}
+
+impl<'a> SheetRow<'a> {
+    pub(crate) fn of(joint: &'a str, doubted: &Doubted<'a>) -> Self {
+        let Doubted { trial, decision, doubt, .. } = doubted;
+        let period_s = trial.period().seconds();
+        let seconds = |delay: Option<f64>| delay.map(|delay| tidy_seconds(delay * period_s));
+        let program = decision.program_verdict();
+        let word = decision.word.as_ref();
+        let said = |accepted| if accepted { "accepted" } else { "rejected" };
+        Self {
+            joint,
+            trial: trial.label(),
+            i: decision.number,
+            verdict: word.map_or("", |word| said(word.accepted)),
+            delay_s: seconds(word.and_then(|word| word.delay)),
+            note: word.map_or("", |word| &word.note),
+            reviewer: word.map_or("", |word| &word.reviewer),
+            p: decision.input_step.sample,
+            program_verdict: program.to_string(),
+            program_delay_s: seconds(decision.program_delay()),
+            doubt: (doubt.value() * 1e3).round() / 1e3,
+            why: doubt_sentence(doubt, program, period_s),
+        }
+    }
+}
+
+/// The decisions of all joints by doubt, the most doubtful first, each with its joint.
+pub(crate) fn all_by_doubt<'a>(
+    joints: &'a [EstimatedJoint<'a>],
+) -> Vec<(EstimatedJoint<'a>, Doubted<'a>)> {
+    let of_each = |joint: &EstimatedJoint<'a>| {
+        let joint = *joint;
+        by_doubt(joint).into_iter().map(move |doubted| (joint, doubted))
+    };
+    let mut all: Vec<_> = joints.iter().flat_map(of_each).collect();
+    all.sort_by(|a, b| b.1.doubt.value().total_cmp(&a.1.doubt.value()));
+    all
+}
+
+/// Writes a review sheet of all decisions: a table for `--review` to fill in, the most doubtful
+/// decision first. Words that were said already are in it.
+///
+/// # Errors
+/// When `out` cannot be written.
+pub(crate) fn write_review_sheet(
+    joints: &[EstimatedJoint<'_>],
+    out: impl Write,
+) -> csv::Result<()> {
+    let mut writer = csv::Writer::from_writer(out);
+    for (joint, doubted) in all_by_doubt(joints) {
+        writer.serialize(SheetRow::of(&joint.joint.name, &doubted))?;
+    }
+    Ok(writer.flush()?)
+}
+
+/// How many steps of a joint persons spoke of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub(crate) struct Words {
+    /// Steps that they accepted.
+    pub(crate) accepted: usize,
+    /// Steps that they rejected.
+    pub(crate) rejected: usize,
+    /// Steps whose verdict they turned.
+    pub(crate) overruled: usize,
+}
+
+impl Words {
+    /// Those on `joint`; none where nobody spoke.
+    pub(crate) fn on(joint: EstimatedJoint<'_>) -> Option<Self> {
+        let decisions = joint.estimate.estimated().flat_map(|trial| &trial.decisions);
+        let mut words = Self::default();
+        for decision in decisions {
+            let Some(word) = &decision.word else { continue };
+            let by_program = decision.program_verdict() == Verdict::Accepted;
+            words.accepted += usize::from(word.accepted);
+            words.rejected += usize::from(!word.accepted);
+            words.overruled += usize::from(word.accepted != by_program);
+        }
+        (words != Self::default()).then_some(words)
+    }
+
+    /// The count in a sentence.
+    pub(crate) fn sentence(self) -> String {
+        let Self { accepted, rejected, overruled } = self;
+        let steps = counted(accepted + rejected, "step");
+        format!(
+            "{steps} reviewed by a person: {accepted} accepted, {rejected} rejected, {overruled} \
+             against the program"
+        )
+    }
+}

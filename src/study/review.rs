@@ -1,0 +1,429 @@
+//! What persons say of decisions: a file of their words, and what becomes of it.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use super::estimate::JointEstimate;
+use crate::delay::{Decision, EstimateError, Word};
+use crate::experiment::{Joint, Trial};
+
+/// Why a review cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReviewError {
+    /// The file cannot be read as a table.
+    #[error("{path}: the review cannot be read")]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: csv::Error,
+    },
+    /// A column is missing.
+    #[error("{path}: a review needs a column `{column}`; found {found}")]
+    Column {
+        /// The file.
+        path: PathBuf,
+        /// What is missing.
+        column: &'static str,
+        /// The columns that are there.
+        found: String,
+    },
+    /// A cell cannot be understood.
+    #[error("{path}, line {line}, column `{column}`: `{got}`, expected {expected}")]
+    Cell {
+        /// The file.
+        path: PathBuf,
+        /// Line of the file, from 1.
+        line: u64,
+        /// The column.
+        column: &'static str,
+        /// What is there.
+        got: String,
+        /// What is expected.
+        expected: &'static str,
+    },
+}
+
+/// Words on decisions, in the order of their file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Review {
+    rows: Vec<Reviewed>,
+}
+
+/// A word on one step, and what the reviewer was shown of it.
+#[derive(Clone, Debug, PartialEq)]
+struct Reviewed {
+    joint: String,
+    trial: String,
+    i: usize,
+    accepted: bool,
+    delay_s: Option<f64>,
+    note: String,
+    reviewer: String,
+    shown: Shown,
+}
+
+/// The step as it was when it was reviewed, as far as the file says.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Shown {
+    p: Option<usize>,
+    verdict: Option<String>,
+    delay_s: Option<f64>,
+}
+
+/// The columns of a review that must be there.
+const COLUMNS: [&str; 7] = ["joint", "trial", "i", "verdict", "delay_s", "note", "reviewer"];
+
+/// A row of the file; empty cells are none.
+#[derive(Debug, Deserialize)]
+struct Row {
+    joint: String,
+    trial: String,
+    i: String,
+    verdict: String,
+    delay_s: String,
+    note: String,
+    reviewer: String,
+    #[serde(default)]
+    p: String,
+    #[serde(default)]
+    program_verdict: String,
+    #[serde(default)]
+    program_delay_s: String,
+}
+
+impl Review {
+    /// Reads a review: a table with the columns `joint,trial,i,verdict,delay_s,note,reviewer`,
+    /// and those further ones that a review sheet has. Rows without a verdict say nothing yet.
+    ///
+    /// # Errors
+    /// [`ReviewError::Table`] for a file that is none or cannot be opened,
+    /// [`ReviewError::Column`] and [`ReviewError::Cell`] for what is missing or makes no sense.
+    pub fn read(path: &Path) -> Result<Self, ReviewError> {
+        let table = |source| ReviewError::Table { path: path.to_owned(), source };
+        let text = std::fs::read_to_string(path).map_err(|error| table(error.into()))?;
+        Self::parse(text.trim_start_matches('\u{feff}'), path)
+    }
+
+    fn parse(text: &str, path: &Path) -> Result<Self, ReviewError> {
+        let table = |source| ReviewError::Table { path: path.to_owned(), source };
+        let header = text.lines().next().unwrap_or_default();
+        let delimiter = [b',', b';', b'\t']
+            .into_iter()
+            .max_by_key(|delimiter| header.bytes().filter(|byte| byte == delimiter).count());
+        let mut builder = csv::ReaderBuilder::new();
+        builder.delimiter(delimiter.unwrap_or(b',')).trim(csv::Trim::All);
+        let mut reader = builder.from_reader(text.as_bytes());
+        let found = reader.headers().map_err(table)?.clone();
+        if let Some(column) = COLUMNS.into_iter().find(|name| found.iter().all(|it| it != *name)) {
+            let found = found.iter().collect::<Vec<_>>().join(", ");
+            return Err(ReviewError::Column { path: path.to_owned(), column, found });
+        }
+        let mut rows = Vec::new();
+        for record in reader.records() {
+            let record = record.map_err(table)?;
+            let line = record.position().map_or(0, csv::Position::line);
+            let row: Row = record.deserialize(Some(&found)).map_err(table)?;
+            rows.extend(row.parsed(path, line)?);
+        }
+        Ok(Self { rows })
+    }
+
+    /// Whether nothing is said.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Puts the words above the decisions of `estimates`, one per joint; what could not be heard,
+    /// or is said of a decision that has changed since. Of two words on one step the later one
+    /// counts.
+    pub fn apply(
+        &self,
+        joints: &[Joint],
+        estimates: &mut [Result<JointEstimate, EstimateError>],
+    ) -> Vec<ReviewNote> {
+        let mut notes = Vec::new();
+        let mut seen: BTreeMap<(&str, &str, usize), &Reviewed> = BTreeMap::new();
+        for row in &self.rows {
+            let key = (row.joint.as_str(), row.trial.as_str(), row.i);
+            let before = seen.insert(key, row);
+            let differs = |before: &&Reviewed| before.accepted != row.accepted;
+            notes.extend(before.filter(differs).map(|_| row.note(Why::Twice)));
+            notes.extend(row.apply(joints, estimates));
+        }
+        notes
+    }
+}
+
+impl Row {
+    fn parsed(self, path: &Path, line: u64) -> Result<Option<Reviewed>, ReviewError> {
+        let wrong = |column, got: &str, expected| ReviewError::Cell {
+            path: path.to_owned(),
+            line,
+            column,
+            got: got.to_owned(),
+            expected,
+        };
+        let number = |column, text: &str| match text {
+            "" => Ok(None),
+            _ => match text.parse::<f64>() {
+                Ok(value) if value.is_finite() => Ok(Some(value)),
+                _ => Err(wrong(column, text, "seconds, as in 0.15, or nothing")),
+            },
+        };
+        let count = |column, text: &str| match text.parse::<usize>() {
+            Ok(value) if value > 0 => Ok(value),
+            _ => Err(wrong(column, text, "a number from 1 up")),
+        };
+        let accepted = match self.verdict.as_str() {
+            "" => return Ok(None),
+            "accepted" => true,
+            "rejected" => false,
+            other => return Err(wrong("verdict", other, "`accepted`, `rejected` or nothing")),
+        };
+        let shown = Shown {
+            p: (!self.p.is_empty()).then(|| count("p", &self.p)).transpose()?,
+            verdict: Some(self.program_verdict).filter(|verdict| !verdict.is_empty()),
+            delay_s: number("program_delay_s", &self.program_delay_s)?,
+        };
+        Ok(Some(Reviewed {
+            i: count("i", &self.i)?,
+            delay_s: number("delay_s", &self.delay_s)?,
+            joint: self.joint,
+            trial: self.trial,
+            accepted,
+            note: self.note,
+            reviewer: self.reviewer,
+            shown,
+        }))
+    }
+}
+
+impl Reviewed {
+    fn note(&self, why: Why) -> ReviewNote {
+        let Self { joint, trial, i, .. } = self;
+        ReviewNote { joint: joint.clone(), trial: trial.clone(), i: *i, why }
+    }
+
+    fn apply(
+        &self,
+        joints: &[Joint],
+        estimates: &mut [Result<JointEstimate, EstimateError>],
+    ) -> Option<ReviewNote> {
+        let of_name = joints.iter().zip(estimates).find(|(joint, _)| joint.name == self.joint);
+        // A joint that was left out by choice or failed is said elsewhere.
+        let (joint, estimate) = match of_name {
+            Some((joint, Ok(estimate))) => (joint, estimate),
+            Some((_, Err(_))) => return None,
+            None => return Some(self.note(Why::NoJoint)),
+        };
+        let between = estimate.settings.interpolation;
+        let trials = joint.trials.iter().zip(&mut estimate.trials);
+        let mut trials = trials.filter_map(|(trial, found)| Some((trial, found.as_mut().ok()?)));
+        let Some((trial, found)) = trials.find(|(trial, _)| trial.label() == self.trial) else {
+            return Some(self.note(Why::NoTrial));
+        };
+        let Some(decision) = found.decisions.iter().find(|known| known.number == self.i) else {
+            return Some(self.note(Why::NoStep(found.decisions.len())));
+        };
+        let is = decision.input_step.sample;
+        if let Some(was) = self.shown.p.filter(|was| *was != is) {
+            return Some(self.note(Why::Moved { was, is }));
+        }
+        let changed = self.changed(decision, trial);
+        let word = Word {
+            accepted: self.accepted,
+            delay: self.delay_s.map(|delay_s| delay_s / trial.period().seconds()),
+            note: self.note.clone(),
+            reviewer: self.reviewer.clone(),
+        };
+        found.review(self.i, word, between);
+        changed.map(|why| self.note(why))
+    }
+
+    /// What the program says otherwise than when the step was reviewed.
+    fn changed(&self, decision: &Decision, trial: &Trial) -> Option<Why> {
+        let verdict = decision.program_verdict().to_string();
+        if let Some(was) = self.shown.verdict.as_ref().filter(|was| **was != verdict) {
+            return Some(Why::Verdict { was: was.clone(), is: verdict });
+        }
+        let is = decision.program_delay().map(|delay| delay * trial.period().seconds());
+        // The file has nanoseconds.
+        let differs = |was: &f64| is.is_none_or(|is| (was - is).abs() > 1e-9);
+        let was = self.shown.delay_s.filter(differs)?;
+        Some(Why::Delay { was, is })
+    }
+}
+
+/// What a person should know of a word on a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReviewNote {
+    /// The joint as the review names it.
+    pub joint: String,
+    /// The trial, likewise.
+    pub trial: String,
+    /// Number of the step, likewise.
+    pub i: usize,
+    /// What happened.
+    pub why: Why,
+}
+
+/// Why a word is not heard, or is to be looked at again.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Why {
+    /// There is no such joint.
+    NoJoint,
+    /// The joint has no such trial.
+    NoTrial,
+    /// The trial has only so many steps.
+    NoStep(usize),
+    /// The step is at another sample: the word is not heard.
+    Moved {
+        /// Its sample when it was reviewed.
+        was: usize,
+        /// Its sample now.
+        is: usize,
+    },
+    /// The program decides otherwise now; the word stands.
+    Verdict {
+        /// Its verdict then.
+        was: String,
+        /// Its verdict now.
+        is: String,
+    },
+    /// The program finds another delay now; the word stands.
+    Delay {
+        /// Its delay then, seconds.
+        was: f64,
+        /// Its delay now.
+        is: Option<f64>,
+    },
+    /// Two words differ: the later one stands.
+    Twice,
+}
+
+impl fmt::Display for ReviewNote {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { joint, trial, i, why } = self;
+        write!(f, "review of {joint}, trial {trial}, step {i}: ")?;
+        match why {
+            Why::NoJoint => write!(f, "there is no such joint, and nobody hears the word"),
+            Why::NoTrial => write!(f, "there is no such trial, and nobody hears the word"),
+            Why::NoStep(steps) => {
+                write!(f, "the trial has {steps} steps only, and nobody hears the word")
+            }
+            Why::Moved { was, is } => write!(
+                f,
+                "the step was at sample {was} and is at {is} now; the word is left out, review \
+                 it again"
+            ),
+            Why::Verdict { was, is } => write!(
+                f,
+                "the program said `{was}` then and says `{is}` now; the word stands, look again"
+            ),
+            Why::Delay { was, is } => {
+                let is = is.map_or_else(|| "none".to_owned(), |is| format!("{is:.4} s"));
+                write!(f, "the program's delay was {was:.4} s and is {is} now; the word stands")
+            }
+            Why::Twice => write!(f, "there are two words that differ; the later one stands"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delay::{Condition, Settings, Verdict};
+    use crate::explain::Sequential;
+    use crate::study::estimate_joints;
+    use crate::units::SamplePeriod;
+
+    const HEADER: &str = "joint,trial,i,verdict,delay_s,note,reviewer";
+
+    fn parse(text: &str) -> Result<Review, ReviewError> {
+        Review::parse(text, Path::new("review.csv"))
+    }
+
+    /// Three steps, each followed 12 samples later.
+    fn joint() -> Joint {
+        let input: Vec<f64> = (0..400).map(|k| f64::from(k / 100 % 2)).collect();
+        let mut angle = 0.0;
+        let late = |k: usize| if k < 12 { 0.0 } else { input[k - 12] };
+        let output = (0..400).map(|k| {
+            angle += late(k);
+            angle
+        });
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let output = output.collect();
+        let trial = Trial::new("1", 0.0, period, input.clone(), output).unwrap();
+        let (name, covariates) = ("boom".to_owned(), Vec::new());
+        Joint { name, input_unit: None, output_unit: None, covariates, trials: vec![trial] }
+    }
+
+    fn heard(rows: &str) -> (Vec<Decision>, Vec<ReviewNote>, Option<f64>) {
+        let joints = [joint()];
+        let settings = Settings { low_pass: None, ..Settings::default() };
+        let mut estimates = estimate_joints(&joints, &settings, || (), &Sequential);
+        let notes = parse(rows).unwrap().apply(&joints, &mut estimates);
+        let trial = estimates.remove(0).unwrap().trials.remove(0).unwrap();
+        let tau = trial.profile.at(150);
+        (trial.decisions, notes, tau)
+    }
+
+    #[test]
+    fn a_word_stands_above_the_conditions_and_the_delays_follow() {
+        let (decisions, notes, tau) = heard(&format!("{HEADER}\nboom,1,1,rejected,,noise,Ann"));
+        assert_eq!(notes, []);
+        assert_eq!(decisions[0].verdict(), Verdict::Rejected(Condition::Reviewer));
+        assert_eq!(decisions[0].program_verdict(), Verdict::Accepted);
+        assert_eq!(tau, None);
+        let (decisions, _, tau) = heard(&format!("{HEADER}\nboom,1,1,accepted,0.15,,Ann"));
+        assert!((decisions[0].accepted_delay().unwrap() - 15.0).abs() < 1e-9);
+        assert!((tau.unwrap() - 15.0).abs() < 1e-9);
+        assert!((decisions[0].program_delay().unwrap() - 15.0).abs() > 1.0);
+    }
+
+    #[test]
+    fn a_changed_step_is_said_and_one_that_moved_is_not_heard() {
+        let wide = format!("{HEADER},p,program_verdict,program_delay_s");
+        let why = |row: &str| {
+            let (decisions, notes, _) = heard(&format!("{wide}\n{row}"));
+            let words = decisions.iter().filter(|decision| decision.word.is_some()).count();
+            (notes.into_iter().map(|note| note.why).next(), words)
+        };
+        assert_eq!(why("boom,1,1,rejected,,,Ann,101,accepted,").1, 1);
+        let moved = Why::Moved { was: 99, is: 101 };
+        assert_eq!(why("boom,1,1,rejected,,,Ann,99,accepted,"), (Some(moved), 0));
+        let changed = Why::Verdict { was: "sse".to_owned(), is: "accepted".to_owned() };
+        assert_eq!(why("boom,1,1,rejected,,,Ann,101,sse,"), (Some(changed), 1));
+        assert!(matches!(why("boom,1,1,rejected,,,Ann,101,,0.9"), (Some(Why::Delay { .. }), 1)));
+        assert_eq!(why("arm,1,1,rejected,,,Ann,,,"), (Some(Why::NoJoint), 0));
+        assert_eq!(why("boom,2,1,rejected,,,Ann,,,"), (Some(Why::NoTrial), 0));
+        assert_eq!(why("boom,1,9,rejected,,,Ann,,,"), (Some(Why::NoStep(3)), 0));
+        let twice = format!("{wide}\nboom,1,1,rejected,,,A,,,\nboom,1,1,accepted,,,B,,,");
+        let (decisions, notes, _) = heard(&twice);
+        assert_eq!(notes[0].why, Why::Twice);
+        assert_eq!(decisions[0].verdict(), Verdict::Accepted);
+    }
+
+    #[test]
+    fn what_is_wrong_names_its_place() {
+        let cell = |row: &str| match parse(&format!("{HEADER}\n{row}")) {
+            Err(ReviewError::Cell { line, column, .. }) => (line, column),
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(cell("boom,1,x,accepted,,,"), (2, "i"));
+        assert_eq!(cell("boom,1,1,perhaps,,,"), (2, "verdict"));
+        assert_eq!(cell("boom,1,1,accepted,soon,,"), (2, "delay_s"));
+        let missing = parse("joint,trial,i,verdict,delay_s,note\n");
+        assert!(matches!(missing, Err(ReviewError::Column { column: "reviewer", .. })));
+        let ragged = parse(&format!("{HEADER}\nboom,1\n"));
+        assert!(matches!(ragged, Err(ReviewError::Table { .. })));
+        let empty = parse(&format!("{}\nboom;1;1;;;;\n", HEADER.replace(',', ";"))).unwrap();
+        assert!(empty.is_empty(), "a row without a verdict says nothing");
+    }
+}
