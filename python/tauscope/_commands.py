@@ -275,7 +275,8 @@ class Trial:
     @property
     def time_s(self) -> np.ndarray[Any, np.dtype[np.float64]]:
         """The time of each sample in seconds."""
-        return self.start_s + self.sample_period * np.arange(len(self.input))
+        samples = np.arange(len(self.input), dtype=np.float64)
+        return np.asarray(self.start_s + self.sample_period * samples, dtype=np.float64)
 
     def to_frame(self) -> pd.DataFrame:
         """Time, input and output as a DataFrame."""

@@ -19,9 +19,7 @@ Array = npt.NDArray[np.float64]
 TABLE = "DataFrame"
 
 
-def gathered(
-    data: Any, settings: dict[str, Any]
-) -> tuple[list[str], Any]:
+def gathered(data: Any, settings: dict[str, Any]) -> tuple[list[str], Any]:
     """The DATA arguments of a command, and the logs in memory; takes what arrays need.
 
     ``data`` is a path or several; a table (pandas, polars, pyarrow) or several; or a pair of
@@ -119,5 +117,7 @@ def _trials(joint: str, data: Any) -> list[tuple[str, Array, Array]]:
 def _numbers(joint: str, values: Any) -> Array:
     array = np.ascontiguousarray(values, dtype=np.float64)
     if array.ndim != 1:
-        raise TypeError(f"joint `{joint}`: an array of shape {array.shape}, expected one number a sample")
+        raise TypeError(
+            f"joint `{joint}`: an array of shape {array.shape}, expected one number a sample"
+        )
     return array

@@ -12,9 +12,7 @@ Progress = bool | Callable[[str, int, int], None] | None
 
 
 @contextmanager
-def reporting(
-    progress: Progress, command: str
-) -> Iterator[Callable[[str, int, int], None] | None]:
+def reporting(progress: Progress, command: str) -> Iterator[Callable[[str, int, int], None] | None]:
     """What is called with what is done, how many pieces of it, and of how many."""
     if callable(progress):
         yield progress

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Mapping
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 from . import _tauscope
 
 #: What the package does itself, or what only a terminal needs.
 HIDDEN = frozenset(
-    "format quiet connect serve spawn follow each resume jobs part merge out-dir".split()
+    "format quiet connect serve spawn follow results shard summary model write".split()  # noqa: SIM905
 )
 
 
-@lru_cache(maxsize=None)
+@cache
 def options(command: str) -> dict[str, tuple[str, bool, bool]]:
     """The options of a command: help, whether a value follows, whether it may be repeated."""
     found = _tauscope.options(command) or []
