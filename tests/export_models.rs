@@ -93,6 +93,7 @@ fn models() -> Vec<(String, JointModel)> {
     swings.reverse();
     let together = [
         ("plain", model(&[], "")),
+        ("twice", model(&[EFFECTS[19], ("backlash", "width = 0.3"), EFFECTS[8], EFFECTS[8]], "")),
         ("own", model(&[], OWN)),
         ("brakes", model(&without(&["actuator_lag", "oil_column", "resonance"]), OWN)),
         ("swings", model(&swings, "")),

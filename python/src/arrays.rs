@@ -37,7 +37,7 @@ pub(crate) enum Logs {
 const ARRAYS: &str = "arrays";
 
 impl Logs {
-    pub(crate) fn of_tables(tables: Vec<Table<'_>>) -> PyResult<Self> {
+    pub(crate) fn of_tables(tables: Vec<Table<'_>>) -> Self {
         let column = |(name, values): (String, Values<'_>)| {
             let values = match values {
                 Values::Numbers(numbers) => HandedValues::Numbers(copied(&numbers)),
@@ -49,7 +49,7 @@ impl Logs {
             name,
             columns: columns.into_iter().map(column).collect(),
         };
-        Ok(Self::Tables(tables.into_iter().map(table).collect()))
+        Self::Tables(tables.into_iter().map(table).collect())
     }
 
     pub(crate) fn of_joints(joints: Vec<ArrayJoint<'_>>, period_s: f64) -> PyResult<Self> {

@@ -83,7 +83,7 @@ enum Given<'py> {
 fn given(logs: Option<Given<'_>>) -> PyResult<Option<Logs>> {
     Ok(match logs {
         None => None,
-        Some(Given::Tables(tables)) => Some(Logs::of_tables(tables)?),
+        Some(Given::Tables(tables)) => Some(Logs::of_tables(tables)),
         Some(Given::Joints((joints, period_s))) => Some(Logs::of_joints(joints, period_s)?),
     })
 }
@@ -129,12 +129,12 @@ fn waited<T: Send + 'static>(
         // Nobody waits any more where this fails.
         sender.send(work(theirs)).unwrap_or_default();
     })?;
-    let mut interrupt = None;
-    let result = py.detach(|| {
+    let (result, interrupt) = py.detach(move || {
+        let mut interrupt = None;
         loop {
             match receiver.recv_timeout(TICK) {
-                Ok(result) => break Some(result),
-                Err(RecvTimeoutError::Disconnected) => break None,
+                Ok(result) => break (Some(result), interrupt),
+                Err(RecvTimeoutError::Disconnected) => break (None, interrupt),
                 Err(RecvTimeoutError::Timeout) => {
                     let looked = Python::attach(|py| look_up(py, shared, progress));
                     if let Err(error) = looked {

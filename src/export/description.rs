@@ -43,7 +43,8 @@ pub(super) struct Parameter {
 /// An effect of the model.
 #[derive(Clone, Debug)]
 pub(super) struct Exported {
-    pub(super) id: &'static str,
+    /// Its id; where the model has it before, with something behind it.
+    pub(super) id: String,
     pub(super) summary: &'static str,
     pub(super) equation: &'static str,
     pub(super) stage: Stage,
@@ -198,7 +199,8 @@ fn exported(
     if !step.gives_result() {
         return Err(ExportError::NoResult { effect: spec.id });
     }
-    let mut give = |name: &str| taken.give(format!("{}_{name}", spec.id));
+    let id = taken.give(spec.id.to_owned());
+    let mut give = |name: &str| taken.give(format!("{id}_{name}"));
     let own = spec.parameters.iter().zip(component.parameters());
     let parameters: Vec<_> = own
         .map(|(parameter, value)| Parameter {
@@ -208,14 +210,15 @@ fn exported(
             value: value.value,
         })
         .collect();
+    let memory = equations.memory.iter().map(|name| give(name)).collect();
     let exported = Exported {
-        id: spec.id,
+        id,
         summary: spec.summary,
         equation: spec.equation,
         stage: spec.stage,
         acts_on_state: spec.acts_on_state,
         parameters: parameters.iter().map(|parameter| parameter.name.clone()).collect(),
-        memory: equations.memory.iter().map(|name| give(name)).collect(),
+        memory,
         settle,
         step,
     };
