@@ -69,14 +69,16 @@ def _run(
     def record(path: str) -> None:
         run(path)
 
+    is_recorded = kind not in (_results.Report, _results.Design) and _tauscope.HAS_RECORDINGS
+
     return kind(
         command,
         text,
         messages,
         complete=complete,
         stopped=stopped,
-        record=record if _tauscope.HAS_RECORDINGS else None,
-        recording=Path(recording) if recording is not None else None,
+        record=record if is_recorded else None,
+        recording=Path(recording) if is_recorded and recording is not None else None,
         model=left,
     )
 
@@ -243,7 +245,7 @@ def simulate(
 ) -> _results.Simulated:
     """A log of a joint with chosen effects, noise and seed, and the truth about it.
 
-    >>> made = simulate(effect="dead_band", seed=1, duration=20)
+    >>> made = simulate(effect="dead_band", seed=1)
     >>> list(made.log.columns)[0]
     'time_s'
     """

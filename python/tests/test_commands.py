@@ -210,7 +210,7 @@ def test_an_interrupt_ends_a_long_call() -> None:
 
 
 def test_simulate_design_sweep_and_report(tmp_path: Path) -> None:
-    made = tauscope.simulate(effect="dead_band", seed=3, duration=30)
+    made = tauscope.simulate(effect="dead_band", seed=3)
     assert len(made.log) > 1000 and "dead_band" in made.truth
     swept = tauscope.sweep(made.log, alpha=[5, 10], beta=[5], passband="none", method="two-line")
     assert swept.data["schema"] == "tauscope/sweep/1"
