@@ -109,7 +109,7 @@ fn calls<'a>(effects: impl Iterator<Item = &'a Exported>, indent: &str) -> Strin
 /// As [`calls`], each after it has settled.
 fn settled<'a>(effects: impl Iterator<Item = &'a Exported>) -> String {
     let both = |effect: &Exported| {
-        let id = effect.id;
+        let id = &effect.id;
         let settle = format!("@NAME@_effect_{id}_settle(model, &at);");
         let settle = (!effect.settle.lines.is_empty()).then_some(settle);
         settle.into_iter().chain([format!("at.signal = @NAME@_effect_{id}(model, &at);")])

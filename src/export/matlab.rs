@@ -73,7 +73,7 @@ fn calls<'a>(effects: impl Iterator<Item = &'a Exported>) -> String {
 /// As [`calls`], each after it has settled.
 fn settled<'a>(effects: impl Iterator<Item = &'a Exported>) -> String {
     let both = |effect: &Exported| {
-        let id = effect.id;
+        let id = &effect.id;
         let settle = format!("s = effect_{id}_settle(s, at);");
         let settle = (!effect.settle.lines.is_empty()).then_some(settle);
         settle.into_iter().chain([format!("[at.signal, s] = effect_{id}(s, at);")])
