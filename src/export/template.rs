@@ -9,7 +9,7 @@ pub(super) fn filled(template: &str, places: &[(&str, &str)]) -> String {
 
 /// Lines, each behind `indent`.
 pub(super) fn indented(lines: impl IntoIterator<Item = String>, indent: &str) -> String {
-    lines.into_iter().map(|line| format!("{indent}{line}\n")).collect()
+    lines.into_iter().flat_map(|line| [indent.to_owned(), line, "\n".to_owned()]).collect()
 }
 
 /// Whether `name` is one in the languages that models are written in.

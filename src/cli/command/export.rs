@@ -17,7 +17,7 @@ use crate::model::ModelFile;
 /// Write a joint's model as source code that stands alone, or as an FMU
 ///
 /// The ending of FILE says what it is written in: `.c` or `.h` (C99, both files), `.py`
-/// (`NumPy`), `.m` (MATLAB and GNU Octave), `.fmu` (FMI 3.0 for co-simulation, with sources
+/// (NumPy), `.m` (MATLAB and GNU Octave), `.fmu` (FMI 3.0 for co-simulation, with sources
 /// and, where there is a C compiler, the binary of this platform). Each has a step function,
 /// a state, and parameters with their units, and simulates what `compare` does.
 #[derive(ClapArgs, Debug)]

@@ -25,7 +25,7 @@ pub(crate) fn aside(write: impl FnOnce()) {
 /// A bar that is gone when it is dropped.
 #[derive(Debug)]
 pub(crate) struct Bar {
-    bar: ProgressBar,
+    drawn: ProgressBar,
     what: &'static str,
     host: Option<Host>,
 }
@@ -54,7 +54,7 @@ impl Bar {
             bar.enable_steady_tick(Duration::from_millis(100));
         }
         bar.set_length(length);
-        Self { bar, what, host }
+        Self { drawn: bar, what, host }
     }
 
     /// A sign of life for work that cannot be counted.
@@ -64,18 +64,18 @@ impl Bar {
 
     /// Says what is being done.
     pub(crate) fn say(&self, what: String) {
-        self.bar.set_message(what);
+        self.drawn.set_message(what);
     }
 
     /// One step is done.
     pub(crate) fn step(&self) {
-        self.bar.inc(1);
+        self.drawn.inc(1);
         self.tell();
     }
 
     fn tell(&self) {
         if let Some(host) = &self.host {
-            host.progress(self.what, self.bar.position(), self.bar.length().unwrap_or(0));
+            host.progress(self.what, self.drawn.position(), self.drawn.length().unwrap_or(0));
         }
     }
 }
@@ -92,11 +92,11 @@ fn style(length: u64) -> ProgressStyle {
 
 impl Watch for Bar {
     fn more(&self, pieces: usize) {
-        let before = self.bar.length().unwrap_or(0);
+        let before = self.drawn.length().unwrap_or(0);
         let length = before + pieces as u64;
-        self.bar.set_length(length);
+        self.drawn.set_length(length);
         if before == 0 {
-            self.bar.set_style(style(length));
+            self.drawn.set_style(style(length));
         }
     }
 
@@ -107,8 +107,8 @@ impl Watch for Bar {
 
 impl Drop for Bar {
     fn drop(&mut self) {
-        self.bar.finish_and_clear();
-        BARS.remove(&self.bar);
+        self.drawn.finish_and_clear();
+        BARS.remove(&self.drawn);
     }
 }
 
@@ -122,6 +122,6 @@ mod tests {
         bar.more(3);
         bar.done();
         bar.more(2);
-        assert_eq!((bar.bar.position(), bar.bar.length()), (1, Some(5)));
+        assert_eq!((bar.drawn.position(), bar.drawn.length()), (1, Some(5)));
     }
 }

@@ -67,7 +67,7 @@ fn token(sources: &[&str]) -> String {
     for source in sources {
         hash.update(source.as_bytes());
     }
-    hash.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
+    base16ct::lower::encode_string(&hash.finalize())
 }
 
 fn fmi(export: &Export, name: &str, token: &str) -> String {

@@ -126,9 +126,9 @@ fn units(export: &Export) -> String {
     names.sort_unstable();
     names.dedup();
     let units = names.into_iter().filter(|name| !name.is_empty());
-    let units: String =
-        units.map(|name| format!("    <Unit name=\"{}\"/>\n", escaped(name))).collect();
-    format!("  <UnitDefinitions>\n{units}  </UnitDefinitions>\n")
+    let units =
+        units.flat_map(|name| ["    <Unit name=\"".to_owned(), escaped(name), "\"/>\n".to_owned()]);
+    format!("  <UnitDefinitions>\n{}  </UnitDefinitions>\n", units.collect::<String>())
 }
 
 fn escaped(text: &str) -> String {
