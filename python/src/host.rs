@@ -73,7 +73,7 @@ impl Hosting for Shared {
 
 /// Logs in memory, as Python passes them.
 #[derive(FromPyObject)]
-enum Given<'py> {
+pub(crate) enum Given<'py> {
     #[pyo3(transparent)]
     Joints((Vec<ArrayJoint<'py>>, f64)),
     #[pyo3(transparent)]
