@@ -85,7 +85,7 @@ def test_arrays_give_the_same_as_the_file() -> None:
 def test_polars_gives_the_same_as_pandas() -> None:
     polars = pytest.importorskip("polars")
     table = pd.read_csv(LOG)
-    found = tauscope.estimate(polars.read_csv(LOG))
+    found = tauscope.estimate(polars.read_csv(LOG, infer_schema_length=None))
     assert without_sources(found.to_json()) == without_sources(tauscope.estimate(table).to_json())
 
 
@@ -153,7 +153,7 @@ def test_an_error_has_row_and_column() -> None:
     table.loc[76, "boom.output [deg]"] = np.inf
     with pytest.raises(tauscope.TauscopeError) as refused:
         tauscope.estimate(table, joint="boom")
-    assert (refused.value.row, refused.value.column) == (77, "boom.output [deg]")
+    assert (refused.value.row, refused.value.column) == (77, "boom.output")
     bad = np.zeros(50)
     bad[30] = np.nan
     with pytest.raises(tauscope.TauscopeError) as refused:

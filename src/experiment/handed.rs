@@ -264,7 +264,7 @@ mod tests {
             let found = Experiment::of_logs(vec![log(80, bad)], &options);
             let error = &found.failures[0].error;
             assert_eq!(error.row(), Some(56), "{error}");
-            assert_eq!(error.column(), Some("boom.output [deg]"));
+            assert_eq!(error.column(), Some("boom.output"));
         }
         let mut uneven = log(80, 0.0);
         uneven.columns[1].values = HandedValues::Numbers(vec![0.0]);
