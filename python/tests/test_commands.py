@@ -159,7 +159,7 @@ def test_an_error_has_row_and_column() -> None:
     with pytest.raises(tauscope.TauscopeError) as refused:
         tauscope.estimate((np.zeros(50), bad), sample_period=0.01)
     assert refused.value.row == 31
-    with pytest.raises(tauscope.TauscopeError, match="no such"):
+    with pytest.raises(tauscope.TauscopeError, match="No such file"):
         tauscope.estimate("no_such_log.csv")
 
 
