@@ -71,14 +71,14 @@ parameters = { x = 0.033 }
 "#;
 
 fn model(effects: &[(&str, &str)], rest: &str) -> JointModel {
-    let mut text = "schema = \"tauscope/model/1\"\n[joint.boom]\nstructure = \"integrator\"\n\
-                    parameters = { gain = 7.3, delay = 0.153 }\n"
-        .to_owned();
-    for (kind, parameters) in effects {
-        text +=
-            &format!("[[joint.boom.effect]]\nkind = \"{kind}\"\nparameters = {{ {parameters} }}\n");
-    }
-    let file = ModelFile::parse(&(text + rest), Path::new("model.toml")).unwrap();
+    let start = "schema = \"tauscope/model/1\"\n[joint.boom]\nstructure = \"integrator\"\n\
+                 parameters = { gain = 7.3, delay = 0.153 }\n";
+    let effect = |(kind, parameters): &(&str, &str)| {
+        format!("[[joint.boom.effect]]\nkind = \"{kind}\"\nparameters = {{ {parameters} }}\n")
+    };
+    let effects: Vec<String> = effects.iter().map(effect).collect();
+    let text = [start, &effects.concat(), rest].concat();
+    let file = ModelFile::parse(&text, Path::new("model.toml")).unwrap();
     file.joint("boom").unwrap().clone()
 }
 
