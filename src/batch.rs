@@ -25,6 +25,21 @@ pub fn with_threads<T: Send>(
     threads: Option<usize>,
     work: impl FnOnce() -> T + Send,
 ) -> Result<T, rayon::ThreadPoolBuildError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?;
+    with_prepared_threads(threads, || (), work)
+}
+
+/// Runs `work` as [`with_threads`] does; each thread does `prepare` before all else.
+///
+/// # Errors
+/// When the threads cannot be started.
+pub fn with_prepared_threads<T: Send>(
+    threads: Option<usize>,
+    prepare: impl Fn() + Send + Sync + 'static,
+    work: impl FnOnce() -> T + Send,
+) -> Result<T, rayon::ThreadPoolBuildError> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.unwrap_or(0))
+        .start_handler(move |_| prepare())
+        .build()?;
     Ok(pool.install(work))
 }

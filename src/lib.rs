@@ -11,6 +11,7 @@
 //! - [`effect`]: the catalogue of physical effects
 //! - [`delay`]: the delay of every step of one joint
 //! - [`model`]: the grey-box model of a joint, its simulation and its file
+//! - [`export`]: models as source code and FMUs
 //! - [`fit`]: models fitted to measurements
 //! - [`diagnosis`]: how good a model is, and where it fails
 //! - [`explain`]: which physical effect a model lacks
@@ -32,6 +33,7 @@
 //! | a format of logs | `src/experiment/format/` | `src/experiment/format/registry.rs` |
 //! | a field of a command's JSON | `src/report/json/`, a file per command; what models have in all of them in `joint.rs` | |
 //! | a view of a recording | what is drawn in `src/figure/` and `src/recording/`, where it stands in `src/recording/views/` | its path in `src/recording/paths.rs` |
+//! | a language for exported models | `src/export/`, with its template | `src/export/registry.rs` |
 //! | a command | `src/cli/command/` | `src/cli/program.rs` |
 
 pub mod batch;
@@ -43,6 +45,7 @@ pub mod diagnosis;
 pub mod effect;
 pub mod experiment;
 pub mod explain;
+pub mod export;
 mod figure;
 pub mod fit;
 pub mod model;

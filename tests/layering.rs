@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use imports::{House, Import, Module};
 
 /// The modules; each may use those before it.
-const ORDER: [&str; 18] = [
+const ORDER: [&str; 19] = [
     "units",
     "numerics",
     "experiment",
@@ -20,6 +20,7 @@ const ORDER: [&str; 18] = [
     "effect",
     "delay",
     "model",
+    "export",
     "fit",
     "diagnosis",
     "explain",
@@ -256,6 +257,7 @@ fn each_library_is_named_in_its_own_place_only() {
         ("jiff", "src/experiment/format/spelling.rs"),
         ("calamine", "src/experiment/format/xlsx.rs"),
         ("hdf5_pure", "src/experiment/format/mat"),
+        ("zip", "src/export/fmu"),
         ("mcap", "src/experiment/format"),
         ("re_cdr", "src/experiment/format/mcap"),
         ("re_ros_msg", "src/experiment/format/mcap"),

@@ -23,4 +23,5 @@ mod run;
 mod similar;
 mod viewer;
 
-pub use program::run;
+pub use console::Hosting;
+pub use program::{CommandOption, Refused, options_of, read_within, run, run_within};

@@ -1,18 +1,23 @@
 //! The program: its commands by name, and the exit status.
 
+use std::ffi::OsString;
 use std::io;
+use std::panic::AssertUnwindSafe;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
 
+use crate::cli::args::DataArgs;
 use crate::cli::command::{
-    add, columns, compare, completions, design, doctor, effects, estimate, explain, improve, man,
-    merge, report, simulate, sweep,
+    add, columns, compare, completions, design, doctor, effects, estimate, explain, export,
+    improve, man, merge, report, simulate, sweep,
 };
-use crate::cli::console::message;
+use crate::cli::console::{Ended, Host, Hosting, message};
 use crate::cli::each_log::end_with_parent;
 use crate::cli::exit::Completion;
 use crate::cli::failure::said;
+use crate::experiment::{Experiment, ReadError};
 
 /// Estimate the variable delay of hydraulic joints, and record every decision.
 #[derive(Debug, Parser)]
@@ -34,6 +39,7 @@ enum Command {
     Columns(columns::Args),
     Report(Box<report::Args>),
     Effects(effects::Args),
+    Export(export::Args),
     Simulate(Box<simulate::Args>),
     Design(Box<design::Args>),
     Doctor(doctor::Args),
@@ -59,6 +65,120 @@ pub fn run() -> ExitCode {
     }
 }
 
+/// Why a command that a program runs inside itself has no results.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refused {
+    /// What the program would print.
+    pub message: String,
+    /// The row of the log that it is about.
+    pub row: Option<u64>,
+    /// The column of the log that it is about.
+    pub column: Option<String>,
+    /// Whether the host ended it.
+    pub was_ended: bool,
+}
+
+/// Runs a command as the program would, for a program that does it inside itself; whether it
+/// was done as a whole. `arguments` are those of the command line, from the command on.
+///
+/// # Errors
+/// [`Refused`], where the program would end with status 2. A panic is one, too.
+pub fn run_within(arguments: &[OsString], host: Arc<dyn Hosting>) -> Result<bool, Refused> {
+    let cli = Cli::try_parse_from(named(arguments));
+    let cli = cli.map_err(|error| Refused::because(&error.to_string()))?;
+    let completion = within(host, || perform(cli.command))?;
+    Ok(completion == Completion::Whole)
+}
+
+/// The options with which all commands read logs, as a command.
+#[derive(Debug, Parser)]
+struct Reading {
+    #[command(flatten)]
+    data: DataArgs,
+}
+
+/// Reads logs as every command does, for a program that has commands inside itself. `arguments`
+/// are the word `read`, logs and options.
+///
+/// # Errors
+/// As [`run_within`].
+pub fn read_within(arguments: &[OsString], host: Arc<dyn Hosting>) -> Result<Experiment, Refused> {
+    let reading = Reading::try_parse_from(arguments);
+    let reading = reading.map_err(|error| Refused::because(&error.to_string()))?;
+    within(host, || reading.data.read())
+}
+
+/// The arguments behind the program's name.
+fn named(arguments: &[OsString]) -> impl Iterator<Item = OsString> {
+    std::iter::once(OsString::from("tauscope")).chain(arguments.iter().cloned())
+}
+
+/// Does `work` for `host`, to whom a panic is an error.
+fn within<T>(
+    host: Arc<dyn Hosting>,
+    work: impl FnOnce() -> anyhow::Result<T>,
+) -> Result<T, Refused> {
+    Host::enter(Some(Host::new(host)));
+    let done = std::panic::catch_unwind(AssertUnwindSafe(work));
+    Host::enter(None);
+    match done {
+        Ok(done) => done.map_err(|error| Refused::of(&error)),
+        Err(panic) if panic.is::<Ended>() => {
+            Err(Refused { was_ended: true, ..Refused::because("it was ended") })
+        }
+        Err(_) => Err(Refused::because("this is a fault of tauscope: please report it")),
+    }
+}
+
+impl Refused {
+    fn because(message: &str) -> Self {
+        let (row, column) = (None, None);
+        Self { message: message.trim_end().to_owned(), row, column, was_ended: false }
+    }
+
+    fn of(error: &anyhow::Error) -> Self {
+        let read = error.chain().find_map(|cause| cause.downcast_ref::<ReadError>());
+        Self {
+            row: read.and_then(ReadError::row),
+            column: read.and_then(ReadError::column).map(str::to_owned),
+            ..Self::because(&said(error.as_ref()))
+        }
+    }
+}
+
+/// An option of a command.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CommandOption {
+    /// Its long name, without the dashes.
+    pub name: String,
+    /// What it does, in one paragraph.
+    pub help: String,
+    /// Whether a value follows it.
+    pub takes_value: bool,
+    /// Whether it may be given several times.
+    pub is_repeatable: bool,
+}
+
+/// The options of a command; `None` where there is no such command.
+pub fn options_of(command: &str) -> Option<Vec<CommandOption>> {
+    let command = match command {
+        "read" => Reading::command(),
+        _ => Cli::command().find_subcommand(command)?.clone(),
+    };
+    let option = |argument: &clap::Arg| {
+        let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
+        let action = argument.get_action();
+        Some(CommandOption {
+            name: argument.get_long()?.to_owned(),
+            help,
+            takes_value: action.takes_values(),
+            is_repeatable: matches!(action, clap::ArgAction::Append),
+        })
+    };
+    let is_own = |option: &CommandOption| option.name != "help" && option.name != "version";
+    Some(command.get_arguments().filter_map(option).filter(is_own).collect())
+}
+
 fn perform(command: Command) -> anyhow::Result<Completion> {
     match command {
         Command::Estimate(args) => estimate::run(&args, &Cli::command()),
@@ -71,6 +191,7 @@ fn perform(command: Command) -> anyhow::Result<Completion> {
         Command::Columns(args) => columns::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Effects(args) => effects::run(&args),
+        Command::Export(args) => export::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Design(args) => design::run(&args),
         Command::Doctor(args) => doctor::run(&args),

@@ -19,8 +19,8 @@
 //! Merritt, H. E., 1967, Hydraulic Control Systems; Ljung, L., 1999, System
 //! Identification: Theory for the User (sampling of a held input).
 
-use super::decay::{DECAY_MEMORY, Decay};
-use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+use super::decay::{DECAY, DECAY_MEMORY, Decay};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +44,22 @@ static SPEC: Spec = Spec::new(
 impl Effect for ActuatorLag {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(
+            Equations::new(
+                [
+                    "interval = dt\n",
+                    DECAY,
+                    "deviation = state - signal
+             state = signal + deviation * left
+             out = signal + deviation * mean",
+                ]
+                .concat(),
+            )
+            .remembering(&["state"], "state = signal"),
+        )
     }
 
     /// The memory is the output `x`, and the decay that was computed last.

@@ -16,7 +16,7 @@
 //! Tao, G., and Kokotović, P. V., 1996, Adaptive Control of Systems with Actuator and
 //! Sensor Nonlinearities.
 
-use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +38,16 @@ static SPEC: Spec = Spec::new("backlash", Stage::Output, "play between actuator 
 impl Effect for Backlash {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(
+            Equations::new(
+                "measured = min(max(measured, signal - 0.5 * width), signal + 0.5 * width)
+             out = measured",
+            )
+            .remembering(&["measured"], "measured = signal"),
+        )
     }
 
     /// The memory is the output.

@@ -38,8 +38,8 @@
 //! friction model, IEEE Control Systems Magazine 28.
 
 use super::dead_band::shifted;
-use super::decay::{DECAY_MEMORY, Decay};
-use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+use super::decay::{DECAY, DECAY_MEMORY, Decay};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -78,6 +78,34 @@ const GAPS: usize = 3;
 impl Effect for CoulombFriction {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(
+            Equations::new(
+                [
+                    "force = max(signal - positive, 0) + min(signal + negative, 0)
+             moving = if(speed > 0, signal - positive, signal + negative)
+             drive = if(speed == 0, force, moving)
+             is_braked = speed * drive < 0
+             stop = if(is_braked, time_constant * ln1p(-speed / if(is_braked, drive, 1)), dt)
+             stops = stop < dt
+             interval = if(stops, dt - stop, dt)\n",
+                    DECAY,
+                    "target = if(stops, force, drive)
+             deviation = if(stops, 0, speed) - target
+             braking = if(stops, drive * stop + time_constant * speed, 0)
+             speed = if(time_constant <= 0, force, target + deviation * left)
+             moved = braking + interval * (target + deviation * mean)
+             out = if(time_constant <= 0, force, moved / dt)",
+                ]
+                .concat(),
+            )
+            .remembering(
+                &["speed"],
+                "speed = max(signal - positive, 0) + min(signal + negative, 0)",
+            ),
+        )
     }
 
     /// The memory is the speed in input units, and the decay that was computed last.

@@ -18,7 +18,7 @@
 //! Sensor Nonlinearities; Merritt, H. E., 1967, Hydraulic Control Systems (overlapped
 //! valves).
 
-use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -51,6 +51,10 @@ impl Effect for DeadBand {
 
     fn is_steady(&self) -> bool {
         true
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(Equations::new("out = max(signal - upper, 0) + min(signal - lower, 0)"))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

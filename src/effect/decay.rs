@@ -12,6 +12,14 @@ pub(super) struct Decay {
 /// Numbers of memory that [`Decay::recall`] needs.
 pub(super) const DECAY_MEMORY: usize = 4;
 
+/// [`Decay::over`] as equations: `left` and `mean` of an `interval` with `time_constant`.
+pub(super) const DECAY: &str = "
+    ratio = interval / time_constant
+    is_over = time_constant <= 0 || !is_finite(ratio)
+    left = if(is_over, 0, exp(-ratio))
+    mean = if(is_over, 0, if(ratio < 1e-300, 1, -expm1(-ratio) / ratio))
+";
+
 impl Decay {
     /// The decay over `dt_s` with time constant `time_constant`; nothing is left at 0.
     pub(super) fn over(dt_s: f64, time_constant: f64) -> Self {

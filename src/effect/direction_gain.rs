@@ -17,7 +17,7 @@
 //! Jelali, M., and Kroll, A., 2003, Hydraulic Servo-systems: Modelling, Identification
 //! and Control (single-rod cylinders).
 
-use super::{Dimension, Effect, Moment, Parameter, Spec, Stage};
+use super::{Dimension, Effect, Equations, Moment, Parameter, Spec, Stage};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -48,6 +48,10 @@ impl Effect for DirectionGain {
 
     fn is_steady(&self) -> bool {
         true
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(Equations::new("out = if(signal < 0, negative_factor * signal, signal)"))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

@@ -16,7 +16,7 @@
 //! # References
 //! Jelali, M., and Kroll, A., 2003, Hydraulic Servo-systems (stroke of the cylinder).
 
-use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +36,10 @@ static SPEC: Spec = Spec::new("end_stop", Stage::Output, "hardware limits of the
 impl Effect for EndStop {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(Equations::new("out = min(max(signal, low), high)"))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

@@ -17,7 +17,7 @@
 //! Jelali, M., and Kroll, A., 2003, Hydraulic Servo-systems: Modelling, Identification
 //! and Control (progressive flow characteristics); the power is a plain choice.
 
-use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -43,6 +43,10 @@ impl Effect for FlowCurve {
 
     fn is_steady(&self) -> bool {
         true
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(Equations::new("out = sign(signal) * abs(signal)^exponent"))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

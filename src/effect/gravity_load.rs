@@ -18,7 +18,7 @@
 //! Merritt, H. E., 1967, Hydraulic Control Systems (orifice equation, valve with a load);
 //! Jelali, M., and Kroll, A., 2003, Hydraulic Servo-systems.
 
-use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -46,6 +46,14 @@ static SPEC: Spec = Spec::new(
 impl Effect for GravityLoad {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(Equations::new(
+            "gravity = cos((position - y0) * radians)
+             load = kappa * gravity * sign(signal)
+             out = signal * sqrt(1 - load) - creep * gravity",
+        ))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

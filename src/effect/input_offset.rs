@@ -10,7 +10,7 @@
 //! # References
 //! Merritt, H. E., 1967, Hydraulic Control Systems (null shift of a valve).
 
-use super::{Dimension, Effect, Moment, Parameter, Spec, Stage};
+use super::{Dimension, Effect, Equations, Moment, Parameter, Spec, Stage};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +32,10 @@ impl Effect for InputOffset {
 
     fn is_steady(&self) -> bool {
         true
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(Equations::new("out = signal + offset"))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

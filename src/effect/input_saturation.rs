@@ -18,7 +18,7 @@
 //! Jelali, M., and Kroll, A., 2003, Hydraulic Servo-systems: Modelling, Identification
 //! and Control (flow saturation). The parabola is a plain choice, not from a source.
 
-use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -53,6 +53,16 @@ impl Effect for InputSaturation {
 
     fn is_steady(&self) -> bool {
         true
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(Equations::new(
+            "size = abs(signal)
+             into_knee = size - limit * (1 - softness)
+             width = 2 * softness * limit
+             rounded = size - into_knee * (into_knee / (2 * width))
+             out = if(into_knee <= 0, signal, sign(signal) * if(into_knee < width, rounded, limit))",
+        ))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use super::{Definition, InputChange, Moment, RecordRange, Spec, Stage};
+use super::{Definition, Equations, InputChange, Moment, RecordRange, Spec, Stage};
 
 /// One physical effect.
 ///
@@ -72,6 +72,13 @@ pub trait Effect: Debug + Send + Sync {
     /// Whether a joint with it moves otherwise when the machine has worked for a while.
     fn depends_on_warmth(&self) -> bool {
         false
+    }
+
+    /// What it does, as text of which other languages can be made: the same as
+    /// [`settle`](Self::settle), [`step`](Self::step) and
+    /// [`extra_delay_s`](Self::extra_delay_s). `None` where it cannot leave the program.
+    fn equations(&self) -> Option<Equations> {
+        None
     }
 
     /// How a model file defines it, where it is not an effect of the program.

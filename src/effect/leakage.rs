@@ -11,7 +11,7 @@
 //! # References
 //! Merritt, H. E., 1967, Hydraulic Control Systems (leakage past the piston).
 
-use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +30,10 @@ static SPEC: Spec = Spec::new("leakage", Stage::Load, "drifts toward an angle, w
 impl Effect for Leakage {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(Equations::new("out = signal - rate * (position - y0)"))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

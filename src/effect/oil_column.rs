@@ -25,8 +25,8 @@
 use std::f64::consts::TAU;
 
 use super::resonance::{FITTED_DAMPING, PERIODS_S, SHORTEST_S};
-use super::swing::Swing;
-use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+use super::swing::{SWING, Swing};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -77,6 +77,24 @@ const FACTORS: (f64, f64) = (0.05, 20.0);
 impl Effect for OilColumn {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(
+            Equations::new(
+                [
+                    "away = position + 0.5 * dt * velocity - reference
+             factor = 1 + away * (slope + curvature * away)
+             here = period * min(max(factor, 0.05), 20)
+             at_once = here < 1e-9
+             omega = 2 * pi / max(here, 1e-9)
+             ratio = min(damping + valve_damping * abs(signal), 10)\n",
+                    SWING,
+                ]
+                .concat(),
+            )
+            .remembering(&["state", "rate"], "state = signal\nrate = 0"),
+        )
     }
 
     /// The memory is `x`, `x'` in input units per second.

@@ -13,7 +13,7 @@
 //! Koivo, A. J., 1994, Kinematics of excavators (backhoes) for transferring surface
 //! material, Journal of Aerospace Engineering 7 (the lever arms in full).
 
-use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -48,6 +48,13 @@ const SMALLEST_FACTOR: f64 = 0.05;
 impl Effect for PositionGain {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(Equations::new(
+            "away = position - reference
+             out = signal * max(1 + away * (slope + curvature * away), 0.05)",
+        ))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

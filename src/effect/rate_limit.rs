@@ -17,7 +17,7 @@
 //! Jelali, M., and Kroll, A., 2003, Hydraulic Servo-systems: Modelling, Identification
 //! and Control (velocity limit of the valve spool).
 
-use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +39,22 @@ static SPEC: Spec = Spec::new("rate_limit", Stage::Dynamics, "slew rate of the s
 impl Effect for RateLimit {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(
+            Equations::new(
+                "way = signal - opening
+             ramp = abs(way) * seconds_per_input
+             arrives = ramp <= dt
+             moved = sign(way) * dt / seconds_per_input
+             behind = if(ramp > 0, way * (0.5 * ramp / dt), 0)
+             mean = if(arrives, signal - behind, opening + 0.5 * moved)
+             opening = if(arrives, signal, opening + moved)
+             out = mean",
+            )
+            .remembering(&["opening"], "opening = signal"),
+        )
     }
 
     /// The memory is the opening in input units.

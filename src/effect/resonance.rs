@@ -12,8 +12,8 @@
 
 use std::f64::consts::TAU;
 
-use super::swing::{SWING_MEMORY, Swing};
-use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+use super::swing::{SWING, SWING_MEMORY, Swing};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -48,6 +48,21 @@ pub(super) const PERIODS_S: [f64; 4] = [0.12, 0.25, 0.5, 1.0];
 impl Effect for Resonance {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(
+            Equations::new(
+                [
+                    "at_once = period < 1e-9
+             omega = 2 * pi / max(period, 1e-9)
+             ratio = damping\n",
+                    SWING,
+                ]
+                .concat(),
+            )
+            .remembering(&["state", "rate"], "state = signal\nrate = 0"),
+        )
     }
 
     /// The memory is `x`, `x'` in input units per second, and the response that was

@@ -20,7 +20,7 @@
 //! analysis tools and compensation methods for the control of machines with friction,
 //! Automatica 30.
 
-use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -58,6 +58,18 @@ impl Effect for Stiction {
     /// The memory is the direction of motion: −1, 0 or 1.
     fn is_steady(&self) -> bool {
         true
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(
+            Equations::new(
+                "goes_on = signal * direction > 0 && abs(signal) >= min(stop, start)
+             moves = goes_on || abs(signal) > start
+             direction = if(moves, sign(signal), 0)
+             out = if(moves, signal, 0)",
+            )
+            .remembering(&["direction"], "direction = if(abs(signal) > start, sign(signal), 0)"),
+        )
     }
 
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {

@@ -11,7 +11,7 @@
 //! # References
 //! Merritt, H. E., 1967, Hydraulic Control Systems (hydraulic power supplies).
 
-use super::{Dimension, Effect, Moment, Parameter, Spec, Stage};
+use super::{Dimension, Effect, Equations, Moment, Parameter, Spec, Stage};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +37,10 @@ impl Effect for SupplyDroop {
 
     fn depends_on_others(&self) -> bool {
         true
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(Equations::new("out = signal * (1 - droop * others)"))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

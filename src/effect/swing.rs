@@ -30,6 +30,37 @@ pub(super) struct Swing {
 /// Numbers of memory that [`Swing::recall`] needs.
 pub(super) const SWING_MEMORY: usize = 9;
 
+/// [`Swing::over`] and [`Swing::advance`] as equations of `omega` and a damping `ratio`: they
+/// move `state` and `rate` on, and give `out`; where `at_once`, the state is the signal.
+pub(super) const SWING: &str = "
+    a = ratio * omega
+    q = omega * omega - a * a
+    x = q * dt * dt
+    is_short = abs(x) < 0.25
+    root = sqrt(abs(q))
+    left = exp(-a * dt)
+    slow = exp(-omega * omega / (a + root) * dt)
+    fast = exp(-(a + root) * dt)
+    even = 1 - x / 2 * (1 - x / 12 * (1 - x / 30 * (1 - x / 56 * (1 - x / 90 * (1 - x / 132 * (1 - x / 182))))))
+    odd = 1 - x / 6 * (1 - x / 20 * (1 - x / 42 * (1 - x / 72 * (1 - x / 110 * (1 - x / 156 * (1 - x / 210))))))
+    cosine = if(q > 0, left * cos(root * dt), 0.5 * (slow + fast))
+    sine = if(q > 0, left * sin(root * dt), 0.5 * (slow - fast)) / root
+    c = if(is_short, left * even, cosine)
+    s = if(is_short, left * dt * odd, sine)
+    deviation = state - signal
+    before = rate
+    scale = -1 / (omega * omega * dt)
+    is_brief = (omega + a) * dt < 1e-3
+    brief_state = 1 - omega * omega * dt * dt / 6 * (1 - a * dt / 2)
+    brief_rate = dt / 2 - a * dt * dt / 3 + (4 * a * a - omega * omega) * dt * dt * dt / 24
+    mean_state = if(is_brief, brief_state, scale * (2 * a * (c + a * s - 1) - omega * omega * s))
+    mean_rate = if(is_brief, brief_rate, scale * (c + a * s - 1))
+    next = signal + (c + a * s) * deviation + s * before
+    state = if(at_once, signal, next)
+    rate = if(at_once, 0, (c - a * s) * before - omega * omega * s * deviation)
+    out = if(at_once, signal, signal + mean_state * deviation + mean_rate * before)
+";
+
 impl Swing {
     /// The swing of `omega` radians a second in an interval of `dt_s`.
     pub(super) fn over(omega: f64, damping: f64, dt_s: f64) -> Self {

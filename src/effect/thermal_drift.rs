@@ -13,7 +13,7 @@
 //! Merritt, H. E., 1967, Hydraulic Control Systems (viscosity and temperature); the
 //! exponential is that of a body that warms toward its surroundings.
 
-use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -49,6 +49,13 @@ impl Effect for ThermalDrift {
 
     fn depends_on_warmth(&self) -> bool {
         true
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(Equations::new(
+            "share = -expm1(-time / max(time_constant, 1e-300))
+             out = signal * max(1 + rate * time_constant * share, 0.05)",
+        ))
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {

@@ -26,7 +26,8 @@
 //! Systems (compressed volumes, viscosity).
 
 use super::{
-    Dimension, Effect, InputChange, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED,
+    Dimension, Effect, Equations, InputChange, Moment, Parameter, RecordRange, Spec, Stage,
+    UNLIMITED,
 };
 
 /// See the [module](self).
@@ -79,6 +80,18 @@ static SPEC: Spec = Spec::new(
 impl Effect for VariableDelay {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        Some(Equations::new(
+            "size_s = max(size_scale, 1e-300)
+             dwell_s = max(dwell_scale, 1e-300)
+             drift_s = max(drift_scale, 1e-300)
+             grown = -size * size_s * expm1(-abs(after - before) / size_s)
+             rested = -dwell * dwell_s * expm1(-held / dwell_s)
+             drifted = -drift * drift_s * expm1(-time / drift_s)
+             out = grown + if(after < before, falling, 0) + rested + drifted",
+        ))
     }
 
     /// The signal itself: this effect acts on time only.

@@ -418,6 +418,50 @@ pub enum ReadError {
     },
 }
 
+impl ReadError {
+    /// The row it is about: the line of the file, or the number of the sample where there are
+    /// no lines.
+    pub fn row(&self) -> Option<u64> {
+        match self {
+            Self::UnequalRow { row, .. }
+            | Self::DuplicateColumn { row, .. }
+            | Self::NotUtf8 { row, .. }
+            | Self::TimeUnit { row, .. }
+            | Self::MissingColumn { row, .. }
+            | Self::NoJoints { row, .. }
+            | Self::NoTime { row, .. }
+            | Self::NotANumber { row, .. }
+            | Self::Infinite { row, .. }
+            | Self::BeyondPrecision { row, .. }
+            | Self::Missing { row, .. }
+            | Self::TimeNotIncreasing { row, .. }
+            | Self::NotUniform { row, .. }
+            | Self::TrialNotContiguous { row, .. }
+            | Self::SingleRow { row, .. }
+            | Self::NoTimeInRow { row, .. } => Some(*row).filter(|row| *row > 0),
+            _ => None,
+        }
+    }
+
+    /// The name of the column it is about.
+    pub fn column(&self) -> Option<&str> {
+        match self {
+            Self::NotNumbers { column, .. }
+            | Self::UnequalColumns { column, .. }
+            | Self::DuplicateColumn { column, .. }
+            | Self::TimeUnit { column, .. }
+            | Self::MissingColumn { column, .. }
+            | Self::NotANumber { column, .. }
+            | Self::Infinite { column, .. }
+            | Self::BeyondPrecision { column, .. }
+            | Self::Missing { column, .. }
+            | Self::NoTimeInRow { column, .. }
+            | Self::NeverMeasured { column, .. } => Some(column),
+            _ => None,
+        }
+    }
+}
+
 /// A number of bytes for people: `1.5 GB`.
 fn bytes(count: u64) -> String {
     match count as f64 {

@@ -146,7 +146,6 @@ pub(super) struct RowNumbers {
 
 impl RowNumbers {
     /// So many rows, counted from 1.
-    #[cfg(any(feature = "mat", feature = "mcap", feature = "parquet"))]
     pub(super) fn counted(count: usize) -> Self {
         Self { runs: vec![(0, 1)], count }
     }
@@ -205,6 +204,25 @@ impl Column {
         Self { values: Vec::new(), error: Some((0, BadCell::Kind(kind.to_owned()))) }
     }
 
+    /// Numbers in the order of their rows, counted from 1, as they are: none is copied.
+    pub(super) fn checked(values: Vec<f64>) -> Self {
+        let mut column = Self { values, error: None };
+        let is_bad = |value: &f64| value.is_infinite() || value.abs() > LARGEST;
+        if let Some(row) = column.values.iter().position(is_bad) {
+            let value = column.values.get(row).copied().unwrap_or(f64::NAN);
+            let bad =
+                if value.is_infinite() { BadCell::Infinite } else { BadCell::TooLarge(value) };
+            column.values.truncate(row);
+            column.error = Some((row as u64 + 1, bad));
+        }
+        column
+    }
+
+    /// A column that holds texts.
+    pub(super) fn text() -> Self {
+        Self { values: Vec::new(), error: Some((0, BadCell::Kind("text".to_owned()))) }
+    }
+
     /// Adds the number of the next row, counted from 1.
     #[cfg(any(feature = "mat", feature = "mcap", feature = "parquet"))]
     pub(super) fn add(&mut self, value: f64) {
@@ -229,10 +247,6 @@ impl Column {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum BadCell {
     /// The whole column holds something else.
-    #[cfg_attr(
-        not(any(feature = "mat", feature = "parquet")),
-        expect(dead_code, reason = "for other formats")
-    )]
     Kind(String),
     Text(String),
     Infinite,

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::number;
+use crate::cli::console::Host;
 use crate::cli::failure::said;
 use crate::experiment::{
     ColumnMap, Experiment, JointColumns, MemoryLimit, ReadOptions, Repair, expand_folders,
@@ -184,9 +185,7 @@ impl ReadingArgs {
     /// # Errors
     /// When no joint at all can be read.
     pub(crate) fn read(&self, data: &[PathBuf]) -> anyhow::Result<Experiment> {
-        let (files, unlisted) = expand_folders(data);
-        let mut experiment = Experiment::read(&files, &self.options()?);
-        experiment.failures.splice(0..0, unlisted);
+        let mut experiment = self.read_or_take(data)?;
         if !experiment.joints.is_empty() {
             return Ok(experiment);
         }
@@ -198,6 +197,18 @@ impl ReadingArgs {
             1 => error.context("nothing could be read (and one more failed)"),
             _ => error.context(format!("nothing could be read (and {others} more failed)")),
         })
+    }
+
+    /// What the program that runs the command has in memory, or else what is in the files.
+    fn read_or_take(&self, data: &[PathBuf]) -> anyhow::Result<Experiment> {
+        let options = self.options()?;
+        if let Some(handed) = Host::current().and_then(|host| host.logs(&options)) {
+            return Ok(handed);
+        }
+        let (files, unlisted) = expand_folders(data);
+        let mut experiment = Experiment::read(&files, &options);
+        experiment.failures.splice(0..0, unlisted);
+        Ok(experiment)
     }
 
     /// The joints that are named.

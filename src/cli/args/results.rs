@@ -7,8 +7,8 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use super::number::threads;
-use crate::batch::with_threads;
-use crate::cli::console::{self, Verbosity};
+use crate::batch::with_prepared_threads;
+use crate::cli::console::{self, Host, Verbosity};
 use crate::cli::viewer::StreamArgs;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -44,7 +44,8 @@ impl RunArgs {
 
     /// Does `work` with as many threads as are to be used.
     pub(crate) fn in_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> anyhow::Result<T> {
-        with_threads(self.threads, work)
+        let host = Host::current();
+        with_prepared_threads(self.threads, move || Host::enter(host.clone()), work)
             .map_err(|error| anyhow!("threads cannot be started: {error}"))
     }
 

@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, Once};
 use std::time::Duration;
 
+use super::host::Host;
 use super::terminal::message;
 
 /// Exit status of a program that was ended by an interrupt, as shells have it.
@@ -27,6 +28,10 @@ impl Interrupt {
         if let Ok(mut said) = ANSWER.lock() {
             *said = answer;
         }
+        if Host::current().is_some() {
+            // Signals are the host's.
+            return Self(());
+        }
         PRESSED.store(false, Ordering::SeqCst);
         HANDLER.call_once(|| ctrlc::set_handler(pressed).unwrap_or_default());
         Self(())
@@ -34,7 +39,10 @@ impl Interrupt {
 
     #[expect(clippy::unused_self, reason = "who has it has watched")]
     pub(crate) fn was_pressed(self) -> bool {
-        PRESSED.load(Ordering::SeqCst)
+        match Host::current() {
+            Some(host) => host.is_stopping(),
+            None => PRESSED.load(Ordering::SeqCst),
+        }
     }
 
     /// Sleeps for `time`, or until it is pressed; whether it was.

@@ -1,9 +1,12 @@
 //! What people see on a terminal: messages, results, progress; and Ctrl-C.
 
+mod host;
 mod interrupt;
 mod progress;
 mod terminal;
 
+pub use host::Hosting;
+pub(crate) use host::{Ended, Host};
 pub(crate) use interrupt::Interrupt;
 pub(crate) use progress::{Bar, Verbosity};
 pub(crate) use terminal::{Tone, has_colors, message, print, print_json, print_with, toned, warn};

@@ -3,6 +3,7 @@
 use std::sync::LazyLock;
 use std::time::Duration;
 
+use super::host::Host;
 use crate::study::Watch;
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -23,7 +24,11 @@ pub(crate) fn aside(write: impl FnOnce()) {
 
 /// A bar that is gone when it is dropped.
 #[derive(Debug)]
-pub(crate) struct Bar(ProgressBar);
+pub(crate) struct Bar {
+    drawn: ProgressBar,
+    what: &'static str,
+    host: Option<Host>,
+}
 
 impl Bar {
     /// A bar for `length` steps of `what`, with its rate and the time left; of an unknown
@@ -34,15 +39,22 @@ impl Bar {
         units: &'static str,
         length: u64,
     ) -> Self {
+        let host = Host::current();
         let bar = match verbosity {
+            _ if host.is_some() => {
+                ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden())
+            }
             Verbosity::Quiet => ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()),
             Verbosity::Normal => BARS.add(ProgressBar::new(length)),
         };
         bar.set_prefix(units);
         bar.set_style(style(length));
         bar.set_message(what);
-        bar.enable_steady_tick(Duration::from_millis(100));
-        Self(bar)
+        if host.is_none() {
+            bar.enable_steady_tick(Duration::from_millis(100));
+        }
+        bar.set_length(length);
+        Self { drawn: bar, what, host }
     }
 
     /// A sign of life for work that cannot be counted.
@@ -52,12 +64,19 @@ impl Bar {
 
     /// Says what is being done.
     pub(crate) fn say(&self, what: String) {
-        self.0.set_message(what);
+        self.drawn.set_message(what);
     }
 
     /// One step is done.
     pub(crate) fn step(&self) {
-        self.0.inc(1);
+        self.drawn.inc(1);
+        self.tell();
+    }
+
+    fn tell(&self) {
+        if let Some(host) = &self.host {
+            host.progress(self.what, self.drawn.position(), self.drawn.length().unwrap_or(0));
+        }
     }
 }
 
@@ -73,11 +92,11 @@ fn style(length: u64) -> ProgressStyle {
 
 impl Watch for Bar {
     fn more(&self, pieces: usize) {
-        let before = self.0.length().unwrap_or(0);
+        let before = self.drawn.length().unwrap_or(0);
         let length = before + pieces as u64;
-        self.0.set_length(length);
+        self.drawn.set_length(length);
         if before == 0 {
-            self.0.set_style(style(length));
+            self.drawn.set_style(style(length));
         }
     }
 
@@ -88,8 +107,8 @@ impl Watch for Bar {
 
 impl Drop for Bar {
     fn drop(&mut self) {
-        self.0.finish_and_clear();
-        BARS.remove(&self.0);
+        self.drawn.finish_and_clear();
+        BARS.remove(&self.drawn);
     }
 }
 
@@ -103,6 +122,6 @@ mod tests {
         bar.more(3);
         bar.done();
         bar.more(2);
-        assert_eq!((bar.0.position(), bar.0.length()), (1, Some(5)));
+        assert_eq!((bar.drawn.position(), bar.drawn.length()), (1, Some(5)));
     }
 }

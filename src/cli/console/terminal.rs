@@ -10,6 +10,7 @@ use anstyle::{AnsiColor, Style};
 use anyhow::Context as _;
 use serde::Serialize;
 
+use super::host::Host;
 use super::progress;
 
 /// `text` with its control characters shown, not sent: names in a log may hold what moves a
@@ -85,6 +86,9 @@ pub(crate) fn has_colors() -> bool {
 
 /// Prints one line on stderr. That stderr is closed is no reason to stop.
 pub(crate) fn message(kind: &str, text: &str) {
+    if let Some(host) = Host::current() {
+        return host.say(kind, &anstream::adapter::strip_str(text).to_string());
+    }
     let style = match kind {
         "error" => Tone::Bad.style(),
         "warning" | "stopping" => Tone::Notice.style(),
@@ -105,6 +109,10 @@ pub(crate) fn warn(failures: &[String]) {
 
 /// Prints results on stdout, tables with their frames dimmed.
 pub(crate) fn print(text: &str) -> anyhow::Result<()> {
+    if let Some(host) = Host::current() {
+        host.print(&anstream::adapter::strip_str(text).to_string());
+        return Ok(());
+    }
     let mut out = anstream::stdout().lock();
     let text = shown_in_tones(text);
     let painted = if has_colors() { painted(&text) } else { text };
@@ -114,6 +122,10 @@ pub(crate) fn print(text: &str) -> anyhow::Result<()> {
 
 /// Prints results on stdout as one line of JSON.
 pub(crate) fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
+    if let Some(host) = Host::current() {
+        host.print(&serde_json::to_string(value)?);
+        return Ok(());
+    }
     print_with(|out| {
         serde_json::to_writer(&mut *out, value)?;
         out.write_all(b"\n")

@@ -3,24 +3,16 @@
 use std::sync::{Mutex, PoisonError};
 
 use super::super::{
-    Definition, Effect, InputChange, Moment, OwnParameter, Parameter, RecordRange, Spec, Stage,
-    UNLIMITED, by_id, contract,
+    Definition, Effect, Equations, InputChange, Moment, OwnParameter, Parameter, RecordRange, Spec,
+    Stage, UNLIMITED, by_id, contract,
 };
 use super::DefinitionError;
 use super::grammar::{self, Names};
-use super::tree::Node;
+use super::signals::{POSITION, of_change, of_moment, signals};
+use super::tree::{Name, Node, Scope};
 
 /// The word for it in a model file.
 pub const KIND: &str = "expression";
-
-/// The angle of the joint.
-const POSITION: &str = "position";
-
-/// What an expression of any stage but the transport sees of a [`Moment`].
-const SIGNALS: [&str; 7] = ["signal", POSITION, "velocity", "time", "dt", "others", "radians"];
-
-/// What an expression of the transport stage sees of an [`InputChange`].
-const CHANGES: [&str; 4] = ["before", "after", "held", "time"];
 
 /// An effect that computes an expression.
 #[derive(Debug)]
@@ -75,10 +67,11 @@ impl Expression {
             return Err(fault);
         }
         let parameters: Vec<_> = definition.parameters.iter().map(|p| p.name.as_str()).collect();
-        let names = Names { signals, parameters: &parameters };
+        let names = Names::new(signals, &parameters);
         let node = grammar::parse(&definition.expression, names)?;
-        let is_unused =
-            |index: usize| !node.has(&|node| matches!(node, Node::Parameter(p) if *p == index));
+        let is_unused = |index: usize| {
+            !node.has(&|node| matches!(node, Node::Named(Name::Parameter(p)) if *p == index))
+        };
         if let Some((_, name)) = (0..).zip(&parameters).find(|(index, _)| is_unused(*index)) {
             return Err(DefinitionError::Unused { parameter: (*name).to_owned() });
         }
@@ -95,7 +88,7 @@ impl Expression {
 
     /// The value of the expression, or what it must be to change nothing.
     fn or_else(&self, unchanged: f64, signals: &[f64], parameters: &[f64]) -> f64 {
-        let value = self.node.value(signals, parameters);
+        let value = self.node.value(&Scope { signals, parameters, ..Scope::default() });
         if value.is_finite() { value } else { unchanged }
     }
 
@@ -124,18 +117,23 @@ impl Effect for Expression {
         if self.spec.stage == Stage::Transport {
             return at.signal;
         }
-        let Moment { signal, position, velocity, time_s, dt_s, others, .. } = *at;
-        let radians = at.radians_per_output_unit;
-        let signals = [signal, position, velocity, time_s, dt_s, others, radians];
-        self.or_else(signal, &signals, parameters)
+        self.or_else(at.signal, &of_moment(at), parameters)
     }
 
     fn extra_delay_s(&self, parameters: &[f64], change: &InputChange) -> f64 {
         if self.spec.stage != Stage::Transport {
             return 0.0;
         }
-        let signals = [change.before, change.after, change.held_s, change.time_s];
-        self.or_else(0.0, &signals, parameters)
+        self.or_else(0.0, &of_change(change), parameters)
+    }
+
+    fn equations(&self) -> Option<Equations> {
+        let unchanged = if self.spec.stage == Stage::Transport { "0" } else { "signal" };
+        // Capital letters: its parameters have none.
+        Some(Equations::new(format!(
+            "VALUE = {}\nOUT = if(is_finite(VALUE), VALUE, {unchanged})",
+            self.definition.expression
+        )))
     }
 
     fn nests(&self) -> bool {
@@ -146,7 +144,10 @@ impl Effect for Expression {
         let names = signals(self.spec.stage);
         let is_position = |index: usize| names.get(index) == Some(&POSITION);
         let by_stage = matches!(self.spec.stage, Stage::Load | Stage::Output);
-        by_stage || self.node.has(&|node| matches!(node, Node::Signal(p) if is_position(*p)))
+        by_stage
+            || self
+                .node
+                .has(&|node| matches!(node, Node::Named(Name::Signal(p)) if is_position(*p)))
     }
 
     fn definition(&self) -> Option<&Definition> {
@@ -207,11 +208,6 @@ impl OwnParameter {
 /// A text that lives as long as the program.
 fn leaked(text: &str) -> &'static str {
     Box::leak(text.to_owned().into_boxed_str())
-}
-
-/// The names of what an expression of this stage sees.
-fn signals(stage: Stage) -> &'static [&'static str] {
-    if stage == Stage::Transport { &CHANGES } else { &SIGNALS }
 }
 
 fn check_names(definition: &Definition, signals: &[&str]) -> Result<(), DefinitionError> {

@@ -1,7 +1,5 @@
 //! The grammar of expressions, and what is said where one does not follow it.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
-
 use winnow::Parser;
 use winnow::ascii::{float, multispace0};
 use winnow::combinator::Infix::{Left, Neither, Right};
@@ -12,7 +10,7 @@ use winnow::error::{ErrMode, ModalResult, ParserError};
 use winnow::stream::{Stateful, Stream as _};
 use winnow::token::{one_of, take_while};
 
-use super::tree::{Binary, Node, Unary, is_true};
+use super::tree::{Function, Name, Node, Operator};
 
 /// The longest expression, in bytes: longer than anyone reads.
 ///
@@ -34,36 +32,28 @@ const SIGN: i64 = 60;
 const CONSTANTS: [(&str, f64); 1] = [("pi", std::f64::consts::PI)];
 
 /// Functions of one number.
-const UNARY: [(&str, Unary); 11] = [
-    ("abs", f64::abs),
-    ("sign", sign),
-    ("sqrt", f64::sqrt),
-    ("exp", f64::exp),
-    ("ln", f64::ln),
-    ("sin", f64::sin),
-    ("cos", f64::cos),
-    ("tan", f64::tan),
-    ("atan", f64::atan),
-    ("tanh", f64::tanh),
-    ("floor", f64::floor),
+const UNARY: [(&str, Function); 14] = [
+    ("abs", Function::Abs),
+    ("sign", Function::Sign),
+    ("sqrt", Function::Sqrt),
+    ("exp", Function::Exp),
+    ("expm1", Function::Expm1),
+    ("ln", Function::Ln),
+    ("ln1p", Function::Ln1p),
+    ("sin", Function::Sin),
+    ("cos", Function::Cos),
+    ("tan", Function::Tan),
+    ("atan", Function::Atan),
+    ("tanh", Function::Tanh),
+    ("floor", Function::Floor),
+    ("is_finite", Function::IsFinite),
 ];
 
 /// Functions of two numbers or more.
-const SEVERAL: [(&str, Binary); 2] = [("min", f64::min), ("max", f64::max)];
+const SEVERAL: [(&str, Operator); 2] = [("min", Operator::Min), ("max", Operator::Max)];
 
 /// The function of a condition and two values.
 const CONDITIONAL: &str = "if";
-
-/// −1, 0 or 1.
-fn sign(number: f64) -> f64 {
-    if number > 0.0 {
-        1.0
-    } else if number < 0.0 {
-        -1.0
-    } else {
-        number
-    }
-}
 
 /// Whether `name` is that of a function or a constant.
 pub(super) fn is_taken(name: &str) -> bool {
@@ -136,6 +126,30 @@ pub enum Problem {
 pub(super) struct Names<'a> {
     pub(super) signals: &'a [&'static str],
     pub(super) parameters: &'a [&'a str],
+    pub(super) memory: &'a [&'a str],
+    /// Of the lines before.
+    pub(super) locals: &'a [&'a str],
+}
+
+impl<'a> Names<'a> {
+    /// Those of an expression of one line, without memory.
+    pub(super) fn new(signals: &'a [&'static str], parameters: &'a [&'a str]) -> Self {
+        Self { signals, parameters, memory: &[], locals: &[] }
+    }
+
+    fn all(&self) -> impl Iterator<Item = &'a str> {
+        let given = self.signals.iter().chain(self.parameters);
+        given.chain(self.memory).chain(self.locals).copied()
+    }
+
+    pub(super) fn find(&self, name: &str) -> Option<Name> {
+        let place = |names: &[&str]| names.iter().position(|known| *known == name);
+        let signal = place(self.signals).map(Name::Signal);
+        let parameter = || place(self.parameters).map(Name::Parameter);
+        let memory = || place(self.memory).map(Name::Memory);
+        let local = || place(self.locals).map(Name::Local);
+        signal.or_else(parameter).or_else(memory).or_else(local)
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -255,15 +269,12 @@ fn closing(input: &mut Input<'_>, expected: &'static str) -> Parsed<()> {
 
 fn look_up(name: &str, names: Names<'_>) -> Result<Node, Problem> {
     let constant = CONSTANTS.iter().find(|(known, _)| *known == name);
-    let signal = || names.signals.iter().position(|known| *known == name).map(Node::Signal);
-    let parameter =
-        || names.parameters.iter().position(|known| *known == name).map(Node::Parameter);
-    let found = constant.map(|(_, value)| Node::Number(*value)).or_else(signal).or_else(parameter);
-    let numbers = names.signals.iter().chain(names.parameters).copied();
+    let constant = constant.map(|(_, value)| Node::Number(*value));
+    let found = constant.or_else(|| names.find(name).map(Node::Named));
     if found.is_none() && functions().any(|function| function == name) {
         return Err(Problem::NotANumber(name.to_owned()));
     }
-    found.ok_or_else(|| unknown(name, numbers.chain(CONSTANTS.map(|(name, _)| name))))
+    found.ok_or_else(|| unknown(name, names.all().chain(CONSTANTS.map(|(name, _)| name))))
 }
 
 fn unknown<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Problem {
@@ -304,8 +315,8 @@ fn prefix<'a>(input: &mut Input<'a>) -> Parsed<PrefixOf<'a>> {
     multispace0.parse_next(input)?;
     count_sign(input)?;
     Ok(match symbol {
-        '-' => Prefix(SIGN, |_, value| Ok(Node::unary(Neg::neg, value))),
-        _ => Prefix(SIGN, |_, value| Ok(Node::unary(not, value))),
+        '-' => Prefix(SIGN, |_, value| Ok(Node::unary(Function::Neg, value))),
+        _ => Prefix(SIGN, |_, value| Ok(Node::unary(Function::Not, value))),
     })
 }
 
@@ -323,51 +334,42 @@ fn infix<'a>(input: &mut Input<'a>) -> Parsed<InfixOf<'a>> {
         count_sign(input)?;
     }
     Ok(match symbol {
-        "||" => Left(10, |_, a, b| Ok(Node::binary(or, a, b))),
-        "&&" => Left(20, |_, a, b| Ok(Node::binary(and, a, b))),
-        "<" => Neither(30, |_, a, b| Ok(Node::binary(|a, b| f64::from(a < b), a, b))),
-        ">" => Neither(30, |_, a, b| Ok(Node::binary(|a, b| f64::from(a > b), a, b))),
-        "<=" => Neither(30, |_, a, b| Ok(Node::binary(|a, b| f64::from(a <= b), a, b))),
-        ">=" => Neither(30, |_, a, b| Ok(Node::binary(|a, b| f64::from(a >= b), a, b))),
-        "==" => Neither(30, |_, a, b| Ok(Node::binary(equal, a, b))),
-        "!=" => Neither(30, |_, a, b| Ok(Node::unary(not, Node::binary(equal, a, b)))),
-        "+" => Left(40, |_, a, b| Ok(Node::binary(Add::add, a, b))),
-        "-" => Left(40, |_, a, b| Ok(Node::binary(Sub::sub, a, b))),
-        "*" => Left(50, |_, a, b| Ok(Node::binary(Mul::mul, a, b))),
-        "/" => Left(50, |_, a, b| Ok(Node::binary(Div::div, a, b))),
-        _ => Right(70, |_, a, b| Ok(Node::binary(f64::powf, a, b))),
+        "||" => Left(10, |_, a, b| Ok(Node::binary(Operator::Or, a, b))),
+        "&&" => Left(20, |_, a, b| Ok(Node::binary(Operator::And, a, b))),
+        "<" => Neither(30, |_, a, b| Ok(Node::binary(Operator::Less, a, b))),
+        ">" => Neither(30, |_, a, b| Ok(Node::binary(Operator::Greater, a, b))),
+        "<=" => Neither(30, |_, a, b| Ok(Node::binary(Operator::LessOrEqual, a, b))),
+        ">=" => Neither(30, |_, a, b| Ok(Node::binary(Operator::GreaterOrEqual, a, b))),
+        "==" => Neither(30, |_, a, b| Ok(Node::binary(Operator::Equal, a, b))),
+        "!=" => Neither(30, |_, a, b| {
+            Ok(Node::unary(Function::Not, Node::binary(Operator::Equal, a, b)))
+        }),
+        "+" => Left(40, |_, a, b| Ok(Node::binary(Operator::Add, a, b))),
+        "-" => Left(40, |_, a, b| Ok(Node::binary(Operator::Sub, a, b))),
+        "*" => Left(50, |_, a, b| Ok(Node::binary(Operator::Mul, a, b))),
+        "/" => Left(50, |_, a, b| Ok(Node::binary(Operator::Div, a, b))),
+        _ => Right(70, |_, a, b| Ok(Node::binary(Operator::Pow, a, b))),
     })
-}
-
-fn or(a: f64, b: f64) -> f64 {
-    f64::from(is_true(a) || is_true(b))
-}
-
-fn and(a: f64, b: f64) -> f64 {
-    f64::from(is_true(a) && is_true(b))
-}
-
-fn not(a: f64) -> f64 {
-    f64::from(!is_true(a))
-}
-
-#[expect(clippy::float_cmp, reason = "the one who writes `==` means it")]
-fn equal(a: f64, b: f64) -> f64 {
-    f64::from(a == b)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::tree::Scope;
     use proptest::prelude::*;
 
     use super::*;
 
-    const NAMES: Names<'static> =
-        Names { signals: &["signal", "position"], parameters: &["slope", "start"] };
+    const NAMES: Names<'static> = Names {
+        signals: &["signal", "position"],
+        parameters: &["slope", "start"],
+        memory: &[],
+        locals: &[],
+    };
 
     /// The value where signal, position, slope and start are 3, 5, 7 and 2.
     fn value(text: &str) -> f64 {
-        parse(text, NAMES).unwrap().value(&[3.0, 5.0], &[7.0, 2.0])
+        let (signals, parameters) = (&[3.0, 5.0], &[7.0, 2.0]);
+        parse(text, NAMES).unwrap().value(&Scope { signals, parameters, ..Scope::default() })
     }
 
     fn problem(text: &str) -> (usize, String) {
@@ -477,7 +479,7 @@ mod tests {
         {
             let parsed = |count: usize| {
                 let text = open.repeat(count) + "1" + &close.repeat(count);
-                parse(&text, NAMES).map(|node| node.value(&[], &[]))
+                parse(&text, NAMES).map(|node| node.value(&Scope::default()))
             };
             for count in 1..=550 {
                 assert!(parsed(count).is_err() || parsed(count).unwrap().is_finite());

@@ -10,7 +10,7 @@
 //! ```text
 //! ||    &&    < <= > >= == !=    + -    * /    - ! (sign, not)    ^
 //! if(condition, value, other)  min(a, b, …)  max(a, b, …)
-//! abs sign sqrt exp ln sin cos tan atan tanh floor, each of one value in parentheses
+//! abs sign sqrt exp expm1 ln ln1p sin cos tan atan tanh floor is_finite, each of one value
 //! ```
 //!
 //! `-x^2` is `-(x^2)`, `2^3^2` is `2^(3^2)`. A condition is 1 or 0, and every number but 0
@@ -28,8 +28,12 @@
 mod compiled;
 mod error;
 mod grammar;
+mod program;
+mod signals;
 mod tree;
 
 pub use compiled::{KIND, define};
 pub use error::DefinitionError;
 pub use grammar::{Problem, SyntaxError};
+pub(crate) use program::{Line, Program};
+pub(crate) use tree::{Function, Name, Node, Operator};

@@ -1,45 +1,170 @@
-//! An expression that is ready to be computed.
+//! An expression that is ready to be computed, or to be written in another language.
 
 /// A function of one number.
-pub(super) type Unary = fn(f64) -> f64;
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Function {
+    Abs,
+    Sign,
+    Sqrt,
+    Exp,
+    Expm1,
+    Ln,
+    Ln1p,
+    Sin,
+    Cos,
+    Tan,
+    Atan,
+    Tanh,
+    Floor,
+    /// 1 where it is a number and not infinite, else 0.
+    IsFinite,
+    /// The sign turned.
+    Neg,
+    /// 1 of zero, 0 of every other number.
+    Not,
+}
 
-/// A function of two numbers.
-pub(super) type Binary = fn(f64, f64) -> f64;
+impl Function {
+    /// Its value at `x`.
+    pub(super) fn value(self, x: f64) -> f64 {
+        match self {
+            Self::Abs => x.abs(),
+            Self::Sign => sign(x),
+            Self::Sqrt => x.sqrt(),
+            Self::Exp => x.exp(),
+            Self::Expm1 => x.exp_m1(),
+            Self::Ln => x.ln(),
+            Self::Ln1p => x.ln_1p(),
+            Self::Sin => x.sin(),
+            Self::Cos => x.cos(),
+            Self::Tan => x.tan(),
+            Self::Atan => x.atan(),
+            Self::Tanh => x.tanh(),
+            Self::Floor => x.floor(),
+            Self::IsFinite => f64::from(x.is_finite()),
+            Self::Neg => -x,
+            Self::Not => f64::from(!is_true(x)),
+        }
+    }
+}
+
+/// −1, 0 or 1.
+fn sign(number: f64) -> f64 {
+    if number > 0.0 {
+        1.0
+    } else if number < 0.0 {
+        -1.0
+    } else {
+        number
+    }
+}
+
+/// A function of two numbers; those of comparison and logic are 1 or 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Operator {
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Pow,
+    Min,
+    Max,
+    Less,
+    LessOrEqual,
+    Greater,
+    GreaterOrEqual,
+    Equal,
+    And,
+    Or,
+}
+
+impl Operator {
+    /// Its value at `a` and `b`.
+    #[expect(clippy::float_cmp, reason = "the one who writes `==` means it")]
+    pub(super) fn value(self, a: f64, b: f64) -> f64 {
+        match self {
+            Self::Add => a + b,
+            Self::Sub => a - b,
+            Self::Mul => a * b,
+            Self::Div => a / b,
+            Self::Pow => a.powf(b),
+            Self::Min => a.min(b),
+            Self::Max => a.max(b),
+            Self::Less => f64::from(a < b),
+            Self::LessOrEqual => f64::from(a <= b),
+            Self::Greater => f64::from(a > b),
+            Self::GreaterOrEqual => f64::from(a >= b),
+            Self::Equal => f64::from(a == b),
+            Self::And => f64::from(is_true(a) && is_true(b)),
+            Self::Or => f64::from(is_true(a) || is_true(b)),
+        }
+    }
+}
+
+/// A number with a name, by its index in the list of its kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Name {
+    /// Of the stage.
+    Signal(usize),
+    /// Of the effect.
+    Parameter(usize),
+    /// What the effect remembers.
+    Memory(usize),
+    /// Of a line before.
+    Local(usize),
+}
+
+/// The numbers that have names.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Scope<'a> {
+    pub(super) signals: &'a [f64],
+    pub(super) parameters: &'a [f64],
+    pub(super) memory: &'a [f64],
+    pub(super) locals: &'a [f64],
+}
+
+impl Scope<'_> {
+    fn value(&self, name: Name) -> f64 {
+        let (values, index) = match name {
+            Name::Signal(index) => (self.signals, index),
+            Name::Parameter(index) => (self.parameters, index),
+            Name::Memory(index) => (self.memory, index),
+            Name::Local(index) => (self.locals, index),
+        };
+        values.get(index).copied().unwrap_or(f64::NAN)
+    }
+}
 
 /// A part of an expression.
 #[derive(Clone, Debug)]
-pub(super) enum Node {
+pub(crate) enum Node {
     Number(f64),
-    /// A signal, by its index in the list of the stage.
-    Signal(usize),
-    /// A parameter, by its index in the definition.
-    Parameter(usize),
-    Unary(Unary, Box<Self>),
-    Binary(Binary, Box<[Self; 2]>),
+    Named(Name),
+    Unary(Function, Box<Self>),
+    Binary(Operator, Box<[Self; 2]>),
     /// A condition, the value where it holds, and the value where it does not.
     If(Box<[Self; 3]>),
 }
 
 impl Node {
-    pub(super) fn unary(function: Unary, argument: Self) -> Self {
+    pub(super) fn unary(function: Function, argument: Self) -> Self {
         Self::Unary(function, Box::new(argument))
     }
 
-    pub(super) fn binary(function: Binary, left: Self, right: Self) -> Self {
-        Self::Binary(function, Box::new([left, right]))
+    pub(super) fn binary(operator: Operator, left: Self, right: Self) -> Self {
+        Self::Binary(operator, Box::new([left, right]))
     }
 
-    /// The value at these signals and parameters; no number where one of them is missing.
-    pub(super) fn value(&self, signals: &[f64], parameters: &[f64]) -> f64 {
-        let of = |node: &Self| node.value(signals, parameters);
+    /// The value in this scope; no number where one of its names is missing.
+    pub(super) fn value(&self, scope: &Scope<'_>) -> f64 {
+        let of = |node: &Self| node.value(scope);
         match self {
             Self::Number(number) => *number,
-            Self::Signal(index) => at(signals, *index),
-            Self::Parameter(index) => at(parameters, *index),
-            Self::Unary(function, argument) => function(of(argument)),
-            Self::Binary(function, arguments) => {
+            Self::Named(name) => scope.value(*name),
+            Self::Unary(function, argument) => function.value(of(argument)),
+            Self::Binary(operator, arguments) => {
                 let [left, right] = arguments.as_ref();
-                function(of(left), of(right))
+                operator.value(of(left), of(right))
             }
             Self::If(parts) => {
                 let [condition, then, otherwise] = parts.as_ref();
@@ -49,10 +174,10 @@ impl Node {
     }
 
     /// Whether it, or a part of it, is such a node.
-    pub(super) fn has(&self, is_such: &impl Fn(&Self) -> bool) -> bool {
+    pub(crate) fn has(&self, is_such: &impl Fn(&Self) -> bool) -> bool {
         let has = |node: &Self| node.has(is_such);
         let below = match self {
-            Self::Number(_) | Self::Signal(_) | Self::Parameter(_) => false,
+            Self::Number(_) | Self::Named(_) => false,
             Self::Unary(_, argument) => has(argument),
             Self::Binary(_, arguments) => arguments.iter().any(has),
             Self::If(parts) => parts.iter().any(has),
@@ -61,11 +186,7 @@ impl Node {
     }
 }
 
-fn at(values: &[f64], index: usize) -> f64 {
-    values.get(index).copied().unwrap_or(f64::NAN)
-}
-
 /// What counts as true: every number but zero.
-pub(super) fn is_true(number: f64) -> bool {
+fn is_true(number: f64) -> bool {
     number != 0.0
 }

@@ -3,6 +3,7 @@
 use super::contents::{JointLookup, Lookup, numbers, side};
 use crate::delay::DelayCurve;
 
+/// Without `interp1`, which in Octave calls a `lookup` of its own: a file may have that name.
 const TAIL: &str = "\
   delay_s = NaN;
   before = (level_from > neutral(2)) - (level_from < neutral(1));
@@ -32,7 +33,10 @@ const TAIL: &str = "\
       if numel(levels) == 1
         delay_s = delays;
       else
-        delay_s = interp1(levels, delays, min(max(level, levels(1)), levels(end)));
+        level = min(max(level, levels(1)), levels(end));
+        j = min(find(levels <= level, 1, 'last'), numel(levels) - 1);
+        part = (level - levels(j)) / (levels(j + 1) - levels(j));
+        delay_s = delays(j) + (delays(j + 1) - delays(j)) * part;
       end
     end
   end

@@ -1,0 +1,268 @@
+"""What the commands give: JSON, tables and figures of it."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from . import _svg
+
+if TYPE_CHECKING:
+    from ._model import Model
+
+
+class Result:
+    """What a command gave.
+
+    ``data`` is its JSON as a dictionary, ``notes`` what a person should know, and ``complete``
+    whether every joint and file was done; ``stopped`` says that it was interrupted, and that
+    this is what was reached.
+    """
+
+    def __init__(
+        self,
+        command: str,
+        text: str,
+        messages: list[tuple[str, str]],
+        *,
+        complete: bool = True,
+        stopped: bool = False,
+        record: Callable[[str], None] | None = None,
+        recording: Path | None = None,
+        model: Model | None = None,
+    ) -> None:
+        self.command = command
+        self._text = text
+        self.data: dict[str, Any] = json.loads(text) if text else {}
+        self.notes = [said for kind, said in messages if kind != "warning"]
+        self.complete = complete
+        self.stopped = stopped
+        self._record = record
+        self._recording = recording
+        #: The model as the command left it, where it is one that changes models.
+        self.model = model
+
+    def to_json(self) -> str:
+        """The JSON, as the program prints it with ``--format json``."""
+        return self._text
+
+    @property
+    def joints(self) -> list[dict[str, Any]]:
+        """The joints of the JSON."""
+        joints: list[dict[str, Any]] = self.data.get("joints", [])
+        return joints
+
+    def __getitem__(self, joint: str) -> dict[str, Any]:
+        for each in self.joints:
+            if each["joint"] == joint:
+                return each
+        raise KeyError(f"{joint}: the joints are {', '.join(j['joint'] for j in self.joints)}")
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Writes the recording for the Rerun viewer (``.rrd``).
+
+        The command is run once more for it, unless it was run with ``output=``.
+        """
+        if self._recording is not None:
+            if Path(path).resolve() != self._recording.resolve():
+                shutil.copyfile(self._recording, path)
+            return Path(path)
+        if self._record is None:
+            raise ValueError(f"{self.command} makes no recording")
+        self._record(os.fspath(path))
+        return Path(path)
+
+    def log(self, stream: Any, path: str | os.PathLike[str]) -> None:
+        """Writes the recording to ``path`` and has a ``rerun.RecordingStream`` load it."""
+        stream.log_file_from_path(self.save(path))
+
+    def _rows(self, key: str) -> pd.DataFrame:
+        rows = [
+            {"joint": joint["joint"], **_flat(row)}
+            for joint in self.joints
+            for row in joint.get(key) or []
+        ]
+        return pd.DataFrame(rows)
+
+    @cached_property
+    def parameters(self) -> pd.DataFrame:
+        """Values, standard errors and units of the parameters; a row each."""
+        rows = [
+            {"joint": joint["joint"], "parameter": name, **value}
+            for joint in self.joints
+            for name, value in (joint.get("parameters") or {}).items()
+        ]
+        return pd.DataFrame(rows)
+
+    @cached_property
+    def table(self) -> pd.DataFrame:
+        """One row a joint: what is a number or a text in the JSON."""
+        return pd.DataFrame([_flat(joint) for joint in self.joints])
+
+    def _figure(self) -> str:
+        return ""
+
+    def _repr_html_(self) -> str:
+        table = self.table
+        shown = table.to_html(index=False, max_cols=12) if len(table) else ""
+        notes = "".join(f"<li>{escape(note)}</li>" for note in self.notes)
+        return f"<div><b>tauscope {self.command}</b>{shown}{self._figure()}<ul>{notes}</ul></div>"
+
+    def __repr__(self) -> str:
+        names = ", ".join(joint["joint"] for joint in self.joints)
+        return f"<tauscope {self.command}: {names}>"
+
+
+def _flat(row: Mapping[str, Any]) -> dict[str, Any]:
+    """Numbers and texts, and those of dictionaries one level below, as ``a.b``."""
+    flat: dict[str, Any] = {}
+    for name, value in row.items():
+        if isinstance(value, Mapping):
+            inner = {k: v for k, v in value.items() if not isinstance(v, (Mapping, list))}
+            flat.update({f"{name}.{k}": v for k, v in inner.items()})
+        elif not isinstance(value, list):
+            flat[name] = value
+    return flat
+
+
+class Estimate(Result):
+    """The delays of the steps of each joint."""
+
+    @cached_property
+    def decisions(self) -> pd.DataFrame:
+        """Every step: a row each, with the columns of ``--decisions``."""
+        rows = [row for joint in self.joints for row in joint.get("decisions") or []]
+        return pd.DataFrame(rows)
+
+    @cached_property
+    def delays(self) -> pd.DataFrame:
+        """The steps that were accepted: joint, trial, i, p and the delay in samples and s."""
+        found = self.decisions
+        if len(found) == 0:
+            return found
+        columns = ["joint", "trial", "i", "p", "delta", "delta_s"]
+        accepted: pd.DataFrame = found.loc[found["verdict"] == "accepted", columns]
+        return accepted.reset_index(drop=True)
+
+    @cached_property
+    def delay_table(self) -> pd.DataFrame:
+        """The delay of each kind of step, with the interval of its median at 95 %."""
+        rows = [row for joint in self.joints for row in joint.get("delay_table") or []]
+        return pd.DataFrame(rows)
+
+    def _figure(self) -> str:
+        if len(self.delays) == 0:
+            return ""
+        parts = []
+        for name, steps in self.delays.groupby("joint", sort=False):
+            figure = _svg.scatter(
+                list(steps["p"].astype(float)), list(steps["delta_s"]), "sample", "delay, s"
+            )
+            parts.append(f"<p>{escape(str(name))}</p>{figure}")
+        return "".join(parts)
+
+
+class Comparison(Result):
+    """A model beside the measurement."""
+
+    @cached_property
+    def fails_where(self) -> pd.DataFrame:
+        """Under which conditions it fails, by their share of the squared error."""
+        return self._rows("fails_where")
+
+
+class Explanation(Comparison):
+    """Which physical effect a model lacks."""
+
+    @cached_property
+    def ranking(self) -> pd.DataFrame:
+        """The effects by the error that they leave on data that were not fitted."""
+        return self._rows("ranking")
+
+    @property
+    def verdicts(self) -> dict[str, str]:
+        """``adequate``, ``missing_effect`` or ``unexplained``, by joint."""
+        return {joint["joint"]: joint["verdict"] for joint in self.joints if "verdict" in joint}
+
+    def headline(self, joint: str | None = None) -> str:
+        """The conclusion in a sentence, of one joint or of all."""
+        joints = self.joints if joint is None else [self[joint]]
+        lines = [(each.get("conclusion") or {}).get("headline", "") for each in joints]
+        return "\n".join(line for line in lines if line)
+
+    def _figure(self) -> str:
+        if len(self.ranking) == 0:
+            return f"<pre>{escape(self.headline())}</pre>"
+        parts = [f"<pre>{escape(self.headline())}</pre>"]
+        for name, effects in self.ranking.groupby("joint", sort=False):
+            best = effects.head(8)
+            figure = _svg.bars(
+                list(best["effect"]), list(best["error_reduction_percent"].fillna(0.0)), "%"
+            )
+            parts.append(f"<p>{escape(str(name))}: error taken away</p>{figure}")
+        return "".join(parts)
+
+
+class Improvement(Explanation):
+    """A model that what it lacks was added to, effect by effect."""
+
+    @cached_property
+    def revisions(self) -> pd.DataFrame:
+        """The ladder of errors: a row for each revision of each joint."""
+        rows = []
+        for joint in self.joints:
+            for revision in joint.get("revisions") or []:
+                error = revision.get("error") or {}
+                row = {"joint": joint["joint"], **_flat(revision)}
+                for part in ("train", "validation"):
+                    for name, value in (error.get(part) or {}).items():
+                        row[f"{part}_{name}"] = value
+                rows.append(row)
+        return pd.DataFrame(rows)
+
+    def _figure(self) -> str:
+        parts = [f"<pre>{escape(self.headline())}</pre>"]
+        if "validation_rmse" not in self.revisions:
+            return parts[0]
+        for name, ladder in self.revisions.groupby("joint", sort=False):
+            added = [each if isinstance(each, str) else "start" for each in ladder["added"]]
+            figure = _svg.bars(added, list(ladder["validation_rmse"].fillna(0.0)), "rmse")
+            parts.append(f"<p>{escape(str(name))}: error that is left</p>{figure}")
+        return "".join(parts)
+
+
+class Sweep(Result):
+    """How the delays move with the settings."""
+
+
+class Report(Result):
+    """A page with figures; ``path`` is where it is."""
+
+    path: Path
+
+
+class Design(Result):
+    """The next experiment; ``input`` is what drives it, a DataFrame."""
+
+    input: pd.DataFrame
+
+
+class Simulated:
+    """A log of a joint that was simulated, and the truth about it."""
+
+    def __init__(self, log: pd.DataFrame, truth: str) -> None:
+        #: The log: time, input and output of each joint.
+        self.log = log
+        #: The delays or effects that are in it, as the program writes them.
+        self.truth = truth
+
+    def __repr__(self) -> str:
+        return f"<tauscope simulate: {len(self.log)} samples>"

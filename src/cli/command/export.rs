@@ -1,0 +1,128 @@
+//! `tauscope export`: a model as source code or as an FMU.
+
+use std::ffi::OsStr;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, anyhow};
+use clap::Args as ClapArgs;
+
+use crate::cli::console::{Verbosity, message};
+use crate::cli::exit::Completion;
+use crate::cli::output::{check_outputs, write_file};
+use crate::experiment::nearest_name;
+use crate::export::{Export, File, Language, Units, by_ending, endings};
+use crate::model::ModelFile;
+
+/// Write a joint's model as source code that stands alone, or as an FMU
+///
+/// The ending of FILE says what it is written in: `.c` or `.h` (C99, both files), `.py`
+/// (NumPy), `.m` (MATLAB and GNU Octave), `.fmu` (FMI 3.0 for co-simulation, with sources
+/// and, where there is a C compiler, the binary of this platform). Each has a step function,
+/// a state, and parameters with their units, and simulates what `compare` does.
+#[derive(ClapArgs, Debug)]
+pub(crate) struct Args {
+    /// The model file (TOML, schema `tauscope/model/1`)
+    #[arg(value_name = "MODEL.toml")]
+    model: PathBuf,
+
+    /// What is written; its functions have its name
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+
+    /// The joint, where the model file has several
+    #[arg(long, value_name = "NAME")]
+    joint: Option<String>,
+
+    /// Unit of the input, as in the log
+    #[arg(long, value_name = "UNIT")]
+    input_unit: Option<String>,
+
+    /// Unit of the output, as in the log: `rad`, `mrad` and `rev` are angles of their own,
+    /// and all others are taken for degrees where gravity acts [default: degrees]
+    #[arg(long, value_name = "UNIT")]
+    output_unit: Option<String>,
+
+    /// Say nothing of what was written
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
+    let (language, name) = language(&args.file)?;
+    let model = ModelFile::read(&args.model)?;
+    let joint = joint(&model, args.joint.as_deref()).with_context(|| shown(&args.model))?;
+    let paths = |file: &File| args.file.with_extension(file.ending);
+    let planned: Vec<PathBuf> = planned(language, &args.file);
+    let planned: Vec<&Path> = planned.iter().map(PathBuf::as_path).collect();
+    check_outputs(&planned, std::slice::from_ref(&args.model))?;
+    let export = exported(args, &model, joint)?;
+    let files = language.files(&export, name).with_context(|| shown(&args.file))?;
+    for file in &files {
+        let path = paths(file);
+        write_file(&path, |output| Ok(output.write_all(&file.content)?))?;
+        if args.verbosity() == Verbosity::Normal {
+            message("model", &shown(&path));
+        }
+        if let Some(note) = &file.note {
+            message("note", &format!("{}: {note}", shown(&path)));
+        }
+    }
+    Ok(Completion::Whole)
+}
+
+impl Args {
+    fn verbosity(&self) -> Verbosity {
+        if self.quiet { Verbosity::Quiet } else { Verbosity::Normal }
+    }
+}
+
+fn shown(path: &Path) -> String {
+    path.display().to_string()
+}
+
+/// The language of a file, and what it is called without its ending.
+fn language(path: &Path) -> anyhow::Result<(&'static dyn Language, &str)> {
+    let ending = path.extension().and_then(OsStr::to_str).unwrap_or_default();
+    let known = endings().iter().map(|ending| format!(".{ending}")).collect::<Vec<_>>().join(", ");
+    let language = by_ending(ending)
+        .ok_or_else(|| anyhow!("{}: its name must end in one of {known}", path.display()))?;
+    Ok((language, path.file_stem().and_then(OsStr::to_str).unwrap_or_default()))
+}
+
+/// The files that will be written: a C header and its source go together.
+fn planned(language: &dyn Language, path: &Path) -> Vec<PathBuf> {
+    language.endings().iter().map(|ending| path.with_extension(ending)).collect()
+}
+
+/// The joint that is meant.
+fn joint<'a>(model: &'a ModelFile, wanted: Option<&str>) -> anyhow::Result<&'a str> {
+    let names: Vec<&str> = model.names().collect();
+    let listed = || names.join(", ");
+    match (wanted, names.as_slice()) {
+        (None, [only]) => Ok(only),
+        (None, []) => Err(anyhow!("it has no joint")),
+        (None, _) => Err(anyhow!("it has several joints: `--joint` takes one of {}", listed())),
+        (Some(wanted), names) => {
+            names.iter().find(|name| **name == wanted).copied().ok_or_else(|| {
+                let near = nearest_name(wanted, names.iter().copied());
+                let near =
+                    near.map_or_else(String::new, |near| format!("; the nearest is `{near}`"));
+                anyhow!("it has no joint `{wanted}`{near}")
+            })
+        }
+    }
+}
+
+fn exported(args: &Args, model: &ModelFile, joint: &str) -> anyhow::Result<Export> {
+    let of = model.joint(joint).ok_or_else(|| anyhow!("it has no joint `{joint}`"))?;
+    let revision = model.revision(joint).unwrap_or_default();
+    let name = args.model.file_name().unwrap_or_default().to_string_lossy();
+    let origin = format!(
+        "made by tauscope {} export from {name}, joint {joint}, revision {revision}",
+        env!("CARGO_PKG_VERSION")
+    );
+    let units = Units { input: args.input_unit.clone(), output: args.output_unit.clone() };
+    Export::new(joint, of, units, &[origin])
+        .with_context(|| format!("{}: joint `{joint}`", args.model.display()))
+}

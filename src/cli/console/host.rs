@@ -1,0 +1,89 @@
+//! A program that runs commands inside itself, and takes what a terminal would be shown.
+
+use std::cell::RefCell;
+use std::fmt;
+use std::sync::Arc;
+
+use crate::experiment::{Experiment, ReadOptions};
+
+/// What a program does for the commands that it runs inside itself.
+pub trait Hosting: Send + Sync {
+    /// The logs that it has in memory, read with these options; `None` where they are in the
+    /// files that the arguments name.
+    fn logs(&self, options: &ReadOptions) -> Option<Experiment>;
+
+    /// Takes the results.
+    fn print(&self, results: &str);
+
+    /// Takes a message: its kind, such as `warning`, and its text.
+    fn say(&self, kind: &str, text: &str);
+
+    /// So many pieces of `of` are done, where it is known how many there are.
+    fn progress(&self, what: &str, done: u64, of: u64);
+
+    /// Whether to stop at the next occasion, with what was reached.
+    fn is_stopping(&self) -> bool;
+
+    /// Whether to end at once, without results.
+    fn is_ending(&self) -> bool;
+}
+
+/// The program in whose place this thread works.
+#[derive(Clone)]
+pub(crate) struct Host(Arc<dyn Hosting>);
+
+impl fmt::Debug for Host {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Host").finish_non_exhaustive()
+    }
+}
+
+thread_local! {
+    /// Of this thread: two programs may run commands at the same time.
+    static CURRENT: RefCell<Option<Host>> = const { RefCell::new(None) };
+}
+
+/// What a thread that is to end is unwound with.
+#[derive(Debug)]
+pub(crate) struct Ended;
+
+impl Host {
+    pub(crate) fn new(hosting: Arc<dyn Hosting>) -> Self {
+        Self(hosting)
+    }
+
+    /// That of this thread; `None` where a person started the program.
+    pub(crate) fn current() -> Option<Self> {
+        CURRENT.with_borrow(Clone::clone)
+    }
+
+    /// This thread works for `host` from now on.
+    pub(crate) fn enter(host: Option<Self>) {
+        CURRENT.set(host);
+    }
+
+    pub(crate) fn logs(&self, options: &ReadOptions) -> Option<Experiment> {
+        self.0.logs(options)
+    }
+
+    pub(crate) fn print(&self, results: &str) {
+        self.0.print(results);
+    }
+
+    pub(crate) fn say(&self, kind: &str, text: &str) {
+        self.0.say(kind, text);
+    }
+
+    pub(crate) fn is_stopping(&self) -> bool {
+        self.0.is_stopping()
+    }
+
+    /// Says how far the work is; unwinds the thread where it is to end.
+    pub(crate) fn progress(&self, what: &str, done: u64, of: u64) {
+        self.0.progress(what, done, of);
+        if self.0.is_ending() {
+            // Not a panic: nothing went wrong, and nobody is to be told so.
+            std::panic::resume_unwind(Box::new(Ended));
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! Logs that a program already has in memory.
+
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest as _, Sha256};
+
+use super::error::ReadError;
+use super::joint::Joint;
+use super::log::Log;
+use super::memory::Budget;
+use super::names::{listed, nearest_name};
+use super::read::{Experiment, Failure, ReadOptions, laid_out};
+use super::source::{Source, hashed};
+use super::table::{Column, Head, Header, Labels, RowNumbers, Table};
+
+/// A log in memory: columns of equal length, with the names that a file would have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HandedLog {
+    /// What messages call it, and its trials where there are several logs.
+    pub name: String,
+    /// Its columns, in order.
+    pub columns: Vec<HandedColumn>,
+}
+
+/// A column in memory.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HandedColumn {
+    /// Its name, with a unit in brackets where it has one: `boom.output [deg]`.
+    pub name: String,
+    /// One value per row.
+    pub values: HandedValues,
+}
+
+/// The values of a column in memory.
+#[derive(Clone, Debug, PartialEq)]
+pub enum HandedValues {
+    /// Numbers; what is missing is NaN.
+    Numbers(Vec<f64>),
+    /// Texts, as of a column that names the trials.
+    Texts(Vec<String>),
+}
+
+impl HandedValues {
+    fn len(&self) -> usize {
+        match self {
+            Self::Numbers(numbers) => numbers.len(),
+            Self::Texts(texts) => texts.len(),
+        }
+    }
+
+    /// What is missing in it stays so; rows are counted from 1.
+    fn column(&mut self) -> Column {
+        match self {
+            Self::Numbers(numbers) => Column::checked(std::mem::take(numbers)),
+            Self::Texts(_) => Column::text(),
+        }
+    }
+
+    fn text(&self, row: usize) -> String {
+        match self {
+            Self::Numbers(numbers) => numbers.get(row).map(f64::to_string).unwrap_or_default(),
+            Self::Texts(texts) => texts.get(row).cloned().unwrap_or_default(),
+        }
+    }
+}
+
+impl Experiment {
+    /// The experiment of logs in memory: what [`Experiment::read`] finds in files with these
+    /// columns, the row of a value being its number from 1.
+    ///
+    /// # Examples
+    /// ```
+    /// use tauscope::experiment::{Experiment, HandedColumn, HandedLog, HandedValues, ReadOptions};
+    ///
+    /// let column = |name: &str, numbers: Vec<f64>| HandedColumn {
+    ///     name: name.to_owned(),
+    ///     values: HandedValues::Numbers(numbers),
+    /// };
+    /// let columns = vec![
+    ///     column("time_s", vec![0.0, 0.1, 0.2]),
+    ///     column("boom.input [V]", vec![0.0, 1.0, 1.0]),
+    ///     column("boom.output [deg]", vec![0.0, 0.0, 0.5]),
+    /// ];
+    /// let log = HandedLog { name: "bench".to_owned(), columns };
+    /// let experiment = Experiment::of_logs(vec![log], &ReadOptions::default());
+    /// assert_eq!(experiment.joints[0].input_unit.as_deref(), Some("V"));
+    /// ```
+    pub fn of_logs(logs: Vec<HandedLog>, options: &ReadOptions) -> Self {
+        let mut experiment = Self { options: options.clone(), ..Self::default() };
+        let budget = Budget::new(options.memory);
+        let is_one = logs.len() == 1;
+        for log in logs {
+            let path = PathBuf::from(&log.name);
+            let stem = (!is_one).then(|| log.name.clone());
+            match read(log, stem.as_deref(), options, &budget) {
+                Ok(found) => experiment.add(found, &path),
+                Err(error) => experiment.failures.push(Failure { joint: None, error }),
+            }
+        }
+        experiment
+    }
+
+    /// The experiment of joints in memory, which messages call `name`; those that `options`
+    /// does not name are left out.
+    pub fn of_joints(joints: Vec<Joint>, name: &str, options: &ReadOptions) -> Self {
+        let mut experiment = Self { options: options.clone(), ..Self::default() };
+        experiment.sources.push(source(Path::new(name), &joints));
+        let names: Vec<String> = joints.iter().map(|joint| joint.name.clone()).collect();
+        for wanted in options.joints.iter().filter(|wanted| !names.contains(wanted)) {
+            let known = || names.iter().map(String::as_str);
+            let error = ReadError::UnknownJoint {
+                path: PathBuf::from(name),
+                joint: wanted.clone(),
+                nearest: nearest_name(wanted, known()).map(str::to_owned),
+                available: listed(known().collect::<Vec<_>>().into_iter()),
+            };
+            experiment.failures.push(Failure { joint: Some(wanted.clone()), error });
+        }
+        let is_kept =
+            |joint: &Joint| options.joints.is_empty() || options.joints.contains(&joint.name);
+        experiment.joints = joints.into_iter().filter(is_kept).collect();
+        experiment
+    }
+}
+
+/// What stands for the file: the hash of all numbers.
+fn source(path: &Path, joints: &[Joint]) -> Source {
+    let mut hasher = Sha256::new();
+    let mut bytes = 0;
+    let trials = joints.iter().flat_map(|joint| &joint.trials);
+    for values in trials.flat_map(|trial| [trial.input(), trial.output()]) {
+        bytes += hash(&mut hasher, values);
+    }
+    hashed(path, hasher, bytes)
+}
+
+/// Takes in the numbers as they lie in memory; how many bytes they are.
+fn hash(hasher: &mut Sha256, values: &[f64]) -> u64 {
+    /// Numbers that are turned into bytes at once.
+    const AT_ONCE: usize = 512;
+    for part in values.chunks(AT_ONCE) {
+        let bytes: Vec<u8> = part.iter().flat_map(|value| value.to_le_bytes()).collect();
+        hasher.update(&bytes);
+    }
+    size_of_val(values) as u64
+}
+
+fn read(
+    mut log: HandedLog,
+    stem: Option<&str>,
+    options: &ReadOptions,
+    budget: &Budget,
+) -> Result<Experiment, ReadError> {
+    let path = PathBuf::from(&log.name);
+    let headers = log.columns.iter().map(|column| Header::parse(&column.name)).collect();
+    let head = Head { path, headers, header_row: 0 };
+    let rows = same_length(&head, &log)?;
+    let (layout, mut found) = laid_out(&head, options)?;
+    let source = source_of(&head, &log);
+    if layout.joints.is_empty() {
+        found.sources.push(source);
+        return Ok(found);
+    }
+    let mut labels = Labels::default();
+    if let Some(column) = layout.trial.and_then(|place| log.columns.get(place)) {
+        for row in 0..rows {
+            labels.push(&column.values.text(row), row as u64 + 1, &head.path)?;
+        }
+    }
+    let numeric = layout.numeric_columns();
+    let column = |place: &usize| log.columns.get_mut(*place).map(|column| column.values.column());
+    let columns = numeric.iter().filter_map(column).collect();
+    let (rows, trials) = (RowNumbers::counted(rows), labels.runs());
+    let table = Table { source, rows, columns, trials, notes: Vec::new() };
+    let log = Log { head: &head, numeric: &numeric, table: &table, budget };
+    found.add_log(&log, &layout, stem, options.repair)?;
+    Ok(found)
+}
+
+/// How many rows there are.
+fn same_length(head: &Head, log: &HandedLog) -> Result<usize, ReadError> {
+    let path = || head.path.clone();
+    let Some(first) = log.columns.first() else { return Err(ReadError::Empty { path: path() }) };
+    let expected = first.values.len();
+    if let Some(odd) = log.columns.iter().find(|column| column.values.len() != expected) {
+        return Err(ReadError::UnequalColumns {
+            path: path(),
+            column: odd.name.clone(),
+            found: odd.values.len(),
+            other: first.name.clone(),
+            expected,
+        });
+    }
+    if expected == 0 {
+        return Err(ReadError::HeaderOnly { path: path() });
+    }
+    Ok(expected)
+}
+
+fn source_of(head: &Head, log: &HandedLog) -> Source {
+    let mut hasher = Sha256::new();
+    let mut bytes = 0;
+    for column in &log.columns {
+        hasher.update(column.name.as_bytes());
+        match &column.values {
+            HandedValues::Numbers(numbers) => bytes += hash(&mut hasher, numbers),
+            HandedValues::Texts(texts) => {
+                for text in texts {
+                    hasher.update(text.as_bytes());
+                    bytes += text.len() as u64;
+                }
+            }
+        }
+    }
+    hashed(&head.path, hasher, bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn log(rows: usize, bad: f64) -> HandedLog {
+        let numbers = |name: &str, of: &dyn Fn(usize) -> f64| HandedColumn {
+            name: name.to_owned(),
+            values: HandedValues::Numbers((0..rows).map(of).collect()),
+        };
+        let trials = (0..rows).map(|row| if row < 40 { "a" } else { "b" }.to_owned()).collect();
+        HandedLog {
+            name: "bench".to_owned(),
+            columns: vec![
+                numbers("time_s", &|k| 0.01 * k as f64),
+                numbers("boom.input [V]", &|k| f64::from(u8::from(k % 20 > 9))),
+                numbers("boom.output [deg]", &|k| if k == 55 { bad } else { k as f64 }),
+                HandedColumn { name: "trial".to_owned(), values: HandedValues::Texts(trials) },
+            ],
+        }
+    }
+
+    #[test]
+    fn columns_in_memory_are_read_as_those_of_a_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("bench.csv");
+        let mut text = "time_s,boom.input [V],boom.output [deg],trial\n".to_owned();
+        for k in 0..80 {
+            use std::fmt::Write as _;
+            let (input, trial) = (u8::from(k % 20 > 9), if k < 40 { "a" } else { "b" });
+            writeln!(text, "{:?},{input},{k},{trial}", 0.01 * f64::from(k)).unwrap();
+        }
+        std::fs::write(&path, text).unwrap();
+        let options = ReadOptions::default();
+        let expected = Experiment::read(&[path], &options);
+        let found = Experiment::of_logs(vec![log(80, 55.0)], &options);
+        assert_eq!(found.joints, expected.joints);
+        assert_eq!(found.joints[0].trials.len(), 2);
+        let joints = Experiment::of_joints(found.joints, "arrays", &options);
+        assert_eq!(joints.joints, expected.joints);
+        assert_eq!(joints.sources[0].bytes, 2 * 8 * 80);
+    }
+
+    #[test]
+    fn a_bad_value_is_named_by_its_row_and_column() {
+        let options = ReadOptions::default();
+        for bad in [1e80, f64::INFINITY] {
+            let found = Experiment::of_logs(vec![log(80, bad)], &options);
+            let error = &found.failures[0].error;
+            assert_eq!(error.row(), Some(56), "{error}");
+            assert_eq!(error.column(), Some("boom.output"));
+        }
+        let mut uneven = log(80, 0.0);
+        uneven.columns[1].values = HandedValues::Numbers(vec![0.0]);
+        let found = Experiment::of_logs(vec![uneven], &options);
+        assert_eq!(found.failures[0].error.column(), Some("boom.input [V]"));
+    }
+
+    #[test]
+    fn a_joint_that_is_not_there_is_a_failure_of_its_own() {
+        let options = ReadOptions { joints: vec!["bom".to_owned()], ..ReadOptions::default() };
+        let joints = Experiment::of_logs(vec![log(80, 0.0)], &ReadOptions::default()).joints;
+        let found = Experiment::of_joints(joints, "arrays", &options);
+        assert!(found.joints.is_empty());
+        assert!(found.failures[0].error.to_string().contains("boom"));
+    }
+}

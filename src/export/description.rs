@@ -1,0 +1,226 @@
+//! A model as every language needs it: parameters with names, effects as lines.
+
+use std::collections::BTreeSet;
+
+use super::ExportError;
+use crate::effect::expression::Program;
+use crate::effect::{Dimension, Stage};
+use crate::model::{Component, JointModel};
+
+/// The units of the log that a model is of; they are shown with the parameters.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Units {
+    /// Of the input.
+    pub input: Option<String>,
+    /// Of the output: `deg`, `rad`, `mrad` or `rev` say what an angle is, and where it is none
+    /// of them it is taken for degrees, as by [`fit`](crate::fit::fit).
+    pub output: Option<String>,
+}
+
+/// A joint's model, ready to be written in any [`Language`](super::Language).
+#[derive(Clone, Debug)]
+pub struct Export {
+    pub(super) joint: String,
+    /// Where it is from, line by line.
+    pub(super) origin: Vec<String>,
+    pub(super) units: Units,
+    /// `gain`, `delay`, `start_s`, `radians_per_output_unit`, then those of the effects.
+    pub(super) parameters: Vec<Parameter>,
+    pub(super) effects: Vec<Exported>,
+}
+
+/// A number that may be changed in the model.
+#[derive(Clone, Debug)]
+pub(super) struct Parameter {
+    /// As a variable.
+    pub(super) name: String,
+    pub(super) meaning: String,
+    /// Empty where it has none.
+    pub(super) unit: String,
+    pub(super) value: f64,
+}
+
+/// An effect of the model.
+#[derive(Clone, Debug)]
+pub(super) struct Exported {
+    /// Its id; where the model has it before, with something behind it.
+    pub(super) id: String,
+    pub(super) summary: &'static str,
+    pub(super) equation: &'static str,
+    pub(super) stage: Stage,
+    pub(super) acts_on_state: bool,
+    /// Of its parameters, as in [`Export::parameters`].
+    pub(super) parameters: Vec<String>,
+    /// Of its memory, as variables.
+    pub(super) memory: Vec<String>,
+    pub(super) settle: Program,
+    pub(super) step: Program,
+}
+
+impl Export {
+    /// The model of `joint`; `origin` says, line by line, where it is from.
+    ///
+    /// # Errors
+    /// [`ExportError`], with the effect that cannot be exported.
+    ///
+    /// # Examples
+    /// ```
+    /// use tauscope::JointModel;
+    /// use tauscope::export::{Export, Units, by_ending};
+    ///
+    /// let model = JointModel::integrator(11.9, 0.15);
+    /// let export = Export::new("boom", &model, Units::default(), &[])?;
+    /// let python = by_ending("py").unwrap();
+    /// assert!(python.files(&export, "boom")?[0].text().contains("def step(self, input)"));
+    /// # Ok::<(), tauscope::export::ExportError>(())
+    /// ```
+    pub fn new(
+        joint: &str,
+        model: &JointModel,
+        units: Units,
+        origin: &[String],
+    ) -> Result<Self, ExportError> {
+        let mut taken = Taken::reserved();
+        let mut parameters = own_parameters(model, &units, &mut taken);
+        let mut effects = Vec::new();
+        for component in model.components() {
+            let (effect, its) = exported(component, &units, &mut taken)?;
+            effects.push(effect);
+            parameters.extend(its);
+        }
+        let printable = |line: &String| line.replace(|c: char| c.is_control(), " ");
+        let origin = origin.iter().map(printable).collect();
+        let joint = joint.replace(|c: char| c.is_control(), " ");
+        Ok(Self { joint, origin, units, parameters, effects })
+    }
+
+    /// The effects of a stage, in their order.
+    pub(super) fn stage(&self, stage: Stage) -> impl Iterator<Item = &Exported> {
+        self.effects.iter().filter(move |effect| effect.stage == stage)
+    }
+
+    /// The effects between the input and the gain.
+    pub(super) fn drive(&self) -> impl Iterator<Item = &Exported> {
+        self.stage(Stage::Input).chain(self.stage(Stage::Dynamics))
+    }
+
+    /// The effects on the output that limit the angle itself.
+    pub(super) fn limits(&self) -> impl Iterator<Item = &Exported> {
+        self.stage(Stage::Output).filter(|effect| effect.acts_on_state)
+    }
+
+    /// The effects between the angle and its sensor.
+    pub(super) fn sensor(&self) -> impl Iterator<Item = &Exported> {
+        self.stage(Stage::Output).filter(|effect| !effect.acts_on_state)
+    }
+
+    /// Whether the joint moves otherwise while other joints move.
+    pub(super) fn uses_others(&self) -> bool {
+        self.effects.iter().any(|effect| effect.step.uses_others())
+    }
+
+    /// The lines on where it is from, each behind `prefix`.
+    pub(super) fn commented(&self, prefix: &str) -> String {
+        self.origin
+            .iter()
+            .map(|line| format!("{prefix}{line}").trim_end().to_owned() + "\n")
+            .collect()
+    }
+}
+
+/// Names that are taken; another of the same is made another.
+#[derive(Debug)]
+struct Taken(BTreeSet<String>);
+
+impl Taken {
+    /// With the names that the templates have in the state of the joint.
+    fn reserved() -> Self {
+        let state = "p others lost period_s sample before since level first count coming angle \
+                     velocity measured load_adds";
+        Self(state.split_whitespace().map(str::to_owned).collect())
+    }
+
+    fn give(&mut self, name: String) -> String {
+        let mut name = name;
+        while !self.0.insert(name.clone()) {
+            name.push('_');
+        }
+        name
+    }
+}
+
+/// Parameters of the joint itself.
+fn own_parameters(model: &JointModel, units: &Units, taken: &mut Taken) -> Vec<Parameter> {
+    let of = |dimension: Dimension| dimension.unit(units.input.as_deref(), units.output.as_deref());
+    let gain = format!("{}/{}", of(Dimension::OutputPerSecond), of(Dimension::Input));
+    let radians = radians_per_output_unit(units.output.as_deref());
+    let own = [
+        ("gain", "speed of the joint per input", gain, model.gain.value),
+        ("delay", "time until the input acts", of(Dimension::Seconds), model.delay.value),
+        ("start_s", "time of the record at the first sample", of(Dimension::Seconds), 0.0),
+        ("radians_per_output_unit", "radians in one unit of the output", String::new(), radians),
+    ];
+    let parameter = |(name, meaning, unit, value): (&str, &str, String, f64)| Parameter {
+        name: taken.give(name.to_owned()),
+        meaning: meaning.to_owned(),
+        unit,
+        value,
+    };
+    own.map(parameter).to_vec()
+}
+
+/// The angle in radians of one output unit; of none that is known, a degree.
+fn radians_per_output_unit(unit: Option<&str>) -> f64 {
+    match unit {
+        Some("rad") => 1.0,
+        Some("mrad") => 1e-3,
+        Some("rev" | "turn") => std::f64::consts::TAU,
+        _ => 1_f64.to_radians(),
+    }
+}
+
+fn exported(
+    component: &Component,
+    units: &Units,
+    taken: &mut Taken,
+) -> Result<(Exported, Vec<Parameter>), ExportError> {
+    let spec = component.effect().spec();
+    if component.takes_measured_delays() {
+        return Err(ExportError::MeasuredDelays { effect: spec.id });
+    }
+    let equations = component.effect().equations();
+    let equations = equations.ok_or(ExportError::NoEquations { effect: spec.id })?;
+    let names: Vec<_> = spec.parameters.iter().map(|parameter| parameter.name).collect();
+    let parse = |text: &str| {
+        let parsed = Program::parse(text, spec.stage, &names, equations.memory);
+        parsed.map_err(|source| ExportError::Equations { effect: spec.id, source })
+    };
+    let (settle, step) = (parse(equations.settle)?, parse(&equations.step)?);
+    if !step.gives_result() {
+        return Err(ExportError::NoResult { effect: spec.id });
+    }
+    let id = taken.give(spec.id.to_owned());
+    let mut give = |name: &str| taken.give(format!("{id}_{name}"));
+    let own = spec.parameters.iter().zip(component.parameters());
+    let parameters: Vec<_> = own
+        .map(|(parameter, value)| Parameter {
+            name: give(parameter.name),
+            meaning: parameter.meaning.to_owned(),
+            unit: parameter.dimension.unit(units.input.as_deref(), units.output.as_deref()),
+            value: value.value,
+        })
+        .collect();
+    let memory = equations.memory.iter().map(|name| give(name)).collect();
+    let exported = Exported {
+        id,
+        summary: spec.summary,
+        equation: spec.equation,
+        stage: spec.stage,
+        acts_on_state: spec.acts_on_state,
+        parameters: parameters.iter().map(|parameter| parameter.name.clone()).collect(),
+        memory,
+        settle,
+        step,
+    };
+    Ok((exported, parameters))
+}
