@@ -103,19 +103,25 @@ mod tests {
             Self { settle, step, memory: vec![0.0; equations.memory.len()] }
         }
 
-        fn run(&mut self, settles: bool, signals: &[f64], parameters: &[f64]) -> f64 {
-            let mut locals = Vec::new();
-            let program = if settles { &self.settle } else { &self.step };
-            for line in &program.lines {
-                let scope = Scope { signals, parameters, memory: &self.memory, locals: &locals };
-                let value = line.value.value(&scope);
-                match line.to {
-                    Name::Memory(index) => self.memory[index] = value,
-                    _ => locals.push(value),
-                }
-            }
-            locals.last().copied().unwrap_or(f64::NAN)
+        fn settle(&mut self, signals: &[f64], parameters: &[f64]) -> f64 {
+            run(&self.settle, &mut self.memory, signals, parameters)
         }
+
+        fn step(&mut self, signals: &[f64], parameters: &[f64]) -> f64 {
+            run(&self.step, &mut self.memory, signals, parameters)
+        }
+    }
+
+    fn run(program: &Program, memory: &mut [f64], signals: &[f64], parameters: &[f64]) -> f64 {
+        let mut locals = Vec::new();
+        for line in &program.lines {
+            let value = line.value.value(&Scope { signals, parameters, memory, locals: &locals });
+            match line.to {
+                Name::Memory(index) => memory[index] = value,
+                _ => locals.push(value),
+            }
+        }
+        locals.last().copied().unwrap_or(f64::NAN)
     }
 
     /// Parameters of an effect: each at a part of its range, the ranges kept to what machines
@@ -151,7 +157,7 @@ mod tests {
                 };
                 let start = at(held, 0.0, 0.0, 0.0, 0.0);
                 effect.settle(&parameters, &mut memory, &start);
-                runner.run(true, &of_moment(&start), &parameters);
+                runner.settle(&of_moment(&start), &parameters);
                 for (k, (signal, position, velocity, others)) in signals.iter().enumerate() {
                     let time_s = 7.0 * k as f64;
                     let now = at(*signal, *position, *velocity, *others, time_s);
@@ -159,10 +165,10 @@ mod tests {
                         InputChange { before: *position, after: *signal, held_s: others * 9.0, time_s };
                     let (expected, found) = if effect.spec().stage == Stage::Transport {
                         let expected = effect.extra_delay_s(&parameters, &change);
-                        (expected, runner.run(false, &of_change(&change), &parameters))
+                        (expected, runner.step(&of_change(&change), &parameters))
                     } else {
                         let expected = effect.step(&parameters, &mut memory, &now);
-                        (expected, runner.run(false, &of_moment(&now), &parameters))
+                        (expected, runner.step(&of_moment(&now), &parameters))
                     };
                     let id = effect.spec().id;
                     prop_assert!(close(expected, found), "{id} {parameters:?}: {found}, not {expected}");
