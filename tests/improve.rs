@@ -336,5 +336,5 @@ fn a_speed_that_settles_is_a_first_order_with_dead_time() {
     assert!((value("leakage.y0") - 10.0).abs() < 0.5);
     assert_eq!(motor["verdict"], "adequate");
     let words = motor["in_words"].as_str().unwrap();
-    assert!(words.contains("first order with dead time, of time constant 0.3"), "{words}");
+    assert!(words.contains("first order with dead time, of time constant 0.299 s"), "{words}");
 }

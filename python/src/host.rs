@@ -96,6 +96,7 @@ type Answer = (bool, String, Vec<(String, String)>, bool);
 /// called now and then. With `keeps` an interrupt stops it with what was reached.
 #[pyfunction]
 #[pyo3(signature = (arguments, logs=None, progress=None, keeps=false))]
+#[expect(clippy::fn_params_excessive_bools, reason = "a keyword argument of Python")]
 pub(crate) fn run(
     py: Python<'_>,
     arguments: Vec<OsString>,
@@ -105,7 +106,8 @@ pub(crate) fn run(
 ) -> PyResult<Answer> {
     let shared = shared(logs)?;
     let work = move |shared: Arc<Shared>| run_within(&arguments, shared);
-    let is_whole = waited(py, &shared, progress.as_ref(), keeps, work)?;
+    let interrupted = if keeps { Interrupted::KeepsResults } else { Interrupted::Ends };
+    let is_whole = waited(py, &shared, progress.as_ref(), interrupted, work)?;
     let (results, messages) =
         (std::mem::take(&mut *lock(&shared.results)), std::mem::take(&mut *lock(&shared.messages)));
     Ok((is_whole, results, messages, shared.is_stopping()))
@@ -115,14 +117,24 @@ fn shared(logs: Option<Given<'_>>) -> PyResult<Arc<Shared>> {
     Ok(Arc::new(Shared { logs: Mutex::new(given(logs)?), ..Shared::default() }))
 }
 
+/// What becomes of work that a person interrupts.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Interrupted {
+    /// It ends, and raises the interrupt.
+    Ends,
+    /// It stops at the next occasion, with what was reached; at a second interrupt it ends.
+    KeepsResults,
+}
+
 /// Does `work` in a thread, the interpreter being free meanwhile.
 fn waited<T: Send + 'static>(
     py: Python<'_>,
     shared: &Arc<Shared>,
     progress: Option<&Py<PyAny>>,
-    keeps: bool,
+    interrupted: Interrupted,
     work: impl FnOnce(Arc<Shared>) -> Result<T, Refused> + Send + 'static,
 ) -> PyResult<T> {
+    let keeps = interrupted == Interrupted::KeepsResults;
     let (sender, receiver) = sync_channel(1);
     let theirs = Arc::clone(shared);
     let thread = thread::Builder::new().stack_size(STACK).spawn(move || {
@@ -203,7 +215,7 @@ pub(crate) fn read<'py>(
 ) -> PyResult<(Vec<Bound<'py, PyDict>>, Vec<String>)> {
     let shared = shared(logs)?;
     let work = move |shared: Arc<Shared>| read_within(&arguments, shared);
-    let experiment = waited(py, &shared, None, false, work)?;
+    let experiment = waited(py, &shared, None, Interrupted::Ends, work)?;
     let mut joints = Vec::new();
     for joint in &experiment.joints {
         let found = PyDict::new(py);

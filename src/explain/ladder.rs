@@ -12,7 +12,6 @@
 //! Journal of Aerospace Engineering 7 (linkages of excavators).
 
 use super::eligible::{could_be_missing, signal_range};
-use super::extension::ids;
 use super::options::Options;
 use super::revision::Change;
 use super::stepwise::Step;
@@ -31,12 +30,12 @@ pub(super) fn climbed(
     options: &Options,
     visit: &mut impl FnMut(&Step) -> bool,
 ) -> Option<Step> {
-    let given = ids(&first.fit.model).len();
     let mut step = first;
-    for effect in usual(options) {
+    // Of a few effects the best are wanted, not the usual ones.
+    let usual = usual(options).filter(|_| options.max_effects >= LADDER.len());
+    for effect in usual {
         let model = &step.fit.model;
-        let is_full = ids(model).len() - given >= options.max_effects;
-        if is_full || !could_be_missing(record, model, effect) {
+        if !could_be_missing(record, model, effect) {
             continue;
         }
         let with = model.with(Component::neutral(effect));

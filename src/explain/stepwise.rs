@@ -16,6 +16,7 @@ use super::removal::Removal;
 use super::revision::Change;
 use super::verdict::Verdict;
 use super::workers::Workers;
+use crate::delay::are_strokes;
 use crate::diagnosis::{LackOfFit, floor_of, lack_of};
 use crate::fit::{Fit, FitRecord, fit_to_compare};
 
@@ -100,6 +101,8 @@ pub(super) fn add_stepwise(
 ) -> Ended {
     let ended =
         |verdict, fit, was_stopped| Ended { verdict, fit, was_stopped, refinements: Vec::new() };
+    // The few levels of strokes are matched by many curves.
+    let makes_strokes = are_strokes(&record.joint().trials);
     let mut step = first;
     loop {
         if !step.rank_missing(record, options, workers) {
@@ -110,7 +113,8 @@ pub(super) fn add_stepwise(
             options.keeps_refinements || misfit.has_consequence(record, &step.fit, &candidate.fit)
         };
         let is_sound = |candidate: &&Candidate| {
-            candidate.is_significant() && candidate.determines_as_much_as(&step.fit)
+            let is_known = !makes_strokes || candidate.determines_as_much_as(&step.fit);
+            candidate.is_significant() && is_known
         };
         let counts = |candidate: &Candidate| is_sound(&candidate) && has_consequence(candidate);
         let found = step.ranking.iter().position(counts);
