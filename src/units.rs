@@ -4,6 +4,16 @@ use std::fmt;
 
 use serde::Serialize;
 
+/// Radians in one unit of an angle; a degree unless the unit says otherwise.
+pub(crate) fn radians_in(unit: Option<&str>) -> f64 {
+    match unit {
+        Some("rad") => 1.0,
+        Some("mrad") => 1e-3,
+        Some("rev" | "turn") => std::f64::consts::TAU,
+        _ => 1_f64.to_radians(),
+    }
+}
+
 /// Seconds between two samples: finite and greater than zero.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Serialize)]
 #[serde(transparent)]

@@ -1,12 +1,13 @@
 //! C99: a header and a source, without allocation and without dependencies but `math.h`.
 
 use super::ExportError;
+use super::body::{Around, Body, places};
 use super::description::{Export, Exported, Parameter};
 use super::language::{File, Language};
 use super::notation::{Notation, lines, result};
-use super::template::{filled, indented, is_name};
+use super::template::{filled, indented};
 use crate::effect::Stage;
-use crate::effect::expression::{Function, Operator};
+use crate::effect::expression::Function;
 
 const HEADER: &str = include_str!("template/model.h");
 const SOURCE: &str = include_str!("template/model.c");
@@ -33,10 +34,7 @@ impl Language for C {
         "C"
     }
 
-    fn files(&self, export: &Export, name: &str) -> Result<Vec<File>, ExportError> {
-        if !is_name(name) {
-            return Err(ExportError::Name { name: name.to_owned(), language: self.name() });
-        }
+    fn written(&self, export: &Export, name: &str) -> Result<Vec<File>, ExportError> {
         let (source, header) = sources(export, name);
         Ok(vec![File::of("c", source), File::of("h", header)])
     }
@@ -44,150 +42,22 @@ impl Language for C {
 
 /// Source and header of `export`, whose functions begin with `name`.
 pub(super) fn sources(export: &Export, name: &str) -> (String, String) {
-    let upper = name.to_uppercase();
-    let joint = commentable(&export.joint);
-    let all = |template: &str, places: &[(&str, &str)]| {
-        let named = [("JOINT", joint.as_str()), ("FILE", name), ("UPPER", &upper), ("NAME", name)];
-        filled(&filled(template, places), &named)
-    };
-    (source(export, &all), header(export, &all))
-}
-
-/// Fills the places of a template, and the names.
-type Fill<'a> = dyn Fn(&str, &[(&str, &str)]) -> String + 'a;
-
-fn header(export: &Export, all: &Fill<'_>) -> String {
-    let parameters: String = export.parameters.iter().map(parameter).collect();
-    let memory = export.effects.iter().flat_map(|effect| &effect.memory);
-    let memory = indented(memory.map(|name| format!("double {name};")), "    ");
+    let mut places = places(&Notes, export);
+    let uses_sign = places.iter().any(|(_, text)| text.contains("@NAME@_sign("));
     let others = if export.uses_others() { "" } else { "; this model has no use for it" };
-    all(
-        HEADER,
-        &[
-            ("ORIGIN", &commentable(&export.commented(" * "))),
-            ("PARAMETERS", &parameters),
-            ("MEMORY", &memory),
-            ("OTHERS", others),
-        ],
-    )
-}
-
-fn parameter(parameter: &Parameter) -> String {
-    let Parameter { name, meaning, unit, value } = parameter;
-    let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
-    format!("    double {name}; /* {}{}; {value:?} */\n", commentable(meaning), commentable(&unit))
-}
-
-fn source(export: &Export, all: &Fill<'_>) -> String {
-    let effects: String = export.effects.iter().map(functions).collect();
-    let helpers = if effects.contains("@NAME@_sign(") { SIGN } else { "" };
-    let default = |p: &Parameter| format!("p.{} = {:?};", p.name, p.value);
-    let output = || export.limits().chain(export.sensor());
-    all(
-        SOURCE,
-        &[
-            ("HELPERS", helpers),
-            ("EFFECTS", &effects),
-            ("DEFAULTS", &indented(export.parameters.iter().map(default), "    ")),
-            ("SENSOR", &calls(export.sensor(), "    ")),
-            ("SETTLE_DRIVE", &settled(export.drive())),
-            ("SETTLE_OUTPUT", &settled(output())),
-            ("SETTLE_SENSOR", &settled(export.sensor())),
-            ("DRIVE", &calls(export.drive(), "    ")),
-            ("LOAD", &load(export)),
-            ("LIMITS", &limits(export)),
-            ("TRANSPORT", &transport(export)),
-        ],
-    )
-}
-
-/// The signal after each of `effects`.
-fn calls<'a>(effects: impl Iterator<Item = &'a Exported>, indent: &str) -> String {
-    indented(effects.map(|e| format!("at.signal = @NAME@_effect_{}(model, &at);", e.id)), indent)
-}
-
-/// As [`calls`], each after it has settled.
-fn settled<'a>(effects: impl Iterator<Item = &'a Exported>) -> String {
-    let both = |effect: &Exported| {
-        let id = &effect.id;
-        let settle = format!("@NAME@_effect_{id}_settle(model, &at);");
-        let settle = (!effect.settle.lines.is_empty()).then_some(settle);
-        settle.into_iter().chain([format!("at.signal = @NAME@_effect_{id}(model, &at);")])
-    };
-    indented(effects.flat_map(both), "    ")
-}
-
-/// Half an interval ahead the joint is where it comes if the load does what it did before.
-fn load(export: &Export) -> String {
-    if export.stage(Stage::Load).next().is_none() {
-        return String::new();
-    }
-    format!(
-        "    {{\n\
-         {}    }}\n",
-        [
-            "        const double commanded = at.signal;\n".to_owned(),
-            "        at.position += 0.5 * dt * (commanded + model->load_adds);\n".to_owned(),
-            "        at.time += 0.5 * dt;\n".to_owned(),
-            calls(export.stage(Stage::Load), "        "),
-            "        model->load_adds = at.signal - commanded;\n".to_owned(),
-        ]
-        .concat()
-    )
-}
-
-fn limits(export: &Export) -> String {
-    if export.limits().next().is_none() {
-        return String::new();
-    }
-    [
-        "    at = @NAME@_at(model, model->angle, time, dt);\n".to_owned(),
-        calls(export.limits(), "    "),
-        "    if (at.signal != model->angle) {\n        model->velocity = 0.0;\n    }\n".to_owned(),
-        "    model->angle = at.signal;\n".to_owned(),
-    ]
-    .concat()
-}
-
-fn transport(export: &Export) -> String {
-    if export.stage(Stage::Transport).next().is_none() {
-        return String::new();
-    }
-    let call = |effect: &Exported| format!("arrives += @NAME@_effect_{}(model, &at);", effect.id);
-    format!(
-        "    {{\n        @NAME@_change at;\n        at.before = model->before;\n        \
-         at.after = level;\n        at.held = now - model->since;\n        \
-         at.time = model->p.start_s + now;\n{}    }}\n",
-        indented(export.stage(Stage::Transport).map(call), "        ")
-    )
-}
-
-/// The functions of an effect.
-fn functions(effect: &Exported) -> String {
-    let Exported { id, summary, equation, .. } = effect;
-    let about = commentable(&format!("{id}: {summary}\n *     {equation}"));
-    let kind = if effect.stage == Stage::Transport { "change" } else { "moment" };
-    let body = |of: &[String]| {
-        let text = indented(of.iter().cloned(), "    ");
-        let unused = [("model->", "(void)model;"), ("at->", "(void)at;")];
-        let unused = unused.into_iter().filter(|(used, _)| !text.contains(used));
-        indented(unused.map(|(_, line)| line.to_owned()), "    ") + &text
-    };
-    let arguments = format!("(@NAME@_state *model, const @NAME@_{kind} *at)");
-    let step = body(&lines(&Notes, effect, &effect.step));
-    let step = format!(
-        "/* {about} */\nstatic double @NAME@_effect_{id}{arguments}\n{{\n{step}    return {};\n}}\n\n",
-        result(&effect.step)
-    );
-    if effect.settle.lines.is_empty() {
-        return step;
-    }
-    let settle = body(&lines(&Notes, effect, &effect.settle));
-    step + &format!("static void @NAME@_effect_{id}_settle{arguments}\n{{\n{settle}}}\n\n")
+    places.extend([
+        ("HELPERS", if uses_sign { SIGN } else { "" }.to_owned()),
+        ("ORIGIN", commentable(&export.commented(" * "))),
+        ("OTHERS", others.to_owned()),
+    ]);
+    let (joint, upper) = (commentable(&export.joint), name.to_uppercase());
+    let named = [("JOINT", joint.as_str()), ("FILE", name), ("UPPER", &upper), ("NAME", name)];
+    let all = |template: &str| filled(&filled(template, &places), &named);
+    (all(SOURCE), all(HEADER))
 }
 
 /// A text that ends no comment.
-fn commentable(text: &str) -> String {
+pub(super) fn commentable(text: &str) -> String {
     text.replace("*/", "* /").replace("/*", "/ *")
 }
 
@@ -203,11 +73,8 @@ impl Notation for Notes {
         format!("model->{name}")
     }
 
-    fn signal(&self, name: &str) -> String {
-        match name {
-            "radians" => "model->p.radians_per_output_unit".to_owned(),
-            _ => format!("at->{name}"),
-        }
+    fn at(&self, name: &str) -> String {
+        format!("at->{name}")
     }
 
     fn function(&self, function: Function) -> &'static str {
@@ -231,25 +98,6 @@ impl Notation for Notes {
         }
     }
 
-    fn operator(&self, operator: Operator) -> &'static str {
-        match operator {
-            Operator::Add => "+",
-            Operator::Sub => "-",
-            Operator::Mul => "*",
-            Operator::Div => "/",
-            Operator::Pow => "pow",
-            Operator::Min => "fmin",
-            Operator::Max => "fmax",
-            Operator::Less => "<",
-            Operator::LessOrEqual => "<=",
-            Operator::Greater => ">",
-            Operator::GreaterOrEqual => ">=",
-            Operator::Equal => "==",
-            Operator::And => "&&",
-            Operator::Or => "||",
-        }
-    }
-
     fn not(&self, condition: &str) -> String {
         format!("!({condition})")
     }
@@ -265,8 +113,89 @@ impl Notation for Notes {
     fn local(&self, name: &str, value: &str) -> String {
         format!("const double {name} = {value};")
     }
+}
 
-    fn remember(&self, name: &str, value: &str) -> String {
-        format!("{name} = {value};")
+impl Body for Notes {
+    fn indent(&self) -> &'static str {
+        "    "
+    }
+
+    fn declare(&self, parameter: &Parameter) -> String {
+        let Parameter { name, value, .. } = parameter;
+        format!("    double {name}; /* {}; {value:?} */\n", commentable(&parameter.described()))
+    }
+
+    fn begin(&self, memory: &str) -> String {
+        format!("double {memory};")
+    }
+
+    fn call(&self, id: &str) -> String {
+        format!("at.signal = @NAME@_effect_{id}(model, &at);")
+    }
+
+    fn settle(&self, id: &str) -> String {
+        format!("@NAME@_effect_{id}_settle(model, &at);")
+    }
+
+    fn delay(&self, id: &str) -> String {
+        format!("arrives += @NAME@_effect_{id}(model, &at);")
+    }
+
+    fn load(&self) -> Around {
+        Around {
+            before: "    {
+        const double commanded = at.signal;
+        at.position += 0.5 * dt * (commanded + model->load_adds);
+        at.time += 0.5 * dt;\n",
+            indent: "        ",
+            after: "        model->load_adds = at.signal - commanded;\n    }\n",
+        }
+    }
+
+    fn limits(&self) -> Around {
+        Around {
+            before: "    at = @NAME@_at(model, model->angle, time, dt);\n",
+            indent: self.indent(),
+            after: "    if (at.signal != model->angle) {
+        model->velocity = 0.0;
+    }
+    model->angle = at.signal;\n",
+        }
+    }
+
+    fn transport(&self) -> Around {
+        Around {
+            before: "    {
+        @NAME@_change at;
+        at.before = model->before;
+        at.after = level;
+        at.held = now - model->since;
+        at.time = model->p.start_s + now;\n",
+            indent: "        ",
+            after: "    }\n",
+        }
+    }
+
+    fn functions(&self, effect: &Exported) -> String {
+        let Exported { id, summary, equation, .. } = effect;
+        let about = commentable(&format!("{id}: {summary}\n *     {equation}"));
+        let kind = if effect.stage == Stage::Transport { "change" } else { "moment" };
+        let body = |program| {
+            let text = indented(lines(self, effect, program), self.indent());
+            let unused = [("model->", "(void)model;"), ("at->", "(void)at;")];
+            let unused = unused.into_iter().filter(|(used, _)| !text.contains(used));
+            indented(unused.map(|(_, line)| line.to_owned()), self.indent()) + &text
+        };
+        let arguments = format!("(@NAME@_state *model, const @NAME@_{kind} *at)");
+        let step = format!(
+            "/* {about} */\nstatic double @NAME@_effect_{id}{arguments}\n{{\n{}    return {};\n}}\n\n",
+            body(&effect.step),
+            result(&effect.step)
+        );
+        if effect.settle.lines.is_empty() {
+            return step;
+        }
+        let settle = body(&effect.settle);
+        step + &format!("static void @NAME@_effect_{id}_settle{arguments}\n{{\n{settle}}}\n\n")
     }
 }

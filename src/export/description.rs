@@ -6,6 +6,7 @@ use super::ExportError;
 use crate::effect::expression::Program;
 use crate::effect::{Dimension, Stage};
 use crate::model::{Component, JointModel};
+use crate::units::radians_in;
 
 /// The units of the log that a model is of; they are shown with the parameters.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -55,6 +56,14 @@ pub(super) struct Exported {
     pub(super) memory: Vec<String>,
     pub(super) settle: Program,
     pub(super) step: Program,
+}
+
+impl Parameter {
+    /// Its meaning, and its unit where it has one.
+    pub(super) fn described(&self) -> String {
+        let Self { meaning, unit, .. } = self;
+        if unit.is_empty() { meaning.clone() } else { format!("{meaning} [{unit}]") }
+    }
 }
 
 impl Export {
@@ -153,7 +162,7 @@ impl Taken {
 fn own_parameters(model: &JointModel, units: &Units, taken: &mut Taken) -> Vec<Parameter> {
     let of = |dimension: Dimension| dimension.unit(units.input.as_deref(), units.output.as_deref());
     let gain = format!("{}/{}", of(Dimension::OutputPerSecond), of(Dimension::Input));
-    let radians = radians_per_output_unit(units.output.as_deref());
+    let radians = radians_in(units.output.as_deref());
     let own = [
         ("gain", "speed of the joint per input", gain, model.gain.value),
         ("delay", "time until the input acts", of(Dimension::Seconds), model.delay.value),
@@ -167,16 +176,6 @@ fn own_parameters(model: &JointModel, units: &Units, taken: &mut Taken) -> Vec<P
         value,
     };
     own.map(parameter).to_vec()
-}
-
-/// The angle in radians of one output unit; of none that is known, a degree.
-fn radians_per_output_unit(unit: Option<&str>) -> f64 {
-    match unit {
-        Some("rad") => 1.0,
-        Some("mrad") => 1e-3,
-        Some("rev" | "turn") => std::f64::consts::TAU,
-        _ => 1_f64.to_radians(),
-    }
 }
 
 fn exported(

@@ -15,7 +15,25 @@ pub trait Language: Sync {
     /// # Errors
     /// [`ExportError::Name`] where `name` is not one in this language;
     /// [`ExportError::Archive`] where the files cannot be put together.
-    fn files(&self, export: &Export, name: &str) -> Result<Vec<File>, ExportError>;
+    fn files(&self, export: &Export, name: &str) -> Result<Vec<File>, ExportError> {
+        if is_name(name) {
+            self.written(export, name)
+        } else {
+            Err(ExportError::Name { name: name.to_owned(), language: self.name() })
+        }
+    }
+
+    /// [`files`](Self::files) of a name that was checked.
+    ///
+    /// # Errors
+    /// [`ExportError::Archive`] where the files cannot be put together.
+    fn written(&self, export: &Export, name: &str) -> Result<Vec<File>, ExportError>;
+}
+
+/// Whether `name` is one in the languages that models are written in.
+fn is_name(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_alphabetic())
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
 }
 
 /// A file of an exported model.

@@ -16,6 +16,7 @@
 //!
 //! What is not here: the delay table as a lookup, which [`estimate`](crate::report) writes.
 
+mod body;
 mod c;
 mod description;
 mod error;

@@ -10,12 +10,23 @@ pub(super) trait Notation {
     fn parameter(&self, name: &str) -> String;
     /// A number that an effect remembers.
     fn memory(&self, name: &str) -> String;
+    /// What an effect sees of the joint at an instant.
+    fn at(&self, name: &str) -> String {
+        format!("at.{name}")
+    }
     /// What an effect sees of the joint.
-    fn signal(&self, name: &str) -> String;
+    fn signal(&self, name: &str) -> String {
+        match name {
+            "radians" => self.parameter("radians_per_output_unit"),
+            _ => self.at(name),
+        }
+    }
     /// The name of a function of one number, which is called as in mathematics.
     fn function(&self, function: Function) -> &'static str;
     /// Sign of a comparison or of logic, or the name of a function of two numbers.
-    fn operator(&self, operator: Operator) -> &'static str;
+    fn operator(&self, operator: Operator) -> &'static str {
+        usual_operator(operator)
+    }
     /// The opposite of a condition.
     fn not(&self, condition: &str) -> String;
     /// A number, as a condition: whether it is not zero.
@@ -23,9 +34,33 @@ pub(super) trait Notation {
     /// One of two numbers.
     fn choice(&self, condition: &str, then: &str, otherwise: &str) -> String;
     /// A line that gives a value to a name of its own.
-    fn local(&self, name: &str, value: &str) -> String;
+    fn local(&self, name: &str, value: &str) -> String {
+        self.remember(name, value)
+    }
     /// A line that gives a value to what is remembered.
-    fn remember(&self, name: &str, value: &str) -> String;
+    fn remember(&self, name: &str, value: &str) -> String {
+        format!("{name} = {value};")
+    }
+}
+
+/// The operator in C, and in most languages.
+pub(super) fn usual_operator(operator: Operator) -> &'static str {
+    match operator {
+        Operator::Add => "+",
+        Operator::Sub => "-",
+        Operator::Mul => "*",
+        Operator::Div => "/",
+        Operator::Pow => "pow",
+        Operator::Min => "fmin",
+        Operator::Max => "fmax",
+        Operator::Less => "<",
+        Operator::LessOrEqual => "<=",
+        Operator::Greater => ">",
+        Operator::GreaterOrEqual => ">=",
+        Operator::Equal => "==",
+        Operator::And => "&&",
+        Operator::Or => "||",
+    }
 }
 
 /// How strongly a text holds together; less than its surroundings needs parentheses.

@@ -15,6 +15,7 @@ use crate::delay::{StepDelay, step_delays};
 use crate::effect::RecordRange;
 use crate::experiment::{Joint, Trial};
 use crate::model::{Arrivals, Commands, JointModel, Surroundings};
+use crate::units::radians_in;
 
 /// A joint's trials, cut into windows.
 #[derive(Clone, Debug)]
@@ -58,7 +59,7 @@ impl<'a> FitRecord<'a> {
         let windows: Vec<_> = windows.collect();
         let speeds_measured = speed::are_measured(&joint.trials, &windows);
         let others = vec![Vec::new(); joint.trials.len()];
-        let radians_per_output_unit = radians(joint.output_unit.as_deref());
+        let radians_per_output_unit = radians_in(joint.output_unit.as_deref());
         Self {
             joint,
             split,
@@ -321,16 +322,6 @@ fn span(trial: &Trial) -> f64 {
 
 fn length_s(trial: &Trial) -> f64 {
     trial.len() as f64 * trial.period().seconds()
-}
-
-/// Radians in one unit of the output; degrees unless the log says otherwise.
-fn radians(unit: Option<&str>) -> f64 {
-    match unit {
-        Some("rad") => 1.0,
-        Some("mrad") => 1e-3,
-        Some("rev" | "turn") => std::f64::consts::TAU,
-        _ => 1f64.to_radians(),
-    }
 }
 
 fn commands(trial: &Trial) -> Commands {

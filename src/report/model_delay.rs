@@ -17,7 +17,7 @@ fn why_shorter(of: &Assessment) -> String {
     let is_lag = |component: &&Component| component.effect().spec().stage == Stage::Dynamics;
     match of.model.components().iter().find(is_lag) {
         Some(lag) => {
-            format!("these hold the lag, too, that the model has as {}", lag.effect().spec().id)
+            format!("those include the lag that the model describes by {}", lag.effect().spec().id)
         }
         None => "with it the fit makes up for a motion that the model has too slow after a step"
             .to_owned(),

@@ -12,10 +12,10 @@ mod binary;
 mod xml;
 
 use super::ExportError;
-use super::c::sources;
+use super::c::{commentable, sources};
 use super::description::{Export, Parameter};
 use super::language::{File, Language};
-use super::template::{filled, indented, is_name};
+use super::template::{filled, indented};
 use archive::{Entry, archive};
 use binary::compiled;
 use sha2::{Digest as _, Sha256};
@@ -35,10 +35,7 @@ impl Language for Fmu {
         "FMI"
     }
 
-    fn files(&self, export: &Export, name: &str) -> Result<Vec<File>, ExportError> {
-        if !is_name(name) {
-            return Err(ExportError::Name { name: name.to_owned(), language: self.name() });
-        }
+    fn written(&self, export: &Export, name: &str) -> Result<Vec<File>, ExportError> {
         let (source, header) = sources(export, name);
         let token = token(&[&source, &header]);
         let fmi = fmi(export, name, &token);
@@ -75,7 +72,7 @@ fn fmi(export: &Export, name: &str, token: &str) -> String {
         format!("case PARAMETER + {number}: return &p->{};", parameter.name)
     };
     let cases = indented(export.parameters.iter().enumerate().map(case), "    ");
-    let joint = export.joint.replace("*/", "* /").replace("/*", "/ *");
+    let joint = commentable(&export.joint);
     let places = [("CASES", cases.as_str()), ("TOKEN", token), ("FILE", name), ("JOINT", &joint)];
     filled(&filled(FMI, &places), &[("NAME", name)])
 }
