@@ -49,7 +49,7 @@ fn six() -> Vec<&'static dyn Effect> {
 }
 
 const PROTOCOL: Protocol =
-    Protocol { mode: Mode::FitOrIntegrator, split: None, horizon: Horizon::Steps };
+    Protocol { mode: Mode::FitOrIntegrator, split: None, horizon: Horizon::Auto };
 
 fn explain(joints: &[Joint], effects: &[&'static dyn Effect]) {
     let estimates = estimate_joints(joints, &Settings::default(), || (), &Threads);

@@ -45,6 +45,7 @@ fn truth(id: &str) -> &'static [f64] {
         "resonance" => &[0.3, 0.2],
         "oil_column" => &[0.3, 0.08, 0.03, 0.006, 0.0, 0.0],
         "coulomb_friction" => &[0.5, 0.4, 0.12],
+        "asymmetric_friction" => &[0.5, 0.4, 0.12, 1.4],
         "gravity_load" => &[0.4, 20.0, 1.5],
         "position_gain" => &[0.004, -4e-5, 0.0],
         "thermal_drift" => &[0.01, 20.0],

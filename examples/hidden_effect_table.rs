@@ -77,6 +77,7 @@ fn tell(cases: &[Case], index: usize, outcome: &anyhow::Result<Outcome>) {
 fn what_is_hidden_is_found_and_nothing_is_not() -> anyhow::Result<()> {
     let counts = Counts {
         one: 1,
+        soft: 0,
         nothing: 1,
         two: 0,
         three: 0,

@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use proptest::prelude::*;
 use tauscope::effect::{
-    ActuatorLag, CoulombFriction, Effect, Moment, OilColumn, RateLimit, Resonance,
+    ActuatorLag, AsymmetricFriction, CoulombFriction, Effect, Moment, OilColumn, RateLimit,
+    Resonance,
 };
 
 /// Small steps in an interval.
@@ -134,5 +135,22 @@ proptest! {
         // Euler's rule, of first order: h / T up to 2.5e-3 times a change of up to 1.5.
         let found = means(&CoulombFriction, &[positive, negative, constant], &holds);
         agree(&found, &expected, 4e-3 / constant.max(1.0))?;
+    }
+
+    #[test]
+    fn asymmetric_friction(
+        holds in holds(), levels in (0.0_f64..0.5, 0.0_f64..0.5),
+        constant in 0.5_f64..10.0, ratio in 0.4_f64..2.5,
+    ) {
+        let (positive, negative) = levels;
+        let expected = integrated(&holds, |[v, _], input, h| {
+            let viscous = if v < 0.0 { ratio * v } else { v };
+            let free = v + h * (input - viscous) / constant;
+            let braked = free.abs() - h * if free > 0.0 { positive } else { negative } / constant;
+            [braked.max(0.0).copysign(free), 0.0]
+        });
+        let found = means(&AsymmetricFriction, &[positive, negative, constant, ratio], &holds);
+        // As above, at a time constant of down to T / ratio.
+        agree(&found, &expected, 1e-2 / constant.max(1.0))?;
     }
 }

@@ -18,7 +18,7 @@ use tauscope::{Effect, JointModel};
 const TOLERANCE: f64 = 1e-9;
 
 /// Effects with parameters away from their neutral ones.
-const EFFECTS: [(&str, &str); 20] = [
+const EFFECTS: [(&str, &str); 21] = [
     ("input_offset", "offset = 0.05"),
     ("dead_band", "lower = -0.3, upper = 0.4"),
     ("stiction", "start = 0.8, stop = 0.45"),
@@ -40,6 +40,10 @@ const EFFECTS: [(&str, &str); 20] = [
          reference = 12.0",
     ),
     ("coulomb_friction", "positive = 0.2, negative = 0.3, time_constant = 0.15"),
+    (
+        "asymmetric_friction",
+        "positive = 0.2, negative = 0.3, time_constant = 0.15, negative_viscous = 1.6",
+    ),
     ("gravity_load", "kappa = 0.4, y0 = 10.0, creep = 0.5"),
     ("position_gain", "slope = 0.004, curvature = -2e-5, reference = 5.0"),
     ("thermal_drift", "rate = 0.003, time_constant = 40.0"),
@@ -91,11 +95,12 @@ fn models() -> Vec<(String, JointModel)> {
     };
     let mut swings = without(&["coulomb_friction", "resonance"]);
     swings.reverse();
+    let brakes = ["actuator_lag", "oil_column", "resonance", "asymmetric_friction"];
     let together = [
         ("plain", model(&[], "")),
-        ("twice", model(&[EFFECTS[19], ("backlash", "width = 0.3"), EFFECTS[8], EFFECTS[8]], "")),
+        ("twice", model(&[EFFECTS[20], ("backlash", "width = 0.3"), EFFECTS[8], EFFECTS[8]], "")),
         ("own", model(&[], OWN)),
-        ("brakes", model(&without(&["actuator_lag", "oil_column", "resonance"]), OWN)),
+        ("brakes", model(&without(&brakes), OWN)),
         ("swings", model(&swings, "")),
     ];
     alone.chain(together.map(|(name, model)| (name.to_owned(), model))).collect()

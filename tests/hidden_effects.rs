@@ -301,7 +301,7 @@ fn spikes_are_as_many_and_as_large_as_wanted_and_leave_the_noise_alone() {
 
 /// Each effect at its neutral numbers, and how far it may lead: what takes time takes four
 /// time steps at least, 2 ms at up to 20 deg/s.
-const NEUTRAL: [(&str, f64); 24] = [
+const NEUTRAL: [(&str, f64); 25] = [
     ("input_offset:offset=0", 1e-9),
     ("dead_band:lower=0,upper=0", 1e-9),
     ("stiction:start=0,stop=0", 0.1),
@@ -314,6 +314,7 @@ const NEUTRAL: [(&str, f64); 24] = [
     ("resonance:period=0.02,damping=0.9", 0.2),
     ("oil_column:period=0.02,damping=0.9,valve_damping=0,slope=0,reference=0", 0.2),
     ("coulomb_friction:positive=0,negative=0,time_constant=0.002", 0.1),
+    ("asymmetric_friction:positive=0,negative=0,time_constant=0.002,negative_viscous=1", 0.1),
     ("position_gain:ratio=0.3,mount=60,leverage=0,reference=0", 1e-9),
     ("thermal_drift:change=0,time_constant=10", 1e-9),
     ("supply_droop:droop=0", 1e-9),

@@ -139,8 +139,10 @@ impl<'a> Fine<'a> {
             Self { case, changes, moving: 0.0, states: Vec::new(), angle: 0.0, shown: 0.0 };
         let mut signal = fine.after_valve(case.input[0]);
         for (id, p) in case.parts {
-            if *id == "coulomb_friction" {
+            if matches!(*id, "coulomb_friction" | "asymmetric_friction") {
                 signal = signal - signal.clamp(-p[1], p[0]);
+                let viscous = if signal < 0.0 { p.get(3).copied() } else { None };
+                signal /= viscous.unwrap_or(1.0);
             }
             fine.states.push([signal, 0.0]);
         }
@@ -197,7 +199,9 @@ impl<'a> Fine<'a> {
                     let period = p[0] * (1.0 + p[3] * away + p[4] * away * away);
                     swing(state, signal, std::f64::consts::TAU / period, braked, h);
                 }
-                "coulomb_friction" => state[0] = braked(before, signal, p, h),
+                "coulomb_friction" | "asymmetric_friction" => {
+                    state[0] = braked(before, signal, p, h);
+                }
                 _ => continue,
             }
             signal = f64::midpoint(before, state[0]);
@@ -284,8 +288,11 @@ fn swing(state: &mut [f64; 2], input: f64, omega: f64, damping: f64, h: f64) {
 /// of the step behind a stop is another one.
 fn braked(speed: f64, input: f64, p: &[f64], h: f64) -> f64 {
     let part = 0.5 * h / p[2];
-    let driven = |input: f64| (speed * (1.0 - part) + 2.0 * part * input) / (1.0 + part);
-    let (up, down) = (driven(input - p[0]), driven(input + p[1]));
+    let driven = |input: f64, viscous: f64| {
+        (speed * (1.0 - part * viscous) + 2.0 * part * input) / (1.0 + part * viscous)
+    };
+    let viscous = p.get(3).copied().unwrap_or(1.0);
+    let (up, down) = (driven(input - p[0], 1.0), driven(input + p[1], viscous));
     let after = if speed > 0.0 { up } else { down };
     if speed == 0.0 {
         up.max(0.0) + down.min(0.0)
@@ -334,6 +341,7 @@ fn effects_of_the_dynamics_are_exact() {
     assert_within(&[("resonance", &[0.3, 1.7])], 1e-6);
     assert_within(&[("rate_limit", &[0.031])], 1e-7);
     assert_within(&[("coulomb_friction", &[0.6, 0.4, 0.15])], 1e-6);
+    assert_within(&[("asymmetric_friction", &[0.6, 0.4, 0.15, 1.7])], 1e-6);
 }
 
 #[test]

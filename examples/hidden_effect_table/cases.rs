@@ -18,6 +18,9 @@ const CORRELATIONS_ALONE: [f64; 5] = [0.0, 0.5, 0.8, 0.9, 0.95];
 
 const STRENGTHS: [Strength; 2] = [Strength::Clear, Strength::Weak];
 
+/// Over which part of the largest level the corners of a soft valve are rounded.
+pub(crate) const SOFT_EDGE: f64 = 0.03;
+
 /// Length of a record of the cylinder in seconds, as long as the others.
 const CYLINDER_S: f64 = 120.0;
 
@@ -26,6 +29,8 @@ const CYLINDER_S: f64 = 120.0;
 pub(crate) enum Group {
     /// One effect of the catalogue is hidden.
     One,
+    /// One is, and the corners of the valve are rounded.
+    Soft,
     /// Nothing is.
     Nothing,
     /// The finer form of one is.
@@ -46,17 +51,20 @@ pub(crate) struct Counts {
     /// One effect hidden: records per effect, strength and noise
     #[arg(long, default_value_t = 3)]
     pub(crate) one: u64,
+    /// One effect hidden, the valve with rounded corners: records per effect and strength
+    #[arg(long, default_value_t = 1)]
+    pub(crate) soft: u64,
     /// Nothing hidden: records per noise
     #[arg(long, default_value_t = 20)]
     pub(crate) nothing: u64,
     /// A finer form hidden: records per strength and noise
     #[arg(long, default_value_t = 3)]
     pub(crate) finer: u64,
-    /// Two effects hidden: records per strength and noise
-    #[arg(long, default_value_t = 10)]
+    /// Two effects hidden: records per strength, noise and valve
+    #[arg(long, default_value_t = 8)]
     pub(crate) two: u64,
-    /// Three effects hidden: records per strength and noise
-    #[arg(long, default_value_t = 10)]
+    /// Three effects hidden: records per strength, noise and valve
+    #[arg(long, default_value_t = 4)]
     pub(crate) three: u64,
     /// Outside the catalogue: records per effect and strength
     #[arg(long, default_value_t = 3)]
@@ -81,6 +89,8 @@ pub(crate) struct Case {
     pub(crate) correlation: f64,
     /// Whether 0.2 % of the samples are far off.
     pub(crate) spikes: bool,
+    /// Whether the corners of the valve are rounded.
+    pub(crate) soft: bool,
     pub(crate) seed: u64,
 }
 
@@ -93,6 +103,7 @@ impl Case {
             deviation: NOISE,
             correlation: 0.0,
             spikes: false,
+            soft: group == Group::Soft,
             seed: 0,
         }
     }
@@ -103,7 +114,7 @@ impl Case {
         let mut plant = match self.group {
             Group::Cylinder => cylinder(self.deviation, self.seed),
             Group::Nothing => with_noise(ideal(self.seed), noise),
-            _ => Scenario::new(&self.hidden, self.strength, noise, self.seed)?.plant,
+            _ => Scenario::within(&self.bare(), &self.hidden, self.strength, noise)?.plant,
         };
         if self.spikes {
             for joint in &mut plant.joints {
@@ -111,6 +122,17 @@ impl Case {
             }
         }
         Ok(plant)
+    }
+
+    /// The plant before anything is hidden in it.
+    fn bare(&self) -> PlantSpec {
+        let mut bare = ideal(self.seed);
+        if self.soft {
+            for joint in &mut bare.joints {
+                joint.valve_edge = SOFT_EDGE;
+            }
+        }
+        bare
     }
 
     /// `weak`, or `clear`.
@@ -130,6 +152,11 @@ impl Case {
         format!("white{spikes}")
     }
 
+    /// Noise and valve, in words.
+    pub(crate) fn surroundings(&self) -> String {
+        self.noise() + if self.soft { ", soft valve" } else { "" }
+    }
+
     /// What it is, in one line.
     pub(crate) fn title(&self) -> String {
         let what = match self.group {
@@ -137,7 +164,7 @@ impl Case {
             Group::Cylinder => format!("cylinder with noise of {} deg", self.deviation),
             _ => format!("{} {}", self.strength(), self.hidden.join(" + ")),
         };
-        format!("{what}, {}, seed {}", self.noise(), self.seed)
+        format!("{what}, {}, seed {}", self.surroundings(), self.seed)
     }
 }
 
@@ -166,9 +193,13 @@ fn with_noise(mut plant: PlantSpec, noise: Noise) -> PlantSpec {
 /// All records, each with a seed of its own.
 pub(crate) fn cases(counts: Counts) -> Vec<Case> {
     let mut cases = each_of(&CATALOGUE, Group::One, counts.one);
+    cases.extend(soft(counts.soft));
     cases.extend(nothing(counts.nothing));
-    cases.extend(in_all_noises(&Case::new(Group::Two, &[]), counts.two));
-    cases.extend(in_all_noises(&Case::new(Group::Three, &[]), counts.three));
+    for (group, count) in [(Group::Two, counts.two), (Group::Three, counts.three)] {
+        let sharp = Case::new(group, &[]);
+        cases.extend(in_all_noises(&sharp, count));
+        cases.extend(in_all_noises(&Case { soft: true, ..sharp }, count));
+    }
     cases.extend(outside(counts.outside));
     cases.extend(each_of(&FINER, Group::Finer, counts.finer));
     cases.extend(of_cylinder(counts.cylinder));
@@ -203,6 +234,12 @@ fn each_of(names: &[&'static str], group: Group, count: u64) -> Vec<Case> {
 /// `case` with each strength and noise, so many times.
 fn in_all_noises(case: &Case, count: u64) -> Vec<Case> {
     varied(case).flat_map(|case| repeated(case, count)).collect()
+}
+
+fn soft(count: u64) -> Vec<Case> {
+    let each = CATALOGUE.into_iter().map(|name| Case::new(Group::Soft, &[name]));
+    let strong = each.flat_map(|case| STRENGTHS.map(|strength| Case { strength, ..case.clone() }));
+    strong.flat_map(|case| repeated(case, count)).collect()
 }
 
 fn of_cylinder(count: u64) -> Vec<Case> {

@@ -6,7 +6,7 @@ use tauscope::delay::{EstimateError, Settings};
 use tauscope::diagnosis::Comparison;
 use tauscope::diagnosis::failure::Feature;
 use tauscope::experiment::Joint;
-use tauscope::explain::{Change, Improvement, Options, Revision, Verdict};
+use tauscope::explain::{Attribution, Change, Improvement, Options, Revision, Verdict};
 use tauscope::fit::{Horizon, Parameter};
 use tauscope::study::{
     JointEstimate, Mode, Protocol, estimate_joints, explain_joints, improve_joints,
@@ -34,6 +34,16 @@ pub(crate) struct Estimate {
     pub(crate) score: Option<f64>,
 }
 
+/// An effect that improve added.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Found {
+    pub(crate) id: &'static str,
+    /// What leaves as little error in its place.
+    pub(crate) alternatives: Vec<&'static str>,
+    /// What it carries, in parts of the first error; a refinement carries nothing.
+    pub(crate) error_share: f64,
+}
+
 /// A condition under which a model fails.
 #[derive(Clone, Debug)]
 pub(crate) struct Fails {
@@ -47,7 +57,7 @@ pub(crate) struct Outcome {
     /// `None` where explain was not asked.
     pub(crate) named: Option<Named>,
     /// Effects of the last revision.
-    pub(crate) found: Vec<&'static str>,
+    pub(crate) found: Vec<Found>,
     pub(crate) verdict: Verdict,
     /// Validation error of the integrator, and of the last revision, over the noise.
     pub(crate) errors: [f64; 2],
@@ -67,8 +77,7 @@ struct Log {
 }
 
 /// As the commands do it.
-const PROTOCOL: Protocol =
-    Protocol { mode: Mode::Integrator, split: None, horizon: Horizon::Steps };
+const PROTOCOL: Protocol = Protocol { mode: Mode::Integrator, split: None, horizon: Horizon::Auto };
 
 impl Log {
     fn improved(&self, options: &Options) -> anyhow::Result<(Improvement, Option<bool>)> {
@@ -103,7 +112,7 @@ pub(crate) fn examine(case: &Case, options: &Options) -> anyhow::Result<Outcome>
     let estimates = estimate_joints(&joints, &Settings::default(), || (), &Threads);
     let log = Log { joints, estimates };
     let (improvement, other_adequate) = log.improved(options)?;
-    let is_asked = matches!(case.group, Group::One | Group::Outside | Group::Nothing);
+    let is_asked = matches!(case.group, Group::One | Group::Soft | Group::Outside | Group::Nothing);
     let named = is_asked.then(|| log.named(options)).transpose()?;
     let spec = plant.joints.first().context("no joint")?;
     outcome(case, spec, &improvement, named, other_adequate)
@@ -116,21 +125,30 @@ fn outcome(
     named: Option<Named>,
     other_adequate: Option<bool>,
 ) -> anyhow::Result<Outcome> {
-    let Improvement { revisions, verdict, .. } = improvement;
+    let Improvement { revisions, verdict, attribution } = improvement;
     let first = revisions.first().context("no revision")?;
     let last = revisions.last().context("no revision")?;
     let effects = last.comparison.fit.model.components().iter();
     let estimates = last.comparison.fit.parameters.iter();
     Ok(Outcome {
         named,
-        found: effects.map(|component| component.effect().spec().id).collect(),
+        found: effects.map(|part| found(part.effect().spec().id, attribution)).collect(),
         verdict: *verdict,
         errors: [first, last].map(|revision| error(case, &revision.comparison)),
         estimates: estimates.filter_map(|parameter| estimate(plant, parameter)).collect(),
         fails: fails(&first.comparison),
-        chain: chain(case, revisions, *verdict),
+        chain: chain(case, improvement),
         other_adequate,
     })
+}
+
+fn found(id: &'static str, attribution: &Attribution) -> Found {
+    let known = attribution.found.iter().find(|contribution| contribution.effect == id);
+    Found {
+        id,
+        alternatives: known.map(|known| known.alternatives.clone()).unwrap_or_default(),
+        error_share: known.map_or(0.0, |known| known.error_share),
+    }
 }
 
 /// Validation error over the noise.
@@ -148,7 +166,8 @@ fn fails(comparison: &Comparison) -> Vec<Fails> {
 }
 
 /// `integrator 12.1, + dead_band 1.01: adequate (p = 0.31)`
-fn chain(case: &Case, revisions: &[Revision], verdict: Verdict) -> String {
+fn chain(case: &Case, improvement: &Improvement) -> String {
+    let Improvement { revisions, verdict, attribution } = improvement;
     let told = revisions.iter().map(|revision| {
         let change = match revision.change {
             Change::Start => "integrator".to_owned(),
@@ -163,7 +182,13 @@ fn chain(case: &Case, revisions: &[Revision], verdict: Verdict) -> String {
     let test = test.map_or_else(String::new, |test| {
         format!(" (p = {:.1e}, misfit {:.1} %)", test.p_value, 100.0 * test.misfit_share)
     });
-    format!("{}: {}{test}", told.join(", "), in_words(verdict))
+    let carried = attribution.found.iter().map(|found| {
+        let or = found.alternatives.iter().map(|other| format!(" or {other}"));
+        format!("{}{} {:.1} %", found.effect, or.collect::<String>(), 100.0 * found.error_share)
+    });
+    let carried: Vec<String> = carried.collect();
+    let verdict = in_words(*verdict);
+    format!("{}: {verdict}{test}; {}", told.join(", "), carried.join(", "))
 }
 
 /// The verdict as files have it.

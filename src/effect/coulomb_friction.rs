@@ -14,18 +14,14 @@
 //! the input that makes it. With `time_constant = 0` there is no inertia, and what is
 //! left is exactly a [dead band](super::DeadBand) from `−negative` to `positive`: only
 //! inertia separates the two, since a joint that coasts is braked to a stop, and does
-//! not fade out.
+//! not fade out. Viscous friction is the same both ways here; where it is not, see
+//! [`AsymmetricFriction`](super::AsymmetricFriction).
 //!
 //! The inertia is therefore part of this effect, and it contains
 //! [`ActuatorLag`](super::ActuatorLag): a friction before a separate lag would have to
 //! guess when the lag's speed passes zero, and would be wrong by up to
 //! `gain · positive · dt` in the angle at each stop. Here the time of the stop is found in
-//! closed form, and the mean over the interval is exact with any number of the events
-//! stop, rest and start in it:
-//!
-//! ```text
-//! t_stop = T · ln(1 + |v(0)| / |in ∓ level|)      ∫v dt = (in ∓ level) · t − T · Δv
-//! ```
+//! closed form (`sliding.rs`).
 //!
 //! The direction of motion is that of the effect's own speed. Loads that follow it in the
 //! model, such as leakage, do not move the joint against its friction. Breakaway above
@@ -37,8 +33,8 @@
 //! Automatica 30; Åström, K. J., and Canudas de Wit, C., 2008, Revisiting the `LuGre`
 //! friction model, IEEE Control Systems Magazine 28.
 
-use super::dead_band::shifted;
-use super::decay::{DECAY, DECAY_MEMORY, Decay};
+use super::decay::DECAY;
+use super::sliding::{SLIDING_MEMORY, Sliding};
 use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
@@ -68,12 +64,12 @@ static SPEC: Spec = Spec::new(
     Parameter::new("time_constant", "inertia: time to 63 % of a change", Dimension::Seconds)
         .between(0.0, UNLIMITED),
 ])
-.memory(1 + DECAY_MEMORY)
+.memory(SLIDING_MEMORY)
 .confused_with(&["dead_band", "stiction", "input_offset"])
 .absorbing(&["actuator_lag"]);
 
 /// Gaps between input levels in which a fit starts.
-const GAPS: usize = 3;
+pub(super) const GAPS: usize = 3;
 
 impl Effect for CoulombFriction {
     fn spec(&self) -> &'static Spec {
@@ -108,41 +104,14 @@ impl Effect for CoulombFriction {
         )
     }
 
-    /// The memory is the speed in input units, and the decay that was computed last.
+    /// The memory is that of [`Sliding`].
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
-        let (&[positive, negative, time_constant], [speed, known @ ..]) = (parameters, memory)
-        else {
-            return at.signal;
-        };
-        let force = shifted(at.signal, -negative, positive);
-        if time_constant <= 0.0 {
-            *speed = force;
-            return force;
-        }
-        let drive = if *speed > 0.0 {
-            at.signal - positive
-        } else if *speed < 0.0 {
-            at.signal + negative
-        } else {
-            force
-        };
-        let stop_s = stop_time(*speed, drive, time_constant);
-        if stop_s < at.dt_s {
-            let braking = drive * stop_s + time_constant * *speed;
-            let rest_s = at.dt_s - stop_s;
-            let decay = Decay::over(rest_s, time_constant);
-            *speed = force * (1.0 - decay.left);
-            return (braking + rest_s * force * (1.0 - decay.mean)) / at.dt_s;
-        }
-        let decay = Decay::recall(known, at.dt_s, time_constant);
-        let deviation = *speed - drive;
-        *speed = drive + deviation * decay.left;
-        drive + deviation * decay.mean
+        sliding(parameters).map_or(at.signal, |sliding| sliding.step(memory, at))
     }
 
     fn settle(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        if let (&[positive, negative, _], [speed, ..]) = (parameters, memory) {
-            *speed = shifted(at.signal, -negative, positive);
+        if let Some(sliding) = sliding(parameters) {
+            sliding.settle(memory, at.signal);
         }
     }
 
@@ -153,10 +122,9 @@ impl Effect for CoulombFriction {
     }
 }
 
-/// Seconds until the speed is zero, infinite where `drive` does not brake it.
-fn stop_time(speed: f64, drive: f64, time_constant: f64) -> f64 {
-    let braked = if speed > 0.0 { drive < 0.0 } else { speed < 0.0 && drive > 0.0 };
-    if braked { time_constant * (-speed / drive).ln_1p() } else { f64::INFINITY }
+fn sliding(parameters: &[f64]) -> Option<Sliding> {
+    let &[positive, negative, time_constant] = parameters else { return None };
+    Some(Sliding { positive, negative, time_constant, negative_viscous: 1.0 })
 }
 
 #[cfg(test)]

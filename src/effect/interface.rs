@@ -74,6 +74,13 @@ pub trait Effect: Debug + Send + Sync {
         false
     }
 
+    /// Whether what it does is set by the steps of the input.
+    ///
+    /// A record whose input moves all the time has no steps.
+    fn depends_on_steps(&self) -> bool {
+        false
+    }
+
     /// What it does, as text of which other languages can be made: the same as
     /// [`settle`](Self::settle), [`step`](Self::step) and
     /// [`extra_delay_s`](Self::extra_delay_s). `None` where it cannot leave the program.

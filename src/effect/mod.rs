@@ -16,6 +16,7 @@
 //! What is not here: the joint that the effects act on, its simulation and its fit.
 
 pub mod actuator_lag;
+pub mod asymmetric_friction;
 pub mod backlash;
 pub mod contract;
 pub mod coulomb_friction;
@@ -42,6 +43,7 @@ pub mod rate_limit;
 mod record;
 mod registry;
 pub mod resonance;
+mod sliding;
 mod spec;
 mod stage;
 pub mod stiction;
@@ -53,6 +55,7 @@ pub mod thermal_drift;
 pub mod variable_delay;
 
 pub use actuator_lag::ActuatorLag;
+pub use asymmetric_friction::AsymmetricFriction;
 pub use backlash::Backlash;
 pub use coulomb_friction::CoulombFriction;
 pub use dead_band::DeadBand;

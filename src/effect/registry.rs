@@ -1,9 +1,9 @@
 //! The catalogue: one line for each effect.
 
 use super::{
-    ActuatorLag, Backlash, CoulombFriction, DeadBand, DirectionGain, Effect, EndStop, FlowCurve,
-    GravityLoad, InputOffset, InputSaturation, Leakage, OilColumn, PositionGain, RateLimit,
-    Resonance, Stiction, SupplyDroop, ThermalDrift, VariableDelay,
+    ActuatorLag, AsymmetricFriction, Backlash, CoulombFriction, DeadBand, DirectionGain, Effect,
+    EndStop, FlowCurve, GravityLoad, InputOffset, InputSaturation, Leakage, OilColumn,
+    PositionGain, RateLimit, Resonance, Stiction, SupplyDroop, ThermalDrift, VariableDelay,
 };
 
 /// Every built-in effect, in the order the documentation lists them.
@@ -20,6 +20,7 @@ pub const REGISTRY: &[&dyn Effect] = &[
     &Resonance,
     &OilColumn,
     &CoulombFriction,
+    &AsymmetricFriction,
     &GravityLoad,
     &PositionGain,
     &ThermalDrift,
@@ -95,6 +96,7 @@ mod tests {
             "resonance",
             "oil_column",
             "coulomb_friction",
+            "asymmetric_friction",
             "gravity_load",
             "position_gain",
             "thermal_drift",

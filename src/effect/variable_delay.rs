@@ -94,6 +94,10 @@ impl Effect for VariableDelay {
         ))
     }
 
+    fn depends_on_steps(&self) -> bool {
+        true
+    }
+
     /// The signal itself: this effect acts on time only.
     fn step(&self, _parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
         at.signal

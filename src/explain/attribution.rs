@@ -9,7 +9,8 @@
 //!
 //! with the root-mean-square errors `e` of the model, `e_without` without the effect and `e₀` of
 //! the first model, on the whole record or on the part that was not fitted, whichever grows more,
-//! and `s` the noise of the sensor. Effects that do the same work have small shares each, and
+//! and `s` the noise of the sensor. It is 1 at most, since rather than a worse model one would keep
+//! the first. Effects that do the same work have small shares each, and
 //! shares need not sum up to one.
 //!
 //! # References
@@ -114,6 +115,6 @@ impl Grown<'_, '_> {
     /// What the error is larger in `fit` than in the whole model, in parts of the misfit of the
     /// first.
     fn share(&self, fit: &Fit) -> f64 {
-        self.misfit.share_of_either(self.record, fit, self.whole)
+        self.misfit.share_of_either(self.record, fit, self.whole).min(1.0)
     }
 }

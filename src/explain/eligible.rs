@@ -1,6 +1,7 @@
 //! Which effects could be missing from a model.
 
 use super::options::Options;
+use crate::delay::InputMotion;
 use crate::effect::{Effect, RecordRange, Spec};
 use crate::fit::FitRecord;
 use crate::model::JointModel;
@@ -26,7 +27,10 @@ pub(super) fn could_be_missing(
 ) -> bool {
     let id = effect.spec().id;
     let is_it = |spec: &Spec| spec.id == id || spec.absorbs.contains(&id);
-    !has(model, is_it) && (!effect.depends_on_others() || record.has_others())
+    let has_steps = || !InputMotion::of(&record.joint().trials).is_continuous();
+    !has(model, is_it)
+        && (!effect.depends_on_others() || record.has_others())
+        && (!effect.depends_on_steps() || has_steps())
 }
 
 /// Whether it is time to look for `effect`: what it refines is in the model, or is not to be

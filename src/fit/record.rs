@@ -54,6 +54,7 @@ impl<'a> FitRecord<'a> {
     /// measured one where noise leaves it well known (to 1 % of the speeds in the record);
     /// else the simulation goes on with its own, and is steady where a trial begins.
     pub fn new(joint: &'a Joint, split: Split, horizon: Horizon) -> Self {
+        let horizon = horizon.of(joint);
         let windows = joint.trials.iter().enumerate();
         let windows = windows.flat_map(|(index, trial)| cut(trial, index, split, horizon));
         let windows: Vec<_> = windows.collect();

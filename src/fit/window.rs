@@ -1,5 +1,6 @@
 //! The windows into which trials are cut: where a simulation restarts, and what each is for.
 
+use super::first_order::follows_input;
 use crate::experiment::{Joint, Trial};
 
 /// How long a simulation runs before its angle is set to the measured one again.
@@ -8,6 +9,9 @@ use crate::experiment::{Joint, Trial};
 /// the free run what becomes of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Horizon {
+    /// A free run where the output follows its input itself, as a speed, a pressure or a servo's
+    /// position does, and forgets where it began; else from step to step of the input.
+    Auto,
     /// Never: each part of a trial is one run.
     #[default]
     FreeRun,
@@ -18,9 +22,21 @@ pub enum Horizon {
     Seconds(f64),
 }
 
+impl Horizon {
+    /// The horizon for `joint`, which is not [`Auto`](Self::Auto).
+    pub(super) fn of(self, joint: &Joint) -> Self {
+        match self {
+            Self::Auto if follows_input(joint).is_some() => Self::FreeRun,
+            Self::Auto => Self::Steps,
+            chosen => chosen,
+        }
+    }
+}
+
 impl std::fmt::Display for Horizon {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
+            Self::Auto => f.write_str("restarted as the record asks for"),
             Self::FreeRun => f.write_str("free run"),
             Self::Steps => f.write_str("restarted at every step of the input"),
             Self::Seconds(seconds) => write!(f, "restarted every {seconds} s"),
@@ -83,11 +99,11 @@ pub(super) fn cut(trial: &Trial, index: usize, split: Split, horizon: Horizon) -
     let mut borders = vec![0, border, samples];
     match horizon {
         Horizon::FreeRun => {}
-        Horizon::Steps if is_held(trial.input()) => {
+        Horizon::Auto | Horizon::Steps if is_held(trial.input()) => {
             borders.extend(changes(trial.input()));
             borders = divided(borders);
         }
-        Horizon::Steps => borders.extend((0..samples).step_by(LONGEST_STEP)),
+        Horizon::Auto | Horizon::Steps => borders.extend((0..samples).step_by(LONGEST_STEP)),
         Horizon::Seconds(seconds) => {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 1")]
             let every = (seconds / trial.period().seconds()).round().max(1.0) as usize;

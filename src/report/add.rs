@@ -87,7 +87,7 @@ impl<'a> AddedJoint<'a> {
 }
 
 /// Each joint's model before and after, and what it means.
-pub(crate) fn add_text(joints: &[AddedJoint<'_>], horizon: &str) -> String {
+pub(crate) fn add_text(joints: &[AddedJoint<'_>]) -> String {
     let labels: Vec<_> = joints.iter().map(AddedJoint::labels).collect();
     let named = joints.iter().zip(&labels).flat_map(|(joint, [first, second])| {
         let [before, after] = joint.compared();
@@ -95,5 +95,5 @@ pub(crate) fn add_text(joints: &[AddedJoint<'_>], horizon: &str) -> String {
     });
     let compared: Vec<_> = named.collect();
     let sentences: Vec<_> = joints.iter().map(AddedJoint::sentence).collect();
-    format!("{}\n{}\n", compare_table(&compared, horizon), sentences.join("\n"))
+    format!("{}\n{}\n", compare_table(&compared), sentences.join("\n"))
 }

@@ -22,7 +22,7 @@ pub struct ComparedJoint<'a> {
 }
 
 /// A table of errors, one row per joint and model, and the parameters below it.
-pub(crate) fn compare_table(joints: &[ComparedJoint<'_>], horizon: &str) -> String {
+pub(crate) fn compare_table(joints: &[ComparedJoint<'_>]) -> String {
     let header = ["joint", "model", "training", "validation", "fit", "noise", "lack of fit"];
     let mut table = TextTable::new(header, &[2, 3, 4, 5]);
     for compared in joints {
@@ -42,7 +42,28 @@ pub(crate) fn compare_table(joints: &[ComparedJoint<'_>], horizon: &str) -> Stri
         format!("\nresidual of the training part:\n{}\n", residuals.join("\n"))
     };
     let parameters = parameters.join("\n");
+    let horizon = horizons(joints.iter().copied());
     format!("{table}\nroot-mean-square errors, {horizon}\n\n{parameters}\n{residuals}{failures}")
+}
+
+/// Where the simulations of `joints` were restarted: `restarted at every step of the input`, or,
+/// where they differ, `free run (motor); restarted at every step of the input (boom, arm)`.
+pub(crate) fn horizons<'a>(joints: impl IntoIterator<Item = ComparedJoint<'a>>) -> String {
+    let mut of_joints: Vec<(String, Vec<&str>)> = Vec::new();
+    for ComparedJoint { joint, comparison, .. } in joints {
+        let horizon = comparison.fit.evaluation.horizon.to_string();
+        match of_joints.iter_mut().find(|(known, _)| *known == horizon) {
+            Some((_, names)) if names.contains(&joint.name.as_str()) => {}
+            Some((_, names)) => names.push(&joint.name),
+            None => of_joints.push((horizon, vec![&joint.name])),
+        }
+    }
+    if let [(horizon, _)] = of_joints.as_slice() {
+        return horizon.clone();
+    }
+    let named =
+        of_joints.iter().map(|(horizon, names)| format!("{horizon} ({})", names.join(", ")));
+    named.collect::<Vec<_>>().join("; ")
 }
 
 /// How the residual of a joint is correlated, in a line.

@@ -1,11 +1,11 @@
 //! `explain` as text.
 
-use super::compare::parameters;
+use super::compare::{horizons, parameters};
 use super::conclusion::printed;
 use super::finding::{Finding, ranking_table};
 
 /// For each joint the verdict, the ranking and what they mean.
-pub(crate) fn explain_text(findings: &[Finding<'_>], horizon: &str) -> String {
+pub(crate) fn explain_text(findings: &[Finding<'_>]) -> String {
     let joint = |finding: &Finding<'_>| {
         let conclusion = finding.conclusion();
         let ranking = match finding.ranking {
@@ -16,5 +16,6 @@ pub(crate) fn explain_text(findings: &[Finding<'_>], horizon: &str) -> String {
         format!("{}\n{ranking}\n{text}\nmodel of {model}\n", conclusion.headline)
     };
     let joints: Vec<String> = findings.iter().map(joint).collect();
+    let horizon = horizons(findings.iter().map(|finding| finding.compared));
     format!("{}\nroot-mean-square errors, {horizon}\n", joints.join("\n\n"))
 }

@@ -2,7 +2,7 @@
 
 #[cfg(feature = "rrd")]
 use super::compare::ComparedJoint;
-use super::compare::{figures, parameters};
+use super::compare::{figures, horizons, parameters};
 #[cfg(feature = "rrd")]
 use super::conclusion::Conclusion;
 use super::conclusion::printed;
@@ -139,7 +139,8 @@ pub(crate) fn revision_line(joint: &Joint, number: u32, revision: &Revision) -> 
 }
 
 /// For each joint the ladder of errors and what is to be said of the last revision.
-pub(crate) fn improve_text(joints: &[ImprovedJoint<'_>], horizon: &str) -> String {
+pub(crate) fn improve_text(joints: &[ImprovedJoint<'_>]) -> String {
+    let horizon = horizons(joints.iter().map(|joint| joint.finding.compared));
     let joints: Vec<String> = joints.iter().map(ImprovedJoint::text).collect();
     format!("{}\nroot-mean-square errors, {horizon}\n", joints.join("\n\n"))
 }

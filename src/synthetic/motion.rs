@@ -148,7 +148,7 @@ impl<'a> Motion<'a> {
             let steady = column.steady(signal);
             [self.state[COLUMN_PRESSURE], self.state[COLUMN_FLOW]] = steady;
         }
-        if let Some(friction) = effect.coulomb_friction {
+        if let Some(friction) = effect.friction() {
             [self.state[MASS], self.state[FRICTION]] = friction.steady(signal);
             signal = self.state[MASS];
         }
@@ -219,7 +219,7 @@ impl<'a> Motion<'a> {
             [rate[COLUMN_PRESSURE], rate[COLUMN_FLOW]] = moved;
             signal = state[COLUMN_FLOW];
         }
-        if let Some(friction) = effect.coulomb_friction {
+        if let Some(friction) = effect.friction() {
             let now = [state[MASS], state[FRICTION]];
             [rate[MASS], rate[FRICTION]] = friction.rate(signal, now, substep_s);
             signal = state[MASS];

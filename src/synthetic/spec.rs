@@ -82,6 +82,10 @@ pub struct JointSpec {
     pub lag_s: Option<f64>,
     /// Ringing of the speed.
     pub ringing: Option<Ringing>,
+    /// Width over which the corners of the valve's effects are rounded, as a part of the
+    /// largest level of the input; 0.004 where a file leaves it out.
+    #[serde(default = "default::valve_edge")]
+    pub valve_edge: f64,
     /// The cylinder that moves it, instead of gain, dead band, saturation, lag, ringing and
     /// effects but those of the sensor.
     pub cylinder: Option<CylinderSpec>,
@@ -132,6 +136,11 @@ mod default {
 
     pub(super) fn sample_period_s() -> f64 {
         0.01
+    }
+
+    /// Corners as sharp as a machined land has them.
+    pub(super) fn valve_edge() -> f64 {
+        0.004
     }
 
     pub(super) fn substeps() -> u32 {
@@ -267,6 +276,7 @@ impl JointSpec {
             saturation: None,
             lag_s: None,
             ringing: None,
+            valve_edge: default::valve_edge(),
             cylinder: None,
             noise: 0.0,
             noise_correlation: 0.0,
@@ -308,7 +318,7 @@ impl JointSpec {
 
     /// Its valve.
     pub(super) fn valve(&self) -> Valve<'_> {
-        Valve::new(&self.effect, &self.outside, self.input.largest())
+        Valve::new(&self.effect, &self.outside, self.valve_edge * self.input.largest())
     }
 
     /// Delay of one step in seconds; `None` where the list of delays is too short.
@@ -395,6 +405,9 @@ impl JointSpec {
                 lower <= upper && lower.is_finite() && upper.is_finite()
             })?;
         }
+        place.require("valve_edge", self.valve_edge, "above 0, 1 or less", |edge| {
+            *edge > 0.0 && *edge <= 1.0
+        })?;
         above_zero(place, "saturation", self.saturation)
     }
 

@@ -9,9 +9,10 @@ use crate::study::{Mode, Protocol};
 #[derive(Args, Debug)]
 pub(crate) struct ProtocolArgs {
     /// How long a simulation runs before its angle is set to the measured one: `free`
-    /// (never), `steps` (at every step of the input, in long holds every 200 samples), or
-    /// seconds [default: free to compare, else steps, where an error counts where it is made]
-    #[arg(long, value_name = "free|steps|SECONDS", value_parser = horizon, help_heading = "Model")]
+    /// (never), `steps` (at every step of the input, in long holds every 200 samples), seconds, or
+    /// `auto`: free where the output follows its input, as a speed or a pressure does, else steps,
+    /// where an error counts where it is made [default: free to compare, else auto]
+    #[arg(long, value_name = "auto|free|steps|SECONDS", value_parser = horizon, help_heading = "Model")]
     horizon: Option<Horizon>,
 
     /// Share of each trial's time that is for training, or `trials`: every third trial is
@@ -31,14 +32,10 @@ impl ProtocolArgs {
         self.split
     }
 
-    /// The horizon in words.
-    pub(crate) fn horizon(&self, default: Horizon) -> String {
-        self.horizon.unwrap_or(default).to_string()
-    }
-
     /// These options as they are typed.
     pub(crate) fn typed(&self) -> Vec<String> {
         let horizon = self.horizon.map(|horizon| match horizon {
+            Horizon::Auto => "auto".to_owned(),
             Horizon::FreeRun => "free".to_owned(),
             Horizon::Steps => "steps".to_owned(),
             Horizon::Seconds(seconds) => seconds.to_string(),
@@ -55,13 +52,14 @@ impl ProtocolArgs {
 
 fn horizon(text: &str) -> Result<Horizon, String> {
     match text {
+        "auto" => Ok(Horizon::Auto),
         "free" => Ok(Horizon::FreeRun),
         "steps" => Ok(Horizon::Steps),
         _ => {
             let seconds = text.parse().ok().filter(|s: &f64| s.is_finite() && *s > 0.0);
             seconds
                 .map(Horizon::Seconds)
-                .ok_or_else(|| "expected free, steps, or seconds".to_owned())
+                .ok_or_else(|| "expected auto, free, steps, or seconds".to_owned())
         }
     }
 }

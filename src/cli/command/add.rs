@@ -51,7 +51,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let stream = args.output.stream.open(args.output.run.verbosity())?;
     let session = Session::begin("add", &args.data, &args.output.run, stream)?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
-    let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
+    let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
     let study = Study::of(session, Settings::default(), |begun| {
         let bar = begun.bar("fitting");
         add_to_joints(
@@ -81,7 +81,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         study.record(path, &models, &grown.collect::<Vec<_>>())?;
     }
     args.model.write(&file, &revised, study.verbosity())?;
-    let text = || add_text(&joints, &args.protocol.horizon(Horizon::Steps));
+    let text = || add_text(&joints);
     study.end(&failures, text, || AddJson::new(target.display().to_string(), &joints, &failures))
 }
 

@@ -84,7 +84,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         return Err(nothing_usable(Some(first)));
     }
     study.record(args.output.recording.as_deref(), &compared, &[])?;
-    let text = || compare_table(&compared, &args.protocol.horizon(Horizon::FreeRun));
+    let text = || compare_table(&compared);
     study.end(&failures, text, || CompareJson::new(&compared, &failures))
 }
 

@@ -56,7 +56,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let stream = args.output.stream.open(args.output.run.verbosity())?;
     let session = Session::begin("explain", &args.data, &args.output.run, stream)?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
-    let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
+    let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
     let study = Study::of(session, Settings::default(), |begun| {
         let (joints, estimates, bar) = (begun.joints, begun.estimates, begun.bar("explaining"));
         let explained =
@@ -86,7 +86,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         let revisions: Vec<_> = revisions.map(|(f, one)| ImprovedJoint::of(*f, one)).collect();
         study.record(args.output.recording.as_deref(), &models, &revisions)?;
     }
-    let text = || explain_text(&findings, &args.protocol.horizon(Horizon::Steps));
+    let text = || explain_text(&findings);
     study.end(&failures, text, || ExplainJson::new(&findings, &failures))
 }
 
@@ -134,7 +134,7 @@ impl Args {
             joints,
             estimates,
             model,
-            self.protocol.with(Mode::AsItIs, Horizon::Steps),
+            self.protocol.with(Mode::AsItIs, Horizon::Auto),
             &Threads,
         );
         let named = |(joint, compared): (&Joint, Option<Result<Comparison, _>>)| {

@@ -91,7 +91,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let interrupt = Interrupt::watch(STOPPING);
     let session = Session::begin("improve", &args.data, &args.output.run, stream)?;
     let name = name_of(Some(target));
-    let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
+    let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
     let study = Study::of(session, Settings::default(), |begun| {
         let (joints, estimates, bar) = (begun.joints, begun.estimates, begun.bar("improving"));
         let progress = Progress::new(&file, joints, begun.verbosity(), Some(interrupt));
@@ -132,7 +132,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
         study.record(recording, &models, &improved)?;
     }
     args.model.write(&file, &revised(&file, &improved)?, study.verbosity())?;
-    let text = || improve_text(&improved, &args.protocol.horizon(Horizon::Steps));
+    let text = || improve_text(&improved);
     let completion = study.end(&failures, text, || ImproveJson::new(&improved, &failures))?;
     let is_whole = improved.iter().all(|joint| !joint.interrupted);
     Ok(if is_whole { completion } else { Completion::Partial })

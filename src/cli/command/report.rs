@@ -157,7 +157,7 @@ impl ModelArgs {
         let (joints, estimates) = (begun.joints, begun.estimates);
         let options = Options { effects, max_effects: self.max_effects, ..Options::default() };
         let starts = |joint: &Joint| file.joint(&joint.name).cloned();
-        let protocol = self.protocol.with(Mode::FitOrIntegrator, Horizon::Steps);
+        let protocol = self.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
         if self.improve {
             let bar = begun.bar("improving");
             let progress = Progress::new(file, joints, begun.verbosity(), None);
@@ -341,7 +341,6 @@ impl Reported<'_> {
             models,
             model: args.model.model.as_ref().map(|_| file),
             revised: revised.as_ref().map(ModelFile::text),
-            horizon: &args.model.protocol.horizon(Horizon::Steps),
             split: args.model.protocol.split(),
             command: &command(),
             recording,

@@ -186,7 +186,8 @@ fn errors(
         blocks.push(Block::Figures(vec![figure]));
     }
     blocks.push(Block::Table(improved.ladder()));
-    blocks.push(Block::text(format!("Root-mean-square errors, {}.", report.horizon)));
+    let horizon = improved.finding.compared.comparison.fit.evaluation.horizon;
+    blocks.push(Block::text(format!("Root-mean-square errors, {horizon}.")));
     blocks.extend(history(report, improved));
     Ok(blocks)
 }

@@ -23,8 +23,6 @@ pub(crate) struct Report<'a> {
     pub(crate) model: Option<&'a ModelFile>,
     /// The model file with what was found, as text.
     pub(crate) revised: Option<&'a str>,
-    /// How simulations were restarted, in words.
-    pub(crate) horizon: &'a str,
     /// How training and validation were split; as [`Split::of`] says without it.
     pub(crate) split: Option<Split>,
     /// The command that makes this report.

@@ -88,6 +88,26 @@ pub struct CoulombFriction {
     pub time_constant: f64,
 }
 
+/// As [`CoulombFriction`], and negative motion has another viscous friction, too:
+///
+/// ```text
+/// time_constant x' = in - c x - f,   c: 1 where x > 0, negative_viscous where x < 0
+/// ```
+///
+/// It takes the place of a [`CoulombFriction`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AsymmetricFriction {
+    /// Friction against positive motion, in input units.
+    pub positive: f64,
+    /// Friction against negative motion, in input units.
+    pub negative: f64,
+    /// Inertia: time to 63 % of a change of positive motion, in seconds.
+    pub time_constant: f64,
+    /// Viscous friction of negative motion over that of positive motion.
+    pub negative_viscous: f64,
+}
+
 /// Not in the catalogue: the speed creeps on for long after each step, as of seals and
 /// hoses. A few lags from fast to slow, as a power of time has.
 ///
@@ -159,7 +179,13 @@ impl OilColumn {
     }
 }
 
-impl CoulombFriction {
+impl From<CoulombFriction> for AsymmetricFriction {
+    fn from(CoulombFriction { positive, negative, time_constant }: CoulombFriction) -> Self {
+        Self { positive, negative, time_constant, negative_viscous: 1.0 }
+    }
+}
+
+impl AsymmetricFriction {
     /// Of speed and friction.
     pub(in super::super) fn rate(
         &self,
@@ -171,13 +197,15 @@ impl CoulombFriction {
         // A bristle bends no faster than the time steps can follow.
         let bending = speed / (BRISTLE + speed.abs() * substep_s);
         let bends = bending * (level - speed.signum() * friction);
-        [(input - speed - friction) / self.time_constant, bends]
+        let viscous = if speed < 0.0 { self.negative_viscous * speed } else { speed };
+        [(input - viscous - friction) / self.time_constant, bends]
     }
 
     /// Speed and friction after `input` has long been held.
     pub(in super::super) fn steady(&self, input: f64) -> [f64; 2] {
         let friction = input.max(-self.negative).min(self.positive);
-        [input - friction, friction]
+        let force = input - friction;
+        [if force < 0.0 { force / self.negative_viscous } else { force }, friction]
     }
 }
 
@@ -246,6 +274,18 @@ impl Part for CoulombFriction {
         place.number("effect.coulomb_friction.negative", self.negative, Allowed::NotNegative)?;
         let shortest_s = MIN_STEPS_PER_LAG * clock.substep_s();
         lasts(place, "effect.coulomb_friction.time_constant", self.time_constant, shortest_s)
+    }
+}
+
+impl Part for AsymmetricFriction {
+    fn check(&self, place: &Place, clock: &Clock) -> Result<(), PlantError> {
+        place.number("effect.asymmetric_friction.positive", self.positive, Allowed::NotNegative)?;
+        place.number("effect.asymmetric_friction.negative", self.negative, Allowed::NotNegative)?;
+        let key = "effect.asymmetric_friction.negative_viscous";
+        place.number(key, self.negative_viscous, Allowed::Positive)?;
+        // Of the direction that is braked more.
+        let shortest_s = MIN_STEPS_PER_LAG * clock.substep_s() * self.negative_viscous.max(1.0);
+        lasts(place, "effect.asymmetric_friction.time_constant", self.time_constant, shortest_s)
     }
 }
 

@@ -7,10 +7,10 @@ use super::super::error::{Place, PlantError};
 use super::names::{CATALOGUE, FINER, OUTSIDE};
 use super::part::{names_in, part};
 use super::{
-    ActuatorLag, Backlash, CoulombFriction, CreepMemory, DeadBand, DirectionGain, Disturbance,
-    EndStop, FlowCurve, GravityLoad, InputNotch, InputOffset, InputSaturation, Leakage, OilColumn,
-    PositionGain, RateLimit, Resonance, SensorNonlinearity, StickySpot, Stiction, SupplyDroop,
-    ThermalDrift, VariableDelay,
+    ActuatorLag, AsymmetricFriction, Backlash, CoulombFriction, CreepMemory, DeadBand,
+    DirectionGain, Disturbance, EndStop, FlowCurve, GravityLoad, InputNotch, InputOffset,
+    InputSaturation, Leakage, OilColumn, PositionGain, RateLimit, Resonance, SensorNonlinearity,
+    StickySpot, Stiction, SupplyDroop, ThermalDrift, VariableDelay,
 };
 
 /// The effects of the catalogue: `[joint.effect.<name>]` in a plant file.
@@ -43,6 +43,8 @@ pub struct Effects {
     pub oil_column: Option<OilColumn>,
     /// A mass with friction.
     pub coulomb_friction: Option<CoulombFriction>,
+    /// A mass with friction that differs by direction.
+    pub asymmetric_friction: Option<AsymmetricFriction>,
     /// A linkage between cylinder and joint.
     pub position_gain: Option<PositionGain>,
     /// The oil warms.
@@ -88,6 +90,11 @@ impl Effects {
         names_in(self, &[&CATALOGUE[..], &FINER].concat())
     }
 
+    /// The friction of the mass.
+    pub(in super::super) fn friction(&self) -> Option<AsymmetricFriction> {
+        self.asymmetric_friction.or_else(|| self.coulomb_friction.map(AsymmetricFriction::from))
+    }
+
     /// Whether there is none but on the delay.
     pub(in super::super) fn only_delay(&self) -> bool {
         Self { variable_delay: None, ..*self }.is_empty()
@@ -107,6 +114,7 @@ impl Effects {
             part(self.resonance.as_ref()),
             part(self.oil_column.as_ref()),
             part(self.coulomb_friction.as_ref()),
+            part(self.asymmetric_friction.as_ref()),
             part(self.position_gain.as_ref()),
             part(self.thermal_drift.as_ref()),
             part(self.supply_droop.as_ref()),

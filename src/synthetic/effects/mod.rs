@@ -16,7 +16,9 @@ mod timing;
 mod valve;
 
 pub(super) use actuator::MEMORIES;
-pub use actuator::{ActuatorLag, CoulombFriction, CreepMemory, OilColumn, RateLimit, Resonance};
+pub use actuator::{
+    ActuatorLag, AsymmetricFriction, CoulombFriction, CreepMemory, OilColumn, RateLimit, Resonance,
+};
 pub use groups::{Effects, Outside};
 pub use load::{
     Disturbance, GravityLoad, Leakage, PositionGain, StickySpot, SupplyDroop, ThermalDrift,

@@ -3,9 +3,6 @@
 use super::groups::{Effects, Outside};
 use super::valve::Stiction;
 
-/// Width of the corners, as a part of the largest level of the input.
-const EDGE: f64 = 0.004;
-
 /// The valve of a joint: from the delayed level to its opening, in input units.
 ///
 /// With `e` the edge and `ramp` a rounded `max(x, 0)`, one after the other:
@@ -26,9 +23,9 @@ pub(in super::super) struct Valve<'a> {
 }
 
 impl<'a> Valve<'a> {
-    /// The valve with these effects, driven by levels up to `largest`.
-    pub(in super::super) fn new(effect: &'a Effects, outside: &'a Outside, largest: f64) -> Self {
-        Self { effect, outside, edge: EDGE * largest.max(f64::MIN_POSITIVE) }
+    /// The valve with these effects, its corners rounded over `edge`, in input units.
+    pub(in super::super) fn new(effect: &'a Effects, outside: &'a Outside, edge: f64) -> Self {
+        Self { effect, outside, edge: edge.max(f64::MIN_POSITIVE) }
     }
 
     /// Width of the rounded corners, in input units.

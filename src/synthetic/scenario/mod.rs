@@ -224,21 +224,47 @@ impl Scenario {
         noise: Noise,
         seed: u64,
     ) -> Result<Self, ScenarioError> {
-        let secrets = hidden.iter().map(|name| Secret::new(name, seed));
+        Self::within(&ideal(seed), hidden, strength, noise)
+    }
+
+    /// As [`new`](Self::new), in the first joint of `bare`, which hides nothing yet: what is
+    /// drawn follows its seed.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    ///
+    /// # Examples
+    /// A valve with softly rounded corners:
+    /// ```
+    /// use tauscope::synthetic::scenario::{Noise, Scenario, Strength, ideal};
+    ///
+    /// let mut bare = ideal(1);
+    /// bare.joints[0].valve_edge = 0.03;
+    /// let noise = Noise::white(0.05);
+    /// let hidden = Scenario::within(&bare, &["dead_band"], Strength::Clear, noise)?;
+    /// assert_eq!(hidden.plant.joints[0].valve_edge, 0.03);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn within(
+        bare: &PlantSpec,
+        hidden: &[&str],
+        strength: Strength,
+        noise: Noise,
+    ) -> Result<Self, ScenarioError> {
+        let secrets = hidden.iter().map(|name| Secret::new(name, bare.seed));
         let mut secrets = secrets.collect::<Result<Vec<_>, _>>()?;
         for (index, secret) in secrets.iter().enumerate() {
             if secrets.iter().skip(index + 1).any(|other| other.name == secret.name) {
                 return Err(PlantError::Twice { name: secret.name }.into());
             }
         }
-        let bare = ideal(seed);
         let mut alone = None;
         for secret in &mut secrets {
-            alone = Some(settle(secret, &bare, strength, noise.deviation)?);
+            alone = Some(settle(secret, bare, strength, noise.deviation)?);
         }
         let (given, error_over_noise) = match alone {
             Some(alone) if secrets.len() == 1 => alone,
-            _ => together(&bare, &secrets, noise.deviation)?,
+            _ => together(bare, &secrets, noise.deviation)?,
         };
         let hidden = secrets.iter().map(|secret| secret.name).collect();
         Ok(Self { plant: noisy(with(&given, &secrets), noise), hidden, error_over_noise })

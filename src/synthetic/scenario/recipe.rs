@@ -1,10 +1,10 @@
 //! How each effect is hidden: from a strength of 0, no effect, to 1, all that is plausible.
 
 use super::super::effects::{
-    ActuatorLag, Backlash, CoulombFriction, CreepMemory, DeadBand, DirectionGain, Disturbance,
-    EndStop, FlowCurve, GravityLoad, InputNotch, InputOffset, InputSaturation, Leakage, OilColumn,
-    PositionGain, RateLimit, Resonance, SensorNonlinearity, StickySpot, Stiction, SupplyDroop,
-    ThermalDrift, VariableDelay,
+    ActuatorLag, AsymmetricFriction, Backlash, CoulombFriction, CreepMemory, DeadBand,
+    DirectionGain, Disturbance, EndStop, FlowCurve, GravityLoad, InputNotch, InputOffset,
+    InputSaturation, Leakage, OilColumn, PositionGain, RateLimit, Resonance, SensorNonlinearity,
+    StickySpot, Stiction, SupplyDroop, ThermalDrift, VariableDelay,
 };
 use super::super::spec::JointSpec;
 
@@ -39,6 +39,7 @@ pub(super) fn hide(name: &str, joint: &mut JointSpec, strength: f64, chances: Ch
         "resonance" => resonance(joint, strength, chances),
         "oil_column" => oil_column(joint, strength, chances),
         "coulomb_friction" => coulomb_friction(joint, strength, chances),
+        "asymmetric_friction" => asymmetric_friction(joint, strength, chances),
         "gravity_load" => gravity_load(joint, strength, chances),
         "position_gain" => position_gain(joint, strength, chances),
         "thermal_drift" => thermal_drift(joint, strength, chances),
@@ -76,7 +77,9 @@ fn stiction(joint: &mut JointSpec, strength: f64, chances: Chances) {
 
 fn input_saturation(joint: &mut JointSpec, strength: f64, chances: Chances) {
     let limit = LARGEST_LEVEL * (1.05 - 0.95 * strength);
-    let sharpness = if chances.sign(0) > 0.0 { 40.0 } else { 8.0 };
+    // Where the corners of the valve are rounded, this one is as a rule, too.
+    let sharp = 40.0 * (0.004 / joint.valve_edge).sqrt();
+    let sharpness = if chances.sign(0) > 0.0 { sharp } else { 8.0 };
     joint.effect.input_saturation = Some(InputSaturation { limit, sharpness });
 }
 
@@ -132,6 +135,17 @@ fn coulomb_friction(joint: &mut JointSpec, strength: f64, chances: Chances) {
     let negative = 1.5 * strength * chances.between(1, 0.6, 1.0);
     let time_constant = 0.02 + 0.3 * strength * chances.between(2, 0.5, 1.0);
     joint.effect.coulomb_friction = Some(CoulombFriction { positive, negative, time_constant });
+}
+
+/// Some part more or less both of the constant and of the viscous friction.
+fn asymmetric_friction(joint: &mut JointSpec, strength: f64, chances: Chances) {
+    let positive = 1.2 * strength * chances.between(0, 0.6, 1.0);
+    let negative = positive * chances.between(1, 0.7, 1.4);
+    let time_constant = 0.05 + 0.2 * strength;
+    let negative_viscous =
+        if chances.sign(2) > 0.0 { 1.0 + strength } else { 1.0 / (1.0 + strength) };
+    let friction = AsymmetricFriction { positive, negative, time_constant, negative_viscous };
+    joint.effect.asymmetric_friction = Some(friction);
 }
 
 fn gravity_load(joint: &mut JointSpec, strength: f64, chances: Chances) {
