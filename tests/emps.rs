@@ -98,6 +98,14 @@ fn published_parameters_are_found_within_five_percent_and_the_offset_within_ten(
 /// `F = M a + Fv v + Fc sign(v) + OF`, the position low-passed at 100 Hz, then both at 40 Hz;
 /// every tenth sample, without the ends, where filters know one side only.
 fn force_error_percent(joint: &Joint, [inertia, viscous, coulomb, offset]: [f64; 4]) -> f64 {
+    let forward = [viscous, coulomb + offset];
+    force_error_by_direction_percent(joint, inertia, [forward, [viscous, coulomb - offset]])
+}
+
+/// The same with the viscous and the constant friction of forward and of backward motion.
+fn force_error_by_direction_percent(joint: &Joint, inertia: f64, friction: [[f64; 2]; 2]) -> f64 {
+    let [[viscous_up, up], [viscous_down, down]] = friction;
+    let rest = f64::midpoint(up, -down);
     let trial = &joint.trials[0];
     let period = trial.period();
     let smooth = |values: &[f64], cutoff_hz: f64, order: usize| {
@@ -110,8 +118,14 @@ fn force_error_percent(joint: &Joint, [inertia, viscous, coulomb, offset]: [f64;
     };
     let velocity = slope(&smooth(trial.output(), 100.0, 4));
     let explained = velocity.iter().zip(slope(&velocity)).map(|(v, a)| {
-        inertia * a + viscous * v + coulomb * f64::from(*v > 0.0) - coulomb * f64::from(*v < 0.0)
-            + offset
+        let braked = if *v > 0.0 {
+            viscous_up * v + up
+        } else if *v < 0.0 {
+            viscous_down * v - down
+        } else {
+            rest
+        };
+        inertia * a + braked
     });
     let explained: Vec<f64> = explained.collect();
     let (force, explained) = (smooth(trial.input(), 40.0, 8), smooth(&explained, 40.0, 8));
@@ -154,4 +168,35 @@ fn coulomb_friction_is_named_first_and_the_force_error_falls_as_published() {
     let after = force_error_percent(&joint, physical(&best.fit));
     println!("force error: {before:.2} % without, {after:.2} % with Coulomb friction");
     assert!(before > 17.9 && after < 4.5, "{before} %, {after} %");
+}
+
+/// Inertia in kg, then viscous friction in N s/m and constant friction in N of forward and of
+/// backward motion: Janot, Gautier and Brunot, 2019.
+const PUBLISHED_BY_DIRECTION: (f64, [[f64; 2]; 2]) =
+    (95.1540, [[166.7061, 20.1440], [240.4236, 20.6277]]);
+
+#[test]
+fn friction_that_differs_by_direction_comes_after_coulomb_friction_and_explains_the_force() {
+    let Some(joint) = joint("emps_train.csv") else { return };
+    let (inertia, friction) = PUBLISHED_BY_DIRECTION;
+    let published = force_error_by_direction_percent(&joint, inertia, friction);
+    assert!((published - 3.11).abs() < 0.15, "{published} %");
+    let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::Steps);
+    let levels = record.input_levels();
+    let base = fit(&record, &start(), &record.range(&levels, 0.5)).unwrap();
+    let coulomb = force_error_percent(&joint, physical(&base));
+    let options = Options { keeps_refinements: true, ..Options::default() };
+    let improvement = improve(&record, base, &options, &Sequential, |revision| {
+        let effects = revision.comparison.fit.model.components();
+        !effects.iter().any(|part| part.effect().spec().id == "asymmetric_friction")
+    });
+    let last = &improvement.revisions.last().unwrap().comparison.fit;
+    let value = |name: &str| last.parameters.iter().find(|p| p.name == name).unwrap().value;
+    let viscous = 1.0 / value("gain");
+    let [up, down, constant, ratio] = ["positive", "negative", "time_constant", "negative_viscous"]
+        .map(|name| value(&format!("asymmetric_friction.{name}")));
+    let friction = [[viscous, up], [ratio * viscous, down]];
+    let asymmetric = force_error_by_direction_percent(&joint, viscous * constant, friction);
+    println!("force error: {coulomb:.2} % with Coulomb friction, {asymmetric:.2} % by direction");
+    assert!(asymmetric <= 3.2 && asymmetric < coulomb, "{coulomb} %, {asymmetric} %");
 }
