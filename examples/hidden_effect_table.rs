@@ -8,6 +8,8 @@
 
 #[path = "hidden_effect_table/cases.rs"]
 mod cases;
+#[path = "hidden_effect_table/consequence.rs"]
+mod consequence;
 #[path = "hidden_effect_table/in_order.rs"]
 mod in_order;
 #[path = "hidden_effect_table/outcome.rs"]
@@ -21,7 +23,7 @@ use clap::Parser;
 use tauscope::batch::with_threads;
 use tauscope::explain::Options;
 
-use cases::{Case, Counts, cases};
+use cases::{Case, Counts, Group, cases};
 use in_order::in_order;
 use outcome::{Outcome, examine};
 use page::page;
@@ -31,6 +33,11 @@ use page::page;
 struct Args {
     #[command(flatten)]
     counts: Counts,
+
+    /// Keep effects without consequence, and tabulate what effects carry: of records that hide two
+    /// or three
+    #[arg(long)]
+    consequence: bool,
 
     /// Records at the same time [default: as many as there are processors]
     #[arg(long)]
@@ -46,8 +53,14 @@ struct Judged {
 fn main() -> anyhow::Result<()> {
     let args = Args::parse();
     let processors = thread::available_parallelism().map_or(1, usize::from);
-    let (threads, options) = (args.threads.unwrap_or(processors).max(1), Options::default());
-    let judged = judged(cases(args.counts), &options, threads)?;
+    let threads = args.threads.unwrap_or(processors).max(1);
+    let options = Options { keeps_refinements: args.consequence, ..Options::default() };
+    let mut cases = cases(args.counts);
+    if args.consequence {
+        cases.retain(|case| matches!(case.group, Group::Two | Group::Three));
+    }
+    let judged = judged(cases, &options, threads)?;
+    let page = if args.consequence { consequence::page } else { page };
     print!("{}", page(args.counts, &judged));
     Ok(())
 }

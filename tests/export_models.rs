@@ -18,11 +18,12 @@ use tauscope::{Effect, JointModel};
 const TOLERANCE: f64 = 1e-9;
 
 /// Effects with parameters away from their neutral ones.
-const EFFECTS: [(&str, &str); 21] = [
+const EFFECTS: [(&str, &str); 23] = [
     ("input_offset", "offset = 0.05"),
     ("dead_band", "lower = -0.3, upper = 0.4"),
     ("stiction", "start = 0.8, stop = 0.45"),
     ("input_saturation", "limit = 1.2, softness = 0.4"),
+    ("asymmetric_saturation", "limit = 1.2, softness = 0.4, negative_ratio = 0.7"),
     ("flow_curve", "exponent = 1.4"),
     ("direction_gain", "negative_factor = 0.7"),
     ("rate_limit", "seconds_per_input = 0.23"),
@@ -50,6 +51,7 @@ const EFFECTS: [(&str, &str); 21] = [
     ("supply_droop", "droop = 0.35"),
     ("leakage", "rate = 0.05, y0 = 10.0"),
     ("end_stop", "low = -8.0, high = 9.0"),
+    ("end_stop", "low = 3.0, high = 9.0"),
     ("backlash", "width = 0.7"),
 ];
 
@@ -98,7 +100,7 @@ fn models() -> Vec<(String, JointModel)> {
     let brakes = ["actuator_lag", "oil_column", "resonance", "asymmetric_friction"];
     let together = [
         ("plain", model(&[], "")),
-        ("twice", model(&[EFFECTS[20], ("backlash", "width = 0.3"), EFFECTS[8], EFFECTS[8]], "")),
+        ("twice", model(&[EFFECTS[22], ("backlash", "width = 0.3"), EFFECTS[9], EFFECTS[9]], "")),
         ("own", model(&[], OWN)),
         ("brakes", model(&without(&brakes), OWN)),
         ("swings", model(&swings, "")),

@@ -301,13 +301,14 @@ fn spikes_are_as_many_and_as_large_as_wanted_and_leave_the_noise_alone() {
 
 /// Each effect at its neutral numbers, and how far it may lead: what takes time takes four
 /// time steps at least, 2 ms at up to 20 deg/s.
-const NEUTRAL: [(&str, f64); 25] = [
+const NEUTRAL: [(&str, f64); 26] = [
     ("input_offset:offset=0", 1e-9),
     ("dead_band:lower=0,upper=0", 1e-9),
     ("stiction:start=0,stop=0", 0.1),
     ("flow_curve:exponent=1", 1e-9),
     ("direction_gain:negative_factor=1", 1e-9),
     ("input_saturation:limit=1e9", 1e-9),
+    ("asymmetric_saturation:limit=1e9,negative_ratio=1", 1e-9),
     ("variable_delay:small_s=0", 1e-9),
     ("rate_limit:seconds_per_input=1e-9", 0.1),
     ("actuator_lag:time_constant=0.002", 0.1),

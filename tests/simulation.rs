@@ -6,7 +6,9 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use tauscope::effect::find;
-use tauscope::model::{Commands, Component, JointModel, Restart, Surroundings, simulate};
+use tauscope::model::{
+    Commands, Component, JointModel, Restart, Surroundings, simulate, simulate_input,
+};
 
 /// Fine steps in a sample period.
 const FINE: usize = 100;
@@ -234,6 +236,8 @@ impl<'a> Fine<'a> {
                     self.moving
                 }
                 "input_saturation" => u.signum() * knee(u.abs(), p[0], p[1]),
+                "asymmetric_saturation" if u < 0.0 => -knee(-u, p[2] * p[0], p[1]),
+                "asymmetric_saturation" => knee(u, p[0], p[1]),
                 "flow_curve" if u == 0.0 => 0.0,
                 "flow_curve" => u.signum() * (p[0] * u.abs().ln()).exp(),
                 "direction_gain" => u.max(0.0) + p[0] * u.min(0.0),
@@ -322,6 +326,7 @@ fn effects_of_the_input_and_of_transport_are_exact() {
     assert_within(&[("stiction", &[2.0, 0.7])], 1e-10);
     assert_within(&[("input_saturation", &[2.5, 0.0])], 1e-10);
     assert_within(&[("input_saturation", &[2.5, 0.6])], 1e-10);
+    assert_within(&[("asymmetric_saturation", &[2.5, 0.6, 0.7])], 1e-10);
     assert_within(&[("flow_curve", &[1.6])], 1e-10);
     assert_within(&[("direction_gain", &[0.7])], 1e-10);
     assert_within(&[("variable_delay", &[-0.013, 0.021, 0.017, 0.003, 1.7, 0.9, 6.0, 0.0])], 1e-10);
@@ -467,4 +472,14 @@ fn a_restart_with_a_speed_goes_on_at_it() {
         let turned = speed((k as f64 + 0.5) * PERIOD_S);
         assert!((simulated.velocity[100 + k] - turned).abs() < 0.05, "{k} {turned}");
     }
+}
+
+#[test]
+fn a_joint_whose_ends_leave_out_zero_starts_where_it_is_set() {
+    let stops = Component::new(find("end_stop").unwrap(), vec![20.0.into(), 60.0.into()]).unwrap();
+    let model = JointModel::integrator(10.0, 0.0).with(stops);
+    let input: Vec<f64> = (0..100).map(|k| if k < 50 { 0.0 } else { 1.0 }).collect();
+    let made = simulate_input(&model, &input, 0.01, 30.0, &Surroundings::default());
+    assert!((made.output[0] - 30.0).abs() < 1e-12 && (made.output[50] - 30.0).abs() < 1e-12);
+    assert!((made.output[99] - 34.9).abs() < 1e-9, "{}", made.output[99]);
 }

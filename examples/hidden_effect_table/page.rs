@@ -70,7 +70,7 @@ corners are rounded over {SOFT_EDGE} of the largest level instead of 0.004. *Err
 }
 
 /// `12 of 14 (85.7 %)`; `-` of none.
-fn share(count: usize, of: usize) -> String {
+pub(crate) fn share(count: usize, of: usize) -> String {
     share_of(count as f64, of)
 }
 
@@ -119,7 +119,7 @@ fn has_all(case: &Case, outcome: &Outcome) -> bool {
 }
 
 /// Whether `found` is the effect `hidden`, or one that may as well be it.
-fn stands_for(found: &Found, hidden: &str) -> bool {
+pub(crate) fn stands_for(found: &Found, hidden: &str) -> bool {
     found.id == hidden || found.alternatives.contains(&hidden)
 }
 

@@ -11,7 +11,8 @@
 //! ```
 //!
 //! The knee is the parabola that meets both lines with their slopes, so the output has
-//! no corner unless `softness` is 0. Both directions have the same limit. `limit` is
+//! no corner unless `softness` is 0. Both directions have the same limit; where they differ, see
+//! [`AsymmetricSaturation`](super::AsymmetricSaturation). `limit` is
 //! neutral at 1e12, which stands for none.
 //!
 //! # References
@@ -44,7 +45,7 @@ static SPEC: Spec =
 
 /// Range of the limit in a fit, in parts of the largest input: below it nothing of the
 /// input's shape is left, above it nothing of the limit is seen.
-const FITTED_LIMIT: (f64, f64) = (0.01, 2.0);
+pub(super) const FITTED_LIMIT: (f64, f64) = (0.01, 2.0);
 
 impl Effect for InputSaturation {
     fn spec(&self) -> &'static Spec {
@@ -67,15 +68,7 @@ impl Effect for InputSaturation {
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
         let &[limit, softness] = parameters else { return at.signal };
-        let size = at.signal.abs();
-        let into_knee = size - limit * (1.0 - softness);
-        if into_knee <= 0.0 {
-            return at.signal;
-        }
-        let width = 2.0 * softness * limit;
-        let passed =
-            if into_knee < width { size - into_knee * (into_knee / (2.0 * width)) } else { limit };
-        passed.copysign(at.signal)
+        limited(at.signal, limit, softness)
     }
 
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
@@ -88,6 +81,19 @@ impl Effect for InputSaturation {
         let largest = record.size(Dimension::Input);
         [0.4, 0.65, 0.9].into_iter().map(|part| vec![part * largest, 0.1]).collect()
     }
+}
+
+/// What passes of `signal`.
+pub(super) fn limited(signal: f64, limit: f64, softness: f64) -> f64 {
+    let size = signal.abs();
+    let into_knee = size - limit * (1.0 - softness);
+    if into_knee <= 0.0 {
+        return signal;
+    }
+    let width = 2.0 * softness * limit;
+    let passed =
+        if into_knee < width { size - into_knee * (into_knee / (2.0 * width)) } else { limit };
+    passed.copysign(signal)
 }
 
 #[cfg(test)]

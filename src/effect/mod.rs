@@ -17,6 +17,7 @@
 
 pub mod actuator_lag;
 pub mod asymmetric_friction;
+pub mod asymmetric_saturation;
 pub mod backlash;
 pub mod contract;
 pub mod coulomb_friction;
@@ -56,6 +57,7 @@ pub mod variable_delay;
 
 pub use actuator_lag::ActuatorLag;
 pub use asymmetric_friction::AsymmetricFriction;
+pub use asymmetric_saturation::AsymmetricSaturation;
 pub use backlash::Backlash;
 pub use coulomb_friction::CoulombFriction;
 pub use dead_band::DeadBand;

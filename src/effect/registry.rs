@@ -1,9 +1,10 @@
 //! The catalogue: one line for each effect.
 
 use super::{
-    ActuatorLag, AsymmetricFriction, Backlash, CoulombFriction, DeadBand, DirectionGain, Effect,
-    EndStop, FlowCurve, GravityLoad, InputOffset, InputSaturation, Leakage, OilColumn,
-    PositionGain, RateLimit, Resonance, Stiction, SupplyDroop, ThermalDrift, VariableDelay,
+    ActuatorLag, AsymmetricFriction, AsymmetricSaturation, Backlash, CoulombFriction, DeadBand,
+    DirectionGain, Effect, EndStop, FlowCurve, GravityLoad, InputOffset, InputSaturation, Leakage,
+    OilColumn, PositionGain, RateLimit, Resonance, Stiction, SupplyDroop, ThermalDrift,
+    VariableDelay,
 };
 
 /// Every built-in effect, in the order the documentation lists them.
@@ -12,6 +13,7 @@ pub const REGISTRY: &[&dyn Effect] = &[
     &DeadBand,
     &Stiction,
     &InputSaturation,
+    &AsymmetricSaturation,
     &FlowCurve,
     &DirectionGain,
     &RateLimit,
@@ -88,6 +90,7 @@ mod tests {
             "dead_band",
             "stiction",
             "input_saturation",
+            "asymmetric_saturation",
             "flow_curve",
             "direction_gain",
             "rate_limit",

@@ -160,8 +160,13 @@ fn typical_scales(record: &RecordRange<'_>) -> [f64; 3] {
     [record.size(Dimension::Input), LONG_HOLD_S, length_s]
 }
 
+/// The parameters of the law that knows the size of a step and its direction alone.
+pub(crate) fn by_step(size: f64, falling_s: f64, size_scale: f64) -> Vec<f64> {
+    vec![size, falling_s, 0.0, 0.0, size_scale, UNLIMITED, UNLIMITED, 0.0]
+}
+
 /// `scale · (1 − exp(−x / scale))`.
-fn saturated(x: f64, scale: f64) -> f64 {
+pub(crate) fn saturated(x: f64, scale: f64) -> f64 {
     let scale = scale.max(f64::MIN_POSITIVE);
     -scale * (-x / scale).exp_m1()
 }

@@ -42,8 +42,11 @@ pub fn improve(
     };
     let misfit = Misfit::of(record, &start);
     let makes_strokes = are_strokes(&record.joint().trials);
-    let first =
-        if makes_strokes { climbed(record, first, options, &mut visit) } else { Some(first) };
+    let first = if makes_strokes {
+        climbed(record, first, options, misfit, &mut visit)
+    } else {
+        Some(first)
+    };
     let Some(first) = first else {
         let attribution = Attribution::default();
         return Improvement { revisions, verdict: Verdict::MissingEffect, attribution };

@@ -87,8 +87,9 @@ fn usual_account_for_most(record: &FitRecord<'_>, fit: &Fit, options: &Options) 
     /// The share of the misfit that is most of it.
     const MOST: f64 = 0.5;
     let first = Step::new(record, Change::Start, fit.clone());
-    let with_all = climbed(record, first, options, &mut |_| true);
-    with_all.is_some_and(|all| Misfit::of(record, fit).share(record, fit, &all.fit) >= MOST)
+    let misfit = Misfit::of(record, fit);
+    let with_all = climbed(record, first, options, misfit, &mut |_| true);
+    with_all.is_some_and(|all| misfit.share(record, fit, &all.fit) >= MOST)
 }
 
 /// Puts the first candidate that `is_it` in front; whether there is one.

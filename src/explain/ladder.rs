@@ -4,14 +4,16 @@
 //! are matched by many curves, and errors are far beyond the noise, where every effect is
 //! significant: the one that explains most by itself is then often a stand-in for several
 //! usual ones. These come first, in the order in which the oil meets them: the overlap of the
-//! valve and its largest flow, the areas of the cylinder, its ends; then the linkage. Which of
+//! valve and its largest flow, the areas of the cylinder, its ends; then the linkage, and the
+//! largest flow of each direction. Which of
 //! them have no consequence is seen at the end.
 //!
 //! # References
 //! Merritt, H. E., 1967, Hydraulic Control Systems (valves and cylinders); Koivo, A. J., 1994,
 //! Journal of Aerospace Engineering 7 (linkages of excavators).
 
-use super::eligible::{could_be_missing, signal_range};
+use super::eligible::{could_be_missing, is_due, signal_range};
+use super::misfit::Misfit;
 use super::options::Options;
 use super::revision::Change;
 use super::stepwise::Step;
@@ -19,8 +21,18 @@ use crate::effect::Effect;
 use crate::fit::{FitRecord, fit_to_compare};
 use crate::model::Component;
 
-const LADDER: [&str; 5] =
-    ["dead_band", "input_saturation", "direction_gain", "end_stop", "position_gain"];
+const LADDER: [&str; 6] = [
+    "dead_band",
+    "input_saturation",
+    "direction_gain",
+    "end_stop",
+    "position_gain",
+    "asymmetric_saturation",
+];
+
+/// Effects that a search adds at least where the usual ones come first: of a few the best are
+/// wanted, not the usual ones.
+const ENOUGH: usize = 5;
 
 /// The model of `first` with the usual effects that the options allow, one after the other.
 /// `visit` sees each step but the last; none where it says no.
@@ -28,14 +40,14 @@ pub(super) fn climbed(
     record: &FitRecord<'_>,
     first: Step,
     options: &Options,
+    misfit: Misfit,
     visit: &mut impl FnMut(&Step) -> bool,
 ) -> Option<Step> {
     let mut step = first;
-    // Of a few effects the best are wanted, not the usual ones.
-    let usual = usual(options).filter(|_| options.max_effects >= LADDER.len());
+    let usual = usual(options).filter(|_| options.max_effects >= ENOUGH);
     for effect in usual {
-        let model = &step.fit.model;
-        if !could_be_missing(record, model, effect) {
+        let (model, spec) = (&step.fit.model, effect.spec());
+        if !could_be_missing(record, model, effect) || !is_due(model, spec, options) {
             continue;
         }
         let with = model.with(Component::neutral(effect));
@@ -43,10 +55,14 @@ pub(super) fn climbed(
         let Ok(fit) = fit_to_compare(record, &with, &signal_range(record, &with, &levels)) else {
             continue;
         };
+        // A finer form is worth its parameters or not; whether an effect is, is seen at the end.
+        if spec.refines.is_some() && !misfit.has_consequence(record, &step.fit, &fit) {
+            continue;
+        }
         if !visit(&step) {
             return None;
         }
-        step = Step::new(record, Change::Added(effect.spec().id), fit);
+        step = Step::new(record, Change::Added(spec.id), fit);
     }
     Some(step)
 }

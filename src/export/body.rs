@@ -49,14 +49,13 @@ pub(super) fn places(body: &impl Body, export: &Export) -> Vec<(&'static str, St
         settle.into_iter().chain([body.call(&effect.id)])
     };
     let delay = |effect: &Exported| body.delay(&effect.id);
-    let output = export.limits().chain(export.sensor());
     vec![
         ("PARAMETERS", export.parameters.iter().map(|p| body.declare(p)).collect()),
         ("DEFAULTS", lines(&mut export.parameters.iter().map(default))),
         ("MEMORY", lines(&mut memory.map(|name| body.begin(name)))),
         ("SENSOR", lines(&mut export.sensor().map(call))),
         ("SETTLE_DRIVE", lines(&mut export.drive().flat_map(settled))),
-        ("SETTLE_OUTPUT", lines(&mut output.flat_map(settled))),
+        ("SETTLE_LIMITS", lines(&mut export.limits().flat_map(settled))),
         ("SETTLE_SENSOR", lines(&mut export.sensor().flat_map(settled))),
         ("DRIVE", lines(&mut export.drive().map(call))),
         ("LOAD", around(&body.load(), export.stage(Stage::Load).map(call))),

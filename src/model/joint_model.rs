@@ -81,7 +81,7 @@ impl Component {
     }
 
     /// What the effect adds to the delay of a change; see [`Effect::extra_delay_s`].
-    pub(super) fn extra_delay_s(&self, change: &InputChange) -> f64 {
+    pub(crate) fn extra_delay_s(&self, change: &InputChange) -> f64 {
         self.effect.extra_delay_s(&self.plain(), change)
     }
 }

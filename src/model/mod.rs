@@ -11,6 +11,7 @@
 //! - [`Arrivals`]: when each level of the input begins to act
 
 mod arrivals;
+mod delay_law;
 mod file;
 mod joint_model;
 mod simulate;

@@ -264,7 +264,13 @@ impl<'a> Joint<'a> {
     fn settle(&mut self, input: f64, period_s: f64) {
         self.settled_drive(input, period_s);
         let mut at = self.moment(self.angle, 0.0, period_s);
-        for running in self.limits.iter_mut().chain(&mut self.sensor) {
+        for running in &mut self.limits {
+            running.settle(&at);
+            at.signal = running.step(&at);
+        }
+        self.angle = at.signal;
+        let mut at = self.moment(self.angle, 0.0, period_s);
+        for running in &mut self.sensor {
             running.settle(&at);
             at.signal = running.step(&at);
         }

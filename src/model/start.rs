@@ -1,6 +1,7 @@
 //! The plain integrator that the estimated delays suggest: where a model begins.
 
 use super::JointModel;
+use super::delay_law::{Start, with_law};
 use crate::delay::{Decision, TrialEstimate, are_strokes, delay_scan};
 use crate::experiment::Joint;
 use crate::numerics::median;
@@ -15,18 +16,21 @@ const UNKNOWN_DELAY_S: f64 = 0.1;
 /// Without an accepted step they come from the whole record, as for an input that changes
 /// all the time.
 ///
-/// Where the joint was driven in strokes, the delay is the median of the accepted ones, and fixed:
-/// each start from rest shows its delay to some hundredths of a second, while in a fit a speed
-/// that is wrong along a stroke moves the delay by tenths.
+/// Where the joint was driven in strokes, the delay is that of the accepted ones, by the law of
+/// size and direction of the step that they follow or as their median, and fixed: each start from
+/// rest shows its delay to some hundredths of a second, while in a fit a speed that is wrong along a
+/// stroke moves the delay by tenths.
 pub fn integrators(joint: &Joint, estimates: &[&TrialEstimate]) -> Vec<JointModel> {
-    let (delays, gain) = accepted(joint, estimates);
+    let (mut starts, gain) = accepted(joint, estimates);
     let gain = gain.unwrap_or_else(|| overall_gain(joint));
+    let delays: Vec<f64> = starts.iter().map(|start| start.delay_s).collect();
     if are_strokes(&joint.trials)
         && let Some(delay) = median(&delays)
     {
         let mut model = JointModel::integrator(gain, delay.max(0.0));
         model.delay.fixed = true;
-        return vec![model];
+        starts.retain(Start::is_from_rest);
+        return vec![with_law(model.clone(), &starts).unwrap_or(model)];
     }
     let mut delays: Vec<f64> = quartiles(delays);
     if delays.is_empty() {
@@ -36,23 +40,25 @@ pub fn integrators(joint: &Joint, estimates: &[&TrialEstimate]) -> Vec<JointMode
     delays.into_iter().map(|delay| JointModel::integrator(gain, delay.max(0.0))).collect()
 }
 
-/// The accepted delays in seconds, and the regression of the speed behind accepted steps on the
-/// input.
-fn accepted(joint: &Joint, estimates: &[&TrialEstimate]) -> (Vec<f64>, Option<f64>) {
+/// The accepted steps, and the regression of the speed behind them on the input.
+fn accepted(joint: &Joint, estimates: &[&TrialEstimate]) -> (Vec<Start>, Option<f64>) {
     let trials = joint.trials.iter().filter_map(|trial| {
         let estimate = estimates.iter().find(|estimate| estimate.label == trial.label())?;
         Some((trial.period().seconds(), *estimate))
     });
-    let (mut delays, mut with_speed, mut squared) = (Vec::new(), 0.0, 0.0);
+    let (mut starts, mut with_speed, mut squared) = (Vec::new(), 0.0, 0.0);
     for (period, estimate) in trials {
         for decision in estimate.decisions.iter().filter(|d| d.accepted_delay().is_some()) {
-            delays.extend(decision.accepted_delay().map(|samples| samples * period));
+            let step = &decision.input_step;
+            let (before, rise) = (step.before, step.after - step.before);
+            let start = |samples| Start { before, rise, delay_s: samples * period };
+            starts.extend(decision.accepted_delay().map(start));
             let speed = slope_after(decision) / period;
             with_speed += decision.input_step.after * speed;
             squared += decision.input_step.after.powi(2);
         }
     }
-    (delays, (squared > 0.0).then(|| with_speed / squared))
+    (starts, (squared > 0.0).then(|| with_speed / squared))
 }
 
 fn slope_after(decision: &Decision) -> f64 {

@@ -2,9 +2,11 @@
 
 use super::EstimatedJoint;
 use super::summary::{DelayRange, JointSummary};
-use crate::effect::Stage;
+use crate::effect::{InputChange, Stage};
+use crate::experiment::Trial;
 use crate::fit::{Assessment, Status};
 use crate::model::Component;
+use crate::numerics::median;
 
 /// Measured delays that a model's is held against, at least.
 const FEWEST: usize = 3;
@@ -25,13 +27,53 @@ fn why_shorter(of: &Assessment) -> String {
 }
 
 /// What is to be said of the delay of a model: that it was held, or that it lies outside the
-/// delays that were measured, and why a fit puts it there. Nothing of a delay that a law gives
-/// to each step.
+/// delays that were measured, and why a fit puts it there. Nothing of a law that was fitted.
 pub(super) fn model_delay(of: &Assessment, measured: EstimatedJoint<'_>) -> Option<String> {
-    let by_law = |component: &Component| component.effect().spec().stage == Stage::Transport;
-    let is_constant = !of.model.components().iter().any(by_law);
+    let is_law = |component: &&Component| component.effect().spec().stage == Stage::Transport;
+    let laws: Vec<&Component> = of.model.components().iter().filter(is_law).collect();
     let summary = JointSummary::of(measured);
-    let measured = summary.delay_s.filter(|_| is_constant && summary.accepted >= FEWEST)?;
+    let range = summary.delay_s.filter(|_| summary.accepted >= FEWEST)?;
+    if laws.is_empty() { constant(of, range) } else { held_law(of, &laws, measured) }
+}
+
+/// Of a law that was held: where it lies, and how near it comes to what was measured.
+fn held_law(of: &Assessment, laws: &[&Component], measured: EstimatedJoint<'_>) -> Option<String> {
+    let parameters = laws.iter().flat_map(|law| law.parameters());
+    if !of.model.delay.fixed || parameters.into_iter().any(|parameter| !parameter.fixed) {
+        return None;
+    }
+    let EstimatedJoint { joint, estimate } = measured;
+    let (mut law_s, mut measured_s, mut off_s) = (Vec::new(), Vec::new(), Vec::new());
+    for trial in estimate.estimated() {
+        let known = joint.trials.iter().find(|known| known.label() == trial.label);
+        let Some(period) = known.map(Trial::period) else { continue };
+        for decision in &trial.decisions {
+            let Some(delay) = decision.accepted_delay() else { continue };
+            let (before, after) = (decision.input_step.before, decision.input_step.after);
+            let time_s = period.seconds() * decision.input_step.sample as f64;
+            let change = InputChange { before, after, held_s: time_s, time_s };
+            let extra_s = laws.iter().map(|law| law.extra_delay_s(&change)).sum::<f64>();
+            law_s.push((of.model.delay.value + extra_s).max(0.0));
+            measured_s.push(delay * period.seconds());
+            off_s.extend(law_s.last().zip(measured_s.last()).map(|(law, is)| (law - is).abs()));
+        }
+    }
+    let ends = |values: &[f64]| {
+        let (least, most) = values
+            .iter()
+            .fold((f64::INFINITY, 0.0_f64), |(a, b), value| (a.min(*value), b.max(*value)));
+        format!("{least:.3} to {most:.3} s")
+    };
+    Some(format!(
+        "The delay of the model is held at the law of the step that fits the measured ones: {} \
+         where those are {}, half of them within {:.3} s of it.",
+        ends(&law_s),
+        ends(&measured_s),
+        median(&off_s)?
+    ))
+}
+
+fn constant(of: &Assessment, measured: DelayRange) -> Option<String> {
     let delay = of.parameters.iter().find(|parameter| parameter.name == "delay")?;
     let (value, leeway) = (delay.value, BY_CHANCE * delay.std_error.unwrap_or(0.0));
     let DelayRange { min, median, max } = measured;

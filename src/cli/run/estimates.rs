@@ -1,7 +1,7 @@
 //! Delays of joints: those that have one, and what is said of them.
 
 use crate::cli::failure::{read_failures, said};
-use crate::delay::{Condition, EstimateError};
+use crate::delay::{Condition, Decision, EstimateError, Verdict};
 use crate::experiment::{Experiment, Joint, Trial};
 use crate::report::{EstimatedJoint, JointSummary, input_note};
 use crate::study::JointEstimate;
@@ -54,6 +54,7 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
         let steps: usize = estimate.estimated().map(|trial| trial.decisions.len()).sum();
         if estimate.dead_time.is_none() {
             notes.extend(unsmoothed(joint, estimate));
+            notes.extend(unresolved(joint, estimate));
         }
         let summary = JointSummary::of(EstimatedJoint { joint, estimate });
         if steps > 0 && summary.rejected == [(Condition::FirstOrLast, steps)] {
@@ -65,6 +66,26 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
         notes.extend(input_note(&EstimatedJoint { joint, estimate }));
     }
     notes
+}
+
+/// A line where most reactions begin within a sample of their step.
+fn unresolved(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
+    /// Delays of which most must be so short.
+    const FEWEST: usize = 5;
+    let decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
+    let accepted = decisions.filter(|decision| decision.verdict() == Verdict::Accepted);
+    let delays: Vec<f64> = accepted.filter_map(Decision::delay).collect();
+    let short = delays.iter().filter(|samples| **samples < 1.0).count();
+    let longest = joint.trials.iter().map(|trial| trial.period().seconds()).fold(0.0, f64::max);
+    (delays.len() >= FEWEST && 2 * short > delays.len()).then(|| {
+        format!(
+            "joint `{}`: {short} of {} delays are shorter than the sample period of {longest} s, \
+             which is all that this log says of them; a log that is sampled faster would resolve \
+             them",
+            joint.name,
+            delays.len()
+        )
+    })
 }
 
 /// A line on the trials that are sampled too slowly for the low-pass.

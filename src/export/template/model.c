@@ -59,7 +59,9 @@ void @NAME@_init(@NAME@_state *model, const @NAME@_parameters *p, double period_
     model->level = input;
     at = @NAME@_at(model, input, 0.0, period_s);
 @SETTLE_DRIVE@    at = @NAME@_at(model, 0.0, 0.0, period_s);
-@SETTLE_OUTPUT@    play = -at.signal;
+@SETTLE_LIMITS@    model->angle = at.signal;
+    at = @NAME@_at(model, model->angle, 0.0, period_s);
+@SETTLE_SENSOR@    play = model->angle - at.signal;
     at = @NAME@_at(model, output, 0.0, period_s);
 @SETTLE_SENSOR@    model->angle = output + play;
     @NAME@_measure(model, 0.0, period_s);

@@ -85,7 +85,9 @@ class Model:
         dt = self.period_s
         at = _Moment(self, input, 0.0, dt)
 @SETTLE_DRIVE@        at = _Moment(self, self.angle, 0.0, dt)
-@SETTLE_OUTPUT@        play = self.angle - at.signal
+@SETTLE_LIMITS@        self.angle = at.signal
+        at = _Moment(self, self.angle, 0.0, dt)
+@SETTLE_SENSOR@        play = self.angle - at.signal
         at = _Moment(self, output, 0.0, dt)
 @SETTLE_SENSOR@        self.angle = output + play
         self._measure(0.0, dt)

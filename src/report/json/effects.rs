@@ -88,9 +88,9 @@ mod tests {
     fn the_data_have_a_schema_and_units() {
         let json = serde_json::to_value(EffectsJson::new(REGISTRY)).unwrap();
         assert_eq!(json["schema"], "tauscope/effects/1");
-        assert_eq!(json["effects"][7]["id"], "variable_delay");
-        assert_eq!(json["effects"][7]["units"][0], "s/input unit");
-        assert_eq!(json["effects"][7]["parameters"][0]["dimension"], "seconds_per_input");
-        assert_eq!(json["effects"][18]["parameters"][1]["neutral"], 1e12);
+        assert_eq!(json["effects"][8]["id"], "variable_delay");
+        assert_eq!(json["effects"][8]["units"][0], "s/input unit");
+        assert_eq!(json["effects"][8]["parameters"][0]["dimension"], "seconds_per_input");
+        assert_eq!(json["effects"][19]["parameters"][1]["neutral"], 1e12);
     }
 }

@@ -7,8 +7,8 @@ use super::super::error::{Place, PlantError};
 use super::names::{CATALOGUE, FINER, OUTSIDE};
 use super::part::{names_in, part};
 use super::{
-    ActuatorLag, AsymmetricFriction, Backlash, CoulombFriction, CreepMemory, DeadBand,
-    DirectionGain, Disturbance, EndStop, FlowCurve, GravityLoad, InputNotch, InputOffset,
+    ActuatorLag, AsymmetricFriction, AsymmetricSaturation, Backlash, CoulombFriction, CreepMemory,
+    DeadBand, DirectionGain, Disturbance, EndStop, FlowCurve, GravityLoad, InputNotch, InputOffset,
     InputSaturation, Leakage, OilColumn, PositionGain, RateLimit, Resonance, SensorNonlinearity,
     StickySpot, Stiction, SupplyDroop, ThermalDrift, VariableDelay,
 };
@@ -33,6 +33,8 @@ pub struct Effects {
     pub direction_gain: Option<DirectionGain>,
     /// The flow has a limit.
     pub input_saturation: Option<InputSaturation>,
+    /// The flow has a limit that differs by direction.
+    pub asymmetric_saturation: Option<AsymmetricSaturation>,
     /// The spool has a largest speed.
     pub rate_limit: Option<RateLimit>,
     /// The speed lags.
@@ -109,6 +111,7 @@ impl Effects {
             part(self.flow_curve.as_ref()),
             part(self.direction_gain.as_ref()),
             part(self.input_saturation.as_ref()),
+            part(self.asymmetric_saturation.as_ref()),
             part(self.rate_limit.as_ref()),
             part(self.actuator_lag.as_ref()),
             part(self.resonance.as_ref()),

@@ -30,5 +30,6 @@ pub use play::{Backlash, EndStop, SensorNonlinearity};
 pub(super) use timing::Change;
 pub use timing::VariableDelay;
 pub use valve::{
-    DeadBand, DirectionGain, FlowCurve, InputNotch, InputOffset, InputSaturation, Stiction,
+    AsymmetricSaturation, DeadBand, DirectionGain, FlowCurve, InputNotch, InputOffset,
+    InputSaturation, Stiction,
 };

@@ -13,7 +13,7 @@ use super::valve::Stiction;
 /// flow curve  u ((u² + e²) / (1 + e²))^((exponent - 1) / 2)
 /// direction   u (1 + (negative_factor - 1) rise(-u))
 /// notch       u (1 - (1 - share) window(u))
-/// saturation  u (1 + abs(u / limit)^p)^(-1/p),   p: sharpness
+/// saturation  u (1 + abs(u / limit)^p)^(-1/p),   p: sharpness; a limit for each sign
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Valve<'a> {
@@ -41,7 +41,11 @@ impl<'a> Valve<'a> {
         u = effect.flow_curve.map_or(u, |part| part.opening(u, edge));
         u = effect.direction_gain.map_or(u, |part| part.opening(u, edge));
         u = self.outside.input_notch.map_or(u, |part| part.opening(u, edge));
-        effect.input_saturation.map_or(u, |part| part.opening(u))
+        match (effect.asymmetric_saturation, effect.input_saturation) {
+            (Some(part), _) => part.opening(u),
+            (None, Some(part)) => part.opening(u),
+            (None, None) => u,
+        }
     }
 
     /// Direction of motion at `level`, 0 at rest, where it was `before`.

@@ -68,6 +68,20 @@ pub struct InputSaturation {
     pub sharpness: f64,
 }
 
+/// The flow ends at another limit in each direction. It takes the place of an
+/// [`InputSaturation`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AsymmetricSaturation {
+    /// The limit of the positive direction, in input units.
+    pub limit: f64,
+    /// That of the negative direction over it.
+    pub negative_ratio: f64,
+    /// As in [`InputSaturation`].
+    #[serde(default = "hard")]
+    pub sharpness: f64,
+}
+
 fn hard() -> f64 {
     HARD
 }
@@ -120,6 +134,13 @@ impl InputSaturation {
     }
 }
 
+impl AsymmetricSaturation {
+    pub(super) fn opening(self, u: f64) -> f64 {
+        let ratio = if u < 0.0 { self.negative_ratio } else { 1.0 };
+        InputSaturation { limit: ratio * self.limit, sharpness: self.sharpness }.opening(u)
+    }
+}
+
 impl Part for InputOffset {
     fn check(&self, place: &Place, _clock: &Clock) -> Result<(), PlantError> {
         place.number("effect.input_offset.offset", self.offset, Allowed::Finite)
@@ -159,6 +180,16 @@ impl Part for InputSaturation {
     fn check(&self, place: &Place, _clock: &Clock) -> Result<(), PlantError> {
         place.number("effect.input_saturation.limit", self.limit, Allowed::Positive)?;
         let (key, allowed) = ("effect.input_saturation.sharpness", "finite, 2 or more");
+        place.require(key, self.sharpness, allowed, |p| p.is_finite() && *p >= 2.0)
+    }
+}
+
+impl Part for AsymmetricSaturation {
+    fn check(&self, place: &Place, _clock: &Clock) -> Result<(), PlantError> {
+        place.number("effect.asymmetric_saturation.limit", self.limit, Allowed::Positive)?;
+        let key = "effect.asymmetric_saturation.negative_ratio";
+        place.number(key, self.negative_ratio, Allowed::Positive)?;
+        let (key, allowed) = ("effect.asymmetric_saturation.sharpness", "finite, 2 or more");
         place.require(key, self.sharpness, allowed, |p| p.is_finite() && *p >= 2.0)
     }
 }

@@ -1,8 +1,8 @@
 //! How each effect is hidden: from a strength of 0, no effect, to 1, all that is plausible.
 
 use super::super::effects::{
-    ActuatorLag, AsymmetricFriction, Backlash, CoulombFriction, CreepMemory, DeadBand,
-    DirectionGain, Disturbance, EndStop, FlowCurve, GravityLoad, InputNotch, InputOffset,
+    ActuatorLag, AsymmetricFriction, AsymmetricSaturation, Backlash, CoulombFriction, CreepMemory,
+    DeadBand, DirectionGain, Disturbance, EndStop, FlowCurve, GravityLoad, InputNotch, InputOffset,
     InputSaturation, Leakage, OilColumn, PositionGain, RateLimit, Resonance, SensorNonlinearity,
     StickySpot, Stiction, SupplyDroop, ThermalDrift, VariableDelay,
 };
@@ -31,6 +31,7 @@ pub(super) fn hide(name: &str, joint: &mut JointSpec, strength: f64, chances: Ch
         "dead_band" => dead_band(joint, strength, chances),
         "stiction" => stiction(joint, strength, chances),
         "input_saturation" => input_saturation(joint, strength, chances),
+        "asymmetric_saturation" => asymmetric_saturation(joint, strength, chances),
         "flow_curve" => flow_curve(joint, strength, chances),
         "direction_gain" => direction_gain(joint, strength, chances),
         "rate_limit" => rate_limit(joint, strength, chances),
@@ -81,6 +82,16 @@ fn input_saturation(joint: &mut JointSpec, strength: f64, chances: Chances) {
     let sharp = 40.0 * (0.004 / joint.valve_edge).sqrt();
     let sharpness = if chances.sign(0) > 0.0 { sharp } else { 8.0 };
     joint.effect.input_saturation = Some(InputSaturation { limit, sharpness });
+}
+
+/// The limits differ by a quarter or more.
+fn asymmetric_saturation(joint: &mut JointSpec, strength: f64, chances: Chances) {
+    let limit = LARGEST_LEVEL * (1.05 - 0.95 * strength);
+    let apart = chances.between(1, 1.25, 1.6);
+    let negative_ratio = if chances.sign(2) > 0.0 { apart } else { apart.recip() };
+    let sharpness = if chances.sign(0) > 0.0 { 40.0 } else { 8.0 };
+    let saturation = AsymmetricSaturation { limit, negative_ratio, sharpness };
+    joint.effect.asymmetric_saturation = Some(saturation);
 }
 
 fn flow_curve(joint: &mut JointSpec, strength: f64, chances: Chances) {
