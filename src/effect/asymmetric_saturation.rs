@@ -29,7 +29,7 @@ static SPEC: Spec = Spec::new(
 )
 .equation(
     "abs(out) = min(abs(in), limit) where in >= 0, min(abs(in), negative_ratio limit) where in < \
-               0, rounded as input_saturation",
+               0, each rounded within its limit (1 -+ softness)",
 )
 .source("Jelali and Kroll, 2003, Hydraulic Servo-systems")
 .parameters(&[

@@ -63,10 +63,11 @@ fn sign(input: f64) -> f64 {
     if input == 0.0 { 0.0 } else { input.signum() }
 }
 
-/// A first order `T y' + y = K u + y0`, its dead time in its time constant.
+/// A first order `T y' + y = K u(t − τ) + y0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FirstOrder {
     time_constant_s: f64,
+    dead_time_s: f64,
     static_gain: f64,
     at_zero: f64,
 }
@@ -81,13 +82,14 @@ impl FirstOrder {
         const COUNT: usize = 16;
         follows_input(joint)?;
         let periods = joint.trials.iter().map(|trial| trial.period().seconds());
-        let shortest = SHORTEST * periods.fold(0.0, f64::max);
-        let times = std::iter::successors(Some(shortest), |time| Some(RATIO * time));
-        let tried = times.take(COUNT).map(|time_s| (time_s, lagging(joint, time_s)));
-        let best = tried.max_by(|a, b| a.1.r_squared().total_cmp(&b.1.r_squared()));
-        let (time_constant_s, sums) = best?;
+        let period_s = periods.fold(0.0, f64::max);
+        let times = std::iter::successors(Some(SHORTEST * period_s), |time| Some(RATIO * time));
+        let pairs = times.take(COUNT).flat_map(|time_s| lags(joint).map(move |lag| (time_s, lag)));
+        let tried = pairs.map(|(time_s, lag)| (time_s, lag, lagging(joint, time_s, lag)));
+        let best = tried.max_by(|a, b| a.2.r_squared().total_cmp(&b.2.r_squared()));
+        let (time_constant_s, lag, sums) = best?;
         let (static_gain, at_zero) = sums.line();
-        Some(Self { time_constant_s, static_gain, at_zero })
+        Some(Self { time_constant_s, dead_time_s: lag as f64 * period_s, static_gain, at_zero })
     }
 
     /// `model` as this first order, and the id of the effect that makes it one.
@@ -100,19 +102,20 @@ impl FirstOrder {
             model.gain.value = self.static_gain * rate;
         }
         if !model.delay.fixed {
-            model.delay.value = 0.0;
+            model.delay.value = self.dead_time_s;
         }
         Some((leakage.spec().id, model))
     }
 }
 
-/// How the output goes with the input behind a lag of the first order.
-fn lagging(joint: &Joint, time_s: f64) -> Moments {
+/// How the output goes with the input `dead` samples before, behind a lag of the first order.
+fn lagging(joint: &Joint, time_s: f64, dead: usize) -> Moments {
     let mut sums = Moments::default();
     for trial in &joint.trials {
         let left = (-trial.period().seconds() / time_s).exp();
         let mut state = trial.input().first().copied().unwrap_or(0.0);
-        for (input, output) in trial.input().iter().zip(trial.output()) {
+        let behind = trial.output().get(dead..).unwrap_or_default();
+        for (input, output) in trial.input().iter().zip(behind) {
             sums.push(state, *output);
             state = input + (state - input) * left;
         }
@@ -191,6 +194,20 @@ mod tests {
         assert!((0.08..0.13).contains(&found.time_constant_s), "{found:?}");
         assert!((found.at_zero - 1.0).abs() < 0.3, "{found:?}");
         assert!((found.static_gain - 3.0).abs() < 0.3, "{found:?}");
+    }
+
+    #[test]
+    fn a_dead_time_is_told_from_the_time_constant() {
+        let left = (-0.01_f64 / 0.1).exp();
+        let mut of = joint(&LEVELS, |u, y| 3.0 * u + (y - 3.0 * u) * left);
+        let trial = &of.trials[0];
+        let late: Vec<f64> =
+            [0.0; 8].into_iter().chain(trial.output().iter().copied()).take(trial.len()).collect();
+        let input = trial.input().to_vec();
+        of.trials = vec![Trial::new("1", 0.0, trial.period(), input, late).unwrap()];
+        let found = FirstOrder::of(&of).unwrap();
+        assert!((found.dead_time_s - 0.08).abs() < 0.015, "{found:?}");
+        assert!((0.08..0.13).contains(&found.time_constant_s), "{found:?}");
     }
 
     #[test]

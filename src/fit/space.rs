@@ -25,7 +25,11 @@ impl Space {
     pub(super) fn of(model: &JointModel, range: &RecordRange<'_>) -> Self {
         /// No joint of this kind reacts later than this.
         const LONGEST_DELAY_S: f64 = 5.0;
-        let delay = (0.0, LONGEST_DELAY_S.min(0.5 * range.duration_s));
+        /// Nor does a slower process, a tank or a furnace, than so many of the samples that were
+        /// thought enough for it.
+        const LONGEST_DELAY: f64 = 100.0;
+        let longest_s = LONGEST_DELAY_S.max(LONGEST_DELAY * range.sample_period_s);
+        let delay = (0.0, longest_s.min(0.5 * range.duration_s));
         // Beside measured delays it would only make up for those that are not known.
         let has_delay = !model.takes_measured_delays();
         let mut bounds = vec![(f64::MIN, f64::MAX, true), (delay.0, delay.1, has_delay)];
