@@ -56,6 +56,14 @@ const SCALES: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 /// The error of a delay that is measured without one, in seconds.
 const LEAST_ERROR_S: f64 = 1e-3;
 
+/// What a law depends on.
+#[derive(Clone, Copy, Debug)]
+struct Form {
+    /// The scale of the size of the step, where it depends on that.
+    size_scale: Option<f64>,
+    by_direction: bool,
+}
+
 /// A law, fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Law {
@@ -100,17 +108,17 @@ fn best(starts: &[Start]) -> Option<Law> {
     let scales = SCALES.iter().filter(|_| sizes.len() >= FEWEST_SIZES);
     let scales: Vec<f64> = scales.map(|part| part * smallest).collect();
     let directions = [false, true].into_iter().filter(|by_direction| !by_direction || differs);
-    let laws = directions.flat_map(|by_direction| {
-        let by_size = scales.iter().map(move |scale| (Some(*scale), by_direction));
-        std::iter::once((None, by_direction)).chain(by_size)
+    let forms = directions.flat_map(|by_direction| {
+        let sizes = std::iter::once(None).chain(scales.iter().copied().map(Some));
+        sizes.map(move |size_scale| Form { size_scale, by_direction })
     });
-    let fitted = laws.map(|(scale, by_direction)| fitted(starts, scale, by_direction));
+    let fitted = forms.map(|form| fitted(starts, form));
     let is_possible = |law: &Law| starts.iter().all(|start| law.delay_s(start.rise) >= 0.0);
     fitted.filter(is_possible).min_by(|a, b| a.criterion.total_cmp(&b.criterion))
 }
 
-/// The law of least squares with this scale, or none, and with or without the direction.
-fn fitted(starts: &[Start], scale: Option<f64>, by_direction: bool) -> Law {
+/// The law of this form, by least squares.
+fn fitted(starts: &[Start], Form { size_scale: scale, by_direction }: Form) -> Law {
     let of = |value: &dyn Fn(&Start) -> f64| vec![starts.iter().map(value).collect::<Vec<f64>>()];
     let mut columns = vec![of(&|_| 1.0)];
     columns.extend(scale.map(|scale| of(&|start| saturated(start.rise.abs(), scale))));
@@ -146,7 +154,7 @@ mod tests {
     fn starts(delay_s: impl Fn(f64) -> f64) -> Vec<Start> {
         let rises = [-10.0, -8.0, -6.0, -5.0, -4.0, 4.0, 5.0, 6.0, 8.0, 10.0];
         // Alternately a little too late and too early, as no law is.
-        let off = |k: usize| if k % 2 == 0 { 0.004 } else { -0.004 };
+        let off = |k: usize| if k.is_multiple_of(2) { 0.004 } else { -0.004 };
         let start = |(k, rise): (usize, &f64)| Start {
             before: 0.0,
             rise: *rise,

@@ -3,7 +3,8 @@
 use super::text_table::TextTable;
 use crate::diagnosis::{Comparison, ErrorFigures};
 use crate::experiment::Joint;
-use crate::fit::Parameter;
+use crate::fit::{Parameter, Status};
+use crate::model::JointModel;
 use crate::wording::{
     self, correlation_sentences, effects_text, number, parameter_units, with_remark, with_unit,
 };
@@ -107,11 +108,22 @@ pub(super) fn parameters(compared: &ComparedJoint<'_>) -> String {
         let error = std_error.map_or_else(String::new, |error| format!(" ± {}", number(error)));
         with_remark(&format!("{name} {}{error} {unit}", number(*value)), *status)
     };
-    let parameters: Vec<_> = fit.parameters.iter().zip(units).map(parameter).collect();
+    let known = fit.parameters.iter().zip(units).zip(neutrals(&fit.model));
+    // What is held where it does nothing says nothing.
+    let says = |((parameter, _), neutral): &((&Parameter, String), Option<f64>)| {
+        parameter.status != Status::Fixed || *neutral != Some(parameter.value)
+    };
+    let parameters: Vec<_> = known.filter(says).map(|(known, _)| parameter(known)).collect();
     format!(
         "{}: {}; {}",
         compared.joint.name,
         parameters.join(", "),
         compared.comparison.termination
     )
+}
+
+/// The value of each parameter of `model` at which it does nothing; gain and delay have none.
+fn neutrals(model: &JointModel) -> impl Iterator<Item = Option<f64>> + '_ {
+    let parameters = model.components().iter().flat_map(|part| part.effect().spec().parameters);
+    [None, None].into_iter().chain(parameters.map(|parameter| Some(parameter.neutral)))
 }
