@@ -132,7 +132,7 @@ fn not_there(case: &Case, outcome: &Outcome) -> usize {
 /// Whether the last revision has what is hidden or says that it may be that, and nothing else.
 fn is_right(case: &Case, outcome: &Outcome) -> bool {
     let is_found = |hidden: &&str| outcome.found.iter().any(|found| stands_for(found, hidden));
-    case.hidden.iter().all(|hidden| is_found(hidden)) && not_there(case, outcome) == 0
+    case.hidden.iter().all(is_found) && not_there(case, outcome) == 0
 }
 
 /// Strength and noise, those of `pairs` that have them; and each strength with any noise.
