@@ -110,7 +110,7 @@ impl Effect for AsymmetricFriction {
         )
     }
 
-    /// The memory is that of [`Sliding`].
+    /// The memory is the speed in input units, and the decay that was computed last.
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
         sliding(parameters).map_or(at.signal, |sliding| sliding.step(memory, at))
     }
