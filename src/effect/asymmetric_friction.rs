@@ -26,10 +26,10 @@
 //! analysis tools and compensation methods for the control of machines with friction,
 //! Automatica 30.
 
-use super::coulomb_friction::GAPS;
+use super::coulomb_friction::{GAPS, NEGATIVE, POSITIVE, TIME_CONSTANT};
 use super::decay::DECAY;
-use super::sliding::{SLIDING_MEMORY, Sliding};
-use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+use super::sliding::{self, SLIDING_MEMORY};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -52,12 +52,9 @@ static SPEC: Spec = Spec::new(
              Automatica 30",
 )
 .parameters(&[
-    Parameter::new("positive", "level against positive motion", Dimension::Input)
-        .between(0.0, UNLIMITED),
-    Parameter::new("negative", "level against negative motion", Dimension::Input)
-        .between(0.0, UNLIMITED),
-    Parameter::new("time_constant", "inertia: time to 63 % of a change", Dimension::Seconds)
-        .between(0.0, UNLIMITED),
+    POSITIVE,
+    NEGATIVE,
+    TIME_CONSTANT,
     Parameter::new(
         "negative_viscous",
         "viscous friction of negative motion over that of positive motion",
@@ -112,13 +109,11 @@ impl Effect for AsymmetricFriction {
 
     /// The memory is the speed in input units, and the decay that was computed last.
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
-        sliding(parameters).map_or(at.signal, |sliding| sliding.step(memory, at))
+        sliding::step(parameters, memory, at)
     }
 
     fn settle(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        if let Some(sliding) = sliding(parameters) {
-            sliding.settle(memory, at.signal);
-        }
+        sliding::settle(parameters, memory, at);
     }
 
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
@@ -127,11 +122,6 @@ impl Effect for AsymmetricFriction {
             |level: f64| [0.0, 0.1].map(|time_constant| vec![level, level, time_constant, 1.0]);
         levels.into_iter().flat_map(pair).collect()
     }
-}
-
-fn sliding(parameters: &[f64]) -> Option<Sliding> {
-    let &[positive, negative, time_constant, negative_viscous] = parameters else { return None };
-    Some(Sliding { positive, negative, time_constant, negative_viscous })
 }
 
 #[cfg(test)]

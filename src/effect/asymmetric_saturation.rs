@@ -15,7 +15,7 @@
 //! Jelali, M., and Kroll, A., 2003, Hydraulic Servo-systems: Modelling, Identification and Control
 //! (flow saturation, single-rod cylinders).
 
-use super::input_saturation::{FITTED_LIMIT, limited};
+use super::input_saturation::{FITTED_LIMIT, SOFTNESS, limited};
 use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
@@ -36,12 +36,7 @@ static SPEC: Spec = Spec::new(
     Parameter::new("limit", "largest positive input that passes", Dimension::Input)
         .between(0.0, UNLIMITED)
         .neutral(UNLIMITED),
-    Parameter::new(
-        "softness",
-        "half the width of the knee, as a part of the limit",
-        Dimension::One,
-    )
-    .between(0.0, 1.0),
+    SOFTNESS,
     Parameter::new(
         "negative_ratio",
         "limit of the negative direction over that of the positive one",

@@ -34,7 +34,7 @@
 //! friction model, IEEE Control Systems Magazine 28.
 
 use super::decay::DECAY;
-use super::sliding::{SLIDING_MEMORY, Sliding};
+use super::sliding::{self, SLIDING_MEMORY};
 use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
 
 /// See the [module](self).
@@ -56,17 +56,21 @@ static SPEC: Spec = Spec::new(
              Automatica 30; Åström and Canudas de Wit, 2008, Revisiting the LuGre friction model",
 )
 .drawing(include_str!("drawing/coulomb_friction.txt"))
-.parameters(&[
-    Parameter::new("positive", "level against positive motion", Dimension::Input)
-        .between(0.0, UNLIMITED),
-    Parameter::new("negative", "level against negative motion", Dimension::Input)
-        .between(0.0, UNLIMITED),
-    Parameter::new("time_constant", "inertia: time to 63 % of a change", Dimension::Seconds)
-        .between(0.0, UNLIMITED),
-])
+.parameters(&[POSITIVE, NEGATIVE, TIME_CONSTANT])
 .memory(SLIDING_MEMORY)
 .confused_with(&["dead_band", "stiction", "input_offset"])
 .absorbing(&["actuator_lag"]);
+
+/// Parameters that the asymmetric form has, too.
+pub(super) const POSITIVE: Parameter =
+    Parameter::new("positive", "level against positive motion", Dimension::Input)
+        .between(0.0, UNLIMITED);
+pub(super) const NEGATIVE: Parameter =
+    Parameter::new("negative", "level against negative motion", Dimension::Input)
+        .between(0.0, UNLIMITED);
+pub(super) const TIME_CONSTANT: Parameter =
+    Parameter::new("time_constant", "inertia: time to 63 % of a change", Dimension::Seconds)
+        .between(0.0, UNLIMITED);
 
 /// Gaps between input levels in which a fit starts.
 pub(super) const GAPS: usize = 3;
@@ -106,13 +110,11 @@ impl Effect for CoulombFriction {
 
     /// The memory is the speed in input units, and the decay that was computed last.
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
-        sliding(parameters).map_or(at.signal, |sliding| sliding.step(memory, at))
+        sliding::step(parameters, memory, at)
     }
 
     fn settle(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) {
-        if let Some(sliding) = sliding(parameters) {
-            sliding.settle(memory, at.signal);
-        }
+        sliding::settle(parameters, memory, at);
     }
 
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
@@ -120,11 +122,6 @@ impl Effect for CoulombFriction {
         let pair = |level: f64| [0.0, 0.1].map(|time_constant| vec![level, level, time_constant]);
         levels.into_iter().flat_map(pair).collect()
     }
-}
-
-fn sliding(parameters: &[f64]) -> Option<Sliding> {
-    let &[positive, negative, time_constant] = parameters else { return None };
-    Some(Sliding { positive, negative, time_constant, negative_viscous: 1.0 })
 }
 
 #[cfg(test)]

@@ -34,14 +34,17 @@ static SPEC: Spec =
             Parameter::new("limit", "largest magnitude that passes", Dimension::Input)
                 .between(0.0, UNLIMITED)
                 .neutral(UNLIMITED),
-            Parameter::new(
-                "softness",
-                "half the width of the knee, as a part of the limit",
-                Dimension::One,
-            )
-            .between(0.0, 1.0),
+            SOFTNESS,
         ])
         .confused_with(&["flow_curve", "rate_limit"]);
+
+/// As the asymmetric form has it, too.
+pub(super) const SOFTNESS: Parameter = Parameter::new(
+    "softness",
+    "half the width of the knee, as a part of the limit",
+    Dimension::One,
+)
+.between(0.0, 1.0);
 
 /// Range of the limit in a fit, in parts of the largest input: below it nothing of the
 /// input's shape is left, above it nothing of the limit is seen.

@@ -23,20 +23,39 @@ pub(super) const SLIDING_MEMORY: usize = 1 + DECAY_MEMORY;
 
 /// What brakes the mass.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sliding {
+struct Sliding {
     /// Level against positive motion, in input units.
-    pub(super) positive: f64,
+    positive: f64,
     /// Level against negative motion, in input units.
-    pub(super) negative: f64,
+    negative: f64,
     /// `T`, in seconds.
-    pub(super) time_constant: f64,
+    time_constant: f64,
     /// Viscous friction of negative motion over that of positive motion.
-    pub(super) negative_viscous: f64,
+    negative_viscous: f64,
+}
+
+/// The mean speed over the interval of `at`: [`Effect::step`](super::Effect::step).
+pub(super) fn step(parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64 {
+    Sliding::of(parameters).map_or(at.signal, |sliding| sliding.step(memory, at))
+}
+
+/// The state after the signal of `at` has long been held.
+pub(super) fn settle(parameters: &[f64], memory: &mut [f64], at: &Moment) {
+    if let Some(sliding) = Sliding::of(parameters) {
+        sliding.settle(memory, at.signal);
+    }
 }
 
 impl Sliding {
-    /// The mean speed over the interval of `at`.
-    pub(super) fn step(&self, memory: &mut [f64], at: &Moment) -> f64 {
+    /// Of the two levels, the time constant, and, where it is not 1, the viscous friction of
+    /// negative motion.
+    fn of(parameters: &[f64]) -> Option<Self> {
+        let (&[positive, negative, time_constant], rest) = parameters.split_first_chunk()?;
+        let negative_viscous = rest.first().copied().unwrap_or(1.0);
+        Some(Self { positive, negative, time_constant, negative_viscous })
+    }
+
+    fn step(&self, memory: &mut [f64], at: &Moment) -> f64 {
         let [speed, known @ ..] = memory else { return at.signal };
         let force = self.force(at.signal);
         if self.time_constant <= 0.0 {
@@ -68,8 +87,7 @@ impl Sliding {
         end + deviation * decay.mean
     }
 
-    /// The state after `signal` has long been held.
-    pub(super) fn settle(&self, memory: &mut [f64], signal: f64) {
+    fn settle(&self, memory: &mut [f64], signal: f64) {
         if let [speed, ..] = memory {
             let force = self.force(signal);
             *speed = force / self.viscous(force);

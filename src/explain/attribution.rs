@@ -10,8 +10,8 @@
 //! with the root-mean-square errors `e` of the model, `e_without` without the effect and `e₀` of
 //! the first model, on the whole record or on the part that was not fitted, whichever grows more,
 //! and `s` the noise of the sensor. It is 1 at most, since rather than a worse model one would keep
-//! the first. Effects that do the same work have small shares each, and
-//! shares need not sum up to one.
+//! the first. Effects that do the same work have small shares each, and shares need not sum up to
+//! one.
 //!
 //! # References
 //! J. Lei, M. G'Sell, A. Rinaldo, R. J. Tibshirani and L. Wasserman, "Distribution-free

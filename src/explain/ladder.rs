@@ -5,8 +5,7 @@
 //! significant: the one that explains most by itself is then often a stand-in for several
 //! usual ones. These come first, in the order in which the oil meets them: the overlap of the
 //! valve and its largest flow, the areas of the cylinder, its ends; then the linkage, and the
-//! largest flow of each direction. Which of
-//! them have no consequence is seen at the end.
+//! largest flow of each direction. Which of them have no consequence is seen at the end.
 //!
 //! # References
 //! Merritt, H. E., 1967, Hydraulic Control Systems (valves and cylinders); Koivo, A. J., 1994,

@@ -63,6 +63,10 @@ const LEAST_DAMPING: f64 = 1e-8;
 /// The part of the predicted gain below which slopes that were mended are differenced anew.
 const DISAPPOINTING: f64 = 0.25;
 
+/// Steps that together must gain what one alone should at the end of a descent. Chosen: as many as
+/// there are parameters in a large model, since slopes are mended by one direction a step.
+const CREEPING: usize = 10;
+
 /// Descends from where `problem` is; it is never left at a larger sum of squares. `slopes` are
 /// about those of the residuals, where they are known.
 pub(super) fn descend(
@@ -92,6 +96,23 @@ struct Descent<'d, 'p, 'r> {
     normal: Normal,
     /// Whether `slopes` are differenced at `at`.
     fresh: bool,
+    /// The last place whose sum of squares is sure.
+    anchor: Anchor,
+    damping: f64,
+    growth: f64,
+    /// The sums of squares before each step since a start that was sure.
+    costs: Vec<f64>,
+}
+
+/// A place at which windows started from the outputs that are best there. Those of the steps that
+/// follow are kept, and where the error does not change smoothly with them, as at an end stop,
+/// steps that seemed to gain may have lost.
+struct Anchor {
+    at: DVector<f64>,
+    residuals: DVector<f64>,
+    /// The slopes there, where they are known.
+    slopes: Option<DMatrix<f64>>,
+    cost: f64,
     damping: f64,
     growth: f64,
 }
@@ -102,7 +123,17 @@ impl<'d, 'p, 'r> Descent<'d, 'p, 'r> {
         let fresh = slopes.is_none();
         let slopes = slopes.unwrap_or_else(|| problem.jacobian(&residuals));
         let normal = Normal::of(&slopes, &residuals);
-        Self { problem, at, residuals, slopes, normal, fresh, damping: FIRST_DAMPING, growth: 2.0 }
+        let (damping, growth) = (FIRST_DAMPING, 2.0);
+        let anchor = Anchor {
+            at: at.clone(),
+            residuals: residuals.clone(),
+            slopes: fresh.then(|| slopes.clone()),
+            cost: normal.cost,
+            damping,
+            growth,
+        };
+        let costs = Vec::new();
+        Self { problem, at, residuals, slopes, normal, fresh, anchor, damping, growth, costs }
     }
 
     fn run(mut self, limits: Limits) -> (Termination, Option<DMatrix<f64>>) {
@@ -117,17 +148,22 @@ impl<'d, 'p, 'r> Descent<'d, 'p, 'r> {
                 self.refresh();
                 continue;
             }
-            if self.damping > MOST_DAMPING {
+            if self.damping > MOST_DAMPING || limits.sure && self.creeps(limits.relative_gain) {
                 return self.ended(Termination::NoDescent);
             }
+            self.costs.push(self.normal.cost);
             self.try_step();
         }
         self.ended(Termination::OutOfPatience)
     }
 
-    fn ended(self, termination: Termination) -> (Termination, Option<DMatrix<f64>>) {
+    fn ended(mut self, termination: Termination) -> (Termination, Option<DMatrix<f64>>) {
         if self.problem.free != self.at {
             self.problem.move_to(&self.at);
+            if self.problem.cost() > self.anchor.cost {
+                self.problem.move_to(&self.anchor.at);
+                return (termination, self.anchor.slopes.take());
+            }
         }
         (termination, self.fresh.then_some(self.slopes))
     }
@@ -142,13 +178,54 @@ impl<'d, 'p, 'r> Descent<'d, 'p, 'r> {
         gain <= relative_gain * self.normal.cost
     }
 
-    /// The slopes anew, of windows that start where they are best now.
+    /// Whether the last steps together made the sum of squares less by no more than one of them
+    /// alone should.
+    fn creeps(&self, relative_gain: f64) -> bool {
+        let before = self.costs.len().checked_sub(CREEPING).map(|index| self.costs[index]);
+        before.is_some_and(|before| before - self.normal.cost < relative_gain * self.normal.cost)
+    }
+
+    /// The slopes anew, of windows that start where they are best now; back to the last such
+    /// place, to leave it by a shorter step, where the steps since have gained nothing.
     fn refresh(&mut self) {
         self.problem.move_to(&self.at);
         self.residuals = self.problem.residuals();
+        if cost_of(&self.residuals) > self.anchor.cost {
+            return self.back();
+        }
         self.slopes = self.problem.jacobian(&self.residuals);
+        self.set_anchor();
+    }
+
+    fn back(&mut self) {
+        let anchor = &mut self.anchor;
+        anchor.damping *= anchor.growth;
+        anchor.growth *= 2.0;
+        (self.damping, self.growth) = (anchor.damping, anchor.growth);
+        self.at.copy_from(&anchor.at);
+        self.residuals.copy_from(&anchor.residuals);
+        self.problem.move_to(&self.at);
+        match &anchor.slopes {
+            Some(slopes) => self.slopes.copy_from(slopes),
+            None => self.slopes = self.problem.jacobian(&self.residuals),
+        }
         self.normal = Normal::of(&self.slopes, &self.residuals);
         self.fresh = true;
+        self.costs.clear();
+    }
+
+    /// Takes this place, whose slopes are new, for the one to go back to.
+    fn set_anchor(&mut self) {
+        self.normal = Normal::of(&self.slopes, &self.residuals);
+        self.fresh = true;
+        self.anchor = Anchor {
+            at: self.at.clone(),
+            residuals: self.residuals.clone(),
+            slopes: Some(self.slopes.clone()),
+            cost: self.normal.cost,
+            damping: self.damping,
+            growth: self.growth,
+        };
     }
 
     fn try_step(&mut self) {

@@ -28,14 +28,22 @@ const FEWEST: usize = 200;
 /// A joint that runs into its stops follows the sign of the input as well as the input, and is
 /// none of these.
 pub(crate) fn follows_input(joint: &Joint) -> Option<f64> {
+    Some(followed(joint)?.1)
+}
+
+/// The lag in samples at which the output follows the input best, and the squared correlation
+/// there; none where it does not follow it.
+fn followed(joint: &Joint) -> Option<(usize, f64)> {
     let samples: usize = joint.trials.iter().map(Trial::len).sum();
     if samples < FEWEST {
         return None;
     }
-    let best =
-        |of: fn(f64) -> f64| lags(joint).map(|lag| correlation(joint, lag, of)).fold(0.0, f64::max);
-    let (follows, by_sign) = (best(|input| input), best(sign));
-    (follows >= FOLLOWS && follows > by_sign).then_some(follows)
+    let best = |of: fn(f64) -> f64| {
+        let tried = lags(joint).map(|lag| (lag, correlation(joint, lag, of)));
+        tried.max_by(|a, b| a.1.total_cmp(&b.1))
+    };
+    let follows = best(|input| input).filter(|(_, squared)| *squared >= FOLLOWS)?;
+    (follows.1 > best(sign)?.1).then_some(follows)
 }
 
 /// Samples that the output may lag behind.
@@ -80,11 +88,13 @@ impl FirstOrder {
         const SHORTEST: f64 = 2.0;
         const RATIO: f64 = 1.5;
         const COUNT: usize = 16;
-        follows_input(joint)?;
+        // The whole lag is a dead time and the time constant behind it.
+        let (longest, _) = followed(joint)?;
+        let dead = || lags(joint).take_while(|lag| *lag <= longest);
         let periods = joint.trials.iter().map(|trial| trial.period().seconds());
         let period_s = periods.fold(0.0, f64::max);
         let times = std::iter::successors(Some(SHORTEST * period_s), |time| Some(RATIO * time));
-        let pairs = times.take(COUNT).flat_map(|time_s| lags(joint).map(move |lag| (time_s, lag)));
+        let pairs = times.take(COUNT).flat_map(|time_s| dead().map(move |lag| (time_s, lag)));
         let tried = pairs.map(|(time_s, lag)| (time_s, lag, lagging(joint, time_s, lag)));
         let best = tried.max_by(|a, b| a.2.r_squared().total_cmp(&b.2.r_squared()));
         let (time_constant_s, lag, sums) = best?;

@@ -72,7 +72,8 @@ pub enum Termination {
     /// The gradient of the sum of squared errors is small: a linear step could not make it less
     /// by more than a hundredth of what a standard error does.
     Converged,
-    /// No step made the error less, though its gradient is not small: a corner or a jump.
+    /// No step made the error less, or by next to nothing, though its gradient is not small: a
+    /// corner or a jump.
     NoDescent,
     /// There was nothing to fit.
     NothingToFit,
