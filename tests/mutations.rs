@@ -2,25 +2,18 @@
 //! a panic. `TAUSCOPE_MUTATIONS` says how many of each file are tried, 60 unless given.
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
+#[path = "hostile/attempts.rs"]
+#[expect(dead_code, unreachable_pub, reason = "other tests attempt more, and other crates")]
+mod attempts;
 #[path = "hostile/bytes.rs"]
 #[cfg_attr(feature = "mat", expect(dead_code, reason = "it builds files for other tests, too"))]
 mod bytes;
 
 use std::fs;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use rand::{Rng as _, RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
-use tauscope::experiment::{
-    ColumnMap, Experiment, GrowingLog, JointColumns, MemoryLimit, ReadOptions, Survey,
-};
-use tauscope::model::ModelFile;
-use tauscope::synthetic::PlantSpec;
-use tempfile::TempDir;
-
-/// More than any of these files needs to be read.
-const MEMORY: u64 = 200_000_000;
 
 /// Far longer than any takes, also without optimisation on a machine that is busy.
 const LONGEST: Duration = Duration::from_secs(20);
@@ -83,35 +76,16 @@ fn overwrite(bytes: &mut [u8], place: usize, with: &[u8]) {
     bytes[place..].iter_mut().zip(with).for_each(|(byte, with)| *byte = *with);
 }
 
-/// Reads a file in each way there is.
-fn read(path: &Path) {
-    let memory = MemoryLimit::of_bytes(MEMORY);
-    let plain = ReadOptions { memory, ..ReadOptions::default() };
-    Experiment::read(&[path.to_owned()], &plain);
-    let Ok(survey) = Survey::of(path, memory) else { return };
-    let mut mapped = ReadOptions { memory, columns: survey.map, ..ReadOptions::default() };
-    if mapped.columns.joints.is_empty() {
-        let names: Vec<_> = survey.columns.iter().map(|column| column.name.clone()).collect();
-        let [.., input, output] = names.as_slice() else { return };
-        mapped.columns.joints = vec![JointColumns::new("j", input, output)];
-    }
-    Experiment::read(&[path.to_owned()], &mapped);
-}
-
 #[test]
 fn files_with_some_bytes_changed_are_read_or_refused() {
-    let folder = TempDir::new().unwrap();
     for (name, seed) in seeds() {
-        let path = folder.path().join(&name);
-        fs::write(&path, &seed).unwrap();
-        read(&path);
+        attempts::log(&name, &seed);
         for number in 0..count(60) {
             let mut rng = ChaCha8Rng::seed_from_u64(number);
             let mut bytes = seed.clone();
             mutate(&mut bytes, &mut rng);
-            fs::write(&path, &bytes).unwrap();
             let start = Instant::now();
-            let done = std::panic::catch_unwind(|| read(&path));
+            let done = std::panic::catch_unwind(|| attempts::log(&name, &bytes));
             let took = start.elapsed();
             assert!(done.is_ok(), "{name}, mutation {number}: it panics");
             assert!(took < LONGEST, "{name}, mutation {number}: {took:?}");
@@ -159,9 +133,7 @@ fn change_words(text: &str, rng: &mut ChaCha8Rng) -> String {
 
 #[test]
 fn models_plants_and_mappings_with_some_words_changed_are_read_or_refused() {
-    let folder = TempDir::new().unwrap();
-    let mapping = "time = \"t\"\ntrial = \"none\"\n[joints.boom]\ninput = \"u\"\noutput = \"y\"\n";
-    let path = folder.path().join("columns.toml");
+    let mapping = "time = \"t\"\ntrial = \"none\"\n[joint.boom]\ninput = \"u\"\noutput = \"y\"\n";
     let texts = [
         fs::read_to_string("tests/cli/own_effect.toml").unwrap(),
         fs::read_to_string("data/manipulator.plant.toml").unwrap(),
@@ -171,11 +143,10 @@ fn models_plants_and_mappings_with_some_words_changed_are_read_or_refused() {
         let mut rng = ChaCha8Rng::seed_from_u64(number);
         for text in &texts {
             let text = change_words(text, &mut rng);
-            fs::write(&path, &text).unwrap();
             let read = std::panic::catch_unwind(|| {
-                let _model = ModelFile::parse(&text, &path);
-                let _plant = PlantSpec::from_toml(&text);
-                let _map = ColumnMap::read(&path);
+                attempts::model(text.as_bytes());
+                attempts::plant(text.as_bytes());
+                attempts::columns(text.as_bytes());
             });
             assert!(read.is_ok(), "number {number}: {text}");
         }
@@ -184,18 +155,12 @@ fn models_plants_and_mappings_with_some_words_changed_are_read_or_refused() {
 
 #[test]
 fn a_log_that_grows_by_any_bytes_is_read_or_refused() {
-    let path = Path::new("log.csv");
     for number in 0..count(60) {
         let mut rng = ChaCha8Rng::seed_from_u64(number);
         let mut text = bytes::log_text().into_bytes();
         mutate(&mut text, &mut rng);
-        let grown = std::panic::catch_unwind(|| {
-            let mut log = GrowingLog::new(path, ReadOptions::default());
-            for piece in text.chunks(1 + text.len() / 7) {
-                log.push(piece);
-                log.experiment();
-            }
-        });
+        text.insert(0, 7);
+        let grown = std::panic::catch_unwind(|| attempts::growing(&text));
         assert!(grown.is_ok(), "number {number}");
     }
 }

@@ -1,0 +1,11 @@
+//! Logs of MATLAB 5 to 7, packed or not.
+#![no_main]
+
+use libfuzzer_sys::{Corpus, fuzz_mutator, fuzz_target};
+use tauscope_fuzz::{attempts, mutate, share};
+
+fuzz_target!(|bytes: &[u8]| -> Corpus { share::count(attempts::log("log.mat", bytes)) });
+
+fuzz_mutator!(|data: &mut [u8], size: usize, max: usize, seed: u32| {
+    mutate::mat5(data, size, max, seed)
+});

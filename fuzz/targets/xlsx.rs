@@ -1,0 +1,11 @@
+//! Logs in the sheets of a spreadsheet program.
+#![no_main]
+
+use libfuzzer_sys::{Corpus, fuzz_mutator, fuzz_target};
+use tauscope_fuzz::{attempts, mutate, share};
+
+fuzz_target!(|bytes: &[u8]| -> Corpus { share::count(attempts::log("log.xlsx", bytes)) });
+
+fuzz_mutator!(|data: &mut [u8], size: usize, max: usize, seed: u32| {
+    mutate::xlsx(data, size, max, seed)
+});
