@@ -45,6 +45,42 @@ impl fmt::Display for SamplePeriod {
     }
 }
 
+/// A length of time as it was given: in samples, or in seconds, which are other numbers of samples
+/// at other sample periods.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Length {
+    /// So many samples.
+    Samples(usize),
+    /// So many seconds.
+    Seconds(f64),
+}
+
+impl Length {
+    /// The samples that come nearest, `period` apart.
+    pub fn samples(self, period: SamplePeriod) -> usize {
+        match self {
+            Self::Samples(samples) => samples,
+            Self::Seconds(seconds) => floor_to_index((seconds / period.seconds()).round()),
+        }
+    }
+}
+
+impl From<usize> for Length {
+    fn from(samples: usize) -> Self {
+        Self::Samples(samples)
+    }
+}
+
+impl fmt::Display for Length {
+    /// As it is typed: `50`, or `0.5s`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Samples(samples) => write!(f, "{samples}"),
+            Self::Seconds(seconds) => write!(f, "{seconds}s"),
+        }
+    }
+}
+
 /// A number of samples, for differences that may be negative.
 pub(crate) fn signed(samples: usize) -> i64 {
     i64::try_from(samples).unwrap_or(i64::MAX)
@@ -71,6 +107,16 @@ mod tests {
         for seconds in [0.0, -0.01, f64::NAN, f64::INFINITY] {
             assert_eq!(SamplePeriod::from_seconds(seconds), None);
         }
+    }
+
+    #[test]
+    fn a_length_in_seconds_is_another_number_of_samples_at_another_rate() {
+        let samples =
+            |length: Length, period| length.samples(SamplePeriod::from_seconds(period).unwrap());
+        let half = Length::Seconds(0.5);
+        assert_eq!([0.01, 0.02, 1.2].map(|period| samples(half, period)), [50, 25, 0]);
+        assert_eq!(samples(Length::Samples(7), 0.02), 7);
+        assert_eq!([half, 7.into()].map(|length| length.to_string()), ["0.5s", "7"]);
     }
 
     #[test]

@@ -111,7 +111,14 @@ fn every_command_takes_such_a_log() {
     let text = tauscope(&["estimate", &log, "--quiet"]);
     assert!(text.contains("boom: the input moves all the time (it changes at "), "{text}");
     assert!(text.contains("boom: dead time 0.1"), "{text}");
-    tauscope(&["sweep", &log, "--quiet", "--joint", "boom"]);
+    // No setting of a sweep has an influence: that is said, and the joint with steps is swept.
+    let sweep = Command::new(env!("CARGO_BIN_EXE_tauscope"))
+        .args(["sweep", &log, "--quiet", "--alpha", "10", "--beta", "5", "--method", "two-line"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&sweep.stderr).into_owned();
+    assert_eq!(sweep.status.code(), Some(1), "{said}");
+    assert!(said.contains("`boom` is left out: the input moves all the time"), "{said}");
     tauscope(&["compare", &log, "--quiet", "--joint", "boom"]);
     let page = folder.path().join("page.html");
     tauscope(&["report", &log, "--quiet", "-o", page.to_str().unwrap()]);

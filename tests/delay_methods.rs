@@ -5,8 +5,8 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use tauscope::delay::{
-    Condition, InputKind, Method, Settings, TrialEstimate, Verdict, estimate, estimate_joint,
-    step_delays,
+    Condition, Decision, InputKind, Method, Settings, TrialEstimate, Verdict, estimate,
+    estimate_joint, step_delays,
 };
 use tauscope::effect::VariableDelay;
 use tauscope::experiment::Trial;
@@ -15,6 +15,7 @@ use tauscope::model::{Component, JointModel};
 use tauscope::synthetic::{
     DelayLaw, InputSpec, JointSpec, PlantSpec, Ringing, Synthetic, simulate, write_log,
 };
+use tauscope::units::SamplePeriod;
 
 /// A joint with delays of 5 to 40 samples and noise of 0.05 degrees, for 60 s at 100 Hz.
 fn joint() -> JointSpec {
@@ -115,6 +116,70 @@ fn the_papers_method_tests_nothing_by_itself() {
     assert!(tests.all(|check| check.value.is_none() && check.limit.is_none()));
 }
 
+/// Between −0.5 and 0.5, as good as chance.
+fn chance(number: u32) -> f64 {
+    let wild = (f64::from(number) * 12.9898).sin() * 43_758.545;
+    wild - wild.floor() - 0.5
+}
+
+#[test]
+fn a_joint_that_never_reacts_has_no_delay() {
+    let level = |k: u32| [0.0, 1.0, -1.0, 0.5][(k / 90) as usize % 4];
+    let period = SamplePeriod::from_seconds(0.01).unwrap();
+    let input = (0..3000).map(level).collect();
+    let output = (0..3000).map(|k| 20.0 + 0.1 * chance(k)).collect();
+    let trial = Trial::new("1", 0.0, period, input, output).unwrap();
+    for method in Method::all() {
+        let found = estimate(&trial, &Settings::of(method)).unwrap();
+        let accepted = found.decisions.iter().filter(|d| d.verdict() == Verdict::Accepted);
+        // The noise of the first steps is not known yet.
+        assert!(found.decisions.len() > 30 && accepted.count() <= 2, "{method}");
+    }
+}
+
+/// A stroke from one side to the other and its end, 0.2 s late behind two lags of 0.05 s, under a
+/// load that depends on the angle.
+fn stroke_under_load(number: u32) -> Trial {
+    let direction = if number.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let level = direction * f64::from(4 + number * 7 % 6);
+    let until_s = 2.5 + 0.5 * f64::from(number * 5 % 9);
+    let at = |time_s: f64| if (1.0 - 1e-9..until_s).contains(&time_s) { level } else { 0.0 };
+    let (mut first, mut second, mut angle) = (0.0, 0.0, -40.0 * direction);
+    let (mut input, mut output) = (Vec::new(), Vec::new());
+    for sample in 0..300 {
+        let time_s = 0.01 * f64::from(sample);
+        input.push(at(time_s));
+        output.push(angle + 0.1 * chance(1000 * number + sample));
+        for fine in 0..10 {
+            let opening = at(time_s + 0.001 * f64::from(fine) - 0.2);
+            let flow = opening.signum() * (opening.abs() - 0.5).max(0.0) * 4.0;
+            let gravity: f64 = (2.0 * angle).to_radians().cos();
+            let speed = flow * (1.0 - 0.4 * flow.signum() * gravity).max(0.05).sqrt();
+            first += (speed - first) / 50.0;
+            second += (first - second) / 50.0;
+            angle += 0.001 * second;
+        }
+    }
+    let period = SamplePeriod::from_seconds(0.01).unwrap();
+    Trial::new(number.to_string(), 0.0, period, input, output).unwrap()
+}
+
+#[test]
+fn what_a_load_does_along_a_stroke_is_no_lag() {
+    let trials: Vec<Trial> = (0..24).map(stroke_under_load).collect();
+    let found = estimate_joint(&trials, &Settings::of(Method::LAG_AWARE));
+    for trial in found {
+        let trial = trial.unwrap();
+        let lag = trial.lag.as_ref().unwrap();
+        let mean_s = lag.mean_s();
+        // Either it is the lag of the valve, or it is said that none is known.
+        assert!(!lag.is_determined() || (mean_s.value - 0.1).abs() < 0.05, "{mean_s:?}");
+        for delay in trial.decisions.iter().filter_map(Decision::delay) {
+            assert!(delay < 60.0, "{delay} samples, of 20 and a lag of 10");
+        }
+    }
+}
+
 #[test]
 fn trials_share_their_lag() {
     let spec = JointSpec { lag_s: Some(0.06), ..joint() };
@@ -156,7 +221,7 @@ fn delays_go_into_a_fit() {
 
 #[test]
 fn odd_outputs_are_estimated_or_refused_but_nothing_panics() {
-    let period = tauscope::units::SamplePeriod::from_seconds(0.01).unwrap();
+    let period = SamplePeriod::from_seconds(0.01).unwrap();
     let input = |k: i32| f64::from(k / 7 % 3);
     let outputs: [fn(i32) -> f64; 6] = [
         |_| 0.0,

@@ -184,3 +184,75 @@ fn a_name_that_no_language_has_is_refused_before_the_work() {
         assert!(!folder.path().join(file).exists());
     }
 }
+
+/// `estimate` of a log with this input, which its output follows 12 samples late.
+fn estimated(folder: &Path, input: impl Fn(i32) -> f64, options: &[&str]) -> std::process::Output {
+    let mut text = "time_s,j.input,j.output\n".to_owned();
+    let mut angle = 0.0;
+    for k in 0..1500 {
+        angle += 0.1 * input((k - 12).max(0));
+        let noise = 0.01 * (f64::from(k) * 12.9898).sin();
+        writeln!(text, "{:.2},{},{:.5}", f64::from(k) * 0.01, input(k), angle + noise).unwrap();
+    }
+    fs::write(folder.join("log.csv"), text).unwrap();
+    Command::new(env!("CARGO_BIN_EXE_tauscope"))
+        .current_dir(folder)
+        .args(["estimate", "log.csv"])
+        .args(options)
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn a_lookup_without_a_delay_is_not_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let output =
+        estimated(folder.path(), |_| 1.0, &["--export", "lookup.c", "--table", "table.csv"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("lookup.c: not written"), "{said}");
+    assert!(!folder.path().join("lookup.c").exists());
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(text.contains("j: no delay table: the input never changes"), "{text}");
+}
+
+#[test]
+fn the_one_dead_time_of_an_input_that_moves_is_exported() {
+    let folder = tempfile::tempdir().unwrap();
+    let moving = |k: i32| (f64::from(k) * 0.05).sin() + (f64::from(k) * 0.137).sin();
+    for file in ["lookup.c", "lookup.py"] {
+        let output = estimated(folder.path(), moving, &["--export", file]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(text.contains("dead time 0.1") && !text.contains("two-line"), "{text}");
+        let source = fs::read_to_string(folder.path().join(file)).unwrap();
+        assert!(source.contains("joint j: dead time 0.1"), "{source}");
+    }
+    let asked = [("j".to_owned(), -1.0, 1.5), ("j".to_owned(), 0.5, 0.2)];
+    for (language, answers) in all_answers(folder.path(), &asked) {
+        let near = answers.iter().all(|delay| (delay - 0.12).abs() < 0.03);
+        assert!(near, "{language}: {answers:?}");
+    }
+}
+
+#[test]
+fn each_curve_says_what_it_is_from_and_an_unknown_joint_is_documented() {
+    let folder = tempfile::tempdir().unwrap();
+    export(folder.path());
+    let read = |file: &str| fs::read_to_string(folder.path().join(file)).unwrap();
+    for file in ["lookup.c", "lookup.m", "lookup.py"] {
+        let source = read(file);
+        assert!(source.contains(" steps, 95 % intervals in s: "), "{source}");
+    }
+    assert!(read("lookup.c").contains("NAN where no such step was measured, and where no joint"));
+    assert!(read("lookup.m").contains("an error where no joint"));
+    assert!(read("lookup.py").contains("Raises KeyError where"));
+    for (language, answers) in
+        all_answers(folder.path(), &[]).into_iter().filter(|(l, _)| *l == "C")
+    {
+        assert!(answers.is_empty(), "{language}");
+        let unknown = [("nobody".to_owned(), 0.0, 1.0)];
+        let mut program = Command::new(folder.path().join("main"));
+        assert!(crate::answers(&mut program, &unknown)[0].is_nan());
+    }
+}

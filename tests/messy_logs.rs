@@ -187,9 +187,20 @@ fn jumps() -> Vec<Messy> {
     twice.insert(700, twice[699]);
     let mut swapped = clean();
     swapped.swap(500, 501);
+    let mut mixed = clean();
+    for k in 0..100 {
+        mixed.swap(17 * k, 1799 - 3 * k);
+    }
+    let still = timed(|k| at(if (870..901).contains(&k) { 870 } else { k }));
+    let slower: Vec<Row> = clean()
+        .into_iter()
+        .enumerate()
+        .filter(|(k, _)| *k < 900 || k % 2 == 0)
+        .map(|(_, row)| row)
+        .collect();
     vec![
         messy("lost_rows.csv", plain(&lost), read(0.051, "rows are lost in 4 gaps")),
-        messy("pause.csv", plain(&pause), read(0.051, "is split in 2")),
+        messy("pause.csv", plain(&pause), read(0.051, "(of 12.4 s, before row 872)")),
         messy(
             "clock_anew.csv",
             plain(&anew),
@@ -197,6 +208,20 @@ fn jumps() -> Vec<Messy> {
         ),
         messy("row_twice.csv", plain(&twice), read(1e-3, "1 row is there twice")),
         messy("out_of_order.csv", plain(&swapped), read(1e-3, "out of order")),
+        messy("far_out_of_order.csv", plain(&mixed), read(1e-3, "out of order")),
+        messy(
+            "clock_rests.csv",
+            plain(&still),
+            read(1e9, "30 rows are stamped while the clock stood still"),
+        ),
+        messy(
+            "other_rate.csv",
+            plain(&slower),
+            read(
+                0.055,
+                "the sample rate changes at row 903, from a sample per 10 ms to one per 20 ms",
+            ),
+        ),
         messy(
             "stamp_of_nonsense.csv",
             plain(&timed(|k| if k == 60 { 4711.0 } else { at(k) })),
@@ -228,6 +253,13 @@ fn units_and_names() -> Vec<Messy> {
             messy("time_ms.csv", foreign(&header("time_ms"), &scaled(1e3)), SAME),
             Some("time_ms"),
         ),
+        Messy {
+            columns: ColumnMap {
+                joints: vec![JointColumns::new("boom", "valve", "pos")],
+                ..ColumnMap::default()
+            },
+            ..messy("bare_names.csv", foreign("t_s,valve_pct,pos_mm", &clean()), SAME)
+        },
         mapped(messy("t_us.csv", foreign(&header("t_us"), &scaled(1e6)), SAME), None),
         mapped(messy("Time_s.csv", foreign(&header("Time (s)"), &clean()), SAME), None),
         mapped(messy("elapsed.csv", foreign(&header("elapsed [ms]"), &scaled(1e3)), SAME), None),
@@ -285,6 +317,33 @@ fn texts() -> Vec<Messy> {
         messy("utf16_unmarked.csv", utf16(&degrees), SAME),
         messy("packed.csv.gz", gzip(&all), SAME),
         messy("cut_off.csv", &all[..all.len() - 12], read(0.011, "cut off")),
+        messy(
+            "padded_preamble.csv",
+            format!("\"Run 7\";;\nDate;01.03.2026;\n;;\n{}", all.replace(',', ";")),
+            SAME,
+        ),
+        messy(
+            "footer.csv",
+            format!("{all}End of measurement\n"),
+            read(1e-3, "the last row, 1802, is left out: it holds no number"),
+        ),
+        messy(
+            "padded_footer.csv",
+            format!("{all}\nEnd of measurement,,\nCounted,by,hand\n"),
+            read(1e-3, "the last 2 rows, from 1803 on, are left out: they hold no number"),
+        ),
+        messy(
+            "unit_ends_names.csv",
+            all.replacen(HEADER, "t_s,boom.input_pct,boom.output_deg", 1),
+            SAME,
+        ),
+        messy("missing_NA.csv", cell(&all, 617, 2, "#N/A"), read(0.051, "1 cell is empty or NaN")),
+        messy("missing_dash.csv", cell(&all, 617, 2, "--"), read(0.051, "1 cell is empty or NaN")),
+        messy(
+            "missing_null.csv",
+            cell(&all, 617, 1, "null"),
+            read(0.051, "1 cell is empty or NaN"),
+        ),
         messy("empty_cell.csv", cell(&all, 617, 2, ""), read(0.051, "1 cell is empty or NaN")),
     ]
 }
@@ -307,6 +366,36 @@ fn broken() -> Vec<Messy> {
             "short_row.csv",
             cell(&all, 617, 1, "").replacen(",,", ",", 1),
             Expected::Refused(&["row 617", "2 cells", "has 3"]),
+        ),
+        messy(
+            "german_dates.csv",
+            cell(&all, 617, 0, "01.03.2026 09:59:50"),
+            Expected::Refused(&["row 617", "`time_s`", "ISO 8601"]),
+        ),
+        messy(
+            "half_days.csv",
+            cell(&all, 2, 0, "03/01/2026 09:59:50 AM"),
+            Expected::Refused(&["row 2", "`time_s`", "ISO 8601"]),
+        ),
+        messy(
+            "blanks.txt",
+            all.replace(',', "  "),
+            Expected::Refused(&["blanks.txt", "parted by blanks", "commas"]),
+        ),
+        messy(
+            "no_header.csv",
+            all.split_once('\n').unwrap().1,
+            Expected::Refused(&["no_header.csv, row 1", "numbers", "write a header"]),
+        ),
+        messy(
+            "words_between.csv",
+            all.replacen("\n1.000000,", "\nhere it stopped\n1.000000,", 1),
+            Expected::Refused(&["row 102", "1 cells", "has 3"]),
+        ),
+        messy(
+            "archive.zip",
+            b"PK\x03\x04 and more".as_slice(),
+            Expected::Refused(&["archive.zip", "ZIP archive", "unpack it first"]),
         ),
         messy(
             "bag.db3",

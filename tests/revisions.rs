@@ -247,6 +247,18 @@ fn what_could_not_be_read_again_is_not_written() {
     assert!(matches!(error, ModelError::UnknownEffect { .. }), "{error}");
 }
 
+#[test]
+fn a_limit_that_is_no_number_is_refused() {
+    for limit in ["min", "max"] {
+        let text = format!(
+            "schema = \"tauscope/model/1\"\n[joint.boom]\nstructure = \"integrator\"\n\
+             parameters = {{ gain = {{ value = 8.0, {limit} = nan }}, delay = 0.1 }}\n"
+        );
+        let error = ModelFile::parse(&text, Path::new("boom.toml")).unwrap_err();
+        assert!(matches!(error, ModelError::OutOfBounds { .. }), "{error}");
+    }
+}
+
 fn is_same(a: &JointModel, b: &JointModel) -> bool {
     let is_same = |(a, b): (&Component, &Component)| {
         std::ptr::eq(a.effect().spec(), b.effect().spec()) && a.parameters() == b.parameters()

@@ -192,3 +192,73 @@ fn bad_values_are_told_with_what_would_be_good() {
         assert!(told.contains(expected), "{options}: {told}");
     }
 }
+
+/// `sweep` of a log with this text.
+fn sweep_of(text: &str, options: &[&str]) -> Output {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("log.csv"), text).unwrap();
+    Command::new(env!("CARGO_BIN_EXE_tauscope"))
+        .current_dir(folder.path())
+        .args(["sweep", "log.csv"])
+        .args(options)
+        .output()
+        .unwrap()
+}
+
+/// A log of a joint that follows its input `delay` samples late, where the level is not 0, and
+/// `stop` samples late where it is.
+fn follower(period: f64, level: impl Fn(i32) -> f64, delay: i32, stop: i32) -> String {
+    use std::fmt::Write as _;
+    let mut text = "time_s,j.input,j.output\n".to_owned();
+    let (mut angle, mut speed) = (0.0, 0.0);
+    for k in 0..1500 {
+        for late in [delay, stop] {
+            let then = level((k - late).max(0));
+            if (then == 0.0) == (late == stop) {
+                speed = then;
+            }
+        }
+        angle += 10.0 * period * speed;
+        let noise = 0.01 * (f64::from(k) * 12.9898).sin();
+        writeln!(text, "{:.4},{},{:.5}", f64::from(k) * period, level(k), angle + noise).unwrap();
+    }
+    text
+}
+
+#[test]
+fn kinds_of_steps_that_differ_have_medians_of_their_own() {
+    let strokes = follower(0.01, |k| f64::from(k / 100 % 2), 30, 10);
+    let options = ["--method", "two-line,hinge", "--alpha", "10", "--beta", "2,5", "-q"];
+    let output = sweep_of(&strokes, &options);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(text.contains("j, start") && text.contains("j, stop"), "{text}");
+    let row = text.lines().find(|line| line.contains("hinge  ")).unwrap();
+    let seconds: Vec<f64> = row.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    assert!(seconds[0] > 0.25 && (0.05..0.15).contains(&seconds[2]), "{text}");
+}
+
+#[test]
+fn an_input_that_moves_all_the_time_has_nothing_to_sweep() {
+    let moving =
+        follower(0.01, |k| (f64::from(k) * 0.01).sin() + (f64::from(k) * 0.037).sin(), 12, 12);
+    let output = sweep_of(&moving, &[]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{said}");
+    assert!(said.contains("moves all the time") && said.contains("`tauscope estimate`"), "{said}");
+}
+
+#[test]
+fn low_passes_that_do_not_fit_the_rate_are_left_out_unasked() {
+    let slow = follower(0.1, |k| f64::from(k / 25 % 3), 4, 4);
+    let output = sweep_of(&slow, &["--method", "two-line", "--alpha", "5", "--beta", "1,2"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(said.contains("the low-pass of 5 and 10 Hz is left out"), "{said}");
+    assert!(!String::from_utf8_lossy(&output.stdout).contains("10 Hz"));
+    // Who asks for one is told that it does not fit.
+    let asked = sweep_of(&slow, &["--method", "two-line", "--passband", "5,none"]);
+    assert_eq!(asked.status.code(), Some(1));
+    // A lag of less than a sample is none that other methods take for delay.
+    let all = sweep_of(&slow, &["--alpha", "5", "--beta", "1", "-q"]);
+    assert!(!String::from_utf8_lossy(&all.stdout).contains("take for delay"));
+}

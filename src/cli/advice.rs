@@ -20,6 +20,9 @@ pub(crate) fn advice(error: &(dyn Error + 'static)) -> String {
     let text = match error.downcast_ref::<EstimateError>() {
         Some(EstimateError::Filter(error)) => on_filter(error),
         Some(EstimateError::TooFewSamples { .. }) => "; choose a smaller `--beta`",
+        Some(EstimateError::Continuous) => {
+            "; `tauscope estimate` gives it, and `--input steps` takes each change for a step"
+        }
         _ => "",
     };
     let text = match error.downcast_ref::<AddError>() {
@@ -41,6 +44,7 @@ fn on_reading(error: &ReadError) -> String {
         ReadError::NoTime { .. } => {
             "; name one with `--time COLUMN`, or give the period with `--sample-period SECONDS`"
         }
+        ReadError::NotATime { .. } => " and give `--sample-period SECONDS`",
         ReadError::Missing { .. } => {
             "; `--fill SECONDS` fills gaps up to that length and splits the trial at longer ones"
         }

@@ -40,6 +40,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::decision::{Decision, Verdict};
+use super::in_seconds::InSeconds;
 use super::interval::FineDelay;
 use super::method::decide_by_broken_lines;
 use super::prepared::Prepared;
@@ -117,7 +118,7 @@ pub fn choose(trials: &[Trial], settings: &Settings, automatic: Automatic) -> (S
     let record = Record::of(trials, settings);
     let grounds = record.grounds();
     if let Some(delay) = grounds.short_delay.filter(|_| automatic.alpha) {
-        chosen.alpha = ceil_to_index(delay).max(1);
+        chosen = chosen.with_alpha(ceil_to_index(delay).max(1).into());
     }
     if automatic.passband {
         let smooths = settings.method.spec().low_pass.is_some();
@@ -125,7 +126,8 @@ pub fn choose(trials: &[Trial], settings: &Settings, automatic: Automatic) -> (S
         chosen.low_pass = if smooths { low_pass() } else { None };
     }
     if automatic.beta && settings.method.spec().has_rows {
-        chosen.beta = if chosen.low_pass.is_some() { 1 } else { record.blur() };
+        let beta = if chosen.low_pass.is_some() { 1 } else { record.blur() };
+        chosen = chosen.with_beta(beta.into());
     }
     (chosen, Chosen { automatic, grounds })
 }
@@ -153,6 +155,10 @@ impl<'a> Record<'a> {
     fn of(trials: &'a [Trial], settings: &Settings) -> Self {
         let hinge = Settings {
             max_delay: settings.max_delay,
+            in_seconds: InSeconds {
+                max_delay: settings.in_seconds.max_delay,
+                ..InSeconds::default()
+            },
             min_step: settings.min_step,
             input: settings.with_input_of(trials).input,
             every_change: settings.every_change,
@@ -160,6 +166,7 @@ impl<'a> Record<'a> {
             ..Settings::of(Method::HINGE)
         };
         let period = trials.first().map(Trial::period);
+        let hinge = period.map_or_else(|| hinge.clone(), |period| hinge.at(period));
         let alike = trials.iter().filter(|trial| Some(trial.period()) == period);
         let mut record = Self {
             outputs: alike.map(Trial::output).collect(),

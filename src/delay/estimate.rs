@@ -59,7 +59,11 @@ impl Estimator {
         let method = implementation(settings.method);
         let lag = (settings.method.spec().scope == Scope::Joint).then(|| {
             let prepared = trials.iter().filter_map(|trial| Prepared::of(trial, &settings).ok());
-            method.shared_lag(&prepared.collect::<Vec<_>>(), &settings)
+            let prepared: Vec<_> = prepared.collect();
+            let period = prepared.first().map(|trial| trial.period);
+            // A lag is looked for in the trials of the first one's period.
+            let settings = period.map_or_else(|| settings.clone(), |period| settings.at(period));
+            method.shared_lag(&prepared, &settings)
         });
         Ok(Self { settings, method, lag: lag.flatten() })
     }
@@ -69,9 +73,10 @@ impl Estimator {
     /// # Errors
     /// [`EstimateError::Filter`] when the filter does not fit this trial.
     pub fn estimate(&self, trial: &Trial) -> Result<TrialEstimate, EstimateError> {
-        let prepared = Prepared::of(trial, &self.settings)?;
-        let decisions = self.method.decide(&prepared, self.lag.as_ref(), &self.settings);
-        let profile = DelayProfile::of(&decisions, trial.len(), self.settings.interpolation);
+        let settings = self.settings.at(trial.period());
+        let prepared = Prepared::of(trial, &settings)?;
+        let decisions = self.method.decide(&prepared, self.lag.as_ref(), &settings);
+        let profile = DelayProfile::of(&decisions, trial.len(), settings.interpolation);
         let (lag, smoothed) = (self.lag.clone(), prepared.smoothed);
         Ok(TrialEstimate { label: trial.label().to_owned(), smoothed, decisions, profile, lag })
     }

@@ -49,6 +49,7 @@ pub fn final_part(
     estimate: &TrialEstimate,
     settings: &Settings,
 ) -> Result<Option<(Trial, TrialEstimate)>, EstimateError> {
+    let settings = &settings.at(trial.period());
     let held_back = held_back(trial, settings)?;
     let samples = trial.len().saturating_sub(held_back);
     let Some(beginning) = trial.beginning(samples) else { return Ok(None) };

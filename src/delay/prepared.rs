@@ -27,7 +27,7 @@ impl<'a> Prepared<'a> {
             InputKind::Auto | InputKind::Steps => trial_steps(trial, settings),
         };
         let (raw, period) = (trial.output(), trial.period());
-        let motions = motions(raw, &steps, period, settings);
+        let motions = motions(raw, &steps, period, &settings.at(period));
         Ok(Self { raw, smoothed, period, steps, motions })
     }
 

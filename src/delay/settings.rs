@@ -1,5 +1,6 @@
 //! What is asked for: a method, and its settings.
 
+use super::in_seconds::InSeconds;
 use super::input_motion::InputKind;
 use super::spec::Method;
 use crate::experiment::Trial;
@@ -93,6 +94,9 @@ pub struct Settings {
     pub confidence: Option<f64>,
     /// How often an interval of a delay is to hold the true one.
     pub interval: f64,
+    /// Those of the lengths above that were given in seconds, which then count: how many samples
+    /// they are depends on the trial, see [`Settings::at`].
+    pub in_seconds: InSeconds,
 }
 
 /// How sure a reaction must be, for methods that test it unasked; chosen: noise then passes
@@ -123,6 +127,7 @@ impl Settings {
             interpolation: Interpolation::Hold,
             confidence: spec.confidence,
             interval: 0.95,
+            in_seconds: InSeconds::default(),
         }
     }
 }
@@ -214,6 +219,7 @@ impl Settings {
             ("the largest squared error", self.max_sse),
             ("the smallest step of the input", Some(self.min_step)),
         ];
+        let thresholds = thresholds.into_iter().chain(self.in_seconds.named());
         let mut given = thresholds.into_iter().filter_map(|(name, value)| Some((name, value?)));
         match given.find(|(_, value)| value.is_nan() || *value < 0.0) {
             Some((name, value)) => Err(SettingsError::Threshold { name, value }),

@@ -106,6 +106,15 @@ pub struct KindDelay {
     pub rejected: Option<(Condition, usize)>,
 }
 
+impl KindDelay {
+    /// Whether the medians of `kinds` differ by more than is uncertain, so that they have no
+    /// common one.
+    pub fn differ(kinds: &[Self]) -> bool {
+        let typical = || kinds.iter().filter_map(|kind| kind.typical?.interval_s);
+        typical().any(|(low, _)| typical().any(|(_, high)| high < low))
+    }
+}
+
 /// A step, its levels put together with those that are the same.
 #[derive(Clone, Copy, Debug)]
 struct KindStep {

@@ -25,6 +25,12 @@ pub enum EstimateError {
         /// Samples it needs.
         needed: usize,
     },
+    /// The input has no steps whose delays could be varied.
+    #[error(
+        "the input moves all the time: there is one dead time over the record, on which none of \
+         these settings has an influence"
+    )]
+    Continuous,
 }
 
 /// The delays of one trial of one joint, with all evidence.

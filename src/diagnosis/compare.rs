@@ -113,13 +113,13 @@ pub(crate) fn lack_of(record: &FitRecord<'_>, fit: &Assessment) -> Option<LackOf
     let residuals = |part| record.cut(&fit.evaluation.residuals, part);
     let mut everywhere = residuals(Part::Training);
     everywhere.extend(residuals(Part::Validation));
-    lack_of_fit(&TestColumns {
+    let columns = TestColumns {
         residuals: residuals(Part::Training),
         own: sensitivities(record, fit),
-        shapes: shapes(record, &fit.evaluation, Part::Training),
         size: ResidualSize::of(record, &fit.evaluation, floor),
         local: local_misfit(&clipped(&everywhere), floor),
-    })
+    };
+    lack_of_fit(&columns, || shapes(record, &fit.evaluation, Part::Training))
 }
 
 /// The training part of each trial.

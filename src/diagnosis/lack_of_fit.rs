@@ -66,35 +66,40 @@ pub const SIGNIFICANCE: f64 = 0.001;
 /// however significant: without it the error would be 1 % less.
 pub const NEGLIGIBLE: f64 = 0.02;
 
-/// The columns of the test, one window below the other.
+/// A column of the test: window, sample.
+pub type Column = Vec<Vec<f64>>;
+
+/// The columns of the test, one window below the other, but for the shapes.
 #[derive(Clone, Debug, Default)]
 pub struct TestColumns {
     /// The residual of the model, per window.
-    pub residuals: Vec<Vec<f64>>,
-    /// Derivatives of the residual to the model's own parameters: column, window, sample.
-    pub own: Vec<Vec<Vec<f64>>>,
-    /// What a missing effect could add: column, window, sample.
-    pub shapes: Vec<Vec<Vec<f64>>>,
+    pub residuals: Column,
+    /// Derivatives of the residual to the model's own parameters.
+    pub own: Vec<Column>,
     /// How large the residuals are.
     pub size: ResidualSize,
     /// Where they stand out most.
     pub local: Option<LocalMisfit>,
 }
 
-/// Tests whether `columns.shapes` explain more of the residual than noise would.
+/// Tests whether `shapes`, what a missing effect could add, explain more of the residual than
+/// noise would. They are made once for each noise: there are dozens of them, and two sets would
+/// be most of the memory that a long record takes.
 ///
 /// `None` when there are too few samples.
-pub fn lack_of_fit(columns: &TestColumns) -> Option<LackOfFit> {
-    let own: Vec<&Vec<Vec<f64>>> = columns.own.iter().collect();
-    let all: Vec<&Vec<Vec<f64>>> = own.iter().copied().chain(&columns.shapes).collect();
+pub fn lack_of_fit(columns: &TestColumns, shapes: impl Fn() -> Vec<Column>) -> Option<LackOfFit> {
+    let made = shapes();
+    let count = made.len();
+    let own: Vec<&Column> = columns.own.iter().collect();
+    let all: Vec<&Column> = own.iter().copied().chain(&made).collect();
     let before_shapes = residuals_of(&columns.residuals, &own)?;
     let after_shapes = residuals_of(&columns.residuals, &all)?;
     let [whole, rest] = [&before_shapes, &after_shapes].map(|r| square(r));
     let misfit_share = if whole > 0.0 { (1.0 - rest / whole).max(0.0) } else { 0.0 };
-    let mut judged = vec![test(columns, &NoiseModel::of_centred(&after_shapes))?];
+    let mut judged = vec![test(columns, made, &NoiseModel::of_centred(&after_shapes))?];
     let is_small = columns.size.times_noise.is_none_or(|times| times <= BEYOND_NOISE);
-    if is_small && misfit_share <= most_by_chance(columns) {
-        judged.push(test(columns, &NoiseModel::of_centred(&before_shapes))?);
+    if is_small && misfit_share <= most_by_chance(columns, count) {
+        judged.push(test(columns, shapes(), &NoiseModel::of_centred(&before_shapes))?);
     }
     let (statistic, p_value) = judged.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let by_shapes = p_value < SIGNIFICANCE && misfit_share >= NEGLIGIBLE;
@@ -123,12 +128,12 @@ pub fn lack_of_fit(columns: &TestColumns) -> Option<LackOfFit> {
 ///
 /// So many parameters take `q` of as many independent values as there are: of `n` samples with
 /// the correlation `ρ` that is `n (1 − ρ²) / (1 + ρ²)`.
-fn most_by_chance(columns: &TestColumns) -> f64 {
+fn most_by_chance(columns: &TestColumns, shapes: usize) -> f64 {
     /// Times what is expected: four in ten of a record of two minutes with noise of `ρ` = 0.95,
     /// where the most of a hundred such records was two in ten.
     const TIMES: f64 = 3.0;
     let samples: usize = columns.residuals.iter().map(Vec::len).sum();
-    TIMES * columns.shapes.len() as f64 / independent(samples)
+    TIMES * shapes as f64 / independent(samples)
 }
 
 /// Whether what is held for the noise can be it: noise is no larger than the residual that the
@@ -151,13 +156,14 @@ fn square(windows: &[Vec<f64>]) -> f64 {
 }
 
 /// Statistic and p-value, with the noise given.
-fn test(columns: &TestColumns, noise: &NoiseModel) -> Option<(f64, f64)> {
-    let whiten = |column: &Vec<Vec<f64>>| noise.whitened(column);
+fn test(columns: &TestColumns, shapes: Vec<Column>, noise: &NoiseModel) -> Option<(f64, f64)> {
+    let whiten = |column: &Column| noise.whitened(column);
     let residuals = whiten(&columns.residuals);
-    let own: Vec<_> = columns.own.iter().map(whiten).collect();
-    let shapes: Vec<_> = columns.shapes.iter().map(whiten).collect();
-    let own: Vec<&Vec<Vec<f64>>> = own.iter().collect();
-    let every: Vec<&Vec<Vec<f64>>> = own.iter().copied().chain(&shapes).collect();
+    let own: Vec<Column> = columns.own.iter().map(whiten).collect();
+    // Each shape is given up as soon as it is whitened.
+    let shapes: Vec<Column> = shapes.into_iter().map(|shape| whiten(&shape)).collect();
+    let own: Vec<&Column> = own.iter().collect();
+    let every: Vec<&Column> = own.iter().copied().chain(&shapes).collect();
     let samples: usize = residuals.iter().map(Vec::len).sum();
     let restricted = Regression::of(&residuals, &own);
     let full = Regression::of(&residuals, &every);
@@ -175,7 +181,7 @@ mod tests {
     use crate::numerics::testing::noise;
 
     /// Slow shapes, as integrated velocities are.
-    fn shapes(count: usize) -> Vec<Vec<Vec<f64>>> {
+    fn shapes(count: usize) -> Vec<Column> {
         let wave = |cycles: f64| {
             (0..count)
                 .map(|k| (k as f64 * cycles / count as f64 * std::f64::consts::TAU).sin())
@@ -186,9 +192,8 @@ mod tests {
 
     fn p_value(residuals: Vec<f64>) -> f64 {
         let shapes = shapes(residuals.len());
-        lack_of_fit(&TestColumns { residuals: vec![residuals], shapes, ..TestColumns::default() })
-            .unwrap()
-            .p_value
+        let columns = TestColumns { residuals: vec![residuals], ..TestColumns::default() };
+        lack_of_fit(&columns, || shapes.clone()).unwrap().p_value
     }
 
     #[test]
@@ -222,7 +227,8 @@ mod tests {
             let mut size = ResidualSize::default();
             size.times_noise = Some(0.98);
             let (shapes, residuals) = (shapes(residuals.len()), vec![residuals]);
-            lack_of_fit(&TestColumns { residuals, shapes, size, ..TestColumns::default() }).unwrap()
+            let columns = TestColumns { residuals, size, ..TestColumns::default() };
+            lack_of_fit(&columns, || shapes.clone()).unwrap()
         };
         let rung = |(k, r): (usize, f64)| {
             20.0 * (k as f64 * 2.1 / 4000.0 * std::f64::consts::TAU).sin() + r

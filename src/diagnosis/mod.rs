@@ -26,7 +26,7 @@ pub use compare::{Comparison, compare, compare_unfitted};
 pub(crate) use compare::{compare_knowing, floor_of, lack_of};
 pub use error::ErrorFigures;
 pub use input_correlation::{CrossCorrelation, InputCorrelation, input_correlation};
-pub use lack_of_fit::{LackOfFit, NEGLIGIBLE, SIGNIFICANCE, TestColumns, lack_of_fit};
+pub use lack_of_fit::{Column, LackOfFit, NEGLIGIBLE, SIGNIFICANCE, TestColumns, lack_of_fit};
 pub use lags::{CONFIDENCE, TrialSignals};
 pub use local_misfit::LocalMisfit;
 pub use noise::{noise_floor, sensor_noise};

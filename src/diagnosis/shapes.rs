@@ -1,5 +1,7 @@
 //! What a missing effect could add to the output of an integrating joint.
 
+use std::mem::take;
+
 use crate::fit::{Evaluation, FitRecord, Part, Window};
 use crate::model::Simulated;
 
@@ -25,7 +27,7 @@ pub(super) fn shapes(
     part: Part,
 ) -> Vec<Vec<Vec<f64>>> {
     let scales = Scales::of(record, evaluation);
-    let windows: Vec<Vec<Vec<f64>>> = record
+    let mut windows: Vec<Vec<Vec<f64>>> = record
         .part(part)
         .filter_map(|window| {
             Some(of_window(record, evaluation.simulated.get(window.trial)?, window, &scales))
@@ -33,7 +35,10 @@ pub(super) fn shapes(
         .collect();
     let count = windows.first().map_or(0, Vec::len);
     let column = |index: usize| {
-        windows.iter().map(|shapes| shapes.get(index).cloned().unwrap_or_default()).collect()
+        windows
+            .iter_mut()
+            .map(|shapes| shapes.get_mut(index).map(take).unwrap_or_default())
+            .collect()
     };
     (0..count).map(column).collect()
 }

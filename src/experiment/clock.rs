@@ -90,6 +90,8 @@ pub(super) struct Clock {
     pub(super) twice: Option<(usize, usize)>,
     /// Rows that came out of order: how many, and the first.
     pub(super) disordered: Option<(usize, usize)>,
+    /// Rows during which the clock stood still before it jumped: how many, and the first.
+    pub(super) frozen: Option<(usize, usize)>,
     /// Rows that stand alone between two gaps, and are left out.
     pub(super) alone: usize,
 }
@@ -107,8 +109,17 @@ impl Clock {
         let mut found = Found::default();
         let (mut runs, mut alone) = (Vec::new(), 0);
         let longest = fill_s.unwrap_or_else(|| filled_s(typical.seconds)) / typical.seconds;
-        for (index, rows) in between_restarts(times, typical.seconds)?.into_iter().enumerate() {
+        let parts = between_restarts(times, typical.seconds).or_else(|fault| {
+            // Rows of one even clock, each of which has a time of its own, can be sorted.
+            if is_even_once_sorted(times) {
+                Ok(vec![(0..times.len()).collect()])
+            } else {
+                Err(fault)
+            }
+        })?;
+        for (index, rows) in parts.into_iter().enumerate() {
             let rows = found.in_order(rows, times);
+            let rows = found.without_frozen(rows, times, &typical);
             let rows = found.once(rows, times, &typical);
             let mut parts = parted(&rows, times, &typical, longest.max(1.0));
             if let Some(first) = parts.first_mut() {
@@ -130,6 +141,7 @@ impl Clock {
             drift: deviations.drift,
             twice: found.twice,
             disordered: found.disordered,
+            frozen: found.frozen,
             alone,
         })
     }
@@ -181,6 +193,47 @@ fn typical_period(times: &[f64]) -> Result<Typical, ClockFault> {
     Ok(Typical { seconds, grain_s: if coarse { grain } else { 0.0 } })
 }
 
+/// Whether the stamps, sorted, are those of one clock without a gap, and none is there twice.
+fn is_even_once_sorted(times: &[f64]) -> bool {
+    let mut sorted = times.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let steps: Vec<f64> = sorted.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let is_usual = |middle: f64| steps.iter().all(|step| (0.5..JUMP).contains(&(step / middle)));
+    median(&steps).is_some_and(is_usual)
+}
+
+/// The rows at which the sampling goes over to another rate for good: the first of them, the
+/// period before and behind it, and how many there are.
+pub(super) fn rate_changes(run: &Run, times: &[f64]) -> Option<(usize, [f64; 2], usize)> {
+    /// Steps on either side whose medians are compared.
+    const STEPS: usize = 20;
+    /// Part by which they must differ.
+    const OTHER: f64 = 0.1;
+    let stamps: Vec<f64> = run.rows.iter().filter_map(|row| times.get(*row).copied()).collect();
+    let steps: Vec<f64> = stamps.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let mut found: Option<(usize, [f64; 2], usize)> = None;
+    let mut index = STEPS;
+    while let (Some(before), Some(behind)) =
+        (steps.get(index.saturating_sub(STEPS)..index), steps.get(index..index + STEPS))
+    {
+        index += 1;
+        let Some((before, behind)) = median(before).zip(median(behind)) else { continue };
+        if (behind / before - 1.0).abs() <= OTHER {
+            continue;
+        }
+        let is_new = |step: &&f64| (**step - behind).abs() < (**step - before).abs();
+        let later = steps.iter().skip(index - 1).take_while(|step| !is_new(step)).count();
+        let first = run.rows.get(index + later).copied().unwrap_or_default();
+        // Behind the change, and not across it.
+        let own = steps.iter().skip(index - 1 + later).take(STEPS).copied();
+        let behind = median(&own.collect::<Vec<_>>()).unwrap_or(behind);
+        let (first, periods, count) = found.unwrap_or((first, [before, behind], 0));
+        found = Some((first, periods, count + 1));
+        index += later + STEPS;
+    }
+    found
+}
+
 /// Runs of rows between the places where time jumps back for good.
 fn between_restarts(times: &[f64], period: f64) -> Result<Vec<Vec<usize>>, ClockFault> {
     let at = |row: usize| times.get(row).copied();
@@ -209,6 +262,7 @@ fn between_restarts(times: &[f64], period: f64) -> Result<Vec<Vec<usize>>, Clock
 struct Found {
     twice: Option<(usize, usize)>,
     disordered: Option<(usize, usize)>,
+    frozen: Option<(usize, usize)>,
 }
 
 fn count(found: &mut Option<(usize, usize)>, row: usize) {
@@ -225,6 +279,33 @@ impl Found {
         }
         rows.sort_by(|a, b| time(*a).total_cmp(&time(*b)));
         rows
+    }
+
+    /// `rows` without those at which the clock stood still: many of one stamp, as usual before
+    /// the first of them, and with a jump behind the last that makes up for them. When each of
+    /// them was measured is not known.
+    fn without_frozen(&mut self, rows: Vec<usize>, times: &[f64], typical: &Typical) -> Vec<usize> {
+        if typical.grain_s > 0.0 {
+            return rows;
+        }
+        let time = |row: &usize| times.get(*row).copied().unwrap_or(f64::NAN);
+        #[expect(clippy::float_cmp, reason = "whether a stamp is repeated")]
+        let groups: Vec<&[usize]> = rows.chunk_by(|a, b| time(a) == time(b)).collect();
+        let at = |index: usize| Some(time(groups.get(index)?.first()?));
+        let step = |from: Option<usize>, to: usize| Some((at(to)? - at(from?)?) / typical.seconds);
+        let mut kept = Vec::with_capacity(rows.len());
+        for (index, group) in groups.iter().enumerate() {
+            let makes_up = |step: f64| step > 0.5 * group.len() as f64;
+            let is_frozen = group.len() > LOOK_AHEAD
+                && step(index.checked_sub(1), index).is_none_or(|step| step <= JUMP)
+                && step(Some(index), index + 1).is_none_or(makes_up);
+            let (first, others) = group.split_at(if is_frozen { 1 } else { group.len() });
+            kept.extend_from_slice(first);
+            for row in others {
+                count(&mut self.frozen, *row);
+            }
+        }
+        kept
     }
 
     /// `rows` without those that are there twice: a row at the time of the one before it,

@@ -21,6 +21,10 @@ pub struct ColumnMap {
     pub sample_period_s: Option<f64>,
     /// Columns of each joint. None: every joint with native names.
     pub joints: Vec<JointColumns>,
+    /// Settings of its own that a joint has, as a person writes them: by the joint's name, each
+    /// with its value.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub estimate: BTreeMap<String, BTreeMap<String, String>>,
 }
 
 /// The columns of one joint.
@@ -55,7 +59,8 @@ pub enum ColumnMapError {
     /// The mapping file is not the TOML that is expected.
     #[error(
         "{}: not a column mapping; it holds `time`, `trial`, `sample_period` and a table \
-         [joint.NAME] with `input` and `output` for each joint", path.display()
+         [joint.NAME] with `input` and `output` for each joint, whose own settings are in \
+         [joint.NAME.estimate]", path.display()
     )]
     Parse {
         /// The mapping file.
@@ -116,7 +121,11 @@ impl ColumnMap {
     /// input_unit = "%"
     /// output_unit = "deg"
     /// covariates = { pilot = "pilot_pos_bar" }
+    /// [joint.arm.estimate]         # settings of its own
+    /// max_delay = "0.5s"
     /// ```
+    ///
+    /// A joint whose columns have native names needs neither `input` nor `output`.
     ///
     /// # Errors
     /// [`ColumnMapError::Read`] and [`ColumnMapError::Parse`], with the file's name.
@@ -132,19 +141,32 @@ impl ColumnMap {
 }
 
 impl ColumnMap {
+    /// The columns that it names.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        let joints = self.joints.iter().flat_map(|joint| [&joint.input, &joint.output]);
+        self.time.iter().chain(&self.trial).chain(joints).map(String::as_str)
+    }
+
     /// The mapping as the text of a file, which [`Self::read`] reads.
     pub fn to_toml(&self) -> String {
         let joint = |joint: &JointColumns| {
             let JointColumns { name, input, output, input_unit, output_unit, covariates } =
                 joint.clone();
             let covariates = covariates.into_iter().collect();
-            (name, MapJoint { input, output, input_unit, output_unit, covariates })
+            let (input, output) = (Some(input), Some(output));
+            let estimate = BTreeMap::new();
+            (name, MapJoint { input, output, input_unit, output_unit, covariates, estimate })
         };
+        let mut joints: BTreeMap<String, MapJoint> = self.joints.iter().map(joint).collect();
+        for (name, settings) in &self.estimate {
+            let settings = settings.iter().map(|(name, text)| (name.clone(), text.clone().into()));
+            joints.entry(name.clone()).or_default().estimate = settings.collect();
+        }
         let file = MapFile {
             time: self.time.clone(),
             trial: self.trial.clone(),
             sample_period: self.sample_period_s,
-            joint: self.joints.iter().map(joint).collect(),
+            joint: joints,
         };
         // A structure of texts and numbers is always written.
         toml::to_string(&file).unwrap_or_default()
@@ -164,35 +186,70 @@ struct MapFile {
     joint: BTreeMap<String, MapJoint>,
 }
 
-#[derive(Deserialize, Serialize)]
+#[derive(Default, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct MapJoint {
-    input: String,
-    output: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    input: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    output: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     input_unit: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     output_unit: Option<String>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     covariates: BTreeMap<String, String>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    estimate: BTreeMap<String, toml::Value>,
+}
+
+impl MapJoint {
+    /// Whether it says nothing of columns, which then have native names.
+    fn is_native(&self) -> bool {
+        let Self { input, output, input_unit, output_unit, covariates, estimate: _ } = self;
+        let named = [input, output, input_unit, output_unit];
+        covariates.is_empty() && named.into_iter().all(Option::is_none)
+    }
+}
+
+/// A value of a setting as it is typed: `-40,40` of `[-40, 40]`.
+fn typed(value: toml::Value) -> String {
+    match value {
+        toml::Value::String(text) => text,
+        toml::Value::Array(values) => values.into_iter().map(typed).collect::<Vec<_>>().join(","),
+        other => other.to_string(),
+    }
 }
 
 impl From<MapFile> for ColumnMap {
     fn from(file: MapFile) -> Self {
-        let joints = file.joint.into_iter().map(|(name, joint)| JointColumns {
-            name,
-            input: joint.input,
-            output: joint.output,
-            input_unit: joint.input_unit,
-            output_unit: joint.output_unit,
-            covariates: joint.covariates.into_iter().collect(),
-        });
-        Self {
+        let mut map = Self {
             time: file.time,
             trial: file.trial,
             sample_period_s: file.sample_period,
-            joints: joints.collect(),
+            ..Self::default()
+        };
+        let only_settings = file.joint.values().all(MapJoint::is_native);
+        for (name, mut joint) in file.joint {
+            let settings = std::mem::take(&mut joint.estimate);
+            if !settings.is_empty() {
+                let settings = settings.into_iter().map(|(name, value)| (name, typed(value)));
+                map.estimate.insert(name.clone(), settings.collect());
+            }
+            if only_settings {
+                continue;
+            }
+            let native = |kind: &str| format!("{name}.{kind}");
+            map.joints.push(JointColumns {
+                input: joint.input.unwrap_or_else(|| native("input")),
+                output: joint.output.unwrap_or_else(|| native("output")),
+                name,
+                input_unit: joint.input_unit,
+                output_unit: joint.output_unit,
+                covariates: joint.covariates.into_iter().collect(),
+            });
         }
+        map
     }
 }
 
@@ -220,6 +277,24 @@ mod tests {
         assert_eq!(map.time.as_deref(), Some("t_s"));
         assert_eq!(map.joints[0].output_unit.as_deref(), Some("deg"));
         assert_eq!(map.joints[0].covariates, [("pilot".to_owned(), "p_bar".to_owned())]);
+    }
+
+    #[test]
+    fn joints_may_have_settings_of_their_own() {
+        let text = "[joint.arm.estimate]\nmax_delay = '0.5s'\noutput_limits = [-40, 40.5]\n";
+        let map = ColumnMap::from(toml::from_str::<MapFile>(text).unwrap());
+        let texts: Vec<_> = map.estimate["arm"].values().map(String::as_str).collect();
+        assert_eq!((map.joints.len(), texts), (0, vec!["0.5s", "-40,40.5"]));
+        let again = ColumnMap::from(toml::from_str::<MapFile>(&map.to_toml()).unwrap());
+        assert_eq!(again, map);
+        // Beside columns of one joint, the others are known by their native names.
+        let text = format!("[joint.boom]\ninput = 'u'\noutput = 'y'\n{text}");
+        let map = ColumnMap::from(toml::from_str::<MapFile>(&text).unwrap());
+        let expected = [
+            JointColumns::new("arm", "arm.input", "arm.output"),
+            JointColumns::new("boom", "u", "y"),
+        ];
+        assert_eq!(map.joints, expected);
     }
 
     #[test]

@@ -256,6 +256,32 @@ pub enum ReadError {
         /// What the cell holds.
         text: String,
     },
+    /// A cell holds text where a time belongs.
+    #[error(
+        "{}, row {row}, column `{column}`: `{}` is neither a number nor a date and time of ISO \
+         8601, as in 2026-03-01T09:59:50.125; write the times so, or leave them out", path.display(), shown(text)
+    )]
+    NotATime {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file.
+        row: u64,
+        /// The column.
+        column: String,
+        /// What the cell holds.
+        text: String,
+    },
+    /// The first row holds numbers where names belong.
+    #[error(
+        "{}{}: the first row holds numbers, and no names of columns; write a header above it, as \
+         in `time_s,boom.input,boom.output`", path.display(), header(*row)
+    )]
+    NoHeader {
+        /// The log.
+        path: PathBuf,
+        /// Line of the row.
+        row: u64,
+    },
     /// A cell is infinite.
     #[error("{}, row {row}, column `{column}`: the value is infinite; remove the row or mend the value", path.display())]
     Infinite {
@@ -281,6 +307,20 @@ pub enum ReadError {
         column: String,
         /// What the cell holds.
         value: f64,
+    },
+    /// The numbers of a signal are so small that their squares cannot be computed with.
+    #[error(
+        "{}, column `{column}`: its largest number, {largest:e}, is below what double precision \
+         can square; write it in a smaller unit",
+        path.display()
+    )]
+    BelowPrecision {
+        /// The log.
+        path: PathBuf,
+        /// The column.
+        column: String,
+        /// The largest magnitude in it.
+        largest: f64,
     },
     /// A cell is empty or NaN.
     #[error(
@@ -431,6 +471,8 @@ impl ReadError {
             | Self::NoJoints { row, .. }
             | Self::NoTime { row, .. }
             | Self::NotANumber { row, .. }
+            | Self::NotATime { row, .. }
+            | Self::NoHeader { row, .. }
             | Self::Infinite { row, .. }
             | Self::BeyondPrecision { row, .. }
             | Self::Missing { row, .. }
@@ -452,6 +494,7 @@ impl ReadError {
             | Self::TimeUnit { column, .. }
             | Self::MissingColumn { column, .. }
             | Self::NotANumber { column, .. }
+            | Self::NotATime { column, .. }
             | Self::Infinite { column, .. }
             | Self::BeyondPrecision { column, .. }
             | Self::Missing { column, .. }

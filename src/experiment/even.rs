@@ -1,6 +1,6 @@
 //! The grids of a log whose clock is not uniform, and what its reader should know of them.
 
-use super::clock::{Clock, ClockFault, Evenness, Run, filled_s};
+use super::clock::{Clock, ClockFault, Evenness, Run, filled_s, rate_changes};
 use super::sampling::{Fault, Grid, Part, Repair, is_uniform};
 use crate::units::SamplePeriod;
 
@@ -36,7 +36,8 @@ pub(super) fn grids(
         grids.push(Grid::of_parts(period, parts));
     }
     let uniform: Vec<bool> = trials.iter().map(|times| is_uniform(times)).collect();
-    let notes = Findings { clocks: &clocks, periods: &periods, uniform: &uniform, number, repair };
+    let notes =
+        Findings { clocks: &clocks, trials, periods: &periods, uniform: &uniform, number, repair };
     Ok((grids, notes.lines()))
 }
 
@@ -142,6 +143,8 @@ fn part(
 /// What was found in the clocks of a log.
 struct Findings<'a> {
     clocks: &'a [Clock],
+    /// The times of the rows of each trial.
+    trials: &'a [&'a [f64]],
     periods: &'a [f64],
     /// Which of them are uniform, so that there is nothing to say of them.
     uniform: &'a [bool],
@@ -161,6 +164,8 @@ impl Findings<'_> {
         };
         lines.extend(of(|clock| clock.twice, "there twice and left out once"));
         lines.extend(of(|clock| clock.disordered, "out of order and sorted by time"));
+        let still = "stamped while the clock stood still, and left out: their times are not known";
+        lines.extend(of(|clock| clock.frozen, still));
         lines.extend(self.on_restarts());
         let alone: usize = self.clocks.iter().map(|clock| clock.alone).sum();
         if alone > 0 {
@@ -212,6 +217,14 @@ impl Findings<'_> {
                 "{whose}the times are rounded to {to}: samples are placed evenly, {grid} apart"
             );
         }
+        let what = if self.repair.resample.is_none() && evenness == Evenness::Jitters {
+            "samples are placed on a grid of"
+        } else {
+            "samples are interpolated, the input held, on a grid of"
+        };
+        if let Some(changes) = self.on_rates(members) {
+            return format!("{whose}{changes}: {what} {}", duration(grid));
+        }
         let mean = duration(mean_period(&clocks));
         let squares = clocks.iter().map(|clock| clock.jitter * clock.jitter).sum::<f64>();
         let deviation = 100.0 * (squares / clocks.len() as f64).sqrt();
@@ -226,11 +239,6 @@ impl Findings<'_> {
         } else {
             String::new()
         };
-        let what = if self.repair.resample.is_none() && evenness == Evenness::Jitters {
-            "samples are placed on a grid of"
-        } else {
-            "samples are interpolated, the input held, on a grid of"
-        };
         format!(
             "{whose}the clock jitters by {} % of its period of {mean} (standard deviation), \
              largest {} % at row {row}{drift}: {what} {}",
@@ -238,6 +246,31 @@ impl Findings<'_> {
             two_digits(size),
             duration(grid)
         )
+    }
+
+    /// Where clocks that do not jitter go over to other rates.
+    fn on_rates(&self, members: &[usize]) -> Option<String> {
+        /// Jitter, in periods, below which a clock is one of several rates.
+        const STEADY: f64 = 0.02;
+        let mut found: Option<(u64, [f64; 2], usize)> = None;
+        for &trial in members {
+            let (clock, times) = (self.clocks.get(trial)?, self.trials.get(trial)?);
+            let is_steady = clock.evenness == Evenness::Uneven && clock.jitter < STEADY;
+            for run in clock.runs.iter().filter(|_| is_steady) {
+                let Some((row, periods, count)) = rate_changes(run, times) else { continue };
+                let (first, periods, before) =
+                    found.unwrap_or(((self.number)(trial, row), periods, 0));
+                found = Some((first, periods, before + count));
+            }
+        }
+        let (row, [before, behind], count) = found?;
+        let times =
+            if count == 1 { String::new() } else { format!(" and {} times more", count - 1) };
+        let (before, behind) = (duration(before), duration(behind));
+        Some(format!(
+            "the sample rate changes at row {row}, from a sample per {before} to one per \
+             {behind}{times}"
+        ))
     }
 
     fn on_gaps(&self) -> Option<String> {

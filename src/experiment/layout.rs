@@ -104,6 +104,9 @@ impl Layout {
         period: Option<SamplePeriod>,
     ) -> Result<Self, ReadError> {
         let columns = Columns::of(head);
+        if head.is_of_numbers() && !map.names().any(|name| columns.find(name).is_ok()) {
+            return Err(ReadError::NoHeader { path: head.path.clone(), row: head.header_row });
+        }
         let trial = match map.trial.as_deref() {
             Some(NO_TRIAL) => None,
             Some(name) => Some(columns.find(name)?),
@@ -332,6 +335,8 @@ struct Columns<'a> {
     head: &'a Head,
     by_text: HashMap<&'a str, Named>,
     by_name: HashMap<&'a str, Named>,
+    /// By their names without the units that these end in.
+    by_bare_name: HashMap<&'a str, Named>,
 }
 
 /// The columns that share a name.
@@ -343,22 +348,30 @@ enum Named {
 
 impl<'a> Columns<'a> {
     fn of(head: &'a Head) -> Self {
-        let named = |of: fn(&Header) -> &str| {
+        let named = |of: fn(&Header) -> Option<&str>| {
             let mut columns = HashMap::new();
             for (index, header) in head.headers.iter().enumerate() {
+                let Some(name) = of(header) else { continue };
                 let several = |named: &mut Named| *named = Named::Several;
-                columns.entry(of(header)).and_modify(several).or_insert(Named::One(index));
+                columns.entry(name).and_modify(several).or_insert(Named::One(index));
             }
             columns
         };
-        Self { head, by_text: named(|header| &header.text), by_name: named(|header| &header.name) }
+        Self {
+            head,
+            by_text: named(|header| Some(&header.text)),
+            by_name: named(|header| Some(&header.name)),
+            by_bare_name: named(|header| unit::without(&header.name)),
+        }
     }
 
-    /// The column whose whole header is `wanted`, else the one whose name it is.
+    /// The column whose whole header is `wanted`, else the one whose name it is, else the one
+    /// whose name it is but for a unit at its end.
     fn find(&self, wanted: &str) -> Result<usize, ReadError> {
         let head = self.head;
         let (path, row, column) = (head.path.clone(), head.header_row, wanted.to_owned());
-        match self.by_text.get(wanted).or_else(|| self.by_name.get(wanted)) {
+        let named = self.by_text.get(wanted).or_else(|| self.by_name.get(wanted));
+        match named.or_else(|| self.by_bare_name.get(wanted)) {
             Some(Named::One(index)) => Ok(*index),
             Some(Named::Several) => Err(ReadError::DuplicateColumn { path, row, column }),
             None => {

@@ -1,5 +1,7 @@
 //! The numbers of a log as joints: cells checked, trials cut and put on a uniform grid.
 
+use std::ops::Range;
+
 use super::error::ReadError;
 use super::even;
 use super::joint::{Joint, Signal, Trial};
@@ -137,7 +139,12 @@ impl Log<'_> {
     /// Every row needs a time.
     fn check_times(&self, column: usize, times: &[f64]) -> Result<(), ReadError> {
         if let Some(error) = self.bad_cell(column) {
-            return Err(error);
+            return Err(match error {
+                ReadError::NotANumber { path, row, column, text } => {
+                    ReadError::NotATime { path, row, column, text }
+                }
+                error => error,
+            });
         }
         match times.iter().position(|time| time.is_nan()) {
             Some(index) => Err(ReadError::NoTimeInRow {
@@ -194,11 +201,16 @@ impl Log<'_> {
             covariates: layout.covariates.iter().map(|c| c.signal.clone()).collect::<Vec<Signal>>(),
             trials: Vec::new(),
         };
+        let mut split: Vec<(&TrialRows, Range<usize>)> = Vec::new();
         let size = (2 + joint.covariates.len()) * SAMPLE_SIZE;
         for (rows, grid) in trials.iter().zip(grids) {
             let taken = self.budget.take_values(grid.samples(), size);
             taken.map_err(|error| error.refuse(&self.head.path))?;
             let pieces = grid.pieces(&self.signals(layout, rows));
+            if pieces.len() > 1 {
+                let first = joint.trials.len();
+                split.push((rows, first..first + pieces.len()));
+            }
             let labels = part_labels(&rows.label, pieces.len(), trials);
             for (label, piece) in labels.into_iter().zip(pieces) {
                 joint.trials.push(self.trial(layout, label, grid, piece)?);
@@ -208,7 +220,7 @@ impl Log<'_> {
             let (path, joint) = (self.head.path.clone(), layout.name.clone());
             return Err(ReadError::NoSamples { path, joint });
         }
-        notes.extend(split_notes(&joint, trials));
+        notes.extend(self.split_notes(&joint, layout, &split, time));
         Ok((joint, notes))
     }
 
@@ -297,6 +309,61 @@ impl Log<'_> {
         kinds.into_iter().filter_map(note).collect()
     }
 
+    /// A line on each trial of `joint` that was `split` at gaps, with the places of its parts.
+    fn split_notes(
+        &self,
+        joint: &Joint,
+        layout: &JointLayout,
+        split: &[(&TrialRows, Range<usize>)],
+        time: TimeSource,
+    ) -> Vec<String> {
+        /// Notes of one kind that are all shown.
+        const SHOWN: usize = 3;
+        let name = &joint.name;
+        let times = if split.is_empty() { None } else { self.times(time).ok() };
+        let note = |(trial, places): &(&TrialRows, Range<usize>)| {
+            let parts = joint.trials.get(places.clone()).unwrap_or_default();
+            let gap = times.as_ref().and_then(|it| self.longest_gap(parts, layout, trial, it));
+            let gap = gap.map_or_else(String::new, |(seconds, row)| {
+                let one = if parts.len() == 2 { "of" } else { "the longest of" };
+                format!(" ({one} {} s, before row {row})", to_three_digits(seconds))
+            });
+            let (label, count) = (&trial.label, places.len());
+            format!("joint `{name}`: trial `{label}` is split in {count} at long gaps{gap}")
+        };
+        let mut notes: Vec<String> = split.iter().take(SHOWN).map(note).collect();
+        if let Some(more) = split.len().checked_sub(SHOWN).filter(|more| *more > 0) {
+            notes.push(format!("joint `{name}`: {more} more trials are split at long gaps"));
+        }
+        notes
+    }
+
+    /// The longest time between two `parts` of a trial, and the row behind it.
+    fn longest_gap(
+        &self,
+        parts: &[Trial],
+        layout: &JointLayout,
+        trial: &TrialRows,
+        times: &Clock,
+    ) -> Option<(f64, u64)> {
+        let end = |part: &Trial| part.time_s(part.len());
+        let gaps = parts.windows(2).map(|pair| (pair[1].time_s(1) - end(&pair[0]), &pair[1]));
+        let (gap, behind) =
+            gaps.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(gap, _)| *gap > 0.0)?;
+        let half = 0.5 * behind.period().seconds();
+        let output = &self.column(layout.output.column)?.values;
+        let time = |row: usize| match times {
+            Clock::Stamps(times) => times.get(row).copied(),
+            Clock::Rows(period) => Some((row - trial.start) as f64 * period.seconds()),
+        };
+        let begins = |row: &usize| {
+            let is_measured = output.get(*row).is_some_and(|value| !value.is_nan());
+            is_measured && time(*row).is_some_and(|time| (time - behind.time_s(1)).abs() <= half)
+        };
+        let row = (trial.start..trial.end).find(begins)?;
+        Some((gap, self.row(row)))
+    }
+
     /// Refuses bad cells, and missing ones where they may not be filled.
     fn check_joint(&self, layout: &JointLayout, repair: Repair) -> Result<(), ReadError> {
         let needed = [layout.input.column, layout.output.column];
@@ -310,6 +377,11 @@ impl Log<'_> {
         if let Some(column) = needed.into_iter().find(empty) {
             let (path, column) = (self.head.path.clone(), self.header(column));
             return Err(ReadError::NeverMeasured { path, column });
+        }
+        let too_small = |column: usize| Some((column, self.column(column)?.too_small()?));
+        if let Some((column, largest)) = needed.into_iter().find_map(too_small) {
+            let (path, column) = (self.head.path.clone(), self.header(column));
+            return Err(ReadError::BelowPrecision { path, column, largest });
         }
         if !repair.as_it_stands || repair.fill_s.is_some() {
             return Ok(());
@@ -385,28 +457,12 @@ enum Clock {
     Rows(SamplePeriod),
 }
 
-/// A line on each trial of `joint` that was split at gaps.
-fn split_notes(joint: &Joint, trials: &[TrialRows]) -> Vec<String> {
-    /// Notes of one kind that are all shown.
-    const SHOWN: usize = 3;
-    let parts = |trial: &TrialRows| {
-        let parts = joint.trials.iter().filter(|part| {
-            let rest = part.label().strip_prefix(&trial.label);
-            rest.is_some_and(|rest| rest.starts_with('#'))
-        });
-        let whole = joint.trials.iter().any(|part| part.label() == trial.label);
-        let count = parts.count();
-        let (name, label) = (&joint.name, &trial.label);
-        (!whole && count > 1)
-            .then(|| format!("joint `{name}`: trial `{label}` is split in {count} at long gaps"))
-    };
-    let mut notes: Vec<String> = trials.iter().filter_map(parts).collect();
-    if notes.len() > SHOWN {
-        let more = notes.len() - SHOWN;
-        notes.truncate(SHOWN);
-        notes.push(format!("joint `{}`: {more} more trials are split at long gaps", joint.name));
-    }
-    notes
+/// A length of time to three digits, no longer one shorter: who fills gaps up to it fills this one.
+fn to_three_digits(seconds: f64) -> f64 {
+    let unit = 10_f64.powf(seconds.log10().floor() - 2.0);
+    let digits = (seconds / unit * (1.0 - 1e-9)).ceil();
+    // Division by a whole power of ten rounds as the decimal number does.
+    if unit < 1.0 { digits / unit.recip().round() } else { digits * unit.round() }
 }
 
 /// Names of the parts of a trial that was split: `a#1`, `a#2`, with as many marks as it

@@ -60,6 +60,9 @@ impl Survey {
     pub fn of(path: &Path, memory: MemoryLimit) -> Result<Self, ReadError> {
         let table = format::open(path, Budget::new(memory))?;
         let head = table.head.clone();
+        if head.is_of_numbers() {
+            return Err(ReadError::NoHeader { path: head.path, row: head.header_row });
+        }
         let (time, trial) = (find_time_column(&head), find_trial(&head));
         let numeric: Vec<usize> = (0..head.headers.len()).filter(|i| Some(*i) != trial).collect();
         let clock = head.headers.first().map_or(0, |header| header.clock);
@@ -251,7 +254,16 @@ impl Found<'_> {
             let output = self.follower(inputs[0], &outputs).or(outputs.first().copied());
             joints.extend(output.map(|output| self.joint(None, inputs[0], output)));
         }
+        joints.retain(|joint| !self.is_doubtful(joint));
         if joints.is_empty() { self.by_data(&outputs).into_iter().collect() } else { joints }
+    }
+
+    /// Whether nothing but the little word `in` says that a joint's input is one: neither another
+    /// word of its name, nor an output that follows it.
+    fn is_doubtful(&self, joint: &FoundJoint) -> bool {
+        let mut words = self.words(joint.input);
+        words.retain(|word| word != "in");
+        rank(&words, &INPUT_WORDS).is_none() && self.following(joint.input, joint.output).is_none()
     }
 
     /// Joints whose columns have native names.
@@ -368,6 +380,7 @@ impl Found<'_> {
             trial: trial.map(name),
             sample_period_s: None,
             joints: joints.iter().map(joint).collect(),
+            ..ColumnMap::default()
         };
         Survey { path: self.head.path.clone(), columns, map, open }
     }
@@ -474,6 +487,20 @@ mod tests {
         std::fs::write(&path, "a,b\n1,5\n2,3\n3,9\n4,1\n").unwrap();
         let survey = Survey::of(&path, MemoryLimit::default()).unwrap();
         assert_eq!((survey.map.joints.len(), survey.open.len()), (0, 2), "{survey:#?}");
+    }
+
+    #[test]
+    fn in_at_the_start_of_a_name_is_no_input_that_nothing_follows() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        let mut text = "seq,angle_start_cnt,in_traces\n".to_owned();
+        for k in 0..200 {
+            writeln!(text, "{k},{},{}", k * 7919 % 97, k / 60 % 2).unwrap();
+        }
+        std::fs::write(&path, text).unwrap();
+        let survey = Survey::of(&path, MemoryLimit::default()).unwrap();
+        assert_eq!(survey.map.joints, [], "{survey:#?}");
+        assert_eq!(survey.open.len(), 2);
     }
 
     #[test]

@@ -29,6 +29,8 @@ impl Header {
     pub(super) fn parse(cell: &str) -> Self {
         let text = cell.trim();
         let (name, unit) = unit::parted(text);
+        let ended = unit::of_native(name).filter(|_| unit.is_none());
+        let (name, unit) = ended.map_or((name, unit), |(name, unit)| (name, Some(unit)));
         Self { name: name.to_owned(), unit, text: text.to_owned(), clock: 0 }
     }
 }
@@ -43,6 +45,12 @@ pub(super) struct Head {
 }
 
 impl Head {
+    /// Whether all names are numbers, as in a table without a header.
+    pub(super) fn is_of_numbers(&self) -> bool {
+        let is_number = |header: &Header| header.text.replace(',', ".").parse::<f64>().is_ok();
+        self.headers.len() > 1 && self.headers.iter().all(is_number)
+    }
+
     /// The names of all columns, for messages.
     pub(super) fn names(&self) -> String {
         listed(self.headers.iter().map(|header| header.text.as_str()))
@@ -218,6 +226,12 @@ impl Column {
         column
     }
 
+    /// Its largest number, where that is too small to be squared and is not zero.
+    pub(super) fn too_small(&self) -> Option<f64> {
+        let largest = self.values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        (largest > 0.0 && largest < SMALLEST).then_some(largest)
+    }
+
     /// A column that holds texts.
     pub(super) fn text() -> Self {
         Self { values: Vec::new(), error: Some((0, BadCell::Kind("text".to_owned()))) }
@@ -256,6 +270,10 @@ pub(super) enum BadCell {
 
 /// The largest number of a log: products of squares of ten million of them are still numbers.
 const LARGEST: f64 = 1e75;
+
+/// What the largest number of a signal must reach: products of squares of smaller ones, and of
+/// what is left of them by a model, are lost to zero.
+const SMALLEST: f64 = 1e-75;
 
 /// The labels of rows as they come, as runs.
 #[derive(Debug, Default)]
@@ -297,6 +315,9 @@ mod tests {
         assert_eq!(header.name, "boom.output");
         assert_eq!(header.unit.as_deref(), Some("deg/s"));
         assert_eq!(Header::parse("boom.output").unit, None);
+        let ended = Header::parse("boom.input_pct");
+        assert_eq!((ended.name.as_str(), ended.unit.as_deref()), ("boom.input", Some("%")));
+        assert_eq!(Header::parse("boom.pressure_bar").name, "boom.pressure_bar");
     }
 
     #[test]

@@ -89,13 +89,32 @@ pub(super) fn parted(text: &str) -> (&str, Option<String>) {
 
 /// The unit at the end of a name: `°` of none, `deg` of `angle_deg`, `deg/s` of `v_deg_per_s`.
 pub(super) fn of_signal(name: &str) -> Option<String> {
-    let name = name.replace("_per_", "_");
-    let (rest, last) = name.rsplit_once('_')?;
-    let two = rest.rsplit_once('_').and_then(|(before, first)| {
-        (!before.is_empty()).then(|| shown(&format!("{first}_{last}")))?
+    ended(name).map(|(_, unit)| unit.to_owned())
+}
+
+/// A name without the unit that it ends in, of a signal or of a time.
+pub(super) fn without(name: &str) -> Option<&str> {
+    let time = || of_time(name).and_then(|unit| name.strip_suffix(unit)?.strip_suffix('_'));
+    ended(name).map(|(rest, _)| rest).or_else(time).filter(|rest| !rest.is_empty())
+}
+
+/// Name and unit of the input or the output of a joint: `boom.input_pct`.
+pub(super) fn of_native(name: &str) -> Option<(&str, String)> {
+    let (rest, unit) = ended(name)?;
+    let (_, signal) = rest.rsplit_once('.')?;
+    ["input", "output"].contains(&signal).then(|| (rest, unit.to_owned()))
+}
+
+/// A name in two: before the unit at its end, and the unit.
+fn ended(name: &str) -> Option<(&str, &'static str)> {
+    let units = UNITS.iter().filter_map(|(written, unit)| {
+        let per = written.strip_suffix("_s").map(|unit| format!("{unit}_per_s"));
+        let written = Some((*written).to_owned()).into_iter().chain(per);
+        let rest = |text: String| Some((name.strip_suffix(&text)?.strip_suffix('_')?, *unit));
+        written.into_iter().find_map(rest)
     });
-    let one = (!rest.is_empty()).then(|| shown(last))?;
-    two.or(one).map(str::to_owned)
+    // Of `v_deg_s` the unit is no `s`, and of `v_m_s` no `m_s` less.
+    units.filter(|(rest, _)| !rest.is_empty()).min_by_key(|(rest, _)| rest.len())
 }
 
 /// The unit of time at the end of a name: `ms` of `t_ms` and `time_ms`.
@@ -123,6 +142,12 @@ mod tests {
         assert_eq!(of("u_duty_pct").as_deref(), Some("%"));
         assert_eq!(of("v_deg_per_s").as_deref(), Some("deg/s"));
         assert_eq!(of("valve_V").as_deref(), Some("V"));
+        assert_eq!(
+            (without("v_deg_per_s"), without("t_ms"), without("deg")),
+            (Some("v"), Some("t"), None)
+        );
+        assert_eq!(of_native("j.input_pct"), Some(("j.input", "%".to_owned())));
+        assert_eq!((of_native("j.pressure_bar"), of_native("j.input")), (None, None));
         assert_eq!(
             (of("boom_v"), of("deg"), of("y_boom"), of("jaw_torque_counts")),
             (None, None, None, None)

@@ -5,8 +5,8 @@ use std::io::Write;
 use serde::Serialize;
 
 use super::text_table::TextTable;
-use super::{DataTable, EstimatedJoint, Kind};
-use crate::delay::{Condition, DelayRow, DelayTable, KindDelay, Remedy, TypicalDelay};
+use super::{DataTable, EstimatedJoint, JointSummary, Kind};
+use crate::delay::{Condition, DelayRow, DelayTable, KindDelay, Remedy, Transition, TypicalDelay};
 use crate::wording::{number, remedy_text, unit_suffix};
 
 /// One row of `--table`.
@@ -127,20 +127,26 @@ fn joint_text(joint: &EstimatedJoint<'_>) -> String {
         table.row(level_cells(row));
     }
     let name = &joint.joint.name;
+    if found.rows.is_empty() {
+        let why = JointSummary::of(*joint).without_steps();
+        return format!("\n{name}: no delay table: {why}\n");
+    }
     let neutral = neutral_sentence(&found, joint.joint.input_unit.as_deref());
     let kinds: Vec<_> = found.kinds.iter().map(kind_sentence).collect();
-    format!("\n{name}: the input is {neutral}\n{table}\n{}\n", kinds.join("\n"))
+    format!("\n{name}: {neutral}\n{table}\n{}\n", kinds.join("\n"))
 }
 
 /// Where the input is neutral.
 pub(super) fn neutral_sentence(found: &DelayTable, unit: Option<&str>) -> String {
     match found.neutral {
         Some(neutral) => format!(
-            "neutral at {}{}; a start leaves it, a stop leads to it",
+            "the input is neutral at {}{}; a start leaves it, a stop leads to it",
             number(neutral.level),
             unit_suffix(unit)
         ),
-        None => "neutral where the record does not show: every step is a change".to_owned(),
+        None => "the record does not show at which level the input is neutral: every step is a \
+                 change"
+            .to_owned(),
     }
 }
 
@@ -149,7 +155,7 @@ pub(crate) fn kind_sentence(kind: &KindDelay) -> String {
     let KindDelay { transition, steps, accepted, .. } = kind;
     let Some(typical) = kind.typical else {
         let why = kind.rejected.map_or_else(String::new, |(condition, count)| {
-            format!("; {count} rejected: {}; {}", condition.meaning(), help(condition))
+            format!("; {count} rejected: {}; {}", condition.meaning(), help(condition, *transition))
         });
         return format!(
             "{transition}: no typical delay, {accepted} of {steps} steps accepted{why}"
@@ -163,8 +169,10 @@ pub(crate) fn kind_sentence(kind: &KindDelay) -> String {
 }
 
 /// Which option or experiment would give more delays.
-fn help(condition: Condition) -> String {
+fn help(condition: Condition, transition: Transition) -> String {
     let text = match condition {
+        // A joint that rests when its input is taken back has run into its stop.
+        Condition::AtRest if transition == Transition::Stop => "step back before the stop",
         Condition::FirstOrLast => {
             return format!("{} judges them", remedy_text(Remedy::KeepFirstLast, "`"));
         }
@@ -181,7 +189,19 @@ fn help(condition: Condition) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::delay::Transition;
+
+    #[test]
+    fn strokes_that_ended_at_the_stop_have_a_remedy_of_their_own() {
+        let kind = |transition| KindDelay {
+            transition,
+            steps: 5,
+            accepted: 0,
+            typical: None,
+            rejected: Some((Condition::AtRest, 5)),
+        };
+        assert!(kind_sentence(&kind(Transition::Stop)).ends_with("; step back before the stop"));
+        assert!(!kind_sentence(&kind(Transition::Start)).contains("stop"));
+    }
 
     #[test]
     fn a_typical_delay_needs_steps_that_were_accepted() {

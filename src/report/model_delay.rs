@@ -2,8 +2,8 @@
 
 use super::EstimatedJoint;
 use super::summary::{DelayRange, JointSummary};
+use crate::delay::InputStep;
 use crate::effect::{InputChange, Stage};
-use crate::experiment::Trial;
 use crate::fit::{Assessment, Status};
 use crate::model::Component;
 use crate::numerics::median;
@@ -42,26 +42,17 @@ fn held_law(of: &Assessment, laws: &[&Component], measured: EstimatedJoint<'_>) 
     if !of.model.delay.fixed || parameters.into_iter().any(|parameter| !parameter.fixed) {
         return None;
     }
-    let EstimatedJoint { joint, estimate } = measured;
-    let (mut law_s, mut measured_s, mut off_s) = (Vec::new(), Vec::new(), Vec::new());
-    for trial in estimate.estimated() {
-        let known = joint.trials.iter().find(|known| known.label() == trial.label);
-        let Some(period) = known.map(Trial::period) else { continue };
-        for decision in &trial.decisions {
-            let Some(delay) = decision.accepted_delay() else { continue };
-            let (before, after) = (decision.input_step.before, decision.input_step.after);
-            let time_s = period.seconds() * decision.input_step.sample as f64;
-            let change = InputChange { before, after, held_s: time_s, time_s };
-            let extra_s = laws.iter().map(|law| law.extra_delay_s(&change)).sum::<f64>();
-            law_s.push((of.model.delay.value + extra_s).max(0.0));
-            measured_s.push(delay * period.seconds());
-            off_s.extend(law_s.last().zip(measured_s.last()).map(|(law, is)| (law - is).abs()));
-        }
-    }
+    let law_s = |change: &InputChange| {
+        let extra_s = laws.iter().map(|law| law.extra_delay_s(change)).sum::<f64>();
+        (of.model.delay.value + extra_s).max(0.0)
+    };
+    let accepted = accepted(measured);
+    let (law_s, measured_s): (Vec<f64>, Vec<f64>) =
+        accepted.iter().map(|(change, delay_s)| (law_s(change), delay_s)).unzip();
+    let off_s: Vec<f64> = law_s.iter().zip(&measured_s).map(|(law, is)| (law - is).abs()).collect();
     let ends = |values: &[f64]| {
-        let (least, most) = values
-            .iter()
-            .fold((f64::INFINITY, 0.0_f64), |(a, b), value| (a.min(*value), b.max(*value)));
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = values.iter().copied().fold(0.0, f64::max);
         format!("{least:.3} to {most:.3} s")
     };
     Some(format!(
@@ -71,6 +62,23 @@ fn held_law(of: &Assessment, laws: &[&Component], measured: EstimatedJoint<'_>) 
         ends(&measured_s),
         median(&off_s)?
     ))
+}
+
+/// The accepted steps of a joint and their delays in seconds.
+fn accepted(measured: EstimatedJoint<'_>) -> Vec<(InputChange, f64)> {
+    let EstimatedJoint { joint, estimate } = measured;
+    let mut accepted = Vec::new();
+    for trial in estimate.estimated() {
+        let known = joint.trials.iter().find(|known| known.label() == trial.label);
+        let Some(period_s) = known.map(|known| known.period().seconds()) else { continue };
+        for decision in &trial.decisions {
+            let InputStep { sample, before, after } = decision.input_step;
+            let time_s = period_s * sample as f64;
+            let change = InputChange { before, after, held_s: time_s, time_s };
+            accepted.extend(decision.accepted_delay().map(|delay| (change, delay * period_s)));
+        }
+    }
+    accepted
 }
 
 fn constant(of: &Assessment, measured: DelayRange) -> Option<String> {

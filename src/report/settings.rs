@@ -1,7 +1,31 @@
 //! The settings in words.
 
+use super::EstimatedJoint;
 use crate::delay::{FirstLast, Method, Settings};
+use crate::study::JointEstimate;
+use crate::units::Length;
 use crate::wording::number;
+
+/// The settings of a joint, where it has some of its own: others than `asked`, which are those of
+/// all joints, and than those that were chosen from its record.
+pub(super) fn own_settings<'a>(
+    joint: &EstimatedJoint<'a>,
+    asked: &Settings,
+) -> Option<&'a Settings> {
+    let JointEstimate { settings: own, chosen, .. } = joint.estimate;
+    let mut usual = asked.in_samples(&joint.joint.trials);
+    let automatic = chosen.map(|chosen| chosen.automatic).unwrap_or_default();
+    if automatic.alpha {
+        usual = usual.with_alpha(own.alpha_length());
+    }
+    if automatic.beta {
+        usual = usual.with_beta(own.beta_length());
+    }
+    if automatic.passband {
+        usual.low_pass = own.low_pass;
+    }
+    (own != &usual).then_some(own)
+}
 
 /// Each setting with its value, as a person would say it.
 pub(crate) fn settings_rows(settings: &Settings) -> Vec<(&'static str, String)> {
@@ -18,11 +42,11 @@ pub(crate) fn settings_rows(settings: &Settings) -> Vec<(&'static str, String)> 
     let percent = |part: f64| format!("{} %", number(100.0 * part));
     vec![
         ("method", method(settings.method)),
-        ("α", format!("{} samples", settings.alpha)),
-        ("β", format!("{} samples", settings.beta)),
+        ("α", length(settings.alpha_length())),
+        ("β", length(settings.beta_length())),
         ("low-pass", low_pass),
-        ("shortest hold τ_min", format!("{} samples", settings.min_delay)),
-        ("longest delay", settings.max_delay.map_or_else(not_set, |n| format!("{n} samples"))),
+        ("shortest hold τ_min", length(settings.min_delay_length())),
+        ("longest delay", settings.max_delay_length().map_or_else(not_set, length)),
         ("output limits", limits.map_or_else(not_set, |(low, high)| format!("{low} … {high}"))),
         ("smallest slope change", format!("{} per sample", settings.min_slope_change)),
         ("largest SSE", settings.max_sse.map_or_else(not_set, |limit| limit.to_string())),
@@ -50,7 +74,8 @@ pub(crate) fn settings_rows(settings: &Settings) -> Vec<(&'static str, String)> 
 pub(crate) fn settings_in_short(settings: &Settings) -> String {
     /// Rows of [`settings_rows`] that are there in any case.
     const ALWAYS: [&str; 4] = ["method", "α", "β", "low-pass"];
-    let Settings { method, alpha, beta, low_pass, .. } = settings;
+    let Settings { method, low_pass, .. } = settings;
+    let (alpha, beta) = (settings.alpha_length(), settings.beta_length());
     let mut parts = vec![method.to_string()];
     if method.spec().has_rows {
         parts.push(format!("α {alpha}, β {beta}"));
@@ -61,6 +86,14 @@ pub(crate) fn settings_in_short(settings: &Settings) -> String {
     let changed = changed.filter(|(row, usual)| row != usual && !ALWAYS.contains(&row.0));
     parts.extend(changed.map(|((name, value), _)| format!("{name} {value}")));
     parts.join(", ")
+}
+
+/// A length in words: `10 samples` or `0.1 s`.
+pub(super) fn length(length: Length) -> String {
+    match length {
+        Length::Samples(samples) => format!("{samples} samples"),
+        Length::Seconds(seconds) => format!("{seconds} s"),
+    }
 }
 
 fn method(method: Method) -> String {

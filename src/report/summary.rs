@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::{EstimatedJoint, Words, decision_rows};
 use crate::delay::{Condition, KindDelay};
+use crate::experiment::Trial;
 
 /// How many steps were accepted, why the others were not, and what the delays are.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +23,8 @@ pub(crate) struct JointSummary {
     pub(crate) is_continuous: bool,
     /// Whether the trials, or the parts between gaps, hold different levels.
     pub(crate) levels_differ: bool,
+    /// The longest gap between two parts of a trial.
+    pub(crate) gap_s: Option<f64>,
     /// What stands for the delays in one line.
     pub(crate) headline: Headline,
     /// What persons said of the decisions, where any did.
@@ -41,9 +44,7 @@ pub(crate) enum Headline {
 
 impl Headline {
     fn of(kinds: Vec<KindDelay>) -> Self {
-        let typical = || kinds.iter().filter_map(|kind| kind.typical?.interval_s);
-        let apart = typical().any(|(low, _)| typical().any(|(_, high)| high < low));
-        if apart {
+        if KindDelay::differ(&kinds) {
             Self::Kinds(kinds)
         } else if kinds.iter().any(|kind| kind.typical.is_some()) {
             Self::All
@@ -109,6 +110,7 @@ impl JointSummary {
             delay_s,
             is_continuous: joint.estimate.dead_time.is_some(),
             levels_differ: levels_differ(joint),
+            gap_s: longest_gap_s(joint),
             words: Words::on(joint),
         }
     }
@@ -122,15 +124,37 @@ fn levels_differ(joint: EstimatedJoint<'_>) -> bool {
 
 impl JointSummary {
     /// Why there are no steps.
-    pub(crate) fn without_steps(&self) -> &'static str {
-        match (self.is_continuous, self.levels_differ) {
-            (true, _) => "the input moves all the time",
-            (false, true) => {
-                "the input changes only between trials or in gaps; `--fill` joins what gaps part"
-            }
-            (false, false) => "the input never changes",
+    pub(crate) fn without_steps(&self) -> String {
+        match (self.is_continuous, self.levels_differ, self.gap_s) {
+            (true, _, _) => "the input moves all the time".to_owned(),
+            (false, true, Some(gap_s)) => format!(
+                "the input changes only between trials or in gaps; `--fill {gap_s}` joins what \
+                 gaps part"
+            ),
+            (false, true, None) => "the input changes only between trials".to_owned(),
+            (false, false, _) => "the input never changes".to_owned(),
         }
     }
+}
+
+/// The longest gap between two parts of a trial that was split, with a period to spare, to three
+/// digits.
+fn longest_gap_s(joint: EstimatedJoint<'_>) -> Option<f64> {
+    let trials = &joint.joint.trials;
+    let gap = |pair: &[Trial]| {
+        let [before, behind] = pair else { return None };
+        let of_one = stem(before.label()).is_some() && stem(before.label()) == stem(behind.label());
+        let gap = behind.time_s(1) - before.time_s(before.len());
+        (of_one && gap > 0.0).then(|| gap + before.period().seconds())
+    };
+    let longest = trials.windows(2).filter_map(gap).max_by(f64::total_cmp)?;
+    let digits = 10_f64.powf(2.0 - longest.log10().floor());
+    Some((longest * digits).ceil() / digits)
+}
+
+/// The name of the trial that this is a part of.
+fn stem(label: &str) -> Option<&str> {
+    label.rsplit_once('#').map(|(stem, _)| stem)
 }
 
 #[cfg(test)]

@@ -1,10 +1,12 @@
 //! Tables for the terminal.
 
 use super::delay_table::kind_sentence;
+use super::settings::{length, own_settings};
 use super::text_table::TextTable;
 use super::{DelayRange, EstimatedJoint, Headline, JointSummary, dead_time_sentences};
 use crate::delay::{Automatic, Chosen, Condition, FirstLast, Interpolation, LagPart, Settings};
 use crate::numerics::LowPass;
+use crate::units::Length;
 use crate::wording::{measure, percent, rounded};
 
 /// The table of `estimate`: a row per joint, and the settings below it.
@@ -21,9 +23,20 @@ pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings)
     let dead_times: String = joints.iter().flat_map(dead_time_lines).collect();
     let lags: String = joints.iter().filter_map(lag_line).collect();
     let chosen: String = joints.iter().filter_map(chosen_line).collect();
+    let own = joints.iter().filter_map(|joint| {
+        let own = own_settings(joint, settings)?;
+        let automatic = joint.estimate.chosen.map(|chosen| chosen.automatic).unwrap_or_default();
+        let name = &joint.joint.name;
+        Some(format!("{name}, settings of its own: {}\n", settings_line(own, automatic)))
+    });
+    let own: String = own.collect();
     let automatic = joints.iter().find_map(|joint| joint.estimate.chosen);
     let automatic = automatic.map(|chosen| chosen.automatic).unwrap_or_default();
-    format!("{table}\n{kinds}{dead_times}{lags}{chosen}{}\n", settings_line(settings, automatic))
+    let settings = format!("{}\n", settings_line(settings, automatic));
+    // Nothing of it is used where all inputs move all the time.
+    let is_used = |joint: &EstimatedJoint<'_>| joint.estimate.dead_time.is_none();
+    let settings = if joints.iter().any(is_used) { settings } else { String::new() };
+    format!("{table}\n{kinds}{dead_times}{lags}{chosen}{own}{settings}")
 }
 
 /// What is said of the dead time of a joint, a line each.
@@ -106,7 +119,7 @@ pub(crate) fn summary_cells(name: &str, summary: &JointSummary) -> [String; 7] {
         _ => format!("{accepted} ({})", percent(*accepted as f64 / *steps as f64)),
     };
     let why = match (steps, rejected.is_empty()) {
-        (0, _) => summary.without_steps().to_owned(),
+        (0, _) => summary.without_steps(),
         (_, true) => "none".to_owned(),
         (_, false) => reasons(rejected),
     };
@@ -127,18 +140,30 @@ fn reasons(rejected: &[(Condition, usize)]) -> String {
     parts.join(", ")
 }
 
+/// α and β, each with its unit where they have not the same.
+fn alpha_and_beta(settings: &Settings, automatic: Automatic) -> String {
+    let (alpha, beta) = (settings.alpha_length(), settings.beta_length());
+    let in_samples = |is_chosen: bool, value: Length| match value {
+        Length::Samples(value) if !is_chosen => Some(value),
+        _ => None,
+    };
+    if let Some((alpha, beta)) =
+        in_samples(automatic.alpha, alpha).zip(in_samples(automatic.beta, beta))
+    {
+        return format!("α = {alpha}, β = {beta} samples");
+    }
+    let own = |name: &str, is_chosen: bool, value: Length| {
+        if is_chosen { format!("{name} as above") } else { format!("{name} = {}", length(value)) }
+    };
+    format!("{}, {}", own("α", automatic.alpha, alpha), own("β", automatic.beta, beta))
+}
+
 /// The settings in one line, as a person would say them.
 pub(super) fn settings_line(settings: &Settings, automatic: Automatic) -> String {
     let spec = settings.method.spec();
-    let own = |name: &str, is_chosen: bool, value: usize| {
-        if is_chosen { format!("{name} as above") } else { format!("{name} = {value}") }
-    };
     let mut parts = Vec::new();
     if spec.has_rows {
-        let alpha = own("α", automatic.alpha, settings.alpha);
-        let beta = own("β", automatic.beta, settings.beta);
-        let both = automatic.alpha && automatic.beta;
-        parts.push(format!("{alpha}, {beta}{}", if both { "" } else { " samples" }));
+        parts.push(alpha_and_beta(settings, automatic));
     }
     if spec.has_intervals {
         parts.push(format!("{} % intervals", 100.0 * settings.interval));
@@ -155,11 +180,11 @@ pub(super) fn settings_line(settings: &Settings, automatic: Automatic) -> String
     if settings.min_slope_change > 0.0 {
         parts.push(format!("slope change ≥ {} per sample", settings.min_slope_change));
     }
-    if settings.min_delay > 0 {
-        parts.push(format!("hold ≥ {} samples", settings.min_delay));
+    if settings.min_delay_length() != Length::Samples(0) {
+        parts.push(format!("hold ≥ {}", length(settings.min_delay_length())));
     }
-    if let Some(delay) = settings.max_delay {
-        parts.push(format!("delay ≤ {delay} samples"));
+    if let Some(delay) = settings.max_delay_length() {
+        parts.push(format!("delay ≤ {}", length(delay)));
     }
     if let Some(limit) = settings.max_sse {
         parts.push(format!("SSE < {limit}"));

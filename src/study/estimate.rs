@@ -57,12 +57,23 @@ pub fn estimate_joints_with(
     done: impl Fn() + Sync,
     workers: &impl Workers,
 ) -> Vec<Result<JointEstimate, EstimateError>> {
+    estimate_each(joints, |_| (settings.clone(), automatic), done, workers)
+}
+
+/// Estimates every trial of every joint with what is `asked` for of that joint.
+pub fn estimate_each(
+    joints: &[Joint],
+    asked: impl Fn(&Joint) -> (Settings, Automatic) + Sync,
+    done: impl Fn() + Sync,
+    workers: &impl Workers,
+) -> Vec<Result<JointEstimate, EstimateError>> {
     let one_joint = |joint: &Joint| {
+        let (settings, automatic) = asked(joint);
         if !automatic.any() {
-            return estimate_one(joint, settings, &done, workers);
+            return estimate_one(joint, &settings, &done, workers);
         }
         settings.check()?;
-        let (settings, chosen) = choose(&joint.trials, settings, automatic);
+        let (settings, chosen) = choose(&joint.trials, &settings, automatic);
         let estimate = estimate_one(joint, &settings, &done, workers)?;
         Ok(JointEstimate { chosen: Some(chosen), ..estimate })
     };
@@ -97,9 +108,10 @@ pub(super) fn estimate_steps(
     done: &(impl Fn() + Sync),
     workers: &impl Workers,
 ) -> Result<JointEstimate, EstimateError> {
-    let needed = settings.beta.saturating_mul(2);
-    let longest = joint.trials.iter().map(Trial::len).max();
-    if let Some(samples) = longest.filter(|samples| *samples < needed) {
+    let needed = |trial: &Trial| settings.at(trial.period()).beta.saturating_mul(2);
+    let longest = joint.trials.iter().max_by_key(|trial| trial.len());
+    if let Some(longest) = longest.filter(|_| joint.trials.iter().all(|t| t.len() < needed(t))) {
+        let (samples, needed) = (longest.len(), needed(longest));
         return Err(EstimateError::TooFewSamples { samples, needed });
     }
     let estimator = Estimator::of(&joint.trials, settings)?;

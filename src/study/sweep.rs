@@ -27,14 +27,30 @@ pub fn sweep_joints(
     done: impl Fn() + Sync,
     workers: &impl Workers,
 ) -> Vec<Result<SweptJoint, EstimateError>> {
+    sweep_each(joints, |_| grid.clone(), tolerance, done, workers)
+}
+
+/// Estimates every joint with all settings of a grid of its own.
+pub fn sweep_each(
+    joints: &[Joint],
+    of_joint: impl Fn(&Joint) -> Grid + Sync,
+    tolerance: f64,
+    done: impl Fn() + Sync,
+    workers: &impl Workers,
+) -> Vec<Result<SweptJoint, EstimateError>> {
     let one_run = |joint: &Joint, settings: &Settings| {
         let estimate = estimate_steps(joint, settings, &|| (), workers);
         done();
         let estimate = estimate?;
         let trials = estimate.trials.iter().map(|trial| trial.as_ref().ok());
-        Ok(RunDelays::of(&joint.trials, trials, settings))
+        Ok(RunDelays::of(joint, trials, settings))
     };
     let one_joint = |joint: &Joint| {
+        let grid = of_joint(joint);
+        let is_continuous = |run: &Settings| run.takes_as_continuous(&joint.trials);
+        if grid.runs().first().is_some_and(is_continuous) {
+            return Err(EstimateError::Continuous);
+        }
         let runs = workers.map(grid.runs(), |settings| one_run(joint, settings));
         let mut failed = Vec::new();
         let succeeded = |(index, run): (usize, Result<_, EstimateError>)| {
@@ -44,7 +60,7 @@ pub fn sweep_joints(
         match failed.first() {
             Some((_, first)) if failed.len() == runs.len() => Err(first.clone()),
             _ => Ok(SweptJoint {
-                sweep: JointSweep::of(grid, &joint.trials, &runs, tolerance),
+                sweep: JointSweep::of(&grid, &joint.trials, &runs, tolerance),
                 failed,
             }),
         }

@@ -3,8 +3,9 @@
 use clap::{Args as ClapArgs, ValueEnum};
 
 use super::conditions::{ConditionArgs, Passband, ids_with, method, passband};
-use super::number::at_least_one;
+use super::number::length;
 use crate::delay::{Automatic, Interpolation, Method, Settings};
+use crate::units::Length;
 
 /// The settings of the algorithm.
 #[derive(ClapArgs, Debug)]
@@ -15,14 +16,14 @@ pub(crate) struct AlgorithmArgs {
     #[arg(long, default_values_t = [Method::default()], value_parser = method())]
     method: Vec<Method>,
 
-    /// Samples that a segment reaches beyond its input steps; `auto` chooses this and the
-    /// next two from the record of each joint [default: 10]
-    #[arg(long, value_name = "N|auto", value_parser = or_auto(at_least_one), allow_negative_numbers = true)]
-    alpha: Option<OrAuto<usize>>,
+    /// Samples that a segment reaches beyond its input steps, or seconds as in `0.1s`; `auto`
+    /// chooses this and the next two from the record of each joint [default: 10]
+    #[arg(long, value_name = "N|Xs|auto", value_parser = or_auto(length), allow_negative_numbers = true)]
+    alpha: Option<OrAuto<Length>>,
 
-    /// Samples between two candidate breakpoints [default: 5]
-    #[arg(long, value_name = "N|auto", value_parser = or_auto(at_least_one), allow_negative_numbers = true)]
-    beta: Option<OrAuto<usize>>,
+    /// Samples, or seconds, between two candidate breakpoints [default: 5]
+    #[arg(long, value_name = "N|Xs|auto", value_parser = or_auto(length), allow_negative_numbers = true)]
+    beta: Option<OrAuto<Length>>,
 
     #[arg(long, help = passband_help(), value_name = "HZ|none|auto", value_parser = or_auto(passband), allow_negative_numbers = true)]
     passband: Option<OrAuto<Passband>>,
@@ -102,7 +103,10 @@ impl AlgorithmArgs {
     fn settings(&self, method: Method) -> Settings {
         let base = self.conditions.settings(method);
         let (alpha, beta) = (given(self.alpha), given(self.beta));
-        let (alpha, beta) = (alpha.unwrap_or(base.alpha), beta.unwrap_or(base.beta));
+        let (alpha, beta) = (
+            alpha.unwrap_or_else(|| base.alpha_length()),
+            beta.unwrap_or_else(|| base.beta_length()),
+        );
         let low_pass = match given(self.passband) {
             Some(passband) => passband.low_pass(self.conditions.filter_order),
             None => base.low_pass,
@@ -112,7 +116,8 @@ impl AlgorithmArgs {
             Between::Linear => Interpolation::Linear,
         };
         let low_pass_required = given(self.passband).is_some();
-        Settings { alpha, beta, low_pass, low_pass_required, interpolation, ..base }
+        let settings = Settings { low_pass, low_pass_required, interpolation, ..base };
+        settings.with_alpha(alpha).with_beta(beta)
     }
 
     /// Which settings are to be chosen from the record.

@@ -1,8 +1,9 @@
 //! The settings that every command takes whose delays are asked for.
 
-use super::number::{at_least_one, probability, threshold};
+use super::number::{at_least_one, length, length_or_none, probability, threshold};
 use crate::delay::{FirstLast, InputKind, Method, MethodSpec, Settings};
 use crate::numerics::LowPass;
+use crate::units::Length;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 
@@ -21,14 +22,14 @@ pub(crate) struct ConditionArgs {
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = at_least_one, allow_negative_numbers = true)]
     pub(crate) filter_order: usize,
 
-    /// Reject a step that is held for fewer samples (`τ_min`)
-    #[arg(long, value_name = "SAMPLES", default_value_t = 0, allow_negative_numbers = true)]
-    min_delay: usize,
+    /// Reject a step that is held for fewer samples (`τ_min`), or seconds as in `0.2s`
+    #[arg(long, value_name = "N|Xs", default_value = "0", value_parser = length_or_none, allow_negative_numbers = true)]
+    min_delay: Length,
 
-    /// Look for delays up to this many samples only: for holds so long that the output
-    /// meets an end stop on its way
-    #[arg(long, value_name = "SAMPLES", value_parser = at_least_one, allow_negative_numbers = true)]
-    max_delay: Option<usize>,
+    /// Look for delays up to this many samples only, or seconds as in `0.5s`: for holds so long
+    /// that the output meets an end stop on its way
+    #[arg(long, value_name = "N|Xs", value_parser = length, allow_negative_numbers = true)]
+    max_delay: Option<Length>,
 
     /// Reject a step when the output touches a limit
     #[arg(long, value_name = "LO,HI", value_parser = limits, allow_hyphen_values = true)]
@@ -116,9 +117,19 @@ enum EndSteps {
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Confidence {
+pub(super) enum Confidence {
     Of(f64),
     None,
+}
+
+impl Confidence {
+    /// How sure a reaction must be, where that is tested.
+    pub(super) fn level(self) -> Option<f64> {
+        match self {
+            Self::Of(confidence) => Some(confidence),
+            Self::None => None,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,7 +146,7 @@ pub(crate) fn passband(text: &str) -> Result<Passband, String> {
     hz.map(Passband::Hz).ok_or_else(|| "expected a frequency in Hz, or `none`".to_owned())
 }
 
-fn confidence(text: &str) -> Result<Confidence, String> {
+pub(super) fn confidence(text: &str) -> Result<Confidence, String> {
     if text == "none" {
         return Ok(Confidence::None);
     }
@@ -143,7 +154,7 @@ fn confidence(text: &str) -> Result<Confidence, String> {
     found.map_err(|expected| format!("{expected}, or `none`"))
 }
 
-fn limits(text: &str) -> Result<(f64, f64), String> {
+pub(super) fn limits(text: &str) -> Result<(f64, f64), String> {
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| !x.is_nan());
     let pair = text.split_once(',').and_then(|(low, high)| Some((number(low)?, number(high)?)));
     match pair {
@@ -178,15 +189,9 @@ impl ConditionArgs {
     pub(crate) fn settings(&self, method: Method) -> Settings {
         let usual = Settings::of(method);
         let order = self.filter_order;
-        let confidence = match self.confidence {
-            Some(Confidence::Of(confidence)) => Some(confidence),
-            Some(Confidence::None) => None,
-            None => usual.confidence,
-        };
-        Settings {
+        let confidence = self.confidence.map_or(usual.confidence, Confidence::level);
+        let settings = Settings {
             low_pass: usual.low_pass.map(|usual| LowPass { order, ..usual }),
-            min_delay: self.min_delay,
-            max_delay: self.max_delay,
             output_limits: self.output_limits,
             min_slope_change: self.min_slope_change,
             max_sse: self.max_sse,
@@ -198,6 +203,11 @@ impl ConditionArgs {
             confidence,
             interval: self.interval,
             ..usual
+        };
+        let settings = settings.with_min_delay(self.min_delay);
+        match self.max_delay {
+            Some(delay) => settings.with_max_delay(delay),
+            None => settings,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Numbers on the command line, and what is said of those that cannot be used.
 
-use crate::units::SamplePeriod;
+use crate::units::{Length, SamplePeriod};
 
 /// A period in seconds.
 pub(crate) fn period(text: &str) -> Result<SamplePeriod, String> {
@@ -41,6 +41,36 @@ pub(crate) fn at_least_one(text: &str) -> Result<usize, String> {
     number.ok_or_else(|| "expected a whole number from 1 up".to_owned())
 }
 
+/// A length of time: a number of samples, or seconds with their unit.
+pub(crate) fn length(text: &str) -> Result<Length, String> {
+    let found = any_length(text).filter(|length| *length != Length::Samples(0));
+    let found = found.filter(|length| *length != Length::Seconds(0.0));
+    found.ok_or_else(|| {
+        "expected a whole number of samples from 1 up, or seconds as in 0.5s".to_owned()
+    })
+}
+
+/// A length of time that may be 0.
+pub(crate) fn length_or_none(text: &str) -> Result<Length, String> {
+    any_length(text).ok_or_else(|| {
+        "expected a whole number of samples from 0 up, or seconds as in 0.5s".to_owned()
+    })
+}
+
+fn any_length(text: &str) -> Option<Length> {
+    let seconds = |text: &str, unit_s: f64| {
+        let number = text.trim_end().parse().ok().filter(|x: &f64| x.is_finite() && *x >= 0.0)?;
+        Some(Length::Seconds(number * unit_s))
+    };
+    if let Some(milliseconds) = text.strip_suffix("ms") {
+        return seconds(milliseconds, 1e-3);
+    }
+    match text.strip_suffix('s') {
+        Some(text) => seconds(text, 1.0),
+        None => text.parse().ok().map(Length::Samples),
+    }
+}
+
 /// A limit that is no less than 0.
 pub(crate) fn threshold(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|x: &f64| x.is_finite() && *x >= 0.0);
@@ -56,6 +86,22 @@ pub(crate) fn probability(text: &str) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lengths_are_samples_or_seconds() {
+        let texts = ["50", "0.5s", "0.5 s", "20ms"];
+        let expected = [
+            Length::Samples(50),
+            Length::Seconds(0.5),
+            Length::Seconds(0.5),
+            Length::Seconds(0.02),
+        ];
+        assert_eq!(texts.map(|text| length(text).unwrap()), expected);
+        for wrong in ["", "0", "0s", "-1s", "s", "0.5", "nans", "infs", "5 m"] {
+            assert!(length(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(length_or_none("0"), Ok(Length::Samples(0)));
+    }
 
     #[test]
     fn bytes_are_read_with_and_without_a_unit() {

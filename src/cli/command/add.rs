@@ -52,7 +52,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let session = Session::begin("add", &args.data, &args.output.run, stream)?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
     let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
-    let study = Study::of(session, Settings::default(), |begun| {
+    let study = Study::of(session, &Settings::default(), |begun| {
         let bar = begun.bar("fitting");
         add_to_joints(
             begun.joints,

@@ -56,7 +56,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     }
     let stream = args.output.stream.open(args.output.run.verbosity())?;
     let session = Session::begin("compare", &args.data, &args.output.run, stream)?;
-    let study = Study::of(session, Settings::default(), |begun| {
+    let study = Study::of(session, &Settings::default(), |begun| {
         let (joints, estimates, bar) = (begun.joints, begun.estimates, begun.bar("comparing"));
         let one = |named: &Named| {
             let starts = |joint: &Joint| named.starts(joint);

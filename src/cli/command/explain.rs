@@ -57,7 +57,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let session = Session::begin("explain", &args.data, &args.output.run, stream)?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
     let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
-    let study = Study::of(session, Settings::default(), |begun| {
+    let study = Study::of(session, &Settings::default(), |begun| {
         let (joints, estimates, bar) = (begun.joints, begun.estimates, begun.bar("explaining"));
         let explained =
             explain_joints(joints, estimates, starts, protocol.watched(&bar), &options, &Threads);

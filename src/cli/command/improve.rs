@@ -92,7 +92,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let session = Session::begin("improve", &args.data, &args.output.run, stream)?;
     let name = name_of(Some(target));
     let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
-    let study = Study::of(session, Settings::default(), |begun| {
+    let study = Study::of(session, &Settings::default(), |begun| {
         let (joints, estimates, bar) = (begun.joints, begun.estimates, begun.bar("improving"));
         let progress = Progress::new(&file, joints, begun.verbosity(), Some(interrupt));
         let arguments = args.add_arguments(joints);

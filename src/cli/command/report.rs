@@ -134,7 +134,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let stream = args.output.stream.open(args.output.run.verbosity())?;
     let session = Session::begin("report", &args.data, &args.output.run, stream)?;
     let session = session.reviewed(review);
-    let study = Study::of(session, settings, |begun| args.model.improved(&file, begun, effects))?;
+    let study = Study::of(session, &settings, |begun| args.model.improved(&file, begun, effects))?;
     if study.result.is_some() {
         note_missing(&file, &study.experiment().joints, study.verbosity());
     }

@@ -10,7 +10,7 @@ use clap::{Args as ClapArgs, ValueEnum};
 
 use crate::cli::console::{Bar, Verbosity, message};
 use crate::cli::exit::Completion;
-use crate::cli::output::{OutputFile, check_outputs};
+use crate::cli::output::{OutputFile, check_outputs, filled_file};
 
 /// Make a log of joints whose truth is known
 ///
@@ -131,17 +131,17 @@ impl Args {
 
 /// Log and truth under their final names, or nothing.
 fn write(args: &Args, spec: &PlantSpec, made: &Synthetic) -> anyhow::Result<()> {
-    let mut log = OutputFile::create(&args.output)?;
-    write_log(made, &mut log)?;
-    let mut files = vec![log];
+    let mut files = vec![filled_file(&args.output, |file| Ok(write_log(made, file)?))?];
     for path in &args.truth {
-        let mut file = OutputFile::create(path)?;
-        if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("toml")) {
-            file.write_all(spec.to_toml()?.as_bytes())?;
-        } else {
-            write_truth(&made.truth, &mut file)?;
-        }
-        files.push(file);
+        let is_plant = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
+        files.push(filled_file(path, |file| {
+            if is_plant {
+                file.write_all(spec.to_toml()?.as_bytes())?;
+            } else {
+                write_truth(&made.truth, file)?;
+            }
+            Ok(())
+        })?);
     }
     files.into_iter().try_for_each(OutputFile::commit)
 }

@@ -165,9 +165,17 @@ pub(crate) fn write_file(
     path: &Path,
     write: impl FnOnce(&mut OutputFile) -> anyhow::Result<()>,
 ) -> anyhow::Result<()> {
+    filled_file(path, write)?.commit()
+}
+
+/// A file that `write` has filled, and that has not got its name yet.
+pub(crate) fn filled_file(
+    path: &Path,
+    write: impl FnOnce(&mut OutputFile) -> anyhow::Result<()>,
+) -> anyhow::Result<OutputFile> {
     let mut file = OutputFile::create(path)?;
     write(&mut file).with_context(|| format!("{}: cannot be written", path.display()))?;
-    file.commit()
+    Ok(file)
 }
 
 impl Write for OutputFile {

@@ -4,7 +4,7 @@ mod file;
 mod recording;
 mod table;
 
-pub(crate) use file::{OutputFile, check_outputs, target_of, write_file};
+pub(crate) use file::{OutputFile, check_outputs, filled_file, target_of, write_file};
 #[cfg(not(feature = "rrd"))]
 pub(crate) use recording::left_out;
 pub(crate) use recording::{Contents, Detail, PreviewContents, SweepContents, check_recordings};

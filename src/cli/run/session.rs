@@ -4,13 +4,13 @@ use serde::Serialize;
 
 use super::estimates::Estimates;
 use crate::batch::Threads;
-use crate::cli::args::{DataArgs, RunArgs};
+use crate::cli::args::{DataArgs, OwnSettings, RunArgs};
 use crate::cli::console::{Bar, Verbosity, message, warn};
 use crate::cli::exit::Completion;
 use crate::cli::viewer::Stream;
 use crate::delay::{Automatic, Settings};
-use crate::experiment::Experiment;
-use crate::study::{Review, estimate_joints, estimate_joints_with};
+use crate::experiment::{Experiment, Joint};
+use crate::study::{Review, estimate_each};
 
 /// Logs that were read, and where what becomes of them goes.
 pub(crate) struct Session<'a> {
@@ -19,6 +19,7 @@ pub(crate) struct Session<'a> {
     /// The name of the command.
     pub(crate) command: &'static str,
     review: Review,
+    own: OwnSettings,
     run: &'a RunArgs,
 }
 
@@ -31,7 +32,9 @@ impl<'a> Session<'a> {
         stream: Stream,
     ) -> anyhow::Result<Self> {
         let _bar = Bar::spinner(run.verbosity(), "reading");
-        Ok(Self { experiment: data.read()?, stream, command, review: Review::default(), run })
+        let own = OwnSettings::of(&data.options()?)?;
+        let experiment = data.read()?;
+        Ok(Self { experiment, stream, command, review: Review::default(), own, run })
     }
 
     /// What persons said of the decisions stands above the conditions.
@@ -45,6 +48,11 @@ impl<'a> Session<'a> {
         warn(&notes.iter().map(ToString::to_string).collect::<Vec<_>>());
     }
 
+    /// The settings that joints have of their own.
+    pub(crate) fn own(&self) -> &OwnSettings {
+        &self.own
+    }
+
     pub(crate) fn verbosity(&self) -> Verbosity {
         self.run.verbosity()
     }
@@ -54,11 +62,22 @@ impl<'a> Session<'a> {
         self.run.in_threads(work)
     }
 
+    /// `settings` in samples, where all trials of the logs have one period.
+    pub(crate) fn in_samples(&self, settings: &Settings) -> Settings {
+        settings.in_samples(self.experiment.joints.iter().flat_map(|joint| &joint.trials))
+    }
+
+    /// The delays of each joint with these settings, or with its own.
+    fn estimated(&self, settings: &Settings, automatic: Automatic, bar: &Bar) -> Estimates {
+        let asked = (settings.clone(), automatic);
+        let of_joint = |joint: &Joint| self.own.of_joint(joint, &asked);
+        estimate_each(&self.experiment.joints, of_joint, || bar.step(), &Threads)
+    }
+
     /// The delays of each joint.
     pub(crate) fn estimates(&self, settings: &Settings) -> Estimates {
         let bar = self.estimating(1);
-        let joints = &self.experiment.joints;
-        let mut estimates = estimate_joints(joints, settings, || bar.step(), &Threads);
+        let mut estimates = self.estimated(settings, Automatic::default(), &bar);
         self.hear(&mut estimates);
         estimates
     }
@@ -71,9 +90,7 @@ impl<'a> Session<'a> {
         automatic: Automatic,
     ) -> Vec<Estimates> {
         let bar = self.estimating(settings.len());
-        let joints = &self.experiment.joints;
-        let one =
-            |settings| estimate_joints_with(joints, settings, automatic, || bar.step(), &Threads);
+        let one = |settings| self.estimated(settings, automatic, &bar);
         let mut all: Vec<Estimates> = settings.iter().map(one).collect();
         // A word is on the answer, not on what is reported beside it.
         if let Some(answer) = all.first_mut() {
@@ -93,7 +110,8 @@ impl<'a> Session<'a> {
     pub(crate) fn warn(&self, failures: &[String], notes: &[String]) {
         warn(failures);
         if self.verbosity() == Verbosity::Normal {
-            for note in self.experiment.notes.iter().chain(notes) {
+            let own = self.own.notes(&self.experiment);
+            for note in self.experiment.notes.iter().chain(notes).chain(&own) {
                 message("note", note);
             }
         }

@@ -34,9 +34,10 @@ impl<'a, T: Send> Study<'a, T> {
     /// Estimates the delays by `settings`, shows them, and does `work` with them.
     pub(crate) fn of(
         session: Session<'a>,
-        settings: Settings,
+        settings: &Settings,
         work: impl FnOnce(Begun<'_>) -> T + Send,
     ) -> anyhow::Result<Self> {
+        let settings = session.in_samples(settings);
         let (estimates, result) = session.in_threads(|| {
             let estimates = session.estimates(&settings);
             let result = {

@@ -8,7 +8,7 @@ use super::profile::Profile;
 use super::record::{Samples, Whitened, averaged};
 use super::response::NUMERATORS;
 use super::result::{Bounds, DeadTime, ErrorPoint, Feedback, Finding, Unknown};
-use super::search::{Fitted, grid, least, profiles};
+use super::search::{Fitted, grid, least, profiles, with_one_lag};
 use super::uncertainty::{Assessed, PARTS, errors};
 use super::windows::{Estimated, Known, same_in_all};
 use crate::delay::settings::Settings;
@@ -61,7 +61,7 @@ impl Record {
         let most = samples.iter().map(|(_, samples)| samples.output.len()).max()?;
         let averaged = averaged(period.seconds());
         let period_s = period.seconds() * averaged as f64;
-        let asked = settings.max_delay.map(|samples| samples.div_ceil(averaged));
+        let asked = settings.at(period).max_delay.map(|samples| samples.div_ceil(averaged));
         let usual = || ceil_to_index(LONGEST_S / period_s).clamp(LONGEST.start, LONGEST.end);
         let longest = asked.unwrap_or_else(usual).min(most / PER_DELAY).max(2);
         let inputs = alike().map(|(_, trial)| {
@@ -135,17 +135,15 @@ pub fn dead_time(trials: &[Trial], settings: &Settings) -> DeadTime {
         return unknown(Unknown::TooShort, confidence);
     }
     let (filter, start) = noise(&record, &rows);
-    let Some(start) = start else { return unknown(Unknown::NotExplained, confidence) };
+    if start.is_none() {
+        return unknown(Unknown::NotExplained, confidence);
+    }
     let trials = record.whitened(&filter, &rows);
     let longest_lag = longest_lag(&record);
-    let all = profiles(&trials, record.longest, &grid(FINE, longest_lag));
-    let coarse = all.into_iter().min_by(|a, b| {
-        let of = |profile: &Vec<Fitted>| least(profile).map_or(f64::INFINITY, |best| best.error);
-        of(a).total_cmp(&of(b))
-    });
-    let coarse = coarse.unwrap_or_else(|| vec![start]);
-    Solved { record: &record, trials: &trials, filter: &filter, confidence }
-        .dead_time(&coarse, longest_lag)
+    let profiles = profiles(&trials, record.longest, &grid(FINE, longest_lag));
+    let solved = Solved { record: &record, trials: &trials, filter: &filter, confidence };
+    let found = solved.dead_time(&profiles, longest_lag);
+    found.unwrap_or_else(|| unknown(Unknown::NotExplained, confidence))
 }
 
 /// Nothing, and why.
@@ -203,15 +201,32 @@ struct Solved<'a> {
 }
 
 impl Solved<'_> {
-    fn dead_time(&self, coarse: &[Fitted], longest_lag: f64) -> DeadTime {
+    /// From the error of each dead time on a grid of lags, for each structure.
+    fn dead_time(&self, coarse: &[Vec<Fitted>], longest_lag: f64) -> Option<DeadTime> {
         let (record, confidence) = (self.record, self.confidence);
-        let mut profile = Profile::new(self.trials, coarse, record.longest as f64, longest_lag);
-        let Some(best) = profile.least() else { return unknown(Unknown::NotExplained, confidence) };
+        let longest = record.longest as f64;
+        // On the grid, lags are off by more than structures differ.
+        let refined = coarse.iter().filter_map(|coarse| {
+            let mut profile = Profile::new(self.trials, coarse, longest, longest_lag);
+            Some((profile.least()?, profile))
+        });
+        let mut refined: Vec<(Fitted, Profile<'_>)> = refined.collect();
+        refined.sort_by(|a, b| a.0.error.total_cmp(&b.0.error));
+        let (least, _) = *refined.first()?;
+        let best = self.simplest(least, longest_lag);
         let assessed = Assessed::of(self.trials, best);
         let rows: f64 = assessed.errors.iter().map(|rows| rows.len() as f64).sum();
         let quantile = student_quantile(0.5 + 0.5 * confidence, (PARTS - 1) as f64);
         let threshold = quantile * quantile * assessed.widened;
-        let (low, high) = profile.ends(best, best.error * (threshold / rows).exp());
+        let limit = least.error * (threshold / rows).exp();
+        // What the record cannot tell apart, as an input that is held between samples from one
+        // that moves there, makes the dead time no better known.
+        let alike = refined.iter_mut().filter(|(best, _)| best.error <= limit);
+        let ends: Vec<_> = alike.map(|(best, profile)| profile.ends(*best, limit)).collect();
+        let low = ends.iter().filter_map(|(low, _)| *low).min_by(f64::total_cmp);
+        let highs: Option<Vec<f64>> = ends.iter().map(|(_, high)| *high).collect();
+        let high = highs.and_then(|highs| highs.into_iter().max_by(f64::total_cmp));
+        let (_, profile) = refined.first()?;
         let explained = self.explained(best);
         let finding =
             self.finding(best, (low, high), rows * -(1.0 - explained).ln() / assessed.widened);
@@ -221,7 +236,7 @@ impl Solved<'_> {
             explained,
             integrates: best.structure.integrates,
             feedback: feedback(&assessed.errors, &self.inputs()),
-            curve: self.curve(coarse, &profile.refined, best.error),
+            curve: self.curve(profile, least.error),
             ..unknown(Unknown::NotExplained, confidence)
         };
         if let Finding::Known(bounds) = finding {
@@ -244,7 +259,17 @@ impl Solved<'_> {
             found.same_in_all = same_in_all(&windows, quantile);
             found.windows = windows.into_iter().map(|estimated| estimated.window).collect();
         }
-        found
+        Some(found)
+    }
+
+    /// `best`, or that with one lag where the record does not speak for a second: by Schwarz's
+    /// criterion. A second lag takes from the dead time what it does not need for itself.
+    fn simplest(&self, best: Fitted, longest_lag: f64) -> Fitted {
+        let one = with_one_lag(self.trials, best, longest_lag);
+        let rows: usize =
+            self.trials.iter().flat_map(|trial| &trial.rows).map(ExactSizeIterator::len).sum();
+        let rows = rows as f64;
+        if rows * (one.error / best.error).ln() < rows.ln() { one } else { best }
     }
 
     /// What a dead time with these ends is; `evidence` is twice the logarithm of the likelihood
@@ -311,8 +336,8 @@ impl Solved<'_> {
         trials.flat_map(of_trial).collect()
     }
 
-    fn curve(&self, coarse: &[Fitted], refined: &[Fitted], least: f64) -> Vec<ErrorPoint> {
-        let mut all: Vec<&Fitted> = coarse.iter().chain(refined).collect();
+    fn curve(&self, profile: &Profile<'_>, least: f64) -> Vec<ErrorPoint> {
+        let mut all: Vec<&Fitted> = profile.coarse.iter().chain(&profile.refined).collect();
         all.sort_by(|a, b| a.delay.total_cmp(&b.delay).then(a.error.total_cmp(&b.error)));
         all.dedup_by(|a, b| (a.delay - b.delay).abs() < 1e-9);
         let point = |fitted: &&Fitted| ErrorPoint {

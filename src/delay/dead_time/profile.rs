@@ -10,7 +10,7 @@ pub(super) struct Profile<'a> {
     longest: f64,
     longest_lag: f64,
     /// From a grid of lags.
-    coarse: &'a [Fitted],
+    pub(super) coarse: &'a [Fitted],
     /// With the best lags, by dead time.
     pub(super) refined: Vec<Fitted>,
 }

@@ -50,7 +50,7 @@ pub(super) struct Lags {
 }
 
 /// The shortest time constant, samples: no lag, for all that samples can tell.
-pub(super) const NO_LAG: f64 = 0.1;
+pub(super) const NO_LAG: f64 = 0.02;
 
 impl Lags {
     /// The two constants, in order and apart: equal ones would divide by nothing.

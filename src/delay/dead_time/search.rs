@@ -43,7 +43,10 @@ pub(super) fn profiles(trials: &[Whitened], longest: usize, lags: &[Lags]) -> Ve
 pub(super) fn grid(ratio: f64, longest: f64) -> Vec<Lags> {
     /// Longest of the faster lag, samples: two slow lags are an integrator and a slow one.
     const FAST: f64 = 30.0;
-    let constants = || std::iter::successors(Some(NO_LAG), move |t| Some(t * ratio));
+    /// Shortest lag that shows in samples.
+    const SEEN: f64 = 0.2;
+    let seen = move || std::iter::successors(Some(SEEN), move |t| Some(t * ratio));
+    let constants = move || std::iter::once(NO_LAG).chain(seen());
     let slow = constants().take_while(|t| *t <= longest.max(NO_LAG));
     let pairs = slow.flat_map(|slow| {
         constants().take_while(move |fast| *fast <= slow.min(FAST)).map(move |fast| (slow, fast))
@@ -56,32 +59,61 @@ pub(super) fn least(profile: &[Fitted]) -> Option<Fitted> {
     profile.iter().copied().min_by(|a, b| a.error.total_cmp(&b.error))
 }
 
-/// Lags that fit a dead time best, near those that it starts from.
+/// Lags that fit a dead time best, near those that it starts from: neighbours are tried ever
+/// closer, and at last the least of the parabola through them.
 pub(super) fn with_best_lags(trials: &[Whitened], start: Fitted, longest: f64) -> Fitted {
-    /// First and last step of the search, in logarithms of a time constant.
+    /// First and last step of the search, in logarithms of the sum of both.
     const FIRST: f64 = 0.24;
     const LAST: f64 = 0.05;
-    const DIRECTIONS: [(f64, f64); 8] = [
-        (1.0, 0.0),
-        (-1.0, 0.0),
-        (0.0, 1.0),
-        (0.0, -1.0),
-        (1.0, -1.0),
-        (-1.0, 1.0),
-        (1.0, 1.0),
-        (-1.0, -1.0),
-    ];
+    /// Steps of the parabolas: lags that are off by a twentieth move the dead time by as much of
+    /// them, which good records tell.
+    const PARABOLAS: [f64; 2] = [0.06, 0.015];
+    /// What shows of the faster lag by itself goes with its square.
+    const COARSER: f64 = 4.0;
+    // A record tells the sum of the lags far better than how it is shared.
+    let near = |best: Fitted, sum: f64, fast: f64| {
+        let sum = best.lags.mean() * sum.exp();
+        let fast = (best.lags.fast * (COARSER * fast).exp()).min(0.5 * sum).max(NO_LAG);
+        let lags = Lags::new((sum - fast).clamp(NO_LAG, longest), fast);
+        if lags == best.lags { best } else { at_lags(trials, best, lags) }
+    };
     let mut best = at_lags(trials, start, start.lags);
     let mut step = FIRST;
     while step > LAST {
-        let moved = DIRECTIONS.iter().find_map(|(slow, fast)| {
-            let Lags { slow: a, fast: b } = best.lags;
-            let (a, b) = (a * (slow * step).exp(), b * (fast * step).exp());
-            let lags = Lags::new(a.clamp(NO_LAG, longest), b.clamp(NO_LAG, longest));
-            let tried = (lags != best.lags).then(|| at_lags(trials, best, lags))?;
-            (tried.error < best.error).then_some(tried)
-        });
+        let tried = NEIGHBOURS.iter().map(|(sum, fast)| near(best, sum * step, fast * step));
+        let moved = tried.into_iter().find(|tried| tried.error < best.error);
         match moved {
+            Some(better) => best = better,
+            None => step *= 0.5,
+        }
+    }
+    for step in PARABOLAS {
+        let errors = NEIGHBOURS.map(|(sum, fast)| near(best, sum * step, fast * step).error);
+        let (sum, fast) = least_of_parabola(best.error, errors);
+        let tried = near(best, sum * step, fast * step);
+        if tried.error < best.error {
+            best = tried;
+        }
+    }
+    best
+}
+
+/// The best fit with one lag, near `start`, which may have two.
+pub(super) fn with_one_lag(trials: &[Whitened], start: Fitted, longest: f64) -> Fitted {
+    /// First and last step of the search, samples.
+    const FIRST: f64 = 0.5;
+    const LAST: f64 = 0.01;
+    let at = |delay: f64, lag: f64| {
+        at_lags(trials, Fitted { delay: delay.max(0.0), ..start }, Lags::new(lag, NO_LAG))
+    };
+    let within = |lag: f64| lag.clamp(2.0 * NO_LAG, longest);
+    let mut best = at(start.delay + start.lags.fast, within(start.lags.slow));
+    let mut step = FIRST;
+    while step > LAST {
+        let mut tried = NEIGHBOURS.iter().map(|(later, slower)| {
+            at(best.delay + later * step, within(best.lags.slow + slower * step))
+        });
+        match tried.find(|tried| tried.error < best.error) {
             Some(better) => best = better,
             None => step *= 0.5,
         }
@@ -89,8 +121,58 @@ pub(super) fn with_best_lags(trials: &[Whitened], start: Fitted, longest: f64) -
     best
 }
 
+/// Steps to the neighbours of a pair of lags.
+const NEIGHBOURS: [(f64, f64); 8] = [
+    (1.0, 0.0),
+    (-1.0, 0.0),
+    (0.0, 1.0),
+    (0.0, -1.0),
+    (1.0, -1.0),
+    (-1.0, 1.0),
+    (1.0, 1.0),
+    (-1.0, -1.0),
+];
+
+/// Where the parabola through `middle` and its [`NEIGHBOURS`] is least, at most a step away; it
+/// stays in a direction in which it does not bend upwards.
+fn least_of_parabola(middle: f64, around: [f64; 8]) -> (f64, f64) {
+    let [right, left, up, down, lower_right, upper_left, upper_right, lower_left] = around;
+    let (slope_a, slope_b) = (0.5 * (right - left), 0.5 * (up - down));
+    let (bend_a, bend_b) = (right - 2.0 * middle + left, up - 2.0 * middle + down);
+    let twist = 0.25 * (upper_right + lower_left - lower_right - upper_left);
+    let alone = |slope: f64, bend: f64| if bend > 0.0 { -slope / bend } else { 0.0 };
+    let determinant = bend_a * bend_b - twist * twist;
+    let (a, b) = if bend_a > 0.0 && determinant > 1e-6 * bend_a * bend_b {
+        let a = (twist * slope_b - bend_b * slope_a) / determinant;
+        (a, (twist * slope_a - bend_a * slope_b) / determinant)
+    } else {
+        (alone(slope_a, bend_a), alone(slope_b, bend_b))
+    };
+    (a.clamp(-1.0, 1.0), b.clamp(-1.0, 1.0))
+}
+
 /// The same with other lags.
 pub(super) fn at_lags(trials: &[Whitened], fitted: Fitted, lags: Lags) -> Fitted {
     let numerators = Numerators::of(fitted.structure, fitted.delay, lags);
     Fitted { lags, error: error_of(trials, &numerators, lags), ..fitted }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parabola_is_least_where_its_slopes_are_none() {
+        let f = |a: f64, b: f64| 3.0 + 2.0 * (a - 0.3).powi(2) + (b + 0.2).powi(2) + a * b;
+        // Slopes 4 (a − 0.3) + b and 2 (b + 0.2) + a.
+        let (a, b) = least_of_parabola(f(0.0, 0.0), NEIGHBOURS.map(|(a, b)| f(a, b)));
+        assert!((4.0 * (a - 0.3) + b).abs() < 1e-12 && (2.0 * (b + 0.2) + a).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_direction_without_a_bend_is_not_followed() {
+        let f = |a: f64, _: f64| (a - 0.4).powi(2);
+        let (a, b) = least_of_parabola(f(0.0, 0.0), NEIGHBOURS.map(|(a, b)| f(a, b)));
+        assert!((a - 0.4).abs() < 1e-12 && b == 0.0);
+    }
 }

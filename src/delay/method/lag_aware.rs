@@ -121,7 +121,32 @@ fn lag_of(trials: &[Prepared<'_>], settings: &Settings) -> Lag {
             break;
         }
     }
-    Lag::new(period, found.model, found.covariance())
+    if found.model.order() > 0 && is_early(&refined(&paths, &found)) {
+        return Lag::undetermined();
+    }
+    let lag = Lag::new(period, found.model, found.covariance());
+    if found.model.order() > 0 && !is_known(&lag) { Lag::undetermined() } else { lag }
+}
+
+/// Whether the lag is more than its own uncertainty: two standard errors.
+fn is_known(lag: &Lag) -> bool {
+    let mean = lag.mean_s();
+    mean.value > 2.0 * mean.std_error
+}
+
+/// Whether onsets behind this lag come before the input that they answer: then it is no lag of
+/// the joint, but what its steps share otherwise, as a load that changes along each stroke.
+fn is_early(refined: &[Refinement<'_>]) -> bool {
+    /// Part of the onsets that may, and how many at least (chosen).
+    const PART: f64 = 0.1;
+    const FEW: usize = 3;
+    /// By how many standard errors, and samples.
+    const STANDARD_ERRORS: f64 = 3.0;
+    const SAMPLES: f64 = 1.0;
+    let onsets = || refined.iter().flat_map(|trial| &trial.path.onsets).filter(|it| it.counts);
+    let ends = |onset: &Onset| onset.position + STANDARD_ERRORS * onset.error + SAMPLES;
+    let early = onsets().filter(|onset| ends(onset) < onset.origin as f64).count();
+    early >= FEW && early as f64 > PART * onsets().count() as f64
 }
 
 /// Whether enough steps can show a lag, where some cannot: those of a joint that rested, and

@@ -20,6 +20,49 @@ pub(super) fn judge(decisions: &mut [Decision], raw: &[f64], confidence: f64) {
     }
 }
 
+/// Puts the verdict on the decisions before the first that shows a plain reaction, or at which
+/// the joint `departs` from its rest.
+///
+/// The paper asks nothing of the kind, of joints that do react; of one that never does, as when its
+/// sensor is not connected, it would make delays of noise. The noise is that of the steps so far,
+/// so that a verdict stays as a record grows.
+pub(super) fn judge_until_one_reacts(
+    decisions: &mut [Decision],
+    raw: &[f64],
+    departs: impl Fn(usize) -> bool,
+    confidence: f64,
+) {
+    let white = NoiseModel::white();
+    let mut residuals: Vec<Vec<f64>> = Vec::new();
+    for (index, decision) in decisions.iter_mut().enumerate() {
+        if departs(index) {
+            break;
+        }
+        let values = window(decision, raw);
+        let Some(line) = best(values, &white) else { continue };
+        residuals.push(line.residuals(values));
+        let latest = residuals.len().saturating_sub(LATEST);
+        let noise = NoiseModel::of(&residuals[latest..], PARAMETERS);
+        let p_value = best(values, &noise).map(|line| line.p_value);
+        if p_value.is_some_and(|p_value| p_value < PLAIN) {
+            break;
+        }
+        if residuals.len() >= FEWEST {
+            decision.test_reaction(p_value, confidence);
+        }
+    }
+}
+
+/// Steps from which the noise is known well enough to say that there is nothing else; chosen: one
+/// reaction alone passes for the memory of a noise.
+const FEWEST: usize = 3;
+
+/// The p-value of a reaction that is plain: noise alone passes for it once in a million steps.
+const PLAIN: f64 = 1e-6;
+
+/// Steps whose noise is taken for that of the next, at most.
+const LATEST: usize = 20;
+
 /// The samples of a decision's segment that its own step alone can have moved.
 fn window<'a>(decision: &Decision, raw: &'a [f64]) -> &'a [f64] {
     let indices = decision.segment.indices();

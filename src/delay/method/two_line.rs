@@ -78,6 +78,9 @@ fn decide_all(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
                 decision.test_reaction(Some(p_value), confidence);
             }
         }
+    } else if !settings.paper {
+        let departs = |index| StepContext { trial, index, settings }.departed().is_some();
+        noise_test::judge_until_one_reacts(&mut decisions, trial.raw, departs, CONFIDENCE);
     }
     decisions
 }

@@ -3,7 +3,10 @@
 use std::fmt;
 
 use crate::delay::Settings;
+use crate::delay::lengths::common_period;
+use crate::experiment::Trial;
 use crate::numerics::LowPass;
+use crate::units::Length;
 
 /// A setting that is varied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -65,8 +68,8 @@ pub struct Base {
 pub struct Grid {
     bases: Vec<Base>,
     passbands: Vec<Option<LowPass>>,
-    alphas: Vec<usize>,
-    betas: Vec<usize>,
+    alphas: Vec<Length>,
+    betas: Vec<Length>,
     runs: Vec<Settings>,
     combinations: Vec<Combination>,
 }
@@ -76,9 +79,11 @@ impl Grid {
     pub fn new(
         bases: Vec<Base>,
         passbands: Vec<Option<LowPass>>,
-        alphas: Vec<usize>,
-        betas: Vec<usize>,
+        alphas: impl IntoIterator<Item = impl Into<Length>>,
+        betas: impl IntoIterator<Item = impl Into<Length>>,
     ) -> Self {
+        let alphas = alphas.into_iter().map(Into::into).collect();
+        let betas = betas.into_iter().map(Into::into).collect();
         let (runs, combinations) = (Vec::new(), Vec::new());
         let mut grid = Self { bases, passbands, alphas, betas, runs, combinations };
         for m in 0..grid.bases.len() {
@@ -91,22 +96,56 @@ impl Grid {
         grid
     }
 
+    /// The same combinations with other settings that are not varied.
+    #[must_use]
+    pub fn with_settings(&self, of: impl Fn(&Settings) -> Settings) -> Self {
+        let base = |base: &Base| Base { settings: of(&base.settings), ..base.clone() };
+        let bases = self.bases.iter().map(base).collect();
+        let (passbands, alphas, betas) = (&self.passbands, &self.alphas, &self.betas);
+        Self::new(bases, passbands.clone(), alphas.iter().copied(), betas.iter().copied())
+    }
+
+    /// The same with other low-passes.
+    #[must_use]
+    pub fn with_passbands(&self, passbands: Vec<Option<LowPass>>) -> Self {
+        let (alphas, betas) = (self.alphas.iter().copied(), self.betas.iter().copied());
+        Self::new(self.bases.clone(), passbands, alphas, betas)
+    }
+
+    /// The same with all lengths in samples, where all of `trials` have one period; what is then
+    /// the same is tried once.
+    #[must_use]
+    pub fn in_samples<'a>(&self, trials: impl Iterator<Item = &'a Trial>) -> Self {
+        let Some(period) = common_period(trials) else { return self.clone() };
+        let each = |lengths: &[Length]| {
+            let mut found: Vec<Length> = Vec::new();
+            for length in lengths {
+                let length = Length::Samples(length.samples(period).max(1));
+                if !found.contains(&length) {
+                    found.push(length);
+                }
+            }
+            found
+        };
+        let grid = self.with_settings(|settings| settings.at(period));
+        Self::new(grid.bases, grid.passbands, each(&self.alphas), each(&self.betas))
+    }
+
     /// The combinations with every β.
     fn add_row(&mut self, [m, p, a]: [usize; 3]) {
         let Some(Base { settings, keeps_low_pass }) = self.bases.get(m).cloned() else { return };
         let known = keeps_low_pass && p > 0;
         let low_pass = self.passbands.get(p).copied().flatten().filter(|_| !keeps_low_pass);
         let low_pass = if keeps_low_pass { settings.low_pass } else { low_pass };
-        let alpha = self.alphas.get(a).copied().unwrap_or(settings.alpha);
+        let alpha = self.alphas.get(a).copied().unwrap_or(settings.alpha_length());
         for b in 0..self.betas.len() {
             let settings = settings.clone();
             let levels = [m, p, a, b];
             if !known && (b == 0 || settings.method.spec().has_rows) {
-                let beta = self.betas.get(b).copied().unwrap_or(settings.beta);
+                let beta = self.betas.get(b).copied().unwrap_or(settings.beta_length());
                 // Two runs that differ by a low-pass that is left out would be one.
-                let low_pass_required = true;
-                let varied = Settings { alpha, beta, low_pass, low_pass_required, ..settings };
-                self.runs.push(varied);
+                let varied = Settings { low_pass, low_pass_required: true, ..settings };
+                self.runs.push(varied.with_alpha(alpha).with_beta(beta));
             }
             let same = if known { self.run_at([m, 0, a, b]) } else { None };
             let run = same.unwrap_or(self.runs.len() - 1);
@@ -143,12 +182,12 @@ impl Grid {
     }
 
     /// The values of α that are tried.
-    pub fn alphas(&self) -> &[usize] {
+    pub fn alphas(&self) -> &[Length] {
         &self.alphas
     }
 
     /// The values of β that are tried.
-    pub fn betas(&self) -> &[usize] {
+    pub fn betas(&self) -> &[Length] {
         &self.betas
     }
 

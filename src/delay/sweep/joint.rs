@@ -3,7 +3,7 @@
 use super::grid::{Factor, Grid};
 use super::run::{LevelSummary, RunDelays, RunSummary};
 use super::step::SweptStep;
-use crate::delay::{InputStep, Settings, joint_steps};
+use crate::delay::{InputStep, Neutral, Settings, Transition, joint_steps};
 use crate::experiment::Trial;
 
 /// The delays of a joint over all settings.
@@ -15,6 +15,8 @@ pub struct JointSweep {
     pub runs: Vec<Option<RunSummary>>,
     /// What became of each value of each factor, in the order of [`Factor::ALL`].
     pub levels: Vec<Vec<LevelSummary>>,
+    /// The same for each kind of step, where most runs find that their medians differ.
+    pub kinds: Vec<(Transition, Vec<Vec<LevelSummary>>)>,
 }
 
 impl JointSweep {
@@ -24,6 +26,7 @@ impl JointSweep {
     pub fn of(grid: &Grid, trials: &[Trial], runs: &[Option<RunDelays>], tolerance: f64) -> Self {
         let settings = grid.runs().first().cloned().unwrap_or_else(Settings::default);
         let ran: Vec<bool> = runs.iter().map(Option::is_some).collect();
+        let neutral = Neutral::of(trials);
         let of_trials = trials.iter().zip(joint_steps(trials, &settings));
         let steps = of_trials.flat_map(|(trial, steps)| {
             let steps = steps.into_iter().zip(1..);
@@ -35,19 +38,24 @@ impl JointSweep {
                 Some(reported.widened(0.5 * tolerance))
             };
             let delays = runs.iter().map(delay).collect();
-            SweptStep::of(trial, step, number, delays).judged(grid, &ran)
+            let kind = Transition::of(&step, neutral.as_ref());
+            SweptStep::of(trial, step, kind, number, delays).judged(grid, &ran)
         };
         let steps: Vec<SweptStep> = steps.enumerate().map(judged).collect();
         let summary = |(index, run): (usize, &Option<RunDelays>)| {
             Some(RunSummary::of(&steps, index, run.as_ref()?.lag.clone()))
         };
         let summaries = runs.iter().enumerate().map(summary).collect();
-        let levels = |factor: Factor| {
-            let of = |level| LevelSummary::of(&steps, grid.at(factor, level), &ran);
-            (0..grid.levels(factor)).map(of).collect()
+        let levels = levels_of(grid, &steps.iter().collect::<Vec<_>>(), &ran);
+        let differ = runs.iter().flatten().filter(|run| run.kinds_differ).count();
+        let by_kind = 2 * differ > runs.iter().flatten().count();
+        let of_kind = |kind: Transition| {
+            let own: Vec<&SweptStep> =
+                steps.iter().filter(|step| step.transition == kind).collect();
+            (by_kind && !own.is_empty()).then(|| (kind, levels_of(grid, &own, &ran)))
         };
-        let levels = Factor::ALL.into_iter().map(levels).collect();
-        Self { steps, runs: summaries, levels }
+        let kinds = Transition::ALL.into_iter().filter_map(of_kind).collect();
+        Self { steps, runs: summaries, levels, kinds }
     }
 
     /// The steps that any setting accepts.
@@ -64,6 +72,15 @@ impl JointSweep {
         });
         sensitive
     }
+}
+
+/// What became of each value of each factor, over these steps.
+fn levels_of(grid: &Grid, steps: &[&SweptStep], ran: &[bool]) -> Vec<Vec<LevelSummary>> {
+    let levels = |factor: Factor| {
+        let of = |level| LevelSummary::of(steps, grid.at(factor, level), ran);
+        (0..grid.levels(factor)).map(of).collect()
+    };
+    Factor::ALL.into_iter().map(levels).collect()
 }
 
 #[cfg(test)]
@@ -86,8 +103,9 @@ mod tests {
         let period = SamplePeriod::from_seconds(0.01).unwrap();
         let trial = Trial::new("1", 0.0, period, vec![0.0, 1.0], vec![0.0; 2]).unwrap();
         let reported = |delay: f64| ReportedDelay { delay, low: delay - 0.5, high: delay + 0.5 };
-        let run =
-            |delay: Option<f64>| Some(RunDelays { steps: vec![delay.map(reported)], lag: None });
+        let run = |delay: Option<f64>| {
+            Some(RunDelays { steps: vec![delay.map(reported)], lag: None, kinds_differ: false })
+        };
         let sweep = JointSweep::of(&grid(), &[trial], &delays.map(run), 2.0);
         sweep.steps[0].clone()
     }
@@ -131,8 +149,9 @@ mod tests {
         let period = SamplePeriod::from_seconds(0.01).unwrap();
         let trial = Trial::new("1", 0.0, period, vec![0.0, 1.0], vec![0.0; 2]).unwrap();
         let reported = ReportedDelay { delay: 3.0, low: 3.0, high: 3.0 };
-        let runs = [true, false, true, false, true, true]
-            .map(|ran| ran.then(|| RunDelays { steps: vec![Some(reported)], lag: None }));
+        let runs = [true, false, true, false, true, true].map(|ran| {
+            ran.then(|| RunDelays { steps: vec![Some(reported)], lag: None, kinds_differ: false })
+        });
         let sweep = JointSweep::of(&grid(), &[trial], &runs, 0.0);
         assert_eq!((sweep.steps[0].tried, sweep.steps[0].accepted), (4, 4));
         assert!(sweep.steps[0].is_unanimous() && sweep.runs[1].is_none());

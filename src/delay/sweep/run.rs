@@ -3,8 +3,8 @@
 use super::agreement::ReportedDelay;
 use super::grid::Combination;
 use super::step::{SweptStep, mean};
-use crate::delay::{Lag, Settings, TrialEstimate, joint_steps};
-use crate::experiment::Trial;
+use crate::delay::{DelayTable, KindDelay, Lag, Settings, TrialEstimate, joint_steps};
+use crate::experiment::Joint;
 use crate::numerics::median;
 
 /// What one run reports of all steps of a joint.
@@ -14,21 +14,28 @@ pub struct RunDelays {
     pub steps: Vec<Option<ReportedDelay>>,
     /// The lag that it found.
     pub lag: Option<Lag>,
+    /// Whether the medians of its kinds of steps differ by more than is uncertain.
+    pub kinds_differ: bool,
 }
 
 impl RunDelays {
-    /// Collects what a run reports of `trials`; `None` stands for a trial that failed.
+    /// Collects what a run reports of `joint`; `None` stands for a trial that failed.
     pub fn of<'a>(
-        trials: &[Trial],
-        estimates: impl IntoIterator<Item = Option<&'a TrialEstimate>>,
+        joint: &'a Joint,
+        estimates: impl IntoIterator<Item = Option<&'a TrialEstimate>> + Clone,
         settings: &Settings,
     ) -> Self {
-        let mut found = Self { steps: Vec::new(), lag: None };
+        let trials = &joint.trials;
+        let kinds = DelayTable::of(joint, estimates.clone()).kinds;
+        let kinds_differ = KindDelay::differ(&kinds);
+        let mut found = Self { steps: Vec::new(), lag: None, kinds_differ };
         let steps = joint_steps(trials, settings);
-        for (steps, estimate) in steps.iter().zip(estimates) {
+        for ((trial, steps), estimate) in trials.iter().zip(&steps).zip(estimates) {
             if let Some(estimate) = estimate {
-                let decisions = estimate.decisions.iter();
-                found.steps.extend(decisions.map(|decision| ReportedDelay::of(decision, settings)));
+                let (decisions, settings) =
+                    (estimate.decisions.iter(), settings.at(trial.period()));
+                let reported = decisions.map(|decision| ReportedDelay::of(decision, &settings));
+                found.steps.extend(reported);
                 found.lag = found.lag.or_else(|| estimate.lag.clone());
             } else {
                 found.steps.resize(found.steps.len() + steps.len(), None);
@@ -93,7 +100,7 @@ impl RunSummary {
 
 impl LevelSummary {
     pub(super) fn of<'a>(
-        steps: &[SweptStep],
+        steps: &[&SweptStep],
         combinations: impl Iterator<Item = &'a Combination>,
         ran: &[bool],
     ) -> Self {

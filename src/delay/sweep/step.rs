@@ -2,7 +2,7 @@
 
 use super::agreement::{Agreement, ReportedDelay, gap};
 use super::grid::{Combination, Factor, Grid};
-use crate::delay::InputStep;
+use crate::delay::{InputStep, Transition};
 use crate::experiment::Trial;
 use crate::numerics::{median, quantile};
 
@@ -22,6 +22,8 @@ pub struct SweptStep {
     pub time_s: f64,
     /// Seconds between samples.
     pub period_s: f64,
+    /// Which kind of step it is.
+    pub transition: Transition,
     /// What each run of the grid reports, where it accepted the step.
     pub delays: Vec<Option<ReportedDelay>>,
     /// Combinations that accepted it.
@@ -72,6 +74,7 @@ impl SweptStep {
     pub(super) fn of(
         trial: &Trial,
         step: InputStep,
+        transition: Transition,
         number: usize,
         delays: Vec<Option<ReportedDelay>>,
     ) -> Self {
@@ -81,6 +84,7 @@ impl SweptStep {
             sample: step.sample,
             time_s: trial.time_s(step.sample),
             period_s: trial.period().seconds(),
+            transition,
             delays,
             accepted: 0,
             tried: 0,

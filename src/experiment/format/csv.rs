@@ -5,10 +5,13 @@ use std::io::{self, Read};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use super::spelling::{Spelling, are_units, bare_unit, parse_cell, parse_time, sniff_delimiter};
+use super::spelling::{
+    Spelling, are_units, bare_unit, is_remark, parse_cell, parse_time, sniff_delimiter,
+};
 use super::text::{Bytes, SNIFFED_BYTES};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
+use crate::experiment::names::shown;
 use crate::experiment::source::Source;
 use crate::experiment::table::{
     Column, Head, Header, Labels, OpenTable, RowNumbers, Rows, Table, Wanted,
@@ -24,6 +27,9 @@ const LONGEST_ROW: u64 = 1 << 24;
 
 /// Lines of the same.
 const MOST_LINES: usize = 1 << 20;
+
+/// Rows of words that may stand below a table.
+const MOST_REMARKS: usize = 20;
 
 /// Memory of a number: itself, and what its vector has to spare.
 const NUMBER_SIZE: usize = 2 * size_of::<f64>();
@@ -61,6 +67,7 @@ pub(super) fn table(
     let mut head = head(path, &record, place_just_read(&mut reader, &record).row)?;
     let mut first = None;
     if next(&mut reader, &mut record, path)? {
+        check_parted(&head, &record)?;
         if are_units(&record) {
             add_units(&mut head, &record);
         } else {
@@ -69,6 +76,22 @@ pub(super) fn table(
         }
     }
     Ok(OpenTable { head, rows: Box::new(Unread { reader, delimiter, first, budget }) })
+}
+
+/// Refuses a table whose cells are parted by blanks, which would be one column.
+fn check_parted(head: &Head, first: &csv::ByteRecord) -> Result<(), ReadError> {
+    let words = |cell: &[u8]| String::from_utf8_lossy(cell).split_whitespace().count();
+    let [header] = head.headers.as_slice() else { return Ok(()) };
+    let (names, values) = (words(header.text.as_bytes()), first.get(0).map_or(0, words));
+    if first.len() > 1 || names < 2 || names != values {
+        return Ok(());
+    }
+    Err(ReadError::Format {
+        path: head.path.clone(),
+        format: "a table of text",
+        reason: format!("its {names} cells are parted by blanks"),
+        remedy: "part them by commas, semicolons or tabs",
+    })
 }
 
 /// The units of a row below the header, where the header has none.
@@ -117,8 +140,16 @@ impl Rows for Unread {
             gathered.take(&record, &place, wanted)?;
         }
         let mut record = csv::ByteRecord::new();
+        let mut remarks: Vec<(csv::ByteRecord, Place)> = Vec::new();
         while next(&mut self.reader, &mut record, wanted.path())? {
             let place = place_just_read(&mut self.reader, &record);
+            if remarks.len() < MOST_REMARKS && gathered.may_end_with(&record) {
+                remarks.push((record.clone(), place));
+                continue;
+            }
+            for (remark, place) in remarks.drain(..) {
+                gathered.take(&remark, &place, wanted)?;
+            }
             if let Err(error) = gathered.take(&record, &place, wanted) {
                 if !self.is_cut_off(&record, wanted)? {
                     return Err(error);
@@ -130,6 +161,7 @@ impl Rows for Unread {
                 ));
             }
         }
+        gathered.leave_out(&remarks, wanted);
         let bytes = self.reader.into_inner().into_inner().0.inner;
         gathered.table_of(bytes.finish(wanted.path())?);
         Ok(gathered.table)
@@ -197,6 +229,28 @@ impl Gathered {
             labels.push(&String::from_utf8_lossy(label), row, wanted.path())?;
         }
         Ok(())
+    }
+
+    /// Whether a row may be words below the table.
+    fn may_end_with(&self, record: &csv::ByteRecord) -> bool {
+        !self.table.rows.is_empty() && is_remark(record, self.delimiter)
+    }
+
+    /// Says that words below the table are no rows of it.
+    fn leave_out(&mut self, remarks: &[(csv::ByteRecord, Place)], wanted: &Wanted<'_>) {
+        let Some((first, place)) = remarks.first() else { return };
+        let says = first.iter().map(String::from_utf8_lossy).find(|cell| !cell.trim().is_empty());
+        let rows = match remarks.len() {
+            1 => format!("the last row, {}, is left out: it holds", place.row),
+            count => {
+                format!("the last {count} rows, from {} on, are left out: they hold", place.row)
+            }
+        };
+        self.table.notes.push(format!(
+            "{}: {rows} no number and no time (`{}`)",
+            wanted.path().display(),
+            shown(says.unwrap_or_default().trim())
+        ));
     }
 
     /// What came so far, of this much of the file.

@@ -67,9 +67,9 @@ const FORMATS: [Format; 8] = [
         starts: |start| start.starts_with(b"PK\x03\x04"),
         remedy: "save it again as .xlsx, or as CSV",
         #[cfg(feature = "xlsx")]
-        open: xlsx::open,
+        open: |path, budget| workbook(path, xlsx::open(path, budget)),
         #[cfg(not(feature = "xlsx"))]
-        open: |path, _| left_out(path, "XLSX", "xlsx"),
+        open: |path, _| workbook(path, left_out(path, "XLSX", "xlsx")),
     },
     Format {
         name: "rosbag2 in SQLite",
@@ -110,6 +110,19 @@ const FORMATS: [Format; 8] = [
         open: csv::open,
     },
 ];
+
+/// What was `opened` as a workbook. That is a ZIP archive, as others are that hold logs.
+fn workbook(path: &Path, opened: Result<OpenTable, ReadError>) -> Result<OpenTable, ReadError> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    let is_named = FORMATS.iter().any(|format| format.name == "XLSX" && format.ends(&name));
+    opened.map_err(|error| match error {
+        ReadError::Format { .. } | ReadError::FormatLeftOut { .. } if !is_named => {
+            let remedy = "unpack it first, or call it .xlsx if it is a workbook";
+            unread(path, "a log", "it is a ZIP archive", remedy)
+        }
+        error => error,
+    })
+}
 
 /// A format that is known, and not read.
 fn unread(path: &Path, format: &'static str, reason: &str, remedy: &'static str) -> ReadError {

@@ -18,6 +18,11 @@ const LINES: usize = 200;
 impl Spelling {
     /// How a text is written that starts so.
     pub(super) fn of(start: &[u8]) -> Self {
+        Self::by_widths(start).past_padding(start)
+    }
+
+    /// The table as rows of one width, with what is shorter or longer before it.
+    fn by_widths(start: &[u8]) -> Self {
         let plain = Self { delimiter: sniff_delimiter(start), preamble: (0, 0) };
         let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
         // The last line may be cut off.
@@ -56,6 +61,68 @@ impl Spelling {
             None => plain,
         }
     }
+
+    /// The header below lines that are padded to the width of the table, as spreadsheet programs
+    /// write them: the row above the first one of numbers, and above its units.
+    fn past_padding(self, start: &[u8]) -> Self {
+        let (bytes, before) = self.preamble;
+        let lines = start.get(bytes..).unwrap_or_default().split_inclusive(|byte| *byte == b'\n');
+        let mut above: Vec<(usize, csv::ByteRecord)> = Vec::new();
+        for (index, line) in lines.clone().take(LINES).enumerate().filter(|(_, line)| is_row(line))
+        {
+            let record = split(line, self.delimiter);
+            if !holds_numbers(&record, self.delimiter) {
+                above.push((index, record));
+                continue;
+            }
+            if above.last().is_some_and(|(_, record)| are_units(record)) {
+                above.pop();
+            }
+            let is_padded = above.first().is_some_and(|(_, first)| filled(first) < first.len());
+            let (Some(header), true) = (above.last().filter(|_| above.len() > 1), is_padded) else {
+                return self;
+            };
+            let (index, header) = header;
+            if filled(header) < header.len() {
+                return self;
+            }
+            let skipped: usize = lines.take(*index).map(<[u8]>::len).sum();
+            return Self { preamble: (bytes + skipped, before + *index as u64), ..self };
+        }
+        self
+    }
+}
+
+/// The cells of a line.
+fn split(line: &[u8], delimiter: u8) -> csv::ByteRecord {
+    let mut reader = csv::ReaderBuilder::new()
+        .delimiter(delimiter)
+        .flexible(true)
+        .has_headers(false)
+        .from_reader(line);
+    let mut record = csv::ByteRecord::new();
+    // What cannot be parted is no row of numbers.
+    let is_row = reader.read_byte_record(&mut record).unwrap_or(false);
+    if is_row { record } else { csv::ByteRecord::new() }
+}
+
+/// Cells that are not empty.
+fn filled(record: &csv::ByteRecord) -> usize {
+    record.iter().filter(|cell| !cell.trim_ascii().is_empty()).count()
+}
+
+/// Whether most cells of a row are numbers or times, and two at least.
+fn holds_numbers(record: &csv::ByteRecord, delimiter: u8) -> bool {
+    let is_value = |cell: &[u8]| parse_time(cell.trim_ascii(), delimiter).is_ok_and(f64::is_finite);
+    let values = record.iter().filter(|cell| is_value(cell)).count();
+    values > 1 && 2 * values > record.len()
+}
+
+/// Whether a row says something, and no cell of it is a number or a time: the words below a table.
+pub(super) fn is_remark(record: &csv::ByteRecord, delimiter: u8) -> bool {
+    let cells = record.iter().map(<[u8]>::trim_ascii).filter(|cell| !cell.is_empty());
+    let mut cells = cells.peekable();
+    cells.peek().is_some() && cells.all(|cell| parse_time(cell, delimiter).is_err())
 }
 
 fn is_row(line: &[u8]) -> bool {
@@ -116,6 +183,9 @@ pub(super) fn bare_unit(cell: &str) -> String {
     inner('[', ']').or_else(|| inner('(', ')')).unwrap_or(cell).trim().to_owned()
 }
 
+/// What programs write for a value that is missing, in lower case.
+const MISSING: [&str; 9] = ["na", "n/a", "#n/a", "#nv", "null", "none", "nan", "-", "--"];
+
 /// The number in a cell; NaN where there is none. A comma may stand for the point where it
 /// does not part the cells.
 pub(super) fn parse_cell(cell: &[u8], delimiter: u8) -> Result<f64, BadCell> {
@@ -123,6 +193,10 @@ pub(super) fn parse_cell(cell: &[u8], delimiter: u8) -> Result<f64, BadCell> {
         return Ok(f64::NAN);
     }
     let text = std::str::from_utf8(cell).ok();
+    let is_missing = |text: &str| MISSING.iter().any(|word| text.eq_ignore_ascii_case(word));
+    if text.is_some_and(is_missing) {
+        return Ok(f64::NAN);
+    }
     let number = text.and_then(|text| text.parse::<f64>().ok());
     let with_comma = || {
         let text = text.filter(|text| delimiter != b',' && text.matches(',').count() == 1)?;
@@ -187,6 +261,21 @@ mod tests {
     }
 
     #[test]
+    fn lines_padded_to_the_width_of_the_table_do_not_hide_the_header() {
+        let table = "t;u;y\n0,0;1,5;2\n0,1;1;2\n0,2;1;2\n";
+        for preamble in ["\"Run 7\";;\nDate;01.03.2026;\n;;\n", "Rig 3;;\r\nBy:;me;\r\n\r\n"] {
+            for units in ["", "s;V;deg\n"] {
+                let table = table.replacen('\n', &format!("\n{units}"), 1);
+                let found = Spelling::of(format!("{preamble}{table}").as_bytes());
+                assert_eq!((found.delimiter, found.preamble), (b';', (preamble.len(), 3)));
+            }
+        }
+        // An index without a name is a column all the same.
+        let plain = Spelling { delimiter: b',', preamble: (0, 0) };
+        assert_eq!(Spelling::of(b",t,u,y\n0,0,1,2\n1,0.1,1,2\n"), plain);
+    }
+
+    #[test]
     fn a_cell_is_a_number_or_missing_or_wrong() {
         let parse = |cell: &[u8]| parse_cell(cell, b',');
         assert_eq!(parse(b"-1.5e3"), Ok(-1500.0));
@@ -194,7 +283,10 @@ mod tests {
         assert!(parse(b"NaN").unwrap().is_nan());
         assert_eq!(parse(b"inf"), Err(BadCell::Infinite));
         assert_eq!(parse(b"1e999"), Err(BadCell::Infinite));
-        assert_eq!(parse(b"n/a"), Err(BadCell::Text("n/a".to_owned())));
+        for word in ["NA", "n/a", "#N/A", "#NV", "NULL", "None", "-", "--"] {
+            assert!(parse(word.as_bytes()).unwrap().is_nan(), "{word}");
+        }
+        assert_eq!(parse(b"#REF!"), Err(BadCell::Text("#REF!".to_owned())));
         assert_eq!(parse(b"1,5"), Err(BadCell::Text("1,5".to_owned())));
         assert_eq!(parse_cell(b"-1,5", b';'), Ok(-1.5));
         assert!(parse_cell(b"1.000,5", b';').is_err());

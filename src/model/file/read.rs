@@ -235,8 +235,12 @@ impl JointReader<'_> {
         own: (f64, f64),
         value: Value,
     ) -> Result<Value, ModelError> {
-        let min = value.min.map_or(own.0, |min| min.max(own.0));
-        let max = value.max.map_or(own.1, |max| max.min(own.1));
+        // A limit that is no number is none of the two, and holds no value.
+        let tighter = |given: f64, own: f64, tighter: fn(f64, f64) -> f64| {
+            if given.is_nan() { given } else { tighter(given, own) }
+        };
+        let min = value.min.map_or(own.0, |min| tighter(min, own.0, f64::max));
+        let max = value.max.map_or(own.1, |max| tighter(max, own.1, f64::min));
         if (min..=max).contains(&value.value) {
             return Ok(value);
         }

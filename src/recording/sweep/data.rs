@@ -8,7 +8,7 @@ use crate::delay::sweep::{Agreement, RunSummary, Spread, SweptStep};
 use crate::recording::chunk::{Chunks, integers, numbers, optional_lists, texts};
 use crate::recording::error::RecordError;
 use crate::recording::paths::{at, sweep as paths};
-use crate::units::signed;
+use crate::units::{Length, signed};
 
 /// Adds `/sweep/setting` and `/sweep/step` below `root`.
 pub(super) fn add(
@@ -18,6 +18,18 @@ pub(super) fn add(
 ) -> Result<(), RecordError> {
     add_settings(chunks, at(root, paths::SETTING), swept)?;
     add_steps(chunks, at(root, paths::STEP), swept)
+}
+
+/// A number of samples; none of what is in seconds.
+fn samples(length: Length) -> Option<usize> {
+    match length {
+        Length::Samples(samples) => Some(samples),
+        Length::Seconds(_) => None,
+    }
+}
+
+fn has_rows(run: &Settings) -> bool {
+    run.method.spec().has_rows
 }
 
 fn add_settings(
@@ -46,8 +58,8 @@ fn add_settings(
     let columns = [
         texts("method", &runs.iter().map(|run| Some(run.method.to_string())).collect::<Vec<_>>()),
         numbers("passband_hz", &passbands.collect::<Vec<_>>()),
-        integers("alpha", &whole(|run| Some(run.alpha))),
-        integers("beta", &whole(|run| run.method.spec().has_rows.then_some(run.beta))),
+        integers("alpha", &whole(|run| samples(run.alpha_length()))),
+        integers("beta", &whole(|run| has_rows(run).then(|| samples(run.beta_length()))?)),
         integers("combinations", &votes.collect::<Vec<_>>()),
         integers("accepted", &count(|run| run.accepted)),
         integers("disagreements", &count(|run| run.disagreements)),

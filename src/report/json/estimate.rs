@@ -12,6 +12,7 @@ use crate::delay::{DelayRow, DelayTable, KindDelay, Neutral, Settings, StepState
 use crate::experiment::{Experiment, ReadOptions, Source};
 use crate::report::decisions::detailed_rows;
 use crate::report::delay_table::DelayTableRow;
+use crate::report::settings::own_settings;
 use crate::report::{DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary, Words};
 
 /// The document of `estimate --format json`.
@@ -209,7 +210,7 @@ impl<'a> EstimateJson<'a> {
     ) -> Option<Self> {
         let run = |(settings, joints): &(&Settings, &'a [EstimatedJoint<'a>])| RunJson {
             settings: (*settings).into(),
-            joints: joints.iter().map(|joint| JointJson::new(*joint)).collect(),
+            joints: joints.iter().map(|joint| JointJson::new(*joint, settings)).collect(),
         };
         let (first, others) = runs.split_first()?;
         let source = |source: &'a Source| SourceJson {
@@ -230,8 +231,9 @@ impl<'a> EstimateJson<'a> {
 }
 
 impl<'a> JointJson<'a> {
-    fn new(joint: EstimatedJoint<'a>) -> Self {
+    fn new(joint: EstimatedJoint<'a>, asked: &Settings) -> Self {
         let chosen = joint.estimate.chosen;
+        let is_own = chosen.is_some() || own_settings(&joint, asked).is_some();
         let DelayTable { neutral, rows, kinds, .. } = joint.delay_table();
         let JointSummary { steps, accepted, rejected, delay_samples, delay_s, words, .. } =
             JointSummary::of(joint);
@@ -248,7 +250,7 @@ impl<'a> JointJson<'a> {
             delay_s,
             input: InputJson::of(joint),
             dead_time: DeadTimeJson::of(joint),
-            settings: chosen.map(|_| (&joint.estimate.settings).into()),
+            settings: is_own.then(|| (&joint.estimate.settings).into()),
             chosen: chosen.map(Into::into),
             lag: joint.lag().map(LagJson::new),
             neutral: neutral.map(|Neutral { level, low, high }| NeutralJson { level, low, high }),

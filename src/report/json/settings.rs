@@ -8,11 +8,20 @@ use crate::numerics::LowPass;
 #[derive(Debug, Serialize)]
 pub(super) struct SettingsJson {
     method: &'static str,
-    alpha: usize,
-    beta: usize,
+    /// `null` where it is given in seconds; so are those below.
+    alpha: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    alpha_s: Option<f64>,
+    beta: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    beta_s: Option<f64>,
     low_pass: Option<LowPassJson>,
-    min_delay: usize,
+    min_delay: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    min_delay_s: Option<f64>,
     max_delay: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    max_delay_s: Option<f64>,
     output_limits: Option<(f64, f64)>,
     min_slope_change: f64,
     max_sse: Option<f64>,
@@ -35,13 +44,19 @@ struct LowPassJson {
 impl From<&Settings> for SettingsJson {
     fn from(settings: &Settings) -> Self {
         let low_pass = |LowPass { cutoff_hz, order }: LowPass| LowPassJson { cutoff_hz, order };
+        let in_seconds = settings.in_seconds;
+        let in_samples = |seconds: Option<f64>, samples| seconds.is_none().then_some(samples);
         Self {
             method: settings.method.id(),
-            alpha: settings.alpha,
-            beta: settings.beta,
+            alpha: in_samples(in_seconds.alpha, settings.alpha),
+            alpha_s: in_seconds.alpha,
+            beta: in_samples(in_seconds.beta, settings.beta),
+            beta_s: in_seconds.beta,
             low_pass: settings.low_pass.map(low_pass),
-            min_delay: settings.min_delay,
+            min_delay: in_samples(in_seconds.min_delay, settings.min_delay),
+            min_delay_s: in_seconds.min_delay,
             max_delay: settings.max_delay,
+            max_delay_s: in_seconds.max_delay,
             output_limits: settings.output_limits,
             min_slope_change: settings.min_slope_change,
             max_sse: settings.max_sse,

@@ -43,6 +43,9 @@ struct JointJson<'a> {
     agreeing_settings: Vec<usize>,
     settings: Vec<Option<SettingJson>>,
     levels: Map<String, Value>,
+    /// The same for each kind of step, where these differ.
+    #[serde(skip_serializing_if = "Map::is_empty")]
+    levels_by_transition: Map<String, Value>,
     decisions: Vec<StepJson<'a>>,
 }
 
@@ -111,9 +114,15 @@ impl<'a> JointJson<'a> {
             (id(factor).to_owned(), sweep.steps.iter().filter(on).count().into())
         };
         let agreeing = reported.agreeing().into_iter().enumerate();
-        let levels = Factor::ALL.into_iter().zip(&sweep.levels);
-        let levels = levels
-            .map(|(factor, levels)| (id(factor).to_owned(), levels_json(grid, factor, levels)));
+        let each = |levels: &[Vec<LevelSummary>]| -> Map<String, Value> {
+            let levels = Factor::ALL.into_iter().zip(levels);
+            let level = |(factor, levels): (Factor, &Vec<LevelSummary>)| {
+                (id(factor).to_owned(), levels_json(grid, factor, levels))
+            };
+            levels.map(level).collect()
+        };
+        let kinds = sweep.kinds.iter();
+        let kinds = kinds.map(|(kind, levels)| (kind.id().to_owned(), each(levels).into()));
         Self {
             joint: &reported.joint.name,
             steps: sweep.steps.len(),
@@ -122,7 +131,8 @@ impl<'a> JointJson<'a> {
             hanging_on: Factor::ALL.into_iter().map(hanging).collect(),
             agreeing_settings: agreeing.filter_map(|(n, agrees)| agrees.then_some(n)).collect(),
             settings: sweep.runs.iter().map(|run| run.as_ref().map(SettingJson::new)).collect(),
-            levels: levels.collect(),
+            levels: each(&sweep.levels),
+            levels_by_transition: kinds.collect(),
             decisions: sweep.steps.iter().map(|step| StepJson::new(grid, step)).collect(),
         }
     }

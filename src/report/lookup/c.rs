@@ -1,6 +1,6 @@
 //! C99, without dependencies beyond its standard library.
 
-use super::contents::{JointLookup, Lookup, numbers, quoted, side};
+use super::contents::{JointLookup, Lookup, numbers, quoted, side, support};
 use crate::delay::DelayCurve;
 
 const HEAD: &str = r" *
@@ -9,7 +9,7 @@ const HEAD: &str = r" *
  * The delay in seconds of a step of the input of `joint` from one level to another, in
  * the units of the log. Between measured levels it is interpolated within starts, stops,
  * changes and reversals of one side and direction; beyond them it stays that of the last
- * level. NAN where no such step was measured, or the joint is not known.
+ * level. NAN where no such step was measured, and where no joint is called so.
  */
 #include <math.h>
 #include <stddef.h>
@@ -108,8 +108,10 @@ fn tables((number, joint): (usize, &JointLookup<'_>)) -> String {
     let arrays = curves().map(|(place, curve)| {
         let (levels, delays) = numbers(curve);
         format!(
-            "static const double level_{number}_{place}[] = {{{levels}}};\n\
-             static const double delay_{number}_{place}[] = {{{delays}}};\n"
+            "/* {} */\n\
+             static const double level_{number}_{place}[] = {{{levels}}};\n\
+             static const double delay_{number}_{place}[] = {{{delays}}};\n",
+            support(curve)
         )
     });
     let row = |(place, curve): (usize, &DelayCurve)| {

@@ -2,10 +2,13 @@
 
 use std::cmp::Ordering;
 
-use crate::delay::{Automatic, DelayCurve, DelayTable, Neutral, Settings};
+use crate::delay::{
+    Automatic, CurvePoint, DelayCurve, DelayTable, Finding, Neutral, Settings, Transition,
+    TypicalDelay,
+};
 use crate::experiment::Source;
-use crate::report::EstimatedJoint;
 use crate::report::text::settings_line;
+use crate::report::{EstimatedJoint, dead_time_sentences};
 use crate::wording::number;
 
 /// The delays of all joints, ready to be written.
@@ -35,12 +38,16 @@ impl<'a> Lookup<'a> {
         let automatic = automatic.map_or_else(Automatic::default, |chosen| chosen.automatic);
         let source =
             |source: &Source| format!("log: {} (SHA-256 {})", source.path.display(), source.sha256);
-        let tables: Vec<_> =
-            joints.iter().map(|joint| (joint.joint, joint.delay_table())).collect();
+        let tables: Vec<_> = joints.iter().map(|joint| (joint.joint, delays_of(joint))).collect();
         let lines = [format!("made by tauscope {} estimate", env!("CARGO_PKG_VERSION"))];
         let method = format!("method: {}", settings_line(settings, automatic));
         let lines = lines.into_iter().chain(sources.iter().map(source)).chain([method]);
         let counted = tables.iter().map(|(joint, table)| joint_line(&joint.name, table));
+        let dead_times = joints.iter().flat_map(|joint| {
+            let sentences = dead_time_sentences(joint).into_iter().take(2);
+            sentences.map(|sentence| format!("joint {}: {sentence}", joint.joint.name))
+        });
+        let counted = counted.chain(dead_times);
         let origin = lines.chain(counted).map(|line| line.replace(['\n', '\r'], " ")).collect();
         let joints = tables.into_iter().map(|(joint, table)| JointLookup {
             name: &joint.name,
@@ -51,10 +58,57 @@ impl<'a> Lookup<'a> {
         Self { origin, joints: joints.collect() }
     }
 
+    /// Whether there is a delay of any joint.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.joints.iter().all(|joint| joint.curves.is_empty())
+    }
+
     /// The lines on where it is from, each behind `prefix`.
     pub(super) fn commented(&self, prefix: &str) -> String {
         self.origin.iter().flat_map(|line| [prefix, line, "\n"]).collect()
     }
+}
+
+/// The delay table of a joint; where its input moves all the time, every change has the one dead
+/// time of the record.
+fn delays_of(joint: &EstimatedJoint<'_>) -> DelayTable {
+    let table = joint.delay_table();
+    let Some(Finding::Known(bounds)) = joint.estimate.dead_time.as_ref().map(|it| it.finding)
+    else {
+        return table;
+    };
+    let delay = TypicalDelay {
+        median_s: bounds.value_s,
+        interval_s: Some((bounds.low_s, bounds.high_s)),
+        min_s: bounds.low_s,
+        max_s: bounds.high_s,
+    };
+    let curve = |rises: bool| DelayCurve {
+        transition: Transition::Change,
+        side: Ordering::Equal,
+        rises,
+        points: vec![CurvePoint { level: 0.0, accepted: 0, delay }],
+    };
+    DelayTable { neutral: None, curves: vec![curve(false), curve(true)], ..table }
+}
+
+/// How many steps each delay of a curve is from, and the 95 % intervals in seconds.
+pub(super) fn support(curve: &DelayCurve) -> String {
+    let list = |text: fn(&CurvePoint) -> String| {
+        curve.points.iter().map(text).collect::<Vec<_>>().join(", ")
+    };
+    let intervals = list(|point| match point.delay.interval_s {
+        Some((low, high)) => format!("{} to {}", number(low), number(high)),
+        None => "not known".to_owned(),
+    });
+    let counts = list(|point| point.accepted.to_string());
+    let is_over_record = curve.points.iter().all(|point| point.accepted == 0);
+    let from = if is_over_record {
+        "one for the record".to_owned()
+    } else {
+        format!("from {counts} steps")
+    };
+    format!("{from}, 95 % intervals in s: {intervals}")
 }
 
 /// How many steps of a joint the lookup is from, and where its input is neutral.

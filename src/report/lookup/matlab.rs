@@ -1,6 +1,6 @@
 //! A function of MATLAB and GNU Octave.
 
-use super::contents::{JointLookup, Lookup, numbers, side};
+use super::contents::{JointLookup, Lookup, numbers, side, support};
 use crate::delay::DelayCurve;
 
 /// Without `interp1`, which in Octave calls a `lookup` of its own: a file may have that name.
@@ -54,7 +54,7 @@ pub(super) fn source(lookup: &Lookup<'_>, name: &str) -> String {
          %   delay_s = {name}(joint, level_from, level_to), levels in the units of the log.\n\
          %   Between measured levels it is interpolated within starts, stops, changes and\n\
          %   reversals of one side and direction; beyond them it stays that of the last level.\n\
-         %   NaN where no such step was measured.\n%\n{origin}\n  \
+         %   NaN where no such step was measured; an error where no joint is called so.\n%\n{origin}\n  \
          % A row per curve: 0 start, 1 stop, 2 change, 3 reversal; side of neutral; whether\n  \
          % the input rises; levels; delays in seconds.\n  \
          switch joint\n{joints}    otherwise\n      {error}\n  end\n{TAIL}",
@@ -71,7 +71,7 @@ fn joint(joint: &JointLookup<'_>) -> String {
     let row = |curve: &DelayCurve| {
         let (levels, delays) = numbers(curve);
         let (kind, side, rises) = (curve.transition as u8, side(curve.side), u8::from(curve.rises));
-        format!("        {kind}, {side}, {rises}, [{levels}], [{delays}]\n")
+        format!("        {kind}, {side}, {rises}, [{levels}], [{delays}] % {}\n", support(curve))
     };
     let rows: String = joint.curves.iter().map(row).collect();
     let curves =

@@ -1,6 +1,6 @@
 //! A module of Python 3, without dependencies.
 
-use super::contents::{JointLookup, Lookup, numbers, quoted, side};
+use super::contents::{JointLookup, Lookup, numbers, quoted, side, support};
 use crate::delay::DelayCurve;
 
 const TAIL: &str = r#"
@@ -62,7 +62,10 @@ fn joint(joint: &JointLookup<'_>) -> String {
         let (levels, delays) = numbers(curve);
         let rises = if curve.rises { "True" } else { "False" };
         let (kind, side) = (curve.transition, side(curve.side));
-        format!("        (\"{kind}\", {side}, {rises}): ([{levels}], [{delays}]),\n")
+        format!(
+            "        (\"{kind}\", {side}, {rises}): ([{levels}], [{delays}]),  # {}\n",
+            support(curve)
+        )
     };
     let rows: String = joint.curves.iter().map(row).collect();
     format!("    {}: (({low}, {high}), {{\n{rows}    }}),\n", quoted(joint.name))

@@ -64,13 +64,15 @@ pub(super) fn sentences(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> S
 /// Why there are no steps, and the dead time instead.
 fn over_record(estimated: EstimatedJoint<'_>) -> Option<String> {
     let sentences = dead_time_sentences(&estimated);
-    let capital = |sentence: String| {
-        let mut letters = sentence.chars();
-        let first = letters.next().map(|letter| letter.to_uppercase().to_string());
-        format!("{}{}.", first.unwrap_or_default(), letters.as_str())
-    };
-    let all: Vec<String> = sentences.into_iter().take(2).map(capital).collect();
+    let all: Vec<String> = sentences.iter().take(2).map(|words| sentence(words)).collect();
     (!all.is_empty()).then(|| all.join(" "))
+}
+
+/// `words` with a capital letter and a full stop.
+fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    let first = letters.next().map(|letter| letter.to_uppercase().to_string());
+    format!("{}{}.", first.unwrap_or_default(), letters.as_str())
 }
 
 fn delay_sentence(summary: &JointSummary) -> String {
@@ -133,7 +135,7 @@ fn level_blocks(
     let figure = delays::over_levels(estimated, found, format!("{file}-delay-by-level"))?;
     let mut blocks = vec![
         Block::part("Delay by kind of step"),
-        Block::text(format!("The input is {}.", neutral_sentence(found, unit))),
+        Block::text(sentence(&neutral_sentence(found, unit))),
         Block::List(found.kinds.iter().map(kind_sentence).collect()),
     ];
     blocks.extend(figure.map(|figure| Block::Figures(vec![figure])));

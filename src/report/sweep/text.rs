@@ -146,10 +146,14 @@ fn said(found: &[Clause]) -> String {
 
 /// Where a lag was found that other methods take for delay.
 fn lag_sentence(grid: &Grid, reported: &ReportedSweep<'_>) -> Option<String> {
+    let periods = reported.joint.trials.iter().map(|trial| trial.period().seconds());
+    let longest = periods.fold(0.0, f64::max);
     let of_run = |(index, run): (usize, &Option<crate::delay::sweep::RunSummary>)| {
-        let lag = run.as_ref()?.lag.as_ref().filter(|lag| lag.order() > 0)?;
+        let lag = run.as_ref()?.lag.as_ref().filter(|lag| lag.order() > 0)?.mean_s();
         let settings = grid.runs().get(index)?;
-        Some((settings.low_pass, lag.mean_s().value))
+        // Less than a sample is no lag that another method could take for delay.
+        let is_known = lag.value >= longest && lag.value > 1.96 * lag.std_error;
+        is_known.then_some((settings.low_pass, lag.value))
     };
     let mut lags: Vec<_> = reported.sweep.runs.iter().enumerate().filter_map(of_run).collect();
     // A low-pass looks like a lag; what was found without it comes first.
@@ -169,23 +173,33 @@ fn lag_sentence(grid: &Grid, reported: &ReportedSweep<'_>) -> Option<String> {
 fn levels_table(grid: &Grid, joints: &[ReportedSweep<'_>]) -> String {
     let mut table = Table::new();
     table.load_style(presets::UTF8_BORDERS_ONLY);
-    let names = joints.iter().map(|joint| joint.joint.name.clone());
+    let columns: Vec<(String, &[Vec<LevelSummary>])> = joints.iter().flat_map(columns).collect();
+    let names = columns.iter().map(|(name, _)| name.clone());
     table.set_header(std::iter::once("setting".to_owned()).chain(names));
     for (index, factor) in Factor::ALL.into_iter().enumerate() {
         let varied = grid.levels(factor) > 1;
         for level in (0..grid.levels(factor)).filter(|_| varied) {
-            let of_joint = |joint: &ReportedSweep<'_>| {
-                let levels = joint.sweep.levels.get(index);
-                let summary = levels.and_then(|levels| levels.get(level));
+            let of_column = |(_, levels): &(String, &[Vec<LevelSummary>])| {
+                let summary = levels.get(index).and_then(|levels| levels.get(level));
                 summary.map_or_else(|| "-".to_owned(), level_cell)
             };
-            let cells = joints.iter().map(of_joint);
+            let cells = columns.iter().map(of_column);
             let cells = cells.map(|cell| Cell::new(cell).set_alignment(CellAlignment::Right));
             let name = Cell::new(level_text(grid, factor, level));
             table.add_row(std::iter::once(name).chain(cells));
         }
     }
     table.to_string()
+}
+
+/// The columns of a joint: one, or one for each kind of step where these differ.
+fn columns<'a>(reported: &ReportedSweep<'a>) -> Vec<(String, &'a [Vec<LevelSummary>])> {
+    let (name, sweep) = (&reported.joint.name, reported.sweep);
+    if sweep.kinds.is_empty() {
+        return vec![(name.clone(), &sweep.levels)];
+    }
+    let kinds = sweep.kinds.iter();
+    kinds.map(|(kind, levels)| (format!("{name}, {kind}"), levels.as_slice())).collect()
 }
 
 /// The median delay, and the part of delays that are not what most say.

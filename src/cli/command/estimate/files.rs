@@ -41,6 +41,18 @@ impl<'a> Files<'a> {
         Ok(Self { args, text })
     }
 
+    /// Why a file that was asked for is not written, where nothing would be in it.
+    pub(crate) fn left_out(&self, result: &Estimated<'_>) -> Vec<String> {
+        let path = self.args.export.as_ref().filter(|_| lookup(result).is_empty());
+        let why = |path: &PathBuf| {
+            format!(
+                "{}: not written: no joint has a delay that a controller could look up",
+                path.display()
+            )
+        };
+        path.map(why).into_iter().collect()
+    }
+
     /// Writes each file whole and gives it its name; shows the recording to who looks on.
     pub(crate) fn write(
         &self,
@@ -77,11 +89,9 @@ impl<'a> Files<'a> {
                 FileKind::Parquet => write_parquet(&level_table(result.joints)?, file),
             })?;
         }
-        if let Some(path) = &self.args.export {
+        if let Some(path) = self.args.export.as_ref().filter(|_| !lookup(result).is_empty()) {
             let (language, name) = named_lookup(path)?;
-            let Estimated { experiment, joints, settings, .. } = *result;
-            let lookup = Lookup::new(&experiment.sources, joints, settings);
-            let source = language.source(&lookup, name)?;
+            let source = language.source(&lookup(result), name)?;
             write_file(path, |file| Ok(file.write_all(source.as_bytes())?))?;
         }
         let contents = Contents {
@@ -100,6 +110,11 @@ impl<'a> Files<'a> {
         }
         stream.send(&contents, None)
     }
+}
+
+/// The delays that a controller looks up.
+fn lookup<'a>(result: &Estimated<'a>) -> Lookup<'a> {
+    Lookup::new(&result.experiment.sources, result.joints, result.settings)
 }
 
 /// The language of a lookup, and what its file is called without the ending.

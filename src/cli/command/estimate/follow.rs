@@ -7,15 +7,15 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::batch::Threads;
-use crate::delay::{InputKind, Settings, check_growing, final_part};
+use crate::delay::{Automatic, InputKind, Settings, check_growing, final_part};
 use crate::experiment::{Experiment, GrowingLog, Joint};
 use crate::report::{DecisionRow, EstimatedJoint, decision_rows, step_line};
-use crate::study::{JointEstimate, estimate_joints};
+use crate::study::{JointEstimate, estimate_each};
 use anyhow::{Context as _, bail};
 use serde::Serialize;
 
 use super::args::{Args, FollowArgs};
-use crate::cli::args::Format;
+use crate::cli::args::{Format, OwnSettings};
 use crate::cli::console::{self, Interrupt, Verbosity, message};
 use crate::cli::failure::said;
 use crate::cli::output::Contents;
@@ -27,6 +27,9 @@ const PAUSE: Duration = Duration::from_millis(200);
 /// Rest after each look, as a multiple of the time it took: so much of the processor is left
 /// to others, however long the log is.
 const REST: u32 = 4;
+
+/// Bytes by which a log is known again: a few rows, the times of which no other log has.
+const TAIL: usize = 256;
 
 /// Follows the log until it rests or somebody presses Ctrl-C; what was reported of it.
 pub(crate) fn follow(args: &Args, runs: &[Settings], stream: &Stream) -> anyhow::Result<Reported> {
@@ -80,6 +83,8 @@ struct Followed<'a> {
     path: PathBuf,
     /// Bytes of the log that were read.
     read: u64,
+    /// The last of them, by which the log is known again.
+    tail: Vec<u8>,
     kept: Kept,
 }
 
@@ -125,7 +130,7 @@ impl Copied {
 
 impl<'a> Followed<'a> {
     fn of(path: &Path, args: &'a Args) -> Self {
-        Self { args, path: path.to_owned(), read: 0, kept: Kept::Nothing }
+        Self { args, path: path.to_owned(), read: 0, tail: Vec::new(), kept: Kept::Nothing }
     }
 
     /// Takes in what has come since; whether that made a line whole. A log that is not there
@@ -162,12 +167,20 @@ impl<'a> Followed<'a> {
         if length < self.read {
             bail!("{name}: it became shorter while it was followed; run the command again");
         }
+        let start = self.read - self.tail.len() as u64;
         let mut bytes = Vec::new();
-        file.seek(SeekFrom::Start(self.read))
-            .and_then(|_| file.take(length - self.read).read_to_end(&mut bytes))
+        file.seek(SeekFrom::Start(start))
+            .and_then(|_| file.take(length - start).read_to_end(&mut bytes))
             .with_context(|| format!("{name}: cannot be read"))?;
-        self.read += bytes.len() as u64;
-        Ok((!bytes.is_empty()).then_some(bytes))
+        // Another log under the name would be read from its middle on.
+        let Some(news) = bytes.strip_prefix(&*self.tail) else {
+            bail!("{name}: another log took its place while it was followed; run the command again")
+        };
+        let news = news.to_vec();
+        self.read += news.len() as u64;
+        bytes.drain(..bytes.len().saturating_sub(TAIL));
+        self.tail = bytes;
+        Ok((!news.is_empty()).then_some(news))
     }
 
     /// What its whole lines say; joints that say nothing yet are left out.
@@ -222,12 +235,14 @@ impl Reported {
     ) -> anyhow::Result<()> {
         let experiment = log.experiment()?;
         self.say_failures(args, &experiment, log);
-        let estimates = estimate_joints(&experiment.joints, settings, || (), &Threads);
+        let own = OwnSettings::of(&experiment.options)?;
+        let asked = (settings.clone(), Automatic::default());
+        let of_joint = |joint: &Joint| own.of_joint(joint, &asked);
+        let estimates = estimate_each(&experiment.joints, of_joint, || (), &Threads);
         let pairs = experiment.joints.iter().zip(&estimates);
         let pairs = pairs.filter_map(|(joint, estimate)| Some((joint, estimate.as_ref().ok()?)));
-        let settled: Vec<(Joint, JointEstimate)> = pairs
-            .filter_map(|(joint, estimate)| settled_joint(joint, estimate, settings))
-            .collect();
+        let settled: Vec<(Joint, JointEstimate)> =
+            pairs.filter_map(|(joint, estimate)| settled_joint(joint, estimate)).collect();
         for (joint, estimate) in &settled {
             self.report_joint(args.output.run.format, EstimatedJoint { joint, estimate })?;
         }
@@ -304,11 +319,7 @@ impl Reported {
 }
 
 /// What of a joint stays as it is; `None` where nothing does yet.
-fn settled_joint(
-    joint: &Joint,
-    estimate: &JointEstimate,
-    settings: &Settings,
-) -> Option<(Joint, JointEstimate)> {
+fn settled_joint(joint: &Joint, estimate: &JointEstimate) -> Option<(Joint, JointEstimate)> {
     let last = joint.trials.len().checked_sub(1)?;
     let (mut trials, mut estimates) = (Vec::new(), Vec::new());
     for (index, (trial, found)) in joint.trials.iter().zip(&estimate.trials).enumerate() {
@@ -316,7 +327,7 @@ fn settled_joint(
         // A trial that another one follows has come whole.
         let kept = match index {
             _ if index < last => Some((trial.clone(), found.clone())),
-            _ => final_part(trial, found, settings).ok()?,
+            _ => final_part(trial, found, &estimate.settings).ok()?,
         };
         if let Some((trial, found)) = kept {
             trials.push(trial);
@@ -380,6 +391,18 @@ mod tests {
         }
         std::fs::write(&path, "a").unwrap();
         assert!(log.catch_up().unwrap_err().to_string().contains("became shorter"));
+    }
+
+    #[test]
+    fn another_log_under_the_name_is_not_read_on() {
+        let (_folder, mut file, args, path) = begun("log.csv", "t,a.input,a.output\n");
+        let mut log = Followed::of(&path, &args);
+        assert!(log.catch_up().unwrap());
+        file.write_all(b"0,1,2\n").unwrap();
+        assert!(log.catch_up().unwrap());
+        assert!(!log.catch_up().unwrap(), "nothing came");
+        std::fs::write(&path, "t,b.input,b.output\n0,3,4\n1,3,4\n").unwrap();
+        assert!(log.catch_up().unwrap_err().to_string().contains("another log"));
     }
 
     #[test]

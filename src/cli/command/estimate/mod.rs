@@ -32,9 +32,10 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let session = Session::begin("estimate", &args.data, &args.output.run, stream)?;
     let session = session.reviewed(review);
     let experiment = &session.experiment;
+    let settings: Vec<_> = settings.iter().map(|one| session.in_samples(one)).collect();
     let work = || session.estimates_by_each(&settings, args.algorithm.automatic());
     let results = session.in_threads(work)?;
-    let failures = results.first().map_or_else(Vec::new, |first| failures(experiment, first));
+    let mut failures = results.first().map_or_else(Vec::new, |first| failures(experiment, first));
     let joints: Vec<_> = results.iter().map(|results| estimated(experiment, results)).collect();
     let runs: Vec<Run<'_>> =
         settings.iter().zip(&joints).map(|(settings, joints)| (settings, &**joints)).collect();
@@ -44,8 +45,9 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     if let Some(followed) = followed {
         followed.say_changes(first_joints);
     }
-    session.warn(&failures, &notes(first_joints));
     let result = Estimated { experiment, joints: first_joints, settings: answer, runs: &runs };
+    failures.extend(files.left_out(&result));
+    session.warn(&failures, &notes(first_joints));
     files.write(&result, &session.stream, verbosity)?;
     let json = || EstimateJson::new(experiment, &runs, &failures);
     session.end(Completion::without(&failures), || text(&args.output, &result), json)

@@ -6,10 +6,12 @@ use std::path::{Path, PathBuf};
 
 use crate::batch::Threads;
 use crate::delay::sweep::{Base, Grid};
-use crate::delay::{EstimateError, Method};
-use crate::experiment::Experiment;
+use crate::delay::{Automatic, EstimateError, Method, Settings};
+use crate::experiment::{Experiment, Joint, Trial};
+use crate::numerics::LowPass;
 use crate::report::{ReportedSweep, StepsShown, SweepJson, sweep_text};
-use crate::study::{SweptJoint, sweep_joints};
+use crate::study::{SweptJoint, sweep_each};
+use crate::units::Length;
 use anyhow::bail;
 use clap::Args as ClapArgs;
 
@@ -20,7 +22,7 @@ use crate::cli::failure::{joint_left_out, nothing_usable, read_failures, said};
 use crate::cli::output::{SweepContents, check_outputs};
 use crate::cli::run::Session;
 use crate::cli::viewer::StreamArgs;
-use values::{Values, methods, passbands, whole};
+use values::{Values, lengths, methods, passbands};
 
 /// Estimate every delay with many settings, and say which of them it depends on
 ///
@@ -35,12 +37,12 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAMES", default_value_t = Values::all(), value_parser = methods, help_heading = "Settings that are varied")]
     method: Values<Method>,
 
-    /// Samples that a segment reaches beyond its input steps
-    #[arg(long, value_name = "LIST", default_value = "5,10,20", value_parser = whole, allow_hyphen_values = true, help_heading = "Settings that are varied")]
-    alpha: Values<usize>,
+    /// Samples that a segment reaches beyond its input steps, or seconds as in `0.05s,0.1s`
+    #[arg(long, value_name = "LIST", default_value = "5,10,20", value_parser = lengths, allow_hyphen_values = true, help_heading = "Settings that are varied")]
+    alpha: Values<Length>,
 
-    #[arg(long, help = format!("Samples between two candidate breakpoints; for `{}` alone", ids_with(|spec| spec.has_rows)), value_name = "LIST", default_value = "1,2,5,10", value_parser = whole, allow_hyphen_values = true, help_heading = "Settings that are varied")]
-    beta: Values<usize>,
+    #[arg(long, help = format!("Samples, or seconds, between two candidate breakpoints; for `{}` alone", ids_with(|spec| spec.has_rows)), value_name = "LIST", default_value = "1,2,5,10", value_parser = lengths, allow_hyphen_values = true, help_heading = "Settings that are varied")]
+    beta: Values<Length>,
 
     #[arg(long, help = format!("Cutoffs of the low-pass in Hz, and `none` [default: 2,5,10,none for {}, else none]", ids_with(|spec| spec.low_pass.is_some())), value_name = "LIST", value_parser = passbands, allow_hyphen_values = true, help_heading = "Settings that are varied")]
     passband: Option<Values<Passband>>,
@@ -86,9 +88,17 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let session = Session::begin("sweep", &args.data, &args.output.run, stream)?;
     let experiment = &session.experiment;
     let joints = &experiment.joints;
+    let trials = || joints.iter().flat_map(|joint| &joint.trials);
+    let grid = grid.in_samples(trials());
+    let (grid, notes) =
+        if args.passband.is_some() { (grid, Vec::new()) } else { fitting(&grid, trials()) };
     let runs = (joints.len() * grid.runs().len()) as u64;
     let bar = Bar::new(verbosity, "sweeping", "runs", runs);
-    let work = || sweep_joints(joints, &grid, args.tolerance, || bar.step(), &Threads);
+    let own = |joint: &Joint, settings: &Settings| {
+        session.own().of_joint(joint, &(settings.clone(), Automatic::default())).0
+    };
+    let of_joint = |joint: &Joint| grid.with_settings(|settings| own(joint, settings));
+    let work = || sweep_each(joints, of_joint, args.tolerance, || bar.step(), &Threads);
     let results = session.in_threads(work)?;
     drop(bar);
     let failures = failures(experiment, &grid, &results);
@@ -99,7 +109,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     if swept.is_empty() {
         return Err(nothing_usable(failures.last()));
     }
-    session.warn(&failures, &[]);
+    session.warn(&failures, &notes);
     let contents = SweepContents {
         joints: &swept,
         grid: &grid,
@@ -119,9 +129,28 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     )
 }
 
+/// `grid` without the low-passes that do not fit all of `trials`, and a note on them: nobody asked
+/// for them.
+fn fitting<'a>(grid: &Grid, trials: impl Iterator<Item = &'a Trial>) -> (Grid, Vec<String>) {
+    let nyquist_hz = trials.map(|trial| trial.period().nyquist_hz()).fold(f64::INFINITY, f64::min);
+    let fits = |low_pass: &LowPass| low_pass.cutoff_hz < nyquist_hz;
+    let (kept, left_out): (Vec<Option<LowPass>>, Vec<Option<LowPass>>) =
+        grid.passbands().iter().partition(|passband| passband.as_ref().is_none_or(fits));
+    if left_out.is_empty() || kept.is_empty() {
+        return (grid.clone(), Vec::new());
+    }
+    let hz: Vec<String> = left_out.iter().flatten().map(|it| it.cutoff_hz.to_string()).collect();
+    let samples = 2.0 * nyquist_hz;
+    let note = format!(
+        "the low-pass of {} Hz is left out, where no more than {samples} samples come in a second",
+        hz.join(" and ")
+    );
+    (grid.with_passbands(kept), vec![note])
+}
+
 /// A message on each file, joint and setting that failed.
 fn failures(experiment: &Experiment, grid: &Grid, results: &[JointResult]) -> Vec<String> {
-    let of_joint = |(joint, result): (&crate::experiment::Joint, &JointResult)| {
+    let of_joint = |(joint, result): (&Joint, &JointResult)| {
         let name = &joint.name;
         match result {
             Err(error) => vec![joint_left_out(name, error)],

@@ -4,9 +4,10 @@ use std::fmt;
 
 use crate::delay::Method;
 
-use crate::cli::args::number::at_least_one;
+use crate::cli::args::number::{at_least_one, length};
 use crate::cli::args::{Passband, passband};
 use crate::cli::similar::did_you_mean;
+use crate::units::Length;
 
 /// Most values of one range.
 const MOST: usize = 1000;
@@ -29,16 +30,17 @@ impl fmt::Display for Values<Method> {
     }
 }
 
-/// Whole numbers from 1 up.
-pub(crate) fn whole(text: &str) -> Result<Values<usize>, String> {
-    let expected = "expected whole numbers from 1 up, as in 1,2,5 or 1..10 or 2..20:2";
-    let one = |text: &str| at_least_one(text).ok().ok_or_else(|| expected.to_owned());
+/// Lengths of time: whole numbers of samples from 1 up, or seconds.
+pub(crate) fn lengths(text: &str) -> Result<Values<Length>, String> {
+    let expected = "expected whole numbers from 1 up, as in 1,2,5 or 1..10 or 2..20:2, or \
+                    seconds as in 0.05s,0.1s";
+    let whole = |text: &str| at_least_one(text).ok().ok_or_else(|| expected.to_owned());
     listed(text, |part| match Range::of(part) {
-        None => Ok(vec![one(part)?]),
+        None => Ok(vec![length(part).ok().ok_or_else(|| expected.to_owned())?]),
         Some(range) => {
-            let (first, last) = (one(range.first)?, one(range.last)?);
-            let values = (first..=last).step_by(range.step.map_or(Ok(1), one)?);
-            range.checked(values.take(MOST + 1).collect())
+            let (first, last) = (whole(range.first)?, whole(range.last)?);
+            let values = (first..=last).step_by(range.step.map_or(Ok(1), whole)?);
+            range.checked(values.map(Length::Samples).take(MOST + 1).collect())
         }
     })
 }
@@ -128,9 +130,13 @@ mod tests {
 
     #[test]
     fn lists_and_ranges_name_each_value_once() {
-        assert_eq!(whole("5,10,20"), Ok(Values(vec![5, 10, 20])));
-        assert_eq!(whole("1..4, 3,9"), Ok(Values(vec![1, 2, 3, 4, 9])));
-        assert_eq!(whole("2..9:3"), Ok(Values(vec![2, 5, 8])));
+        let whole =
+            |samples: &[usize]| Ok(Values(samples.iter().copied().map(Length::Samples).collect()));
+        assert_eq!(lengths("5,10,20"), whole(&[5, 10, 20]));
+        assert_eq!(lengths("1..4, 3,9"), whole(&[1, 2, 3, 4, 9]));
+        assert_eq!(lengths("2..9:3"), whole(&[2, 5, 8]));
+        let mixed = vec![Length::Seconds(0.05), Length::Seconds(0.1), Length::Samples(3)];
+        assert_eq!(lengths("0.05s,0.1s,3"), Ok(Values(mixed)));
         let hz = |values: &[f64]| values.iter().map(|hz| Passband::Hz(*hz)).collect::<Vec<_>>();
         assert_eq!(passbands("1..2:0.5"), Ok(Values(hz(&[1.0, 1.5, 2.0]))));
         let last = passbands("5,none").map(|found| found.0.last().copied());
@@ -141,7 +147,7 @@ mod tests {
     #[test]
     fn what_is_no_list_says_what_would_be() {
         for wrong in ["", "0", "1,,2", "4..2", "1..1000000000", "1..", "a..b", "1..3:0", "-1..3"] {
-            assert!(whole(wrong).is_err(), "{wrong}");
+            assert!(lengths(wrong).is_err(), "{wrong}");
         }
         for wrong in ["", "0", "none..5", "5..1", "1e-9..5:1e-9", "nan", "1..inf"] {
             assert!(passbands(wrong).is_err(), "{wrong}");

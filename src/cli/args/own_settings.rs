@@ -1,0 +1,134 @@
+//! Settings of single joints, out of the file given with `--columns`.
+
+use std::collections::BTreeMap;
+
+use anyhow::anyhow;
+
+use super::conditions::{confidence, limits, passband};
+use super::number::{length, length_or_none, probability, threshold};
+use crate::delay::{Automatic, FirstLast, InputKind, Settings};
+use crate::experiment::{Experiment, Joint, ReadOptions};
+
+/// What is asked for: settings, of which some are chosen from the record.
+pub(crate) type Asked = (Settings, Automatic);
+
+/// Changes what is asked for to what a text says.
+type Set = fn(&str, Asked) -> Result<Asked, String>;
+
+/// The settings that a joint may have of its own, named like the options.
+const SETTINGS: [(&str, Set); 13] = [
+    ("alpha", |text, (settings, automatic)| {
+        Ok((settings.with_alpha(length(text)?), Automatic { alpha: false, ..automatic }))
+    }),
+    ("beta", |text, (settings, automatic)| {
+        Ok((settings.with_beta(length(text)?), Automatic { beta: false, ..automatic }))
+    }),
+    ("passband", |text, (settings, automatic)| {
+        let order = settings.low_pass.map_or(4, |usual| usual.order);
+        let low_pass = passband(text)?.low_pass(order);
+        let settings = Settings { low_pass, low_pass_required: true, ..settings };
+        Ok((settings, Automatic { passband: false, ..automatic }))
+    }),
+    ("min_delay", |text, asked| with(asked, |it| Ok(it.with_min_delay(length_or_none(text)?)))),
+    ("max_delay", |text, asked| with(asked, |it| Ok(it.with_max_delay(length(text)?)))),
+    ("output_limits", |text, asked| {
+        with(asked, |it| Ok(Settings { output_limits: Some(limits(text)?), ..it }))
+    }),
+    ("min_slope_change", |text, asked| {
+        with(asked, |it| Ok(Settings { min_slope_change: threshold(text)?, ..it }))
+    }),
+    ("max_sse", |text, asked| {
+        with(asked, |it| Ok(Settings { max_sse: Some(threshold(text)?), ..it }))
+    }),
+    ("min_step", |text, asked| with(asked, |it| Ok(Settings { min_step: threshold(text)?, ..it }))),
+    ("confidence", |text, asked| {
+        with(asked, |it| Ok(Settings { confidence: confidence(text)?.level(), ..it }))
+    }),
+    ("interval", |text, asked| {
+        with(asked, |it| Ok(Settings { interval: probability(text)?, ..it }))
+    }),
+    ("first_last", |text, asked| {
+        with(asked, |it| Ok(Settings { first_last: first_last(text)?, ..it }))
+    }),
+    ("input", |text, asked| with(asked, |it| Ok(Settings { input: input_kind(text)?, ..it }))),
+];
+
+fn with(
+    (settings, automatic): Asked,
+    set: impl FnOnce(Settings) -> Result<Settings, String>,
+) -> Result<Asked, String> {
+    Ok((set(settings)?, automatic))
+}
+
+fn first_last(text: &str) -> Result<FirstLast, String> {
+    match text {
+        "auto" => Ok(FirstLast::Auto),
+        "reject" => Ok(FirstLast::Reject),
+        "keep" => Ok(FirstLast::Keep),
+        _ => Err("expected auto, reject or keep".to_owned()),
+    }
+}
+
+fn input_kind(text: &str) -> Result<InputKind, String> {
+    match text {
+        "auto" => Ok(InputKind::Auto),
+        "steps" => Ok(InputKind::Steps),
+        "continuous" => Ok(InputKind::Continuous),
+        _ => Err("expected auto, steps or continuous".to_owned()),
+    }
+}
+
+/// The settings that single joints have of their own; they stand above the options, which are
+/// for all joints.
+#[derive(Debug, Default)]
+pub(crate) struct OwnSettings {
+    joints: BTreeMap<String, Vec<(Set, String)>>,
+}
+
+impl OwnSettings {
+    /// Those of `options`.
+    ///
+    /// # Errors
+    /// When a name or a value cannot be used.
+    pub(crate) fn of(options: &ReadOptions) -> anyhow::Result<Self> {
+        let mut own = Self::default();
+        for (joint, settings) in &options.columns.estimate {
+            for (name, text) in settings {
+                let wrong =
+                    |why: String| anyhow!("--columns: [joint.{joint}.estimate] {name}: {why}");
+                let set =
+                    named(name).ok_or_else(|| wrong(format!("expected one of {}", names())))?;
+                set(text, Default::default()).map_err(wrong)?;
+                own.joints.entry(joint.clone()).or_default().push((set, text.clone()));
+            }
+        }
+        Ok(own)
+    }
+
+    /// What is asked for of `joint`, where `asked` is for all of them.
+    pub(crate) fn of_joint(&self, joint: &Joint, asked: &Asked) -> Asked {
+        let own = self.joints.get(&joint.name).map_or(&[][..], Vec::as_slice);
+        let set =
+            |asked: Asked, (set, text): &(Set, String)| set(text, asked.clone()).unwrap_or(asked);
+        let (settings, automatic) = own.iter().fold(asked.clone(), set);
+        (settings.in_samples(&joint.trials), automatic)
+    }
+
+    /// A note on each joint that has settings and is in no log.
+    pub(crate) fn notes(&self, experiment: &Experiment) -> Vec<String> {
+        let is_there = |name: &String| experiment.joints.iter().any(|joint| &joint.name == name);
+        let missing = self.joints.keys().filter(|name| !is_there(name));
+        let note =
+            |name: &String| format!("[joint.{name}.estimate]: the logs have no joint `{name}`");
+        missing.map(note).collect()
+    }
+}
+
+fn named(name: &str) -> Option<Set> {
+    SETTINGS.iter().find(|(known, _)| *known == name).map(|(_, set)| *set)
+}
+
+fn names() -> String {
+    let names: Vec<_> = SETTINGS.iter().map(|(name, _)| *name).collect();
+    names.join(", ")
+}

@@ -1,0 +1,147 @@
+//! The settings that are lengths of time: in samples, or in seconds.
+
+use super::in_seconds::InSeconds;
+use super::settings::Settings;
+use crate::experiment::Trial;
+use crate::units::{Length, SamplePeriod};
+
+/// The seconds of a length that is in seconds.
+fn seconds(length: Length) -> Option<f64> {
+    match length {
+        Length::Samples(_) => None,
+        Length::Seconds(seconds) => Some(seconds),
+    }
+}
+
+/// The samples of a length that is in samples, else those that were there `before`.
+fn samples(length: Length, before: usize) -> usize {
+    match length {
+        Length::Samples(samples) => samples,
+        Length::Seconds(_) => before,
+    }
+}
+
+fn length(seconds: Option<f64>, samples: usize) -> Length {
+    seconds.map_or(Length::Samples(samples), Length::Seconds)
+}
+
+impl Settings {
+    /// With this α.
+    #[must_use]
+    pub fn with_alpha(self, alpha: Length) -> Self {
+        let in_seconds = InSeconds { alpha: seconds(alpha), ..self.in_seconds };
+        Self { alpha: samples(alpha, self.alpha), in_seconds, ..self }
+    }
+
+    /// With this β.
+    #[must_use]
+    pub fn with_beta(self, beta: Length) -> Self {
+        let in_seconds = InSeconds { beta: seconds(beta), ..self.in_seconds };
+        Self { beta: samples(beta, self.beta), in_seconds, ..self }
+    }
+
+    /// With this `τ_min`.
+    #[must_use]
+    pub fn with_min_delay(self, delay: Length) -> Self {
+        let in_seconds = InSeconds { min_delay: seconds(delay), ..self.in_seconds };
+        Self { min_delay: samples(delay, self.min_delay), in_seconds, ..self }
+    }
+
+    /// With this longest delay.
+    #[must_use]
+    pub fn with_max_delay(self, delay: Length) -> Self {
+        let in_seconds = InSeconds { max_delay: seconds(delay), ..self.in_seconds };
+        let max_delay = match delay {
+            Length::Samples(samples) => Some(samples),
+            Length::Seconds(_) => None,
+        };
+        Self { max_delay, in_seconds, ..self }
+    }
+
+    /// α as it was given.
+    pub fn alpha_length(&self) -> Length {
+        length(self.in_seconds.alpha, self.alpha)
+    }
+
+    /// β as it was given.
+    pub fn beta_length(&self) -> Length {
+        length(self.in_seconds.beta, self.beta)
+    }
+
+    /// `τ_min` as it was given.
+    pub fn min_delay_length(&self) -> Length {
+        length(self.in_seconds.min_delay, self.min_delay)
+    }
+
+    /// The longest delay as it was given.
+    pub fn max_delay_length(&self) -> Option<Length> {
+        let given = self.in_seconds.max_delay.map(Length::Seconds);
+        given.or(self.max_delay.map(Length::Samples))
+    }
+
+    /// These settings for a trial that is sampled every `period`: all lengths in samples.
+    #[must_use]
+    pub fn at(&self, period: SamplePeriod) -> Self {
+        let max_delay = self.max_delay_length().map(|delay| delay.samples(period).max(1));
+        Self {
+            alpha: self.alpha_length().samples(period).max(self.alpha.min(1)),
+            beta: self.beta_length().samples(period).max(self.beta.min(1)),
+            min_delay: self.min_delay_length().samples(period),
+            max_delay: max_delay.filter(|_| self.in_seconds.max_delay.is_some()).or(self.max_delay),
+            in_seconds: InSeconds::default(),
+            ..self.clone()
+        }
+    }
+
+    /// These settings in samples where all of `trials` have one period; else as they are.
+    #[must_use]
+    pub fn in_samples<'a>(&self, trials: impl IntoIterator<Item = &'a Trial>) -> Self {
+        common_period(trials).map_or_else(|| self.clone(), |period| self.at(period))
+    }
+}
+
+/// The sample period of all of `trials`, where they have one.
+pub(super) fn common_period<'a>(
+    trials: impl IntoIterator<Item = &'a Trial>,
+) -> Option<SamplePeriod> {
+    let mut periods = trials.into_iter().map(Trial::period);
+    let period = periods.next()?;
+    periods.all(|other| other == period).then_some(period)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn trial(period: f64) -> Trial {
+        let period = SamplePeriod::from_seconds(period).unwrap();
+        Trial::new("1", 0.0, period, vec![0.0; 3], vec![0.0; 3]).unwrap()
+    }
+
+    #[test]
+    fn seconds_are_counted_in_the_samples_of_each_trial() {
+        let settings = Settings::default()
+            .with_alpha(Length::Seconds(0.1))
+            .with_beta(Length::Seconds(0.001))
+            .with_max_delay(Length::Seconds(0.5));
+        let [fast, slow] = [0.01, 0.02].map(|period| settings.at(trial(period).period()));
+        assert_eq!((fast.alpha, fast.beta, fast.max_delay), (10, 1, Some(50)));
+        assert_eq!((slow.alpha, slow.beta, slow.max_delay), (5, 1, Some(25)));
+        assert_eq!(settings.in_samples(&[trial(0.01), trial(0.01)]), fast);
+        assert_eq!(settings.in_samples(&[trial(0.01), trial(0.02)]), settings);
+    }
+
+    #[test]
+    fn what_is_in_samples_stays() {
+        let settings = Settings { max_delay: Some(30), min_delay: 4, ..Settings::default() };
+        assert_eq!(settings.at(trial(0.02).period()), settings);
+        let seconds = settings.clone().with_min_delay(Length::Seconds(0.1));
+        assert_eq!(seconds.with_min_delay(Length::Samples(4)), settings);
+    }
+
+    #[test]
+    fn seconds_that_are_none_are_refused() {
+        let settings = Settings::default().with_alpha(Length::Seconds(f64::NAN));
+        assert!(settings.check().is_err());
+    }
+}
