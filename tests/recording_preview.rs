@@ -8,7 +8,7 @@ mod desk;
 mod read_back;
 
 use desk::{Desk, banded, number};
-use read_back::{ReadBack, batches, whole};
+use read_back::{ReadBack, whole};
 use serde_json::Value;
 
 const OPTIONS: &str = "design log.csv --separate dead_band,flow_curve --rehearsals 4 --power 0.9";
@@ -129,5 +129,5 @@ fn random_steps_are_shown_with_what_a_model_expects_and_without() {
 fn the_same_input_gives_the_same_messages() {
     let desk = Desk::with(vec![banded("boom")]);
     let options = "design log.csv --duration 10";
-    assert_eq!(batches(&designed(&desk, options).1), batches(&designed(&desk, options).1));
+    assert!(designed(&desk, options).1 == designed(&desk, options).1);
 }

@@ -28,6 +28,7 @@ mod correlogram;
 mod decisions;
 mod delay_state;
 mod doubt;
+mod end;
 mod error;
 mod error_share;
 mod layout;

@@ -1,5 +1,6 @@
 //! A recording into a file, or beside the caller's own data.
 
+use std::cell::Cell;
 use std::io::Write;
 
 use rerun::external::re_build_info::CrateVersion;
@@ -9,6 +10,7 @@ use rerun::{ApplicationId, EntityPath, RecordingInfo, RecordingStream, StoreId, 
 
 use super::chunk::Ids;
 use super::content::{Content, Growth, Part, application, for_each_chunk};
+use super::end::EndHeld;
 use super::error::RecordError;
 use super::message::{activation, chunk_message, store_message};
 use super::preview::PreviewRecording;
@@ -17,7 +19,7 @@ use super::sweep::SweepRecording;
 
 /// Writes `recording` to `out` as a whole `.rrd` file, footer included.
 ///
-/// Equal recordings give equal messages in equal order.
+/// Equal recordings give equal bytes.
 ///
 /// # Errors
 /// [`RecordError::Encode`] when `out` cannot be written; what was written then is of no
@@ -49,7 +51,8 @@ fn write(content: &dyn Content, out: impl Write) -> Result<(), RecordError> {
     let (id, name) = (content.id(), content.name());
     let application = application(&name, &id);
     let options = EncodingOptions::PROTOBUF_COMPRESSED;
-    let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, options, out)?;
+    let at_end = Cell::new(false);
+    let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, options, EndHeld::new(out, &at_end))?;
     // The views come first: a viewer that has none yet makes its own of what it has read.
     for message in blueprint_messages(content, &application, &id)? {
         encoder.append(&message)?;
@@ -67,9 +70,9 @@ fn write(content: &dyn Content, out: impl Write) -> Result<(), RecordError> {
         encoder.append(&chunk_message(&store, chunk)?)?;
         Ok(())
     })?;
+    at_end.set(true);
     encoder.finish()?;
-    encoder.flush_blocking()?;
-    Ok(())
+    Ok(encoder.into_inner()?.finish()?)
 }
 
 /// Sends `recording` to a stream of the caller's own, with its views.

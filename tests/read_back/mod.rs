@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::Cursor;
 
 use rerun::external::arrow::array::{
-    Array, ArrayRef, AsArray as _, Float32Array, Float64Array, Int64Array, RecordBatch,
+    Array, ArrayRef, AsArray as _, Float32Array, Float64Array, Int64Array,
 };
 use rerun::external::re_log_encoding::DecoderApp;
 use rerun::log::{Chunk, LogMsg};
@@ -150,17 +150,4 @@ pub(crate) fn places(cell: &dyn Array) -> Vec<[f32; 2]> {
     let numbers = cell.as_fixed_size_list().values();
     let numbers = numbers.as_any().downcast_ref::<Float32Array>().unwrap().values();
     numbers.as_chunks::<2>().0.to_vec()
-}
-
-/// The messages of a recording with their ids. Not its bytes: the encoder writes a column's
-/// metadata in no fixed order.
-pub(crate) fn batches(bytes: &[u8]) -> Vec<(rerun::StoreId, String, RecordBatch)> {
-    let messages = DecoderApp::decode_lazy(Cursor::new(bytes)).map(Result::unwrap);
-    let batch = |message| match message {
-        LogMsg::ArrowMsg(store, message) => {
-            Some((store, message.chunk_id.to_string(), message.batch.clone()))
-        }
-        _ => None,
-    };
-    messages.filter_map(batch).collect()
 }

@@ -59,15 +59,28 @@ pub(super) fn least(profile: &[Fitted]) -> Option<Fitted> {
     profile.iter().copied().min_by(|a, b| a.error.total_cmp(&b.error))
 }
 
-/// Lags that fit a dead time best, near those that it starts from: neighbours are tried ever
-/// closer, and at last the least of the parabola through them.
-pub(super) fn with_best_lags(trials: &[Whitened], start: Fitted, longest: f64) -> Fitted {
-    /// First and last step of the search, in logarithms of the sum of both.
-    const FIRST: f64 = 0.24;
-    const LAST: f64 = 0.05;
-    /// Steps of the parabolas: lags that are off by a twentieth move the dead time by as much of
-    /// them, which good records tell.
-    const PARABOLAS: [f64; 2] = [0.06, 0.015];
+/// How far off the lags are that a search starts from.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Start {
+    /// Those of a grid.
+    Grid,
+    /// The best ones of a dead time nearby.
+    Neighbour,
+}
+
+/// Lags that fit a dead time best, near those that it starts from: by the least of the parabola
+/// through ever closer neighbours.
+pub(super) fn with_best_lags(
+    trials: &[Whitened],
+    fitted: Fitted,
+    longest: f64,
+    start: Start,
+) -> Fitted {
+    /// Distances of neighbours, in logarithms of the sum of both lags: lags that are off by a
+    /// twentieth move the dead time by as much of them, which good records tell.
+    const STEPS: [f64; 3] = [0.24, 0.06, 0.015];
+    /// Most parabolas of a distance.
+    const MOST: usize = 8;
     /// What shows of the faster lag by itself goes with its square.
     const COARSER: f64 = 4.0;
     // A record tells the sum of the lags far better than how it is shared.
@@ -77,22 +90,23 @@ pub(super) fn with_best_lags(trials: &[Whitened], start: Fitted, longest: f64) -
         let lags = Lags::new((sum - fast).clamp(NO_LAG, longest), fast);
         if lags == best.lags { best } else { at_lags(trials, best, lags) }
     };
-    let mut best = at_lags(trials, start, start.lags);
-    let mut step = FIRST;
-    while step > LAST {
-        let tried = NEIGHBOURS.iter().map(|(sum, fast)| near(best, sum * step, fast * step));
-        let moved = tried.into_iter().find(|tried| tried.error < best.error);
-        match moved {
-            Some(better) => best = better,
-            None => step *= 0.5,
-        }
-    }
-    for step in PARABOLAS {
-        let errors = NEIGHBOURS.map(|(sum, fast)| near(best, sum * step, fast * step).error);
-        let (sum, fast) = least_of_parabola(best.error, errors);
-        let tried = near(best, sum * step, fast * step);
-        if tried.error < best.error {
-            best = tried;
+    let mut best = at_lags(trials, fitted, fitted.lags);
+    let steps = match start {
+        Start::Grid => STEPS.as_slice(),
+        Start::Neighbour => &STEPS[1..],
+    };
+    for step in steps {
+        for _ in 0..MOST {
+            let tried = NEIGHBOURS.map(|(sum, fast)| near(best, sum * step, fast * step));
+            let (sum, fast) = least_of_parabola(best.error, tried.map(|tried| tried.error));
+            let lowest = near(best, sum * step, fast * step);
+            let all = tried.into_iter().chain([lowest]).chain([best]);
+            let before = best;
+            best = all.min_by(|a, b| a.error.total_cmp(&b.error)).unwrap_or(best);
+            // Within its neighbours, or nowhere better.
+            if (sum.abs() < 1.0 && fast.abs() < 1.0) || best.error >= before.error {
+                break;
+            }
         }
     }
     best
@@ -122,24 +136,16 @@ pub(super) fn with_one_lag(trials: &[Whitened], start: Fitted, longest: f64) -> 
 }
 
 /// Steps to the neighbours of a pair of lags.
-const NEIGHBOURS: [(f64, f64); 8] = [
-    (1.0, 0.0),
-    (-1.0, 0.0),
-    (0.0, 1.0),
-    (0.0, -1.0),
-    (1.0, -1.0),
-    (-1.0, 1.0),
-    (1.0, 1.0),
-    (-1.0, -1.0),
-];
+const NEIGHBOURS: [(f64, f64); 6] =
+    [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (1.0, -1.0), (-1.0, 1.0)];
 
 /// Where the parabola through `middle` and its [`NEIGHBOURS`] is least, at most a step away; it
 /// stays in a direction in which it does not bend upwards.
-fn least_of_parabola(middle: f64, around: [f64; 8]) -> (f64, f64) {
-    let [right, left, up, down, lower_right, upper_left, upper_right, lower_left] = around;
+fn least_of_parabola(middle: f64, around: [f64; 6]) -> (f64, f64) {
+    let [right, left, up, down, lower_right, upper_left] = around;
     let (slope_a, slope_b) = (0.5 * (right - left), 0.5 * (up - down));
     let (bend_a, bend_b) = (right - 2.0 * middle + left, up - 2.0 * middle + down);
-    let twist = 0.25 * (upper_right + lower_left - lower_right - upper_left);
+    let twist = 0.5 * (bend_a + bend_b - (lower_right - 2.0 * middle + upper_left));
     let alone = |slope: f64, bend: f64| if bend > 0.0 { -slope / bend } else { 0.0 };
     let determinant = bend_a * bend_b - twist * twist;
     let (a, b) = if bend_a > 0.0 && determinant > 1e-6 * bend_a * bend_b {

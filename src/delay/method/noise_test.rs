@@ -8,6 +8,16 @@ use crate::delay::broken_line::{BrokenLine, PARAMETERS, Window};
 use crate::delay::decision::Decision;
 use crate::numerics::NoiseModel;
 
+/// Steps from which the noise is known well enough to say that there is nothing else; chosen: one
+/// reaction alone passes for the memory of a noise.
+const FEWEST: usize = 3;
+
+/// The p-value of a reaction that is plain: noise alone passes for it once in a million steps.
+const PLAIN: f64 = 1e-6;
+
+/// Steps whose noise is taken for that of the next, at most.
+const LATEST: usize = 20;
+
 /// Puts the verdict on each decision of a method that has none of its own.
 pub(super) fn judge(decisions: &mut [Decision], raw: &[f64], confidence: f64) {
     let windows: Vec<&[f64]> = decisions.iter().map(|decision| window(decision, raw)).collect();
@@ -52,16 +62,6 @@ pub(super) fn judge_until_one_reacts(
         }
     }
 }
-
-/// Steps from which the noise is known well enough to say that there is nothing else; chosen: one
-/// reaction alone passes for the memory of a noise.
-const FEWEST: usize = 3;
-
-/// The p-value of a reaction that is plain: noise alone passes for it once in a million steps.
-const PLAIN: f64 = 1e-6;
-
-/// Steps whose noise is taken for that of the next, at most.
-const LATEST: usize = 20;
 
 /// The samples of a decision's segment that its own step alone can have moved.
 fn window<'a>(decision: &Decision, raw: &'a [f64]) -> &'a [f64] {
