@@ -2,34 +2,32 @@
 
 use super::joint::{Joint, Trial};
 
-/// The activity of all joints but the one at `index`, for each of its trials a value per
-/// sample, from 0 (all at rest) to 1 (all driven as hard as ever in the log).
+/// Another joint of the log, and its delay in seconds: 0 where none is known.
+#[derive(Clone, Copy, Debug)]
+pub struct Other<'a> {
+    /// The joint.
+    pub joint: &'a Joint,
+    /// Its delay.
+    pub delay_s: f64,
+}
+
+/// The activity of the `others`, for each trial of `own` a value per sample, from 0 (all at
+/// rest) to 1 (all driven as hard as ever in the log).
 ///
 /// It is the mean of `|u| / max|u|` over the other joints, where `u` is the input of a joint
-/// at that time, held between its samples and late by the joint's delay in `delays_s` (not
-/// delayed where there is none), and the maximum is over all its trials. Trials belong
-/// together by their labels, samples by their times. Where a joint was not logged it counts
-/// as at rest. Without other joints the lists are empty.
-pub fn activity(joints: &[Joint], index: usize, delays_s: &[f64]) -> Vec<Vec<f64>> {
-    let Some(own) = joints.get(index) else { return Vec::new() };
-    let others = joints.iter().enumerate().filter(|(other, _)| *other != index);
-    let delay_s = |other: usize| delays_s.get(other).copied().unwrap_or_default();
-    let others = others.map(|(other, joint)| Other::new(joint, delay_s(other)));
-    let others: Vec<Other<'_>> = others.collect();
+/// at that time, held between its samples and late by the joint's delay, and the maximum is
+/// over all its trials. Trials belong together by their labels, samples by their times. Where a
+/// joint was not logged it counts as at rest. Without other joints the lists are empty.
+pub fn activity(own: &Joint, others: &[Other<'_>]) -> Vec<Vec<f64>> {
+    let others: Vec<(&Other<'_>, f64)> = others.iter().map(|other| (other, other.most())).collect();
     own.trials.iter().map(|trial| of_trial(trial, &others)).collect()
 }
 
-/// A joint with the largest magnitude of its input, and its delay.
-struct Other<'a> {
-    joint: &'a Joint,
-    most: f64,
-    delay_s: f64,
-}
-
 impl<'a> Other<'a> {
-    fn new(joint: &'a Joint, delay_s: f64) -> Self {
-        let inputs = joint.trials.iter().flat_map(Trial::input);
-        Self { joint, most: inputs.fold(0.0, |most, input| most.max(input.abs())), delay_s }
+    /// The largest magnitude of its input.
+    fn most(&self) -> f64 {
+        let inputs = self.joint.trials.iter().flat_map(Trial::input);
+        inputs.fold(0.0, |most, input| most.max(input.abs()))
     }
 
     /// Its trials that may run at the same time as one labelled `label`: the one with this
@@ -50,13 +48,13 @@ fn whole(label: &str) -> &str {
     label.split_once('#').map_or(label, |(whole, _)| whole)
 }
 
-fn of_trial(trial: &Trial, others: &[Other<'_>]) -> Vec<f64> {
+fn of_trial(trial: &Trial, others: &[(&Other<'_>, f64)]) -> Vec<f64> {
     if others.is_empty() {
         return Vec::new();
     }
     let mut activity = vec![0.0; trial.len()];
-    let moving = others.iter().filter(|other| other.most > 0.0);
-    for (other, share) in moving.map(|other| (other, 1.0 / (other.most * others.len() as f64))) {
+    for (other, most) in others.iter().filter(|(_, most)| *most > 0.0) {
+        let share = 1.0 / (most * others.len() as f64);
         for part in other.at_the_time_of(trial.label()) {
             for (value, sample) in activity.iter_mut().zip(1..) {
                 *value += share * held(part, trial.time_s(sample) - other.delay_s).abs();
@@ -91,11 +89,18 @@ mod tests {
         Joint { name: name.to_owned(), input_unit, output_unit, covariates, trials }
     }
 
+    /// What the joints but the first do, with their delays.
+    fn of_first(joints: &[Joint], delays_s: &[f64]) -> Vec<Vec<f64>> {
+        let delays_s = delays_s.iter().copied().chain(std::iter::repeat(0.0));
+        let others = joints[1..].iter().zip(delays_s);
+        let others: Vec<_> = others.map(|(joint, delay_s)| Other { joint, delay_s }).collect();
+        activity(&joints[0], &others)
+    }
+
     #[test]
     fn a_joint_alone_has_no_others() {
         let alone = [joint("a", vec![trial("1", 0.0, 0.1, &[1.0, 2.0])])];
-        assert_eq!(activity(&alone, 0, &[]), [Vec::<f64>::new()]);
-        assert_eq!(activity(&alone, 1, &[]), Vec::<Vec<f64>>::new());
+        assert_eq!(of_first(&alone, &[]), [Vec::<f64>::new()]);
     }
 
     #[test]
@@ -107,7 +112,7 @@ mod tests {
             joint("never moves", vec![trial("1", 0.0, 0.1, &[0.0; 3])]),
         ];
         let expected = [1.0 / 3.0, 0.5, 0.5 / 3.0];
-        let found = &activity(&joints, 0, &[])[0];
+        let found = &of_first(&joints, &[])[0];
         assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
     }
 
@@ -117,7 +122,7 @@ mod tests {
             joint("a", vec![trial("1", 0.0, 0.1, &[0.0; 4])]),
             joint("b", vec![trial("1", 0.0, 0.1, &[2.0, -2.0, 0.0, 0.0])]),
         ];
-        assert_eq!(activity(&joints, 0, &[9.0, 0.2])[0], [0.0, 0.0, 1.0, 1.0]);
+        assert_eq!(of_first(&joints, &[0.2])[0], [0.0, 0.0, 1.0, 1.0]);
     }
 
     #[test]
@@ -126,7 +131,7 @@ mod tests {
             joint("a", vec![trial("1", 10.0, 0.1, &[0.0; 7]), trial("2", 0.0, 0.1, &[0.0; 2])]),
             joint("b", vec![trial("1", 10.1, 0.2, &[1.0, 2.0])]),
         ];
-        let found = activity(&joints, 0, &[]);
+        let found = of_first(&joints, &[]);
         assert_eq!(found[0], [0.0, 0.5, 0.5, 1.0, 1.0, 0.0, 0.0]);
         assert_eq!(found[1], [0.0, 0.0]);
     }
@@ -135,8 +140,8 @@ mod tests {
     fn parts_of_a_split_trial_are_found_by_their_times() {
         let parts = vec![trial("1#1", 0.0, 0.1, &[1.0; 2]), trial("1#2", 0.4, 0.1, &[1.0; 2])];
         let joints = [joint("a", vec![trial("1", 0.0, 0.1, &[0.0; 6])]), joint("b", parts.clone())];
-        assert_eq!(activity(&joints, 0, &[])[0], [1.0, 1.0, 0.0, 0.0, 1.0, 1.0]);
+        assert_eq!(of_first(&joints, &[])[0], [1.0, 1.0, 0.0, 0.0, 1.0, 1.0]);
         let joints = [joint("a", parts), joint("b", vec![trial("1", 0.0, 0.1, &[1.0; 6])])];
-        assert_eq!(activity(&joints, 0, &[]), [[1.0; 2], [1.0; 2]]);
+        assert_eq!(of_first(&joints, &[]), [[1.0; 2], [1.0; 2]]);
     }
 }

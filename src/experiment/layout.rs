@@ -7,6 +7,7 @@ use super::columns::{ColumnMap, JointColumns};
 use super::error::ReadError;
 use super::joint::Signal;
 use super::names::{listed, nearest_name};
+use super::read::ReadOptions;
 use super::table::{Head, Header};
 use super::unit;
 use crate::units::SamplePeriod;
@@ -90,6 +91,8 @@ pub(super) struct Layout {
     pub(super) time: TimeSource,
     pub(super) trial: Option<usize>,
     pub(super) joints: Vec<JointLayout>,
+    /// Joints that were not asked for.
+    pub(super) others: Vec<JointLayout>,
     /// Joints whose columns are not complete: name and reason.
     pub(super) incomplete: Vec<(String, ReadError)>,
 }
@@ -113,7 +116,8 @@ impl Layout {
             None => find_trial(head),
         };
         let time = find_time(&columns, map, period)?;
-        let mut layout = Self { time, trial, joints: Vec::new(), incomplete: Vec::new() };
+        let (joints, others) = (Vec::new(), Vec::new());
+        let mut layout = Self { time, trial, joints, others, incomplete: Vec::new() };
         if map.joints.is_empty() {
             layout.add_native_joints(&columns)?;
         } else {
@@ -137,20 +141,30 @@ impl Layout {
             return vec![self];
         }
         let of = |clock: usize| {
-            let joints = self.joints.iter().filter(|joint| joint.output.clock == clock);
-            let joints = joints.cloned().collect();
-            Self { time: self.time, trial: self.trial, joints, incomplete: Vec::new() }
+            let of_clock = |joints: &[JointLayout]| {
+                let joints = joints.iter().filter(|joint| joint.output.clock == clock);
+                joints.cloned().collect::<Vec<_>>()
+            };
+            let (joints, others) = (of_clock(&self.joints), of_clock(&self.others));
+            Self { time: self.time, trial: self.trial, joints, others, incomplete: Vec::new() }
         };
         clocks.into_iter().map(of).collect()
     }
 
-    /// Keeps the joints named in `wanted`; those that are not there come back as errors.
-    pub(super) fn keep(&mut self, path: &Path, wanted: &[String]) -> Vec<(String, ReadError)> {
+    /// Keeps the joints that are wanted, and the others apart where these are; those that are
+    /// not there come back as errors.
+    pub(super) fn keep(&mut self, path: &Path, options: &ReadOptions) -> Vec<(String, ReadError)> {
+        let wanted = &options.joints;
         if wanted.is_empty() {
             return Vec::new();
         }
         let names: Vec<String> = self.joints.iter().map(|joint| joint.name.clone()).collect();
-        self.joints.retain(|joint| wanted.contains(&joint.name));
+        let is_wanted = |joint: &JointLayout| wanted.contains(&joint.name);
+        let (kept, others) = std::mem::take(&mut self.joints).into_iter().partition(is_wanted);
+        self.joints = kept;
+        if options.others {
+            self.others = others;
+        }
         self.incomplete.retain(|(name, _)| wanted.contains(name));
         let incomplete = &self.incomplete;
         let known = |name: &String| {
@@ -168,7 +182,7 @@ impl Layout {
     /// Indices of all columns that hold numbers, each once.
     pub(super) fn numeric_columns(&self) -> Vec<usize> {
         let mut columns: Vec<usize> = self.time.column().into_iter().collect();
-        for joint in &self.joints {
+        for joint in self.joints.iter().chain(&self.others) {
             columns.extend([joint.input.column, joint.output.column]);
             columns.extend(joint.covariates.iter().map(|covariate| covariate.column));
         }

@@ -24,7 +24,7 @@ mod survey;
 mod table;
 mod unit;
 
-pub use activity::activity;
+pub use activity::{Other, activity};
 pub use columns::{ColumnMap, ColumnMapError, JointColumns};
 pub use error::ReadError;
 pub use growing::GrowingLog;

@@ -24,6 +24,9 @@ pub struct ReadOptions {
     pub columns: ColumnMap,
     /// The joints to keep; all when empty.
     pub joints: Vec<String>,
+    /// Whether the joints that are not kept are read, too, as [`Experiment::others`].
+    #[serde(skip)]
+    pub others: bool,
     /// What may be done to gaps and to uneven sampling.
     pub repair: Repair,
     /// How much memory they may take.
@@ -38,6 +41,9 @@ pub struct Experiment {
     pub sources: Vec<Source>,
     /// The joints, in the order of the logs. Files with the same joint add trials to it.
     pub joints: Vec<Joint>,
+    /// Joints that were not asked for, of which only is known what they draw from a pump that all
+    /// share; one that cannot be read is left out.
+    pub others: Vec<Joint>,
     /// Files and joints that could not be read.
     pub failures: Vec<Failure>,
     /// How they were read.
@@ -79,21 +85,30 @@ impl Experiment {
         self.sources.extend(log.sources);
         self.failures.extend(log.failures);
         self.notes.extend(log.notes);
-        let names = self.joints.iter().map(|joint| joint.name.clone());
-        let mut places: HashMap<String, usize> = names.zip(0..).collect();
-        for joint in log.joints {
-            let place = *places.entry(joint.name.clone()).or_insert(self.joints.len());
-            match self.joints.get_mut(place) {
-                None => self.joints.push(joint),
-                Some(known) => {
-                    if let Err(error) = merge(known, joint, path) {
-                        let joint = Some(known.name.clone());
-                        self.failures.push(Failure { joint, error });
-                    }
+        self.failures.extend(add_joints(&mut self.joints, log.joints, path));
+        // One whose units differ from log to log still has an input.
+        add_joints(&mut self.others, log.others, path);
+    }
+}
+
+/// Adds `joints` to the `known` ones, trials to those of a joint that is there; what differs
+/// comes back.
+fn add_joints(known: &mut Vec<Joint>, joints: Vec<Joint>, path: &Path) -> Vec<Failure> {
+    let mut failures = Vec::new();
+    let names = known.iter().map(|joint| joint.name.clone());
+    let mut places: HashMap<String, usize> = names.zip(0..).collect();
+    for joint in joints {
+        let place = *places.entry(joint.name.clone()).or_insert(known.len());
+        match known.get_mut(place) {
+            None => known.push(joint),
+            Some(known) => {
+                if let Err(error) = merge(known, joint, path) {
+                    failures.push(Failure { joint: Some(known.name.clone()), error });
                 }
             }
         }
     }
+    failures
 }
 
 /// Adds the trials of `joint` to those of the same joint in earlier logs.
@@ -205,7 +220,7 @@ pub(super) fn laid_out(
 ) -> Result<(Layout, Experiment), ReadError> {
     let period = sample_period(&head.path, &options.columns)?;
     let mut layout = Layout::find(head, &options.columns, period)?;
-    let unknown = layout.keep(&head.path, &options.joints);
+    let unknown = layout.keep(&head.path, options);
     let incomplete = std::mem::take(&mut layout.incomplete);
     let mut found = Experiment::default();
     found.failures.extend(incomplete.into_iter().chain(unknown).map(failed));
@@ -257,6 +272,9 @@ impl Experiment {
                 Err(error) => self.failures.push(failed((joint.name.clone(), error))),
             }
         }
+        let others = layout.others.iter();
+        let others = others.map(|joint| log.joint(joint, &trials, &grids, layout.time, repair));
+        self.others.extend(others.filter_map(Result::ok).map(|(joint, _)| joint));
         self.notes.extend(log.table.notes.iter().cloned());
         if self.sources.is_empty() {
             self.sources.push(log.table.source.clone());

@@ -20,7 +20,7 @@ mod sweep;
 pub use estimate::{JointEstimate, estimate_each, estimate_joints, estimate_joints_with};
 pub use models::{
     OfJoints, add_to_joints, compare_joints, explain_joints, improve_joints, know_joints,
-    suspect_joints,
+    others_of, suspect_joints,
 };
 pub use protocol::{Mode, Protocol, Watch, Watched};
 pub use review::{Review, ReviewError, ReviewNote, Why};

@@ -7,7 +7,7 @@ use crate::delay::EstimateError;
 use crate::design::{FreeRunError, Suspects, SuspectsError, Uncertain};
 use crate::diagnosis::{Comparison, compare, compare_unfitted, floor_of};
 use crate::effect::Effect;
-use crate::experiment::{Joint, activity};
+use crate::experiment::{Joint, Other, activity};
 use crate::explain::{AddError, Addition, Explanation, Improvement, Options, Revision, Workers};
 use crate::explain::{add, explain, improve};
 use crate::fit::{Fit, FitError, FitRecord, Horizon, Split};
@@ -18,7 +18,8 @@ pub type OfJoints<T> = Vec<Option<Result<T, FitError>>>;
 
 /// Compares each joint with its model: `None` where it has none.
 ///
-/// The other `joints` are the ones that share the supply with a joint: see [`activity`].
+/// The other `joints`, and those [beside](Watched::beside) them, are the ones that share the
+/// supply with a joint: see [`activity`].
 /// `models` gives the model of a joint; it is not asked for plain integrators.
 pub fn compare_joints<'a>(
     joints: &[Joint],
@@ -168,11 +169,20 @@ pub fn suspect_joints(
     suspects.into_iter().map(|result| result.map(flat)).collect()
 }
 
+/// These joints as others see them, with their typical delays.
+pub fn others_of<'a>(
+    joints: &'a [Joint],
+    estimates: &[Result<JointEstimate, EstimateError>],
+) -> Vec<Other<'a>> {
+    let other = |(joint, estimate)| Other { joint, delay_s: typical_delay_s((joint, estimate)) };
+    joints.iter().zip(estimates).map(other).collect()
+}
+
 /// Prepares the model of each joint from its starts, and does `work` with what comes of it.
 fn for_each_joint<P, T: Send>(
     (joints, estimates): (&[Joint], &[Result<JointEstimate, EstimateError>]),
     models: impl Fn(&Joint) -> Option<JointModel> + Sync,
-    Watched { protocol, watch }: Watched<'_>,
+    Watched { protocol, watch, others }: Watched<'_>,
     workers: &impl Workers,
     (prepare, work): (
         impl Fn(&FitRecord<'_>, &[JointModel]) -> Option<Result<P, FitError>> + Sync,
@@ -181,13 +191,15 @@ fn for_each_joint<P, T: Send>(
 ) -> OfJoints<T> {
     let Protocol { mode, split, horizon } = protocol;
     watch.more(joints.len());
-    let delays_s: Vec<f64> = joints.iter().zip(estimates).map(typical_delay_s).collect();
+    let sharing: Vec<Other<'_>> = others_of(joints, estimates);
     let pairs: Vec<_> = joints.iter().zip(estimates).enumerate().collect();
     let one_joint = |(index, (joint, estimate)): &(usize, (&Joint, &Result<JointEstimate, _>))| {
         let estimated: Vec<_> = estimate.iter().flat_map(JointEstimate::estimated).collect();
         let split = split.unwrap_or_else(|| Split::of(joint));
-        let others = activity(joints, *index, &delays_s);
-        let record = FitRecord::new(joint, split, horizon).with_others(others);
+        let sharing = sharing.iter().enumerate().filter(|(other, _)| other != index);
+        let sharing: Vec<Other<'_>> =
+            sharing.map(|(_, other)| other).chain(others).copied().collect();
+        let record = FitRecord::new(joint, split, horizon).with_others(activity(joint, &sharing));
         let starts = starts(mode, joint, &estimated, &models)?;
         let prepared = prepare(&record, &starts);
         watch.done();

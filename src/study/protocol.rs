@@ -1,5 +1,6 @@
 //! By what rules models are judged, and who watches the work.
 
+use crate::experiment::Other;
 use crate::explain::Workers;
 use crate::fit::{Horizon, Split};
 
@@ -32,11 +33,13 @@ impl Watch for () {
     fn done(&self) {}
 }
 
-/// A protocol, and who watches the work: a [`Protocol`] alone is watched by nobody.
+/// A protocol, who watches the work, and joints of the log of which no model is wanted: a
+/// [`Protocol`] alone is watched by nobody, and all joints are worked on.
 #[derive(Clone, Copy)]
 pub struct Watched<'a> {
     pub(super) protocol: Protocol,
     pub(super) watch: &'a dyn Watch,
+    pub(super) others: &'a [Other<'a>],
 }
 
 impl std::fmt::Debug for Watched<'_> {
@@ -46,6 +49,11 @@ impl std::fmt::Debug for Watched<'_> {
 }
 
 impl<'a> Watched<'a> {
+    /// With further joints that share the supply.
+    pub fn beside(self, others: &'a [Other<'a>]) -> Self {
+        Self { others, ..self }
+    }
+
     /// `workers`, whose pieces are watched.
     pub(super) fn workers<W>(self, workers: &'a W) -> WatchedWorkers<'a, W> {
         WatchedWorkers { workers, watch: self.watch }
@@ -54,7 +62,7 @@ impl<'a> Watched<'a> {
 
 impl From<Protocol> for Watched<'_> {
     fn from(protocol: Protocol) -> Self {
-        Self { protocol, watch: &() }
+        Self { protocol, watch: &(), others: &[] }
     }
 }
 
@@ -62,7 +70,7 @@ impl Protocol {
     /// This protocol, the work being watched. A piece is a fit, or a pair of candidates that
     /// is separated; more pieces come up as the work goes on.
     pub fn watched(self, watch: &dyn Watch) -> Watched<'_> {
-        Watched { protocol: self, watch }
+        Watched { protocol: self, watch, others: &[] }
     }
 }
 

@@ -93,6 +93,11 @@ impl DataArgs {
         self.reading.read(&self.data)
     }
 
+    /// [`Self::read`] with other options.
+    pub(crate) fn read_with(&self, options: &ReadOptions) -> anyhow::Result<Experiment> {
+        read_with(&self.data, options)
+    }
+
     /// The logs by their names, each once; and messages on folders without any.
     pub(crate) fn logs(&self) -> (Vec<PathBuf>, Vec<String>) {
         let (mut files, unlisted) = expand_folders(&self.data);
@@ -185,30 +190,7 @@ impl ReadingArgs {
     /// # Errors
     /// When no joint at all can be read.
     pub(crate) fn read(&self, data: &[PathBuf]) -> anyhow::Result<Experiment> {
-        let mut experiment = self.read_or_take(data)?;
-        if !experiment.joints.is_empty() {
-            return Ok(experiment);
-        }
-        let others = experiment.failures.len().saturating_sub(1);
-        let first = experiment.failures.drain(..).next().context("no joint in the logs")?;
-        let error = anyhow::Error::from(first.error);
-        Err(match others {
-            0 => error,
-            1 => error.context("nothing could be read (and one more failed)"),
-            _ => error.context(format!("nothing could be read (and {others} more failed)")),
-        })
-    }
-
-    /// What the program that runs the command has in memory, or else what is in the files.
-    fn read_or_take(&self, data: &[PathBuf]) -> anyhow::Result<Experiment> {
-        let options = self.options()?;
-        if let Some(handed) = Host::current().and_then(|host| host.logs(&options)) {
-            return Ok(handed);
-        }
-        let (files, unlisted) = expand_folders(data);
-        let mut experiment = Experiment::read(&files, &options);
-        experiment.failures.splice(0..0, unlisted);
-        Ok(experiment)
+        read_with(data, &self.options()?)
     }
 
     /// The joints that are named.
@@ -245,6 +227,34 @@ impl ReadingArgs {
             }
         }
         let repair = Repair { resample: self.resample, fill_s: self.fill, as_it_stands: false };
-        Ok(ReadOptions { columns, joints, repair, memory: self.memory.limit() })
+        let memory = self.memory.limit();
+        Ok(ReadOptions { columns, joints, others: false, repair, memory })
     }
+}
+
+/// Reads the logs `data`, unless nothing of them can be read.
+fn read_with(data: &[PathBuf], options: &ReadOptions) -> anyhow::Result<Experiment> {
+    let mut experiment = read_or_take(data, options);
+    if !experiment.joints.is_empty() {
+        return Ok(experiment);
+    }
+    let others = experiment.failures.len().saturating_sub(1);
+    let first = experiment.failures.drain(..).next().context("no joint in the logs")?;
+    let error = anyhow::Error::from(first.error);
+    Err(match others {
+        0 => error,
+        1 => error.context("nothing could be read (and one more failed)"),
+        _ => error.context(format!("nothing could be read (and {others} more failed)")),
+    })
+}
+
+/// What the program that runs the command has in memory, or else what is in the files.
+fn read_or_take(data: &[PathBuf], options: &ReadOptions) -> Experiment {
+    if let Some(handed) = Host::current().and_then(|host| host.logs(options)) {
+        return handed;
+    }
+    let (files, unlisted) = expand_folders(data);
+    let mut experiment = Experiment::read(&files, options);
+    experiment.failures.splice(0..0, unlisted);
+    experiment
 }

@@ -49,7 +49,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let outputs: Vec<_> = std::iter::once(target).chain(args.output.recording.as_deref()).collect();
     check_outputs(&outputs, &[args.data.files(), args.model.kept()].concat())?;
     let stream = args.output.stream.open(args.output.run.verbosity())?;
-    let session = Session::begin("add", &args.data, &args.output.run, stream)?;
+    let session = Session::with_others("add", &args.data, &args.output.run, stream)?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
     let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
     let study = Study::of(session, &Settings::default(), |begun| {
@@ -58,7 +58,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
             begun.joints,
             begun.estimates,
             starts,
-            protocol.watched(&bar),
+            protocol.watched(&bar).beside(begun.others),
             effect,
             &Threads,
         )

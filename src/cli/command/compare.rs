@@ -55,7 +55,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         check_outputs(&[path.as_path()], &[args.data.files(), args.model.clone()].concat())?;
     }
     let stream = args.output.stream.open(args.output.run.verbosity())?;
-    let session = Session::begin("compare", &args.data, &args.output.run, stream)?;
+    let session = Session::with_others("compare", &args.data, &args.output.run, stream)?;
     let study = Study::of(session, &Settings::default(), |begun| {
         let (joints, estimates, bar) = (begun.joints, begun.estimates, begun.bar("comparing"));
         let one = |named: &Named| {
@@ -64,7 +64,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
                 joints,
                 estimates,
                 starts,
-                args.protocol.with(named.mode(args), Horizon::FreeRun).watched(&bar),
+                args.protocol
+                    .with(named.mode(args), Horizon::FreeRun)
+                    .watched(&bar)
+                    .beside(begun.others),
                 &Threads,
             )
         };

@@ -18,7 +18,7 @@ use crate::cli::args::{
 };
 use crate::cli::exit::Completion;
 use crate::cli::output::check_outputs;
-use crate::cli::run::{Estimates, Session, Study, add_arguments, estimate_at, outcomes};
+use crate::cli::run::{Begun, Session, Study, add_arguments, estimate_at, outcomes};
 
 /// Say which physical effect a model lacks
 ///
@@ -54,14 +54,14 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         check_outputs(&[path.as_path()], &inputs)?;
     }
     let stream = args.output.stream.open(args.output.run.verbosity())?;
-    let session = Session::begin("explain", &args.data, &args.output.run, stream)?;
+    let session = Session::with_others("explain", &args.data, &args.output.run, stream)?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
     let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
     let study = Study::of(session, &Settings::default(), |begun| {
         let (joints, estimates, bar) = (begun.joints, begun.estimates, begun.bar("explaining"));
-        let explained =
-            explain_joints(joints, estimates, starts, protocol.watched(&bar), &options, &Threads);
-        let bests = args.output.is_recorded().then(|| args.bests(joints, estimates, &explained));
+        let watched = protocol.watched(&bar).beside(begun.others);
+        let explained = explain_joints(joints, estimates, starts, watched, &options, &Threads);
+        let bests = args.output.is_recorded().then(|| args.bests(begun, &explained));
         (explained, bests.unwrap_or_default())
     })?;
     let joints = &study.experiment().joints;
@@ -121,22 +121,18 @@ impl Args {
     /// The best candidate of each joint beside the measurement, and its name.
     fn bests(
         &self,
-        joints: &[Joint],
-        estimates: &Estimates,
+        begun: Begun<'_>,
         explained: &OfJoints<Explanation>,
     ) -> Vec<Option<(String, Comparison)>> {
+        let joints = begun.joints;
         let best = |joint: &Joint| {
             let index = joints.iter().position(|other| other.name == joint.name)?;
             explained.get(index)?.as_ref()?.as_ref().ok()?.ranking.first()
         };
         let model = |joint: &Joint| Some(best(joint)?.fit.model.clone());
-        let compared = compare_joints(
-            joints,
-            estimates,
-            model,
-            self.protocol.with(Mode::AsItIs, Horizon::Auto),
-            &Threads,
-        );
+        let protocol = self.protocol.with(Mode::AsItIs, Horizon::Auto);
+        let watched = protocol.watched(&()).beside(begun.others);
+        let compared = compare_joints(joints, begun.estimates, model, watched, &Threads);
         let named = |(joint, compared): (&Joint, Option<Result<Comparison, _>>)| {
             Some((format!("with {}", best(joint)?.name()), compared?.ok()?))
         };

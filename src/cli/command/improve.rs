@@ -89,7 +89,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     check_outputs(&outputs, &[args.data.files(), args.model.kept()].concat())?;
     let stream = args.output.stream.open(args.output.run.verbosity())?.expecting_revisions()?;
     let interrupt = Interrupt::watch(STOPPING);
-    let session = Session::begin("improve", &args.data, &args.output.run, stream)?;
+    let session = Session::with_others("improve", &args.data, &args.output.run, stream)?;
     let name = name_of(Some(target));
     let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
     let study = Study::of(session, &Settings::default(), |begun| {
@@ -106,7 +106,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
             joints,
             estimates,
             starts,
-            protocol.watched(&bar),
+            protocol.watched(&bar).beside(begun.others),
             &options,
             done,
             &Threads,

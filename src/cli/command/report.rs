@@ -132,7 +132,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     target.check(&inputs)?;
     let review = args.review.read()?;
     let stream = args.output.stream.open(args.output.run.verbosity())?;
-    let session = Session::begin("report", &args.data, &args.output.run, stream)?;
+    let session = Session::with_others("report", &args.data, &args.output.run, stream)?;
     let session = session.reviewed(review);
     let study = Study::of(session, &settings, |begun| args.model.improved(&file, begun, effects))?;
     if study.result.is_some() {
@@ -162,14 +162,14 @@ impl ModelArgs {
             let bar = begun.bar("improving");
             let progress = Progress::new(file, joints, begun.verbosity(), None);
             let done = |index, revision: &Revision| progress.done(index, revision);
-            let protocol = protocol.watched(&bar);
+            let protocol = protocol.watched(&bar).beside(begun.others);
             return Some(improve_joints(
                 joints, estimates, starts, protocol, &options, done, &Threads,
             ));
         }
         self.model.as_ref()?;
         let bar = begun.bar("explaining");
-        let protocol = protocol.watched(&bar);
+        let protocol = protocol.watched(&bar).beside(begun.others);
         let explained = explain_joints(joints, estimates, starts, protocol, &options, &Threads);
         let one = |found: Option<Result<_, _>>| Some(found?.map(as_it_is));
         Some(explained.into_iter().map(one).collect())

@@ -9,7 +9,7 @@ use crate::cli::console::{Bar, Verbosity, message, warn};
 use crate::cli::exit::Completion;
 use crate::cli::viewer::Stream;
 use crate::delay::{Automatic, Settings};
-use crate::experiment::{Experiment, Joint};
+use crate::experiment::{Experiment, Joint, ReadOptions};
 use crate::study::{Review, estimate_each};
 
 /// Logs that were read, and where what becomes of them goes.
@@ -24,6 +24,18 @@ pub(crate) struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
+    /// Reads `data` for `command`, also of the joints that are not asked for what they draw from
+    /// the supply that all share.
+    pub(crate) fn with_others(
+        command: &'static str,
+        data: &DataArgs,
+        run: &'a RunArgs,
+        stream: Stream,
+    ) -> anyhow::Result<Self> {
+        let options = ReadOptions { others: true, ..data.options()? };
+        Self::reading(command, data, &options, (run, stream))
+    }
+
     /// Reads `data` for `command`.
     pub(crate) fn begin(
         command: &'static str,
@@ -31,9 +43,18 @@ impl<'a> Session<'a> {
         run: &'a RunArgs,
         stream: Stream,
     ) -> anyhow::Result<Self> {
+        Self::reading(command, data, &data.options()?, (run, stream))
+    }
+
+    fn reading(
+        command: &'static str,
+        data: &DataArgs,
+        options: &ReadOptions,
+        (run, stream): (&'a RunArgs, Stream),
+    ) -> anyhow::Result<Self> {
         let _bar = Bar::spinner(run.verbosity(), "reading");
-        let own = OwnSettings::of(&data.options()?)?;
-        let experiment = data.read()?;
+        let own = OwnSettings::of(options)?;
+        let experiment = data.read_with(options)?;
         Ok(Self { experiment, stream, command, review: Review::default(), own, run })
     }
 
@@ -69,9 +90,25 @@ impl<'a> Session<'a> {
 
     /// The delays of each joint with these settings, or with its own.
     fn estimated(&self, settings: &Settings, automatic: Automatic, bar: &Bar) -> Estimates {
+        self.estimated_of(&self.experiment.joints, (settings, automatic), bar)
+    }
+
+    fn estimated_of(
+        &self,
+        joints: &[Joint],
+        (settings, automatic): (&Settings, Automatic),
+        bar: &Bar,
+    ) -> Estimates {
         let asked = (settings.clone(), automatic);
         let of_joint = |joint: &Joint| self.own.of_joint(joint, &asked);
-        estimate_each(&self.experiment.joints, of_joint, || bar.step(), &Threads)
+        estimate_each(joints, of_joint, || bar.step(), &Threads)
+    }
+
+    /// The delays of the joints that are not asked for.
+    pub(crate) fn estimates_of_others(&self, settings: &Settings) -> Estimates {
+        let (others, automatic) = (&self.experiment.others, Automatic::default());
+        let bar = Bar::new(self.verbosity(), "estimating", "trials", trials(others));
+        self.estimated_of(others, (settings, automatic), &bar)
     }
 
     /// The delays of each joint.
@@ -101,8 +138,8 @@ impl<'a> Session<'a> {
 
     /// A bar for all trials, each estimated `times` times.
     fn estimating(&self, times: usize) -> Bar {
-        let trials: usize = self.experiment.joints.iter().map(|joint| joint.trials.len()).sum();
-        Bar::new(self.verbosity(), "estimating", "trials", (trials * times) as u64)
+        let trials = trials(&self.experiment.joints);
+        Bar::new(self.verbosity(), "estimating", "trials", trials * times as u64)
     }
 
     /// Warns of what failed, and says what a person should know: `notes` beside those on the
@@ -127,4 +164,9 @@ impl<'a> Session<'a> {
         self.run.print(text, json)?;
         self.stream.close(completion, self.run.verbosity())
     }
+}
+
+/// How many trials these joints have.
+fn trials(joints: &[Joint]) -> u64 {
+    joints.iter().map(|joint| joint.trials.len() as u64).sum()
 }

@@ -10,8 +10,9 @@ use crate::cli::console::{Bar, Verbosity, warn};
 use crate::cli::exit::Completion;
 use crate::cli::output::{Contents, Detail};
 use crate::delay::Settings;
-use crate::experiment::{Experiment, Joint};
+use crate::experiment::{Experiment, Joint, Other};
 use crate::report::{ComparedJoint, ImprovedJoint};
+use crate::study::others_of;
 
 /// Logs, the delays in them, and what came of the joints.
 pub(crate) struct Study<'a, T> {
@@ -27,6 +28,8 @@ pub(crate) struct Begun<'a> {
     session: &'a Session<'a>,
     pub(crate) joints: &'a [Joint],
     pub(crate) estimates: &'a Estimates,
+    /// The joints that are not asked for.
+    pub(crate) others: &'a [Other<'a>],
     settings: &'a Settings,
 }
 
@@ -41,7 +44,9 @@ impl<'a, T: Send> Study<'a, T> {
         let (estimates, result) = session.in_threads(|| {
             let estimates = session.estimates(&settings);
             let result = {
-                let begun = Begun::of(&session, &estimates, &settings);
+                let of_others = session.estimates_of_others(&settings);
+                let others = others_of(&session.experiment.others, &of_others);
+                let begun = Begun { others: &others, ..Begun::of(&session, &estimates, &settings) };
                 begun.show(&[], &[], None)?;
                 work(begun)
             };
@@ -53,7 +58,8 @@ impl<'a, T: Send> Study<'a, T> {
 
 impl<'a> Begun<'a> {
     fn of(session: &'a Session<'a>, estimates: &'a Estimates, settings: &'a Settings) -> Self {
-        Self { session, joints: &session.experiment.joints, estimates, settings }
+        let joints = &session.experiment.joints;
+        Self { session, joints, estimates, others: &[], settings }
     }
 
     /// A bar that counts the fits of what is being done.
