@@ -7,7 +7,6 @@ use super::columns::{ColumnMap, JointColumns};
 use super::error::ReadError;
 use super::joint::Signal;
 use super::names::{listed, nearest_name};
-use super::read::ReadOptions;
 use super::table::{Head, Header};
 use super::unit;
 use crate::units::SamplePeriod;
@@ -151,20 +150,16 @@ impl Layout {
         clocks.into_iter().map(of).collect()
     }
 
-    /// Keeps the joints that are wanted, and the others apart where these are; those that are
-    /// not there come back as errors.
-    pub(super) fn keep(&mut self, path: &Path, options: &ReadOptions) -> Vec<(String, ReadError)> {
-        let wanted = &options.joints;
+    /// Keeps the joints named in `wanted`, the others apart; those that are not there come back
+    /// as errors.
+    pub(super) fn keep(&mut self, path: &Path, wanted: &[String]) -> Vec<(String, ReadError)> {
         if wanted.is_empty() {
             return Vec::new();
         }
         let names: Vec<String> = self.joints.iter().map(|joint| joint.name.clone()).collect();
         let is_wanted = |joint: &JointLayout| wanted.contains(&joint.name);
         let (kept, others) = std::mem::take(&mut self.joints).into_iter().partition(is_wanted);
-        self.joints = kept;
-        if options.others {
-            self.others = others;
-        }
+        (self.joints, self.others) = (kept, others);
         self.incomplete.retain(|(name, _)| wanted.contains(name));
         let incomplete = &self.incomplete;
         let known = |name: &String| {

@@ -220,7 +220,10 @@ pub(super) fn laid_out(
 ) -> Result<(Layout, Experiment), ReadError> {
     let period = sample_period(&head.path, &options.columns)?;
     let mut layout = Layout::find(head, &options.columns, period)?;
-    let unknown = layout.keep(&head.path, options);
+    let unknown = layout.keep(&head.path, &options.joints);
+    if !options.others {
+        layout.others.clear();
+    }
     let incomplete = std::mem::take(&mut layout.incomplete);
     let mut found = Experiment::default();
     found.failures.extend(incomplete.into_iter().chain(unknown).map(failed));
