@@ -37,6 +37,10 @@ pub(super) const SHORTEST_RUN: usize = 20;
 /// shows what comes of it.
 pub const RESERVE: f64 = 2.0;
 
+/// How much farther still where the log shows motions from stop to stop alone: no rest on the way,
+/// and no turn. Chosen, as [`RESERVE`] is.
+const UNSEEN: f64 = 1.5;
+
 /// How far free-running predictions were off on parts of a record that were left out of the fit,
 /// by the time since their start, and by the way that the joint was to go.
 #[derive(Clone, Debug, PartialEq)]
@@ -116,7 +120,8 @@ impl FreeRunError {
         let motions = parts.iter().flat_map(|(model, pieces)| {
             pieces.iter().filter_map(|piece| run(model, *piece, piece.from, &around)?.end())
         });
-        let trend = Trend::of(&motions.collect::<Vec<_>>()).filter(|_| !is_bounded);
+        let trend = Trend::of(&motions.collect::<Vec<_>>());
+        let trend = trend.filter(|_| !is_bounded && !stops.are_none());
         let is_joined = !is_bounded && (trend.is_some() || stops.are_none());
         let runs = parts.iter().flat_map(|(model, pieces)| {
             let joined = if is_joined { in_orders(pieces) } else { each(pieces) };
@@ -131,15 +136,24 @@ impl FreeRunError {
 
     /// How far a prediction may be off when the joint is to have gone so far: the farthest that
     /// one was off so far, [`RESERVE`] times, by time or by way, or what is off each time in the
-    /// same way, whichever is more. Beyond the longest run it grows in proportion, which no error
-    /// with increments of one kind exceeds. Of an output that regulates itself it is the same all
+    /// same way, whichever is more; and half as much again of motions from stop to stop. Beyond
+    /// the longest run it grows in proportion, which no error with increments of one kind exceeds.
+    /// Of an output that regulates itself it is the same all
     /// the time.
     pub fn margin(&self, travel: Travel) -> f64 {
         if self.is_bounded {
             return RESERVE * self.largest();
         }
         let measured = self.by_time.at(travel.seconds).max(self.by_way.at(travel.way));
-        RESERVE * self.trend.as_ref().map_or(measured, |trend| trend.at(travel).max(measured))
+        match &self.trend {
+            Some(trend) => self.reserve() * trend.at(travel).max(measured),
+            None => self.reserve() * measured,
+        }
+    }
+
+    /// How many times the errors so far a margin is.
+    pub fn reserve(&self) -> f64 {
+        if self.trend.is_some() { UNSEEN * RESERVE } else { RESERVE }
     }
 
     /// Whether the error of a prediction does not grow with its length.

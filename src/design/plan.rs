@@ -78,8 +78,8 @@ pub enum PlanError {
     /// Fewer than two inputs of the log let an output that regulates itself rest in the range.
     #[error(
         "--output-range={},{}: the output regulates itself, and fewer than two inputs of the log \
-         let it rest there with a margin of {}: it rests at {}; give a range about two of these",
-        rounded(.range.0), rounded(.range.1), rounded(*.margin), rounded_list(.outputs)
+         let it rest there{}: it rests at {}; give a range about two of these",
+        rounded(.range.0), rounded(.range.1), with_margin(*.margin), rounded_list(.outputs)
     )]
     SettlesElsewhere {
         /// The range.
@@ -162,6 +162,10 @@ impl std::fmt::Display for NotKept {
 fn rounded(x: f64) -> f64 {
     let scale = 10_f64.powf(3.0 - x.abs().max(f64::MIN_POSITIVE).log10().floor().clamp(-9.0, 3.0));
     (x * scale).round() / scale
+}
+
+fn with_margin(margin: f64) -> String {
+    if margin > 0.0 { format!(" with a margin of {}", rounded(margin)) } else { String::new() }
 }
 
 fn rounded_list(values: &[f64]) -> String {

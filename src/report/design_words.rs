@@ -3,7 +3,7 @@
 use super::design::{Basis, DesignedJoint, Discrimination, holds, kept_until_s, order};
 use super::text_table::TextTable;
 use crate::design::{
-    Expected, FreeRunError, OpenThreshold, Prediction, RESERVE, Rehearsal, Schedule, transitions,
+    Expected, FreeRunError, OpenThreshold, Prediction, Rehearsal, Schedule, transitions,
 };
 use crate::wording::{listed, measure, rounded, unit_suffix, wrapped};
 
@@ -231,7 +231,7 @@ fn margin_text(
     format!(
         "Margin: grows to {margin}. It is {} times the most by which the model, {model}, was off on \
          parts of the log that its fit did not see: {largest} within {}, and {beyond} beyond.",
-        rounded(RESERVE),
+        rounded(free_run.reserve()),
         measure(longest, Some("s"))
     )
 }

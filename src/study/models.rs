@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use super::estimate::JointEstimate;
 use super::protocol::{Mode, Protocol, Watched};
 use super::start::{as_it_is, best_fit, starts, typical_delay_s};
-use crate::delay::EstimateError;
+use crate::delay::{EstimateError, level_tolerance};
 use crate::design::{FreeRunError, Suspects, SuspectsError, Uncertain};
 use crate::diagnosis::{Comparison, compare, compare_unfitted, floor_of};
 use crate::effect::Effect;
@@ -157,15 +157,18 @@ fn improved(
 /// The part of a long record from which the structure of a model is found: blocks of its trials,
 /// drawn at random as what is played may repeat itself.
 fn part_of(joint: &Joint) -> Joint {
-    /// Samples that show the effects of a joint, and those of a block, which are several holds.
+    /// Samples that show the effects of a joint.
     const ENOUGH: usize = 4000;
+    /// Samples of a block at least, and steps of the input.
     const BLOCK: usize = 500;
+    const STEPS: usize = 4;
     let samples: usize = joint.trials.iter().map(Trial::len).sum();
-    if samples <= ENOUGH + BLOCK {
+    let block = BLOCK.max(STEPS * samples / steps(joint).max(1));
+    if samples <= ENOUGH + block || 2 * block > ENOUGH {
         return joint.clone();
     }
     let blocks = joint.trials.iter().enumerate().flat_map(|(trial, own)| {
-        let count = (own.len() / BLOCK).max(1);
+        let count = (own.len() / block).max(1);
         (0..count).map(move |k| (trial, own.len() * k / count, own.len() * (k + 1) / count))
     });
     let mut blocks: Vec<_> = blocks.collect();
@@ -180,6 +183,14 @@ fn part_of(joint: &Joint) -> Joint {
         |(trial, from, to): &(usize, usize, usize)| joint.trials.get(*trial)?.part(*from, *to);
     let trials: Vec<Trial> = blocks.iter().filter_map(piece).collect();
     Joint { trials, covariates: Vec::new(), ..joint.clone() }
+}
+
+/// How often the input of `joint` changes from one sample to the next.
+fn steps(joint: &Joint) -> usize {
+    let tolerance = level_tolerance(&joint.trials);
+    let changes = |pair: &&[f64]| matches!(pair, [a, b] if (b - a).abs() > tolerance);
+    let steps = joint.trials.iter().map(|trial| trial.input().windows(2).filter(changes).count());
+    steps.sum()
 }
 
 /// Fits two effects to each joint, each beside its model: see [`Suspects::of_record`].
