@@ -4,6 +4,8 @@
 #[cfg_attr(feature = "rrd", expect(dead_code, reason = "no recording is made"))]
 mod desk;
 
+use std::fmt::Write as _;
+
 use desk::{Desk, assert_fields, banded, joint, number};
 use tauscope::synthetic::{CylinderSpec, InputSpec, JointSpec, PlantSpec, simulate, write_log};
 
@@ -203,7 +205,7 @@ fn a_range_that_cannot_be_kept_is_refused_with_a_remedy() {
 
 /// A joint between stops that is a third slower downward and has a soft dead band, or an output
 /// that settles in half a second: what it does with `input`, 50 samples a second.
-fn by_hand(input: &[f64], start: f64, settles: bool) -> Vec<f64> {
+fn by_hand(input: &[f64], start: f64, settling_s: Option<f64>) -> Vec<f64> {
     let (late, part_s) = (8, 0.02);
     let (mut y, mut output) = (start, Vec::new());
     for sample in 0..input.len() {
@@ -211,9 +213,10 @@ fn by_hand(input: &[f64], start: f64, settles: bool) -> Vec<f64> {
         let u = input[sample.saturating_sub(late)];
         let opening = (u.abs() - 0.2 * (1.0 - (-u.abs() / 0.1).exp())) * u.signum();
         let driven = if opening < 0.0 { 10.0 * opening } else { 15.0 * opening };
-        let speed = if settles { (4.0 + driven - y) / 0.5 } else { driven };
-        let next = y + part_s * speed;
-        y = if settles { next } else { next.clamp(-40.0, 40.0) };
+        y = match settling_s {
+            Some(settling_s) => y + part_s * (4.0 + driven - y) / settling_s,
+            None => (y + part_s * driven).clamp(-40.0, 40.0),
+        };
     }
     output
 }
@@ -226,7 +229,8 @@ fn write_trials(desk: &Desk, name: &str, trials: &[(Vec<f64>, Vec<f64>)]) {
         for (sample, (u, y)) in input.iter().zip(output).enumerate() {
             random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             let noise = 0.1 * ((random >> 40) as f64 / f64::from(1 << 24) - 0.5);
-            text += &format!("{},{},{u},{}\n", trial + 1, sample as f64 * 0.02, y + noise);
+            let seconds = sample as f64 * 0.02;
+            writeln!(text, "{},{seconds},{u},{}", trial + 1, y + noise).unwrap();
         }
     }
     desk.write(name, &text);
@@ -241,14 +245,14 @@ fn a_plan_from_strokes_keeps_its_range_for_as_long_as_it_is() {
         let mut input = vec![0.0; 50];
         input.extend(vec![level; 350]);
         input.extend(vec![0.0; 50]);
-        let output = by_hand(&input, -40.0 * level.signum(), false);
+        let output = by_hand(&input, -40.0 * level.signum(), None);
         (input, output)
     });
     write_trials(&desk, "strokes.csv", &strokes.collect::<Vec<_>>());
     let options = "design strokes.csv --output-range=-35,35 -o in.csv -q";
     let designed = &desk.json(options, 0)["joints"][0];
     let input = column(&desk.read("in.csv"), "boom.input");
-    let output = by_hand(&input, number(&designed["start"]), false);
+    let output = by_hand(&input, number(&designed["start"]), None);
     assert!(output.iter().all(|y| (-35.0..=35.0).contains(y)));
     assert!(number(&designed["steps"]) >= 6.0 && number(&designed["duration_s"]) >= 10.0);
 }
@@ -261,15 +265,15 @@ fn an_output_that_regulates_itself_is_played_at_levels_of_its_log() {
     let levels = [0.0, 1.0, 2.0, 0.5, 1.5, 0.0, 2.0, 1.0, 0.5, 2.0, 1.5, 0.0, 1.0, 1.5, 0.5];
     let input: Vec<f64> =
         (0..2400).map(|k| if k < 50 { 0.0 } else { levels[(k - 50) / 160] }).collect();
-    let output = by_hand(&input, 4.0, true);
+    let output = by_hand(&input, 4.0, Some(0.5));
     write_trials(&desk, "speed.csv", &[(input, output)]);
     let options = "design speed.csv --output-range=5,28 --duration 60 -o in.csv -q";
     let designed = &desk.json(options, 0)["joints"][0];
     let played = column(&desk.read("in.csv"), "boom.input");
     assert!(played.iter().all(|u| (0.0..=2.0).contains(u)));
-    let start = *by_hand(&vec![played[0]; 500], 4.0, true).last().unwrap();
+    let start = *by_hand(&vec![played[0]; 500], 4.0, Some(0.5)).last().unwrap();
     assert!((start - number(&designed["start"])).abs() < 0.5);
-    let output = by_hand(&played, start, true);
+    let output = by_hand(&played, start, Some(0.5));
     assert!(output.iter().all(|y| (5.0..=28.0).contains(y)));
     let said = desk.run("design speed.csv --output-range=5,28 --duration 60 -o in.csv -q");
     let said = String::from_utf8(said.stdout).unwrap();
@@ -282,7 +286,7 @@ fn an_output_that_regulates_itself_is_played_at_levels_of_its_log() {
 fn what_never_goes_back_in_the_log_is_not_driven_back() {
     let desk = desk();
     let input: Vec<f64> = (0..2000).map(|k| if k % 200 < 60 { 1.0 } else { 0.0 }).collect();
-    let output = by_hand(&input, -39.0, false);
+    let output = by_hand(&input, -39.0, None);
     write_trials(&desk, "up.csv", &[(input, output)]);
     let said = desk.refusal("design up.csv --output-range=-30,30 -o none.csv");
     assert!(said.contains("has positive inputs only"), "{said}");

@@ -389,7 +389,7 @@ mod tests {
     use super::super::predict::tests::rig;
     use super::super::random::{RandomSteps, random_steps};
     use super::*;
-    use crate::effect::DirectionGain;
+    use crate::effect::{DirectionGain, Leakage};
     use crate::model::Component;
 
     /// A log of a joint that is a third slower in one direction.
@@ -430,6 +430,21 @@ mod tests {
         assert!((at(12.1) - RESERVE * wrong.largest()).abs() < 0.02 * at(12.1));
         let far = Travel { way: 1e4, ..after(0.5) };
         assert!(wrong.margin(far) > at(0.5));
+    }
+
+    #[test]
+    fn what_regulates_itself_is_no_farther_off_later() {
+        let leakage = Component::new(&Leakage, vec![8.0.into(), 1.0.into()]).unwrap();
+        let settling = JointModel::integrator(80.0, 0.1).with(leakage);
+        let levels = vec![-2.0, -1.0, 0.0, 1.0, 2.0];
+        let steps = RandomSteps { levels, hold_s: (0.5, 1.5), duration_s: 40.0, seed: 5 };
+        let rig = rig(None);
+        let schedule = random_steps(&steps, &rig, None, 0);
+        let log = rig.log(&schedule, rig.output(&settling, &schedule)).unwrap();
+        let found = FreeRunError::of(&log, &settling).unwrap();
+        assert!(found.is_bounded());
+        assert!((found.margin(after(500.0)) - found.margin(after(0.0))).abs() < 1e-12);
+        assert!(!FreeRunError::of(&self::log(60.0), &slower()).unwrap().is_bounded());
     }
 
     #[test]

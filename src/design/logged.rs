@@ -184,11 +184,11 @@ fn held_outputs(joint: &Joint, (level, tolerance): (f64, f64), longer_s: f64) ->
     for trial in &joint.trials {
         let period_s = trial.period().seconds();
         let is_level = |input: &f64| (input - level).abs() <= tolerance;
-        let (mut samples, input) = (0, trial.input());
+        let (mut samples, input) = (0_u32, trial.input());
         for (index, output) in trial.output().iter().enumerate() {
             samples = if input.get(index).is_some_and(is_level) { samples + 1 } else { 0 };
             let is_last = !input.get(index + 1).is_some_and(is_level);
-            if is_last && samples as f64 * period_s > longer_s {
+            if is_last && f64::from(samples) * period_s > longer_s {
                 held.push(*output);
             }
         }
@@ -273,6 +273,26 @@ mod tests {
         let thinned = Logged::of(&fast).thinned(&fast).trials.remove(0);
         assert_eq!((thinned.len(), thinned.period().seconds()), (40, 0.01));
         assert_eq!(thinned.output()[1].to_bits(), fast.trials[0].output()[10].to_bits());
+    }
+
+    #[test]
+    fn an_output_that_settles_rests_at_the_level_nearest_to_the_middle_of_its_range() {
+        let input = steps(&[0.0, 2.0, 1.0, 3.0, 0.0, 1.0, 3.0, 2.0]);
+        let mut y = 0.0;
+        let output = input.iter().map(|u| {
+            y += 0.1 * (10.0 * u + 5.0 - y);
+            y
+        });
+        let period = SamplePeriod::from_seconds(0.02).unwrap();
+        let output: Vec<f64> = output.collect();
+        let trials = vec![Trial::new("1", 0.0, period, input, output).unwrap()];
+        let joint = Joint { trials, ..joint(vec![0.0; 10]) };
+        let logged = Logged::of(&joint).within((10.0, 32.0));
+        assert!((logged.rest - 2.0).abs() < 1e-9, "{}", logged.rest);
+        assert!((logged.settled().unwrap() - 25.0).abs() < 0.1);
+        assert_eq!(logged.levels, [-2.0, -1.0, 0.0, 1.0]);
+        assert_eq!(logged.settling_within((10.0, 32.0)).levels, [-1.0, 0.0]);
+        assert_eq!(Logged::of(&joint).within((50.0, 60.0)).rest.to_bits(), 0.0_f64.to_bits());
     }
 
     #[test]

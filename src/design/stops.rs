@@ -110,7 +110,6 @@ fn samples_of(seconds: f64, trial: &Trial) -> usize {
 /// The last sample up to `sample`, but not before `from`, at which the input changes.
 fn played_before(trial: &Trial, sample: usize, from: usize) -> Option<usize> {
     let input = trial.input();
-    #[expect(clippy::float_cmp, reason = "a step is any change")]
     let changes = |k: &usize| *k > 0 && input.get(*k) != input.get(k - 1);
     (from..=sample).rev().find(changes)
 }
