@@ -10,6 +10,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::stops::{Stops, extent};
 use super::trend::{Travel, Trend};
+use crate::effect::{Effect as _, EndStop};
 use crate::experiment::{Joint, Trial};
 use crate::fit::{FitRecord, Horizon, Split, fit, follows_input};
 use crate::model::{Commands, JointModel, Restart, Surroundings, simulate};
@@ -103,6 +104,8 @@ impl FreeRunError {
         let mut parts = Vec::new();
         for part in 0..PARTS {
             let Some((refitted, later_s)) = refitted(joint, model, part) else { continue };
+            // A stop of the model would take off errors as the joint's own does.
+            let refitted = refitted.without(EndStop.spec().id);
             let trials = joint.trials.iter().enumerate();
             let pieces = trials.flat_map(|(index, trial)| {
                 let start_s = record.start_s(index) - later_s;

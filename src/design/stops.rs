@@ -15,7 +15,8 @@ pub(super) struct Stops {
 /// A place is as near to a stop as to be at it, in parts of what the joint went through.
 const NEAR: f64 = 0.02;
 
-/// A joint that moves by less than this part of what it went through within twice the time stands.
+/// A joint that moves by less than this part of what it went through within the time before, and
+/// within that behind, stands.
 const STANDS: f64 = 0.01;
 const TIME_S: f64 = 0.25;
 
@@ -72,15 +73,18 @@ impl Stops {
         let (delay, near) = (samples_of(delay_s, trial), samples_of(TIME_S, trial));
         let (mut found, mut sample) = (Vec::new(), from);
         while sample < to {
-            let end = (sample..to).find(|k| is_at_stop(*k)).unwrap_or(to);
+            let stands = (sample..to).find(|k| is_at_stop(*k));
+            // It has stood for that long where it is seen to stand.
+            let arrived = stands.map_or(to, |k| k.saturating_sub(near).max(sample));
+            let end = stands.unwrap_or(to);
             // It stands no more before it is seen to move.
             let moves = (sample + near).min(to);
             let begin = match played_before(trial, moves, from) {
                 Some(played) if sample > from => (played + delay).min(moves),
                 _ => sample,
             };
-            if end >= begin + SHORTEST_RUN {
-                found.push((begin, end));
+            if arrived >= begin + SHORTEST_RUN {
+                found.push((begin, arrived));
             }
             sample = (end..to).find(|k| !is_at_stop(*k)).unwrap_or(to);
         }
@@ -96,7 +100,11 @@ impl Stops {
         let near = samples_of(TIME_S, trial);
         let last = trial.len().saturating_sub(1);
         let at = |sample: usize| trial.output().get(sample.min(last)).copied().unwrap_or(0.0);
-        let moved = |sample: usize| (at(sample + near) - at(sample.saturating_sub(near))).abs();
+        // Where it turns it is as far off before as behind.
+        let moved = |sample: usize| {
+            let (before, behind) = (at(sample.saturating_sub(near)), at(sample + near));
+            (at(sample) - before).abs().max((behind - at(sample)).abs())
+        };
         (0..trial.len()).map(|sample| moved(sample) < STANDS * self.width).collect()
     }
 }
@@ -154,7 +162,7 @@ mod tests {
             let free = stops.free(trial, (0, trial.len()), 0.1);
             let [(from, to)] = free.as_slice() else { panic!("{free:?}") };
             // Played at sample 50, seen to move from 56 on, and at the stop from 205 on.
-            assert!((50..=60).contains(from) && (190..=206).contains(to), "{from} to {to}");
+            assert!((50..=60).contains(from) && (190..=209).contains(to), "{from} to {to}");
         }
     }
 
