@@ -92,7 +92,8 @@ impl FreeRunError {
     /// A stop takes off the error that a run has made. So runs end where the joint comes to a
     /// stop, and go on where it leaves it with the error that they had; so do they from one trial
     /// to the next. Where motions from stop to stop are too few to show a [`Trend`], each is by
-    /// itself, and what is off in it is off in proportion later. Of an output that regulates itself each run is by itself: it forgets its error.
+    /// itself, and what is off in it is off in proportion later. Of an output that regulates
+    /// itself each run is by itself: it forgets its error.
     ///
     /// `None` where too little can be left out.
     pub fn of(joint: &Joint, model: &JointModel) -> Option<Self> {
@@ -104,8 +105,6 @@ impl FreeRunError {
         let mut parts = Vec::new();
         for part in 0..PARTS {
             let Some((refitted, later_s)) = refitted(joint, model, part) else { continue };
-            // A stop of the model would take off errors as the joint's own does.
-            let refitted = refitted.without(EndStop.spec().id);
             let trials = joint.trials.iter().enumerate();
             let pieces = trials.flat_map(|(index, trial)| {
                 let start_s = record.start_s(index) - later_s;
@@ -120,13 +119,18 @@ impl FreeRunError {
         if parts.len() < FEWEST_PARTS {
             return None;
         }
-        let motions = parts.iter().flat_map(|(model, pieces)| {
+        // A stop of the model would take off errors as the joint's own does; of a joint that is not
+        // driven from stop to stop it stands for touches that are too short to be seen.
+        let freed = parts.iter().map(|(model, _)| model.without(EndStop.spec().id));
+        let freed: Vec<JointModel> = freed.collect();
+        let motions = parts.iter().zip(&freed).flat_map(|((_, pieces), model)| {
             pieces.iter().filter_map(|piece| run(model, *piece, piece.from, &around)?.end())
         });
         let trend = Trend::of(&motions.collect::<Vec<_>>());
         let trend = trend.filter(|_| !is_bounded && !stops.are_none());
         let is_joined = !is_bounded && (trend.is_some() || stops.are_none());
-        let runs = parts.iter().flat_map(|(model, pieces)| {
+        let runs = parts.iter().zip(&freed).flat_map(|((model, pieces), freed)| {
+            let model = if trend.is_some() { freed } else { model };
             let joined = if is_joined { in_orders(pieces) } else { each(pieces) };
             joined.into_iter().flat_map(|pieces| runs(model, &pieces, &around)).collect::<Vec<_>>()
         });

@@ -155,20 +155,20 @@ fn improved(
 }
 
 /// The part of a long record from which the structure of a model is found: blocks of its trials,
-/// drawn at random as what is played may repeat itself.
+/// drawn at random as what is played may repeat itself. All of a record whose input is held for
+/// long, of which blocks would show a few steps alone.
 fn part_of(joint: &Joint) -> Joint {
     /// Samples that show the effects of a joint.
     const ENOUGH: usize = 4000;
-    /// Samples of a block at least, and steps of the input.
+    /// Samples of a block, and steps of the input that are to be in it.
     const BLOCK: usize = 500;
     const STEPS: usize = 4;
     let samples: usize = joint.trials.iter().map(Trial::len).sum();
-    let block = BLOCK.max(STEPS * samples / steps(joint).max(1));
-    if samples <= ENOUGH + block || 2 * block > ENOUGH {
+    if samples <= ENOUGH + BLOCK || steps(joint) * BLOCK < STEPS * samples {
         return joint.clone();
     }
     let blocks = joint.trials.iter().enumerate().flat_map(|(trial, own)| {
-        let count = (own.len() / block).max(1);
+        let count = (own.len() / BLOCK).max(1);
         (0..count).map(move |k| (trial, own.len() * k / count, own.len() * (k + 1) / count))
     });
     let mut blocks: Vec<_> = blocks.collect();
