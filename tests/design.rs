@@ -267,15 +267,15 @@ fn an_output_that_regulates_itself_is_played_at_levels_of_its_log() {
         (0..2400).map(|k| if k < 50 { 0.0 } else { levels[(k - 50) / 160] }).collect();
     let output = by_hand(&input, 4.0, Some(0.5));
     write_trials(&desk, "speed.csv", &[(input, output)]);
-    let options = "design speed.csv --output-range=5,28 --duration 60 -o in.csv -q";
+    let options = "design speed.csv --output-range=2,33 --duration 60 -o in.csv -q";
     let designed = &desk.json(options, 0)["joints"][0];
     let played = column(&desk.read("in.csv"), "boom.input");
     assert!(played.iter().all(|u| (0.0..=2.0).contains(u)));
     let start = *by_hand(&vec![played[0]; 500], 4.0, Some(0.5)).last().unwrap();
     assert!((start - number(&designed["start"])).abs() < 0.5);
     let output = by_hand(&played, start, Some(0.5));
-    assert!(output.iter().all(|y| (5.0..=28.0).contains(y)));
-    let said = desk.run("design speed.csv --output-range=5,28 --duration 60 -o in.csv -q");
+    assert!(output.iter().all(|y| (2.0..=33.0).contains(y)));
+    let said = desk.run("design speed.csv --output-range=2,33 --duration 60 -o in.csv -q");
     let said = String::from_utf8(said.stdout).unwrap();
     assert!(said.contains("until the output settles") && said.contains("first order"), "{said}");
     let said = desk.refusal("design speed.csv --output-range=4.5,5.5 -o none.csv");
