@@ -4,6 +4,8 @@
 #[cfg_attr(feature = "rrd", expect(dead_code, reason = "no recording is made"))]
 mod desk;
 
+use std::fmt::Write as _;
+
 use desk::{Desk, assert_fields, banded, joint, number};
 use tauscope::synthetic::{CylinderSpec, InputSpec, JointSpec, PlantSpec, simulate, write_log};
 
@@ -199,6 +201,95 @@ fn a_range_that_cannot_be_kept_is_refused_with_a_remedy() {
         assert!(said.contains("give") || said.contains("start near"), "{options}: {said}");
         assert!(!desk.has("none.csv"));
     }
+}
+
+/// A joint between stops that is a third slower downward and has a soft dead band, or an output
+/// that settles in half a second: what it does with `input`, 50 samples a second.
+fn by_hand(input: &[f64], start: f64, settling_s: Option<f64>) -> Vec<f64> {
+    let (late, part_s) = (8, 0.02);
+    let (mut y, mut output) = (start, Vec::new());
+    for sample in 0..input.len() {
+        output.push(y);
+        let u = input[sample.saturating_sub(late)];
+        let opening = (u.abs() - 0.2 * (1.0 - (-u.abs() / 0.1).exp())) * u.signum();
+        let driven = if opening < 0.0 { 10.0 * opening } else { 15.0 * opening };
+        y = match settling_s {
+            Some(settling_s) => y + part_s * (4.0 + driven - y) / settling_s,
+            None => (y + part_s * driven).clamp(-40.0, 40.0),
+        };
+    }
+    output
+}
+
+/// Trials as a log, with a noise of 0.03.
+fn write_trials(desk: &Desk, name: &str, trials: &[(Vec<f64>, Vec<f64>)]) {
+    let mut text = "trial,time_s,boom.input,boom.output\n".to_owned();
+    let mut random: u64 = 1;
+    for (trial, (input, output)) in trials.iter().enumerate() {
+        for (sample, (u, y)) in input.iter().zip(output).enumerate() {
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            let noise = 0.1 * ((random >> 40) as f64 / f64::from(1 << 24) - 0.5);
+            let seconds = sample as f64 * 0.02;
+            writeln!(text, "{},{seconds},{u},{}", trial + 1, y + noise).unwrap();
+        }
+    }
+    desk.write(name, &text);
+}
+
+/// Rest, one step, motion up to the end stop, step back: what a stop takes off no plan can.
+#[test]
+fn a_plan_from_strokes_keeps_its_range_for_as_long_as_it_is() {
+    let desk = desk();
+    let strokes = (0..20).map(|index| {
+        let level = [1.0, 1.5, 2.0][index / 2 % 3] * if index % 2 == 0 { 1.0 } else { -1.0 };
+        let mut input = vec![0.0; 50];
+        input.extend(vec![level; 350]);
+        input.extend(vec![0.0; 50]);
+        let output = by_hand(&input, -40.0 * level.signum(), None);
+        (input, output)
+    });
+    write_trials(&desk, "strokes.csv", &strokes.collect::<Vec<_>>());
+    let options = "design strokes.csv --output-range=-35,35 -o in.csv -q";
+    let designed = &desk.json(options, 0)["joints"][0];
+    let input = column(&desk.read("in.csv"), "boom.input");
+    let output = by_hand(&input, number(&designed["start"]), None);
+    assert!(output.iter().all(|y| (-35.0..=35.0).contains(y)));
+    assert!(number(&designed["steps"]) >= 6.0 && number(&designed["duration_s"]) >= 10.0);
+}
+
+/// A speed or a pressure comes to rest by itself: its error does not grow, and it needs no input of
+/// the other sign.
+#[test]
+fn an_output_that_regulates_itself_is_played_at_levels_of_its_log() {
+    let desk = desk();
+    let levels = [0.0, 1.0, 2.0, 0.5, 1.5, 0.0, 2.0, 1.0, 0.5, 2.0, 1.5, 0.0, 1.0, 1.5, 0.5];
+    let input: Vec<f64> =
+        (0..2400).map(|k| if k < 50 { 0.0 } else { levels[(k - 50) / 160] }).collect();
+    let output = by_hand(&input, 4.0, Some(0.5));
+    write_trials(&desk, "speed.csv", &[(input, output)]);
+    let options = "design speed.csv --output-range=2,33 --duration 60 -o in.csv -q";
+    let designed = &desk.json(options, 0)["joints"][0];
+    let played = column(&desk.read("in.csv"), "boom.input");
+    assert!(played.iter().all(|u| (0.0..=2.0).contains(u)));
+    let start = *by_hand(&vec![played[0]; 500], 4.0, Some(0.5)).last().unwrap();
+    assert!((start - number(&designed["start"])).abs() < 0.5);
+    let output = by_hand(&played, start, Some(0.5));
+    assert!(output.iter().all(|y| (2.0..=33.0).contains(y)));
+    let said = desk.run("design speed.csv --output-range=2,33 --duration 60 -o in.csv -q");
+    let said = String::from_utf8(said.stdout).unwrap();
+    assert!(said.contains("until the output settles") && said.contains("first order"), "{said}");
+    let said = desk.refusal("design speed.csv --output-range=4.5,5.5 -o none.csv");
+    assert!(said.contains("the output regulates itself"), "{said}");
+}
+
+#[test]
+fn what_never_goes_back_in_the_log_is_not_driven_back() {
+    let desk = desk();
+    let input: Vec<f64> = (0..2000).map(|k| if k % 200 < 60 { 1.0 } else { 0.0 }).collect();
+    let output = by_hand(&input, -39.0, None);
+    write_trials(&desk, "up.csv", &[(input, output)]);
+    let said = desk.refusal("design up.csv --output-range=-30,30 -o none.csv");
+    assert!(said.contains("has positive inputs only"), "{said}");
 }
 
 #[test]

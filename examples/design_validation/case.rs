@@ -1,6 +1,7 @@
 //! One joint: logged, an input designed from the log, and the input played.
 
 use std::fmt;
+use std::time::Instant;
 
 use anyhow::Context as _;
 use rand::RngExt as _;
@@ -10,13 +11,12 @@ use tauscope::Joint;
 use tauscope::batch::Threads;
 use tauscope::delay::Settings;
 use tauscope::design::{
-    Logged, Plan, RandomSteps, Schedule, TestRig, Uncertain, Wishes, plan, random_steps, reach,
+    Logged, Plan, RandomSteps, TestRig, Uncertain, Wishes, plan, random_steps, reach,
 };
 use tauscope::fit::{Horizon, Split};
 use tauscope::study::{Mode, Protocol, estimate_joints, know_joints};
-use tauscope::synthetic::{InputSpec, PlantSpec, simulate};
 
-use crate::plants::{Drawn, drawn};
+use crate::plants::{Drawn, Plant, drawn};
 
 /// What became of a joint.
 #[derive(Debug)]
@@ -29,6 +29,8 @@ pub(crate) struct Judged {
     pub(crate) range: (f64, f64),
     /// What was played, or why nothing was.
     pub(crate) outcome: Result<Played, String>,
+    /// Seconds that the design took.
+    pub(crate) design_s: f64,
     /// Whether a plain integrator, whose margin is that of its parameters, leaves the range with
     /// an input of the same length: `None` where nothing was designed.
     pub(crate) integrator_leaves: Option<bool>,
@@ -55,11 +57,11 @@ impl Played {
 
 impl fmt::Display for Judged {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { seed, kind, hidden, model, range, .. } = self;
+        let Self { seed, kind, hidden, model, range, design_s, .. } = self;
         let (hidden, model) = (hidden.join("+"), model.join("+"));
         write!(
             f,
-            "seed {seed}, {kind} {hidden}; model {model}; {:.1} to {:.1}: ",
+            "seed {seed}, {kind} {hidden}; model {model}; {:.1} to {:.1}; {design_s:.1} s: ",
             range.0, range.1
         )?;
         match &self.outcome {
@@ -80,25 +82,25 @@ impl fmt::Display for Judged {
 }
 
 /// How the program fits the model of a log.
-const PROTOCOL: Protocol = Protocol {
-    mode: Mode::FitOrIntegrator,
-    split: Some(Split::Time(1.0)),
-    horizon: Horizon::Steps,
-};
+const PROTOCOL: Protocol =
+    Protocol { mode: Mode::FitOrIntegrator, split: Some(Split::Time(1.0)), horizon: Horizon::Auto };
 
 /// What becomes of the joint number `seed`.
 pub(crate) fn examine(seed: u64) -> anyhow::Result<Judged> {
-    let Drawn { plant, kind, hidden } = drawn(seed)?;
-    let log = simulate(&plant).with_context(|| format!("seed {seed}"))?.joints.remove(0);
+    let Drawn { plant, log, kind, hidden } = drawn(seed)?;
+    let begun = Instant::now();
     let logged = Logged::of(&log);
-    let log = logged.thinned(&log);
     let (range, duration_s) = wanted(seed, &logged);
+    let logged = logged.within(range);
+    let log = logged.thinned(&log);
     let within = reach(range, Some(&logged))?;
-    let rig = rig(&log, range, 0.5 * (within.0 + within.1))?;
+    let start = logged.settled().unwrap_or(0.5 * (within.0 + within.1));
+    let rig = rig(&log, range, start)?;
     let known = known(&log)?;
     let wishes = Wishes { duration_s, seed, ..Wishes::default() };
     let effects = known.model.components().iter().map(|c| c.effect().spec().id).collect();
     let planned = plan(&wishes, &rig, Some(&known), Some(&logged), 0);
+    let design_s = begun.elapsed().as_secs_f64();
     let integrator_leaves = match &planned {
         Ok(plan) => Some(integrator_leaves(&plant, &log, (&rig, &logged), plan, seed)?),
         Err(_) => None,
@@ -107,7 +109,7 @@ pub(crate) fn examine(seed: u64) -> anyhow::Result<Judged> {
         Ok(plan) => Ok(played(&plant, &rig, &logged, &plan)?),
         Err(why) => Err(why.to_string()),
     };
-    Ok(Judged { seed, kind, hidden, model: effects, range, outcome, integrator_leaves })
+    Ok(Judged { seed, kind, hidden, model: effects, range, outcome, design_s, integrator_leaves })
 }
 
 /// The range that is to be kept, part of where the log has been or somewhat more, and the length
@@ -118,9 +120,10 @@ fn wanted(seed: u64, logged: &Logged) -> ((f64, f64), Option<f64>) {
     let (low, high) = logged.extent;
     let width = (high - low) * (0.4 + 0.7 * random.random::<f64>());
     let middle = 0.5 * (low + high) + 0.2 * (high - low) * (random.random::<f64>() - 0.5);
-    let duration_s = match random.random_range(0..4) {
+    let duration_s = match random.random_range(0..5) {
         0 => Some(30.0),
         1 => Some(60.0),
+        2 => Some(120.0),
         _ => None,
     };
     ((middle - 0.5 * width, middle + 0.5 * width), duration_s)
@@ -147,29 +150,10 @@ fn known(log: &Joint) -> anyhow::Result<Uncertain> {
     Ok(known.into_iter().next().flatten().context("no model")??)
 }
 
-/// The angles of the joint, without noise, while `schedule` is played from `start` on.
-fn angles(plant: &PlantSpec, start: f64, schedule: &Schedule) -> anyhow::Result<Vec<f64>> {
-    /// The delays of the play are others than those of the log.
-    const ANOTHER: u64 = 1_000_000;
-    let mut plant = plant.clone();
-    let joint = plant.joints.first_mut().context("a joint")?;
-    joint.input =
-        InputSpec::Steps { steps: schedule.starts().into_iter().skip(1).collect(), initial: 0.0 };
-    (joint.start, joint.range, joint.noise) = (start, None, 0.0);
-    plant.duration_s = schedule.duration_s();
-    plant.seed += ANOTHER;
-    Ok(simulate(&plant)?.joints.remove(0).trials.remove(0).output().to_vec())
-}
-
 /// What the joint does with `plan`.
-fn played(
-    plant: &PlantSpec,
-    rig: &TestRig,
-    logged: &Logged,
-    plan: &Plan,
-) -> anyhow::Result<Played> {
+fn played(plant: &Plant, rig: &TestRig, logged: &Logged, plan: &Plan) -> anyhow::Result<Played> {
     let schedule = plan.schedule.about(logged.rest);
-    let angles = angles(plant, rig.start, &schedule)?;
+    let angles = plant.played(rig.start, &schedule)?;
     let range = rig.range.context("a range")?;
     let prediction = plan.prediction.as_ref().context("a prediction")?;
     let width = range.1 - range.0;
@@ -189,7 +173,7 @@ fn played(
 /// Whether an input as long leaves the range that was drawn with a fitted integrator, within the
 /// margin of its parameters and no other.
 fn integrator_leaves(
-    plant: &PlantSpec,
+    plant: &Plant,
     log: &Joint,
     (rig, logged): (&TestRig, &Logged),
     plan: &Plan,
@@ -212,7 +196,7 @@ fn integrator_leaves(
         seed,
     };
     let schedule = random_steps(&steps, rig, Some(&known), 0).about(logged.rest);
-    let angles = angles(plant, rig.start, &schedule)?;
+    let angles = plant.played(rig.start, &schedule)?;
     let (low, high) = rig.range.context("a range")?;
     Ok(angles.iter().any(|angle| *angle < low || *angle > high))
 }

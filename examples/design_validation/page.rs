@@ -3,15 +3,19 @@
 use std::fmt::Write as _;
 
 use crate::case::{Judged, Played};
+use crate::plants::KINDS;
 
 /// The table, and what it says in sentences.
 pub(crate) fn page(judged: &[Judged]) -> String {
     let mut page = String::from(
         "| joints | designed | kept the range | left it | farthest | length | steps | range used | \
-         integrator leaves it |\n|---|---|---|---|---|---|---|---|---|\n",
+         time | integrator leaves it |\n|---|---|---|---|---|---|---|---|---|---|\n",
     );
-    for kind in ["catalogue", "outside the catalogue", "cylinder"] {
+    for kind in KINDS {
         let own: Vec<&Judged> = judged.iter().filter(|judged| judged.kind == kind).collect();
+        if own.is_empty() {
+            continue;
+        }
         page += &row(kind, &own);
     }
     page += &row("all", &judged.iter().collect::<Vec<_>>());
@@ -28,7 +32,7 @@ fn row(name: &str, judged: &[&Judged]) -> String {
     let mut row = String::new();
     let _ = writeln!(
         row,
-        "| {name} | {} of {} | {kept} | {} | {:.1} % | {:.0} s | {:.0} | {:.0} % | {leaves} |",
+        "| {name} | {} of {} | {kept} | {} | {:.1} % | {:.0} s | {:.0} | {:.0} % | {:.1} s | {leaves} |",
         played.len(),
         judged.len(),
         played.len() - kept,
@@ -36,6 +40,7 @@ fn row(name: &str, judged: &[&Judged]) -> String {
         median(played.iter().map(|played| played.duration_s)),
         median(played.iter().map(|played| played.steps as f64)),
         100.0 * median(played.iter().map(|played| played.used)),
+        median(judged.iter().map(|judged| judged.design_s)),
     );
     row
 }

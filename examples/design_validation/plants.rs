@@ -4,11 +4,17 @@ use anyhow::Context as _;
 use rand::RngExt as _;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
-use tauscope::synthetic::{CylinderSpec, DelayLaw, InputSpec, JointSpec, PlantSpec};
+use tauscope::design::Schedule;
+use tauscope::synthetic::{CylinderSpec, DelayLaw, InputSpec, JointSpec, PlantSpec, simulate};
+use tauscope::{Joint, Trial};
 
-/// A joint to be logged, and what is special about it.
+use crate::machine::Machine;
+use crate::machines::{Source, log, machine};
+
+/// A joint that was logged, and what is special about it.
 pub(crate) struct Drawn {
-    pub(crate) plant: PlantSpec,
+    pub(crate) plant: Plant,
+    pub(crate) log: Joint,
     /// What moves it, in a word: the rows of the table.
     pub(crate) kind: &'static str,
     /// Everything that is hidden in it.
@@ -18,13 +24,65 @@ pub(crate) struct Drawn {
 /// Samples per second of a log.
 const RATE_HZ: f64 = 50.0;
 
-/// Every how many joints one is moved by a cylinder.
-const CYLINDERS: u64 = 5;
+/// What is played on.
+pub(crate) enum Plant {
+    /// One of the synthetic plants.
+    Synthetic(Box<PlantSpec>),
+    /// One by equations of its own.
+    Machine(Machine),
+}
+
+/// The kinds of joints, of which each makes up its part of ten.
+pub(crate) const KINDS: [&str; 6] =
+    ["catalogue", "outside the catalogue", "cylinder", "strokes", "steps", "first order"];
 
 /// The joint number `seed`.
 pub(crate) fn drawn(seed: u64) -> anyhow::Result<Drawn> {
+    match seed % 10 {
+        0..=3 => synthetic(seed),
+        4 | 5 => of_machine(seed, Source::Strokes, "strokes"),
+        6 | 7 => of_machine(seed, Source::Steps, "steps"),
+        _ => of_machine(seed, Source::FirstOrder, "first order"),
+    }
+}
+
+/// A machine with a log of it.
+fn of_machine(seed: u64, source: Source, kind: &'static str) -> anyhow::Result<Drawn> {
     let mut chance = Chance(ChaCha8Rng::seed_from_u64(seed));
-    let is_cylinder = seed.is_multiple_of(CYLINDERS);
+    let (machine, hidden) = machine(source, &mut chance);
+    let log = log(&machine, source, &mut chance)?;
+    Ok(Drawn { plant: Plant::Machine(machine), log, kind, hidden })
+}
+
+impl Plant {
+    /// The output, without noise, while `schedule` is played from `start` on, or from where it
+    /// settles.
+    pub(crate) fn played(&self, start: f64, schedule: &Schedule) -> anyhow::Result<Vec<f64>> {
+        /// The delays of the play are others than those of the log.
+        const ANOTHER: u64 = 1_000_000;
+        let input = schedule.input();
+        let mut plant = match self {
+            Self::Machine(machine) => {
+                let settled = machine.settled(input.first().copied().unwrap_or(0.0));
+                return Ok(machine.run(&input, settled.unwrap_or(start)));
+            }
+            Self::Synthetic(plant) => plant.clone(),
+        };
+        let joint = plant.joints.first_mut().context("a joint")?;
+        let steps = schedule.starts().into_iter().skip(1).collect();
+        joint.input = InputSpec::Steps { steps, initial: 0.0 };
+        (joint.start, joint.range, joint.noise) = (start, None, 0.0);
+        plant.duration_s = schedule.duration_s();
+        plant.seed += ANOTHER;
+        let trials = simulate(&plant)?.joints.remove(0).trials;
+        Ok(trials.first().map_or(&[][..], Trial::output).to_vec())
+    }
+}
+
+/// A synthetic plant with a log of it.
+fn synthetic(seed: u64) -> anyhow::Result<Drawn> {
+    let mut chance = Chance(ChaCha8Rng::seed_from_u64(seed));
+    let is_cylinder = seed.is_multiple_of(10);
     let mut joint = if is_cylinder { cylinder(&mut chance) } else { joint(&mut chance) };
     let mut hidden = Vec::new();
     if !is_cylinder {
@@ -41,18 +99,20 @@ pub(crate) fn drawn(seed: u64) -> anyhow::Result<Drawn> {
         "catalogue"
     };
     let plant = PlantSpec::new(seed, duration_s, vec![joint]);
-    Ok(Drawn { plant: PlantSpec { sample_period_s: 1.0 / RATE_HZ, ..plant }, kind, hidden })
+    let plant = PlantSpec { sample_period_s: 1.0 / RATE_HZ, ..plant };
+    let log = simulate(&plant).with_context(|| format!("seed {seed}"))?.joints.remove(0);
+    Ok(Drawn { plant: Plant::Synthetic(Box::new(plant)), log, kind, hidden })
 }
 
 /// Random numbers.
-struct Chance(ChaCha8Rng);
+pub(crate) struct Chance(pub(crate) ChaCha8Rng);
 
 impl Chance {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.0.random::<f64>()
     }
 
-    fn is(&mut self, probability: f64) -> bool {
+    pub(crate) fn is(&mut self, probability: f64) -> bool {
         self.0.random::<f64>() < probability
     }
 }

@@ -4,8 +4,15 @@
 //! M. Stone, "Cross-validatory choice and assessment of statistical predictions", Journal of
 //! the Royal Statistical Society B 36 (1974), 111-147.
 
+use rand::SeedableRng as _;
+use rand::seq::SliceRandom as _;
+use rand_chacha::ChaCha8Rng;
+
+use super::stops::{Stops, extent};
+use super::trend::{Travel, Trend};
+use crate::effect::{Effect as _, EndStop};
 use crate::experiment::{Joint, Trial};
-use crate::fit::{FitRecord, Horizon, Split, fit};
+use crate::fit::{FitRecord, Horizon, Split, fit, follows_input};
 use crate::model::{Commands, JointModel, Restart, Surroundings, simulate};
 use crate::numerics::median;
 
@@ -18,8 +25,12 @@ const FEWEST_PARTS: usize = 3;
 /// Free runs that begin in each part, as far apart as they can be.
 const RUNS: usize = 6;
 
+/// Orders in which motions that end at a stop are joined: that of the log, and others, as a plan
+/// has them in an order of its own.
+const ORDERS: usize = 4;
+
 /// Samples of the shortest free run that counts.
-const SHORTEST_RUN: usize = 20;
+pub(super) const SHORTEST_RUN: usize = 20;
 
 /// How much farther off a prediction may be than the farthest so far. A few parts of one record
 /// stand for all that is to come: the farthest of five normal errors is 1.2 standard deviations
@@ -27,12 +38,20 @@ const SHORTEST_RUN: usize = 20;
 /// shows what comes of it.
 pub const RESERVE: f64 = 2.0;
 
+/// How much farther still where the log shows motions from stop to stop alone: no rest on the way,
+/// and no turn. Chosen, as [`RESERVE`] is.
+const UNSEEN: f64 = 1.5;
+
 /// How far free-running predictions were off on parts of a record that were left out of the fit,
 /// by the time since their start, and by the way that the joint was to go.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreeRunError {
     by_time: Growth,
     by_way: Growth,
+    /// What is off each time in the same way, of motions from stop to stop.
+    trend: Option<Trend>,
+    /// Whether an error is forgotten: the output regulates itself.
+    is_bounded: bool,
 }
 
 /// The largest error up to each place of an axis.
@@ -45,48 +64,108 @@ struct Growth {
 }
 
 /// A prediction beside what came of it, a value per sample.
+#[derive(Clone)]
 struct Run {
     period_s: f64,
     /// Way that the joint was to go until the sample, output units.
     way: Vec<f64>,
-    /// Magnitude of the error, output units.
+    /// How far it was to come until the end, output units.
+    distance: f64,
+    /// The error, output units.
     error: Vec<f64>,
+}
+
+/// Samples `from..to` of a trial, through which the joint moves freely.
+#[derive(Clone, Copy)]
+struct Piece<'a> {
+    trial: &'a Trial,
+    /// Seconds of the record before the trial.
+    start_s: f64,
+    from: usize,
+    to: usize,
 }
 
 impl FreeRunError {
     /// The errors of `model` on `joint`, its numbers fitted anew to what is left each time a part
     /// is left out: a fifth of the trials, or a fifth of the time of each where they are few.
     ///
+    /// A stop takes off the error that a run has made. So runs end where the joint comes to a
+    /// stop, and go on where it leaves it with the error that they had; so do they from one trial
+    /// to the next. Where motions from stop to stop are too few to show a [`Trend`], each is by
+    /// itself, and what is off in it is off in proportion later. Of an output that regulates
+    /// itself each run is by itself: it forgets its error.
+    ///
     /// `None` where too little can be left out.
     pub fn of(joint: &Joint, model: &JointModel) -> Option<Self> {
         let record = FitRecord::new(joint, Split::Time(1.0), Horizon::FreeRun);
         let radians_per_output_unit = record.range(&[], 0.0).radians_per_output_unit;
-        let parts = (0..PARTS).filter_map(|part| {
-            let (refitted, later_s) = refitted(joint, model, part)?;
-            let runs = joint.trials.iter().enumerate().flat_map(|(index, trial)| {
+        let around = Surroundings { radians_per_output_unit, ..Surroundings::default() };
+        let stops = Stops::of(joint);
+        let mut is_bounded = follows_input(joint).is_some();
+        let mut parts = Vec::new();
+        for part in 0..PARTS {
+            let Some((refitted, later_s)) = refitted(joint, model, part) else { continue };
+            let trials = joint.trials.iter().enumerate();
+            let pieces = trials.flat_map(|(index, trial)| {
                 let start_s = record.start_s(index) - later_s;
-                let around =
-                    Surroundings { radians_per_output_unit, start_s, ..Surroundings::default() };
-                runs(&refitted, trial, left_out(joint, index, part), &around)
+                let free = stops.free(trial, left_out(joint, index, part), refitted.delay.value);
+                free.into_iter().map(move |(from, to)| Piece { trial, start_s, from, to })
             });
-            Some(runs.collect::<Vec<_>>()).filter(|runs| !runs.is_empty())
-        });
-        let parts: Vec<Vec<Run>> = parts.collect();
+            let pieces: Vec<Piece<'_>> = pieces.collect();
+            is_bounded &= forgets(&refitted, &pieces, &around);
+            parts.push((refitted, pieces));
+        }
+        parts.retain(|(_, pieces)| !pieces.is_empty());
         if parts.len() < FEWEST_PARTS {
             return None;
         }
-        let runs: Vec<Run> = parts.into_iter().flatten().collect();
+        // A stop of the model would take off errors as the joint's own does; of a joint that is not
+        // driven from stop to stop it stands for touches that are too short to be seen.
+        let freed = parts.iter().map(|(model, _)| model.without(EndStop.spec().id));
+        let freed: Vec<JointModel> = freed.collect();
+        let motions = parts.iter().zip(&freed).flat_map(|((_, pieces), model)| {
+            pieces.iter().filter_map(|piece| run(model, *piece, piece.from, &around)?.end())
+        });
+        let trend = Trend::of(&motions.collect::<Vec<_>>());
+        let trend = trend.filter(|_| !is_bounded && !stops.are_none());
+        let is_joined = !is_bounded && (trend.is_some() || stops.are_none());
+        let runs = parts.iter().zip(&freed).flat_map(|((model, pieces), freed)| {
+            let model = if trend.is_some() { freed } else { model };
+            let joined = if is_joined { in_orders(pieces) } else { each(pieces) };
+            joined.into_iter().flat_map(|pieces| runs(model, &pieces, &around)).collect::<Vec<_>>()
+        });
+        let runs: Vec<Run> = runs.collect();
         let seconds = |run: &Run, sample: usize| sample as f64 * run.period_s;
         let way = |run: &Run, sample: usize| run.way.get(sample).copied().unwrap_or(0.0);
-        Some(Self { by_time: Growth::of(&runs, seconds), by_way: Growth::of(&runs, way) })
+        let (by_time, by_way) = (Growth::of(&runs, seconds), Growth::of(&runs, way));
+        Some(Self { by_time, by_way, trend, is_bounded })
     }
 
-    /// How far a prediction may be off `seconds` after its start, when the joint is to have gone
-    /// `way`: the farthest that one was off so far, [`RESERVE`] times, by time or by way,
-    /// whichever is more. Beyond the longest run it grows in proportion, which no error with
-    /// increments of one kind exceeds.
-    pub fn margin(&self, seconds: f64, way: f64) -> f64 {
-        RESERVE * self.by_time.at(seconds).max(self.by_way.at(way))
+    /// How far a prediction may be off when the joint is to have gone so far: the farthest that
+    /// one was off so far, [`RESERVE`] times, by time or by way, or what is off each time in the
+    /// same way, whichever is more; and half as much again of motions from stop to stop. Beyond
+    /// the longest run it grows in proportion, which no error with increments of one kind exceeds.
+    /// Of an output that regulates itself it is the same all
+    /// the time.
+    pub fn margin(&self, travel: Travel) -> f64 {
+        if self.is_bounded {
+            return RESERVE * self.largest();
+        }
+        let measured = self.by_time.at(travel.seconds).max(self.by_way.at(travel.way));
+        match &self.trend {
+            Some(trend) => self.reserve() * trend.at(travel).max(measured),
+            None => self.reserve() * measured,
+        }
+    }
+
+    /// How many times the errors so far a margin is.
+    pub fn reserve(&self) -> f64 {
+        if self.trend.is_some() { UNSEEN * RESERVE } else { RESERVE }
+    }
+
+    /// Whether the error of a prediction does not grow with its length.
+    pub fn is_bounded(&self) -> bool {
+        self.is_bounded
     }
 
     /// Errors that grow by so much in a second.
@@ -95,7 +174,7 @@ impl FreeRunError {
         let width = 0.1;
         let largest = (1..=100).map(|bin| per_second * width * f64::from(bin)).collect();
         let none = Growth { width: 1.0, largest: vec![0.0; 100] };
-        Self { by_time: Growth { width, largest }, by_way: none }
+        Self { by_time: Growth { width, largest }, by_way: none, trend: None, is_bounded: false }
     }
 
     /// Seconds of the longest run.
@@ -122,7 +201,7 @@ impl Growth {
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 0")]
                 let bin = ((axis(run, sample) / width) as usize).min(BINS - 1);
                 if let Some(slot) = largest.get_mut(bin) {
-                    *slot = error.max(*slot);
+                    *slot = error.abs().max(*slot);
                 }
             }
         }
@@ -165,7 +244,7 @@ fn refitted(joint: &Joint, model: &JointModel, part: usize) -> Option<(JointMode
     });
     let trials: Vec<Trial> = pieces.flatten().collect();
     let rest = Joint { trials, covariates: Vec::new(), ..joint.clone() };
-    let record = FitRecord::new(&rest, Split::Time(1.0), Horizon::Steps);
+    let record = FitRecord::new(&rest, Split::Time(1.0), Horizon::Auto);
     let levels = record.input_levels();
     let top = levels.last().copied().unwrap_or(1.0);
     let range = record.range(&levels, model.gain.value.abs() * top);
@@ -175,49 +254,117 @@ fn refitted(joint: &Joint, model: &JointModel, part: usize) -> Option<(JointMode
     fit(&record, model, &range).ok().map(|fit| (fit.assessment.model, later_s))
 }
 
-/// The samples `from..to` of `trial`, at their time.
+/// The samples `from..to` of `trial`, where they are enough.
 fn piece(trial: &Trial, from: usize, to: usize) -> Option<Trial> {
-    let (input, output) = (trial.input().get(from..to)?, trial.output().get(from..to)?);
-    if input.len() < SHORTEST_RUN {
-        return None;
+    trial.part(from, to).filter(|part| part.len() >= SHORTEST_RUN)
+}
+
+/// Whether `model` forgets where it began within a third of the longest of `pieces`.
+fn forgets(model: &JointModel, pieces: &[Piece<'_>], around: &Surroundings<'_>) -> bool {
+    /// Part of the run, and of the difference at its beginning that may be left there.
+    const PART: usize = 3;
+    const LEFT: f64 = 0.1;
+    let longest = pieces.iter().max_by_key(|piece| piece.to - piece.from);
+    let Some(Piece { trial, from, to, .. }) = longest else { return true };
+    let (samples, period_s) = ((to - from) / PART, trial.period().seconds());
+    let rest = vec![0.0; samples];
+    let arrivals = Commands::new(&rest, period_s).arriving(model, 0.0, None);
+    let (low, high) = extent(trial.output());
+    let end = |start: f64| {
+        let restart = [Restart { sample: 0, output: start, speed: None }];
+        let output = simulate(model, &arrivals, samples, period_s, &restart, around).output;
+        output.last().copied().unwrap_or(start)
+    };
+    (end(high) - end(low)).abs() <= LEFT * (high - low)
+}
+
+/// Free runs of `model` over `pieces`, from several places on to the end of the last, each piece
+/// with the error that is left by the one before.
+fn runs(model: &JointModel, pieces: &[Piece<'_>], around: &Surroundings<'_>) -> Vec<Run> {
+    let whole: Vec<Option<Run>> =
+        pieces.iter().map(|piece| run(model, *piece, piece.from, around)).collect();
+    let samples: usize = pieces.iter().map(|piece| piece.to - piece.from).sum();
+    let mut found = Vec::new();
+    for place in (0..RUNS).map(|run| samples * run / RUNS) {
+        let mut before = 0;
+        let mut joined: Option<Run> = None;
+        for (piece, whole) in pieces.iter().zip(&whole) {
+            let own = piece.to - piece.from;
+            let from = piece.from + place.saturating_sub(before);
+            before += own;
+            if from + SHORTEST_RUN > piece.to {
+                continue;
+            }
+            let next =
+                if from == piece.from { whole.clone() } else { run(model, *piece, from, around) };
+            joined = match (joined, next) {
+                (Some(joined), Some(next)) => Some(joined.followed_by(&next)),
+                (joined, next) => joined.or(next),
+            };
+        }
+        found.extend(joined);
     }
-    let start_s = trial.time_s(from + 1);
-    Trial::new(trial.label(), start_s, trial.period(), input.to_vec(), output.to_vec()).ok()
+    found
 }
 
-/// Free runs of `model` over the samples `from..to` of `trial`, from several places to the end.
-fn runs(
-    model: &JointModel,
-    trial: &Trial,
-    (from, to): (usize, usize),
-    around: &Surroundings<'_>,
-) -> Vec<Run> {
-    let samples = to.saturating_sub(from);
-    let places = (0..RUNS).map(|run| from + samples * run / RUNS);
-    let mut places: Vec<usize> = places.filter(|place| to - place >= SHORTEST_RUN).collect();
-    places.dedup();
-    places.into_iter().filter_map(|place| run(model, trial, (place, to), around)).collect()
+/// Each of `pieces` by itself.
+fn each<'a>(pieces: &[Piece<'a>]) -> Vec<Vec<Piece<'a>>> {
+    pieces.iter().map(|piece| vec![*piece]).collect()
 }
 
-/// A free run over the samples `from..to`, which knows what was played before.
+/// `pieces` in the order of the log, and in others.
+fn in_orders<'a>(pieces: &[Piece<'a>]) -> Vec<Vec<Piece<'a>>> {
+    let mut random = ChaCha8Rng::seed_from_u64(0);
+    let mut order = pieces.to_vec();
+    let count = if pieces.len() > 2 { ORDERS } else { 1 };
+    let next = |_| {
+        let this = order.clone();
+        order.shuffle(&mut random);
+        this
+    };
+    (0..count).map(next).collect()
+}
+
+impl Run {
+    /// How far it goes, and by how much it is off at its end.
+    fn end(&self) -> Option<(Travel, f64)> {
+        let (way, error) = (*self.way.last()?, *self.error.last()?);
+        let seconds = self.error.len() as f64 * self.period_s;
+        Some((Travel { seconds, way, distance: self.distance }, error))
+    }
+
+    /// This run, and `next`, which goes on with its error.
+    fn followed_by(mut self, next: &Self) -> Self {
+        let last = |values: &[f64]| values.last().copied().unwrap_or(0.0);
+        let (way, error) = (last(&self.way), last(&self.error));
+        self.way.extend(next.way.iter().map(|own| way + own));
+        self.error.extend(next.error.iter().map(|own| error + own));
+        self.distance += next.distance;
+        self
+    }
+}
+
+/// A free run over the rest of `piece` from the sample `from` on, which knows what was played
+/// before.
 fn run(
     model: &JointModel,
-    trial: &Trial,
-    (from, to): (usize, usize),
+    Piece { trial, start_s, to, .. }: Piece<'_>,
+    from: usize,
     around: &Surroundings<'_>,
 ) -> Option<Run> {
     let period_s = trial.period().seconds();
     let played = Commands::new(trial.input().get(..to)?, period_s);
-    let arrivals = played.arriving(model, around.start_s, None);
+    let around = Surroundings { start_s, ..*around };
+    let arrivals = played.arriving(model, start_s, None);
     let begin = |sample: usize| {
         let output = start_of(trial, sample)?;
         Some(Restart { sample, output, speed: None })
     };
     let mut restarts = vec![begin(0)?];
     restarts.extend((from > 0).then(|| begin(from)).flatten());
-    let simulated = simulate(model, &arrivals, to, period_s, &restarts, around).output;
+    let simulated = simulate(model, &arrivals, to, period_s, &restarts, &around).output;
     let (simulated, output) = (simulated.get(from..)?, trial.output().get(from..to)?);
-    let error: Vec<f64> = output.iter().zip(simulated).map(|(y, own)| (y - own).abs()).collect();
+    let error: Vec<f64> = output.iter().zip(simulated).map(|(y, own)| y - own).collect();
     let steps = simulated.windows(2).map(|pair| match pair {
         [a, b] => (b - a).abs(),
         _ => 0.0,
@@ -227,7 +374,8 @@ fn run(
         Some(*way)
     };
     let way = std::iter::once(0.0).chain(steps).scan(0.0, sum).collect();
-    Some(Run { period_s, way, error: without_spikes(&error) })
+    let distance = simulated.last()? - simulated.first()?;
+    Some(Run { period_s, way, distance, error: without_spikes(&error) })
 }
 
 /// The output at `sample`, of which noise is taken off by its neighbours.
@@ -248,7 +396,7 @@ mod tests {
     use super::super::predict::tests::rig;
     use super::super::random::{RandomSteps, random_steps};
     use super::*;
-    use crate::effect::DirectionGain;
+    use crate::effect::{DirectionGain, Leakage};
     use crate::model::Component;
 
     /// A log of a joint that is a third slower in one direction.
@@ -258,6 +406,10 @@ mod tests {
         let rig = rig(None);
         let schedule = random_steps(&steps, &rig, None, 0);
         rig.log(&schedule, rig.output(&slower(), &schedule)).unwrap()
+    }
+
+    fn after(seconds: f64) -> Travel {
+        Travel { seconds, ..Travel::default() }
     }
 
     fn slower() -> JointModel {
@@ -278,12 +430,28 @@ mod tests {
     #[test]
     fn margins_grow_with_time_and_way_and_in_proportion_beyond_the_longest_run() {
         let wrong = FreeRunError::of(&log(60.0), &JointModel::integrator(9.0, 0.15)).unwrap();
-        let margins: Vec<f64> = (0..30).map(|k| wrong.margin(f64::from(k), 0.0)).collect();
+        let margins: Vec<f64> = (0..30).map(|k| wrong.margin(after(f64::from(k)))).collect();
         assert!(margins.windows(2).all(|pair| pair[0] <= pair[1]));
-        let at = |seconds| wrong.margin(seconds, 0.0);
+        let at = |seconds| wrong.margin(after(seconds));
         assert!((at(48.0) / at(24.0) - 2.0).abs() < 1e-9);
         assert!((at(12.1) - RESERVE * wrong.largest()).abs() < 0.02 * at(12.1));
-        assert!(wrong.margin(0.5, 1e4) > wrong.margin(0.5, 1.0));
+        let far = Travel { way: 1e4, ..after(0.5) };
+        assert!(wrong.margin(far) > at(0.5));
+    }
+
+    #[test]
+    fn what_regulates_itself_is_no_farther_off_later() {
+        let leakage = Component::new(&Leakage, vec![8.0.into(), 1.0.into()]).unwrap();
+        let settling = JointModel::integrator(80.0, 0.1).with(leakage);
+        let levels = vec![-2.0, -1.0, 0.0, 1.0, 2.0];
+        let steps = RandomSteps { levels, hold_s: (0.5, 1.5), duration_s: 40.0, seed: 5 };
+        let rig = rig(None);
+        let schedule = random_steps(&steps, &rig, None, 0);
+        let log = rig.log(&schedule, rig.output(&settling, &schedule)).unwrap();
+        let found = FreeRunError::of(&log, &settling).unwrap();
+        assert!(found.is_bounded());
+        assert!((found.margin(after(500.0)) - found.margin(after(0.0))).abs() < 1e-12);
+        assert!(!FreeRunError::of(&self::log(60.0), &slower()).unwrap().is_bounded());
     }
 
     #[test]

@@ -35,16 +35,25 @@ pub fn default_levels(model: Option<&JointModel>, rig: &TestRig, largest: f64) -
     vec![-largest, -middle(-lower), 0.0, middle(upper), largest]
 }
 
+/// Longest hold over the shortest, as in the paper's records.
+const LONGEST: f64 = 2.5;
+
+/// Shorter holds leave too few samples for two lines.
+const SHORTEST_S: f64 = 0.5;
+
+/// Shortest and longest hold of an output that regulates itself, in `settling_s`: each level is
+/// seen to settle.
+pub(super) fn settling_hold_s(settling_s: f64) -> (f64, f64) {
+    let shortest = two_digits(settling_s.max(SHORTEST_S));
+    (shortest, two_digits(LONGEST * shortest))
+}
+
 /// Shortest and longest hold: with a model longer than it takes the joint to respond, so that
 /// no level overtakes the one before and each is seen for as long again.
 pub fn default_hold_s(model: Option<&JointModel>, rig: &TestRig, largest: f64) -> (f64, f64) {
-    /// As in the paper's records.
-    const USUAL: (f64, f64) = (1.0, 2.5);
-    /// Shorter holds leave too few samples for two lines.
-    const SHORTEST: f64 = 0.5;
-    let Some(model) = model else { return USUAL };
-    let shortest = two_digits((2.0 * response_s(model, rig, largest)).max(SHORTEST));
-    (shortest, two_digits(USUAL.1 / USUAL.0 * shortest))
+    let Some(model) = model else { return (1.0, LONGEST) };
+    let shortest = two_digits((2.0 * response_s(model, rig, largest)).max(SHORTEST_S));
+    (shortest, two_digits(LONGEST * shortest))
 }
 
 impl Band {

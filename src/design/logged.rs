@@ -3,7 +3,8 @@
 
 use crate::delay::{Neutral, level_tolerance};
 use crate::experiment::{Joint, Trial};
-use crate::numerics::quantile;
+use crate::fit::FirstOrder;
+use crate::numerics::{median, quantile};
 use crate::units::SamplePeriod;
 
 /// What was played on a joint, and where it went.
@@ -15,6 +16,17 @@ pub struct Logged {
     pub levels: Vec<f64>,
     /// Lowest and highest output.
     pub extent: (f64, f64),
+    /// Of an output that regulates itself, as a speed or a pressure does.
+    pub settling: Option<Settling>,
+}
+
+/// Where an output that regulates itself comes to rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settling {
+    /// The output that each of the levels leads to, output units.
+    pub outputs: Vec<f64>,
+    /// The time that it takes, seconds.
+    pub time_s: f64,
 }
 
 /// Part of the record, at least, for which a level is held that was not played by chance.
@@ -33,8 +45,50 @@ impl Logged {
         let outputs = joint.trials.iter().flat_map(Trial::output);
         let none = (f64::INFINITY, f64::NEG_INFINITY);
         let extent = outputs.fold(none, |(low, high), y| (low.min(*y), high.max(*y)));
-        let levels = levels(joint).into_iter().map(|level| level - rest).collect();
-        Self { rest, levels, extent }
+        let levels = levels(joint);
+        let settling = FirstOrder::of(joint).map(|found| {
+            let output = |level: &f64| {
+                let held = held_outputs(joint, (*level, tolerance), found.settling_s());
+                median(&held).unwrap_or_else(|| found.settled_at(*level))
+            };
+            Settling { outputs: levels.iter().map(output).collect(), time_s: found.settling_s() }
+        });
+        let levels = levels.into_iter().map(|level| level - rest).collect();
+        Self { rest, levels, extent, settling }
+    }
+
+    /// The same about the level at which an output that regulates itself settles nearest to the
+    /// middle of `range`: what it is to rest at. Other outputs rest where they do.
+    #[must_use]
+    pub fn within(self, (low, high): (f64, f64)) -> Self {
+        let (low, high) = (low.max(self.extent.0), high.min(self.extent.1));
+        let off_middle = |output: f64| (output - 0.5 * (low + high)).abs();
+        let settled = self.settling.iter().flat_map(|settling| &settling.outputs);
+        let pairs = self.levels.iter().zip(settled);
+        let inside = pairs.filter(|(_, output)| **output > low && **output < high);
+        let nearest = inside.min_by(|a, b| off_middle(*a.1).total_cmp(&off_middle(*b.1)));
+        let Some((&home, _)) = nearest else { return self };
+        let levels = self.levels.iter().map(|level| level - home).collect();
+        Self { rest: self.rest + home, levels, ..self }
+    }
+
+    /// Where an output that regulates itself settles at rest.
+    pub fn settled(&self) -> Option<f64> {
+        let outputs = &self.settling.as_ref()?.outputs;
+        let place = self.levels.iter().position(|level| level.abs() <= f64::EPSILON)?;
+        outputs.get(place).copied()
+    }
+
+    /// The same without the levels at which an output that regulates itself settles elsewhere
+    /// than from `low` to `high`.
+    #[must_use]
+    pub(super) fn settling_within(&self, (low, high): (f64, f64)) -> Self {
+        let Some(settling) = &self.settling else { return self.clone() };
+        let both = self.levels.iter().copied().zip(settling.outputs.iter().copied());
+        let inside = both.filter(|(_, output)| *output >= low && *output <= high);
+        let (levels, outputs) = inside.unzip();
+        let settling = Some(Settling { outputs, ..*settling });
+        Self { levels, settling, ..self.clone() }
     }
 
     /// The same with levels as they are in the log.
@@ -123,6 +177,25 @@ fn side(levels: impl Iterator<Item = f64>, edge: f64) -> Vec<f64> {
     nearest.into_iter().chain([highest]).collect()
 }
 
+/// The output of `joint` at the ends of holds of a level, to a tolerance, that are longer than
+/// `longer_s`.
+fn held_outputs(joint: &Joint, (level, tolerance): (f64, f64), longer_s: f64) -> Vec<f64> {
+    let mut held = Vec::new();
+    for trial in &joint.trials {
+        let period_s = trial.period().seconds();
+        let is_level = |input: &f64| (input - level).abs() <= tolerance;
+        let (mut samples, input) = (0_u32, trial.input());
+        for (index, output) in trial.output().iter().enumerate() {
+            samples = if input.get(index).is_some_and(is_level) { samples + 1 } else { 0 };
+            let is_last = !input.get(index + 1).is_some_and(is_level);
+            if is_last && f64::from(samples) * period_s > longer_s {
+                held.push(*output);
+            }
+        }
+    }
+    held
+}
+
 /// Levels of the input that were held, ascending; of an input that never holds, its tenths
 /// without the last parts of it.
 fn levels(joint: &Joint) -> Vec<f64> {
@@ -200,6 +273,26 @@ mod tests {
         let thinned = Logged::of(&fast).thinned(&fast).trials.remove(0);
         assert_eq!((thinned.len(), thinned.period().seconds()), (40, 0.01));
         assert_eq!(thinned.output()[1].to_bits(), fast.trials[0].output()[10].to_bits());
+    }
+
+    #[test]
+    fn an_output_that_settles_rests_at_the_level_nearest_to_the_middle_of_its_range() {
+        let input = steps(&[0.0, 2.0, 1.0, 3.0, 0.0, 1.0, 3.0, 2.0]);
+        let mut y = 0.0;
+        let output = input.iter().map(|u| {
+            y += 0.1 * (10.0 * u + 5.0 - y);
+            y
+        });
+        let period = SamplePeriod::from_seconds(0.02).unwrap();
+        let output: Vec<f64> = output.collect();
+        let trials = vec![Trial::new("1", 0.0, period, input, output).unwrap()];
+        let joint = Joint { trials, ..joint(vec![0.0; 10]) };
+        let logged = Logged::of(&joint).within((10.0, 32.0));
+        assert!((logged.rest - 2.0).abs() < 1e-9, "{}", logged.rest);
+        assert!((logged.settled().unwrap() - 25.0).abs() < 0.1);
+        assert_eq!(logged.levels, [-2.0, -1.0, 0.0, 1.0]);
+        assert_eq!(logged.settling_within((10.0, 32.0)).levels, [-1.0, 0.0]);
+        assert_eq!(Logged::of(&joint).within((50.0, 60.0)).rest.to_bits(), 0.0_f64.to_bits());
     }
 
     #[test]

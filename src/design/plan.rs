@@ -1,11 +1,12 @@
 //! Random steps that suit a joint and keep it in its range, or why there are none.
 
-use super::levels::{Band, default_hold_s, default_largest, default_levels};
+use super::levels::{Band, default_hold_s, default_largest, default_levels, settling_hold_s};
 use super::logged::Logged;
 use super::predict::{Prediction, TestRig, Uncertain};
 use super::random::{RandomSteps, differ, random_steps, random_steps_within};
 use super::response::resting_band;
 use super::schedule::{Schedule, samples_in};
+use super::trend::Travel;
 
 /// What is asked of random steps; what is left open suits the joint.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -74,6 +75,32 @@ pub enum PlanError {
         /// Lowest and highest output of the log.
         extent: (f64, f64),
     },
+    /// Fewer than two inputs of the log let an output that regulates itself rest in the range.
+    #[error(
+        "--output-range={},{}: the output regulates itself, and fewer than two inputs of the log \
+         let it rest there{}: it rests at {}; give a range about two of these",
+        rounded(.range.0), rounded(.range.1), with_margin(*.margin), rounded_list(.outputs)
+    )]
+    SettlesElsewhere {
+        /// The range.
+        range: (f64, f64),
+        /// How far a prediction may be off, output units.
+        margin: f64,
+        /// Where it rests at the levels of the log, output units.
+        outputs: Vec<f64>,
+    },
+    /// The log has inputs of one sign only, and no model of it leads back.
+    #[error(
+        "--output-range={},{}: the log has {} inputs only, and does not show what leads the joint \
+         back; give a log with inputs of either sign, or --levels",
+        rounded(.range.0), rounded(.range.1), if *.is_positive { "positive" } else { "negative" }
+    )]
+    OneSign {
+        /// The range.
+        range: (f64, f64),
+        /// Which sign they have, about rest.
+        is_positive: bool,
+    },
     /// It starts too near to an end of the range, or beyond.
     #[error(
         "--start {start}: too near to the ends of the range, {} to {}, or beyond; start near {}",
@@ -137,6 +164,14 @@ fn rounded(x: f64) -> f64 {
     (x * scale).round() / scale
 }
 
+fn with_margin(margin: f64) -> String {
+    if margin > 0.0 { format!(" with a margin of {}", rounded(margin)) } else { String::new() }
+}
+
+fn rounded_list(values: &[f64]) -> String {
+    values.iter().map(|x| rounded(*x).to_string()).collect::<Vec<_>>().join(", ")
+}
+
 /// Length of an input where none is asked for, seconds.
 const DURATION_S: f64 = 120.0;
 
@@ -187,7 +222,7 @@ pub fn plan(
     let planner = Planner { wishes, rig, known, logged, index };
     let levels = planner.levels();
     if levels.len() < 2 {
-        return Err(PlanError::TooFewLevels);
+        return Err(planner.settles_elsewhere().unwrap_or(PlanError::TooFewLevels));
     }
     let duration_s = wishes.duration_s.unwrap_or(DURATION_S);
     let hold_s = planner.hold_s(&levels);
@@ -209,7 +244,20 @@ pub fn plan(
     if start <= within.0 || start >= within.1 {
         return Err(PlanError::Start { start, range: within });
     }
-    planner.within(known, within, (&levels, hold_s))
+    let planned = planner.within(known, within, (&levels, hold_s));
+    let one_sign = one_sign(&levels).filter(|_| planned.is_err() && wishes.levels.is_none());
+    one_sign.map_or(planned, |is_positive| Err(PlanError::OneSign { range, is_positive }))
+}
+
+/// Rest for so many seconds.
+fn at_rest(seconds: f64) -> Travel {
+    Travel { seconds, ..Travel::default() }
+}
+
+/// Whether `levels`, all of one sign or zero, are positive.
+fn one_sign(levels: &[f64]) -> Option<bool> {
+    let has = |sign: f64| levels.iter().any(|level| sign * level > 0.0);
+    (has(1.0) != has(-1.0)).then(|| has(1.0))
 }
 
 /// What random steps are made from.
@@ -228,24 +276,48 @@ impl Planner<'_> {
         let Wishes { levels, largest, band, .. } = self.wishes;
         let levels = levels.clone().unwrap_or_else(|| match (largest, self.logged) {
             (None, Some(logged)) => self.logged_levels(logged),
+            (Some(_), Some(logged)) => self.levels_of_its_signs(logged),
             _ => default_levels(self.model(), self.rig, self.largest()),
         });
         band.map_or(levels.clone(), |band| band.applied(&levels))
     }
 
-    /// Rest, and levels of the log that move the joint; those of a joint of which nothing is
-    /// known where it does not go both ways.
+    /// Rest, and levels of the log that move the joint.
     fn logged_levels(&self, logged: &Logged) -> Vec<f64> {
-        let largest = self.largest();
-        let band = self.model().and_then(|model| resting_band(model, self.rig, largest));
+        let logged = match self.rig.range {
+            Some((low, high)) => {
+                let margin = self.bounded_margin();
+                logged.settling_within((low + margin, high - margin))
+            }
+            None => logged.clone(),
+        };
+        let band = self.model().and_then(|model| resting_band(model, self.rig, self.largest()));
         let mut levels = logged.beyond(band.unwrap_or((0.0, 0.0)));
-        let goes_both_ways =
-            levels.iter().any(|level| *level < 0.0) && levels.iter().any(|level| *level > 0.0);
-        if !goes_both_ways {
-            return default_levels(self.model(), self.rig, largest);
-        }
         levels.push(0.0);
         levels.sort_by(f64::total_cmp);
+        levels
+    }
+
+    /// How far a prediction may be off of an output that regulates itself; 0 of others.
+    fn bounded_margin(&self) -> f64 {
+        let free_run = self.known.and_then(|known| known.free_run.as_ref());
+        let bounded = free_run.filter(|free_run| free_run.is_bounded());
+        bounded.map_or(0.0, |free_run| free_run.margin(Travel::default()))
+    }
+
+    /// That no level of the log suits the range of an output that regulates itself.
+    fn settles_elsewhere(&self) -> Option<PlanError> {
+        let (range, settling) = (self.rig.range?, self.logged?.settling.as_ref()?);
+        let outputs = settling.outputs.clone();
+        (self.wishes.levels.is_none() && self.wishes.largest.is_none())
+            .then(|| PlanError::SettlesElsewhere { range, margin: self.bounded_margin(), outputs })
+    }
+
+    /// Levels as of a joint of which no log is known, but none of a sign that `logged` has not.
+    fn levels_of_its_signs(&self, logged: &Logged) -> Vec<f64> {
+        let mut levels = default_levels(self.model(), self.rig, self.largest());
+        let has = |sign: f64| logged.levels.iter().any(|level| sign * level > 0.0);
+        levels.retain(|level| *level == 0.0 || has(level.signum()));
         levels
     }
 
@@ -261,6 +333,8 @@ impl Planner<'_> {
     fn hold_s(&self, levels: &[f64]) -> (f64, f64) {
         let largest = levels.iter().fold(0.0, |largest: f64, level| largest.max(level.abs()));
         let usual = || default_hold_s(self.model(), self.rig, largest);
+        let settling = self.logged.and_then(|logged| logged.settling.as_ref());
+        let usual = || settling.map_or_else(usual, |settling| settling_hold_s(settling.time_s));
         self.wishes.hold_s.unwrap_or_else(usual)
     }
 
@@ -293,7 +367,10 @@ impl Planner<'_> {
                 let asked = self.rig.range.unwrap_or(range);
                 let why = NotKept {
                     duration_s: longest_s,
-                    margin: known.free_run.as_ref().map(|free_run| free_run.margin(longest_s, 0.0)),
+                    margin: known
+                        .free_run
+                        .as_ref()
+                        .map(|free_run| free_run.margin(at_rest(longest_s))),
                     shorter_s,
                     wider: self.wider(asked, |range| kept(longest_s, range).is_some()),
                 };
@@ -346,6 +423,11 @@ impl Planner<'_> {
         ways: &[(Vec<f64>, (f64, f64))],
         duration_s: f64,
     ) -> Option<Plan> {
+        // At its end it is somewhere in the range, whatever is played.
+        let least = known.free_run.as_ref().map_or(0.0, |of| of.margin(at_rest(duration_s)));
+        if 2.0 * least > range.1 - range.0 {
+            return None;
+        }
         let all = ways.first().map_or(&[][..], |(levels, _)| levels.as_slice());
         let mut rare = None;
         for (levels, hold_s) in ways {
@@ -458,7 +540,8 @@ mod tests {
 
     #[test]
     fn nothing_is_promised_where_the_log_has_not_been() {
-        let logged = Logged { rest: 0.0, levels: vec![-1.0, 1.0], extent: (0.0, 20.0) };
+        let logged =
+            Logged { rest: 0.0, levels: vec![-1.0, 1.0], extent: (0.0, 20.0), settling: None };
         assert_eq!(reach((5.0, 60.0), Some(&logged)), Ok((5.0, 22.0)));
         assert!(matches!(reach((30.0, 60.0), Some(&logged)), Err(PlanError::Elsewhere { .. })));
         let near = TestRig { start: -20.0, ..rig(Some((-20.0, 20.0))) };

@@ -2,6 +2,7 @@
 
 use super::free_run::FreeRunError;
 use super::schedule::Schedule;
+use super::trend::Travel;
 use crate::effect::UNLIMITED;
 use crate::experiment::{Joint, Trial};
 use crate::fit::{FitRecord, Horizon, Split};
@@ -153,11 +154,13 @@ impl TestRig {
 /// How far the prediction `output` may be off at each sample, by predictions that were made.
 fn measured_margin(free_run: &FreeRunError, output: &[f64], period_s: f64) -> Vec<f64> {
     let mut way = 0.0;
-    let mut before = output.first().copied().unwrap_or(0.0);
+    let start = output.first().copied().unwrap_or(0.0);
+    let mut before = start;
     let margin = |(sample, angle): (usize, &f64)| {
         way += (angle - before).abs();
         before = *angle;
-        free_run.margin(sample as f64 * period_s, way)
+        let (seconds, distance) = (sample as f64 * period_s, angle - start);
+        free_run.margin(Travel { seconds, way, distance })
     };
     output.iter().enumerate().map(margin).collect()
 }

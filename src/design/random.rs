@@ -156,13 +156,13 @@ impl<'a> Drawing<'a> {
             let samples = if is_last { self.left() } else { samples };
             let leading = levels.iter().map(|level| Hold { level: *level, samples });
             let leading = leading.map(|hold| self.leading(hold, model, range));
-            let mut kept: Vec<Leading> = leading.filter(|found| found.excess <= 0.0).collect();
-            if is_closing {
-                kept.sort_by(|a, b| a.off_middle.total_cmp(&b.off_middle));
-            } else if is_out {
-                kept.sort_by_key(|found| found.off_middle >= now);
-            }
-            if let Some(found) = kept.first() {
+            let kept = leading.filter(|found| found.excess <= 0.0);
+            let chosen = if is_closing {
+                kept.min_by(|a, b| a.off_middle.total_cmp(&b.off_middle))
+            } else {
+                first_that(kept, |found| !is_out || found.off_middle < now)
+            };
+            if let Some(found) = chosen {
                 return Some(found.hold);
             }
         }
@@ -224,6 +224,18 @@ impl<'a> Drawing<'a> {
         let schedule = Schedule::new(self.rig.period, holds);
         self.rig.prediction(uncertain, &schedule).excess(range, from)
     }
+}
+
+/// The first of `items` for which `is_it`, else the first of all.
+fn first_that<T>(items: impl Iterator<Item = T>, is_it: impl Fn(&T) -> bool) -> Option<T> {
+    let mut first = None;
+    for item in items {
+        if is_it(&item) {
+            return Some(item);
+        }
+        first.get_or_insert(item);
+    }
+    first
 }
 
 /// Fewest and most times that the input of `schedule` goes from one of its levels to another.

@@ -108,6 +108,13 @@ impl Trial {
         Ok(self)
     }
 
+    /// The samples `from..to` by themselves, at their time; `None` where that is no trial.
+    pub(crate) fn part(&self, from: usize, to: usize) -> Option<Self> {
+        let (input, output) = (self.input().get(from..to)?, self.output().get(from..to)?);
+        let start_s = self.time_s(from + 1);
+        Self::new(self.label(), start_s, self.period(), input.to_vec(), output.to_vec()).ok()
+    }
+
     /// The first `samples` of it; none where there would be no sample.
     #[must_use]
     pub fn beginning(&self, samples: usize) -> Option<Self> {

@@ -83,7 +83,7 @@ pub(crate) struct FirstOrder {
 impl FirstOrder {
     /// The one that follows the output of `joint` best; none where the output does not follow the
     /// input.
-    pub(super) fn of(joint: &Joint) -> Option<Self> {
+    pub(crate) fn of(joint: &Joint) -> Option<Self> {
         /// Time constants: the shortest in sample periods, each of the one before, and how many.
         const SHORTEST: f64 = 2.0;
         const RATIO: f64 = 1.5;
@@ -100,6 +100,18 @@ impl FirstOrder {
         let (time_constant_s, lag, sums) = best?;
         let (static_gain, at_zero) = sums.line();
         Some(Self { time_constant_s, dead_time_s: lag as f64 * period_s, static_gain, at_zero })
+    }
+
+    /// Where the output settles at `input`.
+    pub(crate) fn settled_at(&self, input: f64) -> f64 {
+        self.at_zero + self.static_gain * input
+    }
+
+    /// Seconds after which the output has settled to 5 %.
+    pub(crate) fn settling_s(&self) -> f64 {
+        /// Time constants: ln 20.
+        const CONSTANTS: f64 = 3.0;
+        self.dead_time_s + CONSTANTS * self.time_constant_s
     }
 
     /// `model` as this first order, and the id of the effect that makes it one.

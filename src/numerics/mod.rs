@@ -28,7 +28,7 @@ pub(crate) use moments::{autocovariances, dot, moments, take_off_line};
 pub(crate) use noise::NoiseModel;
 pub(crate) use normal_equations::NormalEquations;
 pub(crate) use projection::{Basis, Projection};
-pub(crate) use rank::PseudoInverse;
+pub(crate) use rank::{PseudoInverse, REGRESSORS};
 pub(crate) use regression::{Regression, residuals_of};
 pub(crate) use statistics::robust_scale;
 pub use statistics::{

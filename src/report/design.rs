@@ -34,6 +34,8 @@ pub(crate) struct Basis {
     pub(crate) free_run: Option<FreeRunError>,
     /// Where the joint is kept.
     pub(crate) within: Option<(f64, f64)>,
+    /// Whether the output comes to rest by itself, at a place that the input decides.
+    pub(crate) regulates_itself: bool,
 }
 
 /// Two suspects that an input distinguishes.

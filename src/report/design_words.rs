@@ -3,7 +3,7 @@
 use super::design::{Basis, DesignedJoint, Discrimination, holds, kept_until_s, order};
 use super::text_table::TextTable;
 use crate::design::{
-    Expected, OpenThreshold, Prediction, RESERVE, Rehearsal, Schedule, transitions,
+    Expected, FreeRunError, OpenThreshold, Prediction, Rehearsal, Schedule, transitions,
 };
 use crate::wording::{listed, measure, rounded, unit_suffix, wrapped};
 
@@ -175,7 +175,7 @@ fn foreseen(joint: &DesignedJoint, prediction: &Prediction) -> String {
 fn promise(joint: &DesignedJoint, prediction: &Prediction, basis: &Basis) -> [String; 3] {
     let unit = joint.rig.output_unit.as_deref();
     let from_to = |(low, high): (f64, f64)| format!("{} to {}", rounded(low), measure(high, unit));
-    let start = format!("Start: bring it to {} and let it rest.", measure(joint.rig.start, unit));
+    let start = start_text(joint, basis);
     let none = (f64::INFINITY, f64::NEG_INFINITY);
     let outputs = prediction.output.iter();
     let alone = outputs.fold(none, |(low, high), y| (low.min(*y), high.max(*y)));
@@ -194,16 +194,30 @@ fn promise(joint: &DesignedJoint, prediction: &Prediction, basis: &Basis) -> [St
     [start, range, margin_text(prediction, basis, unit)]
 }
 
+/// What is done before the input is played.
+fn start_text(joint: &DesignedJoint, basis: &Basis) -> String {
+    let start = measure(joint.rig.start, joint.rig.output_unit.as_deref());
+    if basis.regulates_itself {
+        let rest = measure(joint.rest, joint.rig.input_unit.as_deref());
+        return format!("Start: hold the input at {rest} until the output settles, near {start}.");
+    }
+    format!("Start: bring it to {start} and let it rest.")
+}
+
 /// How large the margin is, and where it comes from.
 fn margin_text(
     prediction: &Prediction,
     Basis { effects, free_run, .. }: &Basis,
     unit: Option<&str>,
 ) -> String {
-    let effects: Vec<String> = effects.iter().map(|id| (*id).to_owned()).collect();
+    let is_bounded = free_run.as_ref().is_some_and(FreeRunError::is_bounded);
+    let effects = effects.iter().filter(|id| !is_bounded || **id != "leakage");
+    let effects: Vec<String> = effects.map(|id| (*id).to_owned()).collect();
+    let kind = if is_bounded { "a first order with dead time" } else { "an integrator" };
     let model = match effects.as_slice() {
-        [] => "an integrator".to_owned(),
-        effects => format!("an integrator with {}", listed(effects, "and")),
+        [] => kind.to_owned(),
+        effects if is_bounded => format!("{kind}, {}", listed(effects, "and")),
+        effects => format!("{kind} with {}", listed(effects, "and")),
     };
     let margin = measure(prediction.largest_margin(), unit);
     let Some(free_run) = free_run else {
@@ -213,10 +227,11 @@ fn margin_text(
         );
     };
     let (largest, longest) = (measure(free_run.largest(), unit), free_run.longest_s());
+    let beyond = if is_bounded { "no more" } else { "in proportion" };
     format!(
         "Margin: grows to {margin}. It is {} times the most by which the model, {model}, was off on \
-         parts of the log that its fit did not see: {largest} within {}, and in proportion beyond.",
-        rounded(RESERVE),
+         parts of the log that its fit did not see: {largest} within {}, and {beyond} beyond.",
+        rounded(free_run.reserve()),
         measure(longest, Some("s"))
     )
 }

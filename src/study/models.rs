@@ -1,13 +1,17 @@
 //! The model of every joint: compared, explained, improved, or known for a design.
 
+use rand::SeedableRng as _;
+use rand::seq::SliceRandom as _;
+use rand_chacha::ChaCha8Rng;
+
 use super::estimate::JointEstimate;
 use super::protocol::{Mode, Protocol, Watched};
 use super::start::{as_it_is, best_fit, starts, typical_delay_s};
-use crate::delay::EstimateError;
+use crate::delay::{EstimateError, level_tolerance};
 use crate::design::{FreeRunError, Suspects, SuspectsError, Uncertain};
 use crate::diagnosis::{Comparison, compare, compare_unfitted, floor_of};
 use crate::effect::Effect;
-use crate::experiment::{Joint, Other, activity};
+use crate::experiment::{Joint, Other, Trial, activity};
 use crate::explain::{AddError, Addition, Explanation, Improvement, Options, Revision, Workers};
 use crate::explain::{add, explain, improve};
 use crate::fit::{Fit, FitError, FitRecord, Horizon, Split};
@@ -142,12 +146,52 @@ fn improved(
     const MOST_EFFECTS: usize = 5;
     let options = Options { max_effects: MOST_EFFECTS, ..Options::default() };
     let joint = record.joint();
-    let judged = FitRecord::new(joint, Split::of(joint), horizon);
+    let part = part_of(joint);
+    let judged = FitRecord::new(&part, Split::of(&part), horizon);
     let start = best_fit(&judged, std::slice::from_ref(plain))?.ok()?;
     let improvement = improve(&judged, start, &options, workers, |_| true);
     let last = improvement.revisions.into_iter().last()?.comparison.fit.model;
     let fit = best_fit(record, &[last])?.ok()?;
     Some((FreeRunError::of(joint, &fit.model), fit))
+}
+
+/// The part of a long record from which the structure of a model is found: blocks of its trials,
+/// drawn at random as what is played may repeat itself. All of a record whose input is held for
+/// long, of which blocks would show a few steps alone.
+fn part_of(joint: &Joint) -> Joint {
+    /// Samples that show the effects of a joint.
+    const ENOUGH: usize = 4000;
+    /// Samples of a block, and steps of the input that are to be in it.
+    const BLOCK: usize = 500;
+    const STEPS: usize = 4;
+    let samples: usize = joint.trials.iter().map(Trial::len).sum();
+    if samples <= ENOUGH + BLOCK || steps(joint) * BLOCK < STEPS * samples {
+        return joint.clone();
+    }
+    let blocks = joint.trials.iter().enumerate().flat_map(|(trial, own)| {
+        let count = (own.len() / BLOCK).max(1);
+        (0..count).map(move |k| (trial, own.len() * k / count, own.len() * (k + 1) / count))
+    });
+    let mut blocks: Vec<_> = blocks.collect();
+    blocks.shuffle(&mut ChaCha8Rng::seed_from_u64(0));
+    let mut kept = 0;
+    blocks.retain(|(_, from, to)| {
+        kept += to - from;
+        kept <= ENOUGH
+    });
+    blocks.sort_unstable();
+    let piece =
+        |(trial, from, to): &(usize, usize, usize)| joint.trials.get(*trial)?.part(*from, *to);
+    let trials: Vec<Trial> = blocks.iter().filter_map(piece).collect();
+    Joint { trials, covariates: Vec::new(), ..joint.clone() }
+}
+
+/// How often the input of `joint` changes from one sample to the next.
+fn steps(joint: &Joint) -> usize {
+    let tolerance = level_tolerance(&joint.trials);
+    let changes = |pair: &&[f64]| matches!(pair, [a, b] if (b - a).abs() > tolerance);
+    let steps = joint.trials.iter().map(|trial| trial.input().windows(2).filter(changes).count());
+    steps.sum()
 }
 
 /// Fits two effects to each joint, each beside its model: see [`Suspects::of_record`].

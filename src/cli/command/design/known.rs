@@ -34,11 +34,8 @@ pub(crate) struct Known {
 
 /// How a log's model is fitted before anything is said of the next experiment: to all of it, as
 /// nothing is to be judged by a part that was kept.
-pub(crate) const PROTOCOL: Protocol = Protocol {
-    mode: Mode::FitOrIntegrator,
-    split: Some(Split::Time(1.0)),
-    horizon: Horizon::Steps,
-};
+pub(crate) const PROTOCOL: Protocol =
+    Protocol { mode: Mode::FitOrIntegrator, split: Some(Split::Time(1.0)), horizon: Horizon::Auto };
 
 impl Known {
     pub(crate) fn new(args: &Args) -> anyhow::Result<Self> {
@@ -58,7 +55,11 @@ impl Known {
         let centred = |joint: &Joint| {
             let logged = Logged::of(joint);
             let has_model = file.joint(&joint.name).is_some();
-            let logged = if has_model { logged.as_it_is() } else { logged };
+            let logged = match args.output_range {
+                _ if has_model => logged.as_it_is(),
+                Some(range) if args.separate.is_empty() => logged.within(range),
+                _ => logged,
+            };
             let played = if args.separate.is_empty() {
                 logged.thinned(joint)
             } else {
@@ -113,7 +114,7 @@ impl Known {
             input_unit: unit(|joint| joint.input_unit.as_ref()),
             output_unit: unit(|joint| joint.output_unit.as_ref()),
             period: self.period,
-            start: args.start.or(middle).unwrap_or(0.0),
+            start: args.start.or(logged.and_then(Logged::settled)).or(middle).unwrap_or(0.0),
             range,
         }
     }

@@ -106,7 +106,9 @@ fn model(uncertain: Option<&Uncertain>) -> Option<&crate::model::JointModel> {
 fn basis(known: &Uncertain, rig: &TestRig, logged: Option<&Logged>) -> Basis {
     let effects = known.model.components().iter().map(|component| component.effect().spec().id);
     let within = rig.range.and_then(|range| reach(range, logged).ok());
-    Basis { effects: effects.collect(), free_run: known.free_run.clone(), within }
+    let regulates_itself = logged.is_some_and(|logged| logged.settled().is_some());
+    let (effects, free_run) = (effects.collect(), known.free_run.clone());
+    Basis { effects, free_run, within, regulates_itself }
 }
 
 /// What whoever plays it should know.
