@@ -25,9 +25,9 @@ fn decide(context: &StepContext<'_>, onset: Option<SettlingOnset>) -> Decision {
     let step = context.step().sample;
     let (fine, p_value) = (onset.as_ref().map(|it| it.fine), onset.as_ref().map(|it| it.p_value));
     let whole = Segment::clipped(step, context.next_sample() - 1, samples);
-    let segment = onset.as_ref().map_or(whole, |it| {
-        Segment::clipped(it.start + 1, it.start + it.curve.len(), samples)
-    });
+    let segment = onset
+        .as_ref()
+        .map_or(whole, |it| Segment::clipped(it.start + 1, it.start + it.curve.len(), samples));
     let candidates = onset.map_or_else(Candidates::default, |it| candidates(&it));
     let mut decision = context.settling_decision(segment, candidates, fine);
     decision.test_reaction(p_value, context.settings.confidence.unwrap_or(CONFIDENCE));

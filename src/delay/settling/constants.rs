@@ -15,12 +15,14 @@ pub(super) struct TimeConstants {
     pub(super) falling: Option<f64>,
     /// Of a further lag, where there is one.
     pub(super) further: Option<f64>,
+    /// The shortest further lag.
+    least: f64,
 }
 
 impl TimeConstants {
     /// One for all steps.
     pub(super) fn one(rising: f64) -> Self {
-        Self { rising, falling: None, further: None }
+        Self { rising, falling: None, further: None, least: SHORTEST }
     }
 
     /// With another one for steps of a falling input.
@@ -28,12 +30,10 @@ impl TimeConstants {
         Self { falling: Some(self.rising), ..self }
     }
 
-    /// With a further lag, of a short time constant.
-    pub(super) fn with_further(self) -> Self {
-        /// A part of the other, and samples at least: chosen, where the search starts.
-        const PART: f64 = 0.04;
-        const LEAST: f64 = 0.5;
-        Self { further: Some((PART * self.shortest()).max(LEAST)), ..self }.bounded()
+    /// With a further lag of a part of the time constant, and of `least` samples.
+    pub(super) fn with_further(self, part: f64, least: f64) -> Self {
+        let least = least.max(SHORTEST);
+        Self { further: Some(part * self.shortest()), least, ..self }.bounded()
     }
 
     pub(super) fn further_or_zero(&self) -> f64 {
@@ -66,7 +66,8 @@ impl TimeConstants {
         let mut next = |value: f64| value * by.next().unwrap_or(0.0).exp();
         let rising = next(self.rising);
         let falling = self.falling.map(&mut next);
-        Self { rising, falling, further: self.further.map(next) }.bounded()
+        let further = self.further.map(next);
+        Self { rising, falling, further, ..*self }.bounded()
     }
 
     /// These with one logarithm changed.
@@ -77,8 +78,8 @@ impl TimeConstants {
 
     /// A further lag that is not shorter than can be seen, nor as long as the other.
     fn bounded(self) -> Self {
-        let longest = (LONGEST * self.shortest()).max(SHORTEST);
-        Self { further: self.further.map(|it| it.clamp(SHORTEST, longest)), ..self }
+        let longest = LONGEST * self.shortest();
+        Self { further: self.further.map(|it| it.max(self.least).min(longest)), ..self }
     }
 
     /// These for samples of another period, as many times as long.
@@ -88,6 +89,7 @@ impl TimeConstants {
             rising: scale(self.rising),
             falling: self.falling.map(scale),
             further: self.further.map(scale),
+            least: scale(self.least),
         }
     }
 }

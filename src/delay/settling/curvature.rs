@@ -11,29 +11,31 @@ pub(super) fn mean_hold(trials: &[&Prepared<'_>]) -> f64 {
 }
 
 /// Whether exponentials follow the output better than lines, behind the first quarter of each
-/// hold, in which the reaction begins.
+/// hold, in which the reaction begins, or its first half.
 pub(super) fn is_curved(trials: &[&Prepared<'_>]) -> bool {
     /// Time constants in mean holds.
     const HOLDS: [f64; 4] = [0.15, 0.4, 1.0, 2.5];
     /// Part of the squared error of lines (chosen).
-    const PART: f64 = 0.7;
-    let pieces: Vec<&[f64]> = trials.iter().flat_map(|trial| late_parts(trial)).collect();
+    const PART: f64 = 0.9;
     let hold = mean_hold(trials);
-    let total = |column: &dyn Fn(f64) -> f64| -> f64 {
-        pieces.iter().map(|values| squared_error(values, column)).sum()
-    };
-    let lines = total(&|k| k);
-    HOLDS.into_iter().any(|holds| total(&|k| (-k / (holds * hold)).exp()) < PART * lines)
+    [4, 2].into_iter().any(|part| {
+        let pieces: Vec<&[f64]> = trials.iter().flat_map(|trial| late_parts(trial, part)).collect();
+        let total = |column: &dyn Fn(f64) -> f64| -> f64 {
+            pieces.iter().map(|values| squared_error(values, column)).sum()
+        };
+        let lines = total(&|k| k);
+        HOLDS.into_iter().any(|holds| total(&|k| (-k / (holds * hold)).exp()) < PART * lines)
+    })
 }
 
-/// The output in each hold without its first quarter.
-fn late_parts<'a>(trial: &Prepared<'a>) -> Vec<&'a [f64]> {
+/// The output in each hold without the first of so many parts.
+fn late_parts<'a>(trial: &Prepared<'a>, part: usize) -> Vec<&'a [f64]> {
     /// Samples of a part that says something.
     const FEWEST: usize = 8;
     let starts = trial.steps.iter().map(|step| step.sample - 1);
     let ends = starts.clone().skip(1).chain([trial.raw.len()]);
-    let part = |(start, end): (usize, usize)| trial.raw.get(start + (end - start) / 4..end);
-    starts.zip(ends).filter_map(part).filter(|part| part.len() >= FEWEST).collect()
+    let late = |(start, end): (usize, usize)| trial.raw.get(start + (end - start) / part..end);
+    starts.zip(ends).filter_map(late).filter(|late| late.len() >= FEWEST).collect()
 }
 
 /// What a level and a multiple of `column` leave of `values`.

@@ -84,7 +84,7 @@ impl FirstOrder {
     /// with the input alone: the output is compared with the input behind a lag.
     pub(super) fn within_holds(trials: &[Trial], hold_s: f64) -> Option<Self> {
         /// Squared correlation (chosen).
-        const FOLLOWS: f64 = 0.9;
+        const FOLLOWS: f64 = 0.8;
         let (found, squared) = Self::likely_within_holds(trials, hold_s)?;
         let Self { time_constant_s, dead_time_s, .. } = found;
         let dead = |trial: &Trial| floor_to_index(dead_time_s / trial.period().seconds());
@@ -183,4 +183,3 @@ impl Moments {
         (slope, self.mean.1 - slope * self.mean.0)
     }
 }
-

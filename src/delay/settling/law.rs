@@ -25,14 +25,25 @@ use crate::units::SamplePeriod;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settling {
     period: SamplePeriod,
-    constants: TimeConstants,
-    /// Of the logarithms of the time constants.
-    covariance: DMatrix<f64>,
+    law: Law,
+    /// One with or without a further lag that the record does not exclude.
+    other: Option<Law>,
     noise: NoiseModel,
+}
+
+/// Time constants, and how well they are known.
+#[derive(Clone, Debug, PartialEq)]
+struct Law {
+    constants: TimeConstants,
+    /// Of their logarithms.
+    covariance: DMatrix<f64>,
 }
 
 /// Windows that can show a time constant.
 const FEWEST: usize = 3;
+
+/// Samples from which a further lag is told from an onset between two of them (chosen).
+const SEEN: f64 = 2.0;
 
 /// Mean holds that a time constant lasts at most: a longer one is an integrator's.
 const MOST_HOLDS: f64 = 3.0;
@@ -59,77 +70,80 @@ impl Settling {
         let rough = all_onsets(&alike, settings, &constants);
         let rough = Search::of(&rough, constants, &white).descended().constants;
         let onsets = all_onsets(&alike, settings, &rough);
-        let search = selected(Search::of(&onsets, rough, &white).descended());
+        let (search, other) = selected(Search::of(&onsets, rough, &white).descended());
         let longest = MOST_HOLDS * mean_hold(&alike);
         let is_law = search.constants.rising <= longest && is_exponential(&search, &alike);
         if search.windows() < FEWEST || !(is_law || settings.settles == Some(true)) {
             return None;
         }
         let noise = search.noise();
-        let search = Search::of(&onsets, search.constants, &noise).descended();
-        let covariance = search.covariance();
-        Some(Self { period, constants: search.constants, covariance, noise: noise.clone() })
+        let law = |search: &Search<'_>| {
+            let known = Search::of(&onsets, search.constants, &noise).descended();
+            Law { constants: known.constants, covariance: bounded(&known) }
+        };
+        let (law, other) = (law(&search), other.as_ref().map(law));
+        Some(Self { period, law, other, noise: noise.clone() })
     }
 
     /// Time constant with which the output settles after the input rises, seconds.
     pub fn rising_s(&self) -> LagPart {
-        self.part(self.constants.rising, 0)
+        self.part(self.law.constants.rising, 0)
     }
 
     /// The same after the input falls, where it is another one.
     pub fn falling_s(&self) -> Option<LagPart> {
-        Some(self.part(self.constants.falling?, 1))
+        Some(self.part(self.law.constants.falling?, 1))
     }
 
     /// Time constant of a further lag, seconds, where there is one.
     pub fn further_s(&self) -> Option<LagPart> {
-        Some(self.part(self.constants.further?, self.constants.parameters() - 1))
+        Some(self.part(self.law.constants.further?, self.law.constants.parameters() - 1))
     }
 
     fn part(&self, samples: f64, index: usize) -> LagPart {
         let value = samples * self.period.seconds();
-        let variance = self.covariance.get((index, index)).copied().unwrap_or(0.0);
+        let variance = self.law.covariance.get((index, index)).copied().unwrap_or(0.0);
         LagPart { value, std_error: value * variance.max(0.0).sqrt() }
     }
 
-    /// The onset of every step of a trial; none for one that has no room.
+    /// The onset of every step of a trial; none for one that has no room. Its interval holds those
+    /// of every law that the record allows.
     pub(in crate::delay) fn onsets(
         &self,
         trial: &Prepared<'_>,
         settings: &Settings,
     ) -> Vec<Option<SettlingOnset>> {
-        let constants = self.constants.scaled(self.period.seconds() / trial.period.seconds());
-        let found = SettlingTrial::of(trial, settings, &constants, &self.noise);
+        let by = self.period.seconds() / trial.period.seconds();
+        let of = |law: &Law| law.onsets(trial, settings, by, &self.noise);
+        let mut found = of(&self.law);
+        for (onset, other) in found.iter_mut().zip(self.other.iter().flat_map(of)) {
+            if let Some((onset, other)) = onset.as_mut().zip(other) {
+                onset.fine.low = onset.fine.low.min(other.fine.low);
+                onset.fine.high = onset.fine.high.max(other.fine.high);
+            }
+        }
+        found
+    }
+}
+
+impl Law {
+    /// The onset of every step of a trial, whose samples are `by` times as many.
+    fn onsets(
+        &self,
+        trial: &Prepared<'_>,
+        settings: &Settings,
+        by: f64,
+        noise: &NoiseModel,
+    ) -> Vec<Option<SettlingOnset>> {
+        let constants = self.constants.scaled(by);
+        let found = SettlingTrial::of(trial, settings, &constants, noise);
         let onset = |index: usize| {
             let origin = trial.steps.get(index)?.sample as f64 - 1.0;
-            let found_here = found.find(index, &constants, &self.noise, false)?;
-            let slopes = self.slopes(&found, index, &found_here, &constants);
-            Some(self.onset(&found_here, &slopes, origin, settings.interval))
+            let here = found.find(index, &constants, noise, false)?;
+            let slopes = slopes(&found, index, &here, &constants);
+            Some(self.onset(&here, &slopes, origin, settings.interval))
         };
         (0..trial.steps.len()).map(onset).collect()
-    }
-
-    /// How far an onset moves with each parameter.
-    fn slopes(
-        &self,
-        trial: &SettlingTrial<'_>,
-        index: usize,
-        found: &Found<'_>,
-        constants: &TimeConstants,
-    ) -> Vec<f64> {
-        /// Change of a logarithm to each side.
-        const STEP: f64 = 1e-3;
-        let along = found.window.onset_slope(&found.constants, found.onset);
-        let square = dot(&along, &along);
-        let slope = |parameter: usize| {
-            let [low, high] = [-STEP, STEP].map(|by| {
-                let about = trial.about(index, &constants.moved_one(parameter, by));
-                found.window.residual(&about, found.onset)
-            });
-            let change: f64 = along.iter().zip(low.iter().zip(high)).map(|(a, (l, h))| a * (h - l)).sum();
-            -change / (2.0 * STEP) / square
-        };
-        (0..constants.parameters()).map(slope).collect()
     }
 
     /// An onset as a delay, with the profile likelihood of its own and, independent of it, the
@@ -174,6 +188,29 @@ impl Settling {
     }
 }
 
+/// How far an onset moves with each parameter.
+fn slopes(
+    trial: &SettlingTrial<'_>,
+    index: usize,
+    found: &Found<'_>,
+    constants: &TimeConstants,
+) -> Vec<f64> {
+    /// Change of a logarithm to each side.
+    const STEP: f64 = 1e-3;
+    let along = found.window.onset_slope(&found.constants, found.onset);
+    let square = dot(&along, &along);
+    let slope = |parameter: usize| {
+        let [low, high] = [-STEP, STEP].map(|by| {
+            let about = trial.about(index, &constants.moved_one(parameter, by));
+            found.window.residual(&about, found.onset)
+        });
+        let change: f64 =
+            along.iter().zip(low.iter().zip(high)).map(|(a, (l, h))| a * (h - l)).sum();
+        -change / (2.0 * STEP) / square
+    };
+    (0..constants.parameters()).map(slope).collect()
+}
+
 /// An onset of an output that settles.
 #[derive(Clone, Debug)]
 pub(in crate::delay) struct SettlingOnset {
@@ -201,13 +238,59 @@ fn all_onsets<'a>(
     trials.iter().map(|trial| SettlingTrial::of(trial, settings, constants, &white)).collect()
 }
 
-/// With the parameters that the record asks for.
-fn selected<'a>(search: Search<'a>) -> Search<'a> {
-    let further = search.constants.with_further();
-    let with_further = search.started_at(further, further.further_or_zero()).descended();
-    let search = search.or(with_further);
+/// The covariance of the parameters, for a further lag that may be so short that it is hardly seen.
+///
+/// What a short lag `T₂` does beside a shift of the onset grows with its square: its upper bound is
+/// not `T₂·(1 + z·e)` with the standard error `e` of its logarithm, but `T₂·√(1 + 2·z·e)`.
+fn bounded(search: &Search<'_>) -> DMatrix<f64> {
+    /// Standard errors from an estimate to the end of its 95 % interval.
+    const Z: f64 = 1.96;
+    let mut covariance = search.covariance();
+    let last = search.constants.parameters() - 1;
+    let variance = covariance.get((last, last)).copied().unwrap_or(0.0);
+    if search.constants.further.is_none() || variance <= 0.0 {
+        return covariance;
+    }
+    let error = variance.sqrt();
+    let factor = ((1.0 + 2.0 * Z * error).sqrt() - 1.0) / (Z * error);
+    covariance.row_mut(last).scale_mut(factor);
+    covariance.column_mut(last).scale_mut(factor);
+    covariance
+}
+
+/// The law with the parameters that the record asks for; and one with a further lag, or without,
+/// that it does not exclude.
+fn selected(search: Search<'_>) -> (Search<'_>, Option<Search<'_>>) {
+    /// Twice the logarithm of a likelihood ratio that excludes the law that is less likely.
+    const EXCLUDED: f64 = 4.0;
     let falling = search.started_at(search.constants.with_falling(), 0.0).descended();
-    search.or(falling)
+    let penalty = search.penalty();
+    let search = if search.gain(&falling) > 2.0 * penalty { falling } else { search };
+    let Some(free) = with_further(&search, 0.0) else { return (search, None) };
+    if search.gain(&free) > 2.0 * penalty {
+        return (free, None);
+    }
+    // A lag of about a sample fits noise: the first sample behind each onset is then free.
+    let Some(lagging) = with_further(&search, SEEN) else { return (search, None) };
+    let gain = search.gain(&lagging);
+    if gain > penalty {
+        (lagging, Some(search))
+    } else if gain > -EXCLUDED {
+        (search, Some(lagging))
+    } else {
+        (search, None)
+    }
+}
+
+/// The same with a further lag of at least so many samples.
+fn with_further<'a>(search: &Search<'a>, least: f64) -> Option<Search<'a>> {
+    /// Parts of the time constant at which it is looked for: the valley has several hollows.
+    const PARTS: [f64; 3] = [0.02, 0.06, 0.2];
+    let started = |part: f64| {
+        let constants = search.constants.with_further(part, least);
+        search.started_at(constants, constants.further_or_zero()).descended()
+    };
+    PARTS.into_iter().map(started).min_by(|a, b| a.sse.total_cmp(&b.sse))
 }
 
 /// Whether the law explains the output better than straight lines do, and leaves little more than
@@ -217,7 +300,7 @@ fn is_exponential(search: &Search<'_>, trials: &[&Prepared<'_>]) -> bool {
     const PART: f64 = 0.7;
     /// Times the noise, and part of the output's range, that the law leaves at most (chosen).
     const TIMES: f64 = 2.0;
-    const LITTLE: f64 = 0.03;
+    const LITTLE: f64 = 0.01;
     let outputs = || trials.iter().flat_map(|trial| trial.raw);
     let low = outputs().copied().fold(f64::INFINITY, f64::min);
     let high = outputs().copied().fold(f64::NEG_INFINITY, f64::max);

@@ -15,7 +15,7 @@ use crate::numerics::{NoiseModel, NormalEquations, dot};
 use crate::units::floor_to_index;
 
 /// Samples of windows that are enough to know the time constants.
-const ENOUGH: usize = 20_000;
+const ENOUGH: usize = 10_000;
 
 /// A window of a step in one of the trials.
 #[derive(Clone, Debug)]
@@ -156,14 +156,14 @@ impl<'a> Search<'a> {
         NoiseModel::left_by(&some.filter_map(projection).collect::<Vec<_>>())
     }
 
-    /// The one with more parameters where Schwarz's criterion asks for them.
-    pub(super) fn or(self, larger: Self) -> Self {
-        /// Times Schwarz's penalty: what is at the border of no lag at all gains more often.
-        const TIMES: f64 = 2.0;
-        let samples = self.samples();
-        let more = larger.constants.parameters().saturating_sub(self.constants.parameters());
-        let gain = samples * (self.sse / larger.sse.max(f64::MIN_POSITIVE)).ln();
-        if gain > TIMES * more as f64 * samples.ln() { larger } else { self }
+    /// Twice the logarithm of the likelihood ratio of another law.
+    pub(super) fn gain(&self, other: &Self) -> f64 {
+        self.samples() * (self.sse / other.sse.max(f64::MIN_POSITIVE)).ln()
+    }
+
+    /// Schwarz's penalty for a parameter.
+    pub(super) fn penalty(&self) -> f64 {
+        self.samples().ln()
     }
 
     /// This with other time constants to start from, every onset earlier by so many samples.

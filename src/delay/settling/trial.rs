@@ -76,8 +76,7 @@ impl<'a> SettlingTrial<'a> {
             let Some(found) = self.find(index, constants, noise, cautious) else { continue };
             let start = found.range.start as f64;
             let counts = found.p_value() <= DOUBTFUL;
-            let error =
-                found.window.standard_error(&found.constants, (found.onset, found.sse));
+            let error = found.window.standard_error(&found.constants, (found.onset, found.sse));
             let onset = &mut self.path.onsets[index];
             onset.position = start + found.onset;
             onset.counts = counts && !onset.at_rest;
