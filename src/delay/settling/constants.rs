@@ -6,6 +6,13 @@ use super::response::Constants;
 const SHORTEST: f64 = 0.2;
 const LONGEST: f64 = 0.5;
 
+/// Which way the input steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum InputChange {
+    Rise,
+    Fall,
+}
+
 /// Time constants in samples; their logarithms are the parameters of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TimeConstants {
@@ -44,15 +51,17 @@ impl TimeConstants {
         self.falling.map_or(self.rising, |falling| falling.min(self.rising))
     }
 
-    /// Those of a direction of the input.
-    fn of(&self, rises: bool) -> f64 {
-        if rises { self.rising } else { self.falling.unwrap_or(self.rising) }
+    fn of(&self, change: InputChange) -> f64 {
+        match change {
+            InputChange::Rise => self.rising,
+            InputChange::Fall => self.falling.unwrap_or(self.rising),
+        }
     }
 
-    /// Those about a step, of which it is known whether the input rises there, behind another.
-    pub(super) fn about(&self, rises: bool, rose_before: bool) -> Constants {
+    /// Those about a step, behind the one `before`.
+    pub(super) fn about(&self, step: InputChange, before: InputChange) -> Constants {
         let further = self.further_or_zero();
-        Constants { before: self.of(rose_before), behind: self.of(rises), further }
+        Constants { before: self.of(before), behind: self.of(step), further }
     }
 
     /// Number of parameters.

@@ -139,7 +139,7 @@ impl Law {
         let found = SettlingTrial::of(trial, settings, &constants, noise);
         let onset = |index: usize| {
             let origin = trial.steps.get(index)?.sample as f64 - 1.0;
-            let here = found.find(index, &constants, noise, false)?;
+            let here = found.find(index, found.path.window(index), &constants, noise)?;
             let slopes = slopes(&found, index, &here, &constants);
             Some(self.onset(&here, &slopes, origin, settings.interval))
         };

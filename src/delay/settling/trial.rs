@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::constants::TimeConstants;
+use super::constants::{InputChange, TimeConstants};
 use super::response::Constants;
 use super::window::StepWindow;
 use crate::delay::broken_line;
@@ -23,8 +23,7 @@ const MARGIN: f64 = 2.0;
 pub(super) struct SettlingTrial<'a> {
     pub(super) output: &'a [f64],
     pub(super) path: OnsetPath,
-    /// Whether the input rises at each step.
-    rises: Vec<bool>,
+    changes: Vec<InputChange>,
 }
 
 /// An onset in its window; positions are indices of the window.
@@ -60,20 +59,28 @@ impl<'a> SettlingTrial<'a> {
         constants: &TimeConstants,
         noise: &NoiseModel,
     ) -> Self {
-        /// Times that each onset is found between its neighbours of the time before.
-        const PASSES: usize = 2;
         let path = OnsetPath::settling(trial, settings, constants.rising);
-        let rises = trial.steps.iter().map(|step: &InputStep| step.after > step.before).collect();
+        let change = |step: &InputStep| {
+            if step.after > step.before { InputChange::Rise } else { InputChange::Fall }
+        };
+        let changes = trial.steps.iter().map(change).collect();
         // What a low-pass leaves of an onset is not its response: the output as it was measured.
-        let mut found = Self { output: trial.raw, path, rises };
-        (0..PASSES).for_each(|pass| found.locate(constants, noise, pass == 0));
+        let mut found = Self { output: trial.raw, path, changes };
+        found.locate(constants, noise, OnsetPath::cautious_window);
+        found.locate(constants, noise, OnsetPath::window);
         found
     }
 
-    /// Finds each onset between its neighbours.
-    fn locate(&mut self, constants: &TimeConstants, noise: &NoiseModel, cautious: bool) {
+    /// Finds each onset between its neighbours, in the window that is taken from the path.
+    fn locate(
+        &mut self,
+        constants: &TimeConstants,
+        noise: &NoiseModel,
+        window: fn(&OnsetPath, usize) -> Range<usize>,
+    ) {
         for index in 0..self.path.onsets.len() {
-            let Some(found) = self.find(index, constants, noise, cautious) else { continue };
+            let range = window(&self.path, index);
+            let Some(found) = self.find(index, range, constants, noise) else { continue };
             let start = found.range.start as f64;
             let counts = found.p_value() <= DOUBTFUL;
             let error = found.window.standard_error(&found.constants, (found.onset, found.sse));
@@ -84,16 +91,14 @@ impl<'a> SettlingTrial<'a> {
         }
     }
 
-    /// The best onset of a step between its neighbours.
+    /// The best onset of a step in a range of samples.
     pub(super) fn find<'n>(
         &self,
         index: usize,
+        range: Range<usize>,
         constants: &TimeConstants,
         noise: &'n NoiseModel,
-        cautious: bool,
     ) -> Option<Found<'n>> {
-        let path = &self.path;
-        let range = if cautious { path.cautious_window(index) } else { path.window(index) };
         let window = StepWindow::of(self.output.get(range.clone())?, noise)?;
         let (constants, limits) = (self.about(index, constants), self.limits(index, &range)?);
         let (onset, sse) = window.best(&constants, limits.0, limits.1)?;
@@ -102,9 +107,9 @@ impl<'a> SettlingTrial<'a> {
 
     /// The time constants about a step.
     pub(super) fn about(&self, index: usize, constants: &TimeConstants) -> Constants {
-        let rises = |index: usize| self.rises.get(index).copied().unwrap_or(true);
+        let change = |index: usize| self.changes.get(index).copied().unwrap_or(InputChange::Rise);
         let before = self.path.before(index).unwrap_or(index);
-        constants.about(rises(index), rises(before))
+        constants.about(change(index), change(before))
     }
 
     /// Where an onset may be, as indices of its window.

@@ -117,6 +117,8 @@ impl<'a> StepWindow<'a> {
 
     /// The best onset from `low` to `high`, and its squared error; none where there is no room.
     pub(super) fn best(&self, constants: &Constants, low: f64, high: f64) -> Option<(f64, f64)> {
+        /// The part of a golden section.
+        const GOLDEN: f64 = 0.618_033_988_749_895;
         if low.is_nan() || high.is_nan() || low > high {
             return None;
         }
@@ -127,8 +129,6 @@ impl<'a> StepWindow<'a> {
         let at = |onset: f64| (onset, self.sse(constants, onset));
         let found = tried.map(at).min_by(|a, b| a.1.total_cmp(&b.1))?;
         let (mut low, mut high) = ((found.0 - step).max(low), (found.0 + step).min(high));
-        /// The part of a golden section.
-        const GOLDEN: f64 = 0.618_033_988_749_895;
         let mut inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)].map(at);
         while high - low > FINE {
             if inner[0].1 <= inner[1].1 {
