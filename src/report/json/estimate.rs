@@ -136,6 +136,7 @@ struct LagJson {
 
 /// How an output settles, in seconds.
 #[derive(Debug, Serialize)]
+#[expect(clippy::struct_field_names, reason = "each name says its unit, as in the schema")]
 struct SettlingJson {
     time_constant_s: LagPartJson,
     falling_time_constant_s: Option<LagPartJson>,
