@@ -4,10 +4,11 @@ use std::fmt;
 
 use super::input_motion::InputKind;
 use super::lag::Lag;
-use super::method::{DelayMethod, implementation};
+use super::method::{DelayMethod, decide_settling, implementation};
 use super::prepared::Prepared;
 use super::profile::DelayProfile;
 use super::settings::Settings;
+use super::settling::Settling;
 use super::spec::Scope;
 use super::trial_estimate::{EstimateError, TrialEstimate};
 use crate::experiment::Trial;
@@ -42,6 +43,8 @@ pub struct Estimator {
     settings: Settings,
     method: &'static dyn DelayMethod,
     lag: Option<Lag>,
+    /// How the output settles, where it does.
+    settling: Option<Settling>,
 }
 
 impl Estimator {
@@ -57,15 +60,16 @@ impl Estimator {
             settings.low_pass = None;
         }
         let method = implementation(settings.method);
-        let lag = (settings.method.spec().scope == Scope::Joint).then(|| {
-            let prepared = trials.iter().filter_map(|trial| Prepared::of(trial, &settings).ok());
-            let prepared: Vec<_> = prepared.collect();
+        let settling = settling_of(trials, &settings);
+        let is_joint = settling.is_none() && settings.method.spec().scope == Scope::Joint;
+        let lag = is_joint.then(|| {
+            let prepared = prepared(trials, &settings);
             let period = prepared.first().map(|trial| trial.period);
             // A lag is looked for in the trials of the first one's period.
             let settings = period.map_or_else(|| settings.clone(), |period| settings.at(period));
             method.shared_lag(&prepared, &settings)
         });
-        Ok(Self { settings, method, lag: lag.flatten() })
+        Ok(Self { settings, method, lag: lag.flatten(), settling })
     }
 
     /// Estimates one trial of the joint.
@@ -75,11 +79,30 @@ impl Estimator {
     pub fn estimate(&self, trial: &Trial) -> Result<TrialEstimate, EstimateError> {
         let settings = self.settings.at(trial.period());
         let prepared = Prepared::of(trial, &settings)?;
-        let decisions = self.method.decide(&prepared, self.lag.as_ref(), &settings);
+        let decisions = match &self.settling {
+            Some(settling) => decide_settling(&prepared, settling, &settings),
+            None => self.method.decide(&prepared, self.lag.as_ref(), &settings),
+        };
         let profile = DelayProfile::of(&decisions, trial.len(), settings.interpolation);
-        let (lag, smoothed) = (self.lag.clone(), prepared.smoothed);
-        Ok(TrialEstimate { label: trial.label().to_owned(), smoothed, decisions, profile, lag })
+        let (lag, settling) = (self.lag.clone(), self.settling.clone());
+        let (label, smoothed) = (trial.label().to_owned(), prepared.smoothed);
+        Ok(TrialEstimate { label, smoothed, decisions, profile, lag, settling })
     }
+}
+
+/// The trials that can be prepared.
+fn prepared<'a>(trials: &'a [Trial], settings: &Settings) -> Vec<Prepared<'a>> {
+    trials.iter().filter_map(|trial| Prepared::of(trial, settings).ok()).collect()
+}
+
+/// How the output settles, where it is to be asked.
+fn settling_of(trials: &[Trial], settings: &Settings) -> Option<Settling> {
+    if settings.paper || settings.input == InputKind::Continuous {
+        return None;
+    }
+    let prepared = prepared(trials, settings);
+    let period = prepared.first()?.period;
+    Settling::of(trials, &prepared, &settings.at(period))
 }
 
 impl fmt::Debug for Estimator {

@@ -66,7 +66,8 @@ pub fn final_part(
     let smoothed = estimate.smoothed.as_ref();
     let smoothed = smoothed.map(|all| all.iter().copied().take(samples).collect());
     let (label, lag) = (estimate.label.clone(), estimate.lag.clone());
-    Ok(Some((beginning, TrialEstimate { label, smoothed, decisions, profile, lag })))
+    let settling = estimate.settling.clone();
+    Ok(Some((beginning, TrialEstimate { label, smoothed, decisions, profile, lag, settling })))
 }
 
 /// How many of the last samples may still change.

@@ -83,6 +83,9 @@ pub struct Settings {
     pub min_step: f64,
     /// Whether the input is taken as steps or as moving all the time.
     pub input: InputKind,
+    /// Whether the output settles at a level for each level of the input, as a speed or a pressure
+    /// does; none where the record is to show it.
+    pub settles: Option<bool>,
     /// Every change of the input is a step, to the letter of the paper: noise of the input
     /// counts, and an edge of several samples is several steps.
     pub every_change: bool,
@@ -123,6 +126,7 @@ impl Settings {
             paper: false,
             min_step: 0.0,
             input: InputKind::Auto,
+            settles: None,
             every_change: false,
             interpolation: Interpolation::Hold,
             confidence: spec.confidence,

@@ -4,6 +4,7 @@ use super::decision::Decision;
 use super::lag::Lag;
 use super::profile::DelayProfile;
 use super::settings::{Interpolation, SettingsError};
+use super::settling::Settling;
 use super::word::Word;
 use crate::numerics::FilterError;
 
@@ -46,6 +47,9 @@ pub struct TrialEstimate {
     pub profile: DelayProfile,
     /// How the joint follows after its dead time, where the method looks for it.
     pub lag: Option<Lag>,
+    /// How the output settles, where it does: the onsets are then those of an exponential,
+    /// whatever the method.
+    pub settling: Option<Settling>,
 }
 
 impl TrialEstimate {

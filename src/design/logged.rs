@@ -1,9 +1,9 @@
 //! What a log shows of how a joint may be driven: where its input rests, which levels were
 //! played, and where the output has been.
 
+use crate::delay::FirstOrder;
 use crate::delay::{Neutral, level_tolerance};
 use crate::experiment::{Joint, Trial};
-use crate::fit::FirstOrder;
 use crate::numerics::{median, quantile};
 use crate::units::SamplePeriod;
 
@@ -46,7 +46,7 @@ impl Logged {
         let none = (f64::INFINITY, f64::NEG_INFINITY);
         let extent = outputs.fold(none, |(low, high), y| (low.min(*y), high.max(*y)));
         let levels = levels(joint);
-        let settling = FirstOrder::of(joint).map(|found| {
+        let settling = FirstOrder::of(&joint.trials).map(|found| {
             let output = |level: &f64| {
                 let held = held_outputs(joint, (*level, tolerance), found.settling_s());
                 median(&held).unwrap_or_else(|| found.settled_at(*level))

@@ -5,13 +5,12 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::DVector;
 
 use super::evaluation::Evaluation;
-use super::first_order::FirstOrder;
 use super::run::Run;
 use super::speed;
 use super::spikes;
 use super::thin::thinned;
 use super::window::{Horizon, Part, Split, Window, changes, cut, shorter};
-use crate::delay::{StepDelay, step_delays};
+use crate::delay::{FirstOrder, StepDelay, step_delays};
 use crate::effect::RecordRange;
 use crate::experiment::{Joint, Trial};
 use crate::model::{Arrivals, Commands, JointModel, Surroundings};
@@ -277,7 +276,7 @@ impl<'a> FitRecord<'a> {
 
     /// The first order that the output follows, where it follows the input itself.
     pub(crate) fn first_order(&self) -> Option<FirstOrder> {
-        *self.first_order.get_or_init(|| FirstOrder::of(self.joint))
+        *self.first_order.get_or_init(|| FirstOrder::of(&self.joint.trials))
     }
 
     /// The distinct magnitudes of the input, ascending.

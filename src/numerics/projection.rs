@@ -96,6 +96,11 @@ impl Projection {
         Self { residuals: basis.residual(values), basis }
     }
 
+    /// `(1 − QQᵀ)·values`.
+    pub(crate) fn into_residuals(self) -> Vec<f64> {
+        self.residuals
+    }
+
     pub(crate) fn samples(&self) -> usize {
         self.residuals.len()
     }

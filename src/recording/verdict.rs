@@ -10,7 +10,7 @@ use super::markdown::plain;
 use super::palette::{self, color};
 use super::paths::{self, at};
 use crate::delay::{Check, Condition, Decision, FineDelay, Lag, LagPart, Outcome};
-use crate::delay::{Settings, Verdict};
+use crate::delay::{Settings, Settling, Verdict};
 use crate::experiment::Joint;
 use crate::report::{EstimatedJoint, dead_time_sentences};
 use crate::wording::{doubt_percent, number, remedy_text};
@@ -310,6 +310,7 @@ impl Facts<'_, '_> {
         }
         rows.extend(decision.fine.map(|fine| self.interval(fine)));
         rows.extend(self.trial.estimate.lag.iter().flat_map(lag_rows));
+        rows.extend(self.trial.estimate.settling.iter().flat_map(settling_rows));
         rows.extend(self.how_near());
         let rows: Vec<_> =
             rows.iter().map(|(name, value)| format!("| {name} | {value} |")).collect();
@@ -423,10 +424,26 @@ impl Facts<'_, '_> {
     }
 }
 
+/// A number with half of its 95 % interval.
+fn known(part: LagPart) -> String {
+    format!("{} ± {}", number(part.value), number(1.96 * part.std_error))
+}
+
+/// How the output settles behind its dead times.
+fn settling_rows(settling: &Settling) -> Vec<(String, String)> {
+    let rows = [
+        ("output settles with the time constant", Some(settling.rising_s())),
+        ("the same where the input falls", settling.falling_s()),
+        ("further lag", settling.further_s()),
+    ];
+    let row = |(name, part): (&str, Option<LagPart>)| {
+        Some((name.to_owned(), format!("{} s", known(part?))))
+    };
+    rows.into_iter().filter_map(row).collect()
+}
+
 /// What all steps of the joint follow their dead times with.
 fn lag_rows(lag: &Lag) -> Vec<(String, String)> {
-    let known =
-        |part: LagPart| format!("{} ± {}", number(part.value), number(1.96 * part.std_error));
     if lag.order() == 0 {
         let word = if lag.is_determined() { "none" } else { "not determined" };
         return vec![("lag behind the dead time".to_owned(), word.to_owned())];

@@ -1,6 +1,6 @@
 //! A joint with its estimate.
 
-use crate::delay::{AgainstState, DelayTable, Lag};
+use crate::delay::{AgainstState, DelayTable, Lag, Settling};
 use crate::experiment::Joint;
 use crate::study::JointEstimate;
 
@@ -17,6 +17,11 @@ impl EstimatedJoint<'_> {
     /// The lag that its trials share, where the method looks for one.
     pub fn lag(&self) -> Option<&Lag> {
         self.estimate.estimated().find_map(|trial| trial.lag.as_ref())
+    }
+
+    /// How its output settles, where it does.
+    pub fn settling(&self) -> Option<&Settling> {
+        self.estimate.estimated().find_map(|trial| trial.settling.as_ref())
     }
 
     /// The joint's delays by kind of step and level.

@@ -86,10 +86,32 @@ fn low_pass_text(settings: &Settings) -> String {
 pub(crate) const LAG_NOT_DETERMINED: &str = "the lag is not determined: each step starts from \
     rest in a way of its own, and its onset is found by itself";
 
-/// The lag of a joint in words, where one was looked for.
+/// A number with half of its 95 % interval.
+fn known(part: LagPart) -> String {
+    format!("{:.4} ± {:.4}", part.value, 1.96 * part.std_error)
+}
+
+/// How the output of a joint settles, in words, where it does.
+fn settling_line(joint: &EstimatedJoint<'_>) -> Option<String> {
+    let settling = joint.settling()?;
+    let rising = format!("time constant {} s", known(settling.rising_s()));
+    let falling = settling.falling_s();
+    let falling = falling.map(|part| format!("{} s where the input falls", known(part)));
+    let further = settling.further_s().map(|part| format!("a further lag of {} s", known(part)));
+    let parts: Vec<String> = [Some(rising), falling, further].into_iter().flatten().collect();
+    Some(format!(
+        "{}: the output settles ({}): each onset is that of an exponential, whatever the method\n",
+        joint.joint.name,
+        parts.join(", ")
+    ))
+}
+
+/// The lag of a joint in words, or how its output settles, where one was looked for.
 pub(super) fn lag_line(joint: &EstimatedJoint<'_>) -> Option<String> {
+    if let Some(line) = settling_line(joint) {
+        return Some(line);
+    }
     let lag = joint.lag()?;
-    let known = |part: LagPart| format!("{:.4} ± {:.4}", part.value, 1.96 * part.std_error);
     let parts = [
         lag.time_constant_s().map(|part| format!("time constant {} s", known(part))),
         lag.period_s().map(|part| format!("period {} s", known(part))),

@@ -43,7 +43,22 @@ impl FreeMotion {
             }
             row
         };
-        let rows: Vec<_> = (0..longest).map(row).collect();
+        Self::with_rows((0..longest).map(row).collect())
+    }
+
+    /// Of an output that settles at a level with a time constant in samples: the same without the
+    /// slope of the line.
+    pub(crate) fn to_a_level(time_constant: f64, longest: usize) -> Self {
+        let row = |k: usize| {
+            let mut row = [0.0; COLUMNS];
+            row[0] = 1.0;
+            row[LINE] = (-(k as f64) / time_constant).exp();
+            row
+        };
+        Self::with_rows((0..longest).map(row).collect())
+    }
+
+    fn with_rows(rows: Vec<[f64; COLUMNS]>) -> Self {
         let mut products = [[0.0; COLUMNS]; COLUMNS];
         let mut factors = vec![Factors::default()];
         for row in &rows {

@@ -9,9 +9,11 @@ mod interface;
 mod lag_aware;
 mod noise_test;
 mod registry;
+mod settling;
 mod step_context;
 mod two_line;
 
 pub(super) use hinge::decide_by_broken_lines;
 pub(super) use interface::DelayMethod;
 pub(super) use registry::implementation;
+pub(super) use settling::decide_settling;

@@ -75,6 +75,26 @@ impl StepContext<'_> {
         candidates: Candidates,
         fine: Option<FineDelay>,
     ) -> Decision {
+        self.decision_with(self.motion(), segment, row_length, (candidates, fine))
+    }
+
+    /// That on an output that settles: its rest at a level bounds no reaction, nor does a stop.
+    pub(super) fn settling_decision(
+        &self,
+        segment: Segment,
+        candidates: Candidates,
+        fine: Option<FineDelay>,
+    ) -> Decision {
+        self.decision_with(None, segment, 1, (candidates, fine))
+    }
+
+    fn decision_with(
+        &self,
+        motion: Option<StepMotion>,
+        segment: Segment,
+        row_length: usize,
+        (candidates, fine): (Candidates, Option<FineDelay>),
+    ) -> Decision {
         let (number, input_step) = (self.index + 1, self.step());
         let hold = self.next_sample() - input_step.sample;
         let facts = Facts {
@@ -84,7 +104,7 @@ impl StepContext<'_> {
             hold,
             output: &self.output()[segment.indices()],
             first: segment.first,
-            motion: self.motion(),
+            motion,
             rows: segment.len() / row_length,
             best: candidates.best(),
             fine,

@@ -34,7 +34,20 @@ impl OnsetPath {
             }
         }
         if settings.max_delay.is_none() && path.onsets.iter().any(|onset| !onset.alone) {
-            path.connect(output);
+            path.connect(output, &Pieces::Lines);
+        }
+        path
+    }
+
+    /// The reactions of an output that settles with a time constant in samples. Its rest is but a
+    /// level at which it has settled: it bounds nothing.
+    pub(crate) fn settling(trial: &Prepared<'_>, settings: &Settings, time_constant: f64) -> Self {
+        let output = trial.output();
+        let samples = output.len();
+        let mut path = Self { onsets: onsets(samples, &trial.steps, settings), samples };
+        if settings.max_delay.is_none() {
+            let longest = output.len().min(LONGEST_MOTION);
+            path.connect(output, &Pieces::Motions(FreeMotion::to_a_level(time_constant, longest)));
         }
         path
     }
@@ -113,17 +126,17 @@ impl OnsetPath {
         start..end.min(last).max(start)
     }
 
-    /// Puts every onset at its position in the cheapest path of lines.
+    /// Puts every onset at its position in the cheapest path of `pieces`.
     ///
     /// At first every reaction is taken to come before the next step; where a hold is not
     /// long beside the delays that gives, it may also come later.
-    fn connect(&mut self, output: &[f64]) {
+    fn connect(&mut self, output: &[f64], pieces: &Pieces) {
         let late = lateness(output);
         let latest: Vec<usize> = self.onsets.iter().map(|onset| onset.latest).collect();
         for onset in &mut self.onsets {
             onset.latest = onset.latest.min(onset.next);
         }
-        self.relocate(output, late, &Pieces::Lines);
+        self.relocate(output, late, pieces);
         let longest = self.longest_delay();
         let mut any_late = false;
         for (onset, latest) in self.onsets.iter_mut().zip(latest) {
@@ -133,7 +146,7 @@ impl OnsetPath {
             }
         }
         if any_late {
-            self.relocate(output, late, &Pieces::Lines);
+            self.relocate(output, late, pieces);
         }
     }
 

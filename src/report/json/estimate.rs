@@ -8,7 +8,7 @@ use super::settings::SettingsJson;
 use crate::delay::{
     AgainstOfKind, AgainstState, Chosen, Condition, Correlation, Direction, Lag, LagPart,
 };
-use crate::delay::{DelayRow, DelayTable, KindDelay, Neutral, Settings, StepState};
+use crate::delay::{DelayRow, DelayTable, KindDelay, Neutral, Settings, Settling, StepState};
 use crate::experiment::{Experiment, ReadOptions, Source};
 use crate::report::decisions::detailed_rows;
 use crate::report::delay_table::DelayTableRow;
@@ -65,6 +65,8 @@ struct JointJson<'a> {
     chosen: Option<ChosenJson>,
     #[serde(skip_serializing_if = "Option::is_none")]
     lag: Option<LagJson>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    settling: Option<SettlingJson>,
     neutral: Option<NeutralJson>,
     delay_table: Vec<DelayRowJson<'a>>,
     delay_by_transition: Vec<KindJson>,
@@ -130,6 +132,15 @@ struct LagJson {
     time_constant_s: Option<LagPartJson>,
     period_s: Option<LagPartJson>,
     damping: Option<LagPartJson>,
+}
+
+/// How an output settles, in seconds.
+#[derive(Debug, Serialize)]
+#[expect(clippy::struct_field_names, reason = "each name says its unit, as in the schema")]
+struct SettlingJson {
+    time_constant_s: LagPartJson,
+    falling_time_constant_s: Option<LagPartJson>,
+    further_lag_s: Option<LagPartJson>,
 }
 
 #[derive(Debug, Serialize)]
@@ -253,6 +264,7 @@ impl<'a> JointJson<'a> {
             settings: is_own.then(|| (&joint.estimate.settings).into()),
             chosen: chosen.map(Into::into),
             lag: joint.lag().map(LagJson::new),
+            settling: joint.settling().map(SettlingJson::new),
             neutral: neutral.map(|Neutral { level, low, high }| NeutralJson { level, low, high }),
             delay_table: rows.iter().map(|row| DelayRowJson::new(&joint.joint.name, row)).collect(),
             delay_by_transition: kinds.into_iter().map(Into::into).collect(),
@@ -311,6 +323,16 @@ impl LagJson {
             time_constant_s: lag.time_constant_s().map(Into::into),
             period_s: lag.period_s().map(Into::into),
             damping: lag.damping().map(Into::into),
+        }
+    }
+}
+
+impl SettlingJson {
+    fn new(settling: &Settling) -> Self {
+        Self {
+            time_constant_s: settling.rising_s().into(),
+            falling_time_constant_s: settling.falling_s().map(Into::into),
+            further_lag_s: settling.further_s().map(Into::into),
         }
     }
 }

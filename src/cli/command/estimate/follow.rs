@@ -50,7 +50,8 @@ pub(crate) fn follow(args: &Args, runs: &[Settings], stream: &Stream) -> anyhow:
 
 /// What the whole record decides is not known yet: each change of the input is a step.
 fn as_it_grows(settings: &Settings) -> Settings {
-    Settings { input: InputKind::Steps, every_change: true, ..settings.clone() }
+    let input = InputKind::Steps;
+    Settings { input, every_change: true, settles: Some(false), ..settings.clone() }
 }
 
 fn watch(

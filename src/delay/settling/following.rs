@@ -1,0 +1,197 @@
+//! Whether an output follows its input itself and not its integral: a speed, a pressure, a
+//! temperature, a servo's position. It then settles at a level for each level of the input, as a
+//! first order with dead time,
+//!
+//! ```text
+//! T y' + y = K u(t − τ) + y0
+//! ```
+//!
+//! # References
+//! Åström, K. J., and Hägglund, T., 2006, Advanced PID Control, section 2.4 (processes with
+//! self-regulation).
+
+use crate::experiment::Trial;
+use crate::units::floor_to_index;
+
+/// Squared correlation of output and input from which the output follows the input. Chosen: of
+/// measured machines, servos and speeds have 0.94 and more, angles and positions that are driven
+/// by a speed 0.36 and less.
+const FOLLOWS: f64 = 0.7;
+
+/// Samples that a correlation needs.
+const FEWEST: usize = 200;
+
+/// The lag in samples at which the output follows the input best, and the squared correlation
+/// there; none where it does not follow it.
+pub(crate) fn followed(trials: &[Trial]) -> Option<(usize, f64)> {
+    let samples: usize = trials.iter().map(Trial::len).sum();
+    if samples < FEWEST {
+        return None;
+    }
+    let best = |of: fn(f64) -> f64| {
+        let tried = lags(trials).map(|lag| (lag, correlation(trials, lag, of)));
+        tried.max_by(|a, b| a.1.total_cmp(&b.1))
+    };
+    let follows = best(|input| input).filter(|(_, squared)| *squared >= FOLLOWS)?;
+    (follows.1 > best(sign)?.1).then_some(follows)
+}
+
+/// Samples that the output may lag behind.
+fn lags(trials: &[Trial]) -> impl Iterator<Item = usize> + use<> {
+    /// Longest lag as a part of the shortest trial, and each lag of the one before.
+    const PART: usize = 10;
+    const RATIO: f64 = 1.25;
+    let longest = trials.iter().map(Trial::len).min().unwrap_or(0) / PART;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small, above 0")]
+    let next = |lag: &usize| Some((*lag as f64 * RATIO) as usize + 1);
+    std::iter::successors(Some(0), next).take_while(move |lag| *lag <= longest)
+}
+
+/// Squared correlation of the output with what `of` makes of the input `lag` samples before.
+fn correlation(trials: &[Trial], lag: usize, of: fn(f64) -> f64) -> f64 {
+    let mut sums = Moments::default();
+    for trial in trials {
+        let behind = trial.output().get(lag..).unwrap_or_default();
+        trial.input().iter().zip(behind).for_each(|(input, output)| sums.push(of(*input), *output));
+    }
+    sums.r_squared()
+}
+
+fn sign(input: f64) -> f64 {
+    if input == 0.0 { 0.0 } else { input.signum() }
+}
+
+/// A first order `T y' + y = K u(t − τ) + y0`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FirstOrder {
+    pub(crate) time_constant_s: f64,
+    pub(crate) dead_time_s: f64,
+    pub(crate) static_gain: f64,
+    pub(crate) at_zero: f64,
+}
+
+impl FirstOrder {
+    /// The one that the outputs of `trials` follow best; none where they do not follow the input.
+    pub(crate) fn of(trials: &[Trial]) -> Option<Self> {
+        /// Times of 1.5 each, from two samples on.
+        const COUNT: usize = 16;
+        // The whole lag is a dead time and the time constant behind it.
+        let (longest, _) = followed(trials)?;
+        Some(best(trials, longest, f64::INFINITY, COUNT)?.0)
+    }
+
+    /// Where the output settles at `input`.
+    pub(crate) fn settled_at(&self, input: f64) -> f64 {
+        self.at_zero + self.static_gain * input
+    }
+
+    /// Seconds after which the output has settled to 5 %.
+    pub(crate) fn settling_s(&self) -> f64 {
+        /// Time constants: ln 20.
+        const CONSTANTS: f64 = 3.0;
+        self.dead_time_s + CONSTANTS * self.time_constant_s
+    }
+
+    /// The same where time constants as long as holds of the input hide it from the correlation
+    /// with the input alone: the output is compared with the input behind a lag.
+    pub(super) fn within_holds(trials: &[Trial], hold_s: f64) -> Option<Self> {
+        /// Squared correlation (chosen).
+        const FOLLOWS: f64 = 0.8;
+        let (found, squared) = Self::likely_within_holds(trials, hold_s)?;
+        let Self { time_constant_s, dead_time_s, .. } = found;
+        let dead = |trial: &Trial| floor_to_index(dead_time_s / trial.period().seconds());
+        let dead = trials.iter().map(dead).min().unwrap_or(0);
+        // A joint that runs into its stops follows the sign of the input as well.
+        let of_sign = lagging(trials, time_constant_s, dead, sign).r_squared();
+        (squared >= FOLLOWS && squared > of_sign).then_some(found)
+    }
+
+    /// The best of what is said to settle, with the squared correlation.
+    pub(super) fn likely_within_holds(trials: &[Trial], hold_s: f64) -> Option<(Self, f64)> {
+        const COUNT: usize = 40;
+        /// Holds that a time constant lasts at most: a longer one is an integrator's.
+        const HOLDS: f64 = 2.0;
+        let shortest = trials.iter().map(|trial| trial.period().seconds()).fold(0.0, f64::max);
+        let longest = floor_to_index(hold_s / shortest);
+        best(trials, longest, HOLDS * hold_s, COUNT)
+    }
+}
+
+/// The first order with a dead time of at most `longest` samples that explains the output best, of
+/// `count` time constants up to so many seconds; and the squared correlation.
+fn best(
+    trials: &[Trial],
+    longest: usize,
+    longest_s: f64,
+    count: usize,
+) -> Option<(FirstOrder, f64)> {
+    /// Time constants: the shortest in sample periods, each of the one before.
+    const SHORTEST: f64 = 2.0;
+    const RATIO: f64 = 1.5;
+    let dead = || lags(trials).take_while(|lag| *lag <= longest);
+    let periods = trials.iter().map(|trial| trial.period().seconds());
+    let period_s = periods.fold(0.0, f64::max);
+    let times = std::iter::successors(Some(SHORTEST * period_s), |time| Some(RATIO * time));
+    let times = times.take_while(|time| *time <= longest_s).take(count);
+    let pairs = times.flat_map(|time_s| dead().map(move |lag| (time_s, lag)));
+    let tried = pairs.map(|(time_s, lag)| (time_s, lag, lagging(trials, time_s, lag, |u| u)));
+    let best = tried.max_by(|a, b| a.2.r_squared().total_cmp(&b.2.r_squared()));
+    let (time_constant_s, lag, sums) = best?;
+    let (static_gain, at_zero) = sums.line();
+    let dead_time_s = lag as f64 * period_s;
+    Some((FirstOrder { time_constant_s, dead_time_s, static_gain, at_zero }, sums.r_squared()))
+}
+
+/// How the output goes with what `of` makes of the input `dead` samples before, behind a lag of the
+/// first order.
+fn lagging(trials: &[Trial], time_s: f64, dead: usize, of: fn(f64) -> f64) -> Moments {
+    let mut sums = Moments::default();
+    for trial in trials {
+        let left = (-trial.period().seconds() / time_s).exp();
+        let mut state = trial.input().first().copied().map_or(0.0, of);
+        let behind = trial.output().get(dead..).unwrap_or_default();
+        for (input, output) in trial.input().iter().zip(behind) {
+            sums.push(state, *output);
+            state = of(*input) + (state - of(*input)) * left;
+        }
+    }
+    sums
+}
+
+/// Means, variances and covariance of pairs, updated one by one.
+#[derive(Clone, Copy, Debug, Default)]
+struct Moments {
+    count: f64,
+    mean: (f64, f64),
+    /// Sums of squares and of products about the means.
+    xx: f64,
+    yy: f64,
+    xy: f64,
+}
+
+impl Moments {
+    /// Welford's update; pairs that are not numbers are left out.
+    fn push(&mut self, x: f64, y: f64) {
+        if !(x.is_finite() && y.is_finite()) {
+            return;
+        }
+        self.count += 1.0;
+        let (dx, dy) = (x - self.mean.0, y - self.mean.1);
+        self.mean.0 += dx / self.count;
+        self.mean.1 += dy / self.count;
+        self.xx += dx * (x - self.mean.0);
+        self.yy += dy * (y - self.mean.1);
+        self.xy += dx * (y - self.mean.1);
+    }
+
+    fn r_squared(&self) -> f64 {
+        let scale = self.xx * self.yy;
+        if scale > 0.0 { self.xy * self.xy / scale } else { 0.0 }
+    }
+
+    /// Slope and intercept of the regression of the second on the first.
+    fn line(&self) -> (f64, f64) {
+        let slope = if self.xx > 0.0 { self.xy / self.xx } else { 0.0 };
+        (slope, self.mean.1 - slope * self.mean.0)
+    }
+}
