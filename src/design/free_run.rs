@@ -8,7 +8,7 @@ use rand::SeedableRng as _;
 use rand::seq::SliceRandom as _;
 use rand_chacha::ChaCha8Rng;
 
-use super::stops::{Stops, extent};
+use super::stops::{SHORTEST_RUN, Stops, extent};
 use super::trend::{Travel, Trend};
 use crate::effect::{Effect as _, EndStop};
 use crate::experiment::{Joint, Trial};
@@ -28,9 +28,6 @@ const RUNS: usize = 6;
 /// Orders in which motions that end at a stop are joined: that of the log, and others, as a plan
 /// has them in an order of its own.
 const ORDERS: usize = 4;
-
-/// Samples of the shortest free run that counts.
-pub(super) const SHORTEST_RUN: usize = 20;
 
 /// How much farther off a prediction may be than the farthest so far. A few parts of one record
 /// stand for all that is to come: the farthest of five normal errors is 1.2 standard deviations

@@ -1,8 +1,10 @@
 //! Where a joint stands at its stops, which take off whatever a prediction was off before.
 
-use super::free_run::SHORTEST_RUN;
 use crate::experiment::{Joint, Trial};
 use crate::fit::follows_input;
+
+/// Samples of the shortest free run that counts.
+pub(super) const SHORTEST_RUN: usize = 20;
 
 /// The stops of a joint, as its log shows them: places at which it stands although its input would
 /// move it.
