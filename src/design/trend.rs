@@ -113,7 +113,9 @@ mod tests {
     #[test]
     fn motions_of_one_speed_and_few_motions_show_none() {
         let mut same = strokes(0.2);
-        same.iter_mut().for_each(|(travel, _)| travel.seconds = 3.0);
+        for (travel, _) in &mut same {
+            travel.seconds = 3.0;
+        }
         assert_eq!(Trend::of(&same), None);
         assert_eq!(Trend::of(&strokes(0.2)[..7]), None);
     }

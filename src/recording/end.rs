@@ -52,14 +52,13 @@ fn sorted(footer: &[u8]) -> Result<Vec<u8>, CodecError> {
     // The type that a footer is read as has no name here.
     let mut stores = RrdFooter::default().to_transport(())?;
     stores.clone_from(&Decodable::from_rrd_bytes(footer)?);
-    let mut manifests = stores.to_application(())?.manifests;
-    for manifest in manifests.values_mut() {
+    let mut manifests: Vec<_> = stores.to_application(())?.manifests.into_iter().collect();
+    manifests.sort_by(|a, b| a.0.cmp(&b.0));
+    for (_, manifest) in &mut manifests {
         let mut fields: Vec<_> = manifest.sorbet_schema.fields().to_vec();
         fields.sort();
         manifest.sorbet_schema.fields = fields.into();
     }
-    let mut manifests: Vec<_> = manifests.into_iter().collect();
-    manifests.sort_by(|a, b| a.0.cmp(&b.0));
     let manifests = manifests.iter().map(|(_, manifest)| manifest.to_transport(()));
     stores.manifests = manifests.collect::<Result<_, _>>()?;
     let mut bytes = Vec::new();

@@ -50,6 +50,7 @@ impl std::fmt::Debug for Watched<'_> {
 
 impl<'a> Watched<'a> {
     /// With further joints that share the supply.
+    #[must_use]
     pub fn beside(self, others: &'a [Other<'a>]) -> Self {
         Self { others, ..self }
     }
