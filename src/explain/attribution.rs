@@ -82,8 +82,7 @@ impl Grown<'_, '_> {
         let others =
             |one: &&LeftOut| replacements(self.record, &self.whole.model, one.effect, self.options);
         let changes: Vec<Change> = found.iter().flat_map(others).collect();
-        let goal = self.misfit.growth_without_consequence(self.record, self.whole).powi(2);
-        let tried = fitted_after(self.record, self.whole, &changes, goal, workers);
+        let tried = fitted_after(self.record, self.whole, &changes, workers);
         let alternatives = |effect: &'static str| {
             let as_little = tried.iter().filter_map(|(change, fit)| match *change {
                 Change::Replaced { old, new } if old == effect => {

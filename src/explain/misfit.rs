@@ -41,12 +41,6 @@ impl Misfit {
         self.share(record, worse, better).max(unseen.unwrap_or(f64::NEG_INFINITY))
     }
 
-    /// What the error of `fit` may be in parts of its own to be no larger by a consequence.
-    pub(super) fn growth_without_consequence(self, record: &FitRecord<'_>, fit: &Fit) -> f64 {
-        let error = error(record, fit).max(f64::MIN_POSITIVE);
-        1.0 + CONSEQUENCE * (self.first - self.noise) / error
-    }
-
     /// Whether an effect has a practical consequence with which the error falls from that of
     /// `worse` to that of `better`.
     pub(super) fn has_consequence(self, record: &FitRecord<'_>, worse: &Fit, better: &Fit) -> bool {

@@ -6,7 +6,7 @@
 
 use super::eligible::could_be_missing;
 use super::extension::Extension;
-use super::screening::{ANY, fit_best};
+use super::screening::fit_best;
 use super::workers::Workers;
 use crate::effect::{Effect, RecordRange};
 use crate::fit::{Directions, Fit, FitRecord, Score};
@@ -33,7 +33,7 @@ pub(super) fn pairs(
         Some((pair.map(|effect| effect.spec().id), with_both(record, &base.model, *pair)?))
     };
     let models: Vec<_> = scored.iter().filter_map(with).collect();
-    let fits = fit_best(record, &surveyed, &models, (range, ANY), |_| FINALISTS, workers);
+    let fits = fit_best(record, &surveyed, &models, range, |_| FINALISTS, workers);
     fits.into_iter().map(|(ids, fit)| Extension { effects: ids.to_vec(), fit }).collect()
 }
 

@@ -6,7 +6,7 @@ use super::eligible::{eligible, signal_range};
 use super::extension::Extension;
 use super::options::Options;
 use super::pairs::pairs;
-use super::screening::{ANY, fit_best};
+use super::screening::fit_best;
 use super::workers::Workers;
 use crate::diagnosis::{ErrorFigures, NEAR_NOISE};
 use crate::effect::{Effect, RecordRange};
@@ -90,7 +90,7 @@ impl Search<'_, '_> {
             let limit = costs.first().map_or(0.0, |best| HOPELESS * best);
             costs.iter().filter(|cost| **cost <= limit).count().clamp(least, most)
         };
-        let fits = fit_best(self.record, surveyed, &models, (self.range, ANY), kept, workers);
+        let fits = fit_best(self.record, surveyed, &models, self.range, kept, workers);
         let extension = |(id, fit)| Extension { effects: vec![id], fit };
         let mut extensions: Vec<Extension> = fits.into_iter().map(extension).collect();
         if let Some(other) = self.as_first_order() {

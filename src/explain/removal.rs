@@ -19,10 +19,6 @@ const HARM: f64 = 0.01;
 /// Chosen: what is worse by more does not become better by a fit.
 const WORSE: f64 = 1.3;
 
-/// What the cost may be after a fit, in parts of the whole model's, for the change to be of use.
-/// Chosen: two parameters less are worth a tenth of the cost of a hundred independent samples.
-const GOAL: f64 = 1.1;
-
 /// Changes that are fitted, at most. Chosen: each more costs a fit.
 const FINALISTS: usize = 6;
 
@@ -44,8 +40,7 @@ impl Removal<'_> {
         whole: &Fit,
         workers: &impl Workers,
     ) -> Option<(Change, Fit)> {
-        let changes = self.changes(record, &whole.model);
-        let tried = fitted_after(record, whole, &changes, GOAL, workers);
+        let tried = fitted_after(record, whole, &self.changes(record, &whole.model), workers);
         let noise = NoiseMemory::of(record, whole);
         let of_whole = noise.evidence(record, whole);
         let judged = tried.into_iter().filter_map(|(change, fit)| {
@@ -97,13 +92,11 @@ fn looks_like(one: &str, other: &str) -> bool {
     one != other && (near(one, other) || near(other, one))
 }
 
-/// The models after the best few of `changes` that a survey does not rule out, fitted; given up
-/// where the sum of squares will not be `goal` times that of `whole`.
+/// The models after the best few of `changes` that a survey does not rule out, fitted.
 pub(super) fn fitted_after(
     record: &FitRecord<'_>,
     whole: &Fit,
     changes: &[Change],
-    goal: f64,
     workers: &impl Workers,
 ) -> Vec<(Change, Fit)> {
     if changes.is_empty() {
@@ -118,7 +111,7 @@ pub(super) fn fitted_after(
     let kept = |costs: &[f64]| {
         costs.iter().filter(|cost| **cost < WORSE * of_whole.cost).count().min(FINALISTS)
     };
-    fit_best(record, &thinned, &models, (&range, goal * whole.cost), kept, workers)
+    fit_best(record, &thinned, &models, &range, kept, workers)
 }
 
 /// `model` after a change.

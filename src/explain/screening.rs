@@ -5,20 +5,16 @@
 
 use super::workers::Workers;
 use crate::effect::RecordRange;
-use crate::fit::{Fit, FitRecord, Survey, fit_to_reach, survey};
+use crate::fit::{Fit, FitRecord, Survey, fit_to_compare_beside, survey};
 use crate::model::JointModel;
 
-/// A goal that every fit reaches.
-pub(super) const ANY: f64 = f64::INFINITY;
-
 /// Surveys `models` on `surveyed` and fits the best of them to `record`; `kept` says how many,
-/// of the ascending costs of all surveys. A fit that will not be as good as `goal`, a sum of
-/// squares, is given up.
+/// of the ascending costs of all surveys.
 pub(super) fn fit_best<K: Copy + Send + Sync>(
     record: &FitRecord<'_>,
     surveyed: &FitRecord<'_>,
     models: &[(K, JointModel)],
-    (range, goal): (&RecordRange<'_>, f64),
+    range: &RecordRange<'_>,
     kept: impl FnOnce(&[f64]) -> usize,
     workers: &impl Workers,
 ) -> Vec<(K, Fit)> {
@@ -30,7 +26,7 @@ pub(super) fn fit_best<K: Copy + Send + Sync>(
     let costs: Vec<f64> = surveys.iter().map(|(_, survey)| survey.cost).collect();
     surveys.truncate(kept(&costs));
     let fit = |((key, model), survey): &(&(K, JointModel), Survey)| {
-        Some((*key, fit_to_reach(record, (&survey.model, model), range, goal).ok()?))
+        Some((*key, fit_to_compare_beside(record, &survey.model, model, range).ok()?))
     };
     workers.map(&surveys, fit).into_iter().flatten().collect()
 }

@@ -40,9 +40,6 @@ pub(super) struct Limits {
     /// Whether slopes are differenced anew before a descent has converged; where it is only to
     /// be seen where one leads, those that were mended will do.
     pub(super) sure: bool,
-    /// The sum of squares that is to be reached: a descent that will not is given up; infinite
-    /// where each is to go on.
-    pub(super) goal: f64,
 }
 
 /// Where a descent ended.
@@ -140,7 +137,7 @@ impl<'d, 'p, 'r> Descent<'d, 'p, 'r> {
     }
 
     fn run(mut self, limits: Limits) -> (Termination, Option<DMatrix<f64>>) {
-        for tried in 0..limits.patience {
+        for _ in 0..limits.patience {
             if !self.is_finite() {
                 return self.ended(Termination::Numerical);
             }
@@ -151,11 +148,7 @@ impl<'d, 'p, 'r> Descent<'d, 'p, 'r> {
                 self.refresh();
                 continue;
             }
-            let left = limits.patience - tried;
-            if self.damping > MOST_DAMPING
-                || limits.sure && self.creeps(limits.relative_gain)
-                || self.will_not_reach(limits.goal, left)
-            {
+            if self.damping > MOST_DAMPING || limits.sure && self.creeps(limits.relative_gain) {
                 return self.ended(Termination::NoDescent);
             }
             self.costs.push(self.normal.cost);
@@ -185,22 +178,11 @@ impl<'d, 'p, 'r> Descent<'d, 'p, 'r> {
         gain <= relative_gain * self.normal.cost
     }
 
-    /// By how much the last steps made the sum of squares less, together.
-    fn gained(&self) -> Option<f64> {
-        let before = self.costs.len().checked_sub(CREEPING)?;
-        Some(self.costs[before] - self.normal.cost)
-    }
-
-    /// Whether they gained no more than one of them alone should.
+    /// Whether the last steps together made the sum of squares less by no more than one of them
+    /// alone should.
     fn creeps(&self, relative_gain: f64) -> bool {
-        self.gained().is_some_and(|gained| gained < relative_gain * self.normal.cost)
-    }
-
-    /// Whether `left` more steps, of which each gains as much as the last did in the mean, would
-    /// leave a sum of squares above `goal`: the nearer its end, the less a step gains.
-    fn will_not_reach(&self, goal: f64, left: usize) -> bool {
-        let to_gain = self.normal.cost - goal;
-        self.gained().is_some_and(|gained| gained / CREEPING as f64 * (left as f64) < to_gain)
+        let before = self.costs.len().checked_sub(CREEPING).map(|index| self.costs[index]);
+        before.is_some_and(|before| before - self.normal.cost < relative_gain * self.normal.cost)
     }
 
     /// The slopes anew, of windows that start where they are best now; back to the last such

@@ -52,26 +52,21 @@ pub fn fit_to_compare(
     model: &JointModel,
     range: &RecordRange<'_>,
 ) -> Result<Fit, FitError> {
-    fit_to_reach(record, (model, model), range, f64::INFINITY)
+    fit_to_compare_beside(record, model, model, range)
 }
 
-/// Fits as [`fit_to_compare`] does, and is given up where the training error will not be as small
-/// as `goal`, a sum of squares: at the rate of its last steps it would not within all that are
-/// tried. What is left above `goal` then is not the best of its structure.
-///
-/// The error is not larger than that of `other`, either, which is the same structure at other
-/// values: those of a simpler model, and neutral ones.
+/// Fits as [`fit_to_compare`] does; the error is not larger than that of `other`, either, which
+/// is the same structure at other values: those of a simpler model, and neutral ones.
 ///
 /// # Errors
 /// As [`fit`].
-pub fn fit_to_reach(
+pub fn fit_to_compare_beside(
     record: &FitRecord<'_>,
-    (model, other): (&JointModel, &JointModel),
+    model: &JointModel,
+    other: &JointModel,
     range: &RecordRange<'_>,
-    goal: f64,
 ) -> Result<Fit, FitError> {
-    let limits = Limits { goal, ..comparing(record.training_samples()) };
-    fit_to(record, (model, other), range, limits)
+    fit_to(record, (model, other), range, comparing(record.training_samples()))
 }
 
 fn fit_to(

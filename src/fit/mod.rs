@@ -28,7 +28,7 @@ mod window;
 
 pub use evaluation::Evaluation;
 pub(crate) use first_order::follows_input;
-pub use least_squares::{assess, fit, fit_to_compare, fit_to_reach, survey};
+pub use least_squares::{assess, fit, fit_to_compare, fit_to_compare_beside, survey};
 pub use record::FitRecord;
 pub use result::{Assessment, Fit, FitError, Parameter, Status, Survey, Termination};
 pub use score::{Directions, Score};
