@@ -146,6 +146,27 @@ fn a_joint_that_moves_on_does_not_settle_and_the_paper_asks_nothing() {
 }
 
 #[test]
+fn a_time_constant_shorter_than_two_samples_is_not_shown_by_them() {
+    let mut next = random(4);
+    let levels: Vec<f64> = (0..60).map(|_| 4.0 * next()).collect();
+    let period_s = 0.1;
+    let left = (-period_s / 0.06_f64).exp();
+    let (mut input, mut output) = (Vec::new(), Vec::new());
+    let mut y = levels[0];
+    for level in levels.iter().flat_map(|level| [*level; 20]) {
+        y = level + (y - level) * left;
+        input.push(level);
+        output.push(y + 0.005 * normal(&mut next));
+    }
+    let period = SamplePeriod::from_seconds(period_s).unwrap();
+    let trial = Trial::new("1", 0.0, period, input, output).unwrap();
+    for method in Method::all() {
+        let found = estimate_joint(std::slice::from_ref(&trial), &settings(method)).remove(0);
+        assert_eq!(found.unwrap().settling, None, "{method}");
+    }
+}
+
+#[test]
 fn a_step_in_a_dead_band_is_no_reaction() {
     let (trial, _) = record(PLAIN, 3);
     // The input changes once more, in the middle of the fifth hold, and the output does not.

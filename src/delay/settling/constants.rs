@@ -47,7 +47,8 @@ impl TimeConstants {
         self.further.unwrap_or(0.0)
     }
 
-    fn shortest(&self) -> f64 {
+    /// The shorter of rising and falling.
+    pub(super) fn shortest(&self) -> f64 {
         self.falling.map_or(self.rising, |falling| falling.min(self.rising))
     }
 

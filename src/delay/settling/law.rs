@@ -45,6 +45,10 @@ const FEWEST: usize = 3;
 /// Samples from which a further lag is told from an onset between two of them (chosen).
 const SEEN: f64 = 2.0;
 
+/// Samples of the shortest time constant that samples show: behind a shorter one an output goes to
+/// its level at once, and at which sample it left the one before is all that is known.
+const RESOLVED: f64 = 2.0;
+
 /// Mean holds that a time constant lasts at most: a longer one is an integrator's.
 const MOST_HOLDS: f64 = 3.0;
 
@@ -72,7 +76,9 @@ impl Settling {
         let onsets = all_onsets(&alike, settings, &rough);
         let (search, other) = selected(Search::of(&onsets, rough, &white).descended());
         let longest = MOST_HOLDS * mean_hold(&alike);
-        let is_law = search.constants.rising <= longest && is_exponential(&search, &alike);
+        let is_resolved = (RESOLVED..=longest).contains(&search.constants.rising)
+            && search.constants.shortest() >= RESOLVED;
+        let is_law = is_resolved && is_exponential(&search, &alike);
         if search.windows() < FEWEST || !(is_law || settings.settles == Some(true)) {
             return None;
         }
