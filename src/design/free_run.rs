@@ -88,7 +88,7 @@ impl FreeRunError {
     ///
     /// A stop takes off the error that a run has made. So runs end where the joint comes to a
     /// stop, and go on where it leaves it with the error that they had; so do they from one trial
-    /// to the next. Where motions from stop to stop are too few to show a [`Trend`], each is by
+    /// to the next. Where motions from stop to stop are too few to show a trend, each is by
     /// itself, and what is off in it is off in proportion later. Of an output that regulates
     /// itself each run is by itself: it forgets its error.
     ///
