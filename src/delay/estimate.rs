@@ -100,9 +100,12 @@ fn settling_of(trials: &[Trial], settings: &Settings) -> Option<Settling> {
     if settings.paper || settings.input == InputKind::Continuous {
         return None;
     }
+    // Most outputs do not settle, which is seen without a low-pass.
+    let plain = Settings { low_pass: None, ..settings.clone() };
+    let start = Settling::start(trials, &prepared(trials, &plain), settings)?;
     let prepared = prepared(trials, settings);
     let period = prepared.first()?.period;
-    Settling::of(trials, &prepared, &settings.at(period))
+    Settling::of(start, &prepared, &settings.at(period))
 }
 
 impl fmt::Debug for Estimator {

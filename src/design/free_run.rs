@@ -142,8 +142,7 @@ impl FreeRunError {
     /// one was off so far, [`RESERVE`] times, by time or by way, or what is off each time in the
     /// same way, whichever is more; and half as much again of motions from stop to stop. Beyond
     /// the longest run it grows in proportion, which no error with increments of one kind exceeds.
-    /// Of an output that regulates itself it is the same all
-    /// the time.
+    /// Of an output that regulates itself it is the same all the time.
     pub fn margin(&self, travel: Travel) -> f64 {
         if self.is_bounded {
             return RESERVE * self.largest();

@@ -52,23 +52,39 @@ const RESOLVED: f64 = 2.0;
 /// Mean holds that a time constant lasts at most: a longer one is an integrator's.
 const MOST_HOLDS: f64 = 3.0;
 
+/// Trials with the sample period of the first.
+fn alike<'t, 'a>(prepared: &'t [Prepared<'a>]) -> Vec<&'t Prepared<'a>> {
+    let period = prepared.first().map(|trial| trial.period);
+    prepared.iter().filter(|trial| Some(trial.period) == period).collect()
+}
+
 impl Settling {
-    /// How the output of a joint settles; none where it does not, or not by an exponential law.
-    pub(in crate::delay) fn of(
+    /// The first order from which the law of a joint is looked for, whatever the low-pass of what
+    /// was prepared; none where the output does not settle.
+    pub(in crate::delay) fn start(
         trials: &[Trial],
         prepared: &[Prepared<'_>],
         settings: &Settings,
-    ) -> Option<Self> {
-        let period = prepared.first()?.period;
-        let alike: Vec<_> = prepared.iter().filter(|trial| trial.period == period).collect();
-        let hold_s = mean_hold(&alike) * period.seconds();
-        let start = match settings.settles {
+    ) -> Option<FirstOrder> {
+        let alike = alike(prepared);
+        let hold_s = mean_hold(&alike) * prepared.first()?.period.seconds();
+        match settings.settles {
             Some(false) => None,
             Some(true) => Some(FirstOrder::likely_within_holds(trials, hold_s)?.0),
             None => FirstOrder::of(trials).or_else(|| {
                 is_curved(&alike).then(|| FirstOrder::within_holds(trials, hold_s)).flatten()
             }),
-        }?;
+        }
+    }
+
+    /// How the output of a joint settles; none where it does not by an exponential law.
+    pub(in crate::delay) fn of(
+        start: FirstOrder,
+        prepared: &[Prepared<'_>],
+        settings: &Settings,
+    ) -> Option<Self> {
+        let period = prepared.first()?.period;
+        let alike = alike(prepared);
         let constants = TimeConstants::one(start.time_constant_s / period.seconds());
         let white = NoiseModel::white();
         let rough = all_onsets(&alike, settings, &constants);
