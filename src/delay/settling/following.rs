@@ -39,7 +39,7 @@ pub(crate) fn followed(trials: &[Trial]) -> Option<(usize, f64)> {
     };
     // Of most long records a few pairs show that they are far from it; an odd step keeps away from
     // the periods of most inputs.
-    let every = samples / ENOUGH | 1;
+    let every = (samples / ENOUGH) | 1;
     if best(|input| input, every)?.1 < FAR {
         return None;
     }
