@@ -235,6 +235,24 @@ fn jumps() -> Vec<Messy> {
     ]
 }
 
+/// Logs without a word on which columns are those of a joint.
+fn names_alone() -> Vec<Messy> {
+    let foreign = |header: &str| table(header, &clean(), ",", |x| x.to_string());
+    vec![
+        messy(
+            "names_say_it.csv",
+            foreign("t_s,u_boom_duty_pct,y_boom (deg)"),
+            read(1e-6, "names of its columns are taken to say the joints: boom (driven by"),
+        ),
+        messy("one_joint.csv", foreign("t_s,valve_cmd,angle"), read(1e-6, "`valve_cmd`")),
+        messy(
+            "names_say_nothing.csv",
+            foreign("t_s,a,b"),
+            Expected::Refused(&["no joint found", "the columns are: t_s, a, b"]),
+        ),
+    ]
+}
+
 fn units_and_names() -> Vec<Messy> {
     let scaled = |factor: f64| timed(move |k| (PERIOD * k as f64 * factor).round());
     let foreign = |header: &str, rows: &[Row]| table(header, rows, ",", |x| x.to_string());
@@ -418,6 +436,7 @@ fn every_messy_log_is_read_as_the_clean_one_or_refused_with_the_remedy() {
     let logs: Vec<Messy> = clocks()
         .into_iter()
         .chain(jumps())
+        .chain(names_alone())
         .chain(units_and_names())
         .chain(texts())
         .chain(broken())

@@ -39,7 +39,8 @@ pub(crate) fn advice(error: &(dyn Error + 'static)) -> String {
 fn on_reading(error: &ReadError) -> String {
     let text = match error {
         ReadError::NoJoints { .. } => {
-            "; `--joint NAME=INPUT_COLUMN:OUTPUT_COLUMN` says which are those of a joint"
+            "; `--joint NAME=INPUT_COLUMN:OUTPUT_COLUMN` says which are those of a joint, and \
+             `tauscope columns` which they may be"
         }
         ReadError::NoTime { .. } => {
             "; name one with `--time COLUMN`, or give the period with `--sample-period SECONDS`"

@@ -10,6 +10,8 @@ use super::profile::DelayProfile;
 use super::settings::Settings;
 use super::settling::Settling;
 use super::spec::Scope;
+use super::steps::joint_steps;
+use super::tracking::Tracking;
 use super::trial_estimate::{EstimateError, TrialEstimate};
 use crate::experiment::Trial;
 
@@ -45,6 +47,8 @@ pub struct Estimator {
     lag: Option<Lag>,
     /// How the output settles, where it does.
     settling: Option<Settling>,
+    /// Where it comes to rest, where its input says that.
+    tracking: Option<Tracking>,
 }
 
 impl Estimator {
@@ -61,15 +65,21 @@ impl Estimator {
         }
         let method = implementation(settings.method);
         let settling = settling_of(trials, &settings);
+        let tracking = if settling.is_none() { tracking_of(trials, &settings) } else { None };
         let is_joint = settling.is_none() && settings.method.spec().scope == Scope::Joint;
         let lag = is_joint.then(|| {
-            let prepared = prepared(trials, &settings);
+            let mut prepared = prepared(trials, &settings);
+            if let Some(tracking) = &tracking {
+                for trial in &mut prepared {
+                    tracking.bound(trial, &settings.at(trial.period));
+                }
+            }
             let period = prepared.first().map(|trial| trial.period);
             // A lag is looked for in the trials of the first one's period.
             let settings = period.map_or_else(|| settings.clone(), |period| settings.at(period));
             method.shared_lag(&prepared, &settings)
         });
-        Ok(Self { settings, method, lag: lag.flatten(), settling })
+        Ok(Self { settings, method, lag: lag.flatten(), settling, tracking })
     }
 
     /// Estimates one trial of the joint.
@@ -78,7 +88,10 @@ impl Estimator {
     /// [`EstimateError::Filter`] when the filter does not fit this trial.
     pub fn estimate(&self, trial: &Trial) -> Result<TrialEstimate, EstimateError> {
         let settings = self.settings.at(trial.period());
-        let prepared = Prepared::of(trial, &settings)?;
+        let mut prepared = Prepared::of(trial, &settings)?;
+        if let Some(tracking) = &self.tracking {
+            tracking.bound(&mut prepared, &settings);
+        }
         let decisions = match &self.settling {
             Some(settling) => decide_settling(&prepared, settling, &settings),
             None => self.method.decide(&prepared, self.lag.as_ref(), &settings),
@@ -86,7 +99,8 @@ impl Estimator {
         let profile = DelayProfile::of(&decisions, trial.len(), settings.interpolation);
         let (lag, settling) = (self.lag.clone(), self.settling.clone());
         let (label, smoothed) = (trial.label().to_owned(), prepared.smoothed);
-        Ok(TrialEstimate { label, smoothed, decisions, profile, lag, settling })
+        let tracking = self.tracking;
+        Ok(TrialEstimate { label, smoothed, decisions, profile, lag, settling, tracking })
     }
 }
 
@@ -106,6 +120,19 @@ fn settling_of(trials: &[Trial], settings: &Settings) -> Option<Settling> {
     let prepared = prepared(trials, settings);
     let period = prepared.first()?.period;
     Settling::of(start, &prepared, &settings.at(period))
+}
+
+/// Where the outputs of `trials` come to rest, where their input says that.
+pub(crate) fn tracking(trials: &[Trial]) -> Option<Tracking> {
+    tracking_of(trials, &Settings::default().with_input_of(trials))
+}
+
+fn tracking_of(trials: &[Trial], settings: &Settings) -> Option<Tracking> {
+    let is_asked = !settings.paper && settings.settles != Some(false);
+    if !is_asked || settings.input == InputKind::Continuous {
+        return None;
+    }
+    Tracking::of(trials, &joint_steps(trials, settings))
 }
 
 impl fmt::Debug for Estimator {

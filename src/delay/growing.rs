@@ -67,7 +67,9 @@ pub fn final_part(
     let smoothed = smoothed.map(|all| all.iter().copied().take(samples).collect());
     let (label, lag) = (estimate.label.clone(), estimate.lag.clone());
     let settling = estimate.settling.clone();
-    Ok(Some((beginning, TrialEstimate { label, smoothed, decisions, profile, lag, settling })))
+    let tracking = estimate.tracking;
+    let estimate = TrialEstimate { label, smoothed, decisions, profile, lag, settling, tracking };
+    Ok(Some((beginning, estimate)))
 }
 
 /// How many of the last samples may still change.

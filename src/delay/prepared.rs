@@ -16,6 +16,8 @@ pub(super) struct Prepared<'a> {
     pub(super) steps: Vec<InputStep>,
     /// What the output does about each step, where rest or a stop is shown.
     pub(super) motions: Vec<Option<StepMotion>>,
+    /// Whether the output comes to rest where the input says.
+    pub(super) tracks: bool,
 }
 
 impl<'a> Prepared<'a> {
@@ -28,7 +30,7 @@ impl<'a> Prepared<'a> {
         };
         let (raw, period) = (trial.output(), trial.period());
         let motions = motions(raw, &steps, period, &settings.at(period));
-        Ok(Self { raw, smoothed, period, steps, motions })
+        Ok(Self { raw, smoothed, period, steps, motions, tracks: false })
     }
 
     /// What the method is to look at.

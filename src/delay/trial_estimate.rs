@@ -5,6 +5,7 @@ use super::lag::Lag;
 use super::profile::DelayProfile;
 use super::settings::{Interpolation, SettingsError};
 use super::settling::Settling;
+use super::tracking::Tracking;
 use super::word::Word;
 use crate::numerics::FilterError;
 
@@ -50,6 +51,8 @@ pub struct TrialEstimate {
     /// How the output settles, where it does: the onsets are then those of an exponential,
     /// whatever the method.
     pub settling: Option<Settling>,
+    /// Where the output comes to rest, where its input says that: its arrivals answer no step.
+    pub tracking: Option<Tracking>,
 }
 
 impl TrialEstimate {

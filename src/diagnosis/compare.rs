@@ -10,7 +10,7 @@ use super::shapes::shapes;
 use super::speed_error::speed_error;
 use super::{ErrorFigures, InputCorrelation, LackOfFit, TestColumns, TrialSignals, Whiteness};
 use super::{input_correlation, lack_of_fit, noise_floor, whiteness};
-use crate::fit::{Assessment, Evaluation, Fit, FitRecord, Horizon, Part, Termination};
+use crate::fit::{Assessment, Evaluation, Excerpt, Fit, FitRecord, Horizon, Part, Termination};
 use crate::model::JointModel;
 
 /// A model beside the measurement.
@@ -111,15 +111,19 @@ pub(crate) fn floor_of(record: &FitRecord<'_>, fit: &Assessment) -> Option<f64> 
 pub(crate) fn lack_of(record: &FitRecord<'_>, fit: &Assessment) -> Option<LackOfFit> {
     let floor = floor_of(record, fit);
     let residuals = |part| record.cut(&fit.evaluation.residuals, part);
-    let mut everywhere = residuals(Part::Training);
-    everywhere.extend(residuals(Part::Validation));
-    let columns = TestColumns {
-        residuals: residuals(Part::Training),
-        own: sensitivities(record, fit),
-        size: ResidualSize::of(record, &fit.evaluation, floor),
-        local: local_misfit(&clipped(&everywhere), floor),
+    let local = {
+        let mut everywhere = residuals(Part::Training);
+        everywhere.extend(residuals(Part::Validation));
+        local_misfit(&clipped(&everywhere), floor)
     };
-    lack_of_fit(&columns, || shapes(record, &fit.evaluation, Part::Training))
+    let tested = record.excerpt();
+    let columns = TestColumns {
+        residuals: tested.cut(&fit.evaluation.residuals),
+        own: sensitivities(record, fit, &tested),
+        size: ResidualSize::of(record, &fit.evaluation, floor),
+        local,
+    };
+    lack_of_fit(&columns, || shapes(record, &fit.evaluation, tested.windows()))
 }
 
 /// The training part of each trial.
@@ -195,8 +199,8 @@ fn levels(acting: &[f64]) -> Vec<Range<usize>> {
     acting.chunk_by(same).map(span).collect()
 }
 
-/// Derivatives of the residual to each parameter, by central differences.
-fn sensitivities(record: &FitRecord<'_>, fit: &Assessment) -> Vec<Vec<Vec<f64>>> {
+/// Derivatives of the residual to each parameter where it is `tested`, by central differences.
+fn sensitivities(record: &FitRecord<'_>, fit: &Assessment, tested: &Excerpt) -> Vec<Vec<Vec<f64>>> {
     /// Part of a value, or of one unit where the value is small, that is stepped.
     const STEP: f64 = 1e-4;
     let record = record.for_training();
@@ -207,7 +211,7 @@ fn sensitivities(record: &FitRecord<'_>, fit: &Assessment) -> Vec<Vec<Vec<f64>>>
             let mut values = values.clone();
             values[index] += shift;
             let model: JointModel = fit.model.with_values(&values);
-            record.cut(&record.evaluate(&model).residuals, Part::Training)
+            tested.cut(&record.evaluate(&model).residuals)
         });
         let pairs = above.into_iter().zip(below);
         pairs

@@ -2,7 +2,7 @@
 
 use std::mem::take;
 
-use crate::fit::{Evaluation, FitRecord, Part, Window};
+use crate::fit::{Evaluation, FitRecord, Window};
 use crate::model::Simulated;
 
 /// Levels of the input that get a shape of their own.
@@ -24,11 +24,11 @@ const TRANSIENTS_S: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
 pub(super) fn shapes(
     record: &FitRecord<'_>,
     evaluation: &Evaluation,
-    part: Part,
+    windows: &[Window],
 ) -> Vec<Vec<Vec<f64>>> {
     let scales = Scales::of(record, evaluation);
-    let mut windows: Vec<Vec<Vec<f64>>> = record
-        .part(part)
+    let mut windows: Vec<Vec<Vec<f64>>> = windows
+        .iter()
         .filter_map(|window| {
             Some(of_window(record, evaluation.simulated.get(window.trial)?, window, &scales))
         })

@@ -9,8 +9,9 @@ use super::joint::Joint;
 use super::log::Log;
 use super::memory::Budget;
 use super::names::{listed, nearest_name};
-use super::read::{Experiment, Failure, ReadOptions, laid_out};
+use super::read::{Experiment, Failure, ReadOptions, laid_out, laid_out_by_names};
 use super::source::{Source, hashed};
+use super::survey::Survey;
 use super::table::{Column, Head, Header, Labels, RowNumbers, Table};
 
 /// A log in memory: columns of equal length, with the names that a file would have.
@@ -155,7 +156,10 @@ fn read(
     let headers = log.columns.iter().map(|column| Header::parse(&column.name)).collect();
     let head = Head { path, headers, header_row: 0 };
     let rows = same_length(&head, &log)?;
-    let (layout, mut found) = laid_out(&head, options)?;
+    let (layout, mut found) = match laid_out(&head, options) {
+        Err(ReadError::NoJoints { .. }) => laid_out_by_names(&head, &survey(&head, &log), options)?,
+        found => found?,
+    };
     let source = source_of(&head, &log);
     if layout.joints.is_empty() {
         found.sources.push(source);
@@ -175,6 +179,13 @@ fn read(
     let log = Log { head: &head, numeric: &numeric, table: &table, budget };
     found.add_log(&log, &layout, stem, options.repair)?;
     Ok(found)
+}
+
+/// What its columns seem to be.
+fn survey(head: &Head, log: &HandedLog) -> Survey {
+    let columns: Vec<Column> =
+        log.columns.iter().map(|column| column.values.clone().column()).collect();
+    Survey::of_columns(head, columns.iter().enumerate())
 }
 
 /// How many rows there are.

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::error::ReadError;
 use super::even;
+use super::gaps::gap_with_all_steps_s;
 use super::joint::{Joint, Signal, Trial};
 use super::layout::{JointLayout, TimeSource};
 use super::memory::Budget;
@@ -222,6 +223,35 @@ impl Log<'_> {
         }
         notes.extend(self.split_notes(&joint, layout, &split, time));
         Ok((joint, notes))
+    }
+
+    /// The joint once more, where its input changes in gaps alone: these are filled, so that its
+    /// steps are those at their ends. `None` where it does not, or where the user says what is to
+    /// be filled.
+    pub(super) fn joint_with_gaps(
+        &self,
+        read: &Joint,
+        layout: &JointLayout,
+        trials: &[TrialRows],
+        time: TimeSource,
+        repair: Repair,
+    ) -> Option<(Joint, Vec<String>)> {
+        let output = &self.column(layout.output.column)?.values;
+        // Where outputs are missing, the reaction may be among them.
+        let is_whole = !output.iter().any(|value| value.is_nan());
+        if repair.as_it_stands || repair.fill_s.is_some() || !is_whole {
+            return None;
+        }
+        let gap_s = gap_with_all_steps_s(read)?;
+        let repair = Repair { fill_s: Some(gap_s), ..repair };
+        let (grids, _) = self.grids(time, trials, repair).ok()?;
+        let (joint, mut notes) = self.joint(layout, trials, &grids, time, repair).ok()?;
+        notes.push(format!(
+            "joint `{}`: its input changes in gaps alone: those of up to {gap_s} s are filled, the \
+             output in a line and the input held, so that delays count from their ends",
+            joint.name
+        ));
+        Some((joint, notes))
     }
 
     fn trial(

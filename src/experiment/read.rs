@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::columns::ColumnMap;
+use super::columns::{ColumnMap, JointColumns};
 use super::error::ReadError;
 use super::format::{self, is_named_like_a_log};
 use super::joint::Joint;
@@ -14,6 +14,7 @@ use super::log::Log;
 use super::memory::{Budget, MemoryLimit};
 use super::sampling::Repair;
 use super::source::{Source, source_of};
+use super::survey::Survey;
 use super::table::{Head, OpenTable};
 use crate::units::SamplePeriod;
 
@@ -203,7 +204,13 @@ fn read_log(
 ) -> Result<Experiment, ReadError> {
     let open = || format::open(path, budget.rest());
     let table = open()?;
-    let (layout, mut found) = laid_out(&table.head, options)?;
+    let (layout, mut found) = match laid_out(&table.head, options) {
+        Err(ReadError::NoJoints { .. }) => {
+            let survey = Survey::of(path, options.memory)?;
+            laid_out_by_names(&table.head, &survey, options)?
+        }
+        found => found?,
+    };
     let mut next = Some(table);
     for layout in layout.by_clock() {
         // Each clock has rows of its own, and is read in a pass of its own.
@@ -227,6 +234,29 @@ pub(super) fn laid_out(
     let incomplete = std::mem::take(&mut layout.incomplete);
     let mut found = Experiment::default();
     found.failures.extend(incomplete.into_iter().chain(unknown).map(failed));
+    Ok((layout, found))
+}
+
+/// What every column means in a log without native names, where `survey` is sure of it.
+pub(super) fn laid_out_by_names(
+    head: &Head,
+    survey: &Survey,
+    options: &ReadOptions,
+) -> Result<(Layout, Experiment), ReadError> {
+    let mut options = options.clone();
+    if survey.is_sure {
+        options.columns.joints.clone_from(&survey.map.joints);
+    }
+    let (layout, mut found) = laid_out(head, &options)?;
+    let joint = |joint: &JointColumns| {
+        format!("{} (driven by `{}`, measured by `{}`)", joint.name, joint.input, joint.output)
+    };
+    let joints: Vec<String> = options.columns.joints.iter().map(joint).collect();
+    found.notes.push(format!(
+        "{}: the names of its columns are taken to say the joints: {}",
+        head.path.display(),
+        joints.join(", ")
+    ));
     Ok((layout, found))
 }
 
@@ -268,7 +298,10 @@ impl Experiment {
         self.notes.extend(notes.iter().map(|note| format!("{}: {note}", log.head.path.display())));
         for joint in &layout.joints {
             match log.joint(joint, &trials, &grids, layout.time, repair) {
-                Ok((joint, notes)) => {
+                Ok(read) => {
+                    let with_gaps =
+                        log.joint_with_gaps(&read.0, joint, &trials, layout.time, repair);
+                    let (joint, notes) = with_gaps.unwrap_or(read);
                     self.notes.extend(notes);
                     self.joints.push(joint);
                 }

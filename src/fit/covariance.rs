@@ -74,12 +74,12 @@ fn with_bounds(
     residuals: &DVector<f64>,
     at_bound: &[bool],
 ) -> Vec<Option<f64>> {
-    let all = std_errors(columns, residuals);
+    let all = std_errors(&columns.iter().collect::<Vec<_>>(), residuals);
     if !at_bound.contains(&true) {
         return all;
     }
     let inside = columns.iter().zip(at_bound).filter(|(_, at_bound)| !**at_bound);
-    let inside: Vec<DVector<f64>> = inside.map(|(column, _)| column.clone()).collect();
+    let inside: Vec<&DVector<f64>> = inside.map(|(column, _)| column).collect();
     let mut inside = std_errors(&inside, residuals).into_iter();
     let pairs = all.into_iter().zip(at_bound);
     pairs.map(|(all, at_bound)| if *at_bound { all } else { inside.next().flatten() }).collect()
@@ -88,15 +88,16 @@ fn with_bounds(
 /// The part of a parameter, squared, that may lie in undetermined directions.
 const UNDETERMINED: f64 = 1e-3;
 
-fn std_errors(columns: &[DVector<f64>], residuals: &DVector<f64>) -> Vec<Option<f64>> {
+fn std_errors(columns: &[&DVector<f64>], residuals: &DVector<f64>) -> Vec<Option<f64>> {
     if columns.is_empty() {
         return Vec::new();
     }
     // Columns of length one, so that units do not matter to the rank.
-    let lengths: Vec<f64> = columns.iter().map(DVector::norm).collect();
-    let scaled = columns.iter().zip(&lengths);
-    let scaled: Vec<_> = scaled.map(|(c, n)| if *n > 0.0 { c / *n } else { c.clone() }).collect();
-    let jacobian = DMatrix::from_columns(&scaled);
+    let lengths: Vec<f64> = columns.iter().map(|column| column.norm()).collect();
+    let scale = |length: f64| if length > 0.0 { length } else { 1.0 };
+    let jacobian = DMatrix::from_fn(residuals.len(), columns.len(), |row, column| {
+        columns[column][row] / scale(lengths[column])
+    });
     let pseudo_inverse = PseudoInverse::of(jacobian.tr_mul(&jacobian), rank::SENSITIVITIES);
     // (JᵀJ)⁻¹ S (JᵀJ)⁻¹.
     let inverse = pseudo_inverse.matrix();
@@ -114,14 +115,10 @@ fn std_errors(columns: &[DVector<f64>], residuals: &DVector<f64>) -> Vec<Option<
 
 /// The long-run covariance of `J_k r_k`.
 fn long_run(jacobian: &DMatrix<f64>, residuals: &DVector<f64>) -> DMatrix<f64> {
-    let mut scores = jacobian.clone();
-    for mut column in scores.column_iter_mut() {
-        column.component_mul_assign(residuals);
-    }
     let lags = bandwidth(residuals.as_slice());
     // Many lags are as well counted in blocks of samples.
     let block = (lags / MOST_LAGS).max(1);
-    let (scores, lags) = (block_sums(&scores, block), lags / block);
+    let (scores, lags) = (block_scores(jacobian, residuals, block), lags / block);
     let mut sum = scores.tr_mul(&scores);
     for lag in 1..=lags {
         let rows = scores.nrows() - lag;
@@ -135,14 +132,12 @@ fn long_run(jacobian: &DMatrix<f64>, residuals: &DVector<f64>) -> DMatrix<f64> {
 /// Lags that are counted one by one; the weights change little from one to the next.
 const MOST_LAGS: usize = 40;
 
-/// Sums over `block` rows each.
-fn block_sums(rows: &DMatrix<f64>, block: usize) -> DMatrix<f64> {
-    if block == 1 {
-        return rows.clone();
-    }
-    DMatrix::from_fn(rows.nrows().div_ceil(block), rows.ncols(), |index, column| {
-        let from = index * block;
-        rows.column(column).rows(from, block.min(rows.nrows() - from)).sum()
+/// The sums of `J_k r_k` over `block` samples each.
+fn block_scores(jacobian: &DMatrix<f64>, residuals: &DVector<f64>, block: usize) -> DMatrix<f64> {
+    let samples = residuals.len();
+    DMatrix::from_fn(samples.div_ceil(block), jacobian.ncols(), |index, column| {
+        let (from, count) = (index * block, block.min(samples - index * block));
+        jacobian.column(column).rows(from, count).dot(&residuals.rows(from, count))
     })
 }
 
@@ -182,7 +177,7 @@ mod tests {
         let n = 20_000;
         let residuals = DVector::from_vec(noise(n));
         let ones = DVector::from_element(n, 1.0);
-        let error = std_errors(&[ones], &residuals)[0].unwrap();
+        let error = std_errors(&[&ones], &residuals)[0].unwrap();
         let usual = 1.0 / (n as f64).sqrt();
         assert!((error / usual - 1.0).abs() < 0.15, "{error} {usual}");
     }
@@ -197,7 +192,7 @@ mod tests {
             value
         };
         let residuals = DVector::from_vec(noise(n).into_iter().map(filter).collect());
-        let error = std_errors(&[DVector::from_element(n, 1.0)], &residuals)[0].unwrap();
+        let error = std_errors(&[&DVector::from_element(n, 1.0)], &residuals)[0].unwrap();
         let expected = (19.0 / n as f64).sqrt();
         assert!((error / expected - 1.0).abs() < 0.2, "{error} {expected}");
     }
@@ -207,7 +202,7 @@ mod tests {
         let n = 1000;
         let residuals = DVector::from_vec(noise(n));
         let ramp = DVector::from_fn(n, |k, _| k as f64);
-        let errors = std_errors(&[ramp.clone(), ramp * 2.0, DVector::zeros(n)], &residuals);
+        let errors = std_errors(&[&ramp, &(&ramp * 2.0), &DVector::zeros(n)], &residuals);
         assert_eq!(errors, [None, None, None]);
     }
 }

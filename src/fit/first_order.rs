@@ -10,21 +10,32 @@
 //! Åström, K. J., and Hägglund, T., 2006, Advanced PID Control, section 2.4 (processes with
 //! self-regulation).
 
-use crate::delay::{FirstOrder, followed};
+use crate::delay::{FirstOrder, followed, tracking};
 use crate::effect::by_id;
 use crate::experiment::Joint;
 use crate::model::{Component, JointModel};
 
 /// The squared correlation of the output of `joint` with its input some samples before, where the
-/// output follows the input.
+/// output follows the input; of where it comes to rest, where the limit of its rate hides that.
 ///
 /// A joint that runs into its stops follows the sign of the input as well as the input, and is
 /// none of these.
 pub(crate) fn follows_input(joint: &Joint) -> Option<f64> {
-    Some(followed(&joint.trials)?.1)
+    let by_rests = || Some(tracking(&joint.trials)?.r_squared());
+    followed(&joint.trials).map(|(_, squared)| squared).or_else(by_rests)
 }
 
 impl FirstOrder {
+    /// That from which a model of `joint` starts; none where the output does not follow the input.
+    pub(crate) fn start(joint: &Joint) -> Option<Self> {
+        let trials = &joint.trials;
+        Self::of(trials).or_else(|| {
+            let tracking = tracking(trials)?;
+            let (static_gain, at_zero) = (tracking.gain(), tracking.offset());
+            Some(Self { static_gain, at_zero, ..Self::likely(trials)? })
+        })
+    }
+
     /// `model` as this first order, and the id of the effect that makes it one.
     pub(crate) fn started_at(self, model: &JointModel) -> Option<(&'static str, JointModel)> {
         let leakage = by_id("leakage")?;

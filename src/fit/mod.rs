@@ -11,6 +11,7 @@ mod bounds;
 mod covariance;
 mod descent;
 mod evaluation;
+mod excerpt;
 mod first_order;
 mod least_squares;
 mod problem;
@@ -27,6 +28,7 @@ mod thin;
 mod window;
 
 pub use evaluation::Evaluation;
+pub(crate) use excerpt::Excerpt;
 pub(crate) use first_order::follows_input;
 pub use least_squares::{assess, fit, fit_to_compare, fit_to_compare_beside, survey};
 pub use record::FitRecord;

@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::DVector;
 
 use super::evaluation::Evaluation;
+use super::excerpt::Excerpt;
 use super::run::Run;
 use super::speed;
 use super::spikes;
@@ -195,6 +196,11 @@ impl<'a> FitRecord<'a> {
         Self { windows: self.part(Part::Training).copied().collect(), ..self.clone() }
     }
 
+    /// The training windows, or parts of them where they are very long.
+    pub(crate) fn excerpt(&self) -> Excerpt {
+        Excerpt::of(self.part(Part::Training).copied().collect())
+    }
+
     /// Samples that are for training.
     pub(super) fn training_samples(&self) -> usize {
         self.part(Part::Training).map(|window| window.end - window.start).sum()
@@ -276,7 +282,7 @@ impl<'a> FitRecord<'a> {
 
     /// The first order that the output follows, where it follows the input itself.
     pub(crate) fn first_order(&self) -> Option<FirstOrder> {
-        *self.first_order.get_or_init(|| FirstOrder::of(&self.joint.trials))
+        *self.first_order.get_or_init(|| FirstOrder::start(self.joint))
     }
 
     /// The distinct magnitudes of the input, ascending.

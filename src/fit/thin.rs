@@ -19,12 +19,18 @@ pub(super) fn thinned(windows: &[Window]) -> Vec<Window> {
     if 2 * all <= 3 * kept {
         return windows.to_vec();
     }
+    let chosen = spread(windows, kept);
+    let enough = 2 * chosen.iter().map(samples).sum::<usize>() >= kept;
+    if enough { chosen } else { windows.to_vec() }
+}
+
+/// Blocks of `windows` that are spread evenly over them, with about so many samples of all.
+pub(super) fn spread(windows: &[Window], kept: usize) -> Vec<Window> {
+    let all: usize = windows.iter().map(samples).sum();
     let blocks = blocks(windows);
     let is_kept = |index: &usize| (index + 1) * kept / all > index * kept / all;
     let chosen = blocks.iter().enumerate().filter(|(index, _)| is_kept(index));
-    let chosen: Vec<_> = chosen.flat_map(|(_, block)| block.iter().copied()).collect();
-    let enough = 2 * chosen.iter().map(samples).sum::<usize>() >= kept;
-    if enough { chosen } else { windows.to_vec() }
+    chosen.flat_map(|(_, block)| block.iter().copied()).collect()
 }
 
 fn samples(window: &Window) -> usize {

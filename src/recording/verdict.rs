@@ -10,7 +10,7 @@ use super::markdown::plain;
 use super::palette::{self, color};
 use super::paths::{self, at};
 use crate::delay::{Check, Condition, Decision, FineDelay, Lag, LagPart, Outcome};
-use crate::delay::{Settings, Settling, Verdict};
+use crate::delay::{Settings, Settling, Tracking, Verdict};
 use crate::experiment::Joint;
 use crate::report::{EstimatedJoint, dead_time_sentences};
 use crate::wording::{doubt_percent, number, remedy_text};
@@ -311,6 +311,7 @@ impl Facts<'_, '_> {
         rows.extend(decision.fine.map(|fine| self.interval(fine)));
         rows.extend(self.trial.estimate.lag.iter().flat_map(lag_rows));
         rows.extend(self.trial.estimate.settling.iter().flat_map(settling_rows));
+        rows.extend(self.trial.estimate.tracking.as_ref().map(tracking_row));
         rows.extend(self.how_near());
         let rows: Vec<_> =
             rows.iter().map(|(name, value)| format!("| {name} | {value} |")).collect();
@@ -440,6 +441,12 @@ fn settling_rows(settling: &Settling) -> Vec<(String, String)> {
         Some((name.to_owned(), format!("{} s", known(part?))))
     };
     rows.into_iter().filter_map(row).collect()
+}
+
+/// Where the output comes to rest.
+fn tracking_row(tracking: &Tracking) -> (String, String) {
+    let at = format!("{} + {}·u", number(tracking.offset()), number(tracking.gain()));
+    ("output comes to rest at".to_owned(), at)
 }
 
 /// What all steps of the joint follow their dead times with.

@@ -285,11 +285,17 @@ impl Finding<'_> {
 
     fn unexplained_headline(&self) -> String {
         let explained = self.explained().unwrap_or_else(|| self.follows());
-        let remains = self.consequence().remains();
-        format!(
-            "{}: {explained}; {remains}, which no effect that was tried accounts for",
-            self.joint().name
-        )
+        let rest = if self.is_down_to_noise() {
+            "what remains is no more than the sensor's noise".to_owned()
+        } else {
+            let remains = self.consequence().remains();
+            format!("{remains}, which no effect that was tried accounts for")
+        };
+        format!("{}: {explained}; {rest}", self.joint().name)
+    }
+
+    fn is_down_to_noise(&self) -> bool {
+        self.noise().is_some_and(|noise| self.error() <= ABOVE_NOISE * noise)
     }
 
     fn unexplained(&self) -> Vec<String> {

@@ -1,6 +1,6 @@
 //! A joint with its estimate.
 
-use crate::delay::{AgainstState, DelayTable, Lag, Settling};
+use crate::delay::{AgainstState, DelayTable, Lag, Settling, Tracking};
 use crate::experiment::Joint;
 use crate::study::JointEstimate;
 
@@ -22,6 +22,11 @@ impl EstimatedJoint<'_> {
     /// How its output settles, where it does.
     pub fn settling(&self) -> Option<&Settling> {
         self.estimate.estimated().find_map(|trial| trial.settling.as_ref())
+    }
+
+    /// Where its output comes to rest, where its input says that.
+    pub fn tracking(&self) -> Option<Tracking> {
+        self.estimate.estimated().find_map(|trial| trial.tracking)
     }
 
     /// The joint's delays by kind of step and level.

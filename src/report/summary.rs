@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{EstimatedJoint, Words, decision_rows};
 use crate::delay::{Condition, KindDelay};
-use crate::experiment::Trial;
+use crate::experiment::longest_gap_s;
 
 /// How many steps were accepted, why the others were not, and what the delays are.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,7 +110,7 @@ impl JointSummary {
             delay_s,
             is_continuous: joint.estimate.dead_time.is_some(),
             levels_differ: levels_differ(joint),
-            gap_s: longest_gap_s(joint),
+            gap_s: longest_gap_s(&joint.joint.trials),
             words: Words::on(joint),
         }
     }
@@ -135,26 +135,6 @@ impl JointSummary {
             (false, false, _) => "the input never changes".to_owned(),
         }
     }
-}
-
-/// The longest gap between two parts of a trial that was split, with a period to spare, to three
-/// digits.
-fn longest_gap_s(joint: EstimatedJoint<'_>) -> Option<f64> {
-    let trials = &joint.joint.trials;
-    let gap = |pair: &[Trial]| {
-        let [before, behind] = pair else { return None };
-        let of_one = stem(before.label()).is_some() && stem(before.label()) == stem(behind.label());
-        let gap = behind.time_s(1) - before.time_s(before.len());
-        (of_one && gap > 0.0).then(|| gap + before.period().seconds())
-    };
-    let longest = trials.windows(2).filter_map(gap).max_by(f64::total_cmp)?;
-    let digits = 10_f64.powf(2.0 - longest.log10().floor());
-    Some((longest * digits).ceil() / digits)
-}
-
-/// The name of the trial that this is a part of.
-fn stem(label: &str) -> Option<&str> {
-    label.rsplit_once('#').map(|(stem, _)| stem)
 }
 
 #[cfg(test)]

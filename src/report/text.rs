@@ -21,7 +21,8 @@ pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings)
         kinds.extend(summary.words.map(|words| format!("{name}: {}\n", words.sentence())));
     }
     let dead_times: String = joints.iter().flat_map(dead_time_lines).collect();
-    let lags: String = joints.iter().filter_map(lag_line).collect();
+    let lags: String =
+        joints.iter().flat_map(|joint| [tracking_line(joint), lag_line(joint)]).flatten().collect();
     let chosen: String = joints.iter().filter_map(chosen_line).collect();
     let own = joints.iter().filter_map(|joint| {
         let own = own_settings(joint, settings)?;
@@ -103,6 +104,19 @@ fn settling_line(joint: &EstimatedJoint<'_>) -> Option<String> {
         "{}: the output settles ({}): each onset is that of an exponential, whatever the method\n",
         joint.joint.name,
         parts.join(", ")
+    ))
+}
+
+/// Where the output of a joint comes to rest, in words, where its input says that.
+pub(super) fn tracking_line(joint: &EstimatedJoint<'_>) -> Option<String> {
+    let tracking = joint.tracking()?;
+    let sign = if tracking.gain() < 0.0 { '−' } else { '+' };
+    Some(format!(
+        "{}: the output comes to rest where the input says, at {} {sign} {}·u: where it arrives is \
+         no reaction to a step\n",
+        joint.joint.name,
+        rounded(tracking.offset()),
+        rounded(tracking.gain().abs())
     ))
 }
 

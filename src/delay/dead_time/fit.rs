@@ -230,11 +230,14 @@ impl Solved<'_> {
         let explained = self.explained(best);
         let finding =
             self.finding(best, (low, high), rows * -(1.0 - explained).ln() / assessed.widened);
+        // A lag that is as long as any may be cannot be told from an integrator.
+        let only_integrates = !best.structure.integrates && best.lags.slow > 0.9 * longest_lag;
+        let lag = if only_integrates { best.lags.fast } else { best.lags.mean() };
         let mut found = DeadTime {
             finding,
-            lag_s: Some(best.lags.mean() * record.period_s),
+            lag_s: Some(lag * record.period_s),
             explained,
-            integrates: best.structure.integrates,
+            integrates: best.structure.integrates || only_integrates,
             feedback: feedback(&assessed.errors, &self.inputs()),
             curve: self.curve(profile, least.error),
             ..unknown(Unknown::NotExplained, confidence)

@@ -67,6 +67,8 @@ struct JointJson<'a> {
     lag: Option<LagJson>,
     #[serde(skip_serializing_if = "Option::is_none")]
     settling: Option<SettlingJson>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tracking: Option<TrackingJson>,
     neutral: Option<NeutralJson>,
     delay_table: Vec<DelayRowJson<'a>>,
     delay_by_transition: Vec<KindJson>,
@@ -141,6 +143,13 @@ struct SettlingJson {
     time_constant_s: LagPartJson,
     falling_time_constant_s: Option<LagPartJson>,
     further_lag_s: Option<LagPartJson>,
+}
+
+/// Where an output comes to rest: at `offset + gain · input`.
+#[derive(Debug, Serialize)]
+struct TrackingJson {
+    offset: f64,
+    gain: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -265,6 +274,9 @@ impl<'a> JointJson<'a> {
             chosen: chosen.map(Into::into),
             lag: joint.lag().map(LagJson::new),
             settling: joint.settling().map(SettlingJson::new),
+            tracking: joint
+                .tracking()
+                .map(|found| TrackingJson { offset: found.offset(), gain: found.gain() }),
             neutral: neutral.map(|Neutral { level, low, high }| NeutralJson { level, low, high }),
             delay_table: rows.iter().map(|row| DelayRowJson::new(&joint.joint.name, row)).collect(),
             delay_by_transition: kinds.into_iter().map(Into::into).collect(),

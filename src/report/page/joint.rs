@@ -8,7 +8,7 @@ use crate::delay::{AgainstState, Condition, DelayTable, MethodSpec};
 use crate::report::against::{AGAINST_HEADER, against_rows};
 use crate::report::decisions::detailed_rows;
 use crate::report::delay_table::{LEVEL_HEADER, kind_sentence, level_cells, neutral_sentence};
-use crate::report::text::lag_line;
+use crate::report::text::{lag_line, tracking_line};
 use crate::report::text_table::TextTable;
 use crate::report::{
     DecisionDetail, DecisionRow, DelayRange, Doubted, EstimatedJoint, Headline, JointSummary,
@@ -111,6 +111,7 @@ fn delay_blocks(estimated: EstimatedJoint<'_>, file: &str) -> Result<Vec<Block>,
     };
     let found = estimated.against_state();
     blocks.push(Block::part("Delay"));
+    blocks.extend(tracking_line(&estimated).map(|line| Block::text(line.trim_end())));
     blocks.extend(lag_line(&estimated).map(|line| Block::text(line.trim_end())));
     blocks.push(Block::Figures(vec![figure]));
     blocks.push(Block::Figures(delays::against(&estimated.joint.name, &found, file)?));

@@ -1,0 +1,262 @@
+//! Outputs that come to rest where their input says: the position of a servo behind the limit of
+//! its rate.
+//!
+//! Behind its dead time such an output goes to `y = a + b·u` and stays there. Its arrival bends it
+//! as much as its departure does, and answers no step of the input. What says anything of a step
+//! lies between the arrival of the step before and its own.
+
+use super::motion::StepMotion;
+use super::prepared::Prepared;
+use super::settings::Settings;
+use super::steps::InputStep;
+use crate::experiment::Trial;
+use crate::numerics::robust_scale;
+
+/// Levels of the input, and holds at whose end the output rests, that show a relation.
+const FEWEST_LEVELS: usize = 3;
+const FEWEST_RESTS: usize = 6;
+
+/// Part of the holds that end at rest, at least.
+const RESTING: f64 = 0.2;
+
+/// Part of the output's travel by which its rests may be off the line, as a standard deviation.
+const OFF: f64 = 0.02;
+
+/// Where the output comes to rest: at `offset + gain · input`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tracking {
+    offset: f64,
+    gain: f64,
+    /// How far from there it counts as arrived, output units.
+    tolerance: f64,
+    r_squared: f64,
+}
+
+/// A hold of the input at whose end the output rests.
+struct RestingHold {
+    level: f64,
+    output: f64,
+}
+
+impl Tracking {
+    /// The output at rest while the input is zero, output units.
+    pub fn offset(&self) -> f64 {
+        self.offset
+    }
+
+    /// How much farther it rests for one more of the input, output units per input unit.
+    pub fn gain(&self) -> f64 {
+        self.gain
+    }
+
+    /// The squared correlation of where it rests with the input.
+    pub(crate) fn r_squared(&self) -> f64 {
+        self.r_squared
+    }
+
+    /// The relation between where the output rests and the level that is held, over all `trials`
+    /// with their `steps`; `None` where there is none.
+    pub(super) fn of(trials: &[Trial], steps: &[Vec<InputStep>]) -> Option<Self> {
+        let holds = steps.iter().map(Vec::len).sum::<usize>();
+        let outputs = || trials.iter().flat_map(|trial| trial.output().iter().copied());
+        let range = outputs().fold(f64::MIN, f64::max) - outputs().fold(f64::MAX, f64::min);
+        let of_trial =
+            |(trial, steps): (&Trial, &Vec<InputStep>)| resting_holds(trial.output(), steps, range);
+        let rests: Vec<RestingHold> = trials.iter().zip(steps).flat_map(of_trial).collect();
+        let mut levels: Vec<f64> = rests.iter().map(|rest| rest.level).collect();
+        levels.sort_by(f64::total_cmp);
+        levels.dedup();
+        let enough = rests.len() >= FEWEST_RESTS && rests.len() as f64 >= RESTING * holds as f64;
+        if !enough || levels.len() < FEWEST_LEVELS {
+            return None;
+        }
+        let differences = trials.iter().flat_map(|trial| trial.output().windows(2));
+        let differences: Vec<f64> = differences.map(|pair| pair[1] - pair[0]).collect();
+        Self::through(&rests, robust_scale(&differences) / std::f64::consts::SQRT_2)
+    }
+
+    /// The regression line of where the output rests, if it is near to it.
+    fn through(rests: &[RestingHold], noise: f64) -> Option<Self> {
+        let n = rests.len() as f64;
+        let mean = |of: fn(&RestingHold) -> f64| rests.iter().map(of).sum::<f64>() / n;
+        let (level, output) = (mean(|rest| rest.level), mean(|rest| rest.output));
+        let (uu, uy) = rests.iter().fold((0.0, 0.0), |(uu, uy), rest| {
+            let from_mean = rest.level - level;
+            (uu + from_mean * from_mean, uy + from_mean * (rest.output - output))
+        });
+        let gain = uy / uu;
+        let offset = output - gain * level;
+        let off = |rest: &RestingHold| (rest.output - offset - gain * rest.level).powi(2);
+        let off = (rests.iter().map(off).sum::<f64>() / (n - 2.0)).sqrt();
+        let ends = |of: fn(f64, f64) -> f64, start| rests.iter().map(|r| r.output).fold(start, of);
+        let travel = ends(f64::max, f64::MIN) - ends(f64::min, f64::MAX);
+        let tolerance = (3.0 * off).max(4.0 * noise).max(0.005 * travel);
+        let is_near = gain.is_finite() && gain != 0.0 && off <= OFF * travel;
+        // Of the variation about the mean, what the line leaves.
+        let square = |rest: &RestingHold| (rest.output - output).powi(2);
+        let r_squared = 1.0 - (n - 2.0) * off * off / rests.iter().map(square).sum::<f64>();
+        is_near.then_some(Self { offset, gain, tolerance, r_squared })
+    }
+
+    /// Bounds what says anything of each step of `trial`, where nothing else is known of it.
+    pub(super) fn bound(&self, trial: &mut Prepared<'_>, settings: &Settings) {
+        let starts: Vec<usize> = trial.steps.iter().map(|step| step.sample - 1).collect();
+        let ends = starts.iter().skip(1).copied().chain([trial.raw.len()]);
+        let mut arrived = 0;
+        let mut previous = trial.steps.first().map_or(0.0, |step| self.rest_at(step.before));
+        let holds = trial.steps.iter().zip(&mut trial.motions).zip(starts.iter().zip(ends));
+        for ((step, motion), (&start, end)) in holds {
+            let hold = Hold {
+                output: trial.raw.get(start..end).unwrap_or_default(),
+                previous,
+                target: self.rest_at(step.after),
+                tolerance: self.tolerance,
+            };
+            if motion.is_none() {
+                *motion = hold.motion(start, arrived, settings);
+            }
+            arrived = hold.arrival().map_or(arrived, |arrival| start + arrival);
+            previous = hold.target;
+        }
+        trial.tracks = true;
+    }
+
+    fn rest_at(&self, level: f64) -> f64 {
+        self.offset + self.gain * level
+    }
+}
+
+/// The output while the input is held.
+struct Hold<'a> {
+    output: &'a [f64],
+    /// Where it was going to before.
+    previous: f64,
+    /// Where it goes to.
+    target: f64,
+    tolerance: f64,
+}
+
+impl Hold<'_> {
+    /// Samples until the output has arrived for good.
+    fn arrival(&self) -> Option<usize> {
+        let arrival = self.within(self.tolerance);
+        (arrival < self.output.len()).then_some(arrival)
+    }
+
+    /// Samples until the output stays so near to where it goes; all where it does not.
+    fn within(&self, distance: f64) -> usize {
+        let is_off = |y: &f64| (y - self.target).abs() > distance;
+        self.output.iter().rposition(is_off).map_or(0, |last| last + 1)
+    }
+
+    /// What bounds the reaction to a step at the index `start`, before which the output had
+    /// `arrived`.
+    fn motion(&self, start: usize, arrived: usize, settings: &Settings) -> Option<StepMotion> {
+        /// Parts of the way by which it has plainly departed, and from which it may slow down.
+        const DEPARTED: f64 = 0.2;
+        const SLOWS: f64 = 0.8;
+        let from = *self.output.first()?;
+        let way = self.target - self.previous;
+        if way.abs() <= 2.0 * self.tolerance {
+            return None;
+        }
+        let rested = (from - self.previous).abs() <= self.tolerance;
+        let slow = ((1.0 - SLOWS) * way.abs()).max(self.tolerance);
+        let slows = start + self.within(slow);
+        let (latest, end) = if rested {
+            let is_away = |y: &f64| (y - from) / way >= DEPARTED;
+            let latest = start + self.output.iter().position(is_away)?;
+            (latest, slows.max(latest + settings.beta.max(settings.alpha / 2)))
+        } else {
+            (slows, slows)
+        };
+        Some(StepMotion { first: arrived, latest, end, rest: None })
+    }
+}
+
+/// The holds at whose end `output` rests; `range` is that of the whole record.
+fn resting_holds(output: &[f64], steps: &[InputStep], range: f64) -> Vec<RestingHold> {
+    /// Part of a hold at its end, and samples of it at least, over which the output rests, and
+    /// part of the range by which it may move meanwhile.
+    const PARTS: usize = 5;
+    const FEWEST: usize = 6;
+    const STILL: f64 = 0.01;
+    let starts = || steps.iter().map(|step| step.sample - 1);
+    let ends = starts().skip(1).chain([output.len()]);
+    let resting = |((step, start), end): ((&InputStep, usize), usize)| {
+        let samples = ((end - start) / PARTS).max(FEWEST);
+        let tail = output.get(end.checked_sub(samples).filter(|tail| *tail >= start)?..end)?;
+        let (first, last) = tail.split_at(tail.len() / 2);
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
+        let rests = (mean(last) - mean(first)).abs() <= STILL * range;
+        rests.then(|| RestingHold { level: step.after, output: mean(tail) })
+    };
+    steps.iter().zip(starts()).zip(ends).filter_map(resting).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Decision, TrialEstimate, estimate};
+    use super::*;
+    use crate::numerics::testing::noise;
+    use crate::units::SamplePeriod;
+
+    /// Samples by which the servo is late.
+    const DELAY: usize = 12;
+
+    /// Levels that are each held for `hold` samples.
+    fn held(levels: &[f64], hold: usize) -> Vec<f64> {
+        levels.iter().flat_map(|level| std::iter::repeat_n(*level, hold)).collect()
+    }
+
+    /// What goes at `rate` per sample to 3 + 2·u, as `u` was [`DELAY`] samples before.
+    fn servo(input: &[f64], rate: f64) -> Vec<f64> {
+        let mut angle = 3.0 + 2.0 * input[0];
+        let late = std::iter::repeat_n(&input[0], DELAY).chain(input);
+        let angles = late.take(input.len()).map(|u| {
+            angle += (3.0 + 2.0 * u - angle).clamp(-rate, rate);
+            angle
+        });
+        let angles: Vec<f64> = angles.collect();
+        angles.iter().zip(noise(7, 0.0, angles.len())).map(|(y, e)| y + 0.01 * e).collect()
+    }
+
+    fn found(input: Vec<f64>, output: Vec<f64>) -> TrialEstimate {
+        let period = SamplePeriod::from_seconds(0.02).unwrap();
+        let trial = Trial::new("1", 0.0, period, input, output).unwrap();
+        estimate(&trial, &Settings::default()).unwrap()
+    }
+
+    const LEVELS: [f64; 12] = [0.0, 2.0, -1.0, 1.0, -2.0, 0.0, 1.0, -1.0, 2.0, 0.0, -2.0, 1.0];
+
+    #[test]
+    fn the_arrival_of_a_servo_is_no_reaction() {
+        // Some holds end before it has arrived.
+        for rate in [0.2, 0.06] {
+            let input = held(&LEVELS, 110);
+            let output = servo(&input, rate);
+            let found = found(input, output);
+            let tracking = found.tracking.unwrap();
+            assert!((tracking.offset() - 3.0).abs() < 0.02, "{tracking:?}");
+            assert!((tracking.gain() - 2.0).abs() < 0.02, "{tracking:?}");
+            let delays: Vec<f64> = found.decisions.iter().filter_map(Decision::delay).collect();
+            assert!(delays.len() >= 7, "{delays:?}");
+            // Rows of five samples, behind a low-pass.
+            assert!(delays.iter().all(|d| (d - DELAY as f64).abs() <= 8.0), "{rate}: {delays:?}");
+        }
+    }
+
+    #[test]
+    fn what_integrates_does_not_track() {
+        let input = held(&LEVELS, 60);
+        let mut angle = 0.0;
+        let late = std::iter::repeat_n(&0.0, DELAY).chain(&input).take(input.len());
+        let output: Vec<f64> = late
+            .map(|u| {
+                angle = f64::clamp(angle + 0.02 * u, -1.5, 1.5);
+                angle
+            })
+            .collect();
+        assert_eq!(found(input, output).tracking, None);
+    }
+}

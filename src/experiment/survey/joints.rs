@@ -1,0 +1,181 @@
+//! Which columns drive and measure which joint.
+
+use super::signal::Signal;
+use super::words::{INPUT_WORDS, OTHER_WORDS, OUTPUT_WORDS, rank, words};
+use crate::experiment::table::{Head, Header};
+use crate::experiment::unit;
+
+/// A joint that was found, with the reasons.
+pub(super) struct FoundJoint {
+    pub(super) name: String,
+    pub(super) input: usize,
+    pub(super) output: usize,
+    pub(super) why: [String; 2],
+    /// Whether names say both what drives it and what it does, and nothing else could be meant.
+    pub(super) is_sure: bool,
+}
+
+/// A log's columns by their names, and what they hold.
+pub(super) struct Columns<'a> {
+    pub(super) head: &'a Head,
+    /// The numbers of each column; none of the time, and of what holds no numbers.
+    pub(super) signals: &'a [Option<Signal>],
+}
+
+impl Columns<'_> {
+    /// The joints: those whose columns have native names, else those whose names say so, else
+    /// the one that the data show.
+    pub(super) fn joints(&self) -> Vec<FoundJoint> {
+        let native = self.native();
+        if !native.is_empty() {
+            return native;
+        }
+        let outputs = self.named(&OUTPUT_WORDS);
+        let mut inputs = self.named(&INPUT_WORDS);
+        inputs.retain(|column| !outputs.contains(column));
+        let mut joints = self.by_names(&inputs, &outputs);
+        if joints.is_empty()
+            && let [input] = inputs.as_slice()
+        {
+            let follower = self.follower(*input, &outputs);
+            let is_sure = follower.is_some() || outputs.len() == 1;
+            let output = follower.or(outputs.first().copied());
+            joints.extend(output.map(|output| self.joint(None, *input, output, is_sure)));
+        }
+        joints.retain(|joint| !self.is_doubtful(joint));
+        if joints.is_empty() { self.by_data(&outputs).into_iter().collect() } else { joints }
+    }
+
+    /// Joints whose columns have native names.
+    fn native(&self) -> Vec<FoundJoint> {
+        let place = |name: &str| self.head.headers.iter().position(|header| header.name == name);
+        let joint = |(input, header): (usize, &Header)| {
+            let name = header.name.strip_suffix(".input")?.to_owned();
+            let output = place(&format!("{name}.output"))?;
+            let why = ["its name ends in .input", "its name ends in .output"].map(str::to_owned);
+            Some(FoundJoint { name, input, output, why, is_sure: true })
+        };
+        self.head.headers.iter().enumerate().filter_map(joint).collect()
+    }
+
+    /// Pairs whose names share the words that say which joint: those that share most first, and
+    /// of these the likeliest. In the order of the file.
+    fn by_names(&self, inputs: &[usize], outputs: &[usize]) -> Vec<FoundJoint> {
+        let pairs =
+            inputs.iter().flat_map(|input| outputs.iter().map(move |output| (input, output)));
+        let shared = |(input, output): (&usize, &usize)| {
+            let others = self.own_words(*output);
+            let mut shared = self.own_words(*input);
+            shared.retain(|word| others.contains(word));
+            (!shared.is_empty()).then_some((shared, *input, *output))
+        };
+        let mut pairs: Vec<_> = pairs.filter_map(shared).collect();
+        pairs.sort_by_key(|(shared, ..)| std::cmp::Reverse(shared.len()));
+        let mut joints: Vec<FoundJoint> = Vec::new();
+        for (shared, input, output) in pairs {
+            let name = shared.join("_");
+            let is_taken = |joint: &FoundJoint| {
+                joint.input == input || joint.output == output || joint.name == name
+            };
+            if !joints.iter().any(is_taken) {
+                joints.push(self.joint(Some(name), input, output, true));
+            }
+        }
+        joints.sort_by_key(|joint| joint.input);
+        joints
+    }
+
+    /// Where names say nothing: what holds levels drives, what follows it best is driven.
+    fn by_data(&self, outputs: &[usize]) -> Option<FoundJoint> {
+        let all = 0..self.head.headers.len();
+        let holds = |column: &usize| self.signal(*column).is_some_and(Signal::holds_levels);
+        let held: Vec<usize> = all.clone().filter(holds).collect();
+        let [input] = held.as_slice() else { return None };
+        let moving = |column: &usize| column != input && self.signal(*column).is_some();
+        let others: Vec<usize> = all.filter(moving).collect();
+        let output = self.follower(*input, if outputs.is_empty() { &others } else { outputs })?;
+        Some(self.joint(None, *input, output, false))
+    }
+
+    /// Whether nothing but the little word `in` says that a joint's input is one: neither another
+    /// word of its name, nor an output that follows it.
+    fn is_doubtful(&self, joint: &FoundJoint) -> bool {
+        let mut words = self.words(joint.input);
+        words.retain(|word| word != "in");
+        rank(&words, &INPUT_WORDS).is_none() && self.following(joint.input, joint.output).is_none()
+    }
+
+    fn joint(
+        &self,
+        name: Option<String>,
+        input: usize,
+        output: usize,
+        is_sure: bool,
+    ) -> FoundJoint {
+        let word = |column: usize, known: &[&str]| {
+            let words = self.words(column);
+            let found = rank(&words, known).and_then(|rank| known.get(rank).copied());
+            found.map_or_else(String::new, |word| format!("`{word}` in its name; "))
+        };
+        let says = |column: usize| self.signal(column).map_or_else(String::new, Signal::says);
+        let own = self.own_words(output).into_iter().chain(self.own_words(input)).next();
+        let mut why = [
+            format!("{}{}", word(input, &INPUT_WORDS), says(input)),
+            format!("{}{}", word(output, &OUTPUT_WORDS), says(output)),
+        ];
+        if let Some(follows) = self.following(input, output) {
+            let [_, output] = &mut why;
+            *output = format!("{output}; its rate follows the input (correlation {follows:+.2})");
+        }
+        let name = name.or(own).unwrap_or_else(|| "joint".to_owned());
+        FoundJoint { name, input, output, why, is_sure }
+    }
+
+    fn words(&self, column: usize) -> Vec<String> {
+        self.head.headers.get(column).map(|header| words(&header.name)).unwrap_or_default()
+    }
+
+    /// The words of a name that say which joint, and not what of it.
+    fn own_words(&self, column: usize) -> Vec<String> {
+        let mut words = self.words(column);
+        let is_kind = |word: &String| {
+            let word = word.as_str();
+            INPUT_WORDS.contains(&word) && word != "stick"
+                || OUTPUT_WORDS.contains(&word)
+                || OTHER_WORDS.contains(&word)
+                || unit::is_unit(word)
+                || unit::is_unit(&word.to_uppercase())
+        };
+        words.retain(|word| !is_kind(word));
+        words
+    }
+
+    fn signal(&self, column: usize) -> Option<&Signal> {
+        self.signals.get(column)?.as_ref().filter(|signal| !signal.is_constant())
+    }
+
+    /// Columns that move and whose names have one of these words, the likeliest first.
+    fn named(&self, known: &[&str]) -> Vec<usize> {
+        let ranked = |column: usize| {
+            let words = self.words(column);
+            self.signal(column)?;
+            let other = rank(&words, &OTHER_WORDS).is_some();
+            rank(&words, known).filter(|_| !other).map(|rank| (rank, column))
+        };
+        let mut found: Vec<_> = (0..self.head.headers.len()).filter_map(ranked).collect();
+        found.sort_unstable();
+        found.into_iter().map(|(_, column)| column).collect()
+    }
+
+    /// The one of `outputs` whose rate follows `input` best.
+    fn follower(&self, input: usize, outputs: &[usize]) -> Option<usize> {
+        let follows = |&output: &usize| Some((self.following(input, output)?.abs(), output));
+        let best = outputs.iter().filter_map(follows).max_by(|a, b| a.0.total_cmp(&b.0));
+        best.map(|(_, output)| output)
+    }
+
+    /// The correlation of the output's rate with the input, where it is clear.
+    fn following(&self, input: usize, output: usize) -> Option<f64> {
+        self.signal(output)?.follows(self.signal(input)?)
+    }
+}

@@ -1,0 +1,266 @@
+//! What the columns of a foreign log seem to be: the time, the trial, and which of the others
+//! drives and measures which joint.
+
+mod joints;
+mod signal;
+mod words;
+
+use std::path::{Path, PathBuf};
+
+use super::columns::{ColumnMap, JointColumns};
+use super::error::ReadError;
+use super::format;
+use super::layout::{find_time_column, find_trial};
+use super::memory::{Budget, MemoryLimit};
+use super::table::{Column, Head};
+use super::unit;
+use joints::{Columns, FoundJoint};
+use signal::Signal;
+
+/// What a log's columns are taken for, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Survey {
+    /// The log.
+    pub path: PathBuf,
+    /// Each column, in the order of the file.
+    pub columns: Vec<SurveyedColumn>,
+    /// The mapping that follows; without joints where none can be told.
+    pub map: ColumnMap,
+    /// Whether names say what drives and what measures each of its joints, and leave nothing
+    /// else that could be meant.
+    pub is_sure: bool,
+    /// What could not be told.
+    pub open: Vec<String>,
+}
+
+/// A column and what it is taken for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurveyedColumn {
+    /// Its name, as it stands in the file.
+    pub name: String,
+    /// Its unit, where the name or the header says it.
+    pub unit: Option<String>,
+    /// What it is taken for.
+    pub role: Role,
+    /// Why.
+    pub why: String,
+}
+
+/// What a column is taken for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// The time of each row.
+    Time,
+    /// The name of each row's trial.
+    Trial,
+    /// What drives this joint.
+    Input(String),
+    /// What this joint does.
+    Output(String),
+    /// None of these.
+    Other,
+}
+
+impl Survey {
+    /// Looks at the log at `path`, with no more than `memory`.
+    ///
+    /// # Errors
+    /// [`ReadError`] when it cannot be read at all.
+    pub fn of(path: &Path, memory: MemoryLimit) -> Result<Self, ReadError> {
+        let table = format::open(path, Budget::new(memory))?;
+        let head = table.head.clone();
+        if head.is_of_numbers() {
+            return Err(ReadError::NoHeader { path: head.path, row: head.header_row });
+        }
+        let (time, trial) = (find_time_column(&head), find_trial(&head));
+        let numeric: Vec<usize> = (0..head.headers.len()).filter(|i| Some(*i) != trial).collect();
+        let clock = head.headers.first().map_or(0, |header| header.clock);
+        let read = table.read(&numeric, trial, time, clock)?;
+        let read = read.columns.iter().zip(numeric);
+        Ok(Self::of_columns(&head, read.map(|(column, index)| (index, column))))
+    }
+
+    /// Looks at columns with their indices in `head`.
+    pub(super) fn of_columns<'a>(
+        head: &Head,
+        columns: impl Iterator<Item = (usize, &'a Column)>,
+    ) -> Self {
+        let (time, trial) = (find_time_column(head), find_trial(head));
+        let mut signals: Vec<Option<Signal>> = vec![None; head.headers.len()];
+        for (index, column) in columns.filter(|(index, _)| ![time, trial].contains(&Some(*index))) {
+            if let Some(slot) = signals.get_mut(index) {
+                *slot = Signal::of(column);
+            }
+        }
+        let columns = Columns { head, signals: &signals };
+        let joints = columns.joints();
+        columns.survey(time, trial, &joints)
+    }
+}
+
+impl Columns<'_> {
+    fn survey(&self, time: Option<usize>, trial: Option<usize>, joints: &[FoundJoint]) -> Survey {
+        let name = |column: usize| {
+            self.head.headers.get(column).map_or_else(String::new, |header| header.text.clone())
+        };
+        let mut open = Vec::new();
+        if time.is_none() {
+            open.push(
+                "no column is a time: name it, or give `sample_period` in seconds".to_owned(),
+            );
+        }
+        if joints.is_empty() {
+            open.push(
+                "which columns drive and measure a joint cannot be told from names or data"
+                    .to_owned(),
+            );
+        }
+        let columns = 0..self.head.headers.len();
+        let columns = columns.map(|column| self.column(column, time, trial, joints)).collect();
+        let joint = |joint: &FoundJoint| {
+            JointColumns::new(&joint.name, &name(joint.input), &name(joint.output))
+        };
+        let map = ColumnMap {
+            time: time.map(name),
+            trial: trial.map(name),
+            sample_period_s: None,
+            joints: joints.iter().map(joint).collect(),
+            ..ColumnMap::default()
+        };
+        let is_sure = joints.iter().all(|joint| joint.is_sure);
+        Survey { path: self.head.path.clone(), columns, map, is_sure, open }
+    }
+
+    fn column(
+        &self,
+        column: usize,
+        time: Option<usize>,
+        trial: Option<usize>,
+        joints: &[FoundJoint],
+    ) -> SurveyedColumn {
+        let header = self.head.headers.get(column);
+        let (name, stated) = header
+            .map_or_else(Default::default, |header| (header.text.clone(), header.unit.clone()));
+        let bare = header.map_or("", |header| header.name.as_str());
+        let mut unit = stated.or_else(|| unit::of_signal(bare));
+        let of = |joint: &FoundJoint| {
+            let [input, output] = joint.why.clone();
+            match column {
+                place if place == joint.input => Some((Role::Input(joint.name.clone()), input)),
+                place if place == joint.output => Some((Role::Output(joint.name.clone()), output)),
+                _ => None,
+            }
+        };
+        let (role, why) = if Some(column) == time {
+            unit = unit.or_else(|| unit::of_time(bare).map(str::to_owned));
+            let taken =
+                if unit.is_some() { "" } else { ", taken for seconds, or told by its size" };
+            (Role::Time, format!("its name{taken}"))
+        } else if Some(column) == trial {
+            (Role::Trial, "its name".to_owned())
+        } else if let Some(found) = joints.iter().find_map(of) {
+            found
+        } else {
+            let says = self.signals.get(column).and_then(Option::as_ref).map(Signal::says);
+            (Role::Other, says.unwrap_or_else(|| "it does not hold numbers".to_owned()))
+        };
+        SurveyedColumn { name, unit, role, why }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write as _;
+
+    use super::*;
+
+    /// A joint that integrates what its input was 10 rows before.
+    fn log(header: &str) -> String {
+        let level = |k: i32| [0, 3, 0, -2][(k / 60).rem_euclid(4) as usize];
+        let mut angle = 0.0;
+        let mut text = format!("{header}\n");
+        for k in 0..600 {
+            angle += 0.01 * f64::from(level(k - 10));
+            let noise = f64::from(k * 7919 % 97) * 1e-4;
+            writeln!(text, "{},{},{},{}", k * 10, level(k), angle + noise, 100.0 + noise).unwrap();
+        }
+        text
+    }
+
+    fn survey(header: &str) -> Survey {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        std::fs::write(&path, log(header)).unwrap();
+        Survey::of(&path, MemoryLimit::default()).unwrap()
+    }
+
+    #[test]
+    fn joints_are_told_by_names_or_by_what_follows_what() {
+        for (header, name) in [
+            ("time_ms,u_boom_duty,y_boom,p_bar", "boom"),
+            ("time_ms,boom.input,boom.output,boom.pressure", "boom"),
+            ("t_ms,cmdArm,angleArm,x", "arm"),
+            ("t_ms,a,b,c", "b"),
+        ] {
+            let survey = survey(header);
+            let names: Vec<&str> = header.split(',').collect();
+            let expected = JointColumns::new(name, names[1], names[2]);
+            assert_eq!(survey.map.joints, [expected], "{header}: {survey:#?}");
+            assert_eq!(survey.map.time.as_deref(), Some(names[0]));
+            assert!(survey.open.is_empty());
+            assert_eq!(survey.is_sure, name != "b", "data alone leave a doubt");
+        }
+    }
+
+    #[test]
+    fn a_joint_has_the_columns_that_share_most_words_with_each_other() {
+        let header =
+            "t_s,left_arm_cmd,left_boom_cmd,left_boom_speed,left_boom_angle,left_arm_angle";
+        let mut text = format!("{header}\n");
+        for k in 0..50 {
+            writeln!(text, "{k},{},{},{k},{k},{k}", k / 10, k / 7).unwrap();
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        std::fs::write(&path, text).unwrap();
+        let survey = Survey::of(&path, MemoryLimit::default()).unwrap();
+        let joint = |name: &str| {
+            let column = |what: &str| format!("{name}_{what}");
+            JointColumns::new(name, &column("cmd"), &column("angle"))
+        };
+        assert_eq!(survey.map.joints, ["left_arm", "left_boom"].map(joint));
+        assert!(survey.is_sure);
+    }
+
+    #[test]
+    fn what_cannot_be_told_is_said() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        std::fs::write(&path, "a,b\n1,5\n2,3\n3,9\n4,1\n").unwrap();
+        let survey = Survey::of(&path, MemoryLimit::default()).unwrap();
+        assert_eq!((survey.map.joints.len(), survey.open.len()), (0, 2), "{survey:#?}");
+    }
+
+    #[test]
+    fn in_at_the_start_of_a_name_is_no_input_that_nothing_follows() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        let mut text = "seq,angle_start_cnt,in_traces\n".to_owned();
+        for k in 0..200 {
+            writeln!(text, "{k},{},{}", k * 7919 % 97, k / 60 % 2).unwrap();
+        }
+        std::fs::write(&path, text).unwrap();
+        let survey = Survey::of(&path, MemoryLimit::default()).unwrap();
+        assert_eq!(survey.map.joints, [], "{survey:#?}");
+        assert_eq!(survey.open.len(), 2);
+    }
+
+    #[test]
+    fn the_mapping_is_read_again() {
+        let found = survey("time_ms,u_boom_duty,y_boom,p_bar");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.toml");
+        std::fs::write(&path, found.map.to_toml()).unwrap();
+        assert_eq!(ColumnMap::read(&path).unwrap(), found.map);
+    }
+}
