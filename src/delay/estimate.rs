@@ -11,6 +11,7 @@ use super::settings::Settings;
 use super::settling::Settling;
 use super::spec::Scope;
 use super::steps::joint_steps;
+use super::stops::Stops;
 use super::tracking::Tracking;
 use super::trial_estimate::{EstimateError, TrialEstimate};
 use crate::experiment::Trial;
@@ -49,6 +50,8 @@ pub struct Estimator {
     settling: Option<Settling>,
     /// Where it comes to rest, where its input says that.
     tracking: Option<Tracking>,
+    /// Where it comes to rest whatever its input.
+    stops: Option<Stops>,
 }
 
 impl Estimator {
@@ -66,20 +69,23 @@ impl Estimator {
         let method = implementation(settings.method);
         let settling = settling_of(trials, &settings);
         let tracking = if settling.is_none() { tracking_of(trials, &settings) } else { None };
+        let stops = if settling.is_none() && tracking.is_none() {
+            stops_of(trials, &settings)
+        } else {
+            None
+        };
         let is_joint = settling.is_none() && settings.method.spec().scope == Scope::Joint;
         let lag = is_joint.then(|| {
             let mut prepared = prepared(trials, &settings);
-            if let Some(tracking) = &tracking {
-                for trial in &mut prepared {
-                    tracking.bound(trial, &settings.at(trial.period));
-                }
+            for trial in &mut prepared {
+                bound(trial, tracking.as_ref(), stops.as_ref(), &settings.at(trial.period));
             }
             let period = prepared.first().map(|trial| trial.period);
             // A lag is looked for in the trials of the first one's period.
             let settings = period.map_or_else(|| settings.clone(), |period| settings.at(period));
             method.shared_lag(&prepared, &settings)
         });
-        Ok(Self { settings, method, lag: lag.flatten(), settling, tracking })
+        Ok(Self { settings, method, lag: lag.flatten(), settling, tracking, stops })
     }
 
     /// Estimates one trial of the joint.
@@ -89,9 +95,7 @@ impl Estimator {
     pub fn estimate(&self, trial: &Trial) -> Result<TrialEstimate, EstimateError> {
         let settings = self.settings.at(trial.period());
         let mut prepared = Prepared::of(trial, &settings)?;
-        if let Some(tracking) = &self.tracking {
-            tracking.bound(&mut prepared, &settings);
-        }
+        bound(&mut prepared, self.tracking.as_ref(), self.stops.as_ref(), &settings);
         let decisions = match &self.settling {
             Some(settling) => decide_settling(&prepared, settling, &settings),
             None => self.method.decide(&prepared, self.lag.as_ref(), &settings),
@@ -111,7 +115,7 @@ fn prepared<'a>(trials: &'a [Trial], settings: &Settings) -> Vec<Prepared<'a>> {
 
 /// How the output settles, where it is to be asked.
 fn settling_of(trials: &[Trial], settings: &Settings) -> Option<Settling> {
-    if settings.paper || settings.input == InputKind::Continuous {
+    if settings.paper || settings.grows || settings.input == InputKind::Continuous {
         return None;
     }
     // Most outputs do not settle, which is seen without a low-pass.
@@ -122,14 +126,36 @@ fn settling_of(trials: &[Trial], settings: &Settings) -> Option<Settling> {
     Settling::of(start, &prepared, &settings.at(period))
 }
 
+/// Bounds what says anything of each step of `trial` by where it comes to rest.
+fn bound(
+    trial: &mut Prepared<'_>,
+    tracking: Option<&Tracking>,
+    stops: Option<&Stops>,
+    settings: &Settings,
+) {
+    if let Some(tracking) = tracking {
+        tracking.bound(trial, settings);
+    }
+    if let Some(stops) = stops {
+        stops.bound(trial);
+    }
+}
+
+/// Where the output comes to rest whatever its input.
+fn stops_of(trials: &[Trial], settings: &Settings) -> Option<Stops> {
+    if settings.paper || settings.grows || settings.input == InputKind::Continuous {
+        return None;
+    }
+    Stops::of(trials, &joint_steps(trials, settings))
+}
+
 /// Where the outputs of `trials` come to rest, where their input says that.
 pub(crate) fn tracking(trials: &[Trial]) -> Option<Tracking> {
     tracking_of(trials, &Settings::default().with_input_of(trials))
 }
 
 fn tracking_of(trials: &[Trial], settings: &Settings) -> Option<Tracking> {
-    let is_asked = !settings.paper && settings.settles != Some(false);
-    if !is_asked || settings.input == InputKind::Continuous {
+    if settings.paper || settings.grows || settings.input == InputKind::Continuous {
         return None;
     }
     Tracking::of(trials, &joint_steps(trials, settings))

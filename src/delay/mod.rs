@@ -62,6 +62,7 @@ mod settling;
 mod spec;
 mod step_delay;
 mod steps;
+mod stops;
 mod strokes;
 pub mod sweep;
 mod table;

@@ -1,16 +1,19 @@
 //! A trial as a method sees it: its steps, and its output smoothed as asked.
 
+use std::borrow::Cow;
+
 use super::input_motion::InputKind;
 use super::motion::{StepMotion, motions};
 use super::settings::Settings;
 use super::steps::{InputStep, trial_steps};
-use crate::experiment::Trial;
+use crate::experiment::{Trial, without_spikes};
 use crate::numerics::{FilterError, LowPass};
 use crate::units::SamplePeriod;
 
 /// A trial as a method sees it.
 pub(super) struct Prepared<'a> {
-    pub(super) raw: &'a [f64],
+    /// The output as it was measured, without isolated spikes of the sensor.
+    pub(super) raw: Cow<'a, [f64]>,
     pub(super) smoothed: Option<Vec<f64>>,
     pub(super) period: SamplePeriod,
     pub(super) steps: Vec<InputStep>,
@@ -22,19 +25,21 @@ pub(super) struct Prepared<'a> {
 
 impl<'a> Prepared<'a> {
     pub(super) fn of(trial: &'a Trial, settings: &Settings) -> Result<Self, FilterError> {
-        let smooth = |filter: LowPass| filter.smooth(trial.output(), trial.period());
+        let mended = if settings.paper || settings.grows { None } else { without_spikes(trial) };
+        let raw = mended.map_or(Cow::Borrowed(trial.output()), Cow::Owned);
+        let smooth = |filter: LowPass| filter.smooth(&raw, trial.period());
         let smoothed = settings.low_pass_at(trial.period()).map(smooth).transpose()?;
         let steps = match settings.input {
             InputKind::Continuous => Vec::new(),
             InputKind::Auto | InputKind::Steps => trial_steps(trial, settings),
         };
-        let (raw, period) = (trial.output(), trial.period());
-        let motions = motions(raw, &steps, period, &settings.at(period));
+        let period = trial.period();
+        let motions = motions(&raw, &steps, period, &settings.at(period));
         Ok(Self { raw, smoothed, period, steps, motions, tracks: false })
     }
 
     /// What the method is to look at.
     pub(super) fn output(&self) -> &[f64] {
-        self.smoothed.as_deref().unwrap_or(self.raw)
+        self.smoothed.as_deref().unwrap_or(&self.raw)
     }
 }

@@ -83,6 +83,9 @@ pub struct Settings {
     pub min_step: f64,
     /// Whether the input is taken as steps or as moving all the time.
     pub input: InputKind,
+    /// Whether the record still grows: nothing is then taken from the whole of it, neither whether
+    /// the output settles or tracks its input, nor what its sensor's noise is.
+    pub grows: bool,
     /// Whether the output settles at a level for each level of the input, as a speed or a pressure
     /// does; none where the record is to show it.
     pub settles: Option<bool>,
@@ -126,6 +129,7 @@ impl Settings {
             paper: false,
             min_step: 0.0,
             input: InputKind::Auto,
+            grows: false,
             settles: None,
             every_change: false,
             interpolation: Interpolation::Hold,

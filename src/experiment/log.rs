@@ -10,6 +10,7 @@ use super::layout::{JointLayout, TimeSource};
 use super::memory::Budget;
 use super::sampling::{Fault, Grid, Piece, Repair, Signals};
 use super::table::{BadCell, Column, Head, Table, TrialRows};
+use super::wrap::Wrap;
 use crate::units::SamplePeriod;
 
 /// Memory of a sample of a signal: the number as it was read, on its grid and in its trial, and
@@ -202,12 +203,16 @@ impl Log<'_> {
             covariates: layout.covariates.iter().map(|c| c.signal.clone()).collect::<Vec<Signal>>(),
             trials: Vec::new(),
         };
+        let wrap = self.wrap(layout, trials, repair);
+        let mut turns = 0;
         let mut split: Vec<(&TrialRows, Range<usize>)> = Vec::new();
         let size = (2 + joint.covariates.len()) * SAMPLE_SIZE;
         for (rows, grid) in trials.iter().zip(grids) {
             let taken = self.budget.take_values(grid.samples(), size);
             taken.map_err(|error| error.refuse(&self.head.path))?;
-            let pieces = grid.pieces(&self.signals(layout, rows));
+            let mut signals = self.signals(layout, rows);
+            turns += wrap.map_or(0, |wrap| wrap.unwrap(&mut signals.output));
+            let pieces = grid.pieces(&signals);
             if pieces.len() > 1 {
                 let first = joint.trials.len();
                 split.push((rows, first..first + pieces.len()));
@@ -222,7 +227,20 @@ impl Log<'_> {
             return Err(ReadError::NoSamples { path, joint });
         }
         notes.extend(self.split_notes(&joint, layout, &split, time));
+        let note = |wrap: Wrap| {
+            format!("joint `{}`: {}", joint.name, wrap.note(turns, joint.output_unit.as_deref()))
+        };
+        notes.extend(wrap.filter(|_| turns > 0).map(note));
         Ok((joint, notes))
+    }
+
+    /// The turn after which the output of a joint begins anew. Of a log that still grows it is
+    /// not known.
+    fn wrap(&self, layout: &JointLayout, trials: &[TrialRows], repair: Repair) -> Option<Wrap> {
+        let output = self.column(layout.output.column).filter(|_| !repair.as_it_stands)?;
+        let values = |rows: &TrialRows| output.values.get(rows.start..rows.end);
+        let trials: Vec<&[f64]> = trials.iter().filter_map(values).collect();
+        Wrap::of(&trials, layout.output.signal.unit.as_deref())
     }
 
     /// The joint once more, where its input changes in gaps alone: these are filled, so that its

@@ -21,9 +21,11 @@ mod names;
 mod read;
 mod sampling;
 mod source;
+mod spikes;
 mod survey;
 mod table;
 mod unit;
+mod wrap;
 
 pub use activity::{Other, activity};
 pub use columns::{ColumnMap, ColumnMapError, JointColumns};
@@ -37,4 +39,5 @@ pub(crate) use names::nearest_name;
 pub use read::{Experiment, Failure, ReadOptions, expand_folders};
 pub use sampling::Repair;
 pub use source::Source;
+pub(crate) use spikes::{spike_count, spike_weights, without_spikes};
 pub use survey::{Role, Survey, SurveyedColumn};

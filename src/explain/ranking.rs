@@ -118,10 +118,13 @@ impl Search<'_, '_> {
     /// The base as the first order that the output follows, where it follows the input itself: too
     /// far from an integrator for a descent to find it.
     fn as_first_order(&self) -> Option<Extension> {
-        let (id, model) = self.record.first_order()?.started_at(&self.base.model)?;
-        self.effects.iter().find(|effect| effect.spec().id == id)?;
+        let (effects, model) = self.record.follower()?.started_at(&self.base.model)?;
+        let is_allowed = |id: &&str| self.effects.iter().any(|effect| effect.spec().id == *id);
+        if !effects.iter().all(is_allowed) {
+            return None;
+        }
         let fit = fit_to_compare(self.record, &model, self.range).ok()?;
-        Some(Extension { effects: vec![id], fit })
+        Some(Extension { effects, fit })
     }
 
     /// The base with each step's own delay as it was measured, where none of `extensions` comes

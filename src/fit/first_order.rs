@@ -12,8 +12,9 @@
 
 use crate::delay::{FirstOrder, followed, tracking};
 use crate::effect::by_id;
-use crate::experiment::Joint;
+use crate::experiment::{Joint, Trial};
 use crate::model::{Component, JointModel};
+use crate::numerics::quantile;
 
 /// The squared correlation of the output of `joint` with its input some samples before, where the
 /// output follows the input; of where it comes to rest, where the limit of its rate hides that.
@@ -25,19 +26,63 @@ pub(crate) fn follows_input(joint: &Joint) -> Option<f64> {
     followed(&joint.trials).map(|(_, squared)| squared).or_else(by_rests)
 }
 
-impl FirstOrder {
-    /// That from which a model of `joint` starts; none where the output does not follow the input.
-    pub(crate) fn start(joint: &Joint) -> Option<Self> {
+/// The output of a joint that follows its input itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Follower {
+    first_order: FirstOrder,
+    /// The limit of its rate, output units per second, where that hides the first order.
+    rate: Option<f64>,
+}
+
+impl Follower {
+    /// How the output of `joint` follows its input; none where it does not.
+    pub(crate) fn of(joint: &Joint) -> Option<Self> {
         let trials = &joint.trials;
-        Self::of(trials).or_else(|| {
-            let tracking = tracking(trials)?;
-            let (static_gain, at_zero) = (tracking.gain(), tracking.offset());
-            Some(Self { static_gain, at_zero, ..Self::likely(trials)? })
-        })
+        if let Some(first_order) = FirstOrder::of(trials) {
+            return Some(Self { first_order, rate: None });
+        }
+        let tracking = tracking(trials)?;
+        let periods = trials.iter().map(|trial| trial.period().seconds());
+        let shortest_s = SAMPLES * periods.fold(0.0, f64::max);
+        let first_order = FirstOrder {
+            time_constant_s: shortest_s,
+            dead_time_s: shortest_s,
+            static_gain: tracking.gain(),
+            at_zero: tracking.offset(),
+        };
+        Some(Self { first_order, rate: usual_rate(trials) })
     }
 
+    /// `model` as this first order, and the ids of the effects that make it one.
+    pub(crate) fn started_at(self, model: &JointModel) -> Option<(Vec<&'static str>, JointModel)> {
+        let (id, model) = self.first_order.started_at(model)?;
+        let Some(rate) = self.rate else { return Some((vec![id], model)) };
+        let effect = by_id("rate_limit")?;
+        let seconds_per_input = self.first_order.static_gain.abs() / rate;
+        let component = Component::new(effect, vec![seconds_per_input.into()])?;
+        Some((vec![id, effect.spec().id], model.with(component)))
+    }
+}
+
+/// Samples of a time constant, and of a dead time, that hardly show behind a limited rate.
+const SAMPLES: f64 = 3.0;
+
+/// The rate of an output that mostly moves at its limit or rests, output units per second.
+fn usual_rate(trials: &[Trial]) -> Option<f64> {
+    /// Samples over which a rate is taken, and the part of them that is below the limit.
+    const OVER: usize = 5;
+    const BELOW: f64 = 0.95;
+    let rates = trials.iter().flat_map(|trial| {
+        let length_s = OVER as f64 * trial.period().seconds();
+        let ways = trial.output().iter().zip(trial.output().iter().skip(OVER));
+        ways.map(move |(from, to)| (to - from).abs() / length_s)
+    });
+    quantile(&rates.collect::<Vec<_>>(), BELOW).filter(|rate| *rate > 0.0)
+}
+
+impl FirstOrder {
     /// `model` as this first order, and the id of the effect that makes it one.
-    pub(crate) fn started_at(self, model: &JointModel) -> Option<(&'static str, JointModel)> {
+    fn started_at(self, model: &JointModel) -> Option<(&'static str, JointModel)> {
         let leakage = by_id("leakage")?;
         let rate = self.time_constant_s.recip();
         let component = Component::new(leakage, vec![rate.into(), self.at_zero.into()])?;
@@ -55,7 +100,6 @@ impl FirstOrder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::Trial;
     use crate::units::SamplePeriod;
 
     /// The output of `next`, from the input and the output before, at levels held 1 s.

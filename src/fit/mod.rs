@@ -22,7 +22,6 @@ mod score;
 mod search;
 mod space;
 mod speed;
-mod spikes;
 mod starts;
 mod thin;
 mod window;

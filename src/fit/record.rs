@@ -6,14 +6,14 @@ use nalgebra::DVector;
 
 use super::evaluation::Evaluation;
 use super::excerpt::Excerpt;
+use super::first_order::Follower;
 use super::run::Run;
 use super::speed;
-use super::spikes;
 use super::thin::thinned;
 use super::window::{Horizon, Part, Split, Window, changes, cut, shorter};
-use crate::delay::{FirstOrder, StepDelay, step_delays};
+use crate::delay::{StepDelay, step_delays};
 use crate::effect::RecordRange;
-use crate::experiment::{Joint, Trial};
+use crate::experiment::{Joint, Trial, spike_weights};
 use crate::model::{Arrivals, Commands, JointModel, Surroundings};
 use crate::units::radians_in;
 
@@ -31,7 +31,7 @@ pub struct FitRecord<'a> {
     delays: Arc<OnceLock<Delays>>,
     radians_per_output_unit: f64,
     /// What the output follows, found when a fit first asks for it.
-    first_order: Arc<OnceLock<Option<FirstOrder>>>,
+    follower: Arc<OnceLock<Option<Follower>>>,
     /// Windows start at the measured speed.
     speeds_measured: bool,
     /// Seconds from the start of the record to that of each trial.
@@ -69,12 +69,12 @@ impl<'a> FitRecord<'a> {
             others,
             delays: Arc::default(),
             radians_per_output_unit,
-            first_order: Arc::default(),
+            follower: Arc::default(),
             speeds_measured,
             starts_s: starts_s(&joint.trials),
             commands: joint.trials.iter().map(commands).collect(),
             spans: joint.trials.iter().map(span).collect(),
-            weights: spikes::weights(&joint.trials).map(Arc::new),
+            weights: spike_weights(&joint.trials).map(Arc::new),
         }
     }
 
@@ -280,9 +280,9 @@ impl<'a> FitRecord<'a> {
         }
     }
 
-    /// The first order that the output follows, where it follows the input itself.
-    pub(crate) fn first_order(&self) -> Option<FirstOrder> {
-        *self.first_order.get_or_init(|| FirstOrder::start(self.joint))
+    /// How the output follows the input, where it follows the input itself.
+    pub(crate) fn follower(&self) -> Option<Follower> {
+        *self.follower.get_or_init(|| Follower::of(self.joint))
     }
 
     /// The distinct magnitudes of the input, ascending.

@@ -2,7 +2,7 @@
 
 use crate::cli::failure::{read_failures, said};
 use crate::delay::{Condition, Decision, EstimateError, Verdict};
-use crate::experiment::{Experiment, Joint, Trial};
+use crate::experiment::{Experiment, Joint, Trial, spike_count};
 use crate::report::{EstimatedJoint, JointSummary, input_note};
 use crate::study::JointEstimate;
 
@@ -55,6 +55,7 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
         if estimate.dead_time.is_none() {
             notes.extend(unsmoothed(joint, estimate));
             notes.extend(unresolved(joint, estimate));
+            notes.extend(spikes(joint, estimate));
         }
         let summary = JointSummary::of(EstimatedJoint { joint, estimate });
         if steps > 0 && summary.rejected == [(Condition::FirstOrLast, steps)] {
@@ -66,6 +67,24 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
         notes.extend(input_note(&EstimatedJoint { joint, estimate }));
     }
     notes
+}
+
+/// A line on isolated spikes of the sensor, where they do not count.
+fn spikes(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
+    let spikes: usize = if estimate.settings.paper || estimate.settings.grows {
+        0
+    } else {
+        joint.trials.iter().map(spike_count).sum()
+    };
+    (spikes > 0).then(|| {
+        let samples = if spikes == 1 { "sample is an" } else { "samples are" };
+        let spike = if spikes == 1 { "isolated spike" } else { "isolated spikes" };
+        format!(
+            "joint `{}`: {spikes} {samples} {spike} of the sensor, beyond all neighbours and the \
+             noise: lines take their place where delays are looked for",
+            joint.name
+        )
+    })
 }
 
 /// A line where most reactions begin within a sample of their step.

@@ -126,6 +126,16 @@ impl<'a> LagSearch<'a> {
         joint
     }
 
+    /// Whether a sensor with steps of `quantum` sees the lag: how far reactions are behind because
+    /// of it is several of its steps. Else the stairs of the sensor pass for a lag.
+    pub(crate) fn is_seen_by(&self, quantum: f64) -> bool {
+        /// Steps (chosen).
+        const STEPS: f64 = 4.0;
+        let changes: Vec<f64> = self.found.iter().map(|found| found.change().abs()).collect();
+        let behind = median(&changes).unwrap_or(0.0) * Response::of(&self.model).mean;
+        behind >= STEPS * quantum
+    }
+
     /// Whether reactions are so small beside the noise that it takes many to see a lag.
     pub(crate) fn is_faint(&self) -> bool {
         /// Standard deviations of the noise by which the speed changes, per sample.

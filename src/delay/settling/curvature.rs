@@ -29,7 +29,7 @@ pub(super) fn is_curved(trials: &[&Prepared<'_>]) -> bool {
 }
 
 /// The output in each hold without the first of so many parts.
-fn late_parts<'a>(trial: &Prepared<'a>, part: usize) -> Vec<&'a [f64]> {
+fn late_parts<'a>(trial: &'a Prepared<'_>, part: usize) -> Vec<&'a [f64]> {
     /// Samples of a part that says something.
     const FEWEST: usize = 8;
     let starts = trial.steps.iter().map(|step| step.sample - 1);

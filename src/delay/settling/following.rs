@@ -94,13 +94,6 @@ impl FirstOrder {
         Some(best(trials, longest, f64::INFINITY, COUNT)?.0)
     }
 
-    /// The one that the outputs of `trials` follow best, whether or not they follow the input.
-    pub(crate) fn likely(trials: &[Trial]) -> Option<Self> {
-        const COUNT: usize = 16;
-        let longest = lags(trials).last()?;
-        Some(best(trials, longest, f64::INFINITY, COUNT)?.0)
-    }
-
     /// Where the output settles at `input`.
     pub(crate) fn settled_at(&self, input: f64) -> f64 {
         self.at_zero + self.static_gain * input

@@ -323,7 +323,7 @@ fn is_exponential(search: &Search<'_>, trials: &[&Prepared<'_>]) -> bool {
     /// Times the noise, and part of the output's range, that the law leaves at most (chosen).
     const TIMES: f64 = 2.0;
     const LITTLE: f64 = 0.01;
-    let outputs = || trials.iter().flat_map(|trial| trial.raw);
+    let outputs = || trials.iter().flat_map(|trial| trial.raw.iter());
     let low = outputs().copied().fold(f64::INFINITY, f64::min);
     let high = outputs().copied().fold(f64::NEG_INFINITY, f64::max);
     let bends = trials.iter().flat_map(|trial| trial.raw.windows(3));

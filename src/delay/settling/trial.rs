@@ -65,7 +65,7 @@ impl<'a> SettlingTrial<'a> {
         };
         let changes = trial.steps.iter().map(change).collect();
         // What a low-pass leaves of an onset is not its response: the output as it was measured.
-        let mut found = Self { output: trial.raw, path, changes };
+        let mut found = Self { output: &trial.raw, path, changes };
         found.locate(constants, noise, OnsetPath::cautious_window);
         found.locate(constants, noise, OnsetPath::window);
         found

@@ -2,10 +2,11 @@
 //!
 //! A sample, or two in a row, is a spike where it lies beyond all of the three samples before
 //! and the three behind it, further than these lie from one another and further than the
-//! sensor's noise reaches. It gets no weight. Whatever a model makes of a record, the samples
+//! sensor's noise reaches. It gets no weight in a fit, and a line in its place where delays are
+//! looked for. Whatever a model makes of a record, the samples
 //! that count are the same: costs of models are sums of the same squares, and compare.
 
-use crate::experiment::Trial;
+use super::joint::Trial;
 use crate::numerics::robust_scale;
 
 /// Samples on either side that a spike is held against.
@@ -20,11 +21,40 @@ const BEYOND: f64 = 8.0;
 
 /// For each trial the weights of its samples, 0 for spikes and 1 for others; `None` where no
 /// trial has a spike.
-pub(super) fn weights(trials: &[Trial]) -> Option<Vec<Vec<f64>>> {
+pub(crate) fn spike_weights(trials: &[Trial]) -> Option<Vec<Vec<f64>>> {
     let noise = noise(trials);
     let weights: Vec<Vec<f64>> =
         trials.iter().map(|trial| of_trial(trial.output(), noise)).collect();
     weights.iter().flatten().any(|weight| *weight <= 0.0).then_some(weights)
+}
+
+/// Samples of `trial` that are spikes.
+pub(crate) fn spike_count(trial: &Trial) -> usize {
+    let weights = spike_weights(std::slice::from_ref(trial)).into_iter().flatten().flatten();
+    weights.filter(|weight| *weight <= 0.0).count()
+}
+
+/// The output of `trial` with lines in the place of its spikes; none where it has no spike.
+pub(crate) fn without_spikes(trial: &Trial) -> Option<Vec<f64>> {
+    let output = trial.output();
+    let weights = spike_weights(std::slice::from_ref(trial))?.pop()?;
+    let mut mended = output.to_vec();
+    let is_spike = |weight: &f64| *weight <= 0.0;
+    let mut place = 0;
+    for run in weights.chunk_by(|a, b| is_spike(a) == is_spike(b)) {
+        let end = place + run.len();
+        // A spike is never at the end of a trial.
+        let ends =
+            place.checked_sub(1).and_then(|before| Some((output[before], *output.get(end)?)));
+        if let Some((from, to)) = ends.filter(|_| run.first().is_some_and(is_spike)) {
+            let step = (to - from) / (run.len() + 1) as f64;
+            for (k, value) in mended[place..end].iter_mut().enumerate() {
+                *value = from + step * (k + 1) as f64;
+            }
+        }
+        place = end;
+    }
+    Some(mended)
 }
 
 /// Standard deviation of the sensor's noise: from differences of the second order, which leave
@@ -32,11 +62,15 @@ pub(super) fn weights(trials: &[Trial]) -> Option<Vec<Vec<f64>>> {
 fn noise(trials: &[Trial]) -> f64 {
     /// The variance of `a − 2b + c` in parts of that of white noise.
     const SECOND_ORDER: f64 = 6.0;
-    let second =
-        trials.iter().flat_map(|trial| trial.output().windows(3)).map(|triple| match triple {
-            [a, b, c] => a - 2.0 * b + c,
-            _ => 0.0,
-        });
+    /// Differences that are enough to know it.
+    const ENOUGH: usize = 20_000;
+    let samples: usize = trials.iter().map(|trial| trial.output().len()).sum();
+    let every = samples.div_ceil(ENOUGH).max(1);
+    let triples = trials.iter().flat_map(|trial| trial.output().windows(3).step_by(every));
+    let second = triples.map(|triple| match triple {
+        [a, b, c] => a - 2.0 * b + c,
+        _ => 0.0,
+    });
     let second: Vec<f64> = second.collect();
     let steps = trials.iter().flat_map(|trial| trial.output().windows(2)).map(|pair| match pair {
         [a, b] => (b - a).abs(),
@@ -106,6 +140,23 @@ mod tests {
         output[100..102].iter_mut().for_each(|y| *y -= 40.0);
         output[200..203].iter_mut().for_each(|y| *y += 40.0);
         assert_eq!(found(&output, 1.0), [50, 53, 100, 101]);
+    }
+
+    #[test]
+    fn a_line_takes_the_place_of_a_spike() {
+        let noise = noisy(3, 0.0, 400);
+        let mut output = noise.clone();
+        output[50] += 30.0;
+        output[100..102].iter_mut().for_each(|y| *y -= 40.0);
+        let period = crate::units::SamplePeriod::from_seconds(0.01).unwrap();
+        let trial =
+            |output: Vec<f64>| Trial::new("1", 0.0, period, vec![0.0; 400], output).unwrap();
+        let mended = without_spikes(&trial(output)).unwrap();
+        let others = (0..400).filter(|k| ![50, 100, 101].contains(k));
+        assert!(others.into_iter().all(|k| mended[k].to_bits() == noise[k].to_bits()));
+        assert!((mended[50] - f64::midpoint(noise[49], noise[51])).abs() < 1e-12);
+        assert!((mended[101] - (noise[99] + 2.0 * noise[102]) / 3.0).abs() < 1e-12);
+        assert_eq!(without_spikes(&trial(noise)), None);
     }
 
     #[test]

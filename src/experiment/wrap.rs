@@ -1,0 +1,137 @@
+//! Outputs of a sensor that begins anew after a turn.
+//!
+//! An absolute encoder on a slewing joint shows 179.9 deg and then −179.9: a turn of 360 deg in one
+//! sample, which no joint makes. Where all large jumps of an output are of a turn, they are taken
+//! out.
+
+/// A sensor that begins anew after so much, output units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Wrap {
+    turn: f64,
+}
+
+/// Parts of a turn: below the first no sample jumps, nor does it between the first and the second.
+const MOTION: f64 = 0.25;
+const JUMP: f64 = 0.75;
+
+/// Part of a turn that an output which wraps goes through, at least.
+const RANGE: f64 = 0.9;
+
+/// Times a turn that it goes through at most: noise and offsets come behind the turn.
+const BEYOND: f64 = 1.02;
+
+impl Wrap {
+    /// The turn of a sensor whose output is `trials`, not a number where it is missing, in `unit`;
+    /// none where it does not begin anew.
+    pub(super) fn of(trials: &[&[f64]], unit: Option<&str>) -> Option<Self> {
+        let is_known = |value: &f64| !value.is_nan();
+        let known = || trials.iter().copied().flatten().copied().filter(is_known);
+        let (low, high) = known().fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
+        let range = high - low;
+        let is_turn = |turn: &f64| (RANGE * turn..=BEYOND * turn).contains(&range);
+        let turn = turns(unit, known().all(|value| value.fract() == 0.0)).find(is_turn)?;
+        let wrap = Self { turn };
+        let known = |trial: &&[f64]| trial.iter().copied().filter(is_known).collect();
+        wrap.explains(&trials.iter().map(known).collect::<Vec<_>>()).then_some(wrap)
+    }
+
+    /// Whether every jump is that of a turn, but for as much as the output moves from one sample to
+    /// the next elsewhere. A sensor that fails for a moment jumps by something else.
+    fn explains(self, trials: &[Vec<f64>]) -> bool {
+        /// Times the largest other step that a jump may be off, and parts of a turn besides.
+        const TIMES: f64 = 3.0;
+        const BESIDES: f64 = 1e-3;
+        let pairs = || trials.iter().flat_map(|trial| trial.windows(2));
+        let steps = || pairs().map(|pair| (pair[1] - pair[0]).abs() / self.turn);
+        let largest = steps().filter(|step| *step < JUMP).fold(0.0, f64::max);
+        let off = steps().filter(|step| *step >= JUMP).map(|step| (step - 1.0).abs());
+        let most = off.fold(f64::NEG_INFINITY, f64::max);
+        largest < MOTION && (0.0..=TIMES * largest + BESIDES).contains(&most)
+    }
+
+    /// Takes the turns out of `values`, which follow one another; how many there were.
+    pub(super) fn unwrap(self, values: &mut [f64]) -> usize {
+        let (mut turns, mut count, mut before) = (0.0, 0, f64::NAN);
+        for value in values.iter_mut().filter(|value| !value.is_nan()) {
+            let step = *value - before;
+            if step.abs() >= JUMP * self.turn {
+                turns -= step.signum();
+                count += 1;
+            }
+            before = *value;
+            *value += turns * self.turn;
+        }
+        count
+    }
+
+    /// What is said of a sensor that began anew `count` times.
+    pub(super) fn note(self, count: usize, unit: Option<&str>) -> String {
+        let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+        let times = if count == 1 { "once".to_owned() } else { format!("{count} times") };
+        format!(
+            "the output begins anew after a turn of {}{unit}, {times}: it is taken to go on",
+            (self.turn * 1e4).round() / 1e4
+        )
+    }
+}
+
+/// The turns that sensors have: degrees, radians, or counts that are powers of two.
+fn turns(unit: Option<&str>, is_whole: bool) -> impl Iterator<Item = f64> {
+    let said = |units: &[&str]| unit.is_none_or(|unit| units.contains(&unit));
+    let degrees = said(&["deg", "°", "degrees"]).then_some(360.0);
+    let radians = said(&["rad", "radians"]).then_some(std::f64::consts::TAU);
+    let are_counts = is_whole && said(&["cnt", "count", "counts", "inc", "ticks"]);
+    let counts = (8..=24).map(|bits| f64::from(1_u32 << bits)).filter(move |_| are_counts);
+    degrees.into_iter().chain(radians).chain(counts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A motion to and fro over several turns, as a sensor shows it from `low` on.
+    fn shown(turn: f64, low: f64) -> (Vec<f64>, Vec<f64>) {
+        let truth: Vec<f64> =
+            (0..4000).map(|k| 1.7 * turn * (f64::from(k) / 300.0).sin() + 0.1 * turn).collect();
+        let wrapped = truth.iter().map(|y| (y - low).rem_euclid(turn) + low).collect();
+        (truth, wrapped)
+    }
+
+    #[test]
+    fn turns_are_taken_out() {
+        for (turn, low, unit) in [
+            (360.0, -180.0, Some("deg")),
+            (360.0, 0.0, None),
+            (std::f64::consts::TAU, 0.0, Some("rad")),
+        ] {
+            let (truth, mut seen) = shown(turn, low);
+            let wrap = Wrap::of(&[&seen], unit).unwrap();
+            assert!(wrap.unwrap(&mut seen) > 10);
+            let offset = seen[0] - truth[0];
+            assert!(seen.iter().zip(&truth).all(|(a, b)| (a - b - offset).abs() < 1e-9));
+        }
+        let (_, seen) = shown(4096.0, 0.0);
+        let counts: Vec<f64> = seen.iter().map(|y| y.floor()).collect();
+        assert_eq!(Wrap::of(&[&counts], Some("counts")), Some(Wrap { turn: 4096.0 }));
+    }
+
+    #[test]
+    fn what_is_missing_parts_no_turn() {
+        let (_, mut seen) = shown(360.0, 0.0);
+        let wrap = Wrap::of(&[&seen], Some("deg")).unwrap();
+        seen.iter_mut().step_by(7).for_each(|y| *y = f64::NAN);
+        let mut whole = shown(360.0, 0.0).1;
+        assert_eq!(wrap.unwrap(&mut seen), wrap.unwrap(&mut whole));
+    }
+
+    #[test]
+    fn a_large_motion_and_a_sensor_that_fails_are_no_turns() {
+        let motion: Vec<f64> = (0..400).map(|k| 180.0 * (f64::from(k) / 30.0).sin()).collect();
+        assert_eq!(Wrap::of(&[&motion], Some("deg")), None);
+        let mut failing: Vec<f64> = (0..400).map(|k| 355.0 + 0.01 * f64::from(k % 50)).collect();
+        failing.iter_mut().step_by(40).for_each(|y| *y = 0.0);
+        assert_eq!(Wrap::of(&[&failing], Some("deg")), None);
+        let (_, length) = shown(360.0, 0.0);
+        assert_eq!(Wrap::of(&[&length], Some("mm")), None);
+    }
+}
