@@ -26,8 +26,8 @@ impl Hosting for Program {
         self.logs.lock().unwrap().take()
     }
 
-    fn print(&self, results: &str) {
-        self.printed.lock().unwrap().push_str(results);
+    fn print(&self, results: String) {
+        self.printed.lock().unwrap().push_str(&results);
     }
 
     fn say(&self, kind: &str, text: &str) {

@@ -21,6 +21,10 @@ from ._settings import arguments
 R = TypeVar("R", bound=_results.Result)
 
 
+#: Commands whose work takes longer than its recording, which they make at once.
+FITTING = frozenset({"explain", "add", "improve"})
+
+
 class TauscopeWarning(UserWarning):
     """A joint or a file that was left out, and why."""
 
@@ -35,41 +39,44 @@ def _run(
     model: Model | str | os.PathLike[str] | None = None,
     revises: bool = False,
     keeps: bool = False,
-    before: list[str] | None = None,
 ) -> R:
     """Runs the command ``words`` on ``data``; the result is of class ``kind``."""
     command = words[0]
     settings = dict(settings)
-    recording = settings.get("output")
     files, logs = gathered(data, settings) if data is not None else ([], None)
+
+    given = Model.load(model) if model is not None and not isinstance(model, Model) else model
+    name = given.name if given is not None else "model.toml"
+    functions = given.functions if given is not None else ()
 
     def run(output: str | None) -> tuple[bool, str, list[tuple[str, str]], bool, Model | None]:
         with tempfile.TemporaryDirectory() as folder:
             typed = arguments(command, {**settings, "output": output})
-            name = "model.toml"
-            if model is not None:
-                given = model if isinstance(model, Model) else Model.load(model)
-                name = given.name
+            if given is not None:
                 given.save(Path(folder) / name)
                 typed.append(f"--model={Path(folder) / name}")
+            revised = Path(folder) / f"revised_{name}"
             if revises:
-                typed.append(f"--write={Path(folder) / ('revised_' + name)}")
-            all_words = [*words, *files, *typed, *(before or []), "--format=json"]
+                typed.append(f"--write={revised}")
+            all_words = [*words, *files, *typed, "--format=json"]
             with reporting(progress, command) as report:
-                done = _tauscope.run(all_words, logs, report, keeps)
-            revised = Path(folder) / ("revised_" + name)
-            left = Model(revised.read_text(), name) if revises and revised.exists() else None
+                done = _tauscope.run(all_words, logs, report, keeps, functions)
+            is_revised = revises and revised.exists()
+            left = Model(revised.read_text("utf-8"), name, functions) if is_revised else None
             return (*done, left)
 
-    complete, text, messages, stopped, left = run(recording and os.fspath(recording))
+    is_recorded = kind not in (_results.Report, _results.Design) and _tauscope.HAS_RECORDINGS
+    output, folder = settings.get("output"), None
+    if is_recorded and output is None and command in FITTING:
+        folder = tempfile.TemporaryDirectory(prefix="tauscope_")
+        output = Path(folder.name) / f"{command}.rrd"
+    complete, text, messages, stopped, left = run(output and os.fspath(output))
     for what, said in messages:
         if what == "warning":
             warnings.warn(said, TauscopeWarning, stacklevel=3)
 
     def record(path: str) -> None:
         run(path)
-
-    is_recorded = kind not in (_results.Report, _results.Design) and _tauscope.HAS_RECORDINGS
 
     return kind(
         command,
@@ -78,7 +85,8 @@ def _run(
         complete=complete,
         stopped=stopped,
         record=record if is_recorded else None,
-        recording=Path(recording) if is_recorded and recording is not None else None,
+        recording=Path(output) if is_recorded and output and Path(output).exists() else None,
+        folder=folder,
         model=left,
     )
 

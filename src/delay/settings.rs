@@ -97,6 +97,9 @@ pub struct Settings {
     pub confidence: Option<f64>,
     /// How often an interval of a delay is to hold the true one.
     pub interval: f64,
+    /// Whether a decision keeps both lines of every candidate, for drawings of them, and not of
+    /// the best one alone.
+    pub all_lines: bool,
     /// Those of the lengths above that were given in seconds, which then count: how many samples
     /// they are depends on the trial, see [`Settings::at`].
     pub in_seconds: InSeconds,
@@ -131,6 +134,7 @@ impl Settings {
             interpolation: Interpolation::Hold,
             confidence: spec.confidence,
             interval: 0.95,
+            all_lines: true,
             in_seconds: InSeconds::default(),
         }
     }

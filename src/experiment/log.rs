@@ -206,7 +206,7 @@ impl Log<'_> {
         for (rows, grid) in trials.iter().zip(grids) {
             let taken = self.budget.take_values(grid.samples(), size);
             taken.map_err(|error| error.refuse(&self.head.path))?;
-            let pieces = grid.pieces(&self.signals(layout, rows));
+            let pieces = grid.pieces(self.signals(layout, rows));
             if pieces.len() > 1 {
                 let first = joint.trials.len();
                 split.push((rows, first..first + pieces.len()));

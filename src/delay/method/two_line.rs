@@ -128,5 +128,6 @@ fn decide(context: &StepContext<'_>, before: Option<&Decision>) -> Decision {
     let segment = Segment::clipped(first, last, output.len());
     let values = &output[segment.indices()];
     let candidates = Candidates::search_until(values, segment.first, settings.beta, latest);
+    let candidates = if settings.all_lines { candidates } else { candidates.with_best_lines() };
     context.decision(segment, settings.beta, candidates, None)
 }
