@@ -33,11 +33,11 @@ impl Frame {
         let stream = ArrowArrayStreamReader::from_pyarrow_bound(table)?;
         let schema = stream.schema();
         let all = schema.fields().iter().map(|field| field.name()).enumerate();
-        let named = |(index, name): (usize, &String)| {
+        let kept = |(index, name): (usize, &String)| {
             let given = names.get(name).cloned().unwrap_or_else(|| Some(name.clone()));
             Some((given?, index))
         };
-        let columns = all.filter_map(named).collect();
+        let columns = all.filter_map(kept).collect();
         let batches = stream.collect::<Result<_, _>>();
         let batches = batches.map_err(|error| TauscopeError::new_err(error.to_string()))?;
         Ok(Self { columns, batches })

@@ -45,7 +45,7 @@ enum Argument {
 /// What a function may see.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Signal {
-    Signal,
+    Incoming,
     Position,
     Velocity,
     Time,
@@ -59,7 +59,7 @@ enum Signal {
 
 /// What functions see, by the names of their arguments.
 const MOMENT: [(&str, Signal); 7] = [
-    ("signal", Signal::Signal),
+    ("signal", Signal::Incoming),
     ("position", Signal::Position),
     ("velocity", Signal::Velocity),
     ("time", Signal::Time),
@@ -255,7 +255,7 @@ impl Effect for Called {
             return at.signal;
         }
         self.call(at.signal, parameters, |signal| match signal {
-            Signal::Signal => at.signal,
+            Signal::Incoming => at.signal,
             Signal::Position => at.position,
             Signal::Velocity => at.velocity,
             Signal::Time => at.time_s,
@@ -286,7 +286,7 @@ impl Effect for Called {
     /// A function of the signal alone is asked once for each level of the input.
     fn is_steady(&self) -> bool {
         let is_steady = |argument: &Argument| {
-            matches!(argument, Argument::Signal(Signal::Signal) | Argument::Parameter(_))
+            matches!(argument, Argument::Signal(Signal::Incoming) | Argument::Parameter(_))
         };
         self.spec.stage != Stage::Transport && self.arguments.iter().all(is_steady)
     }

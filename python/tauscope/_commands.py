@@ -43,7 +43,8 @@ def _run(
     """Runs the command ``words`` on ``data``; the result is of class ``kind``."""
     command = words[0]
     settings = dict(settings)
-    files, logs = gathered(data, settings) if data is not None else ([], None)
+    is_needed = data is not None or kind is not _results.Design
+    files, logs = gathered(data, settings) if is_needed else ([], None)
 
     given = Model.load(model) if model is not None and not isinstance(model, Model) else model
     name = given.name if given is not None else "model.toml"
@@ -118,7 +119,8 @@ def estimate(data: Any, *, progress: Progress = None, **settings: Any) -> _resul
 def sweep(data: Any, *, progress: Progress = None, **settings: Any) -> _results.Sweep:
     """How every delay moves with α, β, passband and method.
 
-    ``data`` as for :func:`estimate`; ``alpha``, ``beta`` and ``passband`` are lists.
+    ``data`` as for :func:`estimate`, which raises the same; ``alpha`` and ``beta`` in samples
+    and ``passband`` in Hz are lists.
     """
     return _run(_results.Sweep, ["sweep"], data, settings, progress=progress)
 
@@ -133,7 +135,9 @@ def compare(
     """A model beside the measurement: error figures, and where it fails.
 
     Without a model each joint is compared with a plain integrator, which is fitted; with
-    ``fit=True`` the model is fitted from its values.
+    ``fit=True`` the model is fitted from its values. Errors are in output units, and
+    ``fit_percent`` is 100 (1 − ‖y − ŷ‖ / ‖y − mean y‖) (Ljung, System Identification, 1999).
+    ``data`` as for :func:`estimate`, which raises the same.
     """
     return _run(_results.Comparison, ["compare"], data, settings, progress=progress, model=model)
 
@@ -147,7 +151,9 @@ def explain(
 ) -> _results.Explanation:
     """Which physical effect a model lacks: the ranking, and its evidence.
 
-    ``ranking`` is a DataFrame; ``verdicts`` says of each joint whether anything is missing.
+    ``ranking`` is a DataFrame: a row for each effect that was tried, with the error in output
+    units that it leaves on data that were not fitted. ``verdicts`` says of each joint whether
+    anything is missing. ``data`` as for :func:`estimate`, which raises the same.
     """
     return _run(_results.Explanation, ["explain"], data, settings, progress=progress, model=model)
 
@@ -160,7 +166,10 @@ def add(
     progress: Progress = None,
     **settings: Any,
 ) -> _results.Comparison:
-    """That effect in the model, refitted: ``.model`` is the new revision."""
+    """That effect in the model, refitted: ``.model`` is the new revision.
+
+    Raises :class:`TauscopeError` where there is no such effect, and names the nearest.
+    """
     return _run(
         _results.Comparison,
         ["add", effect],

@@ -142,10 +142,17 @@ class Result:
 
 
 def _flat(row: Mapping[str, Any]) -> dict[str, Any]:
-    """Numbers and texts, and those of dictionaries one level below, as ``a.b``."""
+    """Numbers and texts, and those of dictionaries one level below, as ``a.b``.
+
+    Texts of a list are joined; of parameters there are their values.
+    """
     flat: dict[str, Any] = {}
     for name, value in row.items():
-        if isinstance(value, Mapping):
+        if name == "parameters":
+            flat[name] = {parameter: of["value"] for parameter, of in (value or {}).items()}
+        elif isinstance(value, list) and all(isinstance(each, str) for each in value):
+            flat[name] = ", ".join(value)
+        elif isinstance(value, Mapping):
             inner = {k: v for k, v in value.items() if not isinstance(v, (Mapping, list))}
             flat.update({f"{name}.{k}": v for k, v in inner.items()})
         elif not isinstance(value, list):
@@ -261,6 +268,21 @@ class Improvement(Explanation):
 
 class Sweep(Result):
     """How the delays move with the settings."""
+
+    @cached_property
+    def decisions(self) -> pd.DataFrame:
+        """Every step: by how many settings it is accepted, and how far its delays are apart."""
+        return self._rows("decisions")
+
+    @cached_property
+    def combinations(self) -> pd.DataFrame:
+        """Every combination of settings of each joint: how many steps it accepts, its delay."""
+        rows = [
+            {"joint": joint["joint"], **settings, **found}
+            for joint in self.joints
+            for settings, found in zip(self.data["settings"], joint["settings"], strict=True)
+        ]
+        return pd.DataFrame(rows)
 
 
 class Report(Result):

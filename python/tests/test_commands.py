@@ -140,6 +140,9 @@ def test_explain_and_improve_are_those_of_the_program(
     ranking = json.loads(expected)["joints"][0]["ranking"]
     assert [row["effect"] for row in ranking] == list(found.ranking["effect"])
     assert found.verdicts == {"boom": "missing_effect"}
+    first = found.ranking.iloc[0]
+    assert set(first["parameters"]) == set(ranking[0]["parameters"])
+    assert first["indistinguishable_from"] == ", ".join(ranking[0]["indistinguishable_from"])
     assert steps and steps[-1][0] == "explaining"
     better = tauscope.improve(path, joint="boom", max_effects=1)
     ladder = json.loads(printed("improve", path, "--joint=boom", "--max-effects=1", "-w", model))
@@ -160,6 +163,8 @@ def test_a_wrong_setting_is_answered_with_the_right_ones() -> None:
         tauscope.estimate((np.zeros(9), np.zeros(9)))
     with pytest.raises(TypeError, match="is no log"):
         tauscope.estimate(3.0)
+    with pytest.raises(TypeError, match="is no log"):
+        tauscope.estimate(None)
     with pytest.raises(tauscope.TauscopeError, match="alpha"):
         tauscope.estimate(LOG, alpha="many")
 
@@ -227,11 +232,27 @@ def test_an_interrupt_ends_a_long_call() -> None:
     assert time.perf_counter() - start < 60
 
 
+def test_an_interrupt_leaves_what_improve_has_reached() -> None:
+    interrupts = iter([KeyboardInterrupt()])
+
+    def interrupt(what: str, done: int, of: int) -> None:
+        for each in interrupts:
+            raise each
+
+    found = tauscope.improve(LOG, progress=interrupt)
+    assert found.stopped and len(found.revisions) > 0
+    assert not tauscope.improve(LOG, max_effects=1).stopped
+
+
 def test_simulate_design_sweep_and_report(tmp_path: Path) -> None:
     made = tauscope.simulate(effect="dead_band", seed=3)
     assert len(made.log) > 1000 and "dead_band" in made.truth
     swept = tauscope.sweep(made.log, alpha=[5, 10], beta=[5], passband="none", method="two-line")
     assert swept.data["schema"] == "tauscope/sweep/1"
+    assert len(swept.combinations) == 2 * len(swept.joints) and {"alpha", "accepted"} <= set(
+        swept.combinations
+    )
+    assert len(swept.decisions) > 10
     compared = tauscope.compare(made.log)
     assert set(compared.parameters["parameter"]) == {"gain", "delay"}
     page = tauscope.report(made.log, tmp_path / "page.md", no_recording=True)

@@ -41,7 +41,7 @@ pub fn level_tolerance(trials: &[Trial]) -> f64 {
     /// Parts of the samples beyond which a level is a glitch.
     const GLITCHES: f64 = 1e-3;
     let inputs = trials.iter().flat_map(Trial::input).copied();
-    let ends = quantile_of(inputs.clone(), GLITCHES).zip(quantile_of(inputs, 1.0 - GLITCHES));
+    let ends = quantile_of(&inputs, GLITCHES).zip(quantile_of(&inputs, 1.0 - GLITCHES));
     let range = ends.map_or(0.0, |(low, high)| high - low);
     let change = |pair: &[f64]| pair.last().zip(pair.first()).map_or(0.0, |(b, a)| b - a);
     let changes = trials.iter().flat_map(|trial| trial.input().windows(2).map(change));

@@ -14,13 +14,13 @@ pub fn quantile(values: &[f64], part: f64) -> Option<f64> {
 }
 
 /// [`quantile`] of values that are not copied, however many they are.
-pub(crate) fn quantile_of(values: impl Iterator<Item = f64> + Clone, part: f64) -> Option<f64> {
+pub(crate) fn quantile_of(values: &(impl Iterator<Item = f64> + Clone), part: f64) -> Option<f64> {
     let last = values.clone().count().checked_sub(1)?;
     let place = part.clamp(0.0, 1.0) * last as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index")]
     let index = place as usize;
-    let lower = nth(&values, index);
-    let upper = if index < last { nth(&values, index + 1) } else { lower };
+    let lower = nth(values, index);
+    let upper = if index < last { nth(values, index + 1) } else { lower };
     Some(lower + place.fract() * (upper - lower))
 }
 
@@ -116,7 +116,7 @@ mod tests {
         let values: Vec<f64> = (0..500).map(|k| wild(k) * 10_f64.powf(9.0 * wild(k + 7))).collect();
         for values in [&values[..], &values[..2], &[-0.0, 0.0, 3.0], &[1.0; 7], &[]] {
             for part in [0.0, 0.001, 0.37, 0.5, 0.999, 1.0] {
-                let found = quantile_of(values.iter().copied(), part);
+                let found = quantile_of(&values.iter().copied(), part);
                 assert_eq!(found.map(f64::to_bits), quantile(values, part).map(f64::to_bits));
             }
             let found = robust_scale_of(values.iter().copied());
