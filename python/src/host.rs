@@ -194,7 +194,14 @@ fn look_up(py: Python<'_>, shared: &Shared, progress: Option<&Py<PyAny>>) -> PyR
 }
 
 fn of_refused(py: Python<'_>, refused: Refused) -> PyErr {
-    placed(py, TauscopeError::new_err(refused.message), refused.row, refused.column)
+    let message = without_usage(&refused.message).to_owned();
+    placed(py, TauscopeError::new_err(message), refused.row, refused.column)
+}
+
+/// What is wrong with an option, without what only a terminal needs: its usage follows.
+fn without_usage(message: &str) -> &str {
+    let wrong = message.strip_prefix("error: ").and_then(|wrong| wrong.split("\n\n").next());
+    wrong.unwrap_or(message)
 }
 
 /// `error` with the place in the log that it is about.

@@ -14,7 +14,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 create_exception!(
-    _tauscope,
+    tauscope,
     TauscopeError,
     PyValueError,
     "What tauscope cannot use. `row` and `column` say where in the log, or are None."

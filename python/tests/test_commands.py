@@ -9,12 +9,14 @@ import sys
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
 
 import tauscope
+from tauscope._settings import arguments
 
 ROOT = Path(__file__).parents[2]
 DATA = ROOT / "data"
@@ -86,6 +88,24 @@ def test_logs_of_other_machines_give_what_the_program_prints(log: Path | None) -
             # pandas rounds the last digit of a decimal number otherwise than the program.
             np.testing.assert_allclose(trial.input, other.input, rtol=1e-15)
             np.testing.assert_allclose(trial.output, other.output, rtol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("command", "settings"),
+    [
+        ("compare", {}),
+        ("compare", {"horizon": "free", "split": 0.5}),
+        ("sweep", {"alpha": [5, 10], "beta": [5], "passband": "none"}),
+        ("explain", {"effects": "dead_band,gravity_load"}),
+    ],
+)
+def test_other_commands_give_what_the_program_prints(
+    command: str, settings: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(ROOT)
+    path = str(LOG.relative_to(ROOT))
+    found = getattr(tauscope, command)(path, **settings)
+    assert found.to_json() == printed(command, path, *arguments(command, settings))
 
 
 def test_arrays_give_the_same_as_the_file() -> None:
@@ -165,8 +185,9 @@ def test_a_wrong_setting_is_answered_with_the_right_ones() -> None:
         tauscope.estimate(3.0)
     with pytest.raises(TypeError, match="is no log"):
         tauscope.estimate(None)
-    with pytest.raises(tauscope.TauscopeError, match="alpha"):
+    with pytest.raises(tauscope.TauscopeError, match="alpha") as refused:
         tauscope.estimate(LOG, alpha="many")
+    assert "--help" not in str(refused.value)
 
 
 def test_an_error_has_row_and_column() -> None:
