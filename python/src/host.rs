@@ -55,6 +55,15 @@ impl Hosting for Shared {
         self.effects.clone()
     }
 
+    fn run_thread(&self, thread: &mut (dyn FnMut() + Send)) {
+        if self.effects.is_empty() {
+            thread();
+        } else {
+            // A thread that the interpreter knows takes it twenty times as fast.
+            Python::attach(|py| py.detach(thread));
+        }
+    }
+
     fn print(&self, results: String) {
         let mut all = lock(&self.results);
         // What is printed at once is not copied.

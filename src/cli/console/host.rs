@@ -19,6 +19,11 @@ pub trait Hosting: Send + Sync {
         Vec::new()
     }
 
+    /// Runs a thread of a command, in the surroundings that its effects need.
+    fn run_thread(&self, thread: &mut (dyn FnMut() + Send)) {
+        thread();
+    }
+
     /// Takes the results.
     fn print(&self, results: String);
 
@@ -75,6 +80,10 @@ impl Host {
 
     pub(crate) fn effects(&self) -> Vec<&'static dyn Effect> {
         self.0.effects()
+    }
+
+    pub(crate) fn run_thread(&self, thread: &mut (dyn FnMut() + Send)) {
+        self.0.run_thread(thread);
     }
 
     pub(crate) fn print(&self, results: String) {
