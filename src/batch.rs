@@ -3,6 +3,10 @@
 //! Each piece is done by one thread alone and results come back in the order of the pieces, so
 //! that they are the same bit for bit on any number of threads.
 
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
+use std::thread;
+
 use rayon::prelude::*;
 
 use crate::explain::Workers;
@@ -25,21 +29,33 @@ pub fn with_threads<T: Send>(
     threads: Option<usize>,
     work: impl FnOnce() -> T + Send,
 ) -> Result<T, rayon::ThreadPoolBuildError> {
-    with_prepared_threads(threads, || (), work)
+    with_prepared_threads(threads, |thread| thread(), work)
 }
 
-/// Runs `work` as [`with_threads`] does; each thread does `prepare` before all else.
+/// Runs `work` as [`with_threads`] does; `run` runs each thread, and all have ended behind it.
 ///
 /// # Errors
 /// When the threads cannot be started.
 pub fn with_prepared_threads<T: Send>(
     threads: Option<usize>,
-    prepare: impl Fn() + Send + Sync + 'static,
+    run: impl Fn(&mut (dyn FnMut() + Send)) + Send + Sync + 'static,
     work: impl FnOnce() -> T + Send,
 ) -> Result<T, rayon::ThreadPoolBuildError> {
+    let (run, mut started) = (Arc::new(run), Vec::new());
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads.unwrap_or(0))
-        .start_handler(move |_| prepare())
+        .spawn_handler(|thread| {
+            let (run, mut thread) = (Arc::clone(&run), Some(thread));
+            let mut once = move || thread.take().into_iter().for_each(rayon::ThreadBuilder::run);
+            started.push(thread::Builder::new().spawn(move || run(&mut once))?);
+            Ok(())
+        })
         .build()?;
-    Ok(pool.install(work))
+    let result = catch_unwind(AssertUnwindSafe(|| pool.install(work)));
+    drop(pool);
+    for thread in started {
+        // One that has panicked has told the pool.
+        thread.join().unwrap_or_default();
+    }
+    Ok(result.unwrap_or_else(|panic| resume_unwind(panic)))
 }

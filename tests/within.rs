@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 
 use tauscope::cli::{Hosting, options_of, read_within, run_within};
+use tauscope::effect::{Effect, Moment, Spec, Stage};
 use tauscope::experiment::{Experiment, ReadOptions};
 
 /// A program that runs commands inside itself.
@@ -19,15 +20,42 @@ struct Program {
     steps: AtomicU64,
     stops: bool,
     ends: bool,
+    effects: Vec<&'static dyn Effect>,
+}
+
+/// An effect of the program's own.
+#[derive(Debug)]
+struct Half;
+
+static HALF: Spec = Spec::new("half", Stage::Input, "half of the input is lost")
+    .equation("out = in / 2")
+    .source("made up for this test");
+
+impl Effect for Half {
+    fn spec(&self) -> &'static Spec {
+        &HALF
+    }
+
+    fn step(&self, _: &[f64], _: &mut [f64], at: &Moment) -> f64 {
+        0.5 * at.signal
+    }
+
+    fn nests(&self) -> bool {
+        false
+    }
 }
 
 impl Hosting for Program {
+    fn effects(&self) -> Vec<&'static dyn Effect> {
+        self.effects.clone()
+    }
+
     fn logs(&self, _: &ReadOptions) -> Option<Experiment> {
         self.logs.lock().unwrap().take()
     }
 
-    fn print(&self, results: &str) {
-        self.printed.lock().unwrap().push_str(results);
+    fn print(&self, results: String) {
+        self.printed.lock().unwrap().push_str(&results);
     }
 
     fn say(&self, kind: &str, text: &str) {
@@ -105,6 +133,25 @@ fn a_command_that_is_ended_leaves_no_results_and_one_that_is_stopped_what_it_has
     let found: serde_json::Value = serde_json::from_str(&stopped.printed.lock().unwrap()).unwrap();
     assert_eq!(found["joints"][0]["interrupted"], true);
     assert_eq!(found["joints"][0]["revisions"].as_array().unwrap().len(), 1);
+}
+
+#[test]
+fn a_model_may_name_the_effects_of_the_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = folder.path().join("model.toml");
+    let text = "schema = \"tauscope/model/1\"\n[joint.boom]\nstructure = \"integrator\"\n\
+                parameters = { gain = 14.0, delay = 0.13 }\n[[joint.boom.effect]]\nkind = \"half\"\n";
+    std::fs::write(&model, text).unwrap();
+    let words = "add dead_band data/hidden_effect.csv --joint boom --format json --model ";
+    let words = words.to_owned() + model.to_str().unwrap();
+    let refused = run_within(&arguments(&words), Arc::new(Program::default())).unwrap_err();
+    assert!(refused.message.contains("half"), "{}", refused.message);
+    let program = Arc::new(Program { effects: vec![&Half], ..Program::default() });
+    assert!(run_within(&arguments(&words), program.clone()).unwrap());
+    let found: serde_json::Value = serde_json::from_str(&program.printed.lock().unwrap()).unwrap();
+    assert_eq!(found["joints"][0]["effects"], serde_json::json!(["half", "dead_band"]));
+    let revised = std::fs::read_to_string(&model).unwrap();
+    assert!(revised.contains("kind = \"half\"") && revised.contains("kind = \"dead_band\""));
 }
 
 #[test]

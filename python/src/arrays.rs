@@ -8,6 +8,7 @@ use tauscope::experiment::{
 use tauscope::units::SamplePeriod;
 
 use crate::TauscopeError;
+use crate::frame::Frame;
 
 /// A column of a table: numbers, or texts.
 #[derive(FromPyObject)]
@@ -18,8 +19,17 @@ pub(crate) enum Values<'py> {
     Texts(Vec<String>),
 }
 
-/// A table: its name, and names and values of its columns.
-pub(crate) type Table<'py> = (String, Vec<(String, Values<'py>)>);
+/// The columns of a table.
+#[derive(FromPyObject)]
+pub(crate) enum Columns<'py> {
+    /// As they lie in the memory of others.
+    Frame(PyRef<'py, Frame>),
+    /// Their names and values.
+    Plain(Vec<(String, Values<'py>)>),
+}
+
+/// A table: its name and its columns.
+pub(crate) type Table<'py> = (String, Columns<'py>);
 
 /// A trial: its name, input and output.
 pub(crate) type ArrayTrial<'py> = (String, PyReadonlyArray1<'py, f64>, PyReadonlyArray1<'py, f64>);
@@ -45,9 +55,12 @@ impl Logs {
             };
             HandedColumn { name, values }
         };
-        let table = |(name, columns): Table<'_>| HandedLog {
-            name,
-            columns: columns.into_iter().map(column).collect(),
+        let table = |(name, columns): Table<'_>| {
+            let columns = match columns {
+                Columns::Frame(frame) => frame.columns(),
+                Columns::Plain(columns) => columns.into_iter().map(column).collect(),
+            };
+            HandedLog { name, columns }
         };
         Self::Tables(tables.into_iter().map(table).collect())
     }

@@ -13,10 +13,12 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use tauscope::cli::{Hosting, Refused, options_of, read_within, run_within};
+use tauscope::effect::Effect;
 use tauscope::experiment::{Experiment, ReadOptions};
 
 use crate::TauscopeError;
 use crate::arrays::{ArrayJoint, Logs, Table};
+use crate::function::Function;
 
 /// How often the calling thread looks up from its waiting.
 const TICK: Duration = Duration::from_millis(50);
@@ -28,6 +30,7 @@ const STACK: usize = 8 << 20;
 #[derive(Default)]
 struct Shared {
     logs: Mutex<Option<Logs>>,
+    effects: Vec<&'static dyn Effect>,
     results: Mutex<String>,
     messages: Mutex<Vec<(String, String)>>,
     what: Mutex<String>,
@@ -48,8 +51,27 @@ impl Hosting for Shared {
         logs.map(|logs| logs.experiment(options))
     }
 
-    fn print(&self, results: &str) {
-        lock(&self.results).push_str(results);
+    fn effects(&self) -> Vec<&'static dyn Effect> {
+        self.effects.clone()
+    }
+
+    fn run_thread(&self, thread: &mut (dyn FnMut() + Send)) {
+        if self.effects.is_empty() {
+            thread();
+        } else {
+            // A thread that the interpreter knows takes it twenty times as fast.
+            Python::attach(|py| py.detach(thread));
+        }
+    }
+
+    fn print(&self, results: String) {
+        let mut all = lock(&self.results);
+        // What is printed at once is not copied.
+        if all.is_empty() {
+            *all = results;
+        } else {
+            all.push_str(&results);
+        }
     }
 
     fn say(&self, kind: &str, text: &str) {
@@ -93,9 +115,10 @@ fn given(logs: Option<Given<'_>>) -> PyResult<Option<Logs>> {
 type Answer = (bool, String, Vec<(String, String)>, bool);
 
 /// Runs a command: `arguments` from its name on, `logs` in memory, `progress(what, done, of)`
-/// called now and then. With `keeps` an interrupt stops it with what was reached.
+/// called now and then. With `keeps` an interrupt stops it with what was reached. Models may
+/// name the `functions`.
 #[pyfunction]
-#[pyo3(signature = (arguments, logs=None, progress=None, keeps=false))]
+#[pyo3(signature = (arguments, logs=None, progress=None, keeps=false, functions=Vec::new()))]
 #[expect(clippy::fn_params_excessive_bools, reason = "a keyword argument of Python")]
 pub(crate) fn run(
     py: Python<'_>,
@@ -103,18 +126,18 @@ pub(crate) fn run(
     logs: Option<Given<'_>>,
     progress: Option<Py<PyAny>>,
     keeps: bool,
+    functions: Vec<PyRef<'_, Function>>,
 ) -> PyResult<Answer> {
-    let shared = shared(logs)?;
+    let effects = functions.iter().map(|function| function.effect()).collect();
+    let shared = Arc::new(Shared { logs: Mutex::new(given(logs)?), effects, ..Shared::default() });
     let work = move |shared: Arc<Shared>| run_within(&arguments, shared);
     let interrupted = if keeps { Interrupted::KeepsResults } else { Interrupted::Ends };
-    let is_whole = waited(py, &shared, progress.as_ref(), interrupted, work)?;
+    let done = waited(py, &shared, progress.as_ref(), interrupted, work);
+    Function::check(&functions)?;
+    let is_whole = done?;
     let (results, messages) =
         (std::mem::take(&mut *lock(&shared.results)), std::mem::take(&mut *lock(&shared.messages)));
     Ok((is_whole, results, messages, shared.is_stopping()))
-}
-
-fn shared(logs: Option<Given<'_>>) -> PyResult<Arc<Shared>> {
-    Ok(Arc::new(Shared { logs: Mutex::new(given(logs)?), ..Shared::default() }))
 }
 
 /// What becomes of work that a person interrupts.
@@ -180,7 +203,14 @@ fn look_up(py: Python<'_>, shared: &Shared, progress: Option<&Py<PyAny>>) -> PyR
 }
 
 fn of_refused(py: Python<'_>, refused: Refused) -> PyErr {
-    placed(py, TauscopeError::new_err(refused.message), refused.row, refused.column)
+    let message = without_usage(&refused.message).to_owned();
+    placed(py, TauscopeError::new_err(message), refused.row, refused.column)
+}
+
+/// What is wrong with an option, without what only a terminal needs: its usage follows.
+fn without_usage(message: &str) -> &str {
+    let wrong = message.strip_prefix("error: ").and_then(|wrong| wrong.split("\n\n").next());
+    wrong.unwrap_or(message)
 }
 
 /// `error` with the place in the log that it is about.
@@ -213,7 +243,7 @@ pub(crate) fn read<'py>(
     arguments: Vec<OsString>,
     logs: Option<Given<'py>>,
 ) -> PyResult<(Vec<Bound<'py, PyDict>>, Vec<String>)> {
-    let shared = shared(logs)?;
+    let shared = Arc::new(Shared { logs: Mutex::new(given(logs)?), ..Shared::default() });
     let work = move |shared: Arc<Shared>| read_within(&arguments, shared);
     let experiment = waited(py, &shared, None, Interrupted::Ends, work)?;
     let mut joints = Vec::new();

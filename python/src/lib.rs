@@ -4,6 +4,8 @@
 //! user sees are made of them in Python, in `python/tauscope`.
 
 mod arrays;
+mod frame;
+mod function;
 mod host;
 mod model;
 
@@ -12,7 +14,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 create_exception!(
-    _tauscope,
+    tauscope,
     TauscopeError,
     PyValueError,
     "What tauscope cannot use. `row` and `column` say where in the log, or are None."
@@ -22,6 +24,8 @@ create_exception!(
 #[pymodule]
 fn _tauscope(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("TauscopeError", module.py().get_type::<TauscopeError>())?;
+    module.add_class::<frame::Frame>()?;
+    module.add_class::<function::Function>()?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("HAS_RECORDINGS", cfg!(feature = "recordings"))?;
     module.add_function(wrap_pyfunction!(host::run, module)?)?;

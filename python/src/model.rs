@@ -8,9 +8,14 @@ use tauscope::JointModel;
 use tauscope::model::{ModelFile, Surroundings, simulate_input};
 
 use crate::TauscopeError;
+use crate::function::Function;
 
-fn parsed(text: &str, name: &str) -> PyResult<ModelFile> {
-    ModelFile::parse(text, Path::new(name)).map_err(|error| {
+/// The effects that a text may name besides those of the catalogue.
+type Functions<'py> = Vec<PyRef<'py, Function>>;
+
+fn parsed(text: &str, name: &str, functions: &Functions<'_>) -> PyResult<ModelFile> {
+    let effects: Vec<_> = functions.iter().map(|function| function.effect()).collect();
+    ModelFile::parse_with(text, Path::new(name), &effects).map_err(|error| {
         let causes =
             std::iter::successors(Some(&error as &(dyn std::error::Error + 'static)), |error| {
                 error.source()
@@ -29,8 +34,8 @@ fn joint<'a>(file: &'a ModelFile, joint: &str) -> PyResult<&'a JointModel> {
 
 /// The names of the joints of a model file with this text.
 #[pyfunction]
-pub(crate) fn check(text: &str, name: &str) -> PyResult<Vec<String>> {
-    Ok(parsed(text, name)?.names().map(str::to_owned).collect())
+pub(crate) fn check(text: &str, name: &str, functions: Functions<'_>) -> PyResult<Vec<String>> {
+    Ok(parsed(text, name, &functions)?.names().map(str::to_owned).collect())
 }
 
 /// An effect: its id, stage, summary, and the values of its parameters.
@@ -38,8 +43,12 @@ type Described = (String, String, String, Vec<(String, f64)>);
 
 /// Gain, delay and effects of a joint.
 #[pyfunction]
-pub(crate) fn describe(text: &str, of: &str) -> PyResult<(f64, f64, Vec<Described>)> {
-    let file = parsed(text, "model")?;
+pub(crate) fn describe(
+    text: &str,
+    of: &str,
+    functions: Functions<'_>,
+) -> PyResult<(f64, f64, Vec<Described>)> {
+    let file = parsed(text, "model", &functions)?;
     let model = joint(&file, of)?;
     let effects = model.components().iter().map(|component| {
         let spec = component.effect().spec();
@@ -64,8 +73,9 @@ pub(crate) fn simulate<'py>(
     start_s: f64,
     others: Option<PyReadonlyArray1<'py, f64>>,
     radians_per_output_unit: f64,
+    functions: Functions<'py>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let file = parsed(text, "model")?;
+    let file = parsed(text, "model", &functions)?;
     let model = joint(&file, of)?.clone();
     let input = input.as_array().to_vec();
     let others = others.map(|others| others.as_array().to_vec()).unwrap_or_default();
@@ -73,14 +83,20 @@ pub(crate) fn simulate<'py>(
         let surroundings = Surroundings { others: &others, radians_per_output_unit, start_s };
         simulate_input(&model, &input, period_s, output, &surroundings).output
     });
+    Function::check(&functions)?;
     Ok(PyArray1::from_vec(py, simulated))
 }
 
 /// The text of a model file with other values for parameters of a joint, by their names: `gain`,
 /// `dead_band.lower`. What is written beside them stays.
 #[pyfunction]
-pub(crate) fn refitted(text: &str, of: &str, values: Vec<(String, f64)>) -> PyResult<String> {
-    let file = parsed(text, "model")?;
+pub(crate) fn refitted(
+    text: &str,
+    of: &str,
+    values: Vec<(String, f64)>,
+    functions: Functions<'_>,
+) -> PyResult<String> {
+    let file = parsed(text, "model", &functions)?;
     let model = joint(&file, of)?;
     let names = model.names();
     if let Some((unknown, _)) = values.iter().find(|(name, _)| !names.contains(name)) {

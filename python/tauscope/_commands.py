@@ -21,6 +21,10 @@ from ._settings import arguments
 R = TypeVar("R", bound=_results.Result)
 
 
+#: Commands whose work takes longer than its recording, which they make at once.
+FITTING = frozenset({"explain", "add", "improve"})
+
+
 class TauscopeWarning(UserWarning):
     """A joint or a file that was left out, and why."""
 
@@ -35,41 +39,45 @@ def _run(
     model: Model | str | os.PathLike[str] | None = None,
     revises: bool = False,
     keeps: bool = False,
-    before: list[str] | None = None,
 ) -> R:
     """Runs the command ``words`` on ``data``; the result is of class ``kind``."""
     command = words[0]
     settings = dict(settings)
-    recording = settings.get("output")
-    files, logs = gathered(data, settings) if data is not None else ([], None)
+    is_needed = data is not None or kind is not _results.Design
+    files, logs = gathered(data, settings) if is_needed else ([], None)
+
+    given = Model.load(model) if model is not None and not isinstance(model, Model) else model
+    name = given.name if given is not None else "model.toml"
+    functions = given.functions if given is not None else ()
 
     def run(output: str | None) -> tuple[bool, str, list[tuple[str, str]], bool, Model | None]:
         with tempfile.TemporaryDirectory() as folder:
             typed = arguments(command, {**settings, "output": output})
-            name = "model.toml"
-            if model is not None:
-                given = model if isinstance(model, Model) else Model.load(model)
-                name = given.name
+            if given is not None:
                 given.save(Path(folder) / name)
                 typed.append(f"--model={Path(folder) / name}")
+            revised = Path(folder) / f"revised_{name}"
             if revises:
-                typed.append(f"--write={Path(folder) / ('revised_' + name)}")
-            all_words = [*words, *files, *typed, *(before or []), "--format=json"]
+                typed.append(f"--write={revised}")
+            all_words = [*words, *files, *typed, "--format=json"]
             with reporting(progress, command) as report:
-                done = _tauscope.run(all_words, logs, report, keeps)
-            revised = Path(folder) / ("revised_" + name)
-            left = Model(revised.read_text(), name) if revises and revised.exists() else None
+                done = _tauscope.run(all_words, logs, report, keeps, functions)
+            is_revised = revises and revised.exists()
+            left = Model(revised.read_text("utf-8"), name, functions) if is_revised else None
             return (*done, left)
 
-    complete, text, messages, stopped, left = run(recording and os.fspath(recording))
+    is_recorded = kind not in (_results.Report, _results.Design) and _tauscope.HAS_RECORDINGS
+    output, folder = settings.get("output"), None
+    if is_recorded and output is None and command in FITTING:
+        folder = tempfile.TemporaryDirectory(prefix="tauscope_")
+        output = Path(folder.name) / f"{command}.rrd"
+    complete, text, messages, stopped, left = run(output and os.fspath(output))
     for what, said in messages:
         if what == "warning":
             warnings.warn(said, TauscopeWarning, stacklevel=3)
 
     def record(path: str) -> None:
         run(path)
-
-    is_recorded = kind not in (_results.Report, _results.Design) and _tauscope.HAS_RECORDINGS
 
     return kind(
         command,
@@ -78,7 +86,8 @@ def _run(
         complete=complete,
         stopped=stopped,
         record=record if is_recorded else None,
-        recording=Path(recording) if is_recorded and recording is not None else None,
+        recording=Path(output) if is_recorded and output and Path(output).exists() else None,
+        folder=folder,
         model=left,
     )
 
@@ -110,7 +119,8 @@ def estimate(data: Any, *, progress: Progress = None, **settings: Any) -> _resul
 def sweep(data: Any, *, progress: Progress = None, **settings: Any) -> _results.Sweep:
     """How every delay moves with α, β, passband and method.
 
-    ``data`` as for :func:`estimate`; ``alpha``, ``beta`` and ``passband`` are lists.
+    ``data`` as for :func:`estimate`, which raises the same; ``alpha`` and ``beta`` in samples
+    and ``passband`` in Hz are lists.
     """
     return _run(_results.Sweep, ["sweep"], data, settings, progress=progress)
 
@@ -125,7 +135,9 @@ def compare(
     """A model beside the measurement: error figures, and where it fails.
 
     Without a model each joint is compared with a plain integrator, which is fitted; with
-    ``fit=True`` the model is fitted from its values.
+    ``fit=True`` the model is fitted from its values. Errors are in output units, and
+    ``fit_percent`` is 100 (1 − ‖y − ŷ‖ / ‖y − mean y‖) (Ljung, System Identification, 1999).
+    ``data`` as for :func:`estimate`, which raises the same.
     """
     return _run(_results.Comparison, ["compare"], data, settings, progress=progress, model=model)
 
@@ -139,7 +151,9 @@ def explain(
 ) -> _results.Explanation:
     """Which physical effect a model lacks: the ranking, and its evidence.
 
-    ``ranking`` is a DataFrame; ``verdicts`` says of each joint whether anything is missing.
+    ``ranking`` is a DataFrame: a row for each effect that was tried, with the error in output
+    units that it leaves on data that were not fitted. ``verdicts`` says of each joint whether
+    anything is missing. ``data`` as for :func:`estimate`, which raises the same.
     """
     return _run(_results.Explanation, ["explain"], data, settings, progress=progress, model=model)
 
@@ -152,7 +166,10 @@ def add(
     progress: Progress = None,
     **settings: Any,
 ) -> _results.Comparison:
-    """That effect in the model, refitted: ``.model`` is the new revision."""
+    """That effect in the model, refitted: ``.model`` is the new revision.
+
+    Raises :class:`TauscopeError` where there is no such effect, and names the nearest.
+    """
     return _run(
         _results.Comparison,
         ["add", effect],

@@ -1,7 +1,8 @@
 """Logs as users have them: files, tables, arrays.
 
-Numbers are handed on as arrays of float64. None is copied here where it is one already; the
-native part copies each once, and then lets go of the interpreter.
+Tables are handed on through the Arrow C interface, numbers as arrays of float64. None is copied
+here where it is one already; the native part copies each once, and then lets go of the
+interpreter.
 """
 
 from __future__ import annotations
@@ -12,6 +13,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import pandas as pd
+
+from . import _tauscope
 
 Array = npt.NDArray[np.float64]
 
@@ -47,28 +51,41 @@ def gathered(data: Any, settings: dict[str, Any]) -> tuple[list[str], Any]:
 
 
 def _is_table(data: Any) -> bool:
-    return hasattr(data, "columns") or hasattr(data, "__arrow_c_stream__")
+    """Whether it has columns; a column of Arrow by itself has a type instead."""
+    is_column = hasattr(data, "dtype") or hasattr(data, "type")
+    return hasattr(data, "columns") or (hasattr(data, "__arrow_c_stream__") and not is_column)
 
 
-def _table(name: str, data: Any) -> tuple[str, list[tuple[str, Any]]]:
-    if not hasattr(data, "to_numpy") or not hasattr(data, "__getitem__"):
-        data = _of_arrow(data)
-    if hasattr(data, "column_names"):
-        data = data.to_pandas()
+def _table(name: str, data: Any) -> tuple[str, Any]:
+    """A table as it lies in memory; column by column where it does not speak Arrow."""
+    is_pandas = isinstance(data, pd.DataFrame)
+    if hasattr(data, "__arrow_c_stream__"):
+        try:
+            return name, _tauscope.Frame(data, _index_names(data.index) if is_pandas else {})
+        except (ImportError, TypeError, ValueError):
+            # pandas speaks Arrow by pyarrow alone, and not where a column is of several types.
+            if not is_pandas:
+                raise
     columns: list[tuple[str, Any]] = []
-    index = getattr(data, "index", None)
-    if index is not None and getattr(index, "dtype", None) is not None:
-        kind = np.dtype(index.dtype).kind if isinstance(index.dtype, np.dtype) else "O"
-        if kind in "mM":
-            columns.append(("time_s", _seconds(np.asarray(index))))
+    if is_pandas and _is_time(data.index):
+        columns.append(("time_s", _seconds(np.asarray(data.index))))
     columns.extend((str(column), _values(data[column])) for column in data.columns)
     return name, columns
 
 
-def _of_arrow(data: Any) -> Any:
-    import pyarrow
+def _index_names(index: Any) -> dict[str, str | None]:
+    """What the columns that pandas makes of an index are called; one without a name is left out."""
+    names: dict[str, str | None] = {}
+    for level, name in enumerate(index.names):
+        column = f"__index_level_{level}__" if name is None else str(name)
+        is_time = _is_time(index.get_level_values(level))
+        names[column] = "time_s" if is_time else name if name is None else str(name)
+    return names
 
-    return pyarrow.table(data).to_pandas()
+
+def _is_time(index: Any) -> bool:
+    types = pd.api.types
+    return bool(types.is_datetime64_any_dtype(index) or types.is_timedelta64_dtype(index))
 
 
 def _values(column: Any) -> Any:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -14,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _tauscope
+from ._functions import Parameter, own_function, written
 from ._settings import _word
 
 #: Radians in one unit of an angle; of any other unit, a degree.
@@ -43,6 +45,8 @@ class JointModel:
 class Model:
     """The models of several joints, as a model file holds them (``tauscope/model/1``).
 
+    ``functions`` are the effects in it that are functions of Python, which its text only names.
+
     >>> model = Model.integrator(gain=10.0, delay=0.15)
     >>> model = model.with_effect("dead_band", lower=-0.5, upper=0.5)
     >>> [effect.kind for effect in model.effects]
@@ -52,15 +56,23 @@ class Model:
     [0.0, 0.0, 0.0, 0.25]
     """
 
-    def __init__(self, text: str, name: str = "model.toml") -> None:
+    def __init__(
+        self,
+        text: str,
+        name: str = "model.toml",
+        functions: Sequence[_tauscope.Function] = (),
+    ) -> None:
         self.text = text
         self.name = name
-        self.joints: list[str] = _tauscope.check(text, name)
+        self.functions = tuple(functions)
+        self.joints: list[str] = _tauscope.check(text, name, self.functions)
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Model:
-        """Reads a model file."""
-        return cls(Path(path).read_text(encoding="utf-8"), Path(path).name)
+    def load(
+        cls, path: str | os.PathLike[str], functions: Sequence[_tauscope.Function] = ()
+    ) -> Model:
+        """Reads a model file; ``functions`` are those that it names, of another model."""
+        return cls(Path(path).read_text(encoding="utf-8"), Path(path).name, functions)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Writes the model file."""
@@ -84,7 +96,7 @@ class Model:
         return joint
 
     def __getitem__(self, joint: str) -> JointModel:
-        gain, delay, effects = _tauscope.describe(self.text, joint)
+        gain, delay, effects = _tauscope.describe(self.text, joint, self.functions)
         found = [Effect(kind, stage, about, dict(values)) for kind, stage, about, values in effects]
         return JointModel(joint, gain, delay, found)
 
@@ -99,30 +111,50 @@ class Model:
         joint: str | None = None,
         *,
         expression: str | None = None,
-        stage: str | None = None,
-        **parameters: float,
+        function: Callable[..., float] | None = None,
+        stage: str = "input",
+        **parameters: Parameter,
     ) -> Model:
         """This model with another effect behind those it has; neutral where no value is given.
 
-        With ``expression`` and ``stage`` the effect is a user's own, and ``kind`` its name.
+        With ``expression`` or ``function`` the effect is a user's own: ``kind`` is its name, and
+        ``stage`` where it acts: ``input``, ``transport``, ``dynamics``, ``load`` or ``output``.
+        A parameter is a value, or a dictionary with ``value``, ``min``, ``max``, ``fixed`` and,
+        of an effect of one's own, ``neutral``: where it changes nothing, 0 unless said.
+
+        The arguments of a function are, by their names, parameters and signals: ``signal``,
+        ``position``, ``velocity``, ``time``, ``dt``, ``others``, ``radians``; of the transport
+        stage ``before``, ``after``, ``held``, ``time``. It gets numbers in the units of the log
+        and seconds, and gives the signal behind the effect; of the transport stage the seconds by
+        which a change of the input arrives later. It has no memory, and is called for every
+        sample of every simulation, or, if it takes ``signal`` alone, for every level of the
+        input.
+
+        >>> model = Model.integrator(gain=10.0, delay=0.0)
+        >>> model = model.with_effect("weak", function=lambda signal, a: signal * (1 - a), a=0.5)
+        >>> model.predict([1.0, 1.0, 1.0], sample_period=0.1).tolist()
+        [0.0, 0.5, 1.0]
         """
-        name = json.dumps(self._joint(joint))
-        lines = [f"\n[[joint.{name}.effect]]"]
+        lines = [f"\n[[joint.{json.dumps(self._joint(joint))}.effect]]"]
+        functions, given = self.functions, {**parameters}
+        if function is not None:
+            own, given = own_function(kind, stage, function, parameters)
+            functions = (*(each for each in functions if each.id != kind), own)
         if expression is None:
             lines.append(f"kind = {json.dumps(kind)}")
         else:
             lines.append('kind = "expression"')
-            own = {"id": kind, "stage": stage or "input", "expression": expression}
-            lines.extend(f"{key} = {json.dumps(value)}" for key, value in own.items())
-        values = ", ".join(f"{key} = {float(value)!r}" for key, value in parameters.items())
-        lines.append(f"parameters = {{ {values} }}")
-        return Model(self.text.rstrip("\n") + "\n".join(["", *lines]) + "\n", self.name)
+            header = {"id": kind, "stage": stage, "expression": expression}
+            lines.extend(f"{key} = {json.dumps(value)}" for key, value in header.items())
+        lines.append(f"parameters = {{ {written(given)} }}")
+        text = self.text.rstrip("\n") + "\n".join(["", *lines]) + "\n"
+        return Model(text, self.name, functions)
 
     def with_values(self, joint: str | None = None, /, **values: float) -> Model:
         """This model with other values: ``gain=…``, ``dead_band__upper=…``."""
         named = [(name.replace("__", "."), float(value)) for name, value in values.items()]
-        text = _tauscope.refitted(self.text, self._joint(joint), named)
-        return Model(text, self.name)
+        text = _tauscope.refitted(self.text, self._joint(joint), named, self.functions)
+        return Model(text, self.name, self.functions)
 
     def simulate(
         self,
@@ -149,6 +181,7 @@ class Model:
             float(start_s),
             None if others is None else np.ascontiguousarray(others, dtype=np.float64),
             RADIANS.get(output_unit, math.pi / 180),
+            self.functions,
         )
 
     predict = simulate
@@ -160,7 +193,8 @@ class Model:
         fitted: Model = self
         for joint in compare(data, self, fit=True, **settings).joints:
             values = [(name, of["value"]) for name, of in joint["parameters"].items()]
-            fitted = Model(_tauscope.refitted(fitted.text, joint["joint"], values), self.name)
+            text = _tauscope.refitted(fitted.text, joint["joint"], values, self.functions)
+            fitted = Model(text, self.name, self.functions)
         return fitted
 
     def score(self, data: Any, **settings: Any) -> float:
@@ -229,7 +263,7 @@ class Model:
         with tempfile.TemporaryDirectory() as folder:
             kept = self.save(Path(folder) / self.name)
             words = ["export", str(kept), os.fspath(path), f"--joint={self._joint(joint)}", *typed]
-            _, _, messages, _ = _tauscope.run(words, None, None, False)
+            _, _, messages, _ = _tauscope.run(words, None, None, False, self.functions)
         return [said for kind, said in messages if kind == "note"]
 
     def __repr__(self) -> str:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from functools import cached_property
 from html import escape
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
@@ -37,18 +38,26 @@ class Result:
         stopped: bool = False,
         record: Callable[[str], None] | None = None,
         recording: Path | None = None,
+        folder: TemporaryDirectory[str] | None = None,
         model: Model | None = None,
     ) -> None:
         self.command = command
         self._text = text
-        self.data: dict[str, Any] = json.loads(text) if text else {}
-        self.notes = [said for kind, said in messages if kind != "warning"]
+        self.notes = [said for kind, said in messages if kind == "note"]
         self.complete = complete
         self.stopped = stopped
         self._record = record
         self._recording = recording
+        #: Where the recording is until this result is forgotten, if nobody asked for it.
+        self._folder = folder
         #: The model as the command left it, where it is one that changes models.
         self.model = model
+
+    @cached_property
+    def data(self) -> dict[str, Any]:
+        """The JSON as a dictionary."""
+        data: dict[str, Any] = json.loads(self._text) if self._text else {}
+        return data
 
     def to_json(self) -> str:
         """The JSON, as the program prints it with ``--format json``."""
@@ -69,7 +78,8 @@ class Result:
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Writes the recording for the Rerun viewer (``.rrd``).
 
-        The command is run once more for it, unless it was run with ``output=``.
+        That of a command that fits models, or that was run with ``output=``, is there already.
+        Another command is run once more for it.
         """
         if self._recording is not None:
             if Path(path).resolve() != self._recording.resolve():
@@ -80,9 +90,19 @@ class Result:
         self._record(os.fspath(path))
         return Path(path)
 
-    def log(self, stream: Any, path: str | os.PathLike[str]) -> None:
-        """Writes the recording to ``path`` and has a ``rerun.RecordingStream`` load it."""
-        stream.log_file_from_path(self.save(path))
+    def log(self, stream: Any, path: str | os.PathLike[str] | None = None) -> None:
+        """Has a ``rerun.RecordingStream`` load the recording, written to ``path`` if there is one.
+
+        The stream loads it in the background: it needs this result until it is flushed.
+        """
+        if path is not None:
+            stream.log_file_from_path(self.save(path))
+            return
+        if self._recording is None:
+            folder = TemporaryDirectory(prefix="tauscope_")
+            self._recording = self.save(Path(folder.name) / f"{self.command}.rrd")
+            self._folder = folder
+        stream.log_file_from_path(self._recording)
 
     def _rows(self, key: str) -> pd.DataFrame:
         rows = [
@@ -122,10 +142,17 @@ class Result:
 
 
 def _flat(row: Mapping[str, Any]) -> dict[str, Any]:
-    """Numbers and texts, and those of dictionaries one level below, as ``a.b``."""
+    """Numbers and texts, and those of dictionaries one level below, as ``a.b``.
+
+    Texts of a list are joined; of parameters there are their values.
+    """
     flat: dict[str, Any] = {}
     for name, value in row.items():
-        if isinstance(value, Mapping):
+        if name == "parameters":
+            flat[name] = {parameter: of["value"] for parameter, of in (value or {}).items()}
+        elif isinstance(value, list) and all(isinstance(each, str) for each in value):
+            flat[name] = ", ".join(value)
+        elif isinstance(value, Mapping):
             inner = {k: v for k, v in value.items() if not isinstance(v, (Mapping, list))}
             flat.update({f"{name}.{k}": v for k, v in inner.items()})
         elif not isinstance(value, list):
@@ -241,6 +268,21 @@ class Improvement(Explanation):
 
 class Sweep(Result):
     """How the delays move with the settings."""
+
+    @cached_property
+    def decisions(self) -> pd.DataFrame:
+        """Every step: by how many settings it is accepted, and how far its delays are apart."""
+        return self._rows("decisions")
+
+    @cached_property
+    def combinations(self) -> pd.DataFrame:
+        """Every combination of settings of each joint: how many steps it accepts, its delay."""
+        rows = [
+            {"joint": joint["joint"], **settings, **found}
+            for joint in self.joints
+            for settings, found in zip(self.data["settings"], joint["settings"], strict=True)
+        ]
+        return pd.DataFrame(rows)
 
 
 class Report(Result):

@@ -1,6 +1,6 @@
 """The native part of the package."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,19 +13,37 @@ class TauscopeError(ValueError):
     row: int | None
     column: str | None
 
+class Frame:
+    def __new__(cls, table: Any, names: dict[str, str | None]) -> Frame: ...
+
+class Function:
+    def __new__(
+        cls,
+        id: str,
+        stage: str,
+        function: Callable[..., float],
+        arguments: list[str],
+        parameters: list[tuple[str, float, float | None, float | None, float]],
+    ) -> Function: ...
+    @property
+    def id(self) -> str: ...
+
 def run(
     arguments: list[str],
     logs: Any = None,
     progress: Callable[[str, int, int], None] | None = None,
     keeps: bool = False,
+    functions: Sequence[Function] = (),
 ) -> tuple[bool, str, list[tuple[str, str]], bool]: ...
 def options(command: str) -> list[tuple[str, str, bool, bool]] | None: ...
 def read(arguments: list[str], logs: Any = None) -> tuple[list[dict[str, Any]], list[str]]: ...
-def check(text: str, name: str) -> list[str]: ...
+def check(text: str, name: str, functions: Sequence[Function]) -> list[str]: ...
 def describe(
-    text: str, of: str
+    text: str, of: str, functions: Sequence[Function]
 ) -> tuple[float, float, list[tuple[str, str, str, list[tuple[str, float]]]]]: ...
-def refitted(text: str, of: str, values: list[tuple[str, float]]) -> str: ...
+def refitted(
+    text: str, of: str, values: list[tuple[str, float]], functions: Sequence[Function]
+) -> str: ...
 def simulate(
     text: str,
     of: str,
@@ -35,4 +53,5 @@ def simulate(
     start_s: float,
     others: npt.NDArray[np.float64] | None,
     radians_per_output_unit: float,
+    functions: Sequence[Function],
 ) -> npt.NDArray[np.float64]: ...

@@ -2,7 +2,7 @@
 
 use super::steps::input_steps;
 use crate::experiment::Trial;
-use crate::numerics::{median, quantile, robust_scale};
+use crate::numerics::{median, quantile_of, robust_scale_of};
 
 /// Part of the input's range within which two levels are one: chosen; converters and
 /// potentiometers scatter by less, and no experiment steps by so little.
@@ -40,12 +40,12 @@ pub(super) struct Hold {
 pub fn level_tolerance(trials: &[Trial]) -> f64 {
     /// Parts of the samples beyond which a level is a glitch.
     const GLITCHES: f64 = 1e-3;
-    let inputs: Vec<f64> = trials.iter().flat_map(Trial::input).copied().collect();
-    let ends = quantile(&inputs, GLITCHES).zip(quantile(&inputs, 1.0 - GLITCHES));
+    let inputs = trials.iter().flat_map(Trial::input).copied();
+    let ends = quantile_of(&inputs, GLITCHES).zip(quantile_of(&inputs, 1.0 - GLITCHES));
     let range = ends.map_or(0.0, |(low, high)| high - low);
     let change = |pair: &[f64]| pair.last().zip(pair.first()).map_or(0.0, |(b, a)| b - a);
     let changes = trials.iter().flat_map(|trial| trial.input().windows(2).map(change));
-    let noise = robust_scale(&changes.collect::<Vec<_>>()) / std::f64::consts::SQRT_2;
+    let noise = robust_scale_of(changes) / std::f64::consts::SQRT_2;
     (SAME_LEVEL * range).max((REACH * noise).min(MOST_NOISE * range))
 }
 

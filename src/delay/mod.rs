@@ -96,7 +96,7 @@ pub use profile::DelayProfile;
 pub use scan::delay_scan;
 pub use search::{Candidate, Candidates};
 pub use segment::Segment;
-pub use settings::{FirstLast, Interpolation, Settings, SettingsError};
+pub use settings::{CandidateLines, FirstLast, Interpolation, Settings, SettingsError};
 pub use settling::Settling;
 pub(crate) use settling::{FirstOrder, followed};
 pub use spec::{Method, MethodSpec, Scope};

@@ -27,6 +27,8 @@ enum Lines {
     Apart(Vec<Line>, Vec<Line>),
     /// Meeting at every sample, and those of one that meet between two.
     Meeting(Box<Bends>, (usize, (Line, Line))),
+    /// Those of one alone.
+    One(usize, (Line, Line)),
 }
 
 impl Default for Lines {
@@ -41,6 +43,7 @@ impl Lines {
             Self::Apart(before, after) => Some((*before.get(index)?, *after.get(index)?)),
             Self::Meeting(_, (best, lines)) if *best == index => Some(*lines),
             Self::Meeting(bends, _) => bends.get(index),
+            Self::One(one, lines) => (*one == index).then_some(*lines),
         }
     }
 }
@@ -123,6 +126,14 @@ impl Candidates {
         Self { first_sample, beta: 1, sse, lines, best: chosen }
     }
 
+    /// The same with the lines of the best candidate alone, a fifth of the memory; the lines of
+    /// the others are not numbers.
+    pub(super) fn with_best_lines(mut self) -> Self {
+        let best = self.best.and_then(|best| Some((best, self.lines.get(best)?)));
+        self.lines = best.map_or_else(Lines::default, |(best, lines)| Lines::One(best, lines));
+        self
+    }
+
     /// Fits the lines before each breakpoint, from the front.
     fn fit_before(&mut self, values: &[f64], scale: Scale) -> Vec<Line> {
         let count = values.len() / self.beta - 1;
@@ -183,7 +194,8 @@ impl Candidates {
 
     fn candidate(&self, index: usize, sse: f64) -> Candidate {
         let f = index + 1;
-        let (before, after) = self.lines.get(index).unwrap_or_default();
+        let unknown = Line { slope: f64::NAN, intercept: f64::NAN };
+        let (before, after) = self.lines.get(index).unwrap_or((unknown, unknown));
         Candidate { f, breakpoint: self.first_sample + f * self.beta, sse, before, after }
     }
 
@@ -258,6 +270,15 @@ mod tests {
         assert!(best.sse < 1e-20);
         assert!(best.before.slope.abs() < 1e-12 && (best.after.slope - 2.0).abs() < 1e-12);
         assert!((best.after.at(104.0)).abs() < 1e-9, "the lines are in sample numbers");
+    }
+
+    #[test]
+    fn the_best_keeps_its_lines_where_the_others_do_not() {
+        let all = Candidates::search(&kinked(48, 25), 79, 5);
+        let fewer = all.clone().with_best_lines();
+        assert_eq!((fewer.best(), fewer.sse()), (all.best(), all.sse()));
+        assert!(fewer.get(0).unwrap().before.slope.is_nan());
+        assert_eq!(fewer.get(0).unwrap().breakpoint, all.get(0).unwrap().breakpoint);
     }
 
     #[test]

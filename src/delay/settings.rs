@@ -46,6 +46,16 @@ impl FirstLast {
     }
 }
 
+/// Of which candidates a decision keeps both lines.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CandidateLines {
+    /// Of all, which can be drawn then.
+    #[default]
+    All,
+    /// Of the best one, where the method compares many: a fifth of the memory.
+    Best,
+}
+
 /// A method and its settings; the default is the paper's search with what real logs need
 /// beside it, see [`Settings::paper`].
 #[derive(Clone, Debug, PartialEq)]
@@ -100,6 +110,8 @@ pub struct Settings {
     pub confidence: Option<f64>,
     /// How often an interval of a delay is to hold the true one.
     pub interval: f64,
+    /// Of which candidates a decision keeps both lines.
+    pub lines: CandidateLines,
     /// Those of the lengths above that were given in seconds, which then count: how many samples
     /// they are depends on the trial, see [`Settings::at`].
     pub in_seconds: InSeconds,
@@ -135,6 +147,7 @@ impl Settings {
             interpolation: Interpolation::Hold,
             confidence: spec.confidence,
             interval: 0.95,
+            lines: CandidateLines::All,
             in_seconds: InSeconds::default(),
         }
     }

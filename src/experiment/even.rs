@@ -357,7 +357,7 @@ mod tests {
         };
         let times = jittering(200, 0.01, 0.1);
         let (grids, _) = laid(&[&times]);
-        assert_eq!(grids[0].pieces(&signals(&times))[0].signals.output, times);
+        assert_eq!(grids[0].pieces(signals(&times))[0].signals.output, times);
         let mut now = 0.0;
         let mut step = |k: usize| {
             now += 0.01 * (1.0 + 0.5 * noise(k));
@@ -366,7 +366,7 @@ mod tests {
         let times: Vec<f64> = (0..500).map(&mut step).collect();
         let (grids, notes) = laid(&[&times]);
         assert!(notes[0].contains("interpolated"), "{notes:?}");
-        let piece = &grids[0].pieces(&signals(&times))[0];
+        let piece = &grids[0].pieces(signals(&times))[0];
         for (k, output) in piece.signals.output.iter().enumerate() {
             let time = piece.start_s + k as f64 * grids[0].period().seconds();
             assert!((output - time).abs() < 1e-9, "the output is its time");

@@ -59,7 +59,10 @@ impl HandedValues {
 
     fn text(&self, row: usize) -> String {
         match self {
-            Self::Numbers(numbers) => numbers.get(row).map(f64::to_string).unwrap_or_default(),
+            Self::Numbers(numbers) => {
+                let number = numbers.get(row).filter(|number| !number.is_nan());
+                number.map(f64::to_string).unwrap_or_default()
+            }
             Self::Texts(texts) => texts.get(row).cloned().unwrap_or_default(),
         }
     }

@@ -212,7 +212,7 @@ impl Log<'_> {
             taken.map_err(|error| error.refuse(&self.head.path))?;
             let mut signals = self.signals(layout, rows);
             turns += wrap.map_or(0, |wrap| wrap.unwrap(&mut signals.output));
-            let pieces = grid.pieces(&signals);
+            let pieces = grid.pieces(signals);
             if pieces.len() > 1 {
                 let first = joint.trials.len();
                 split.push((rows, first..first + pieces.len()));

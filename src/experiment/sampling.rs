@@ -179,8 +179,7 @@ impl Grid {
     }
 
     /// The signals of a joint on the grid, cut at its long gaps.
-    pub(super) fn pieces(&self, signals: &Signals) -> Vec<Piece> {
-        let mut signals = signals.clone();
+    pub(super) fn pieces(&self, mut signals: Signals) -> Vec<Piece> {
         hold(&mut signals.input);
         match &self.placement {
             Placement::Rows { start_s, places, fill } => {
@@ -202,7 +201,7 @@ impl Grid {
                 resampled(&signals, times, *longest_gap_s, self.period)
             }
             Placement::Parts(parts) => {
-                let pieces = |part: &Part| part.grid.pieces(&signals.of_rows(&part.rows));
+                let pieces = |part: &Part| part.grid.pieces(signals.of_rows(&part.rows));
                 parts.iter().flat_map(pieces).collect()
             }
         }
@@ -424,7 +423,7 @@ mod tests {
         let times: Vec<f64> = (0..500).map(|k| 3.0 + f64::from(k) * 0.01).collect();
         let grid = Grid::lay(&times, Repair::default()).unwrap();
         assert_eq!(grid.period().seconds().to_string(), "0.01");
-        let pieces = grid.pieces(&signals(&vec![1.0; 500], &vec![2.0; 500]));
+        let pieces = grid.pieces(signals(&vec![1.0; 500], &vec![2.0; 500]));
         assert_eq!(pieces.len(), 1);
         assert_eq!(pieces[0].signals.output.len(), 500);
     }
@@ -453,7 +452,7 @@ mod tests {
             &[5.0, 5.0, 6.0, 6.0, 6.0, 7.0, 7.0, 7.0],
             &[0.0, NAN, 2.0, 3.0, NAN, NAN, 6.0, 7.0],
         );
-        let pieces = grid.pieces(&log);
+        let pieces = grid.pieces(log);
         assert_eq!(pieces.len(), 2);
         assert_eq!(pieces[0].signals.output, [0.0, 1.0, 2.0, 3.0]);
         assert_eq!(pieces[0].signals.input, [5.0, 5.0, 6.0, 6.0]);
@@ -467,7 +466,7 @@ mod tests {
         assert!(Grid::lay(&times, Repair::default()).is_err());
         let grid = Grid::lay(&times, repair(None, Some(2.0))).unwrap();
         let log = signals(&[1.0, 1.0, 1.0, 2.0, 2.0, 2.0], &[0.0, 1.0, 2.0, 4.0, 5.0, 6.0]);
-        let pieces = grid.pieces(&log);
+        let pieces = grid.pieces(log);
         assert_eq!(pieces.len(), 1);
         assert_eq!(pieces[0].signals.output, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
         assert_eq!(pieces[0].signals.input, [1.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0]);
@@ -478,7 +477,7 @@ mod tests {
         let times = [0.0, 0.9, 2.1, 3.0];
         let grid = Grid::lay(&times, repair(Some(0.5), None)).unwrap();
         let log = signals(&[1.0, 2.0, 3.0, 4.0], &[0.0, 0.9, 2.1, 3.0]);
-        let piece = &grid.pieces(&log)[0].signals;
+        let piece = &grid.pieces(log)[0].signals;
         assert_eq!(piece.input, [1.0, 1.0, 2.0, 2.0, 2.0, 3.0, 4.0]);
         for (k, y) in piece.output.iter().enumerate() {
             assert!((y - 0.5 * k as f64).abs() < 1e-12, "{:?}", piece.output);
@@ -490,6 +489,6 @@ mod tests {
         let mut times: Vec<f64> = (0..20).map(f64::from).collect();
         times.extend((0..20).map(|k| 100.0 + f64::from(k)));
         let grid = Grid::lay(&times, repair(Some(1.0), None)).unwrap();
-        assert_eq!(grid.pieces(&signals(&times, &times)).len(), 2);
+        assert_eq!(grid.pieces(signals(&times, &times)).len(), 2);
     }
 }

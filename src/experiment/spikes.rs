@@ -6,6 +6,9 @@
 //! looked for. Whatever a model makes of a record, the samples
 //! that count are the same: costs of models are sums of the same squares, and compare.
 
+use std::collections::BTreeSet;
+use std::ops::Range;
+
 use super::joint::Trial;
 use crate::numerics::robust_scale;
 
@@ -23,36 +26,40 @@ const BEYOND: f64 = 8.0;
 /// trial has a spike.
 pub(crate) fn spike_weights(trials: &[Trial]) -> Option<Vec<Vec<f64>>> {
     let noise = noise(trials);
-    let weights: Vec<Vec<f64>> =
-        trials.iter().map(|trial| of_trial(trial.output(), noise)).collect();
-    weights.iter().flatten().any(|weight| *weight <= 0.0).then_some(weights)
+    let found: Vec<_> = trials.iter().map(|trial| spikes(trial.output(), noise)).collect();
+    let weights = |(trial, spikes): (&Trial, &Vec<Range<usize>>)| {
+        let mut weights = vec![1.0; trial.output().len()];
+        for spike in spikes {
+            weights[spike.clone()].fill(0.0);
+        }
+        weights
+    };
+    let any = found.iter().any(|spikes| !spikes.is_empty());
+    any.then(|| trials.iter().zip(&found).map(weights).collect())
 }
 
 /// Samples of `trial` that are spikes.
 pub(crate) fn spike_count(trial: &Trial) -> usize {
-    let weights = spike_weights(std::slice::from_ref(trial)).into_iter().flatten().flatten();
-    weights.filter(|weight| *weight <= 0.0).count()
+    let spikes = spikes(trial.output(), noise(std::slice::from_ref(trial)));
+    let samples: BTreeSet<usize> = spikes.into_iter().flatten().collect();
+    samples.len()
 }
 
 /// The output of `trial` with lines in the place of its spikes; none where it has no spike.
 pub(crate) fn without_spikes(trial: &Trial) -> Option<Vec<f64>> {
     let output = trial.output();
-    let weights = spike_weights(std::slice::from_ref(trial))?.pop()?;
+    let spikes = spikes(output, noise(std::slice::from_ref(trial)));
+    if spikes.is_empty() {
+        return None;
+    }
     let mut mended = output.to_vec();
-    let is_spike = |weight: &f64| *weight <= 0.0;
-    let mut place = 0;
-    for run in weights.chunk_by(|a, b| is_spike(a) == is_spike(b)) {
-        let end = place + run.len();
-        // A spike is never at the end of a trial.
-        let ends =
-            place.checked_sub(1).and_then(|before| Some((output[before], *output.get(end)?)));
-        if let Some((from, to)) = ends.filter(|_| run.first().is_some_and(is_spike)) {
-            let step = (to - from) / (run.len() + 1) as f64;
-            for (k, value) in mended[place..end].iter_mut().enumerate() {
-                *value = from + step * (k + 1) as f64;
-            }
+    for Range { start, end } in spikes {
+        // A spike is never at an end of a trial.
+        let (from, to) = (mended[start - 1], output[end]);
+        let step = (to - from) / (end - start + 1) as f64;
+        for (k, value) in mended[start..end].iter_mut().enumerate() {
+            *value = from + step * (k + 1) as f64;
         }
-        place = end;
     }
     Some(mended)
 }
@@ -80,20 +87,18 @@ fn noise(trials: &[Trial]) -> f64 {
     (robust_scale(&second) / SECOND_ORDER.sqrt()).max(if step.is_finite() { step } else { 0.0 })
 }
 
-fn of_trial(output: &[f64], noise: f64) -> Vec<f64> {
-    let mut weights = vec![1.0; output.len()];
-    for length in 1..=LONGEST {
-        for from in SIDE..output.len().saturating_sub(SIDE + length - 1) {
-            if is_spike(output, from..from + length, noise) {
-                weights[from..from + length].fill(0.0);
-            }
-        }
-    }
-    weights
+/// The spikes of an output with this noise, the single ones first.
+fn spikes(output: &[f64], noise: f64) -> Vec<Range<usize>> {
+    let of_length = |length: usize| {
+        let places = SIDE..output.len().saturating_sub(SIDE + length - 1);
+        places.map(move |from| from..from + length)
+    };
+    let all = (1..=LONGEST).flat_map(of_length);
+    all.filter(|place| is_spike(output, place.clone(), noise)).collect()
 }
 
 /// Whether the samples at `place` are a spike among their neighbours.
-fn is_spike(output: &[f64], place: std::ops::Range<usize>, noise: f64) -> bool {
+fn is_spike(output: &[f64], place: Range<usize>, noise: f64) -> bool {
     let jump = output[place.start] - output[place.start - 1];
     if jump.abs() <= BEYOND * noise {
         return false;
@@ -128,8 +133,7 @@ mod tests {
     use crate::numerics::testing::noise as noisy;
 
     fn found(output: &[f64], noise: f64) -> Vec<usize> {
-        let weights = of_trial(output, noise);
-        (0..output.len()).filter(|k| weights[*k] <= 0.0).collect()
+        spikes(output, noise).into_iter().flatten().collect::<BTreeSet<_>>().into_iter().collect()
     }
 
     #[test]

@@ -77,19 +77,17 @@ impl LowPass {
         };
         let pad = padding(&sections).min(signal.len() - 1);
         sosfilt_zi_dyn::<_, _, Sos<f64>>(sections.iter_mut());
-        let extended = extend_odd(signal, pad, offset);
-        let mut once = one_pass(&sections, &extended);
-        drop(extended);
-        once.reverse();
-        let mut twice = one_pass(&sections, &once);
-        drop(once);
-        twice.reverse();
-        twice.truncate(pad + signal.len());
-        twice.drain(..pad);
-        for value in &mut twice {
+        let mut smoothed = extend_odd(signal, pad, offset);
+        one_pass(&sections, &mut smoothed);
+        smoothed.reverse();
+        one_pass(&sections, &mut smoothed);
+        smoothed.reverse();
+        smoothed.truncate(pad + signal.len());
+        smoothed.drain(..pad);
+        for value in &mut smoothed {
             *value += offset;
         }
-        Ok(twice)
+        Ok(smoothed)
     }
 
     /// How many of the last samples of a growing signal are smoothed to something else when
@@ -167,15 +165,21 @@ fn extend_odd(signal: &[f64], pad: usize, offset: f64) -> Vec<f64> {
     head.chain(signal.iter().copied()).chain(tail).map(|value| value - offset).collect()
 }
 
-/// One run of the sections, from the steady state at the first value.
-fn one_pass(sections: &[Sos<f64>], signal: &[f64]) -> Vec<f64> {
+/// One run of the sections over `signal`, in its place, from the steady state at the first value.
+fn one_pass(sections: &[Sos<f64>], signal: &mut [f64]) {
+    /// Samples that are filtered at a time: no second signal is needed.
+    const AT_ONCE: usize = 4096;
     let first = signal.first().copied().unwrap_or_default();
     let mut sections = sections.to_vec();
     for section in &mut sections {
         section.zi0 *= first;
         section.zi1 *= first;
     }
-    sosfilt_dyn(signal, &mut sections)
+    for part in signal.chunks_mut(AT_ONCE) {
+        // The sections keep their state from one part to the next.
+        let filtered = sosfilt_dyn(part.iter(), &mut sections);
+        part.copy_from_slice(&filtered);
+    }
 }
 
 #[cfg(test)]

@@ -30,8 +30,8 @@ pub(crate) use normal_equations::NormalEquations;
 pub(crate) use projection::{Basis, Projection};
 pub(crate) use rank::{PseudoInverse, REGRESSORS};
 pub(crate) use regression::{Regression, residuals_of};
-pub(crate) use statistics::robust_scale;
 pub use statistics::{
     RankTest, chi_square_tail, fisher_tail, holm, mann_whitney, median, normal_below, quantile,
     ranks, spearman, student_quantile,
 };
+pub(crate) use statistics::{quantile_of, robust_scale, robust_scale_of};

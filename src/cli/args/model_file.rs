@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::model::ModelFile;
+use crate::model::{ModelError, ModelFile};
 use anyhow::{Context as _, bail};
 use clap::Args;
 
-use crate::cli::console::{Verbosity, message};
+use crate::cli::console::{Host, Verbosity, message};
 use crate::cli::output::{target_of, write_file};
 use crate::experiment::{Joint, nearest_name};
 
@@ -31,7 +31,7 @@ impl ModelFileArgs {
     /// The model file as it is; an empty one where there is none.
     pub(crate) fn read(&self) -> anyhow::Result<ModelFile> {
         match &self.model {
-            Some(path) if path.exists() || self.write.is_some() => Ok(ModelFile::read(path)?),
+            Some(path) if path.exists() || self.write.is_some() => Ok(read_model(path)?),
             Some(path) => Ok(ModelFile::new(path)),
             None if self.write.is_none() && Path::new(DEFAULT).exists() => bail!(
                 "{DEFAULT} is there already: `--model {DEFAULT}` goes on with it, `--write FILE` \
@@ -83,6 +83,12 @@ impl ModelFileArgs {
         }
         Ok(())
     }
+}
+
+/// Reads a model file, which may name the effects of the program in whose place this works.
+pub(crate) fn read_model(path: &Path) -> Result<ModelFile, ModelError> {
+    let others = Host::current().map(|host| host.effects()).unwrap_or_default();
+    ModelFile::read_with(path, &others)
 }
 
 /// Refuses to replace a file that somebody has edited since it was read.

@@ -45,7 +45,14 @@ impl RunArgs {
     /// Does `work` with as many threads as are to be used.
     pub(crate) fn in_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> anyhow::Result<T> {
         let host = Host::current();
-        with_prepared_threads(self.threads, move || Host::enter(host.clone()), work)
+        let run = move |thread: &mut (dyn FnMut() + Send)| {
+            Host::enter(host.clone());
+            match &host {
+                Some(host) => host.run_thread(thread),
+                None => thread(),
+            }
+        };
+        with_prepared_threads(self.threads, run, work)
             .map_err(|error| anyhow!("threads cannot be started: {error}"))
     }
 

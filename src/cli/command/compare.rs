@@ -12,7 +12,7 @@ use crate::report::{CompareJson, ComparedJoint, compare_table};
 use crate::study::{Mode, compare_joints};
 use clap::Args as ClapArgs;
 
-use crate::cli::args::{DataArgs, ProtocolArgs, ResultArgs};
+use crate::cli::args::{DataArgs, ProtocolArgs, ResultArgs, read_model};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{joint_left_out, nothing_usable, read_failures};
 use crate::cli::output::check_outputs;
@@ -97,7 +97,7 @@ fn models(paths: &[PathBuf]) -> anyhow::Result<Vec<Named>> {
     }
     let named = |path: &PathBuf| {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        Ok(Named { name, file: Some(ModelFile::read(path)?) })
+        Ok(Named { name, file: Some(read_model(path)?) })
     };
     paths.iter().map(named).collect()
 }

@@ -14,7 +14,7 @@ use crate::study::{JointEstimate, Mode, OfJoints, compare_joints, explain_joints
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
-    DataArgs, EffectArgs, ProtocolArgs, ResultArgs, fresh_name, name_of, note_missing,
+    DataArgs, EffectArgs, ProtocolArgs, ResultArgs, fresh_name, name_of, note_missing, read_model,
 };
 use crate::cli::exit::Completion;
 use crate::cli::output::check_outputs;
@@ -46,7 +46,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
-    let file = args.model.as_deref().map(ModelFile::read).transpose()?.unwrap_or_default();
+    let file = args.model.as_deref().map(read_model).transpose()?.unwrap_or_default();
     let effects = args.effects.effects(file.candidates())?;
     let options = Options { effects, ..Options::default() };
     if let Some(path) = &args.output.recording {

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, anyhow};
 use clap::Args as ClapArgs;
 
+use crate::cli::args::read_model;
 use crate::cli::console::{Verbosity, message};
 use crate::cli::exit::Completion;
 use crate::cli::output::{check_outputs, write_file};
@@ -50,7 +51,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let (language, name) = language(&args.file)?;
-    let model = ModelFile::read(&args.model)?;
+    let model = read_model(&args.model)?;
     let joint = joint(&model, args.joint.as_deref()).with_context(|| shown(&args.model))?;
     let paths = |file: &File| args.file.with_extension(file.ending);
     let planned: Vec<PathBuf> = planned(language, &args.file);

@@ -21,7 +21,7 @@ use clap::Args as ClapArgs;
 
 use crate::cli::args::{
     AlgorithmArgs, DataArgs, EffectArgs, ProtocolArgs, ReviewArgs, RunArgs, name_of, note_missing,
-    quoted,
+    quoted, read_model,
 };
 use crate::cli::console::{Bar, Verbosity, message};
 use crate::cli::exit::Completion;
@@ -144,7 +144,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
 impl ModelArgs {
     /// The model file; an empty one where there is none.
     fn file(&self) -> anyhow::Result<ModelFile> {
-        Ok(self.model.as_deref().map(ModelFile::read).transpose()?.unwrap_or_default())
+        Ok(self.model.as_deref().map(read_model).transpose()?.unwrap_or_default())
     }
 
     /// The model of each joint with what it lacks; none where no model is asked for.

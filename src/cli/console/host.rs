@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::fmt;
 use std::sync::Arc;
 
+use crate::effect::Effect;
 use crate::experiment::{Experiment, ReadOptions};
 
 /// What a program does for the commands that it runs inside itself.
@@ -12,8 +13,19 @@ pub trait Hosting: Send + Sync {
     /// files that the arguments name.
     fn logs(&self, options: &ReadOptions) -> Option<Experiment>;
 
+    /// Effects of its own, which models may name, and which are tried like those of the
+    /// catalogue where one is missing.
+    fn effects(&self) -> Vec<&'static dyn Effect> {
+        Vec::new()
+    }
+
+    /// Runs a thread of a command, in the surroundings that its effects need.
+    fn run_thread(&self, thread: &mut (dyn FnMut() + Send)) {
+        thread();
+    }
+
     /// Takes the results.
-    fn print(&self, results: &str);
+    fn print(&self, results: String);
 
     /// Takes a message: its kind, such as `warning`, and its text.
     fn say(&self, kind: &str, text: &str);
@@ -66,7 +78,15 @@ impl Host {
         self.0.logs(options)
     }
 
-    pub(crate) fn print(&self, results: &str) {
+    pub(crate) fn effects(&self) -> Vec<&'static dyn Effect> {
+        self.0.effects()
+    }
+
+    pub(crate) fn run_thread(&self, thread: &mut (dyn FnMut() + Send)) {
+        self.0.run_thread(thread);
+    }
+
+    pub(crate) fn print(&self, results: String) {
         self.0.print(results);
     }
 

@@ -110,7 +110,7 @@ pub(crate) fn warn(failures: &[String]) {
 /// Prints results on stdout, tables with their frames dimmed.
 pub(crate) fn print(text: &str) -> anyhow::Result<()> {
     if let Some(host) = Host::current() {
-        host.print(&anstream::adapter::strip_str(text).to_string());
+        host.print(anstream::adapter::strip_str(text).to_string());
         return Ok(());
     }
     let mut out = anstream::stdout().lock();
@@ -123,7 +123,7 @@ pub(crate) fn print(text: &str) -> anyhow::Result<()> {
 /// Prints results on stdout as one line of JSON.
 pub(crate) fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
     if let Some(host) = Host::current() {
-        host.print(&serde_json::to_string(value)?);
+        host.print(serde_json::to_string(value)?);
         return Ok(());
     }
     print_with(|out| {

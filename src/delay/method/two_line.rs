@@ -16,7 +16,7 @@ use crate::delay::lag::Lag;
 use crate::delay::prepared::Prepared;
 use crate::delay::search::Candidates;
 use crate::delay::segment::Segment;
-use crate::delay::settings::{CONFIDENCE, FirstLast, Settings};
+use crate::delay::settings::{CONFIDENCE, CandidateLines, FirstLast, Settings};
 use crate::delay::spec::{Method, MethodSpec, Scope};
 use crate::numerics::LowPass;
 
@@ -128,5 +128,9 @@ fn decide(context: &StepContext<'_>, before: Option<&Decision>) -> Decision {
     let segment = Segment::clipped(first, last, output.len());
     let values = &output[segment.indices()];
     let candidates = Candidates::search_until(values, segment.first, settings.beta, latest);
+    let candidates = match settings.lines {
+        CandidateLines::All => candidates,
+        CandidateLines::Best => candidates.with_best_lines(),
+    };
     context.decision(segment, settings.beta, candidates, None)
 }

@@ -27,6 +27,8 @@ use crate::model::JointModel;
 pub struct ModelFile {
     pub(super) path: PathBuf,
     pub(super) text: String,
+    /// Effects of whoever reads the file.
+    pub(super) others: Vec<&'static dyn Effect>,
     pub(super) candidates: Vec<&'static dyn Effect>,
     joints: BTreeMap<String, Revised>,
 }
@@ -44,9 +46,17 @@ impl ModelFile {
     /// # Errors
     /// [`ModelError`], with the file and, where there is one, the joint.
     pub fn read(path: &Path) -> Result<Self, ModelError> {
+        Self::read_with(path, &[])
+    }
+
+    /// Reads a model file that may name the effects `others` like those of the catalogue.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_with(path: &Path, others: &[&'static dyn Effect]) -> Result<Self, ModelError> {
         let text = std::fs::read_to_string(path)
             .map_err(|source| ModelError::Read { path: path.to_owned(), source })?;
-        Self::parse(&text, path)
+        Self::parse_with(&text, path, others)
     }
 
     /// Reads the text of a model file; `path` is its name in messages.
@@ -54,19 +64,33 @@ impl ModelFile {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn parse(text: &str, path: &Path) -> Result<Self, ModelError> {
+        Self::parse_with(text, path, &[])
+    }
+
+    /// Reads the text of a model file that may name the effects `others` like those of the
+    /// catalogue. They are [candidates](Self::candidates), too.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn parse_with(
+        text: &str,
+        path: &Path,
+        others: &[&'static dyn Effect],
+    ) -> Result<Self, ModelError> {
         let file: FileToml = toml::from_str(text)
             .map_err(|e| ModelError::Parse { path: path.to_owned(), source: Box::new(e) })?;
         if file.schema != SCHEMA {
             return Err(ModelError::Schema { path: path.to_owned(), found: file.schema });
         }
-        let candidates = read::candidates(path, file.candidate)?;
+        let candidates = read::candidates(path, others, file.candidate)?;
         let mut joints = BTreeMap::new();
         for (name, joint) in file.joint {
             let reader = JointReader { path, joint: &name, candidates: &candidates };
             let model = reader.joint(&joint)?;
             joints.insert(name, Revised { model, history: joint.history });
         }
-        Ok(Self { path: path.to_owned(), text: text.to_owned(), candidates, joints })
+        let (path, text, others) = (path.to_owned(), text.to_owned(), others.to_owned());
+        Ok(Self { path, text, others, candidates, joints })
     }
 
     /// One without joints, which has this name in messages.
@@ -79,7 +103,8 @@ impl ModelFile {
         &self.text
     }
 
-    /// The effects that it offers besides those of the catalogue.
+    /// The effects that there are besides those of the catalogue: those of whoever read it, and
+    /// those that it offers.
     pub fn candidates(&self) -> &[&'static dyn Effect] {
         &self.candidates
     }

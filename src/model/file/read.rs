@@ -8,12 +8,13 @@ use crate::effect::expression;
 use crate::effect::{self, Definition, Effect, OwnParameter};
 use crate::model::{Component, JointModel, Value};
 
-/// The effects that a file offers, in its order.
+/// The effects of whoever reads a file, and those that it offers, in its order.
 pub(super) fn candidates(
     path: &Path,
+    others: &[&'static dyn Effect],
     given: Vec<EffectToml>,
 ) -> Result<Vec<&'static dyn Effect>, ModelError> {
-    let mut candidates: Vec<&'static dyn Effect> = Vec::new();
+    let mut candidates = others.to_vec();
     for given in given {
         let own = Own { path, place: "candidate".to_owned() };
         let effect = own.define(&given, Start::Given)?;

@@ -88,7 +88,7 @@ impl ModelFile {
         let form = || ModelError::Form { path: self.path.clone(), joint: joint.to_owned() };
         let writer = Writer { candidates: &self.candidates };
         writer.joint(document.as_table_mut(), joint, model, revision).ok_or_else(form)?;
-        Self::parse(&document.to_string(), &self.path)
+        Self::parse_with(&document.to_string(), &self.path, &self.others)
     }
 }
 

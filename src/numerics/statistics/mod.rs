@@ -10,7 +10,7 @@ mod student;
 pub use chi_square::chi_square_tail;
 pub use fisher::fisher_tail;
 pub use normal::normal_below;
-pub(crate) use quantile::robust_scale;
 pub use quantile::{median, quantile};
+pub(crate) use quantile::{quantile_of, robust_scale, robust_scale_of};
 pub use rank::{RankTest, holm, mann_whitney, ranks, spearman};
 pub use student::student_quantile;

@@ -13,21 +13,77 @@ pub fn quantile(values: &[f64], part: f64) -> Option<f64> {
     Some(lower + place.fract() * (upper - lower))
 }
 
+/// [`quantile`] of values that are not copied, however many they are.
+pub(crate) fn quantile_of(values: &(impl Iterator<Item = f64> + Clone), part: f64) -> Option<f64> {
+    let last = values.clone().count().checked_sub(1)?;
+    let place = part.clamp(0.0, 1.0) * last as f64;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index")]
+    let index = place as usize;
+    let lower = nth(values, index);
+    let upper = if index < last { nth(values, index + 1) } else { lower };
+    Some(lower + place.fract() * (upper - lower))
+}
+
+/// The value that so many others, `rank`, come before in their order, found digit by digit of
+/// its bits: every pass counts the values that begin as it does.
+fn nth(values: &(impl Iterator<Item = f64> + Clone), mut rank: usize) -> f64 {
+    /// Bits of a digit, and where the digits begin.
+    const DIGIT: u32 = 11;
+    const STARTS: [u32; 6] = [55, 44, 33, 22, 11, 0];
+    let mut known = 0;
+    for start in STARTS {
+        let mut counts = [0_usize; 1 << DIGIT];
+        let rest = values.clone().map(|value| ordered(value) >> start);
+        for digits in rest.filter(|digits| digits >> DIGIT == known) {
+            let digit = usize::try_from(digits % (1 << DIGIT)).unwrap_or_default();
+            counts[digit] += 1;
+        }
+        let mut digit = 0;
+        for (count, number) in counts.into_iter().zip(0..) {
+            digit = number;
+            if rank < count {
+                break;
+            }
+            rank -= count;
+        }
+        known = (known << DIGIT) | digit;
+    }
+    let bits = if known & SIGN == 0 { !known } else { known ^ SIGN };
+    f64::from_bits(bits)
+}
+
+/// The bit of the sign.
+const SIGN: u64 = 1 << 63;
+
+/// The bits of a number, as a number that is the larger the larger it is.
+fn ordered(value: f64) -> u64 {
+    let bits = value.to_bits();
+    if bits & SIGN == 0 { bits ^ SIGN } else { !bits }
+}
+
 /// The middle value, or the mean of the two in the middle.
 pub fn median(values: &[f64]) -> Option<f64> {
     quantile(values, 0.5)
 }
 
+/// Median distance of a normal variable from zero, in standard deviations.
+const NORMAL: f64 = 0.674_489_750_196_081_7;
+
 /// The standard deviation of normal values, from their median distance from zero.
 pub(crate) fn robust_scale(values: &[f64]) -> f64 {
-    /// Median distance of a normal variable in standard deviations.
-    const NORMAL: f64 = 0.674_489_750_196_081_7;
     let mut distances: Vec<f64> = values.iter().map(|value| value.abs()).collect();
     let middle = distances.len() / 2;
     if distances.is_empty() {
         return 0.0;
     }
     *distances.select_nth_unstable_by(middle, f64::total_cmp).1 / NORMAL
+}
+
+/// [`robust_scale`] of values that are not copied, however many they are.
+pub(crate) fn robust_scale_of(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    let distances = values.map(f64::abs);
+    let middle = distances.clone().count() / 2;
+    if distances.clone().next().is_none() { 0.0 } else { nth(&distances, middle) / NORMAL }
 }
 
 #[cfg(test)]
@@ -53,5 +109,18 @@ mod tests {
         assert!(is(quantile(&values, 0.25), 3.25));
         assert!(is(quantile(&values, 0.75), 7.75));
         assert!(is(quantile(&values, 0.0), 1.0) && is(quantile(&values, 1.0), 9.0));
+    }
+    #[test]
+    fn values_that_are_not_copied_have_the_same_quantiles() {
+        let wild = |k: u32| ((f64::from(k) * 12.9898).sin() * 43_758.545).fract();
+        let values: Vec<f64> = (0..500).map(|k| wild(k) * 10_f64.powf(9.0 * wild(k + 7))).collect();
+        for values in [&values[..], &values[..2], &[-0.0, 0.0, 3.0], &[1.0; 7], &[]] {
+            for part in [0.0, 0.001, 0.37, 0.5, 0.999, 1.0] {
+                let found = quantile_of(&values.iter().copied(), part);
+                assert_eq!(found.map(f64::to_bits), quantile(values, part).map(f64::to_bits));
+            }
+            let found = robust_scale_of(values.iter().copied());
+            assert_eq!(found.to_bits(), robust_scale(values).to_bits());
+        }
     }
 }

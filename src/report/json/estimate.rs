@@ -1,6 +1,6 @@
 //! Schema `tauscope/estimate/1`, numbers in full precision.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::dead_time::{DeadTimeJson, InputJson};
 use super::header::Header;
@@ -73,7 +73,7 @@ struct JointJson<'a> {
     delay_table: Vec<DelayRowJson<'a>>,
     delay_by_transition: Vec<KindJson>,
     against_state: AgainstJson,
-    decisions: Vec<DecisionJson<'a>>,
+    decisions: DecisionsJson<'a>,
 }
 
 /// Where the input is neutral, input units.
@@ -211,6 +211,17 @@ struct DirectionJson {
     significant: bool,
 }
 
+/// All decisions on a joint, each made as it is written: there may be hundreds of thousands.
+#[derive(Debug)]
+struct DecisionsJson<'a>(EstimatedJoint<'a>);
+
+impl Serialize for DecisionsJson<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let rows = detailed_rows(self.0);
+        serializer.collect_seq(rows.map(|(row, detail)| DecisionJson { row, detail }))
+    }
+}
+
 /// A decision with its details.
 #[derive(Debug, Serialize)]
 struct DecisionJson<'a> {
@@ -281,9 +292,7 @@ impl<'a> JointJson<'a> {
             delay_table: rows.iter().map(|row| DelayRowJson::new(&joint.joint.name, row)).collect(),
             delay_by_transition: kinds.into_iter().map(Into::into).collect(),
             against_state: joint.against_state().into(),
-            decisions: detailed_rows(joint)
-                .map(|(row, detail)| DecisionJson { row, detail })
-                .collect(),
+            decisions: DecisionsJson(joint),
         }
     }
 }

@@ -11,6 +11,7 @@ use crate::units::SamplePeriod;
 use anyhow::{Context as _, anyhow, bail};
 
 use super::args::Args;
+use crate::cli::args::read_model;
 use crate::cli::run::Estimates;
 
 /// Samples per second where nothing is known.
@@ -39,7 +40,7 @@ pub(crate) const PROTOCOL: Protocol =
 
 impl Known {
     pub(crate) fn new(args: &Args) -> anyhow::Result<Self> {
-        let file = args.model.as_deref().map(ModelFile::read).transpose()?.unwrap_or_default();
+        let file = args.model.as_deref().map(read_model).transpose()?.unwrap_or_default();
         let experiment = read(args)?;
         let first = experiment.iter().flat_map(|e| &e.joints).flat_map(|joint| &joint.trials);
         let logged = first.map(Trial::period).next();

@@ -95,3 +95,10 @@ pub(crate) struct OutputArgs {
     #[command(flatten)]
     pub(super) run: RunArgs,
 }
+
+impl OutputArgs {
+    /// Whether anything is made for a viewer.
+    pub(super) fn is_recorded(&self) -> bool {
+        self.recording.is_some() || self.stream.is_asked()
+    }
+}

@@ -9,6 +9,7 @@ use crate::cli::each_log::Each;
 use crate::cli::exit::Completion;
 use crate::cli::failure::nothing_usable;
 use crate::cli::run::{Session, estimated, failures, notes};
+use crate::delay::{CandidateLines, Settings};
 use crate::report::{EstimateJson, against_table, delay_levels_text, estimate_table, steps_table};
 use estimated::{Estimated, Run};
 use files::Files;
@@ -21,7 +22,10 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
         return each_log(args, program);
     }
     let verbosity = args.output.run.verbosity();
-    let settings = args.algorithm.runs();
+    let is_drawn = args.output.is_recorded();
+    let lines = if is_drawn { CandidateLines::All } else { CandidateLines::Best };
+    let with_lines = |settings| Settings { lines, ..settings };
+    let settings: Vec<_> = args.algorithm.runs().into_iter().map(with_lines).collect();
     let csv_text = args.folder.csv_text();
     let inputs: Vec<_> = args.data.files().into_iter().chain(args.review.review.clone()).collect();
     let files = Files::check(&args.output, &inputs, csv_text)?;
