@@ -10,6 +10,7 @@ use super::shapes::shapes;
 use super::speed_error::speed_error;
 use super::{ErrorFigures, InputCorrelation, LackOfFit, TestColumns, TrialSignals, Whiteness};
 use super::{input_correlation, lack_of_fit, noise_floor, whiteness};
+use crate::experiment::Trial;
 use crate::fit::{Assessment, Evaluation, Excerpt, Fit, FitRecord, Horizon, Part, Termination};
 use crate::model::JointModel;
 
@@ -157,9 +158,10 @@ fn restarted(record: &FitRecord<'_>, model: &JointModel) -> Option<failure::Resi
     let restarted = record.with_horizon(Horizon::Steps);
     let evaluation = restarted.evaluate(model);
     let trials = &record.joint().trials;
-    let mut samples = Samples::default();
+    let mut samples = Samples::with_capacity(trials.iter().map(Trial::len).sum());
     let mut segments = Vec::new();
-    for (index, (trial, simulated)) in trials.iter().zip(&evaluation.simulated).enumerate() {
+    let simulated = evaluation.simulated.into_iter().zip(evaluation.residuals);
+    for (index, (trial, (simulated, residual))) in trials.iter().zip(simulated).enumerate() {
         let first = samples.residual.len();
         let period = trial.period().seconds();
         let levels = levels(&simulated.acting);
@@ -171,8 +173,7 @@ fn restarted(record: &FitRecord<'_>, model: &JointModel) -> Option<failure::Resi
         // An input that is never held has no levels to look at.
         let windows = restarted.windows().iter().filter(|window| window.trial == index);
         let windows: Vec<_> = windows.map(|window| window.start..window.end).collect();
-        let residual = evaluation.residuals.get(index)?;
-        samples.speed_error.extend(speed_error(residual, &windows, period));
+        samples.speed_error.extend(speed_error(&residual, &windows, period));
         let own = if levels.len() > windows.len().saturating_mul(20) { windows } else { levels };
         segments.extend(own.into_iter().map(|span| first + span.start..first + span.end));
         samples.residual.extend(residual);

@@ -29,6 +29,24 @@ pub struct Samples {
     pub speed_error: Vec<f64>,
 }
 
+impl Samples {
+    /// None yet, with room for so many.
+    pub(crate) fn with_capacity(samples: usize) -> Self {
+        let room = || Vec::with_capacity(samples);
+        Self {
+            residual: room(),
+            input: room(),
+            output: room(),
+            speed: room(),
+            time_s: room(),
+            since_step_s: room(),
+            hold_s: room(),
+            trial: Vec::with_capacity(samples),
+            speed_error: room(),
+        }
+    }
+}
+
 /// Units of input and output, where they are known.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Units {
