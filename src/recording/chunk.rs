@@ -34,6 +34,17 @@ pub(super) struct Index {
     pub(super) setting: Vec<i64>,
     /// Ranks of decisions by doubt; likewise.
     doubt: Vec<i64>,
+    /// Ranks of decisions by their difference to other results; likewise.
+    difference: Vec<i64>,
+}
+
+/// What a recording opens on, beside its decisions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Opening {
+    /// The first revision of any model.
+    pub(super) revision: Option<i64>,
+    /// Whether there are other results to compare with.
+    pub(super) is_compared: bool,
 }
 
 /// Where one row lies on the timelines.
@@ -76,6 +87,11 @@ impl Index {
         Self { doubt: ranks.collect(), ..self }
     }
 
+    /// The same rows on the timeline of differences, too; without any, there is none.
+    pub(super) fn with_difference(self, ranks: impl Iterator<Item = i64>) -> Self {
+        Self { difference: ranks.collect(), ..self }
+    }
+
     /// The same rows, but for the timeline of segments: on it the samples of a segment would all
     /// lie at one place, and a plot of them would be a comb.
     pub(super) fn without_segment(self) -> Self {
@@ -88,14 +104,20 @@ impl Index {
         Self { revision, ..self }
     }
 
-    /// One row before all others, on the timelines of decisions and of revisions alone.
-    pub(super) fn before_all(revision: Option<i64>) -> Self {
-        Self { decision: vec![0], ..Self::default() }.at_revision(revision)
+    /// One row before all others, on the timelines of decisions and, where it is opened on, of
+    /// revisions or of differences alone.
+    pub(super) fn before_all(opening: Opening) -> Self {
+        Self { decision: vec![0], ..Self::default() }.opened(opening)
     }
 
     /// One row on each timeline on which no sample lies.
-    pub(super) fn off_the_record(revision: Option<i64>) -> Self {
-        Self { segment: vec![1], doubt: vec![1], ..Self::default() }.at_revision(revision)
+    pub(super) fn off_the_record(opening: Opening) -> Self {
+        Self { segment: vec![1], doubt: vec![1], ..Self::default() }.opened(opening)
+    }
+
+    fn opened(self, Opening { revision, is_compared }: Opening) -> Self {
+        let difference = if is_compared { vec![1; self.len()] } else { Vec::new() };
+        Self { difference, ..self.at_revision(revision) }
     }
 
     /// A row per setting of a sweep, on the timeline of settings alone.
@@ -118,6 +140,7 @@ impl Index {
             ("revision", self.revision),
             ("setting", self.setting),
             ("doubt", self.doubt),
+            ("difference", self.difference),
         ];
         let filled = sequences.into_iter().filter(|(_, values)| !values.is_empty());
         let mut columns: Vec<_> =

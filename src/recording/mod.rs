@@ -11,7 +11,7 @@
 //!   the timelines; `chunk` makes columns of rows with reproducible ids, `rows` and `sheet`
 //!   drawings of them on a `canvas`.
 //! - `recorded`, `preview` and `sweep` are three kinds of recording. One part of the content
-//!   each are `signals`, `decisions`, `verdict`, `segment_view`, `beside`, `place`, `doubt`, `overview`,
+//!   each are `signals`, `decisions`, `verdict`, `segment_view`, `beside`, `place`, `doubt`, `difference`, `overview`,
 //!   `delay_state`, `model`, `revision` and `about`, which `assembly` puts together.
 //! - `views` says which view shows what, by way of `blueprint`.
 //! - `content` is what all kinds are to `write`, which brings them into a file or a stream,
@@ -27,6 +27,7 @@ mod content;
 mod correlogram;
 mod decisions;
 mod delay_state;
+mod difference;
 mod doubt;
 mod end;
 mod error;
@@ -58,7 +59,6 @@ pub use error::RecordError;
 pub use layout::Detail;
 pub(crate) use live::Live;
 pub(crate) use preview::PreviewRecording;
-pub use recorded::Beside;
 pub use recorded::Recording;
 pub use sweep::SweepRecording;
 pub use write::log_recording;

@@ -63,9 +63,12 @@ pub(super) fn models() -> impl Iterator<Item = Rgb> {
     .cycle()
 }
 
-/// Methods beside the first one; from the third on they repeat.
+/// Another result beside this one.
+pub(super) const OTHER: Rgb = rgb(180, 140, 255);
+
+/// Results beside the first one; from the third on they repeat.
 pub(super) fn others() -> impl Iterator<Item = Rgb> {
-    [rgb(180, 140, 255), rgb(255, 190, 150)].into_iter().cycle()
+    [OTHER, rgb(255, 190, 150)].into_iter().cycle()
 }
 
 /// A darker shade of a colour.

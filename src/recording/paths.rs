@@ -56,6 +56,9 @@ pub(crate) const PLACE: &str = "place";
 /// The decisions by doubt, in words and as lines to click.
 pub(crate) const DOUBT: &str = "doubt";
 pub(crate) const DOUBT_LOG: &str = "doubt/log";
+/// The decisions by how much they differ from those of other results, likewise.
+pub(crate) const DIFFERENCE: &str = "difference";
+pub(crate) const DIFFERENCE_LOG: &str = "difference/log";
 pub(crate) const DECISION_PAGE: &str = "decision/page";
 
 /// Chosen lines and breakpoints over the record.
@@ -79,6 +82,20 @@ pub(crate) const WORST: &str = "worst";
 /// Grid, ticks and titles of a sheet of plots.
 pub(crate) const GRID: &str = "grid";
 pub(crate) const TEXTS: &str = "texts";
+
+/// Delays beside those of other results.
+pub(crate) mod differing {
+    pub(crate) const ROOT: &str = "difference/sheet";
+    use crate::recording::paths::{GRID, TEXTS};
+    pub(crate) const LINKS: &str = "links";
+    pub(crate) const BARS: &str = "bars";
+    pub(crate) const HERE_DELAYS: &str = "delays/here";
+    pub(crate) const THERE_DELAYS: &str = "delays/there";
+    pub(crate) const OTHER_VERDICT: &str = "other_verdict";
+    pub(crate) const HERE: &str = "here";
+    pub(crate) const PARTS: [&str; 8] =
+        [GRID, HERE, LINKS, BARS, OTHER_VERDICT, THERE_DELAYS, HERE_DELAYS, TEXTS];
+}
 
 /// One decision: the segment, its candidates, their squared error.
 pub(crate) mod drawing {

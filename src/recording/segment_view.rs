@@ -10,7 +10,7 @@ use std::iter;
 use rerun::datatypes::Vec2D;
 use rerun::{EntityPath, LineStrips2D, Points2D};
 
-use super::beside::{Other, in_short};
+use super::beside::{Other, decided_in_short, in_short};
 use super::canvas::{CURVE_POINTS, Labels, Plot, SHEET, Span, simplified, thinned_to};
 use super::chunk::{Chunks, Index};
 use super::error::RecordError;
@@ -18,10 +18,11 @@ use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::palette::{self, color};
 use super::paths::{at, drawing};
 use super::rows::Rows;
-use crate::delay::{Candidate, Decision, Line, Method, Verdict};
+use crate::delay::{Candidate, Line, Method, Verdict};
 use crate::experiment::Joint;
 use crate::figure::Role;
 use crate::figure::segment::SegmentFigure;
+use crate::study::StepResult;
 use crate::units::signed;
 use crate::wording::{bracketed, number};
 
@@ -71,7 +72,7 @@ pub(super) fn add(
     add_candidates(chunks, &root, &drawings)
 }
 
-/// What other methods decided, with a legend of all.
+/// What other results say, with a legend of all.
 fn add_others(
     sheet: &mut Rows<'_>,
     drawings: &[Drawing<'_, '_>],
@@ -86,17 +87,20 @@ fn add_others(
         let entry = |drawing: &Drawing<'_, '_>| {
             let decision = drawing.segment.decision;
             let is_it = (decision.verdict() == Verdict::Accepted) == accepted;
-            legend.entry(0, is_it.then(|| in_short(method, decision)))
+            legend.entry(0, is_it.then(|| decided_in_short(method.id(), decision)))
         };
         sheet.texts(path, rgb, drawings.iter().map(entry))?;
     }
     for (index, other) in others.iter().enumerate() {
-        let decision = |drawing: &Drawing<'_, '_>| other.decision(drawing.trial, drawing.segment);
+        let found = |drawing: &Drawing<'_, '_>| {
+            let p = drawing.segment.decision.input_step.sample;
+            other.pair(drawing.trial.trial.label(), p).map(|pair| &pair.there)
+        };
         let strips = |drawing: &Drawing<'_, '_>| {
-            decision(drawing).map_or_else(Vec::new, |decision| drawing.other(decision, index))
+            found(drawing).map_or_else(Vec::new, |step| drawing.other(step, index))
         };
         let entry = |drawing: &Drawing<'_, '_>| {
-            let text = decision(drawing).map(|decision| in_short(other.method, decision));
+            let text = found(drawing).map(|step| in_short(other.name, step));
             legend.entry(index + 1, text)
         };
         let [lines, name] = drawing::of_method(index);
@@ -239,31 +243,34 @@ impl<'l, 'a> Drawing<'l, 'a> {
         strips
     }
 
-    /// The lines of another method's decision, and its delay or its interval as a bar.
-    fn other(&self, decision: &Decision, index: usize) -> Vec<Vec<Vec2D>> {
-        let Some((best, delay)) = decision.candidates.best().zip(decision.delay()) else {
-            return Vec::new();
-        };
-        let p = decision.input_step.sample as f64;
+    /// The lines of another result, and its delay or its interval as a bar. Of a step that lies at
+    /// another sample there, as in another log, the lines are of that log, and left out.
+    fn other(&self, step: &StepResult, index: usize) -> Vec<Vec<Vec2D>> {
+        let Some(delay) = step.delay else { return Vec::new() };
+        let own = self.segment.decision.input_step.sample;
+        let p = own as f64;
         let Span { low: first, high: last } = self.output.x_span();
         let within = |k: f64| k.clamp(first, last);
         let q = within(p + delay);
         let at = |line: &Line, k: f64| self.output.at(k, line.at(k));
-        let start = within(decision.segment.first as f64).min(q);
-        let end = within(decision.segment.last as f64).max(q);
-        let (low, high) = decision.fine.map_or((0.0, delay), |fine| (fine.low, fine.high));
+        let start = within(step.segment.0 as f64).min(q);
+        let end = within(step.segment.1 as f64).max(q);
+        let (low, high) = step.interval.unwrap_or((0.0, delay));
         // Below the edge, so that it is not taken for the first method's above.
         let depth = -10.0 - 12.0 * index as f32;
         let tick = |k: f64| [depth - 4.0, depth + 4.0].map(|up| self.output.above(k, up)).to_vec();
         let [low, high] = [low, high].map(|by| within(p + by));
-        vec![
-            vec![at(&best.before, start), at(&best.before, q)],
-            vec![at(&best.after, q), at(&best.after, end)],
+        let lines =
+            step.lines.filter(|_| step.p == own).map_or_else(Vec::new, |[before, after]| {
+                vec![vec![at(&before, start), at(&before, q)], vec![at(&after, q), at(&after, end)]]
+            });
+        let bar = [
             self.output.vertical(q).to_vec(),
             tick(low),
             [low, high].map(|k| self.output.above(k, depth)).to_vec(),
             tick(high),
-        ]
+        ];
+        lines.into_iter().chain(bar).collect()
     }
 
     /// Where the delay may end: a bar from one end of its interval to the other.

@@ -13,6 +13,7 @@ mod delays;
 mod design;
 mod design_words;
 mod desk;
+mod difference;
 mod doubt;
 mod effects;
 mod equation;
@@ -61,6 +62,7 @@ pub(crate) use design_words::{
     design_text, hold_note, left_out_note, no_range_note, shortened_note,
 };
 pub(crate) use desk::review_page;
+pub(crate) use difference::{Against, against_text};
 pub(crate) use doubt::{Doubted, by_doubt};
 pub(crate) use effects::{listing, sheet};
 pub use estimated::EstimatedJoint;

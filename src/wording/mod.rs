@@ -1,6 +1,7 @@
 //! What numbers, units, probabilities, parameters, effects and test results are called: one
 //! place for the words that reports, recordings and the command line share.
 
+mod difference;
 mod doubt;
 mod effects;
 mod misfit;
@@ -11,6 +12,9 @@ mod prose;
 mod region;
 mod remedy;
 
+pub(crate) use difference::{
+    difference_in_short, difference_sentences, result_in_short, step_name,
+};
 pub(crate) use doubt::{doubt_percent, doubt_sentence};
 pub(crate) use effects::{effect_ids, effects_text};
 pub(crate) use misfit::{correlation_sentences, lack_of_fit};

@@ -7,6 +7,8 @@ use crate::delay::sweep::Grid;
 use crate::experiment::{ReadOptions, Source};
 use crate::report::{ComparedJoint, DesignedJoint, EstimatedJoint, ImprovedJoint, ReportedSweep};
 
+use crate::study::OtherResult;
+
 use super::file::{OutputFile, write_file};
 use crate::cli::console::{Bar, Verbosity, message};
 
@@ -26,8 +28,8 @@ pub(crate) struct Contents<'a> {
     pub(crate) command: &'a str,
     pub(crate) joints: &'a [EstimatedJoint<'a>],
     pub(crate) settings: &'a Settings,
-    /// What other methods found.
-    pub(crate) also: &'a [(&'a Settings, &'a [EstimatedJoint<'a>])],
+    /// What is shown beside it.
+    pub(crate) also: &'a [OtherResult],
     pub(crate) sources: &'a [Source],
     pub(crate) reading: &'a ReadOptions,
     pub(crate) models: &'a [ComparedJoint<'a>],
@@ -52,17 +54,14 @@ impl Contents<'_> {
         &self,
         work: impl FnOnce(&crate::recording::Recording<'_>) -> T,
     ) -> T {
-        use crate::recording::{self, Beside, Recording};
+        use crate::recording::{self, Recording};
 
-        let also = self.also.iter().map(|&(settings, joints)| Beside { settings, joints });
-        let also: Vec<Beside<'_>> = also.collect();
         let Self { command, joints, settings, sources, reading, .. } = *self;
-        let Self { models, revisions, detail, .. } = *self;
+        let Self { models, revisions, detail, also, .. } = *self;
         let detail = match detail {
             Detail::Full => recording::Detail::Full,
             Detail::Lean => recording::Detail::Lean,
         };
-        let also = also.as_slice();
         work(&Recording {
             command,
             joints,

@@ -104,6 +104,16 @@ impl<'a> Session<'a> {
         estimate_each(joints, of_joint, || bar.step(), &Threads)
     }
 
+    /// The delays of other joints, estimated as those of the logs.
+    pub(crate) fn estimates_of(
+        &self,
+        joints: &[Joint],
+        asked: (&Settings, Automatic),
+    ) -> Estimates {
+        let bar = Bar::new(self.verbosity(), "estimating", "trials", trials(joints));
+        self.estimated_of(joints, asked, &bar)
+    }
+
     /// The delays of the joints that are not asked for.
     pub(crate) fn estimates_of_others(&self, settings: &Settings) -> Estimates {
         let (others, automatic) = (&self.experiment.others, Automatic::default());

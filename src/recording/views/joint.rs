@@ -16,9 +16,11 @@ use crate::recording::error::RecordError;
 use crate::recording::overview::{MAP_HEIGHT, MAP_WIDTH};
 use crate::recording::paths::revision::{record, share, sheet};
 use crate::recording::paths::{
-    self, against, at, child, correlation, drawing, joint_root, map, of_model,
+    self, against, at, child, correlation, differing, drawing, joint_root, map, of_model,
 };
-use crate::recording::{correlogram, delay_state, error_share, revision, scatter, segment_view};
+use crate::recording::{
+    correlogram, delay_state, difference, error_share, revision, scatter, segment_view,
+};
 use crate::report::{ComparedJoint, EstimatedJoint};
 
 /// What the lane of the worst segments of the model that is judged is called.
@@ -37,6 +39,9 @@ pub(super) fn tab(
     let fine = decisions.any(|decision| decision.fine.is_some());
     let mut views = Views { builder, joint, fine, others };
     let mut pages = Vec::new();
+    if others > 0 {
+        pages.push(views.differences()?);
+    }
     if revisions > 0 {
         pages.push(views.revisions()?);
     }
@@ -61,7 +66,7 @@ struct Views<'b, 'i> {
     joint: &'b Joint,
     /// Whether some delay is known between samples.
     fine: bool,
-    /// Methods beside the first one.
+    /// Results beside this one.
     others: usize,
 }
 
@@ -146,6 +151,29 @@ impl Views<'_, '_> {
         let why = self.view(View::new("TextDocument", "Doubts", &why))?;
         let tabs = [doubtful, all, why];
         self.builder.container(ContainerKind::Tabs, "Lists", &tabs, &[])
+    }
+
+    /// Where the decisions differ from those of other results, the most different first.
+    fn differences(&mut self) -> Result<Node, RecordError> {
+        let root = self.at(differing::ROOT);
+        let name = "Delays here and there, and their difference";
+        let sheet = self.view(View::drawing(name, &root, &differing::PARTS, difference::SIZE))?;
+        let drawing = self.view(self.drawing())?;
+        let verdict = [self.path(paths::VERDICT)];
+        let verdict = self.view(View::new("TextDocument", "Verdict", &verdict))?;
+        let list = [self.path(paths::DIFFERENCE_LOG)];
+        let list = View::new("TextLog", "Most different first: click a number", &list);
+        let list = self.view(list.with("TextLogColumns", clickable("difference")))?;
+        let page = [self.path(paths::DIFFERENCE)];
+        let page = self.view(View::new("TextDocument", "In words", &page))?;
+        let builder = &mut *self.builder;
+        let lists =
+            builder.container(ContainerKind::Vertical, "Lists", &[page, list], &[5.0, 3.5])?;
+        let right = builder.container(ContainerKind::Tabs, "Right", &[lists, verdict], &[])?;
+        let left = [sheet, drawing];
+        let left = builder.container(ContainerKind::Vertical, "Steps", &left, &[3.6, 6.4])?;
+        let columns = [left, right];
+        builder.container(ContainerKind::Horizontal, "Differences", &columns, &[6.6, 3.4])
     }
 
     /// A line that says where the cursor is, or where to click.
