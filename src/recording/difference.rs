@@ -1,5 +1,5 @@
 //! The decisions by how much they differ from those of other results: both delays over the
-//! record and by rank, lines to click, and a page with a table.
+//! record and by rank, lines to click, and what there is to say.
 
 use rerun::datatypes::Vec2D;
 use rerun::{EntityPath, TextDocument, TextLog};
@@ -88,29 +88,16 @@ fn line(joint: &Joint, placed: &Placed<'_, '_>, others: &[Other<'_>]) -> String 
 
 fn page(joint: &Joint, others: &[Other<'_>]) -> String {
     let parts = others.iter().map(|other| part(joint, other));
-    let name = plain(&joint.name);
-    format!("## {name}: where decisions differ\n\n{}\n{HOW}", parts.collect::<String>())
+    format!("{}\n{HOW}", parts.collect::<String>())
 }
 
 fn part(joint: &Joint, other: &Other<'_>) -> String {
-    /// Steps that a person reads.
-    const MOST: usize = 25;
     let settings = other.settings.filter(|settings| *settings != other.name);
     let settings = settings.map_or_else(String::new, |settings| format!(" ({})", plain(settings)));
-    let sentences = difference_sentences(&other.differences).join("\n- ");
-    let has_trials = joint.trials.len() > 1;
-    let row = |pair: &StepPair| {
-        let step = plain(&step_name(&pair.here, has_trials));
-        let (here, there) = (result_in_short(&pair.here), result_in_short(&pair.there));
-        format!("| {step} | {here} | {there} | {} |\n", difference_in_short(pair))
-    };
-    let rows: String = other.differences.differing().take(MOST).map(row).collect();
-    let table = if rows.is_empty() {
-        "No decision differs.\n".to_owned()
-    } else {
-        format!("| step | here | there | difference |\n|---|---|---|---|\n{rows}")
-    };
-    format!("### against {}{settings}\n\n- {sentences}\n\n{table}\n", plain(other.name))
+    let sentences = difference_sentences(&other.differences).into_iter();
+    let sentences: Vec<_> = sentences.map(|sentence| plain(&sentence)).collect();
+    let (name, other) = (plain(&joint.name), plain(other.name));
+    format!("### {name} against {other}{settings}\n\n- {}\n", sentences.join("\n- "))
 }
 
 const HOW: &str = "\

@@ -1,21 +1,22 @@
 //! Models beside the measurement: what they simulate, and the residual.
 
 use std::fmt::Write as _;
-use std::ops::RangeInclusive;
 
-use rerun::{EntityPath, Scalars, SeriesLines, StateChange, TextDocument};
+use rerun::{EntityPath, Scalars, SeriesLines, TextDocument};
 
 use super::chunk::{Chunks, Index, list, words};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialLayout};
 use super::markdown::plain;
+use super::model_lanes::samples_of;
+use super::model_signal::signal;
 use super::palette::{self, Rgb, color};
 use super::paths::{self, at, child};
-use super::{correlogram, error_share, scatter};
+use super::{correlogram, error_share, model_difference, model_lanes, scatter};
 use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures, sensor_noise};
 use crate::fit::Horizon;
-use crate::report::ComparedJoint;
+use crate::report::{ComparedJoint, model_differences};
 use crate::wording::{
     certainty, correlation_sentences, failure_sentences, number, parameter_units,
 };
@@ -57,7 +58,8 @@ pub(super) fn add(
     scatter::add(chunks, &at(root, paths::scatter::ROOT), models)?;
     error_share::add(chunks, &at(root, paths::error_share::ROOT), models)?;
     correlogram::add(chunks, &at(root, paths::correlation::ROOT), models)?;
-    worst(chunks, root, layout, judged.comparison)
+    model_difference::add(chunks, root, layout, models)?;
+    model_lanes::add(chunks, root, layout, (judged.joint, judged.comparison))
 }
 
 /// Regions and correlations as lists of numbers, for programs.
@@ -106,58 +108,6 @@ fn figures(
 fn line(chunks: &mut Chunks, entity: &EntityPath, name: &str, rgb: Rgb) -> Result<(), RecordError> {
     let style = SeriesLines::new().with_names([name]).with_colors([color(rgb)]);
     chunks.push_static(entity.clone(), &style.with_widths([1.5]))
-}
-
-fn signal<'a>(
-    chunks: &mut Chunks,
-    entity: EntityPath,
-    layout: &JointLayout<'a>,
-    values: impl Fn(&TrialLayout<'a>) -> Vec<f64>,
-) -> Result<(), RecordError> {
-    let mut index = Index::default();
-    let (mut all, mut lengths) = (Vec::new(), Vec::new());
-    for trial in &layout.trials {
-        let values = values(trial);
-        index.extend(trial.moments(values.len() + 1));
-        lengths.extend(std::iter::repeat_n(1, values.len()).chain([0]));
-        all.extend(values);
-    }
-    chunks.push(entity, index.without_segment(), Scalars::new(all).columns(lengths)?)
-}
-
-/// A lane that is marked where the model's worst segments are.
-fn worst(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    layout: &JointLayout<'_>,
-    comparison: &Comparison,
-) -> Result<(), RecordError> {
-    let mut marks = Vec::new();
-    for (worst, rank) in comparison.failure.iter().flat_map(|f| &f.worst_segments).zip(1..) {
-        let of_label = layout.trials.iter().find(|trial| trial.trial.label() == worst.trial);
-        let Some(trial) = of_label else { continue };
-        let samples = samples_of(worst, trial);
-        // A longer name would be cut off: a segment is narrow.
-        marks.push((trial.moment_of(*samples.start()), rank.to_string()));
-        marks.push((trial.moment_of(samples.end() + 1), String::new()));
-    }
-    if marks.is_empty() {
-        let start = layout.trials.iter().find_map(|trial| trial.moments(1).next());
-        marks.extend(start.map(|start| (start, "none: the model is adequate".to_owned())));
-    }
-    marks.sort_by_key(|(moment, name)| (moment.sample, !name.is_empty()));
-    let (index, names): (Vec<_>, Vec<_>) = marks.into_iter().unzip();
-    let states = StateChange::new().with_state(names).columns_of_unit_batches()?;
-    let index: Index = index.into_iter().collect();
-    chunks.push(at(root, paths::WORST), index.without_segment(), states)
-}
-
-/// The samples of `worst` in its trial, counted from 1.
-fn samples_of(worst: &WorstSegment, trial: &TrialLayout<'_>) -> RangeInclusive<usize> {
-    let period = trial.trial.period().seconds();
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "inside")]
-    let sample = |time_s: f64| ((time_s - trial.trial.time_s(1)) / period).round() as usize + 1;
-    sample(worst.start_s)..=sample(worst.end_s)
 }
 
 /// Two level lines between which noise alone would keep the residual.
@@ -210,6 +160,14 @@ fn page(
     writeln!(page, "\nErrors are root mean squares of simulations, {horizon}.")?;
     if let Some(noise) = sensor_noise(&joint.trials) {
         writeln!(page, "Noise of the sensor: {} {unit}.", number(noise))?;
+    }
+    let compared: Vec<ComparedJoint<'_>> = models.iter().map(|model| **model).collect();
+    for (number, difference) in model_differences(&compared).iter().enumerate() {
+        let (model, other) = (plain(difference.model), plain(difference.other));
+        let head = if number == 0 { "\n" } else { "" };
+        let sentences = difference.sentences();
+        let sentences: Vec<_> = sentences.iter().map(|sentence| plain(sentence)).collect();
+        writeln!(page, "{head}**{model} against {other}**\n\n- {}\n", sentences.join("\n- "))?;
     }
     for compared in models {
         for sentence in failure_sentences(compared.joint, compared.comparison) {

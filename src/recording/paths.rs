@@ -78,6 +78,11 @@ pub(crate) const MODEL_PAGE: &str = "model_page";
 pub(crate) const NOISE_UPPER: &str = "noise/upper";
 pub(crate) const NOISE_LOWER: &str = "noise/lower";
 pub(crate) const WORST: &str = "worst";
+/// What the model was not fitted to, and where it fails.
+pub(crate) const PART: &str = "part";
+pub(crate) const FAILS: &str = "fails";
+/// By how much the squared error of further models is larger, one below it each.
+pub(crate) const MODEL_DIFFERENCE: &str = "model_difference";
 
 /// Grid, ticks and titles of a sheet of plots.
 pub(crate) const GRID: &str = "grid";
@@ -257,8 +262,10 @@ pub(crate) mod revision {
         pub(crate) const SIMULATED: &str = "simulated";
         pub(crate) const RESIDUAL: &str = "residual";
         pub(crate) const WORST: &str = "worst";
-        pub(crate) const PARTS: [&str; 8] =
-            [GRID, TEXTS, WINDOW, MEASURED, NOISE, WORST, SIMULATED, RESIDUAL];
+        pub(crate) const VALIDATION: &str = "validation";
+        pub(crate) const FAILS: &str = "fails";
+        pub(crate) const PARTS: [&str; 10] =
+            [VALIDATION, FAILS, GRID, TEXTS, WINDOW, MEASURED, NOISE, WORST, SIMULATED, RESIDUAL];
     }
 
     /// The share of the error of a revision in each region.

@@ -3,7 +3,9 @@
 use super::EstimatedJoint;
 use super::text_table::TextTable;
 use crate::study::{JointDifferences, JointResult, OtherResult};
-use crate::wording::{difference_in_short, difference_sentences, result_in_short, step_name};
+use crate::wording::{
+    difference_in_short, difference_sentences, missing_sentences, result_in_short, step_name,
+};
 
 /// Another result, and how it differs on each joint.
 #[derive(Debug)]
@@ -45,22 +47,19 @@ impl<'a> Against<'a> {
         }
     }
 
-    /// What has no counterpart, for whoever runs the command: a sentence each.
-    pub(crate) fn notes(&self) -> Vec<String> {
+    /// What has no counterpart, for whoever runs the command: a sentence each. Joints of the other
+    /// result that are not here are named where all joints of the log are.
+    pub(crate) fn notes(&self, has_all_joints: bool) -> Vec<String> {
         let name = &self.other.name;
-        let joints = self.joints.iter().filter_map(|(joint, found)| match found {
-            found if found.pairs.is_empty() => {
-                Some(format!("joint `{joint}` has no step that {name} has, too"))
-            }
-            found if found.only_here.is_empty() && found.only_there.is_empty() => None,
-            found => {
-                let said = difference_sentences(found);
-                let said: Vec<_> = said.into_iter().filter(|s| s.contains("counterpart")).collect();
-                Some(format!("against {name}, {joint}: {}", said.join("; ")))
-            }
+        let left_over = self.joints.iter().filter_map(|(joint, found)| {
+            let missing = missing_sentences(found);
+            (!missing.is_empty())
+                .then(|| format!("against {name}, {joint}: {}", missing.join("; ")))
         });
-        let there = self.only_there.iter();
-        joints.chain(there.map(|joint| format!("joint `{joint}` of {name} is not here"))).collect()
+        let only_there = Some(&self.only_there).filter(|names| has_all_joints && !names.is_empty());
+        let only_there = only_there
+            .map(|names| format!("against {name}: joints that are not here: {}", names.join(", ")));
+        left_over.chain(only_there).collect()
     }
 }
 

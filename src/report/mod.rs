@@ -44,6 +44,8 @@ pub(crate) use against::variable_text;
 pub(crate) use columns::columns_table;
 pub use compare::ComparedJoint;
 pub(crate) use compare::compare_table;
+#[cfg(feature = "rrd")]
+pub(crate) use compare::model_differences;
 pub(crate) use dead_time::{dead_time_sentences, input_note};
 pub use decisions::DecisionRow;
 pub use decisions::decision_rows;
@@ -79,8 +81,9 @@ pub(crate) use json::{
 pub(crate) use lookup::{Language, Lookup};
 pub(crate) use page::{Document, Heading, RecordingFile, Report, report_text};
 pub(crate) use review::{Words, write_review_sheet};
+pub(crate) use settings::settings_in_short;
 #[cfg(feature = "rrd")]
-pub(crate) use settings::{settings_in_short, settings_rows};
+pub(crate) use settings::settings_rows;
 pub(crate) use steps::{step_line, steps_table};
 pub(crate) use summary::{DelayRange, Headline, JointSummary};
 pub use sweep::ReportedSweep;

@@ -60,9 +60,7 @@ pub(crate) fn difference_sentences(found: &JointDifferences) -> Vec<String> {
             milliseconds(largest)
         ));
     }
-    let left_over = [(&found.only_here, "there"), (&found.only_there, "here")];
-    let left_over = left_over.into_iter().filter(|(steps, _)| !steps.is_empty());
-    sentences.extend(left_over.map(|(steps, place)| missing(steps, place)));
+    sentences.extend(missing_sentences(found));
     if !found.by_number.is_empty() {
         sentences.push(format!(
             "the steps of trial {} lie at other samples there: those of the same number are \
@@ -71,6 +69,13 @@ pub(crate) fn difference_sentences(found: &JointDifferences) -> Vec<String> {
         ));
     }
     sentences
+}
+
+/// Which steps only one of both results has.
+pub(crate) fn missing_sentences(found: &JointDifferences) -> Vec<String> {
+    let left_over = [(&found.only_here, "there"), (&found.only_there, "here")];
+    let left_over = left_over.into_iter().filter(|(steps, _)| !steps.is_empty());
+    left_over.map(|(steps, place)| missing(steps, place)).collect()
 }
 
 /// Steps without a counterpart at a `place`.

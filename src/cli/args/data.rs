@@ -140,6 +140,11 @@ impl DataArgs {
         Ok(Experiment::read(&[path.to_owned()], &self.options()?))
     }
 
+    /// Whether no joint is named, so that all of the logs are used.
+    pub(crate) fn has_all_joints(&self) -> bool {
+        self.reading.joint.is_empty()
+    }
+
     /// Reads another log in the same way.
     ///
     /// # Errors

@@ -23,8 +23,9 @@ use crate::recording::{
 };
 use crate::report::{ComparedJoint, EstimatedJoint};
 
-/// What the lane of the worst segments of the model that is judged is called.
-const WORST: &str = "Worst segments, restarted at every step: 1 is the worst";
+/// What the lanes of the model that is judged are called.
+const LANES: &str =
+    "Worst segments, restarted at every step (1 is the worst); what was not fitted; where it fails";
 
 /// The tab of `joint`: its decisions, its record, its table; and before them the revisions
 /// of its model, and its models, where there are any.
@@ -166,10 +167,10 @@ impl Views<'_, '_> {
         let list = self.view(list.with("TextLogColumns", clickable("difference")))?;
         let page = [self.path(paths::DIFFERENCE)];
         let page = self.view(View::new("TextDocument", "In words", &page))?;
+        let right = [page, list, verdict];
         let builder = &mut *self.builder;
-        let lists =
-            builder.container(ContainerKind::Vertical, "Lists", &[page, list], &[5.0, 3.5])?;
-        let right = builder.container(ContainerKind::Tabs, "Right", &[lists, verdict], &[])?;
+        let right =
+            builder.container(ContainerKind::Vertical, "Lists", &right, &[2.6, 3.2, 4.2])?;
         let left = [sheet, drawing];
         let left = builder.container(ContainerKind::Vertical, "Steps", &left, &[3.6, 6.4])?;
         let columns = [left, right];
@@ -271,15 +272,15 @@ impl Views<'_, '_> {
                 legend,
             )?,
             self.plot("Input", &[self.at(paths::INPUT)], Legend::InTitle)?,
-            self.view(View::new("StateTimeline", WORST, &[self.path(paths::WORST)]))?,
-            self.residuals(models.len())?,
+            self.lanes_of_models(models)?,
+            self.residuals(&names)?,
         ];
         let builder = &mut *self.builder;
         let plots = builder.container(
             ContainerKind::Vertical,
             "Plots",
             &rows,
-            &[1.25, 3.0, 2.4, 1.0, 1.1, 3.6],
+            &[1.25, 3.0, 2.4, 1.0, 1.9, 3.4],
         )?;
         let page = [self.path(paths::MODEL_PAGE)];
         let page = self.view(View::new("TextDocument", "Models", &page))?;
@@ -287,8 +288,33 @@ impl Views<'_, '_> {
         self.builder.container(ContainerKind::Horizontal, "Models", &columns, &[7.2, 2.8])
     }
 
+    /// The worst segments, what was not fitted to, and where the model fails.
+    fn lanes_of_models(&mut self, models: &[&ComparedJoint<'_>]) -> Result<Node, RecordError> {
+        let mut paths = vec![self.path(paths::WORST)];
+        let has = |fits: fn(&ComparedJoint<'_>) -> bool| models.iter().any(|model| fits(model));
+        if has(|model| !model.comparison.per_step.is_empty()) {
+            paths.push(self.path(paths::PART));
+        }
+        if has(|model| model.comparison.failure.is_some()) {
+            paths.push(self.path(paths::FAILS));
+        }
+        self.view(View::new("StateTimeline", LANES, &paths))
+    }
+
+    /// Which of several models is better, along the record.
+    fn model_difference(&mut self, names: &[&str]) -> Result<Node, RecordError> {
+        let root = self.at(paths::MODEL_DIFFERENCE);
+        let others: Vec<_> = names.iter().skip(1).map(|name| child(&root, name)).collect();
+        let first = names.first().copied().unwrap_or_default();
+        let name = format!(
+            "Squared error summed up, the other's less that of {first}: it rises where {first} is better"
+        );
+        self.plot(&name, &others, Legend::Apart)
+    }
+
     /// What the residual depends on, in three drawings.
-    fn residuals(&mut self, models: usize) -> Result<Node, RecordError> {
+    fn residuals(&mut self, names: &[&str]) -> Result<Node, RecordError> {
+        let models = names.len();
         let scatter = self.sheet(
             ("What the residual depends on: points, and their mean", scatter::SIZE),
             (paths::scatter::ROOT, &paths::scatter::PARTS),
@@ -304,7 +330,11 @@ impl Views<'_, '_> {
             (correlation::ROOT, &correlation::PARTS),
             (&[correlation::BAND, correlation::CURVE], models),
         );
-        let tabs = [self.view(scatter)?, self.view(shares)?, self.view(correlation)?];
+        let mut tabs = Vec::new();
+        if models > 1 {
+            tabs.push(self.model_difference(names)?);
+        }
+        tabs.extend([self.view(scatter)?, self.view(shares)?, self.view(correlation)?]);
         self.builder.container(ContainerKind::Tabs, "Residual", &tabs, &[])
     }
 

@@ -10,8 +10,7 @@ use crate::cli::exit::Completion;
 use crate::cli::failure::nothing_usable;
 use crate::cli::run::{Session, compared, estimated, failures, notes, others};
 use crate::report::{
-    Against, EstimateJson, against_table, against_text, delay_levels_text, estimate_table,
-    steps_table,
+    EstimateJson, against_table, against_text, delay_levels_text, estimate_table, steps_table,
 };
 use estimated::{Estimated, Run};
 use files::Files;
@@ -64,7 +63,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
         against: &against,
     };
     failures.extend(files.left_out(&result));
-    let left_over = against.iter().flat_map(Against::notes);
+    let left_over = against.iter().flat_map(|other| other.notes(args.data.has_all_joints()));
     let notes: Vec<_> = notes(first_joints).into_iter().chain(left_over).collect();
     session.warn(&failures, &notes);
     files.write(&result, &session.stream, verbosity)?;
