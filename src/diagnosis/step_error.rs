@@ -17,6 +17,13 @@ pub struct StepError {
     pub squared_error: f64,
 }
 
+impl StepError {
+    /// Root mean square of the residual, output units.
+    pub fn rmse(&self) -> f64 {
+        (self.squared_error / self.samples.max(1) as f64).sqrt()
+    }
+}
+
 /// The errors of `evaluation`, the simulations of which `record` restarts at every step.
 pub(super) fn step_errors(record: &FitRecord<'_>, evaluation: &Evaluation) -> Vec<StepError> {
     let windows = record.windows().iter().filter_map(|window| {

@@ -77,8 +77,8 @@ impl FromIterator<Moment> for Index {
 
 impl Index {
     pub(super) fn len(&self) -> usize {
-        let Self { decision, segment, sample, revision, setting, .. } = self;
-        let lengths = [decision, segment, sample, revision, setting].map(Vec::len);
+        let Self { decision, segment, sample, revision, setting, doubt, .. } = self;
+        let lengths = [decision, segment, sample, revision, setting, doubt].map(Vec::len);
         lengths.into_iter().max().unwrap_or(0)
     }
 
@@ -123,6 +123,11 @@ impl Index {
     /// A row per setting of a sweep, on the timeline of settings alone.
     pub(super) fn of_settings(count: usize) -> Self {
         Self { setting: (1..).take(count).collect(), ..Self::default() }
+    }
+
+    /// A row per rank by doubt, on the timeline of doubt alone.
+    pub(super) fn of_doubts(count: usize) -> Self {
+        Self { doubt: (1..).take(count).collect(), ..Self::default() }
     }
 
     /// A row per revision, all of them at `moment`: on the other timelines the last one

@@ -74,14 +74,14 @@ fn level(placed: &Placed<'_, '_>, others: &[Other<'_>]) -> &'static str {
 }
 
 fn line(joint: &Joint, placed: &Placed<'_, '_>, others: &[Other<'_>]) -> String {
-    let has_trials = joint.trials.len() > 1;
+    let trials = joint.trials.len();
     let said = pairs(placed, others).map(|(name, pair)| {
         let there = result_in_short(&pair.there);
         format!("{name} {there} ({})", difference_in_short(pair))
     });
     let said: Vec<_> = said.collect();
     let step = pairs(placed, others).next().map_or_else(String::new, |(_, pair)| {
-        format!("{}: here {}", step_name(&pair.here, has_trials), result_in_short(&pair.here))
+        format!("{}: here {}", step_name(&pair.here, trials), result_in_short(&pair.here))
     });
     format!("{step}, {}", said.join(", "))
 }
@@ -114,7 +114,7 @@ fn draw(
 ) -> Result<(), RecordError> {
     let figure = Figure::of(layout, others);
     let mut sheet = Sheet::default();
-    sheet.draw(&figure.delays, 10.0, &figure.title(others));
+    sheet.draw(&figure.delays, 10.0, &title(others));
     sheet.draw(
         &figure.ranks,
         10.0,
@@ -131,6 +131,15 @@ fn draw(
         vec![figure.delays.vertical(time).to_vec(), figure.ranks.vertical(rank).to_vec()]
     });
     rows.strips(differing::HERE, palette::CANDIDATE, 1.6, here)
+}
+
+/// What the plot of the delays shows.
+fn title(others: &[Other<'_>]) -> String {
+    let names: Vec<_> = others.iter().map(|other| other.name).collect();
+    format!(
+        "delay [s] of each step: here (green), {} (violet); red: rejected there or here",
+        names.join(", ")
+    )
 }
 
 /// A step at its place on both plots.
@@ -167,14 +176,6 @@ impl Figure {
             ),
             marks,
         }
-    }
-
-    fn title(&self, others: &[Other<'_>]) -> String {
-        let names: Vec<_> = others.iter().map(|other| other.name).collect();
-        format!(
-            "delay [s] of each step: here (green), {} (violet); red: rejected there or here",
-            names.join(", ")
-        )
     }
 
     /// The parts of the drawing, each of one colour.

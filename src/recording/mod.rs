@@ -10,7 +10,7 @@
 //! - `paths` says where everything lies, `layout` where samples, trials and decisions lie on
 //!   the timelines; `chunk` makes columns of rows with reproducible ids, `rows` and `sheet`
 //!   drawings of them on a `canvas`.
-//! - `recorded`, `preview` and `sweep` are three kinds of recording. One part of the content
+//! - `recorded`, `preview`, `sweep` and `index` are four kinds of recording. One part of the content
 //!   each are `signals`, `decisions`, `verdict`, `segment_view`, `beside`, `place`, `doubt`, `difference`, `overview`,
 //!   `delay_state`, `model`, `revision` and `about`, which `assembly` puts together.
 //! - `views` says which view shows what, by way of `blueprint`.
@@ -32,6 +32,7 @@ mod doubt;
 mod end;
 mod error;
 mod error_share;
+mod index;
 mod layout;
 mod live;
 mod markdown;
@@ -60,12 +61,13 @@ mod views;
 mod write;
 
 pub use error::RecordError;
+pub(crate) use index::{IndexRecording, Volume};
 pub use layout::Detail;
 pub(crate) use live::Live;
 pub(crate) use preview::PreviewRecording;
 pub use recorded::Recording;
 pub use sweep::SweepRecording;
 pub use write::log_recording;
-pub(crate) use write::write_preview;
 pub use write::write_recording;
 pub use write::write_sweep;
+pub(crate) use write::{write_index, write_preview};

@@ -15,6 +15,7 @@ use super::paths::{self, at, child};
 use super::{correlogram, error_share, model_difference, model_lanes, scatter};
 use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures, sensor_noise};
+use crate::experiment::Joint;
 use crate::fit::Horizon;
 use crate::report::{ComparedJoint, model_differences};
 use crate::wording::{
@@ -143,7 +144,8 @@ fn page(
     let mut page = String::new();
     let joint = judged.joint;
     let unit = joint.output_unit.as_deref().unwrap_or("");
-    writeln!(page, "### {}: {}\n", plain(&joint.name), headline(judged))?;
+    let of = if models.len() > 1 { format!(", {}", plain(judged.model)) } else { String::new() };
+    writeln!(page, "### {}{of}: {}\n", plain(&joint.name), headline(judged))?;
     writeln!(page, "| model | training | validation | fit | lack of fit |\n|---|---|---|---|---|")?;
     for compared in models {
         let Comparison { training, validation, lack_of_fit, .. } = compared.comparison;
@@ -161,14 +163,7 @@ fn page(
     if let Some(noise) = sensor_noise(&joint.trials) {
         writeln!(page, "Noise of the sensor: {} {unit}.", number(noise))?;
     }
-    let compared: Vec<ComparedJoint<'_>> = models.iter().map(|model| **model).collect();
-    for (number, difference) in model_differences(&compared).iter().enumerate() {
-        let (model, other) = (plain(difference.model), plain(difference.other));
-        let head = if number == 0 { "\n" } else { "" };
-        let sentences = difference.sentences();
-        let sentences: Vec<_> = sentences.iter().map(|sentence| plain(sentence)).collect();
-        writeln!(page, "{head}**{model} against {other}**\n\n- {}\n", sentences.join("\n- "))?;
-    }
+    against(&mut page, models)?;
     for compared in models {
         for sentence in failure_sentences(compared.joint, compared.comparison) {
             writeln!(page, "\n**Fails** ({}): {}", compared.model, plain(&sentence))?;
@@ -196,6 +191,25 @@ fn page(
             writeln!(page, "| {rank} | {trial} | {from} … {to} s | {samples} | {shares} |")?;
         }
     }
+    parameters(&mut page, joint, models)?;
+    Ok(page)
+}
+
+/// Which of several models is better than the first one, and where.
+fn against(page: &mut String, models: &[&ComparedJoint<'_>]) -> std::fmt::Result {
+    let compared: Vec<ComparedJoint<'_>> = models.iter().map(|model| **model).collect();
+    for (number, difference) in model_differences(&compared).iter().enumerate() {
+        let (model, other) = (plain(difference.model), plain(difference.other));
+        let head = if number == 0 { "\n" } else { "" };
+        let sentences = difference.sentences();
+        let sentences: Vec<_> = sentences.iter().map(|sentence| plain(sentence)).collect();
+        writeln!(page, "{head}**{model} against {other}**\n\n- {}\n", sentences.join("\n- "))?;
+    }
+    Ok(())
+}
+
+/// The parameters of each model.
+fn parameters(page: &mut String, joint: &Joint, models: &[&ComparedJoint<'_>]) -> std::fmt::Result {
     for compared in models {
         writeln!(
             page,
@@ -208,7 +222,7 @@ fn page(
             writeln!(page, "| {name} | {value} {unit} | {} |", certainty(parameter))?;
         }
     }
-    Ok(page)
+    Ok(())
 }
 
 /// The part of the plotted residual's squares that lies in `worst`, in percent.

@@ -84,6 +84,14 @@ pub(crate) const FAILS: &str = "fails";
 /// By how much the squared error of further models is larger, one below it each.
 pub(crate) const MODEL_DIFFERENCE: &str = "model_difference";
 
+/// The recording that stands before many.
+pub(crate) mod index {
+    pub(crate) const ROOT: &str = "doubtful";
+    pub(crate) const JOINTS: &str = "joints";
+    pub(crate) const VERDICT: &str = "verdict";
+    pub(crate) const LOG: &str = "log";
+}
+
 /// Grid, ticks and titles of a sheet of plots.
 pub(crate) const GRID: &str = "grid";
 pub(crate) const TEXTS: &str = "texts";

@@ -38,9 +38,21 @@ pub(super) fn add(
     (method, others): (Method, &[Other<'_>]),
 ) -> Result<(), RecordError> {
     let drawings: Vec<_> =
-        layout.segments().map(|(trial, segment)| Drawing::new(trial, segment)).collect();
+        layout.segments().map(|(trial, segment)| Drawing::new(joint, trial, segment)).collect();
     let root = at(root, drawing::ROOT);
     let mut sheet = Rows::new(chunks, root.clone(), layout.openings());
+    add_drawings(&mut sheet, &drawings)?;
+    if !others.is_empty() {
+        add_others(&mut sheet, &drawings, method, others)?;
+    }
+    add_candidates(chunks, &root, &drawings)
+}
+
+/// What belongs to each segment, without its candidates.
+pub(super) fn add_drawings(
+    sheet: &mut Rows<'_>,
+    drawings: &[Drawing<'_, '_>],
+) -> Result<(), RecordError> {
     let rows = || drawings.iter();
     sheet.strips(drawing::GRID, palette::GRID, 0.8, rows().map(|d| d.grid().0))?;
     sheet.texts(drawing::TICKS, palette::BORDER, rows().map(|d| d.grid().1))?;
@@ -50,26 +62,17 @@ pub(super) fn add(
     sheet.strips(drawing::INPUT_STEP, palette::INPUT, 1.6, rows().map(Drawing::input_step))?;
     sheet.strips(drawing::RESIDUAL, palette::SMOOTHED, 1.4, rows().map(Drawing::residual))?;
     sheet.strips(drawing::SSE, palette::ERROR, 1.6, rows().map(|d| vec![d.errors()]))?;
-    sheet.strips(
-        drawing::ACCEPTED,
-        palette::ACCEPTED,
-        2.4,
-        rows().map(|d| d.chosen(Role::Accepted)),
-    )?;
-    sheet.strips(
-        drawing::REJECTED,
-        palette::REJECTED,
-        2.4,
-        rows().map(|d| d.chosen(Role::Rejected)),
-    )?;
-    sheet.texts(drawing::NAMES, palette::BORDER, rows().map(|d| d.names(joint)))?;
-    if layout.is_fine() {
+    for (path, rgb, role) in [
+        (drawing::ACCEPTED, palette::ACCEPTED, Role::Accepted),
+        (drawing::REJECTED, palette::REJECTED, Role::Rejected),
+    ] {
+        sheet.strips(path, rgb, 2.4, rows().map(|d| d.chosen(role)))?;
+    }
+    sheet.texts(drawing::NAMES, palette::BORDER, rows().map(Drawing::names))?;
+    if rows().any(|drawing| drawing.segment.decision.fine.is_some()) {
         sheet.strips(drawing::INTERVAL, palette::BORDER, 1.6, rows().map(Drawing::interval))?;
     }
-    if !others.is_empty() {
-        add_others(&mut sheet, &drawings, method, others)?;
-    }
-    add_candidates(chunks, &root, &drawings)
+    Ok(())
 }
 
 /// What other results say, with a legend of all.
@@ -118,7 +121,7 @@ struct Legend {
 
 impl Legend {
     fn entry(self, index: usize, text: Option<String>) -> Labels {
-        const ROW: f32 = 450.0;
+        const ROW: f32 = 464.0;
         let mut labels = Labels::default();
         let width = (SHEET.0 - 200.0) / self.entries as f32;
         let middle = 200.0 + width * (index as f32 + 0.5);
@@ -131,7 +134,8 @@ impl Legend {
 
 /// One segment on its sheet: the output above, what both lines leave of it, the error curve
 /// below.
-struct Drawing<'l, 'a> {
+pub(super) struct Drawing<'l, 'a> {
+    joint: &'l Joint,
     trial: &'l TrialLayout<'a>,
     segment: &'l SegmentLayout<'a>,
     figure: SegmentFigure<'l>,
@@ -142,7 +146,11 @@ struct Drawing<'l, 'a> {
 }
 
 impl<'l, 'a> Drawing<'l, 'a> {
-    fn new(trial: &'l TrialLayout<'a>, segment: &'l SegmentLayout<'a>) -> Self {
+    pub(super) fn new(
+        joint: &'l Joint,
+        trial: &'l TrialLayout<'a>,
+        segment: &'l SegmentLayout<'a>,
+    ) -> Self {
         let figure = SegmentFigure::new(trial.trial, segment.decision);
         let (first, last) = figure.window;
         let x = Span::new(first as f64, last as f64);
@@ -153,6 +161,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let heights = left.iter().map(|(_, y)| *y).chain([0.0]);
         let residual = Plot::new(500.0..=568.0, x, Span::around(heights, 0.1));
         Self {
+            joint,
             trial,
             segment,
             figure,
@@ -289,7 +298,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         if self.figure.verdict() == wanted { self.best() } else { Vec::new() }
     }
 
-    fn names(&self, joint: &Joint) -> Labels {
+    fn names(&self) -> Labels {
         let decision = self.segment.decision;
         let mut labels = Labels::default();
         let p = decision.input_step.sample as f64;
@@ -304,11 +313,17 @@ impl<'l, 'a> Drawing<'l, 'a> {
             let text = format!("q = {place}, SSE = {}", number(best.sse));
             labels.put_whole(self.output.below(q, 2.0), text);
         }
-        labels.put_whole(self.output.below(p, 36.0), format!("p = {}", decision.input_step.sample));
+        labels.put_whole(self.output.below(p, 46.0), format!("p = {}", decision.input_step.sample));
         let (first, last) = (decision.segment.first, decision.segment.last);
-        labels.put_whole(self.output.below(first as f64, 2.0), format!("r = {first}"));
+        // Below what is said of a breakpoint that is near.
+        let near = self.segment.decision.candidates.best().is_some_and(|best| {
+            let apart = self.output.x(best.breakpoint as f64) - self.output.x(first as f64);
+            apart < 190.0
+        });
+        let row = if near { 24.0 } else { 2.0 };
+        labels.put_whole(self.output.below(first as f64, row), format!("r = {first}"));
         labels.put_whole(self.output.below(last as f64, 2.0), format!("end = {last}"));
-        let output = bracketed("output", joint.output_unit.as_deref());
+        let output = bracketed("output", self.joint.output_unit.as_deref());
         labels.put(Vec2D::new(62.0, 22.0), output);
         labels.put(Vec2D::new(190.0, 470.0), "residual".to_owned());
         labels.put(Vec2D::new(190.0, 578.0), "SSE (log)".to_owned());

@@ -175,6 +175,16 @@ fn document(facts: Facts<'_, '_>, methods: &str) -> String {
     format!("{title}\n{headline}\n\n{doubt}\n{methods}\n{conditions}\n\n{quantities}\n")
 }
 
+/// The page on a decision, without other results.
+pub(super) fn page(
+    estimated: EstimatedJoint<'_>,
+    trial: &TrialLayout<'_>,
+    segment: &SegmentLayout<'_>,
+) -> String {
+    let settings = &estimated.estimate.settings;
+    document(Facts { joint: estimated.joint, trial, segment, settings }, "")
+}
+
 /// The table of all results, where there are several.
 fn methods(
     trial: &TrialLayout<'_>,

@@ -47,52 +47,65 @@ impl<'a> Against<'a> {
         }
     }
 
-    /// What has no counterpart, for whoever runs the command: a sentence each. Joints of the other
-    /// result that are not here are named where all joints of the log are.
-    pub(crate) fn notes(&self, has_all_joints: bool) -> Vec<String> {
+    /// Which steps have no counterpart, for whoever runs the command: a sentence per joint.
+    pub(crate) fn notes(&self) -> Vec<String> {
         let name = &self.other.name;
         let left_over = self.joints.iter().filter_map(|(joint, found)| {
-            let missing = missing_sentences(found);
-            (!missing.is_empty())
-                .then(|| format!("against {name}, {joint}: {}", missing.join("; ")))
+            let missing = missing_sentences(found).join("; ");
+            (!missing.is_empty()).then(|| format!("against {name}, {joint}: {missing}"))
         });
-        let only_there = Some(&self.only_there).filter(|names| has_all_joints && !names.is_empty());
-        let only_there = only_there
-            .map(|names| format!("against {name}: joints that are not here: {}", names.join(", ")));
-        left_over.chain(only_there).collect()
+        left_over.collect()
+    }
+
+    /// Which joints of the other result are not here.
+    pub(crate) fn note_on_joints(&self) -> Option<String> {
+        let (name, joints) = (&self.other.name, self.only_there.join(", "));
+        (!joints.is_empty()).then(|| format!("against {name}: joints that are not here: {joints}"))
     }
 }
 
-/// How the decisions differ from those of another result: the worst ones of each joint.
+/// How the decisions differ from those of another result: the largest differences of each joint.
 pub(crate) fn against_text(against: &Against<'_>) -> String {
     /// Steps of a joint that are shown.
     const MOST: usize = 10;
     let mut text = format!("\nagainst {}:\n", against.title());
-    let mut table = TextTable::new(["joint", "step", "p", "here", "there", "difference"], &[2]);
-    let mut left_out = 0;
     for (joint, found) in &against.joints {
-        for sentence in difference_sentences(found) {
-            text += &format!("{joint}: {sentence}\n");
-        }
-        let has_trials =
-            found.pairs.iter().any(|pair| pair.here.trial != found.pairs[0].here.trial);
-        for pair in found.differing().take(MOST) {
+        let sentences = difference_sentences(found).into_iter();
+        text.extend(sentences.map(|sentence| format!("{joint}: {sentence}\n")));
+    }
+    let joints = against.joints.iter().map(|(joint, found)| (*joint, found));
+    let table = difference_table(joints, MOST);
+    if !table.rows.is_empty() {
+        text += &table.to_string();
+        text += "\n";
+    }
+    let all: usize = against.joints.iter().map(|(_, found)| found.differing().count()).sum();
+    let left_out = all - table.rows.len();
+    if left_out > 0 {
+        let left_out = left_out.to_string();
+        text += &(left_out + " smaller differences are in the JSON and in the recording\n");
+    }
+    text
+}
+
+/// The steps that differ, the largest differences first; at most so many of each joint.
+pub(super) fn difference_table<'a>(
+    joints: impl Iterator<Item = (&'a str, &'a JointDifferences)>,
+    most: usize,
+) -> TextTable {
+    let mut table = TextTable::new(["joint", "step", "p", "here", "there", "difference"], &[2]);
+    for (joint, found) in joints {
+        let trials = found.trials();
+        for pair in found.differing().take(most) {
             table.row([
-                (*joint).to_owned(),
-                step_name(&pair.here, has_trials),
+                joint.to_owned(),
+                step_name(&pair.here, trials),
                 pair.here.p.to_string(),
                 result_in_short(&pair.here),
                 result_in_short(&pair.there),
                 difference_in_short(pair),
             ]);
         }
-        left_out += found.differing().count().saturating_sub(MOST);
     }
-    if !table.rows.is_empty() {
-        text += &format!("{table}\n");
-    }
-    if left_out > 0 {
-        text += &format!("{left_out} smaller differences are in the JSON and in the recording\n");
-    }
-    text
+    table
 }

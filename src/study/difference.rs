@@ -1,6 +1,8 @@
 //! Decisions beside those of another result: which steps are the same, and where they differ.
 
 use super::estimate::JointEstimate;
+use std::collections::BTreeSet;
+
 use crate::delay::{Condition, Decision, EstimateError, Verdict};
 use crate::experiment::{Joint, Trial};
 use crate::numerics::{Line, median};
@@ -232,6 +234,12 @@ impl JointDifferences {
             }
         }
         self.only_there.extend(there);
+    }
+
+    /// How many trials the pairs are of.
+    pub fn trials(&self) -> usize {
+        let labels: BTreeSet<&str> = self.pairs.iter().map(|p| p.here.trial.as_str()).collect();
+        labels.len()
     }
 
     /// How many pairs have such verdicts.

@@ -1,5 +1,7 @@
 //! Decisions beside those of another result, in words.
 
+use std::collections::BTreeSet;
+
 use super::{counted, number};
 use crate::delay::Verdict;
 use crate::study::{JointDifferences, StepPair, StepResult, Verdicts};
@@ -36,9 +38,9 @@ pub(crate) fn difference_in_short(pair: &StepPair) -> String {
     }
 }
 
-/// A step, with its trial where there are several.
-pub(crate) fn step_name(step: &StepResult, has_trials: bool) -> String {
-    if has_trials { format!("{}, step {}", step.trial, step.i) } else { format!("step {}", step.i) }
+/// A step, with its trial where there are several `trials`.
+pub(crate) fn step_name(step: &StepResult, trials: usize) -> String {
+    if trials > 1 { format!("{}, step {}", step.trial, step.i) } else { format!("step {}", step.i) }
 }
 
 /// How two results differ on a joint, a sentence each.
@@ -80,8 +82,8 @@ pub(crate) fn missing_sentences(found: &JointDifferences) -> Vec<String> {
 
 /// Steps without a counterpart at a `place`.
 fn missing(steps: &[StepResult], place: &str) -> String {
-    let has_trials = steps.iter().any(|step| Some(&step.trial) != steps.first().map(|s| &s.trial));
-    let name = |step: &StepResult| step_name(step, has_trials);
+    let labels: BTreeSet<&str> = steps.iter().map(|step| step.trial.as_str()).collect();
+    let name = |step: &StepResult| step_name(step, labels.len());
     let named: Vec<_> = steps.iter().take(NAMED).map(name).collect();
     let more = steps.len().saturating_sub(NAMED);
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };

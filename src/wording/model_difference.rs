@@ -24,7 +24,7 @@ pub(crate) fn model_difference_sentences(
         || "too few steps, or no difference, to ask whether it is more than chance".to_owned(),
         |test| {
             let p = p_text(test.p_value);
-            let said = if test.is_significant() {
+            let said = if found.is_significant() == Some(true) {
                 format!("{better} is better by more than chance")
             } else {
                 "the difference may be chance".to_owned()

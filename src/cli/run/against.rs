@@ -78,3 +78,14 @@ pub(crate) fn compared<'a>(
     }
     Ok(compared)
 }
+
+/// What has no counterpart, in sentences. Joints of another result that are not here are only named
+/// where all joints of the log are used.
+pub(crate) fn left_over(against: &[Against<'_>], data: &DataArgs) -> Vec<String> {
+    let has_all = data.has_all_joints();
+    let of_one = |other: &Against<'_>| {
+        let joints = other.note_on_joints().filter(|_| has_all);
+        other.notes().into_iter().chain(joints).collect::<Vec<_>>()
+    };
+    against.iter().flat_map(of_one).collect()
+}

@@ -15,7 +15,7 @@ use crate::recording::rows::Rows;
 use crate::recording::shaded::{Spans, areas, condition, validation, where_it_fails};
 use crate::recording::sheet::Sheet;
 use crate::report::ImprovedJoint;
-use crate::wording::bracketed;
+use crate::wording::{bracketed, misfit_units};
 
 use super::figure::noise;
 
@@ -158,11 +158,16 @@ impl<'l, 'a> Drawing<'l, 'a> {
         }
         let floor = noise(improved).filter(|noise| *noise > 0.0);
         let times = floor.map(|noise| format!(" ({} × noise)", short(judged(comparison) / noise)));
+        let units = misfit_units(improved.finding.compared.joint);
+        let fails = condition(comparison).map_or_else(String::new, |condition| {
+            let clauses: Vec<_> = condition.clauses.iter().map(|it| it.with_unit(&units)).collect();
+            format!("; red: {}", clauses.join(" and "))
+        });
         let residual = format!(
             "residual{unit}{}; between blue lines: 95 % of the noise; bars: worst segments; \
              grey: not fitted{}",
             times.unwrap_or_default(),
-            condition(comparison).map_or_else(String::new, |it| format!("; red: {}", it.condition))
+            fails
         );
         let x_ticks = residual_plot.x_span().ticks(10.0);
         sheet.frame(residual_plot, &x_ticks, &ticks(residual_plot), &residual);

@@ -40,14 +40,14 @@ pub(super) fn tab(
     let fine = decisions.any(|decision| decision.fine.is_some());
     let mut views = Views { builder, joint, fine, others };
     let mut pages = Vec::new();
-    if others > 0 {
-        pages.push(views.differences()?);
-    }
     if revisions > 0 {
         pages.push(views.revisions()?);
     }
     if !models.is_empty() {
         pages.push(views.models(models)?);
+    }
+    if others > 0 {
+        pages.push(views.differences()?);
     }
     let delay = views.delay_state();
     let delay = views.view(delay)?;
@@ -280,7 +280,7 @@ impl Views<'_, '_> {
             ContainerKind::Vertical,
             "Plots",
             &rows,
-            &[1.25, 3.0, 2.4, 1.0, 1.9, 3.4],
+            &[1.2, 3.0, 2.4, 1.0, 2.4, 3.2],
         )?;
         let page = [self.path(paths::MODEL_PAGE)];
         let page = self.view(View::new("TextDocument", "Models", &page))?;
@@ -306,9 +306,8 @@ impl Views<'_, '_> {
         let root = self.at(paths::MODEL_DIFFERENCE);
         let others: Vec<_> = names.iter().skip(1).map(|name| child(&root, name)).collect();
         let first = names.first().copied().unwrap_or_default();
-        let name = format!(
-            "Squared error summed up, the other's less that of {first}: it rises where {first} is better"
-        );
+        let name =
+            format!("Squared error so far less that of {first}: it rises where {first} is better");
         self.plot(&name, &others, Legend::Apart)
     }
 

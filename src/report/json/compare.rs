@@ -72,7 +72,7 @@ impl<'a> AgainstJson<'a> {
             better_steps: difference.better_steps,
             statistic: difference.test.map(|test| test.statistic),
             p_value: difference.test.map(|test| test.p_value),
-            significant: difference.test.map(|test| test.is_significant()),
+            significant: difference.is_significant(),
             better_where: places(difference.better_where),
             worse_where: places(difference.worse_where),
         }

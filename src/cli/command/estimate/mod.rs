@@ -8,7 +8,7 @@ mod follow;
 use crate::cli::each_log::Each;
 use crate::cli::exit::Completion;
 use crate::cli::failure::nothing_usable;
-use crate::cli::run::{Session, compared, estimated, failures, notes, others};
+use crate::cli::run::{Session, compared, estimated, failures, left_over, notes, others};
 use crate::report::{
     EstimateJson, against_table, against_text, delay_levels_text, estimate_table, steps_table,
 };
@@ -63,8 +63,8 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
         against: &against,
     };
     failures.extend(files.left_out(&result));
-    let left_over = against.iter().flat_map(|other| other.notes(args.data.has_all_joints()));
-    let notes: Vec<_> = notes(first_joints).into_iter().chain(left_over).collect();
+    let further = left_over(&against, &args.data);
+    let notes: Vec<_> = notes(first_joints).into_iter().chain(further).collect();
     session.warn(&failures, &notes);
     files.write(&result, &session.stream, verbosity)?;
     let json = || EstimateJson::new(experiment, &runs, &against, &failures);
