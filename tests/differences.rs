@@ -165,6 +165,12 @@ fn the_better_model_is_named_and_a_difference_by_chance_is_none() {
 mod recorded {
     use super::*;
     use crate::read_back::ReadBack;
+    use rerun::external::arrow::array::AsArray as _;
+
+    /// A page that is there at all times.
+    fn page(back: &ReadBack, entity: &str) -> String {
+        back.fixed(entity, "TextDocument:text").as_string::<i32>().value(0).to_owned()
+    }
 
     fn recording(desk: &Desk, arguments: &str, file: &str) -> ReadBack {
         let output = desk.run(&format!("{arguments} -o {file}"));
@@ -190,8 +196,8 @@ mod recorded {
         sorted.sort_unstable();
         let all: Vec<i64> = (1..).take(decisions(&json, 0).len()).collect();
         assert_eq!(sorted, all);
-        let page = back.texts("/boom/difference", "TextDocument:text");
-        assert!(page[0].1.contains("### boom against earlier (two-line"), "{page:?}");
+        let page = page(&back, "/boom/difference");
+        assert!(page.contains("### boom against earlier (two-line"), "{page}");
         let alone = recording(&desk, "estimate log.csv", "alone.rrd");
         assert!(alone.ticks("/boom/drawing/measured", "difference").is_empty());
     }
@@ -213,8 +219,8 @@ mod recorded {
             sum += other * other - own * own;
             assert!((summed - sum).abs() <= 1e-9 * sum.abs().max(1.0));
         }
-        let page = back.texts("/boom/model_page", "TextDocument:text");
-        assert!(page[0].1.contains("**right against wrong**"), "{page:?}");
+        let page = page(&back, "/boom/model_page");
+        assert!(page.contains("**right against wrong**"), "{page}");
         let part = back.texts("/boom/part", "StateChange:state");
         assert!(part.iter().any(|(_, name)| name == "not fitted"), "{part:?}");
     }
@@ -233,11 +239,11 @@ mod recorded {
         let names = ["x.rrd", "x_1.rrd", "x_2.rrd", "x_3.rrd"];
         let first = names.map(bytes);
         assert!(!desk.has("x_4.rrd"));
-        let joints = index.texts("/joints", "TextDocument:text");
+        let joints = page(&index, "/joints");
         for number in 1..=21 {
             let file = format!("x\\_{}.rrd", (number - 1) / 8 + 1);
             let row = |line: &&str| line.starts_with(&format!("| joint\\_{number:02} "));
-            let row = joints[0].1.lines().find(row).unwrap_or_default();
+            let row = joints.lines().find(row).unwrap_or_default();
             assert!(row.contains(&file), "{row} has no {file}");
             let back = ReadBack::of(&bytes(&format!("x_{}.rrd", (number - 1) / 8 + 1)));
             assert!(back.chunks.contains_key(&format!("/joint_{number:02}/output/raw")));
