@@ -197,7 +197,7 @@ mod recorded {
         let all: Vec<i64> = (1..).take(decisions(&json, 0).len()).collect();
         assert_eq!(sorted, all);
         let page = page(&back, "/boom/difference");
-        assert!(page.contains("### boom against earlier (two-line"), "{page}");
+        assert!(page.contains("**boom against earlier** (two-line"), "{page}");
         let alone = recording(&desk, "estimate log.csv", "alone.rrd");
         assert!(alone.ticks("/boom/drawing/measured", "difference").is_empty());
     }

@@ -97,7 +97,7 @@ fn part(joint: &Joint, other: &Other<'_>) -> String {
     let sentences = difference_sentences(&other.differences).into_iter();
     let sentences: Vec<_> = sentences.map(|sentence| plain(&sentence)).collect();
     let (name, other) = (plain(&joint.name), plain(other.name));
-    format!("### {name} against {other}{settings}\n\n- {}\n", sentences.join("\n- "))
+    format!("**{name} against {other}**{settings}\n\n- {}\n\n", sentences.join("\n- "))
 }
 
 const HOW: &str = "\

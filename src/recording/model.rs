@@ -59,7 +59,9 @@ pub(super) fn add(
     scatter::add(chunks, &at(root, paths::scatter::ROOT), models)?;
     error_share::add(chunks, &at(root, paths::error_share::ROOT), models)?;
     correlogram::add(chunks, &at(root, paths::correlation::ROOT), models)?;
-    model_difference::add(chunks, root, layout, models)?;
+    if is_first(models, judged) {
+        model_difference::add(chunks, root, layout, models)?;
+    }
     model_lanes::add(chunks, root, layout, (judged.joint, judged.comparison))
 }
 
@@ -163,7 +165,9 @@ fn page(
     if let Some(noise) = sensor_noise(&joint.trials) {
         writeln!(page, "Noise of the sensor: {} {unit}.", number(noise))?;
     }
-    against(&mut page, models)?;
+    if is_first(models, judged) {
+        against(&mut page, models)?;
+    }
     for compared in models {
         for sentence in failure_sentences(compared.joint, compared.comparison) {
             writeln!(page, "\n**Fails** ({}): {}", compared.model, plain(&sentence))?;
@@ -193,6 +197,11 @@ fn page(
     }
     parameters(&mut page, joint, models)?;
     Ok(page)
+}
+
+/// Whether models are compared with the first one; revisions of a model are shown by their ladder.
+fn is_first(models: &[&ComparedJoint<'_>], judged: &ComparedJoint<'_>) -> bool {
+    models.first().is_some_and(|first| first.model == judged.model)
 }
 
 /// Which of several models is better than the first one, and where.

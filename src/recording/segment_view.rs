@@ -313,14 +313,14 @@ impl<'l, 'a> Drawing<'l, 'a> {
             let text = format!("q = {place}, SSE = {}", number(best.sse));
             labels.put_whole(self.output.below(q, 2.0), text);
         }
-        labels.put_whole(self.output.below(p, 46.0), format!("p = {}", decision.input_step.sample));
+        labels.put_whole(self.output.below(p, 24.0), format!("p = {}", decision.input_step.sample));
         let (first, last) = (decision.segment.first, decision.segment.last);
         // Below what is said of a breakpoint that is near.
         let near = self.segment.decision.candidates.best().is_some_and(|best| {
             let apart = self.output.x(best.breakpoint as f64) - self.output.x(first as f64);
             apart < 190.0
         });
-        let row = if near { 24.0 } else { 2.0 };
+        let row = if near { 46.0 } else { 2.0 };
         labels.put_whole(self.output.below(first as f64, row), format!("r = {first}"));
         labels.put_whole(self.output.below(last as f64, 2.0), format!("end = {last}"));
         let output = bracketed("output", self.joint.output_unit.as_deref());

@@ -23,6 +23,17 @@ pub struct ComparedJoint<'a> {
     pub comparison: &'a Comparison,
 }
 
+/// A table of errors, one row per joint and model, the parameters below it, and how the first model
+/// of each joint compares with its others.
+pub(crate) fn compare_text(joints: &[ComparedJoint<'_>]) -> String {
+    let differences = model_differences(joints);
+    let differences: Vec<_> = differences.iter().flat_map(ComparedModels::lines).collect();
+    if differences.is_empty() {
+        return compare_table(joints);
+    }
+    format!("{}\none model against another:\n{}\n", compare_table(joints), differences.join("\n"))
+}
+
 /// A table of errors, one row per joint and model, and the parameters below it.
 pub(crate) fn compare_table(joints: &[ComparedJoint<'_>]) -> String {
     let header = ["joint", "model", "training", "validation", "fit", "noise", "lack of fit"];
@@ -43,18 +54,9 @@ pub(crate) fn compare_table(joints: &[ComparedJoint<'_>]) -> String {
     } else {
         format!("\nresidual of the training part:\n{}\n", residuals.join("\n"))
     };
-    let differences = model_differences(joints);
-    let differences: Vec<_> = differences.iter().flat_map(ComparedModels::lines).collect();
-    let differences = if differences.is_empty() {
-        String::new()
-    } else {
-        format!("\none model against another:\n{}\n", differences.join("\n"))
-    };
     let parameters = parameters.join("\n");
     let horizon = horizons(joints.iter().copied());
-    format!(
-        "{table}\nroot-mean-square errors, {horizon}\n\n{parameters}\n{differences}{residuals}{failures}"
-    )
+    format!("{table}\nroot-mean-square errors, {horizon}\n\n{parameters}\n{residuals}{failures}")
 }
 
 /// The first model of a joint beside another one.

@@ -8,7 +8,7 @@ use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::fit::{FitError, Horizon};
 use crate::model::{JointModel, ModelFile};
-use crate::report::{CompareJson, ComparedJoint, compare_table};
+use crate::report::{CompareJson, ComparedJoint, compare_text};
 use crate::study::{Mode, compare_joints};
 use clap::Args as ClapArgs;
 
@@ -96,7 +96,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         return Err(nothing_usable(Some(first)));
     }
     study.record(args.output.recording.as_deref(), &compared, &[])?;
-    let text = || compare_table(&compared);
+    let text = || compare_text(&compared);
     study.end(&failures, text, || CompareJson::new(&compared, &failures))
 }
 

@@ -38,7 +38,7 @@ pub(super) fn tab(
 ) -> Result<Node, RecordError> {
     let mut decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
     let fine = decisions.any(|decision| decision.fine.is_some());
-    let mut views = Views { builder, joint, fine, others };
+    let mut views = Views { builder, joint, fine, others, revisions };
     let mut pages = Vec::new();
     if revisions > 0 {
         pages.push(views.revisions()?);
@@ -69,6 +69,8 @@ struct Views<'b, 'i> {
     fine: bool,
     /// Results beside this one.
     others: usize,
+    /// Revisions of its model.
+    revisions: usize,
 }
 
 /// Columns of the table of candidates.
@@ -170,7 +172,7 @@ impl Views<'_, '_> {
         let right = [page, list, verdict];
         let builder = &mut *self.builder;
         let right =
-            builder.container(ContainerKind::Vertical, "Lists", &right, &[2.6, 3.2, 4.2])?;
+            builder.container(ContainerKind::Vertical, "Lists", &right, &[3.0, 3.2, 3.8])?;
         let left = [sheet, drawing];
         let left = builder.container(ContainerKind::Vertical, "Steps", &left, &[3.6, 6.4])?;
         let columns = [left, right];
@@ -330,7 +332,7 @@ impl Views<'_, '_> {
             (&[correlation::BAND, correlation::CURVE], models),
         );
         let mut tabs = Vec::new();
-        if models > 1 {
+        if models > 1 && self.revisions == 0 {
             tabs.push(self.model_difference(names)?);
         }
         tabs.extend([self.view(scatter)?, self.view(shares)?, self.view(correlation)?]);
