@@ -166,6 +166,7 @@ mod recorded {
     use super::*;
     use crate::read_back::ReadBack;
     use rerun::external::arrow::array::AsArray as _;
+    use rerun::external::arrow::datatypes::Float32Type;
 
     /// A page that is there at all times.
     fn page(back: &ReadBack, entity: &str) -> String {
@@ -198,6 +199,14 @@ mod recorded {
         assert_eq!(sorted, all);
         let page = page(&back, "/boom/difference");
         assert!(page.contains("**boom against earlier** (two-line"), "{page}");
+        let all = back.numbers("/boom/decision/table", "sse");
+        let shown = back.rows("/boom/decision/table", "sse_shown", |cell| {
+            cell.as_primitive::<Float32Type>().value(0)
+        });
+        assert_eq!(shown.len(), all.len());
+        for ((_, all), (_, shown)) in all.iter().zip(&shown) {
+            assert!((f64::from(*shown) - all).abs() <= 1e-4 * all.abs());
+        }
         let alone = recording(&desk, "estimate log.csv", "alone.rrd");
         assert!(alone.ticks("/boom/drawing/measured", "difference").is_empty());
     }

@@ -5,7 +5,7 @@ use std::iter::once;
 use rerun::log::LogMsg;
 use rerun::{ApplicationId, EntityPath};
 
-use super::beside::Other;
+use super::beside::{Other, weight};
 use super::chunk::{Chunks, Index, Opening};
 use super::content::{Content, Growth, Tab, hashed, name_of};
 use super::error::RecordError;
@@ -58,7 +58,9 @@ impl<'a> Content for Recording<'a> {
     fn tabs(&self, growth: Growth) -> Vec<Tab<'_>> {
         let tab = |(joint, mut layout): (EstimatedJoint<'a>, JointLayout<'a>)| {
             let others = self.others(joint);
-            layout.rank_by_difference(&others);
+            if !others.is_empty() {
+                layout.rank_by_difference(|label, p| weight(&others, label, p));
+            }
             let add = move |chunks: &mut Chunks| add_joint(chunks, self, joint, (&layout, &others));
             Tab { joint: &joint.joint.name, add: Box::new(add) }
         };

@@ -43,6 +43,14 @@ impl Other<'_> {
     }
 }
 
+/// How much the results differ most on the step at sample `p` of the trial `label`: see
+/// [`StepPair::weight`].
+pub(super) fn weight(others: &[Other<'_>], label: &str, p: usize) -> (u8, f64) {
+    let pairs = others.iter().filter_map(|other| other.pair(label, p));
+    let larger = |a: (u8, f64), b: (u8, f64)| if b > a { b } else { a };
+    pairs.map(StepPair::weight).fold((0, 0.0), larger)
+}
+
 /// The verdict of the method `name` on a step, with the delay and its interval in samples.
 pub(super) fn decided_in_short(name: &str, decision: &Decision) -> String {
     let interval = decision.fine.map(|fine| (fine.low, fine.high));

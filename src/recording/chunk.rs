@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use rerun::external::arrow::array::{
-    Array as _, ArrayRef, Float64Array, Int64Array, ListArray, StringArray,
+    Array as _, ArrayRef, Float32Array, Float64Array, Int64Array, ListArray, StringArray,
 };
 use rerun::external::arrow::buffer::{NullBuffer, OffsetBuffer, ScalarBuffer};
 use rerun::external::arrow::datatypes::Field;
@@ -20,6 +20,7 @@ use rerun::{
 
 use super::error::RecordError;
 use crate::delay::FineDelay;
+use crate::wording::number;
 
 /// Where rows lie on the timelines; one value per row and timeline.
 #[derive(Clone, Debug, Default)]
@@ -297,6 +298,13 @@ impl Chunks {
 /// A column of numbers named `name`; `None` is null.
 pub(super) fn numbers(name: &'static str, values: &[Option<f64>]) -> SerializedComponentColumn {
     let items: Float64Array = values.iter().flatten().copied().collect::<Vec<_>>().into();
+    list_column(name, Arc::new(items), values.iter().map(Option::is_some))
+}
+
+/// A column of numbers to be looked at, named `name`: to five digits; `None` is null.
+pub(super) fn shown(name: &'static str, values: &[Option<f64>]) -> SerializedComponentColumn {
+    let rounded = |value: &f64| number(*value).parse().unwrap_or(f32::NAN);
+    let items: Float32Array = values.iter().flatten().map(rounded).collect::<Vec<f32>>().into();
     list_column(name, Arc::new(items), values.iter().map(Option::is_some))
 }
 

@@ -16,12 +16,10 @@
 
 use std::collections::HashMap;
 
-use super::beside::Other;
 use super::chunk::{Index, Moment, Opening};
 use crate::delay::{Decision, Doubt, TrialEstimate, Verdict};
 use crate::experiment::{Joint, Trial};
 use crate::report::EstimatedJoint;
-use crate::study::StepPair;
 use crate::units::signed;
 use crate::wording::doubt_sentence;
 
@@ -221,14 +219,12 @@ impl<'a> JointLayout<'a> {
         index.with_difference(differences.map(|(_, segment)| segment.difference))
     }
 
-    /// Counts all decisions by their difference to other results, the largest first.
-    pub(super) fn rank_by_difference(&mut self, others: &[Other<'_>]) {
-        self.first.is_compared = !others.is_empty();
+    /// Counts all decisions by their difference to other results, which is `weight` of a trial's
+    /// label and the sample of a step: the largest first.
+    pub(super) fn rank_by_difference(&mut self, weight: impl Fn(&str, usize) -> (u8, f64)) {
+        self.first.is_compared = true;
         let weight = |trial: &Trial, segment: &SegmentLayout<'_>| {
-            let (label, p) = (trial.label(), segment.decision.input_step.sample);
-            let pairs = others.iter().filter_map(|other| other.pair(label, p));
-            let larger = |a: (u8, f64), b: (u8, f64)| if b > a { b } else { a };
-            pairs.map(StepPair::weight).fold((0, 0.0), larger)
+            weight(trial.label(), segment.decision.input_step.sample)
         };
         let trials = self.trials.iter_mut();
         let mut all: Vec<_> = trials

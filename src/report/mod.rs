@@ -43,9 +43,9 @@ pub use against::against_table;
 pub(crate) use against::variable_text;
 pub(crate) use columns::columns_table;
 pub use compare::ComparedJoint;
+pub(crate) use compare::compare_text;
 #[cfg(feature = "rrd")]
 pub(crate) use compare::model_differences;
-pub(crate) use compare::compare_text;
 pub(crate) use dead_time::{dead_time_sentences, input_note};
 pub use decisions::DecisionRow;
 pub use decisions::decision_rows;

@@ -85,7 +85,11 @@ impl Contents<'_> {
         check_outputs(&outputs, &inputs)?;
         let mut files = Vec::new();
         for (joints, path) in groups.iter().zip(&paths) {
-            let some = Contents { joints, ..*self };
+            // A viewer lists recordings by name.
+            let names = joints.iter().map(|joint| joint.joint.name.as_str());
+            let ends: Vec<&str> = names.clone().take(1).chain(names.last()).collect();
+            let command = format!("{} of {}", self.command, ends.join(" … "));
+            let some = Contents { joints, command: &command, ..*self };
             files.push(filled_file(path, |file| some.write(file))?);
         }
         let volume = |(path, joints): (&PathBuf, &&[EstimatedJoint<'_>])| Volume {

@@ -75,7 +75,7 @@ struct Views<'b, 'i> {
 
 /// Columns of the table of candidates.
 const CANDIDATE_COLUMNS: [&str; 8] =
-    ["i", "j", "q", "delta", "sse", "slope_before", "slope_after", "f"];
+    ["i", "j", "q", "delta", "sse_shown", "slope_before_shown", "slope_after_shown", "f"];
 
 impl Views<'_, '_> {
     /// The entity at `path` below the joint.
