@@ -86,8 +86,9 @@ impl Contents<'_> {
         let mut files = Vec::new();
         for (joints, path) in groups.iter().zip(&paths) {
             // A viewer lists recordings by name.
-            let names = joints.iter().map(|joint| joint.joint.name.as_str());
-            let ends: Vec<&str> = names.clone().take(1).chain(names.last()).collect();
+            let (first, last) = (joints.first(), joints.last());
+            let ends = first.into_iter().chain(last).map(|joint| joint.joint.name.as_str());
+            let ends: Vec<&str> = ends.collect();
             let command = format!("{} of {}", self.command, ends.join(" … "));
             let some = Contents { joints, command: &command, ..*self };
             files.push(filled_file(path, |file| some.write(file))?);
