@@ -20,9 +20,9 @@ use rerun::log::{Chunk, LogMsg};
 use tauscope::batch::Threads;
 use tauscope::delay::{Decision, FineDelay, FirstLast, Method, Settings};
 use tauscope::experiment::{Experiment, ReadOptions};
-use tauscope::recording::{Beside, Detail, RecordError, Recording, write_recording};
+use tauscope::recording::{Detail, RecordError, Recording, write_recording};
 use tauscope::report::{DecisionRow, EstimatedJoint, decision_rows};
-use tauscope::study::{JointEstimate, estimate_joints};
+use tauscope::study::{JointEstimate, OtherResult, estimate_joints};
 use tauscope::wording::number;
 
 #[test]
@@ -140,11 +140,13 @@ fn what_another_method_decided_is_drawn_beside_the_first() {
     let recorded = Recorded::with(Settings::of(Method::LAG_AWARE));
     let settings = Settings { first_last: FirstLast::Keep, ..Settings::default() };
     let other = estimate_joints(&recorded.experiment.joints, &settings, || (), &Threads);
+    let name = "two-line".to_owned();
+    let experiment = &recorded.experiment;
+    let also = [OtherResult::of(name, "kept".to_owned(), &experiment.joints, &other)];
     let other: Vec<JointEstimate> = other.into_iter().map(Result::unwrap).collect();
     let pairs = recorded.experiment.joints.iter().zip(&other);
     let joints: Vec<_> =
         pairs.map(|(joint, estimate)| EstimatedJoint { joint, estimate }).collect();
-    let also = [Beside { settings: &settings, joints: &joints }];
     let mut bytes = Vec::new();
     recorded.write_beside(&[], &also, &[], Detail::Full, &mut bytes).unwrap();
     let back = ReadBack::of(&bytes);
@@ -164,12 +166,12 @@ fn what_another_method_decided_is_drawn_beside_the_first() {
             assert!(legend.starts_with(&format!("two-line: δ = {delay} ")), "{legend}");
             assert!(page.contains(&format!("| two-line | {delay} | ")), "{page}");
             let delay = number(first.delay().unwrap());
-            assert!(page.contains(&format!("| lag-aware | {delay} (")), "{page}");
+            assert!(page.contains(&format!("| lag-aware, here | {delay} (")), "{page}");
         }
     }
     let alone = recorded.read_back(Detail::Full);
     assert!(!alone.chunks.contains_key("/boom/drawing/other_0"));
-    assert!(!alone.texts("/boom/verdict", "TextDocument:text")[0].1.contains("| method |"));
+    assert!(!alone.texts("/boom/verdict", "TextDocument:text")[0].1.contains("| result |"));
 }
 
 #[test]

@@ -8,6 +8,7 @@ use super::noise::share_not_followed;
 use super::residual_size::{ResidualSize, clipped};
 use super::shapes::shapes;
 use super::speed_error::speed_error;
+use super::step_error::{StepError, step_errors};
 use super::{ErrorFigures, InputCorrelation, LackOfFit, TestColumns, TrialSignals, Whiteness};
 use super::{input_correlation, lack_of_fit, noise_floor, whiteness};
 use crate::experiment::Trial;
@@ -42,6 +43,8 @@ pub struct Comparison {
     /// The error in each part of each feature, of the restarted model, whether or not a
     /// lack of fit is shown.
     pub regions: Vec<Region>,
+    /// The error from step to step, of the restarted model.
+    pub per_step: Vec<StepError>,
 }
 
 impl Comparison {
@@ -80,7 +83,10 @@ fn figures(
 ) -> Comparison {
     let error = |part| ErrorFigures::of(record, &fit.evaluation, part);
     let fails = lack_of_fit.is_some_and(|test| !test.adequate);
-    let restarted = restarted(record, &fit.model);
+    let by_step = record.with_horizon(Horizon::Steps);
+    let evaluation = by_step.evaluate(&fit.model);
+    let per_step = step_errors(&by_step, &evaluation);
+    let restarted = restarted(&by_step, &evaluation);
     let failure = restarted.as_ref().filter(|_| fails).map(diagnose);
     let signals = training_signals(record, &fit.evaluation);
     let period_s = common_period_s(record);
@@ -93,6 +99,7 @@ fn figures(
         input_correlation: period_s.and_then(|period_s| input_correlation(&signals, period_s)),
         failure,
         regions: restarted.as_ref().map(regions).unwrap_or_default(),
+        per_step,
         fit,
         termination,
     }
@@ -153,14 +160,12 @@ fn common_period_s(record: &FitRecord<'_>) -> Option<f64> {
     periods.all(|period| (period / first - 1.0).abs() < 0.01).then_some(first)
 }
 
-/// The residual of `model` restarted at every step of the input, with what happened.
-fn restarted(record: &FitRecord<'_>, model: &JointModel) -> Option<failure::ResidualRecord> {
-    let restarted = record.with_horizon(Horizon::Steps);
-    let evaluation = restarted.evaluate(model);
+/// The residual of a model that `record` restarts at every step of the input, with what happened.
+fn restarted(record: &FitRecord<'_>, evaluation: &Evaluation) -> Option<failure::ResidualRecord> {
     let trials = &record.joint().trials;
     let mut samples = Samples::with_capacity(trials.iter().map(Trial::len).sum());
     let mut segments = Vec::new();
-    let simulated = evaluation.simulated.into_iter().zip(evaluation.residuals);
+    let simulated = evaluation.simulated.iter().zip(&evaluation.residuals);
     for (index, (trial, (simulated, residual))) in trials.iter().zip(simulated).enumerate() {
         let first = samples.residual.len();
         let period = trial.period().seconds();
@@ -171,9 +176,9 @@ fn restarted(record: &FitRecord<'_>, model: &JointModel) -> Option<failure::Resi
             samples.hold_s.extend(std::iter::repeat_n(held, level.len()));
         }
         // An input that is never held has no levels to look at.
-        let windows = restarted.windows().iter().filter(|window| window.trial == index);
+        let windows = record.windows().iter().filter(|window| window.trial == index);
         let windows: Vec<_> = windows.map(|window| window.start..window.end).collect();
-        samples.speed_error.extend(speed_error(&residual, &windows, period));
+        samples.speed_error.extend(speed_error(residual, &windows, period));
         let own = if levels.len() > windows.len().saturating_mul(20) { windows } else { levels };
         segments.extend(own.into_iter().map(|span| first + span.start..first + span.end));
         samples.residual.extend(residual);

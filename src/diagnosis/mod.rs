@@ -7,6 +7,7 @@
 //! - [`whiteness()`], [`input_correlation()`]: how the residual is correlated, with itself and
 //!   with the input
 //! - [`failure`]: where the error is
+//! - [`ModelDifference`]: two models of one record
 
 mod compare;
 mod error;
@@ -15,11 +16,13 @@ mod input_correlation;
 mod lack_of_fit;
 mod lags;
 mod local_misfit;
+mod model_difference;
 mod noise;
 mod residual_size;
 mod shapes;
 mod shown_by;
 mod speed_error;
+mod step_error;
 mod whiteness;
 
 pub use compare::{Comparison, compare, compare_unfitted};
@@ -29,8 +32,10 @@ pub use input_correlation::{CrossCorrelation, InputCorrelation, input_correlatio
 pub use lack_of_fit::{Column, LackOfFit, NEGLIGIBLE, SIGNIFICANCE, TestColumns, lack_of_fit};
 pub use lags::{CONFIDENCE, TrialSignals};
 pub use local_misfit::LocalMisfit;
+pub use model_difference::{DifferenceTest, ModelDifference, RegionPair};
 pub use noise::{noise_floor, sensor_noise};
 pub use residual_size::ResidualSize;
 pub(crate) use residual_size::{BEYOND_NOISE, NEAR_NOISE};
 pub use shown_by::ShownBy;
+pub use step_error::StepError;
 pub use whiteness::{Whiteness, whiteness};

@@ -1,17 +1,20 @@
 //! A recording of decisions and models, joint by joint.
 
+use std::iter::once;
+
 use rerun::log::LogMsg;
 use rerun::{ApplicationId, EntityPath};
 
-use super::chunk::{Chunks, Index};
+use super::beside::{Other, weight};
+use super::chunk::{Chunks, Index, Opening};
 use super::content::{Content, Growth, Tab, hashed, name_of};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialStarts};
 use super::paths::{self, against, at, drawing, joint_root, map};
 use super::recorded::Recording;
 use super::{
-    about, decisions, delay_state, doubt, model, overview, place, revision, segment_view, signals,
-    verdict, views,
+    about, decisions, delay_state, difference, doubt, model, overview, place, revision,
+    segment_view, signals, verdict, views,
 };
 use crate::report::{EstimatedJoint, ImprovedJoint, settings_in_short};
 
@@ -35,8 +38,8 @@ impl<'a> Recording<'a> {
 
 impl<'a> Content for Recording<'a> {
     fn name(&self) -> String {
-        let each = std::iter::once(self.settings).chain(self.also.iter().map(|it| it.settings));
-        let settings: Vec<_> = each.map(settings_in_short).collect();
+        let others = self.also.iter().map(|other| other.name.clone());
+        let settings: Vec<_> = once(settings_in_short(self.settings)).chain(others).collect();
         let chosen = self.joints.iter().any(|joint| joint.estimate.chosen.is_some());
         let chosen = if chosen { ", more from the record" } else { "" };
         let (log, command) = (name_of(self.sources), self.command);
@@ -53,8 +56,12 @@ impl<'a> Content for Recording<'a> {
     }
 
     fn tabs(&self, growth: Growth) -> Vec<Tab<'_>> {
-        let tab = |(joint, layout): (EstimatedJoint<'a>, JointLayout<'a>)| {
-            let add = move |chunks: &mut Chunks| add_joint(chunks, self, joint, &layout);
+        let tab = |(joint, mut layout): (EstimatedJoint<'a>, JointLayout<'a>)| {
+            let others = self.others(joint);
+            if !others.is_empty() {
+                layout.rank_by_difference(|label, p| weight(&others, label, p));
+            }
+            let add = move |chunks: &mut Chunks| add_joint(chunks, self, joint, (&layout, &others));
             Tab { joint: &joint.joint.name, add: Box::new(add) }
         };
         self.layouts(growth).map(tab).collect()
@@ -78,20 +85,20 @@ fn add_joint(
     chunks: &mut Chunks,
     recording: &Recording<'_>,
     estimated: EstimatedJoint<'_>,
-    layout: &JointLayout<'_>,
+    (layout, others): (&JointLayout<'_>, &[Other<'_>]),
 ) -> Result<(), RecordError> {
     let joint = estimated.joint;
     let root = joint_root(&joint.name);
     place::add(chunks, &root, layout)?;
     signals::add(chunks, &root, joint, layout)?;
     decisions::add(chunks, &root, layout)?;
-    let others = recording.others(joint);
-    verdict::add(chunks, &root, estimated, layout, &others)?;
-    segment_view::add(chunks, &root, joint, layout, (recording.settings.method, &others))?;
+    verdict::add(chunks, &root, estimated, layout, others)?;
+    segment_view::add(chunks, &root, joint, layout, (recording.settings.method, others))?;
     overview::add(chunks, &root, layout)?;
     delay_state::add(chunks, &root, estimated, layout)?;
     doubt::add(chunks, &root, joint, layout)?;
-    open_on_the_most_doubtful(chunks, &root, layout)?;
+    difference::add(chunks, &root, joint, layout, others)?;
+    open_on_the_first(chunks, &root, layout)?;
     let models = recording.models.iter().filter(|model| model.joint.name == joint.name);
     let models: Vec<_> = models.collect();
     let revisions = recording.revisions_of(joint);
@@ -106,14 +113,14 @@ fn add_joint(
     }
 }
 
-/// Shows the most doubtful decision before the first tick, where the viewer opens, and on the
-/// timeline of revisions.
-fn open_on_the_most_doubtful(
+/// Shows the most different or most doubtful decision before the first tick, where the viewer
+/// opens, and on the timeline of revisions.
+fn open_on_the_first(
     chunks: &mut Chunks,
     root: &EntityPath,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
-    let Some((_, segment)) = layout.by_doubt().into_iter().next() else { return Ok(()) };
+    let Some(segment) = layout.shown_first() else { return Ok(()) };
     let map = format!("{}/{}", map::ROOT, map::HERE);
     let [here, step] = [against::HERE, against::STEP].map(|p| format!("{}/{p}", against::ROOT));
     let shown = [
@@ -123,7 +130,8 @@ fn open_on_the_most_doubtful(
         (step.as_str(), ""),
         (paths::VERDICT, "TextDocument"),
     ];
-    let index = Index::before_all(layout.first_revision);
+    // On the timeline of differences the first tick is this decision's own.
+    let index = Index::before_all(Opening { is_compared: false, ..layout.first });
     for (path, component) in shown {
         chunks.repeat((&at(root, path), component), segment.opening, &index)?;
     }
@@ -147,7 +155,7 @@ fn recording_id(recording: &Recording<'_>) -> String {
         }
         part(&format!("{:?} {:?}", recording.settings, recording.detail));
         for beside in recording.also {
-            part(&format!("{:?}", beside.settings));
+            part(&format!("{beside:?}"));
         }
         for joint in recording.joints.iter().filter(|joint| joint.estimate.chosen.is_some()) {
             part(&format!("{:?}", joint.estimate.settings));

@@ -20,8 +20,8 @@ pub(super) const SHEET: (f32, f32) = (1600.0, 640.0);
 pub(super) struct Plot {
     left: f32,
     right: f32,
-    top: f32,
-    bottom: f32,
+    pub(super) top: f32,
+    pub(super) bottom: f32,
     x: Span,
     y: Span,
 }

@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use rerun::external::arrow::array::{
-    Array as _, ArrayRef, Float64Array, Int64Array, ListArray, StringArray,
+    Array as _, ArrayRef, Float32Array, Float64Array, Int64Array, ListArray, StringArray,
 };
 use rerun::external::arrow::buffer::{NullBuffer, OffsetBuffer, ScalarBuffer};
 use rerun::external::arrow::datatypes::Field;
@@ -20,6 +20,7 @@ use rerun::{
 
 use super::error::RecordError;
 use crate::delay::FineDelay;
+use crate::wording::number;
 
 /// Where rows lie on the timelines; one value per row and timeline.
 #[derive(Clone, Debug, Default)]
@@ -34,6 +35,17 @@ pub(super) struct Index {
     pub(super) setting: Vec<i64>,
     /// Ranks of decisions by doubt; likewise.
     doubt: Vec<i64>,
+    /// Ranks of decisions by their difference to other results; likewise.
+    difference: Vec<i64>,
+}
+
+/// What a recording opens on, beside its decisions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Opening {
+    /// The first revision of any model.
+    pub(super) revision: Option<i64>,
+    /// Whether there are other results to compare with.
+    pub(super) is_compared: bool,
 }
 
 /// Where one row lies on the timelines.
@@ -66,14 +78,19 @@ impl FromIterator<Moment> for Index {
 
 impl Index {
     pub(super) fn len(&self) -> usize {
-        let Self { decision, segment, sample, revision, setting, .. } = self;
-        let lengths = [decision, segment, sample, revision, setting].map(Vec::len);
+        let Self { decision, segment, sample, revision, setting, doubt, .. } = self;
+        let lengths = [decision, segment, sample, revision, setting, doubt].map(Vec::len);
         lengths.into_iter().max().unwrap_or(0)
     }
 
     /// The same rows on the timeline of doubt, too.
     pub(super) fn with_doubt(self, ranks: impl Iterator<Item = i64>) -> Self {
         Self { doubt: ranks.collect(), ..self }
+    }
+
+    /// The same rows on the timeline of differences, too; without any, there is none.
+    pub(super) fn with_difference(self, ranks: impl Iterator<Item = i64>) -> Self {
+        Self { difference: ranks.collect(), ..self }
     }
 
     /// The same rows, but for the timeline of segments: on it the samples of a segment would all
@@ -88,19 +105,30 @@ impl Index {
         Self { revision, ..self }
     }
 
-    /// One row before all others, on the timelines of decisions and of revisions alone.
-    pub(super) fn before_all(revision: Option<i64>) -> Self {
-        Self { decision: vec![0], ..Self::default() }.at_revision(revision)
+    /// One row before all others, on the timelines of decisions and, where it is opened on, of
+    /// revisions or of differences alone.
+    pub(super) fn before_all(opening: Opening) -> Self {
+        Self { decision: vec![0], ..Self::default() }.opened(opening)
     }
 
     /// One row on each timeline on which no sample lies.
-    pub(super) fn off_the_record(revision: Option<i64>) -> Self {
-        Self { segment: vec![1], doubt: vec![1], ..Self::default() }.at_revision(revision)
+    pub(super) fn off_the_record(opening: Opening) -> Self {
+        Self { segment: vec![1], doubt: vec![1], ..Self::default() }.opened(opening)
+    }
+
+    fn opened(self, Opening { revision, is_compared }: Opening) -> Self {
+        let difference = if is_compared { vec![1; self.len()] } else { Vec::new() };
+        Self { difference, ..self.at_revision(revision) }
     }
 
     /// A row per setting of a sweep, on the timeline of settings alone.
     pub(super) fn of_settings(count: usize) -> Self {
         Self { setting: (1..).take(count).collect(), ..Self::default() }
+    }
+
+    /// A row per rank by doubt, on the timeline of doubt alone.
+    pub(super) fn of_doubts(count: usize) -> Self {
+        Self { doubt: (1..).take(count).collect(), ..Self::default() }
     }
 
     /// A row per revision, all of them at `moment`: on the other timelines the last one
@@ -118,6 +146,7 @@ impl Index {
             ("revision", self.revision),
             ("setting", self.setting),
             ("doubt", self.doubt),
+            ("difference", self.difference),
         ];
         let filled = sequences.into_iter().filter(|(_, values)| !values.is_empty());
         let mut columns: Vec<_> =
@@ -269,6 +298,13 @@ impl Chunks {
 /// A column of numbers named `name`; `None` is null.
 pub(super) fn numbers(name: &'static str, values: &[Option<f64>]) -> SerializedComponentColumn {
     let items: Float64Array = values.iter().flatten().copied().collect::<Vec<_>>().into();
+    list_column(name, Arc::new(items), values.iter().map(Option::is_some))
+}
+
+/// A column of numbers to be looked at, named `name`: to five digits; `None` is null.
+pub(super) fn shown(name: &'static str, values: &[Option<f64>]) -> SerializedComponentColumn {
+    let rounded = |value: &f64| number(*value).parse().unwrap_or(f32::NAN);
+    let items: Float32Array = values.iter().flatten().map(rounded).collect::<Vec<f32>>().into();
     list_column(name, Arc::new(items), values.iter().map(Option::is_some))
 }
 

@@ -3,7 +3,7 @@
 use rerun::components::MarkerShape;
 use rerun::{EntityPath, Scalars, SeriesLines, SeriesPoints, TextDocument};
 
-use super::chunk::{Chunks, Index, fine_columns, integers, numbers, texts};
+use super::chunk::{Chunks, Index, fine_columns, integers, numbers, shown, texts};
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::markdown::plain;
@@ -158,6 +158,7 @@ struct Table {
 impl Table {
     const WHOLE: [&str; 8] = ["i", "p", "r", "end", "f", "j", "q", "delta"];
     const REAL: [&str; 3] = ["sse", "slope_before", "slope_after"];
+    const SHOWN: [&str; 3] = ["sse_shown", "slope_before_shown", "slope_after_shown"];
 
     /// The numbers of `candidate`; `j` is its number, empty on the row of the verdict.
     fn row(
@@ -218,10 +219,12 @@ fn add_table(
     }
     let whole = Table::WHOLE.iter().zip(&table.whole).map(|(name, values)| integers(name, values));
     let real = Table::REAL.iter().zip(&table.real).map(|(name, values)| numbers(name, values));
+    let rounded = Table::SHOWN.iter().zip(&table.real).map(|(name, values)| shown(name, values));
     let [trials, verdicts] = &table.words;
     let words = [texts("trial", trials), texts("verdict", verdicts)];
     let accepted = [integers("accepted", &table.accepted)];
     let fine = fine_columns(&table.fine);
-    let columns: Vec<_> = whole.chain(real).chain(accepted).chain(words).chain(fine).collect();
+    let columns: Vec<_> =
+        whole.chain(real).chain(rounded).chain(accepted).chain(words).chain(fine).collect();
     chunks.push(at(root, paths::DECISION_TABLE), table.index, columns)
 }

@@ -7,6 +7,7 @@
 //!   verdict tick, counted from 1 without a gap; each joint counts for itself.
 //! - `segment`: the number of the step, counted on over the trials.
 //! - `doubt`: the rank of the decision, the most doubtful being the first.
+//! - `difference`: likewise by its difference to other results, where there are any.
 //!
 //! What is drawn of a decision carries the first four and `doubt`, so that one cursor moves all
 //! views; samples carry all but `segment` and `doubt`, on which a plot of them would be a comb.
@@ -15,7 +16,7 @@
 
 use std::collections::HashMap;
 
-use super::chunk::{Index, Moment};
+use super::chunk::{Index, Moment, Opening};
 use crate::delay::{Decision, Doubt, TrialEstimate, Verdict};
 use crate::experiment::{Joint, Trial};
 use crate::report::EstimatedJoint;
@@ -97,8 +98,8 @@ impl TrialStarts {
 #[derive(Debug)]
 pub(super) struct JointLayout<'a> {
     pub(super) trials: Vec<TrialLayout<'a>>,
-    /// The first revision of any model of the recording.
-    pub(super) first_revision: Option<i64>,
+    /// What the recording opens on, beside its decisions.
+    pub(super) first: Opening,
     /// The last one.
     pub(super) last_revision: Option<i64>,
 }
@@ -128,6 +129,8 @@ pub(super) struct SegmentLayout<'a> {
     pub(super) doubt: Doubt,
     /// Its place among all decisions of the joint by doubt, from 1.
     pub(super) rank: i64,
+    /// Its place by the difference to other results, from 1; 0 where there are none.
+    pub(super) difference: i64,
     /// Indices of the candidates that are recorded, ascending.
     pub(super) kept: Vec<usize>,
 }
@@ -176,8 +179,15 @@ impl<'a> JointLayout<'a> {
                 number += 1;
                 let kept = kept(decision, detail);
                 let doubt = decision.doubt(output);
-                let segment =
-                    SegmentLayout { decision, number, opening: tick, doubt, rank: 0, kept };
+                let segment = SegmentLayout {
+                    decision,
+                    number,
+                    opening: tick,
+                    doubt,
+                    rank: 0,
+                    difference: 0,
+                    kept,
+                };
                 tick = segment.verdict() + 1;
                 segments.push(segment);
             }
@@ -186,7 +196,8 @@ impl<'a> JointLayout<'a> {
             trials.push(trial);
         }
         let (first_revision, last_revision) = revisions.unzip();
-        let mut layout = Self { trials, first_revision, last_revision };
+        let first = Opening { revision: first_revision, is_compared: false };
+        let mut layout = Self { trials, first, last_revision };
         layout.rank();
         layout
     }
@@ -203,7 +214,45 @@ impl<'a> JointLayout<'a> {
     /// The opening ticks of all segments, with their ranks by doubt.
     pub(super) fn openings(&self) -> Index {
         let index: Index = self.segments().map(|(trial, segment)| trial.opening(segment)).collect();
-        index.with_doubt(self.segments().map(|(_, segment)| segment.rank))
+        let index = index.with_doubt(self.segments().map(|(_, segment)| segment.rank));
+        let differences = self.segments().filter(|_| self.first.is_compared);
+        index.with_difference(differences.map(|(_, segment)| segment.difference))
+    }
+
+    /// Counts all decisions by their difference to other results, which is `weight` of a trial's
+    /// label and the sample of a step: the largest first.
+    pub(super) fn rank_by_difference(&mut self, weight: impl Fn(&str, usize) -> (u8, f64)) {
+        self.first.is_compared = true;
+        let weight = |trial: &Trial, segment: &SegmentLayout<'_>| {
+            weight(trial.label(), segment.decision.input_step.sample)
+        };
+        let trials = self.trials.iter_mut();
+        let mut all: Vec<_> = trials
+            .flat_map(|TrialLayout { trial, segments, .. }| {
+                segments.iter_mut().map(|segment| (weight(trial, segment), segment))
+            })
+            .collect();
+        all.sort_by(|((kind_a, size_a), _), ((kind_b, size_b), _)| {
+            kind_b.cmp(kind_a).then(size_b.total_cmp(size_a))
+        });
+        for ((_, segment), rank) in all.into_iter().zip(1..) {
+            segment.difference = rank;
+        }
+    }
+
+    /// All segments by their difference to other results, the largest first.
+    pub(super) fn by_difference(&self) -> Vec<(&TrialLayout<'a>, &SegmentLayout<'a>)> {
+        let mut all: Vec<_> = self.segments().collect();
+        all.sort_by_key(|(_, segment)| segment.difference);
+        all
+    }
+
+    /// The decision that is shown first: the most different one, or the most doubtful one.
+    pub(super) fn shown_first(&self) -> Option<&SegmentLayout<'a>> {
+        let by = |segment: &SegmentLayout<'_>| {
+            if self.first.is_compared { segment.difference } else { segment.rank }
+        };
+        self.segments().map(|(_, segment)| segment).min_by_key(|segment| by(segment))
     }
 
     /// All segments by doubt, the most doubtful first.

@@ -10,8 +10,8 @@
 //! - `paths` says where everything lies, `layout` where samples, trials and decisions lie on
 //!   the timelines; `chunk` makes columns of rows with reproducible ids, `rows` and `sheet`
 //!   drawings of them on a `canvas`.
-//! - `recorded`, `preview` and `sweep` are three kinds of recording. One part of the content
-//!   each are `signals`, `decisions`, `verdict`, `segment_view`, `beside`, `place`, `doubt`, `overview`,
+//! - `recorded`, `preview`, `sweep` and `index` are four kinds of recording. One part of the content
+//!   each are `signals`, `decisions`, `verdict`, `segment_view`, `beside`, `place`, `doubt`, `difference`, `overview`,
 //!   `delay_state`, `model`, `revision` and `about`, which `assembly` puts together.
 //! - `views` says which view shows what, by way of `blueprint`.
 //! - `content` is what all kinds are to `write`, which brings them into a file or a stream,
@@ -27,15 +27,20 @@ mod content;
 mod correlogram;
 mod decisions;
 mod delay_state;
+mod difference;
 mod doubt;
 mod end;
 mod error;
 mod error_share;
+mod index;
 mod layout;
 mod live;
 mod markdown;
 mod message;
 mod model;
+mod model_difference;
+mod model_lanes;
+mod model_signal;
 mod origin;
 mod overview;
 mod palette;
@@ -47,6 +52,7 @@ mod revision;
 mod rows;
 mod scatter;
 mod segment_view;
+mod shaded;
 mod sheet;
 mod signals;
 mod sweep;
@@ -55,13 +61,13 @@ mod views;
 mod write;
 
 pub use error::RecordError;
+pub(crate) use index::{IndexRecording, Volume};
 pub use layout::Detail;
 pub(crate) use live::Live;
 pub(crate) use preview::PreviewRecording;
-pub use recorded::Beside;
 pub use recorded::Recording;
 pub use sweep::SweepRecording;
 pub use write::log_recording;
-pub(crate) use write::write_preview;
 pub use write::write_recording;
 pub use write::write_sweep;
+pub(crate) use write::{write_index, write_preview};

@@ -1,21 +1,23 @@
 //! Models beside the measurement: what they simulate, and the residual.
 
 use std::fmt::Write as _;
-use std::ops::RangeInclusive;
 
-use rerun::{EntityPath, Scalars, SeriesLines, StateChange, TextDocument};
+use rerun::{EntityPath, Scalars, SeriesLines, TextDocument};
 
 use super::chunk::{Chunks, Index, list, words};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialLayout};
 use super::markdown::plain;
+use super::model_lanes::samples_of;
+use super::model_signal::signal;
 use super::palette::{self, Rgb, color};
 use super::paths::{self, at, child};
-use super::{correlogram, error_share, scatter};
+use super::{correlogram, error_share, model_difference, model_lanes, scatter};
 use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures, sensor_noise};
+use crate::experiment::Joint;
 use crate::fit::Horizon;
-use crate::report::ComparedJoint;
+use crate::report::{ComparedJoint, model_differences};
 use crate::wording::{
     certainty, correlation_sentences, failure_sentences, number, parameter_units,
 };
@@ -57,7 +59,10 @@ pub(super) fn add(
     scatter::add(chunks, &at(root, paths::scatter::ROOT), models)?;
     error_share::add(chunks, &at(root, paths::error_share::ROOT), models)?;
     correlogram::add(chunks, &at(root, paths::correlation::ROOT), models)?;
-    worst(chunks, root, layout, judged.comparison)
+    if is_first(models, judged) {
+        model_difference::add(chunks, root, layout, models)?;
+    }
+    model_lanes::add(chunks, root, layout, (judged.joint, judged.comparison))
 }
 
 /// Regions and correlations as lists of numbers, for programs.
@@ -108,58 +113,6 @@ fn line(chunks: &mut Chunks, entity: &EntityPath, name: &str, rgb: Rgb) -> Resul
     chunks.push_static(entity.clone(), &style.with_widths([1.5]))
 }
 
-fn signal<'a>(
-    chunks: &mut Chunks,
-    entity: EntityPath,
-    layout: &JointLayout<'a>,
-    values: impl Fn(&TrialLayout<'a>) -> Vec<f64>,
-) -> Result<(), RecordError> {
-    let mut index = Index::default();
-    let (mut all, mut lengths) = (Vec::new(), Vec::new());
-    for trial in &layout.trials {
-        let values = values(trial);
-        index.extend(trial.moments(values.len() + 1));
-        lengths.extend(std::iter::repeat_n(1, values.len()).chain([0]));
-        all.extend(values);
-    }
-    chunks.push(entity, index.without_segment(), Scalars::new(all).columns(lengths)?)
-}
-
-/// A lane that is marked where the model's worst segments are.
-fn worst(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    layout: &JointLayout<'_>,
-    comparison: &Comparison,
-) -> Result<(), RecordError> {
-    let mut marks = Vec::new();
-    for (worst, rank) in comparison.failure.iter().flat_map(|f| &f.worst_segments).zip(1..) {
-        let of_label = layout.trials.iter().find(|trial| trial.trial.label() == worst.trial);
-        let Some(trial) = of_label else { continue };
-        let samples = samples_of(worst, trial);
-        // A longer name would be cut off: a segment is narrow.
-        marks.push((trial.moment_of(*samples.start()), rank.to_string()));
-        marks.push((trial.moment_of(samples.end() + 1), String::new()));
-    }
-    if marks.is_empty() {
-        let start = layout.trials.iter().find_map(|trial| trial.moments(1).next());
-        marks.extend(start.map(|start| (start, "none: the model is adequate".to_owned())));
-    }
-    marks.sort_by_key(|(moment, name)| (moment.sample, !name.is_empty()));
-    let (index, names): (Vec<_>, Vec<_>) = marks.into_iter().unzip();
-    let states = StateChange::new().with_state(names).columns_of_unit_batches()?;
-    let index: Index = index.into_iter().collect();
-    chunks.push(at(root, paths::WORST), index.without_segment(), states)
-}
-
-/// The samples of `worst` in its trial, counted from 1.
-fn samples_of(worst: &WorstSegment, trial: &TrialLayout<'_>) -> RangeInclusive<usize> {
-    let period = trial.trial.period().seconds();
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "inside")]
-    let sample = |time_s: f64| ((time_s - trial.trial.time_s(1)) / period).round() as usize + 1;
-    sample(worst.start_s)..=sample(worst.end_s)
-}
-
 /// Two level lines between which noise alone would keep the residual.
 fn band(
     chunks: &mut Chunks,
@@ -193,7 +146,8 @@ fn page(
     let mut page = String::new();
     let joint = judged.joint;
     let unit = joint.output_unit.as_deref().unwrap_or("");
-    writeln!(page, "### {}: {}\n", plain(&joint.name), headline(judged))?;
+    let of = if models.len() > 1 { format!(", {}", plain(judged.model)) } else { String::new() };
+    writeln!(page, "### {}{of}: {}\n", plain(&joint.name), headline(judged))?;
     writeln!(page, "| model | training | validation | fit | lack of fit |\n|---|---|---|---|---|")?;
     for compared in models {
         let Comparison { training, validation, lack_of_fit, .. } = compared.comparison;
@@ -210,6 +164,9 @@ fn page(
     writeln!(page, "\nErrors are root mean squares of simulations, {horizon}.")?;
     if let Some(noise) = sensor_noise(&joint.trials) {
         writeln!(page, "Noise of the sensor: {} {unit}.", number(noise))?;
+    }
+    if is_first(models, judged) {
+        against(&mut page, models)?;
     }
     for compared in models {
         for sentence in failure_sentences(compared.joint, compared.comparison) {
@@ -238,6 +195,30 @@ fn page(
             writeln!(page, "| {rank} | {trial} | {from} … {to} s | {samples} | {shares} |")?;
         }
     }
+    parameters(&mut page, joint, models)?;
+    Ok(page)
+}
+
+/// Whether models are compared with the first one; revisions of a model are shown by their ladder.
+fn is_first(models: &[&ComparedJoint<'_>], judged: &ComparedJoint<'_>) -> bool {
+    models.first().is_some_and(|first| first.model == judged.model)
+}
+
+/// Which of several models is better than the first one, and where.
+fn against(page: &mut String, models: &[&ComparedJoint<'_>]) -> std::fmt::Result {
+    let compared: Vec<ComparedJoint<'_>> = models.iter().map(|model| **model).collect();
+    for (number, difference) in model_differences(&compared).iter().enumerate() {
+        let (model, other) = (plain(difference.model), plain(difference.other));
+        let head = if number == 0 { "\n" } else { "" };
+        let sentences = difference.sentences();
+        let sentences: Vec<_> = sentences.iter().map(|sentence| plain(sentence)).collect();
+        writeln!(page, "{head}**{model} against {other}**\n\n- {}\n", sentences.join("\n- "))?;
+    }
+    Ok(())
+}
+
+/// The parameters of each model.
+fn parameters(page: &mut String, joint: &Joint, models: &[&ComparedJoint<'_>]) -> std::fmt::Result {
     for compared in models {
         writeln!(
             page,
@@ -250,7 +231,7 @@ fn page(
             writeln!(page, "| {name} | {value} {unit} | {} |", certainty(parameter))?;
         }
     }
-    Ok(page)
+    Ok(())
 }
 
 /// The part of the plotted residual's squares that lies in `worst`, in percent.

@@ -42,6 +42,10 @@ pub(super) const UP: Rgb = rgb(95, 160, 255);
 pub(super) const DOWN: Rgb = rgb(240, 150, 195);
 /// Half of what was found lies there.
 pub(super) const BAND: Rgb = rgb(40, 50, 58);
+/// Behind what a model was not fitted to.
+pub(super) const UNSEEN_GROUND: Rgb = rgb(34, 38, 44);
+/// Behind where a model fails.
+pub(super) const FAILS_GROUND: Rgb = rgb(74, 30, 26);
 /// Grid lines.
 pub(super) const GRID: Rgb = rgb(60, 62, 66);
 
@@ -63,9 +67,12 @@ pub(super) fn models() -> impl Iterator<Item = Rgb> {
     .cycle()
 }
 
-/// Methods beside the first one; from the third on they repeat.
+/// Another result beside this one.
+pub(super) const OTHER: Rgb = rgb(180, 140, 255);
+
+/// Results beside the first one; from the third on they repeat.
 pub(super) fn others() -> impl Iterator<Item = Rgb> {
-    [rgb(180, 140, 255), rgb(255, 190, 150)].into_iter().cycle()
+    [OTHER, rgb(255, 190, 150)].into_iter().cycle()
 }
 
 /// A darker shade of a colour.

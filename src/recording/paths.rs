@@ -56,6 +56,9 @@ pub(crate) const PLACE: &str = "place";
 /// The decisions by doubt, in words and as lines to click.
 pub(crate) const DOUBT: &str = "doubt";
 pub(crate) const DOUBT_LOG: &str = "doubt/log";
+/// The decisions by how much they differ from those of other results, likewise.
+pub(crate) const DIFFERENCE: &str = "difference";
+pub(crate) const DIFFERENCE_LOG: &str = "difference/log";
 pub(crate) const DECISION_PAGE: &str = "decision/page";
 
 /// Chosen lines and breakpoints over the record.
@@ -75,10 +78,37 @@ pub(crate) const MODEL_PAGE: &str = "model_page";
 pub(crate) const NOISE_UPPER: &str = "noise/upper";
 pub(crate) const NOISE_LOWER: &str = "noise/lower";
 pub(crate) const WORST: &str = "worst";
+/// What the model was not fitted to, and where it fails.
+pub(crate) const PART: &str = "part";
+pub(crate) const FAILS: &str = "fails";
+/// By how much the squared error of further models is larger, one below it each.
+pub(crate) const MODEL_DIFFERENCE: &str = "model_difference";
+
+/// The recording that stands before many.
+pub(crate) mod index {
+    pub(crate) const ROOT: &str = "doubtful";
+    pub(crate) const JOINTS: &str = "joints";
+    pub(crate) const VERDICT: &str = "verdict";
+    pub(crate) const LOG: &str = "log";
+}
 
 /// Grid, ticks and titles of a sheet of plots.
 pub(crate) const GRID: &str = "grid";
 pub(crate) const TEXTS: &str = "texts";
+
+/// Delays beside those of other results.
+pub(crate) mod differing {
+    pub(crate) const ROOT: &str = "difference/sheet";
+    use crate::recording::paths::{GRID, TEXTS};
+    pub(crate) const LINKS: &str = "links";
+    pub(crate) const BARS: &str = "bars";
+    pub(crate) const HERE_DELAYS: &str = "delays/here";
+    pub(crate) const THERE_DELAYS: &str = "delays/there";
+    pub(crate) const OTHER_VERDICT: &str = "other_verdict";
+    pub(crate) const HERE: &str = "here";
+    pub(crate) const PARTS: [&str; 8] =
+        [GRID, HERE, LINKS, BARS, OTHER_VERDICT, THERE_DELAYS, HERE_DELAYS, TEXTS];
+}
 
 /// One decision: the segment, its candidates, their squared error.
 pub(crate) mod drawing {
@@ -240,8 +270,10 @@ pub(crate) mod revision {
         pub(crate) const SIMULATED: &str = "simulated";
         pub(crate) const RESIDUAL: &str = "residual";
         pub(crate) const WORST: &str = "worst";
-        pub(crate) const PARTS: [&str; 8] =
-            [GRID, TEXTS, WINDOW, MEASURED, NOISE, WORST, SIMULATED, RESIDUAL];
+        pub(crate) const VALIDATION: &str = "validation";
+        pub(crate) const FAILS: &str = "fails";
+        pub(crate) const PARTS: [&str; 10] =
+            [VALIDATION, FAILS, GRID, TEXTS, WINDOW, MEASURED, NOISE, WORST, SIMULATED, RESIDUAL];
     }
 
     /// The share of the error of a revision in each region.

@@ -19,8 +19,9 @@ pub(super) fn add(
     let entity = at(root, paths::PLACE);
     // The first row of all: a viewer that knows a timeline begins at its first tick, and chooses
     // among those that it knows.
-    let opening = std::iter::once(OPENING.to_owned());
-    push(chunks, entity.clone(), Index::before_all(layout.first_revision), opening)?;
+    let opening = if layout.first.is_compared { OPENING_COMPARED } else { OPENING };
+    let opening = std::iter::once(opening.to_owned());
+    push(chunks, entity.clone(), Index::before_all(layout.first), opening)?;
     let start = layout.trials.iter().filter_map(|trial| trial.moments(1).next());
     let steps = layout.segments().map(|(trial, segment)| trial.opening(segment));
     let index: Index = start.take(1).chain(steps).collect();
@@ -29,7 +30,7 @@ pub(super) fn add(
     let texts = texts.into_iter().take(index.len());
     push(chunks, entity.clone(), index.without_segment(), texts)?;
     let hint = std::iter::once(HINT.to_owned());
-    push(chunks, entity, Index::off_the_record(layout.first_revision), hint)
+    push(chunks, entity, Index::off_the_record(layout.first), hint)
 }
 
 fn push(
@@ -44,6 +45,9 @@ fn push(
 }
 
 const OPENING: &str = "**The most doubtful decision**; the right arrow begins with the first step.";
+
+const OPENING_COMPARED: &str = "**The most different decision**; on `decision` the right arrow \
+begins with the first step.";
 
 const HINT: &str = "**These plots run along the record: choose `sample`, `time` or `decision` at \
 the bottom left** (now there is the name of another timeline).";

@@ -4,6 +4,7 @@ use super::layout::Detail;
 use crate::delay::Settings;
 use crate::experiment::{Joint, ReadOptions, Source};
 use crate::report::{ComparedJoint, EstimatedJoint, ImprovedJoint};
+use crate::study::OtherResult;
 
 /// Everything that a recording holds.
 #[derive(Clone, Copy, Debug)]
@@ -22,8 +23,8 @@ pub struct Recording<'a> {
     pub detail: Detail,
     /// Models beside the measurement; those of a joint that is not recorded are left out.
     pub models: &'a [ComparedJoint<'a>],
-    /// What other methods found, drawn beside the first one's decisions.
-    pub also: &'a [Beside<'a>],
+    /// What other methods, settings or logs gave, drawn beside these decisions.
+    pub also: &'a [OtherResult],
     /// Models as they grew, on a timeline of their own; at most one per joint.
     pub revisions: &'a [ImprovedJoint<'a>],
 }
@@ -36,13 +37,4 @@ impl<'a> Recording<'a> {
         };
         self.revisions.iter().find(of_joint)
     }
-}
-
-/// What another method found of the joints of a recording.
-#[derive(Clone, Copy, Debug)]
-pub struct Beside<'a> {
-    /// Its settings.
-    pub settings: &'a Settings,
-    /// The joints that it has an estimate of.
-    pub joints: &'a [EstimatedJoint<'a>],
 }

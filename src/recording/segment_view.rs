@@ -10,7 +10,7 @@ use std::iter;
 use rerun::datatypes::Vec2D;
 use rerun::{EntityPath, LineStrips2D, Points2D};
 
-use super::beside::{Other, in_short};
+use super::beside::{Other, decided_in_short, in_short};
 use super::canvas::{CURVE_POINTS, Labels, Plot, SHEET, Span, simplified, thinned_to};
 use super::chunk::{Chunks, Index};
 use super::error::RecordError;
@@ -18,10 +18,11 @@ use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::palette::{self, color};
 use super::paths::{at, drawing};
 use super::rows::Rows;
-use crate::delay::{Candidate, Decision, Line, Method, Verdict};
+use crate::delay::{Candidate, Line, Method, Verdict};
 use crate::experiment::Joint;
 use crate::figure::Role;
 use crate::figure::segment::SegmentFigure;
+use crate::study::StepResult;
 use crate::units::signed;
 use crate::wording::{bracketed, number};
 
@@ -37,9 +38,21 @@ pub(super) fn add(
     (method, others): (Method, &[Other<'_>]),
 ) -> Result<(), RecordError> {
     let drawings: Vec<_> =
-        layout.segments().map(|(trial, segment)| Drawing::new(trial, segment)).collect();
+        layout.segments().map(|(trial, segment)| Drawing::new(joint, trial, segment)).collect();
     let root = at(root, drawing::ROOT);
     let mut sheet = Rows::new(chunks, root.clone(), layout.openings());
+    add_drawings(&mut sheet, &drawings)?;
+    if !others.is_empty() {
+        add_others(&mut sheet, &drawings, method, others)?;
+    }
+    add_candidates(chunks, &root, &drawings)
+}
+
+/// What belongs to each segment, without its candidates.
+pub(super) fn add_drawings(
+    sheet: &mut Rows<'_>,
+    drawings: &[Drawing<'_, '_>],
+) -> Result<(), RecordError> {
     let rows = || drawings.iter();
     sheet.strips(drawing::GRID, palette::GRID, 0.8, rows().map(|d| d.grid().0))?;
     sheet.texts(drawing::TICKS, palette::BORDER, rows().map(|d| d.grid().1))?;
@@ -49,29 +62,20 @@ pub(super) fn add(
     sheet.strips(drawing::INPUT_STEP, palette::INPUT, 1.6, rows().map(Drawing::input_step))?;
     sheet.strips(drawing::RESIDUAL, palette::SMOOTHED, 1.4, rows().map(Drawing::residual))?;
     sheet.strips(drawing::SSE, palette::ERROR, 1.6, rows().map(|d| vec![d.errors()]))?;
-    sheet.strips(
-        drawing::ACCEPTED,
-        palette::ACCEPTED,
-        2.4,
-        rows().map(|d| d.chosen(Role::Accepted)),
-    )?;
-    sheet.strips(
-        drawing::REJECTED,
-        palette::REJECTED,
-        2.4,
-        rows().map(|d| d.chosen(Role::Rejected)),
-    )?;
-    sheet.texts(drawing::NAMES, palette::BORDER, rows().map(|d| d.names(joint)))?;
-    if layout.is_fine() {
+    for (path, rgb, role) in [
+        (drawing::ACCEPTED, palette::ACCEPTED, Role::Accepted),
+        (drawing::REJECTED, palette::REJECTED, Role::Rejected),
+    ] {
+        sheet.strips(path, rgb, 2.4, rows().map(|d| d.chosen(role)))?;
+    }
+    sheet.texts(drawing::NAMES, palette::BORDER, rows().map(Drawing::names))?;
+    if rows().any(|drawing| drawing.segment.decision.fine.is_some()) {
         sheet.strips(drawing::INTERVAL, palette::BORDER, 1.6, rows().map(Drawing::interval))?;
     }
-    if !others.is_empty() {
-        add_others(&mut sheet, &drawings, method, others)?;
-    }
-    add_candidates(chunks, &root, &drawings)
+    Ok(())
 }
 
-/// What other methods decided, with a legend of all.
+/// What other results say, with a legend of all.
 fn add_others(
     sheet: &mut Rows<'_>,
     drawings: &[Drawing<'_, '_>],
@@ -86,17 +90,20 @@ fn add_others(
         let entry = |drawing: &Drawing<'_, '_>| {
             let decision = drawing.segment.decision;
             let is_it = (decision.verdict() == Verdict::Accepted) == accepted;
-            legend.entry(0, is_it.then(|| in_short(method, decision)))
+            legend.entry(0, is_it.then(|| decided_in_short(method.id(), decision)))
         };
         sheet.texts(path, rgb, drawings.iter().map(entry))?;
     }
     for (index, other) in others.iter().enumerate() {
-        let decision = |drawing: &Drawing<'_, '_>| other.decision(drawing.trial, drawing.segment);
+        let found = |drawing: &Drawing<'_, '_>| {
+            let p = drawing.segment.decision.input_step.sample;
+            other.pair(drawing.trial.trial.label(), p).map(|pair| &pair.there)
+        };
         let strips = |drawing: &Drawing<'_, '_>| {
-            decision(drawing).map_or_else(Vec::new, |decision| drawing.other(decision, index))
+            found(drawing).map_or_else(Vec::new, |step| drawing.other(step, index))
         };
         let entry = |drawing: &Drawing<'_, '_>| {
-            let text = decision(drawing).map(|decision| in_short(other.method, decision));
+            let text = found(drawing).map(|step| in_short(other.name, step));
             legend.entry(index + 1, text)
         };
         let [lines, name] = drawing::of_method(index);
@@ -114,7 +121,7 @@ struct Legend {
 
 impl Legend {
     fn entry(self, index: usize, text: Option<String>) -> Labels {
-        const ROW: f32 = 450.0;
+        const ROW: f32 = 464.0;
         let mut labels = Labels::default();
         let width = (SHEET.0 - 200.0) / self.entries as f32;
         let middle = 200.0 + width * (index as f32 + 0.5);
@@ -127,7 +134,8 @@ impl Legend {
 
 /// One segment on its sheet: the output above, what both lines leave of it, the error curve
 /// below.
-struct Drawing<'l, 'a> {
+pub(super) struct Drawing<'l, 'a> {
+    joint: &'l Joint,
     trial: &'l TrialLayout<'a>,
     segment: &'l SegmentLayout<'a>,
     figure: SegmentFigure<'l>,
@@ -138,7 +146,11 @@ struct Drawing<'l, 'a> {
 }
 
 impl<'l, 'a> Drawing<'l, 'a> {
-    fn new(trial: &'l TrialLayout<'a>, segment: &'l SegmentLayout<'a>) -> Self {
+    pub(super) fn new(
+        joint: &'l Joint,
+        trial: &'l TrialLayout<'a>,
+        segment: &'l SegmentLayout<'a>,
+    ) -> Self {
         let figure = SegmentFigure::new(trial.trial, segment.decision);
         let (first, last) = figure.window;
         let x = Span::new(first as f64, last as f64);
@@ -149,6 +161,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let heights = left.iter().map(|(_, y)| *y).chain([0.0]);
         let residual = Plot::new(500.0..=568.0, x, Span::around(heights, 0.1));
         Self {
+            joint,
             trial,
             segment,
             figure,
@@ -239,31 +252,34 @@ impl<'l, 'a> Drawing<'l, 'a> {
         strips
     }
 
-    /// The lines of another method's decision, and its delay or its interval as a bar.
-    fn other(&self, decision: &Decision, index: usize) -> Vec<Vec<Vec2D>> {
-        let Some((best, delay)) = decision.candidates.best().zip(decision.delay()) else {
-            return Vec::new();
-        };
-        let p = decision.input_step.sample as f64;
+    /// The lines of another result, and its delay or its interval as a bar. Of a step that lies at
+    /// another sample there, as in another log, the lines are of that log, and left out.
+    fn other(&self, step: &StepResult, index: usize) -> Vec<Vec<Vec2D>> {
+        let Some(delay) = step.delay else { return Vec::new() };
+        let own = self.segment.decision.input_step.sample;
+        let p = own as f64;
         let Span { low: first, high: last } = self.output.x_span();
         let within = |k: f64| k.clamp(first, last);
         let q = within(p + delay);
         let at = |line: &Line, k: f64| self.output.at(k, line.at(k));
-        let start = within(decision.segment.first as f64).min(q);
-        let end = within(decision.segment.last as f64).max(q);
-        let (low, high) = decision.fine.map_or((0.0, delay), |fine| (fine.low, fine.high));
+        let start = within(step.segment.0 as f64).min(q);
+        let end = within(step.segment.1 as f64).max(q);
+        let (low, high) = step.interval.unwrap_or((0.0, delay));
         // Below the edge, so that it is not taken for the first method's above.
         let depth = -10.0 - 12.0 * index as f32;
         let tick = |k: f64| [depth - 4.0, depth + 4.0].map(|up| self.output.above(k, up)).to_vec();
         let [low, high] = [low, high].map(|by| within(p + by));
-        vec![
-            vec![at(&best.before, start), at(&best.before, q)],
-            vec![at(&best.after, q), at(&best.after, end)],
+        let lines =
+            step.lines.filter(|_| step.p == own).map_or_else(Vec::new, |[before, after]| {
+                vec![vec![at(&before, start), at(&before, q)], vec![at(&after, q), at(&after, end)]]
+            });
+        let bar = [
             self.output.vertical(q).to_vec(),
             tick(low),
             [low, high].map(|k| self.output.above(k, depth)).to_vec(),
             tick(high),
-        ]
+        ];
+        lines.into_iter().chain(bar).collect()
     }
 
     /// Where the delay may end: a bar from one end of its interval to the other.
@@ -282,7 +298,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         if self.figure.verdict() == wanted { self.best() } else { Vec::new() }
     }
 
-    fn names(&self, joint: &Joint) -> Labels {
+    fn names(&self) -> Labels {
         let decision = self.segment.decision;
         let mut labels = Labels::default();
         let p = decision.input_step.sample as f64;
@@ -297,11 +313,17 @@ impl<'l, 'a> Drawing<'l, 'a> {
             let text = format!("q = {place}, SSE = {}", number(best.sse));
             labels.put_whole(self.output.below(q, 2.0), text);
         }
-        labels.put_whole(self.output.below(p, 36.0), format!("p = {}", decision.input_step.sample));
+        labels.put_whole(self.output.below(p, 24.0), format!("p = {}", decision.input_step.sample));
         let (first, last) = (decision.segment.first, decision.segment.last);
-        labels.put_whole(self.output.below(first as f64, 2.0), format!("r = {first}"));
+        // Below what is said of a breakpoint that is near.
+        let near = self.segment.decision.candidates.best().is_some_and(|best| {
+            let apart = self.output.x(best.breakpoint as f64) - self.output.x(first as f64);
+            apart < 190.0
+        });
+        let row = if near { 46.0 } else { 2.0 };
+        labels.put_whole(self.output.below(first as f64, row), format!("r = {first}"));
         labels.put_whole(self.output.below(last as f64, 2.0), format!("end = {last}"));
-        let output = bracketed("output", joint.output_unit.as_deref());
+        let output = bracketed("output", self.joint.output_unit.as_deref());
         labels.put(Vec2D::new(62.0, 22.0), output);
         labels.put(Vec2D::new(190.0, 470.0), "residual".to_owned());
         labels.put(Vec2D::new(190.0, 578.0), "SSE (log)".to_owned());

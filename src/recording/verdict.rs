@@ -2,7 +2,7 @@
 
 use rerun::{Color, EntityPath, StateChange, StateConfiguration, TextDocument, TextLog};
 
-use super::beside::{Other, row};
+use super::beside::{Other, decided_row, row};
 use super::chunk::{Chunks, Index};
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
@@ -152,7 +152,7 @@ fn add_lanes(
     )?;
     let hint = ["on `decision`, `segment`, `sample` or `time`: choose it at the bottom left"];
     let hint = StateChange::new().with_state(hint).columns_of_unit_batches()?;
-    chunks.push(at(root, paths::SEGMENT), Index::before_all(layout.first_revision), hint)?;
+    chunks.push(at(root, paths::SEGMENT), Index::before_all(layout.first), hint)?;
     let starts = layout.trials.iter().filter_map(|trial| trial.moments(1).next());
     let labels: Vec<_> = layout.trials.iter().map(|trial| trial.trial.label().to_owned()).collect();
     let states = StateChange::new().with_state(labels).columns_of_unit_batches()?;
@@ -175,21 +175,32 @@ fn document(facts: Facts<'_, '_>, methods: &str) -> String {
     format!("{title}\n{headline}\n\n{doubt}\n{methods}\n{conditions}\n\n{quantities}\n")
 }
 
-/// The table of all methods, where there are several.
+/// The page on a decision, without other results.
+pub(super) fn page(
+    estimated: EstimatedJoint<'_>,
+    trial: &TrialLayout<'_>,
+    segment: &SegmentLayout<'_>,
+) -> String {
+    let settings = &estimated.estimate.settings;
+    document(Facts { joint: estimated.joint, trial, segment, settings }, "")
+}
+
+/// The table of all results, where there are several.
 fn methods(
     trial: &TrialLayout<'_>,
     segment: &SegmentLayout<'_>,
     settings: &Settings,
     others: &[Other<'_>],
 ) -> String {
-    let found = |other: &Other<'_>| Some(row(other.method, other.decision(trial, segment)?));
+    let (label, p) = (trial.trial.label(), segment.decision.input_step.sample);
+    let found = |other: &Other<'_>| Some(row(&plain(other.name), &other.pair(label, p)?.there));
     let others: Vec<String> = others.iter().filter_map(found).collect();
     if others.is_empty() {
         return String::new();
     }
-    let first = row(settings.method, segment.decision);
+    let first = decided_row(&format!("{}, here", settings.method), segment.decision);
     let others = others.join("\n");
-    format!("\n| method | δ, samples | verdict |\n|---|---|---|\n{first}\n{others}\n")
+    format!("\n| result | δ, samples | verdict |\n|---|---|---|\n{first}\n{others}\n")
 }
 
 #[derive(Clone, Copy)]

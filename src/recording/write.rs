@@ -12,6 +12,7 @@ use super::chunk::Ids;
 use super::content::{Content, Growth, Part, application, for_each_chunk};
 use super::end::EndHeld;
 use super::error::RecordError;
+use super::index::IndexRecording;
 use super::message::{activation, chunk_message, store_message};
 use super::preview::PreviewRecording;
 use super::recorded::Recording;
@@ -45,6 +46,14 @@ pub(crate) fn write_preview(
     out: impl Write,
 ) -> Result<(), RecordError> {
     write(preview, out)
+}
+
+/// Writes the recording that stands before those of many joints to `out` as a whole `.rrd` file.
+///
+/// # Errors
+/// As [`write_recording`].
+pub(crate) fn write_index(index: &IndexRecording<'_>, out: impl Write) -> Result<(), RecordError> {
+    write(index, out)
 }
 
 fn write(content: &dyn Content, out: impl Write) -> Result<(), RecordError> {

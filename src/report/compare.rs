@@ -1,12 +1,13 @@
 //! `compare` as text.
 
 use super::text_table::TextTable;
-use crate::diagnosis::{Comparison, ErrorFigures};
+use crate::diagnosis::{Comparison, ErrorFigures, ModelDifference};
 use crate::experiment::Joint;
 use crate::fit::{Parameter, Status};
 use crate::model::JointModel;
 use crate::wording::{
-    self, correlation_sentences, effects_text, number, parameter_units, with_remark, with_unit,
+    self, correlation_sentences, effects_text, model_difference_sentences, number, parameter_units,
+    with_remark, with_unit,
 };
 
 /// A joint, its model, and how the two compare.
@@ -20,6 +21,17 @@ pub struct ComparedJoint<'a> {
     pub revision: u32,
     /// The figures.
     pub comparison: &'a Comparison,
+}
+
+/// A table of errors, one row per joint and model, the parameters below it, and how the first model
+/// of each joint compares with its others.
+pub(crate) fn compare_text(joints: &[ComparedJoint<'_>]) -> String {
+    let differences = model_differences(joints);
+    let differences: Vec<_> = differences.iter().flat_map(ComparedModels::lines).collect();
+    if differences.is_empty() {
+        return compare_table(joints);
+    }
+    format!("{}\none model against another:\n{}\n", compare_table(joints), differences.join("\n"))
 }
 
 /// A table of errors, one row per joint and model, and the parameters below it.
@@ -45,6 +57,45 @@ pub(crate) fn compare_table(joints: &[ComparedJoint<'_>]) -> String {
     let parameters = parameters.join("\n");
     let horizon = horizons(joints.iter().copied());
     format!("{table}\nroot-mean-square errors, {horizon}\n\n{parameters}\n{residuals}{failures}")
+}
+
+/// The first model of a joint beside another one.
+#[derive(Debug)]
+pub(crate) struct ComparedModels<'a> {
+    pub(crate) joint: &'a Joint,
+    pub(crate) model: &'a str,
+    pub(crate) other: &'a str,
+    pub(crate) difference: ModelDifference,
+}
+
+impl ComparedModels<'_> {
+    /// What there is to say, a sentence each.
+    pub(crate) fn sentences(&self) -> Vec<String> {
+        model_difference_sentences(self.joint, (self.model, self.other), &self.difference)
+    }
+
+    fn lines(&self) -> Vec<String> {
+        let name = &self.joint.name;
+        self.sentences().into_iter().map(|sentence| format!("{name}: {sentence}")).collect()
+    }
+}
+
+/// The first model of each joint beside each of its others.
+pub(crate) fn model_differences<'a>(joints: &[ComparedJoint<'a>]) -> Vec<ComparedModels<'a>> {
+    let mut found = Vec::new();
+    for (index, other) in joints.iter().enumerate() {
+        let of_joint = |it: &&ComparedJoint<'a>| it.joint.name == other.joint.name;
+        let before = joints.get(..index).unwrap_or_default();
+        let Some(first) = before.iter().find(of_joint) else { continue };
+        let difference = ModelDifference::of(first.comparison, other.comparison);
+        found.extend(difference.map(|difference| ComparedModels {
+            joint: first.joint,
+            model: first.model,
+            other: other.model,
+            difference,
+        }));
+    }
+    found
 }
 
 /// Where the simulations of `joints` were restarted: `restarted at every step of the input`, or,

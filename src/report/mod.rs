@@ -13,6 +13,7 @@ mod delays;
 mod design;
 mod design_words;
 mod desk;
+mod difference;
 mod doubt;
 mod effects;
 mod equation;
@@ -42,7 +43,9 @@ pub use against::against_table;
 pub(crate) use against::variable_text;
 pub(crate) use columns::columns_table;
 pub use compare::ComparedJoint;
-pub(crate) use compare::compare_table;
+pub(crate) use compare::compare_text;
+#[cfg(feature = "rrd")]
+pub(crate) use compare::model_differences;
 pub(crate) use dead_time::{dead_time_sentences, input_note};
 pub use decisions::DecisionRow;
 pub use decisions::decision_rows;
@@ -61,6 +64,7 @@ pub(crate) use design_words::{
     design_text, hold_note, left_out_note, no_range_note, shortened_note,
 };
 pub(crate) use desk::review_page;
+pub(crate) use difference::{Against, against_text};
 pub(crate) use doubt::{Doubted, by_doubt};
 pub(crate) use effects::{listing, sheet};
 pub use estimated::EstimatedJoint;
@@ -77,8 +81,9 @@ pub(crate) use json::{
 pub(crate) use lookup::{Language, Lookup};
 pub(crate) use page::{Document, Heading, RecordingFile, Report, report_text};
 pub(crate) use review::{Words, write_review_sheet};
+pub(crate) use settings::settings_in_short;
 #[cfg(feature = "rrd")]
-pub(crate) use settings::{settings_in_short, settings_rows};
+pub(crate) use settings::settings_rows;
 pub(crate) use steps::{step_line, steps_table};
 pub(crate) use summary::{DelayRange, Headline, JointSummary};
 pub use sweep::ReportedSweep;

@@ -70,7 +70,6 @@ pub(crate) fn settings_rows(settings: &Settings) -> Vec<(&'static str, String)> 
 
 /// The settings in one line: the method with its lengths and its low-pass, and what is not as the
 /// method has it by itself.
-#[cfg(feature = "rrd")]
 pub(crate) fn settings_in_short(settings: &Settings) -> String {
     /// Rows of [`settings_rows`] that are there in any case.
     const ALWAYS: [&str; 4] = ["method", "α", "β", "low-pass"];

@@ -4,12 +4,15 @@
 //!   record
 //! - [`sweep_joints`]: the delays with every setting of a grid
 //! - [`Review`]: what persons say of decisions
+//! - [`JointDifferences`]: decisions beside those of [`OtherResult`], read or estimated
 //! - [`compare_joints`], [`explain_joints`], [`add_to_joints`], [`improve_joints`]: the model of
 //!   every joint, under a [`Protocol`]
 //! - [`know_joints`], [`suspect_joints`]: what an experiment is designed from
 //!
 //! Results come back in the order of the joints; a joint that fails does not stop the others.
 
+mod difference;
+mod earlier;
 mod estimate;
 mod models;
 mod protocol;
@@ -17,6 +20,8 @@ mod review;
 mod start;
 mod sweep;
 
+pub use difference::{JointDifferences, JointResult, OtherResult, StepPair, StepResult, Verdicts};
+pub use earlier::EarlierError;
 pub use estimate::{JointEstimate, estimate_each, estimate_joints, estimate_joints_with};
 pub use models::{
     OfJoints, add_to_joints, compare_joints, explain_joints, improve_joints, know_joints,

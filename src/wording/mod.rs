@@ -1,9 +1,11 @@
 //! What numbers, units, probabilities, parameters, effects and test results are called: one
 //! place for the words that reports, recordings and the command line share.
 
+mod difference;
 mod doubt;
 mod effects;
 mod misfit;
+mod model_difference;
 mod number;
 mod parameter;
 mod probability;
@@ -11,9 +13,13 @@ mod prose;
 mod region;
 mod remedy;
 
+pub(crate) use difference::{
+    difference_in_short, difference_sentences, missing_sentences, result_in_short, step_name,
+};
 pub(crate) use doubt::{doubt_percent, doubt_sentence};
 pub(crate) use effects::{effect_ids, effects_text};
 pub(crate) use misfit::{correlation_sentences, lack_of_fit};
+pub(crate) use model_difference::model_difference_sentences;
 pub use number::number;
 pub(crate) use number::{bracketed, measure, rounded, unit_suffix, with_error, with_unit};
 pub(crate) use parameter::{certainty, parameter_units, remark, with_remark};
@@ -21,5 +27,7 @@ pub(crate) use probability::{p_cell, p_text, percent};
 pub(crate) use prose::{counted, listed, wrapped};
 #[cfg(feature = "rrd")]
 pub(crate) use region::feature_with_unit;
-pub(crate) use region::{failure_sentences, misfit_units, region_text, worst_segment_text};
+pub(crate) use region::{
+    failure_sentences, feature_with_level, misfit_units, region_text, worst_segment_text,
+};
 pub(crate) use remedy::remedy_text;

@@ -20,6 +20,13 @@ pub(crate) fn region_text(region: &Region) -> String {
     format!("{} to {}", rounded(region.from), rounded(region.to))
 }
 
+/// A part of a feature's range with its name and unit: `input 0.5 to 1 V`.
+pub(crate) fn feature_with_level(joint: &Joint, region: &Region) -> String {
+    let unit = region.feature.unit(&misfit_units(joint));
+    let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+    format!("{} {}{unit}", region.feature.name(), region_text(region))
+}
+
 /// What a feature is and its unit, as the title of an axis: `input, as it acts [V]`.
 #[cfg(feature = "rrd")]
 pub(crate) fn feature_with_unit(feature: Feature, joint: &Joint) -> String {

@@ -10,10 +10,10 @@ use tauscope::experiment::{Experiment, Joint, ReadOptions};
 use tauscope::explain::{Improvement, Options};
 use tauscope::fit::Horizon;
 use tauscope::model::integrators;
-use tauscope::recording::{Beside, Detail, RecordError, Recording, write_recording};
+use tauscope::recording::{Detail, RecordError, Recording, write_recording};
 use tauscope::report::{ComparedJoint, EstimatedJoint, Finding, ImprovedJoint};
 use tauscope::study::{
-    JointEstimate, Mode, Protocol, compare_joints, estimate_joints, improve_joints,
+    JointEstimate, Mode, OtherResult, Protocol, compare_joints, estimate_joints, improve_joints,
 };
 use tauscope::synthetic::{DelayLaw, InputSpec, JointSpec, PlantSpec, simulate, write_log};
 
@@ -94,7 +94,7 @@ impl Recorded {
     pub(crate) fn write_beside(
         &self,
         models: &[ComparedJoint<'_>],
-        also: &[Beside<'_>],
+        also: &[OtherResult],
         revisions: &[ImprovedJoint<'_>],
         detail: Detail,
         out: impl Write,

@@ -140,6 +140,19 @@ impl DataArgs {
         Ok(Experiment::read(&[path.to_owned()], &self.options()?))
     }
 
+    /// Whether no joint is named, so that all of the logs are used.
+    pub(crate) fn has_all_joints(&self) -> bool {
+        self.reading.joint.is_empty()
+    }
+
+    /// Reads another log in the same way.
+    ///
+    /// # Errors
+    /// When no joint of it can be read.
+    pub(crate) fn read_other(&self, path: &Path) -> anyhow::Result<Experiment> {
+        read_with(&[path.to_owned()], &self.options()?)
+    }
+
     /// The files that are read, where they really are.
     pub(crate) fn files(&self) -> Vec<PathBuf> {
         let (files, _) = expand_folders(&self.data);

@@ -1,5 +1,6 @@
 //! Options that several commands have, in groups.
 
+mod against;
 mod algorithm;
 mod conditions;
 mod data;
@@ -12,6 +13,7 @@ mod results;
 mod review;
 mod typed;
 
+pub(crate) use against::AgainstArgs;
 pub(crate) use algorithm::AlgorithmArgs;
 pub(crate) use conditions::{ConditionArgs, Passband, ids_with, passband};
 pub(crate) use data::{DataArgs, MemoryArgs, ReadingArgs};

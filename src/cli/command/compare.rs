@@ -8,7 +8,7 @@ use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::fit::{FitError, Horizon};
 use crate::model::{JointModel, ModelFile};
-use crate::report::{CompareJson, ComparedJoint, compare_table};
+use crate::report::{CompareJson, ComparedJoint, compare_text};
 use crate::study::{Mode, compare_joints};
 use clap::Args as ClapArgs;
 
@@ -31,6 +31,12 @@ pub(crate) struct Args {
     #[arg(short, long, value_name = "MODEL.toml", help_heading = "Model")]
     model: Vec<PathBuf>,
 
+    /// A model to compare the first one with: its errors beside the first one's, where each is
+    /// better, and whether the difference is more than chance. The same is said of further
+    /// `--model` files. May be repeated
+    #[arg(long, value_name = "MODEL.toml", help_heading = "Model")]
+    against: Vec<PathBuf>,
+
     /// Fit the free parameters of the model files, starting at their values
     #[arg(long, help_heading = "Model")]
     fit: bool,
@@ -50,9 +56,12 @@ struct Named {
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
-    let models = models(&args.model)?;
+    let models = models(&args.model, &args.against)?;
     if let Some(path) = &args.output.recording {
-        check_outputs(&[path.as_path()], &[args.data.files(), args.model.clone()].concat())?;
+        check_outputs(
+            &[path.as_path()],
+            &[args.data.files(), args.model.clone(), args.against.clone()].concat(),
+        )?;
     }
     let stream = args.output.stream.open(args.output.run.verbosity())?;
     let session = Session::with_others("compare", &args.data, &args.output.run, stream)?;
@@ -87,19 +96,26 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         return Err(nothing_usable(Some(first)));
     }
     study.record(args.output.recording.as_deref(), &compared, &[])?;
-    let text = || compare_table(&compared);
+    let text = || compare_text(&compared);
     study.end(&failures, text, || CompareJson::new(&compared, &failures))
 }
 
-fn models(paths: &[PathBuf]) -> anyhow::Result<Vec<Named>> {
+/// The models that are named, the one that the others are compared with first.
+fn models(paths: &[PathBuf], against: &[PathBuf]) -> anyhow::Result<Vec<Named>> {
+    let mut models = Vec::new();
     if paths.is_empty() {
-        return Ok(vec![Named { name: "integrator".to_owned(), file: None }]);
+        models.push(Named { name: "integrator".to_owned(), file: None });
     }
-    let named = |path: &PathBuf| {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        Ok(Named { name, file: Some(read_model(path)?) })
-    };
-    paths.iter().map(named).collect()
+    for path in paths.iter().chain(against) {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        // Two files of one name in two folders are two models.
+        let numbered = (2..).map(|number| format!("{stem} {number}"));
+        let mut names = std::iter::once(stem.clone()).chain(numbered);
+        let is_free = |name: &String| models.iter().all(|known: &Named| known.name != *name);
+        let name = names.find(is_free).unwrap_or(stem.clone());
+        models.push(Named { name, file: Some(read_model(path)?) });
+    }
+    Ok(models)
 }
 
 impl Named {

@@ -6,6 +6,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::batch::Threads;
+use crate::delay::Automatic;
 use crate::effect::Effect;
 use crate::experiment::Joint;
 use crate::explain::{Change, Explanation, Improvement, MAX_EFFECTS, Options, Revision};
@@ -20,15 +21,16 @@ use anyhow::{Context as _, bail};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::{
-    AlgorithmArgs, DataArgs, EffectArgs, ProtocolArgs, ReviewArgs, RunArgs, name_of, note_missing,
-    quoted, read_model,
+    AgainstArgs, AlgorithmArgs, DataArgs, EffectArgs, ProtocolArgs, ReviewArgs, RunArgs, name_of,
+    note_missing, quoted, read_model,
 };
 use crate::cli::console::{Bar, Verbosity, message};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{nothing_usable, said};
 use crate::cli::output::{check_outputs, write_file};
 use crate::cli::run::{
-    self, Begun, Progress, Session, Study, add_arguments, estimate_at, estimated, improved, revised,
+    self, Begun, Progress, Session, Study, add_arguments, compared, estimate_at, estimated,
+    improved, others, revised,
 };
 use crate::cli::viewer::StreamArgs;
 
@@ -49,6 +51,9 @@ pub(crate) struct Args {
 
     #[command(flatten)]
     review: ReviewArgs,
+
+    #[command(flatten)]
+    against: AgainstArgs,
 
     #[command(flatten)]
     model: ModelArgs,
@@ -128,12 +133,16 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let effects = args.model.effects.effects(file.candidates())?;
     let target = args.output.target()?;
     let inputs = args.data.files().into_iter().chain(args.model.model.clone());
-    let inputs: Vec<_> = inputs.chain(args.review.review.clone()).collect();
+    let inputs = inputs.chain(args.review.review.clone());
+    let inputs: Vec<_> = inputs.chain(args.against.against.clone()).collect();
     target.check(&inputs)?;
     let review = args.review.read()?;
     let stream = args.output.stream.open(args.output.run.verbosity())?;
     let session = Session::with_others("report", &args.data, &args.output.run, stream)?;
     let session = session.reviewed(review);
+    let asked = (std::slice::from_ref(&settings), Automatic::default());
+    let others = others(&session, (&args.against, &args.data), asked, &[])?;
+    let session = session.with_results(others);
     let study = Study::of(session, &settings, |begun| args.model.improved(&file, begun, effects))?;
     if study.result.is_some() {
         note_missing(&file, &study.experiment().joints, study.verbosity());
@@ -325,8 +334,10 @@ impl Reported<'_> {
     ) -> anyhow::Result<Completion> {
         let Self { args, file, study } = *self;
         let experiment = study.experiment();
-        let notes: Vec<String> =
-            experiment.notes.iter().cloned().chain(run::notes(joints)).collect();
+        let against = compared(joints, study.beside())?;
+        let further = run::left_over(&against, &args.data);
+        let notes = experiment.notes.iter().cloned().chain(run::notes(joints));
+        let notes: Vec<String> = notes.chain(further).collect();
         let revised = (!models.is_empty()).then(|| self.revised(models)).transpose()?;
         let embedded = self.record(models, target)?;
         let recording_name = target.recording.as_deref().map(file_name);
@@ -339,6 +350,7 @@ impl Reported<'_> {
             joints,
             settings: &study.settings,
             models,
+            against: &against,
             model: args.model.model.as_ref().map(|_| file),
             revised: revised.as_ref().map(ModelFile::text),
             split: args.model.protocol.split(),

@@ -44,6 +44,11 @@ fn is_pipe_or_device(path: &Path) -> bool {
     path.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir())
 }
 
+/// Whether `path` is, or would be, a file that can be replaced.
+pub(super) fn is_file(path: &Path) -> bool {
+    !is_pipe_or_device(path)
+}
+
 fn folder_of(path: &Path) -> &Path {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     folder.unwrap_or_else(|| Path::new("."))

@@ -1,13 +1,19 @@
 //! Recordings of any command.
 
 use std::path::Path;
+#[cfg(feature = "rrd")]
+use std::path::PathBuf;
 
 use crate::delay::Settings;
 use crate::delay::sweep::Grid;
 use crate::experiment::{ReadOptions, Source};
 use crate::report::{ComparedJoint, DesignedJoint, EstimatedJoint, ImprovedJoint, ReportedSweep};
 
-use super::file::{OutputFile, write_file};
+use crate::study::OtherResult;
+
+use super::file::{OutputFile, is_file, write_file};
+#[cfg(feature = "rrd")]
+use super::file::{check_outputs, filled_file};
 use crate::cli::console::{Bar, Verbosity, message};
 
 /// How many candidates are recorded.
@@ -20,14 +26,15 @@ pub(crate) enum Detail {
 }
 
 /// What a recording holds.
+#[derive(Clone, Copy)]
 #[cfg_attr(not(feature = "rrd"), expect(dead_code, reason = "there is no recording then"))]
 pub(crate) struct Contents<'a> {
     /// The name of the command.
     pub(crate) command: &'a str,
     pub(crate) joints: &'a [EstimatedJoint<'a>],
     pub(crate) settings: &'a Settings,
-    /// What other methods found.
-    pub(crate) also: &'a [(&'a Settings, &'a [EstimatedJoint<'a>])],
+    /// What is shown beside it.
+    pub(crate) also: &'a [OtherResult],
     pub(crate) sources: &'a [Source],
     pub(crate) reading: &'a ReadOptions,
     pub(crate) models: &'a [ComparedJoint<'a>],
@@ -36,9 +43,73 @@ pub(crate) struct Contents<'a> {
 }
 
 impl Contents<'_> {
-    /// Writes the recording to `path` and says how to look at it.
+    /// Joints up to which all are in one recording: with more of them a viewer takes long to open
+    /// it, and gigabytes.
+    const TOGETHER: usize = 20;
+
+    /// Joints of a file, where there are more.
+    #[cfg(feature = "rrd")]
+    const OF_A_FILE: usize = 8;
+
+    /// Writes the recording to `path` and says how to look at it. Of many joints it writes a
+    /// recording of some of them each to `path_1`, `path_2` and so on, and to `path` one that leads
+    /// to them.
     pub(crate) fn record(&self, path: &Path, verbosity: Verbosity) -> anyhow::Result<()> {
-        record(path, verbosity, |file| self.write(file))
+        if self.joints.len() <= Self::TOGETHER || !is_file(path) {
+            return record(path, verbosity, |file| self.write(file));
+        }
+        let parts = {
+            let _bar = Bar::spinner(verbosity, "recording");
+            self.write_parts(path)?
+        };
+        if verbosity == Verbosity::Normal {
+            let path = path.display();
+            let (first, last) = (parts.first(), parts.last());
+            let ends = first.zip(last).map(|(first, last)| format!("{first} … {last}"));
+            let said = ends.unwrap_or_default();
+            message("recording", &format!("{path}; look at it with: rerun {path}; joints: {said}"));
+        }
+        Ok(())
+    }
+
+    /// Writes the files of some joints each, and what leads to them; their names. None has its
+    /// name before all are whole.
+    #[cfg(feature = "rrd")]
+    fn write_parts(&self, path: &Path) -> anyhow::Result<Vec<String>> {
+        use crate::recording::{IndexRecording, Volume, write_index};
+
+        let groups: Vec<_> = self.joints.chunks(Self::OF_A_FILE).collect();
+        let paths: Vec<PathBuf> = (1..=groups.len()).map(|number| part(path, number)).collect();
+        let inputs: Vec<PathBuf> = self.sources.iter().map(|source| source.path.clone()).collect();
+        let outputs: Vec<&Path> = paths.iter().map(PathBuf::as_path).collect();
+        check_outputs(&outputs, &inputs)?;
+        let mut files = Vec::new();
+        for (joints, path) in groups.iter().zip(&paths) {
+            // A viewer lists recordings by name.
+            let (first, last) = (joints.first(), joints.last());
+            let ends = first.into_iter().chain(last).map(|joint| joint.joint.name.as_str());
+            let ends: Vec<&str> = ends.collect();
+            let command = format!("{} of {}", self.command, ends.join(" … "));
+            let some = Contents { joints, command: &command, ..*self };
+            files.push(filled_file(path, |file| some.write(file))?);
+        }
+        let volume = |(path, joints): (&PathBuf, &&[EstimatedJoint<'_>])| Volume {
+            file: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            joints: joints.len(),
+        };
+        let volumes: Vec<Volume> = paths.iter().zip(&groups).map(volume).collect();
+        let index = |file: &mut OutputFile| {
+            self.with_recording(|all| write_index(&IndexRecording { all, volumes: &volumes }, file))
+        };
+        files.push(filled_file(path, |file| Ok(index(file)?))?);
+        files.into_iter().try_for_each(OutputFile::commit)?;
+        Ok(volumes.into_iter().map(|volume| volume.file).collect())
+    }
+
+    #[cfg(not(feature = "rrd"))]
+    #[expect(clippy::unused_self, reason = "with recordings it is used")]
+    fn write_parts(&self, _: &Path) -> anyhow::Result<Vec<String>> {
+        Err(left_out())
     }
 
     #[cfg(feature = "rrd")]
@@ -52,17 +123,14 @@ impl Contents<'_> {
         &self,
         work: impl FnOnce(&crate::recording::Recording<'_>) -> T,
     ) -> T {
-        use crate::recording::{self, Beside, Recording};
+        use crate::recording::{self, Recording};
 
-        let also = self.also.iter().map(|&(settings, joints)| Beside { settings, joints });
-        let also: Vec<Beside<'_>> = also.collect();
         let Self { command, joints, settings, sources, reading, .. } = *self;
-        let Self { models, revisions, detail, .. } = *self;
+        let Self { models, revisions, detail, also, .. } = *self;
         let detail = match detail {
             Detail::Full => recording::Detail::Full,
             Detail::Lean => recording::Detail::Lean,
         };
-        let also = also.as_slice();
         work(&Recording {
             command,
             joints,
@@ -81,6 +149,14 @@ impl Contents<'_> {
     fn write(&self, _: &mut OutputFile) -> anyhow::Result<()> {
         Err(left_out())
     }
+}
+
+/// The name of the file `number` beside `path`: `x_1.rrd` beside `x.rrd`.
+#[cfg(feature = "rrd")]
+fn part(path: &Path, number: usize) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let ending = path.extension().map(|ending| format!(".{}", ending.to_string_lossy()));
+    path.with_file_name(format!("{stem}_{number}{}", ending.unwrap_or_default()))
 }
 
 /// Delays over all settings, to be recorded.

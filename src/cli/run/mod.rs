@@ -1,6 +1,7 @@
 //! What commands on logs share: read, estimate, use threads, report.
 
 mod add_command;
+mod against;
 mod estimates;
 mod outcomes;
 mod revisions;
@@ -8,6 +9,7 @@ mod session;
 mod study;
 
 pub(crate) use add_command::add_arguments;
+pub(crate) use against::{compared, left_over, others};
 pub(crate) use estimates::{Estimates, estimate_at, estimated, failures, notes};
 pub(crate) use outcomes::outcomes;
 pub(crate) use revisions::{Progress, improved, models, revised, revision_names};

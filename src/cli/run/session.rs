@@ -10,7 +10,7 @@ use crate::cli::exit::Completion;
 use crate::cli::viewer::Stream;
 use crate::delay::{Automatic, Settings};
 use crate::experiment::{Experiment, Joint, ReadOptions};
-use crate::study::{Review, estimate_each};
+use crate::study::{OtherResult, Review, estimate_each};
 
 /// Logs that were read, and where what becomes of them goes.
 pub(crate) struct Session<'a> {
@@ -19,6 +19,8 @@ pub(crate) struct Session<'a> {
     /// The name of the command.
     pub(crate) command: &'static str,
     review: Review,
+    /// Results that are shown beside the delays.
+    pub(super) beside: Vec<OtherResult>,
     own: OwnSettings,
     run: &'a RunArgs,
 }
@@ -55,12 +57,25 @@ impl<'a> Session<'a> {
         let _bar = Bar::spinner(run.verbosity(), "reading");
         let own = OwnSettings::of(options)?;
         let experiment = data.read_with(options)?;
-        Ok(Self { experiment, stream, command, review: Review::default(), own, run })
+        Ok(Self {
+            experiment,
+            stream,
+            command,
+            review: Review::default(),
+            beside: Vec::new(),
+            own,
+            run,
+        })
     }
 
     /// What persons said of the decisions stands above the conditions.
     pub(crate) fn reviewed(self, review: Review) -> Self {
         Self { review, ..self }
+    }
+
+    /// What is shown beside the delays.
+    pub(crate) fn with_results(self, beside: Vec<OtherResult>) -> Self {
+        Self { beside, ..self }
     }
 
     /// Hears what persons said, and says what of it was of no use.
@@ -102,6 +117,16 @@ impl<'a> Session<'a> {
         let asked = (settings.clone(), automatic);
         let of_joint = |joint: &Joint| self.own.of_joint(joint, &asked);
         estimate_each(joints, of_joint, || bar.step(), &Threads)
+    }
+
+    /// The delays of other joints, estimated as those of the logs.
+    pub(crate) fn estimates_of(
+        &self,
+        joints: &[Joint],
+        asked: (&Settings, Automatic),
+    ) -> Estimates {
+        let bar = Bar::new(self.verbosity(), "estimating", "trials", trials(joints));
+        self.estimated_of(joints, asked, &bar)
     }
 
     /// The delays of the joints that are not asked for.

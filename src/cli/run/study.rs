@@ -12,7 +12,7 @@ use crate::cli::output::{Contents, Detail};
 use crate::delay::Settings;
 use crate::experiment::{Experiment, Joint, Other};
 use crate::report::{ComparedJoint, ImprovedJoint};
-use crate::study::others_of;
+use crate::study::{OtherResult, others_of};
 
 /// Logs, the delays in them, and what came of the joints.
 pub(crate) struct Study<'a, T> {
@@ -102,7 +102,7 @@ impl<'a> Begun<'a> {
             command,
             joints: &estimated(experiment, estimates),
             settings,
-            also: &[],
+            also: &self.session.beside,
             sources: &experiment.sources,
             reading: &experiment.options,
             models,
@@ -120,6 +120,11 @@ impl<T> Study<'_, T> {
 
     pub(crate) fn verbosity(&self) -> Verbosity {
         self.session.verbosity()
+    }
+
+    /// Results that are shown beside the delays.
+    pub(crate) fn beside(&self) -> &[OtherResult] {
+        &self.session.beside
     }
 
     /// Records `models` and `revisions` beside the decisions, and shows them.

@@ -7,14 +7,15 @@ use crate::diagnosis::failure::WorstSegment;
 use crate::figure::ladder::judged;
 use crate::recording::canvas::{Plot, SHEET, Span, Strips, simplified, thinned_to};
 use crate::recording::error::RecordError;
-use crate::recording::error_share::short;
+use crate::recording::error_share::{HATCH, short};
 use crate::recording::layout::{JointLayout, TrialLayout};
 use crate::recording::palette;
 use crate::recording::paths::revision::record;
 use crate::recording::rows::Rows;
+use crate::recording::shaded::{Spans, areas, condition, validation, where_it_fails};
 use crate::recording::sheet::Sheet;
 use crate::report::ImprovedJoint;
-use crate::wording::bracketed;
+use crate::wording::{bracketed, misfit_units};
 
 use super::figure::noise;
 
@@ -40,6 +41,14 @@ pub(super) fn add(
     let sheet = |(comparison, plot)| drawing.sheet(improved, comparison, plot).into_parts();
     let sheets = of_each().zip(&residuals).map(sheet);
     let (grids, texts): (Vec<_>, Vec<_>) = sheets.unzip();
+    for (path, rgb, spans) in [
+        (record::VALIDATION, palette::UNSEEN_GROUND, validation as fn(&Comparison) -> Spans),
+        (record::FAILS, palette::FAILS_GROUND, where_it_fails),
+    ] {
+        let each = of_each().zip(&residuals);
+        let shaded = each.map(|(comparison, plot)| areas(layout, plot, &spans(comparison)));
+        rows.strips(path, rgb, HATCH, shaded)?;
+    }
     rows.strips(record::GRID, palette::GRID, 0.7, grids.into_iter())?;
     rows.texts(record::TEXTS, palette::BORDER, texts.into_iter())?;
     let window = std::iter::repeat_n(drawing.window_in_record(), count);
@@ -149,9 +158,16 @@ impl<'l, 'a> Drawing<'l, 'a> {
         }
         let floor = noise(improved).filter(|noise| *noise > 0.0);
         let times = floor.map(|noise| format!(" ({} × noise)", short(judged(comparison) / noise)));
+        let units = misfit_units(improved.finding.compared.joint);
+        let fails = condition(comparison).map_or_else(String::new, |condition| {
+            let clauses: Vec<_> = condition.clauses.iter().map(|it| it.with_unit(&units)).collect();
+            format!("; red: {}", clauses.join(" and "))
+        });
         let residual = format!(
-            "residual{unit}{}; between blue lines: 95 % of the noise; red: worst segments; time [s]",
-            times.unwrap_or_default()
+            "residual{unit}{}; between blue lines: 95 % of the noise; bars: worst segments; \
+             grey: not fitted{}",
+            times.unwrap_or_default(),
+            fails
         );
         let x_ticks = residual_plot.x_span().ticks(10.0);
         sheet.frame(residual_plot, &x_ticks, &ticks(residual_plot), &residual);

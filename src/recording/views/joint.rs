@@ -16,13 +16,16 @@ use crate::recording::error::RecordError;
 use crate::recording::overview::{MAP_HEIGHT, MAP_WIDTH};
 use crate::recording::paths::revision::{record, share, sheet};
 use crate::recording::paths::{
-    self, against, at, child, correlation, drawing, joint_root, map, of_model,
+    self, against, at, child, correlation, differing, drawing, joint_root, map, of_model,
 };
-use crate::recording::{correlogram, delay_state, error_share, revision, scatter, segment_view};
+use crate::recording::{
+    correlogram, delay_state, difference, error_share, revision, scatter, segment_view,
+};
 use crate::report::{ComparedJoint, EstimatedJoint};
 
-/// What the lane of the worst segments of the model that is judged is called.
-const WORST: &str = "Worst segments, restarted at every step: 1 is the worst";
+/// What the lanes of the model that is judged are called.
+const LANES: &str =
+    "Worst segments, restarted at every step (1 is the worst); what was not fitted; where it fails";
 
 /// The tab of `joint`: its decisions, its record, its table; and before them the revisions
 /// of its model, and its models, where there are any.
@@ -35,13 +38,16 @@ pub(super) fn tab(
 ) -> Result<Node, RecordError> {
     let mut decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
     let fine = decisions.any(|decision| decision.fine.is_some());
-    let mut views = Views { builder, joint, fine, others };
+    let mut views = Views { builder, joint, fine, others, revisions };
     let mut pages = Vec::new();
     if revisions > 0 {
         pages.push(views.revisions()?);
     }
     if !models.is_empty() {
         pages.push(views.models(models)?);
+    }
+    if others > 0 {
+        pages.push(views.differences()?);
     }
     let delay = views.delay_state();
     let delay = views.view(delay)?;
@@ -61,13 +67,15 @@ struct Views<'b, 'i> {
     joint: &'b Joint,
     /// Whether some delay is known between samples.
     fine: bool,
-    /// Methods beside the first one.
+    /// Results beside this one.
     others: usize,
+    /// Revisions of its model.
+    revisions: usize,
 }
 
 /// Columns of the table of candidates.
 const CANDIDATE_COLUMNS: [&str; 8] =
-    ["i", "j", "q", "delta", "sse", "slope_before", "slope_after", "f"];
+    ["i", "j", "q", "delta", "sse_shown", "slope_before_shown", "slope_after_shown", "f"];
 
 impl Views<'_, '_> {
     /// The entity at `path` below the joint.
@@ -146,6 +154,29 @@ impl Views<'_, '_> {
         let why = self.view(View::new("TextDocument", "Doubts", &why))?;
         let tabs = [doubtful, all, why];
         self.builder.container(ContainerKind::Tabs, "Lists", &tabs, &[])
+    }
+
+    /// Where the decisions differ from those of other results, the most different first.
+    fn differences(&mut self) -> Result<Node, RecordError> {
+        let root = self.at(differing::ROOT);
+        let name = "Delays here and there, and their difference";
+        let sheet = self.view(View::drawing(name, &root, &differing::PARTS, difference::SIZE))?;
+        let drawing = self.view(self.drawing())?;
+        let verdict = [self.path(paths::VERDICT)];
+        let verdict = self.view(View::new("TextDocument", "Verdict", &verdict))?;
+        let list = [self.path(paths::DIFFERENCE_LOG)];
+        let list = View::new("TextLog", "Most different first: click a number", &list);
+        let list = self.view(list.with("TextLogColumns", clickable("difference")))?;
+        let page = [self.path(paths::DIFFERENCE)];
+        let page = self.view(View::new("TextDocument", "In words", &page))?;
+        let right = [page, list, verdict];
+        let builder = &mut *self.builder;
+        let right =
+            builder.container(ContainerKind::Vertical, "Lists", &right, &[3.0, 3.2, 3.8])?;
+        let left = [sheet, drawing];
+        let left = builder.container(ContainerKind::Vertical, "Steps", &left, &[3.6, 6.4])?;
+        let columns = [left, right];
+        builder.container(ContainerKind::Horizontal, "Differences", &columns, &[6.6, 3.4])
     }
 
     /// A line that says where the cursor is, or where to click.
@@ -243,15 +274,15 @@ impl Views<'_, '_> {
                 legend,
             )?,
             self.plot("Input", &[self.at(paths::INPUT)], Legend::InTitle)?,
-            self.view(View::new("StateTimeline", WORST, &[self.path(paths::WORST)]))?,
-            self.residuals(models.len())?,
+            self.lanes_of_models(models)?,
+            self.residuals(&names)?,
         ];
         let builder = &mut *self.builder;
         let plots = builder.container(
             ContainerKind::Vertical,
             "Plots",
             &rows,
-            &[1.25, 3.0, 2.4, 1.0, 1.1, 3.6],
+            &[1.2, 3.0, 2.4, 1.0, 2.4, 3.2],
         )?;
         let page = [self.path(paths::MODEL_PAGE)];
         let page = self.view(View::new("TextDocument", "Models", &page))?;
@@ -259,8 +290,32 @@ impl Views<'_, '_> {
         self.builder.container(ContainerKind::Horizontal, "Models", &columns, &[7.2, 2.8])
     }
 
+    /// The worst segments, what was not fitted to, and where the model fails.
+    fn lanes_of_models(&mut self, models: &[&ComparedJoint<'_>]) -> Result<Node, RecordError> {
+        let mut paths = vec![self.path(paths::WORST)];
+        let has = |fits: fn(&ComparedJoint<'_>) -> bool| models.iter().any(|model| fits(model));
+        if has(|model| !model.comparison.per_step.is_empty()) {
+            paths.push(self.path(paths::PART));
+        }
+        if has(|model| model.comparison.failure.is_some()) {
+            paths.push(self.path(paths::FAILS));
+        }
+        self.view(View::new("StateTimeline", LANES, &paths))
+    }
+
+    /// Which of several models is better, along the record.
+    fn model_difference(&mut self, names: &[&str]) -> Result<Node, RecordError> {
+        let root = self.at(paths::MODEL_DIFFERENCE);
+        let others: Vec<_> = names.iter().skip(1).map(|name| child(&root, name)).collect();
+        let first = names.first().copied().unwrap_or_default();
+        let name =
+            format!("Squared error so far less that of {first}: it rises where {first} is better");
+        self.plot(&name, &others, Legend::Apart)
+    }
+
     /// What the residual depends on, in three drawings.
-    fn residuals(&mut self, models: usize) -> Result<Node, RecordError> {
+    fn residuals(&mut self, names: &[&str]) -> Result<Node, RecordError> {
+        let models = names.len();
         let scatter = self.sheet(
             ("What the residual depends on: points, and their mean", scatter::SIZE),
             (paths::scatter::ROOT, &paths::scatter::PARTS),
@@ -276,7 +331,11 @@ impl Views<'_, '_> {
             (correlation::ROOT, &correlation::PARTS),
             (&[correlation::BAND, correlation::CURVE], models),
         );
-        let tabs = [self.view(scatter)?, self.view(shares)?, self.view(correlation)?];
+        let mut tabs = Vec::new();
+        if models > 1 && self.revisions == 0 {
+            tabs.push(self.model_difference(names)?);
+        }
+        tabs.extend([self.view(scatter)?, self.view(shares)?, self.view(correlation)?]);
         self.builder.container(ContainerKind::Tabs, "Residual", &tabs, &[])
     }
 

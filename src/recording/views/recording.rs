@@ -37,7 +37,8 @@ pub(in crate::recording) fn messages(
         // The first one is on its way, at least.
         let expected = usize::from(growth == Growth::Growing);
         let revisions = improved.map_or(expected, |improved| improved.revisions.len());
-        let others = recording.others(joint.joint).len();
+        let others =
+            recording.also.iter().filter(|it| it.joint(&joint.joint.name).is_some()).count();
         tabs.push(joint::tab(&mut builder, *joint, &models, revisions, others)?);
     }
     // One revision alone is there on every timeline.
@@ -45,6 +46,7 @@ pub(in crate::recording) fn messages(
     let opening = match growth {
         Growth::Growing => ("revision", PlayState::Following),
         Growth::Finished if is_ladder => ("revision", PlayState::Paused),
+        Growth::Finished if !recording.also.is_empty() => ("difference", PlayState::Paused),
         Growth::Finished => ("decision", PlayState::Paused),
     };
     builder.tabbed(tabs, opening, application)

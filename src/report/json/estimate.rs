@@ -3,6 +3,7 @@
 use serde::{Serialize, Serializer};
 
 use super::dead_time::{DeadTimeJson, InputJson};
+use super::difference::OtherJson;
 use super::header::Header;
 use super::settings::SettingsJson;
 use crate::delay::{
@@ -13,7 +14,9 @@ use crate::experiment::{Experiment, ReadOptions, Source};
 use crate::report::decisions::detailed_rows;
 use crate::report::delay_table::DelayTableRow;
 use crate::report::settings::own_settings;
-use crate::report::{DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary, Words};
+use crate::report::{
+    Against, DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary, Words,
+};
 
 /// The document of `estimate --format json`.
 #[derive(Debug, Serialize)]
@@ -26,6 +29,8 @@ pub(crate) struct EstimateJson<'a> {
     first: RunJson<'a>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     also: Vec<RunJson<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    against: Vec<OtherJson<'a>>,
     notes: &'a [String],
     failures: &'a [String],
 }
@@ -233,10 +238,12 @@ struct DecisionJson<'a> {
 
 impl<'a> EstimateJson<'a> {
     /// Collects the results of one or several runs, the first of which is the answer;
-    /// `failures` are messages on joints and files that failed.
+    /// `against` compares it with further ones; `failures` are messages on joints and files that
+    /// failed.
     pub(crate) fn new(
         experiment: &'a Experiment,
         runs: &[(&'a Settings, &'a [EstimatedJoint<'a>])],
+        against: &'a [Against<'a>],
         failures: &'a [String],
     ) -> Option<Self> {
         let run = |(settings, joints): &(&Settings, &'a [EstimatedJoint<'a>])| RunJson {
@@ -255,6 +262,7 @@ impl<'a> EstimateJson<'a> {
             reading: &experiment.options,
             first: run(first),
             also: others.iter().map(run).collect(),
+            against: against.iter().map(OtherJson::new).collect(),
             notes: &experiment.notes,
             failures,
         })

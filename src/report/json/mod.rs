@@ -9,6 +9,7 @@ mod compare;
 mod conclusion;
 mod dead_time;
 mod design;
+mod difference;
 mod effects;
 mod estimate;
 mod explain;

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::conclusion::ConclusionJson;
+use super::difference::OtherJson;
 use super::header::Header;
 use crate::report::page::Report;
 
@@ -14,6 +15,8 @@ pub(crate) struct ReportJson<'a> {
     report: String,
     recording: Option<String>,
     joints: Vec<SentenceJson<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    against: Vec<OtherJson<'a>>,
     failures: &'a [String],
 }
 
@@ -34,6 +37,7 @@ impl<'a> ReportJson<'a> {
             report: path,
             recording,
             joints: joints.map(|(joint, sentence)| of_joint(report, joint, sentence)).collect(),
+            against: report.against.iter().map(OtherJson::new).collect(),
             failures: report.failures,
         }
     }

@@ -8,13 +8,14 @@ use crate::delay::{AgainstState, Condition, DelayTable, MethodSpec};
 use crate::report::against::{AGAINST_HEADER, against_rows};
 use crate::report::decisions::detailed_rows;
 use crate::report::delay_table::{LEVEL_HEADER, kind_sentence, level_cells, neutral_sentence};
+use crate::report::difference::difference_table;
 use crate::report::text::{lag_line, tracking_line};
 use crate::report::text_table::TextTable;
 use crate::report::{
     DecisionDetail, DecisionRow, DelayRange, Doubted, EstimatedJoint, Headline, JointSummary,
     Words, by_doubt, dead_time_sentences,
 };
-use crate::wording::{doubt_percent, doubt_sentence, number};
+use crate::wording::{difference_sentences, doubt_percent, doubt_sentence, number};
 
 /// Rows of a table that a reader may still want to scroll through.
 const MOST_ROWS: usize = 2000;
@@ -35,6 +36,7 @@ pub(super) fn blocks(
         blocks.push(Block::part("Single decisions"));
         blocks.push(Block::Figures(segments));
     }
+    blocks.extend(differing(report, estimated));
     blocks.extend(doubtful(estimated));
     blocks.extend(reviewed(estimated));
     let found = estimated.delay_table();
@@ -181,6 +183,26 @@ fn doubtful(estimated: EstimatedJoint<'_>) -> Vec<Block> {
         ]);
     }
     vec![Block::part("Doubtful decisions"), Block::Table(table)]
+}
+
+/// Where the decisions differ from those of other results.
+fn differing(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Vec<Block> {
+    /// Decisions in a table.
+    const MOST: usize = 10;
+    let mut blocks = Vec::new();
+    for against in report.against {
+        let name = &estimated.joint.name;
+        let of_joint = against.joints.iter().find(|(joint, _)| joint == name);
+        let Some((_, found)) = of_joint else { continue };
+        blocks.push(Block::part(format!("Against {}", against.title())));
+        let sentences = difference_sentences(found);
+        blocks.push(Block::List(sentences.iter().map(|words| sentence(words)).collect()));
+        let table = difference_table([(name.as_str(), found)].into_iter(), MOST);
+        if !table.rows.is_empty() {
+            blocks.push(Block::Table(table));
+        }
+    }
+    blocks
 }
 
 /// What persons said, and what the program says of the same steps.

@@ -38,7 +38,7 @@ pub(super) fn blocks(
     blocks.push(Block::Table(parameters(compared)));
     blocks.push(Block::text(format!("The fit: {}.", compared.comparison.termination)));
     blocks.extend(errors(report, improved, file)?);
-    blocks.extend(beside_the_measurement(report, compared, file)?);
+    blocks.extend(beside_the_measurement(report, improved, file)?);
     blocks.extend(failures(improved, file)?);
     blocks.extend(rankings(improved));
     Ok(blocks)
@@ -211,12 +211,15 @@ fn history(report: &Report<'_>, improved: &ImprovedJoint<'_>) -> Option<Block> {
 /// What the model simulates, and the residual.
 fn beside_the_measurement(
     report: &Report<'_>,
-    compared: &ComparedJoint<'_>,
+    improved: &ImprovedJoint<'_>,
     file: &str,
 ) -> Result<Vec<Block>, PlotError> {
+    let compared = &improved.finding.compared;
     let split = report.split.unwrap_or_else(|| Split::of(compared.joint));
     let figure = simulated::figure(compared, split, format!("{file}-simulated"))?;
     let mut blocks = vec![Block::part("Measured and simulated"), Block::Figures(vec![figure])];
+    let earlier = simulated::earlier(improved, format!("{file}-earlier-residuals"))?;
+    blocks.extend(earlier.map(|figure| Block::Figures(vec![figure])));
     let residual = correlation_sentences(compared.comparison).join("; ");
     if !residual.is_empty() {
         blocks.push(Block::text(format!("Residual of the part that was fitted: {residual}.")));

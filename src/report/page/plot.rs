@@ -12,6 +12,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape};
+use crate::wording::rounded;
 
 /// Parts of a pixel that a coordinate resolves.
 const FINE: u32 = 4;
@@ -147,22 +148,37 @@ pub(super) fn draw(panels: &[Panel], width: u32, name: &str) -> Result<String, P
         }
         rest.present().map_err(failed)?;
     }
-    Ok(framed(&text, (width, height), name))
+    let described: Vec<_> = panels.iter().map(Panel::in_words).collect();
+    Ok(framed(&text, (width, height), (name, &described.join(". "))))
 }
 
-/// The drawing in a frame of its own size, with its name for those who do not see it.
-fn framed(text: &str, (width, height): (u32, u32), name: &str) -> String {
+/// The drawing in a frame of its own size, with its name and what it shows for those who do not see
+/// it.
+fn framed(text: &str, (width, height): (u32, u32), (name, described): (&str, &str)) -> String {
     let inside = text.split_once(">\n").map_or("", |(_, inside)| inside);
     let inside = inside.replace(" opacity=\"1\"", "");
     let (wide, high) = (width * FINE, height * FINE);
-    let name = maud::html! { (name) }.into_string();
+    let [name, described] = [name, described].map(|text| maud::html! { (text) }.into_string());
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-         viewBox=\"0 0 {wide} {high}\" role=\"img\"><title>{name}</title>\n{inside}"
+         viewBox=\"0 0 {wide} {high}\" role=\"img\"><title>{name}</title>\n\
+         <desc>{described}</desc>\n{inside}"
     )
 }
 
 impl Panel {
+    /// Axes with their ranges, and what is drawn.
+    fn in_words(&self) -> String {
+        let range = |axis: &Axis, what: &str| {
+            let name = if axis.name.is_empty() { what } else { axis.name.as_str() };
+            format!("{name} from {} to {}", rounded(axis.span.low), rounded(axis.span.high))
+        };
+        let marks: Vec<&str> = self.marks.iter().filter_map(|mark| mark.name.as_deref()).collect();
+        let shown =
+            if marks.is_empty() { String::new() } else { format!(": {}", marks.join(", ")) };
+        format!("{}, {}{shown}", range(&self.y, "height"), range(&self.x, "width"))
+    }
+
     fn has_legend(&self) -> bool {
         self.marks.iter().any(|mark| mark.name.is_some())
     }

@@ -4,7 +4,7 @@ use crate::delay::Settings;
 use crate::experiment::{Experiment, Joint};
 use crate::fit::Split;
 use crate::model::ModelFile;
-use crate::report::{EstimatedJoint, ImprovedJoint};
+use crate::report::{Against, EstimatedJoint, ImprovedJoint};
 
 /// What a report is about.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,8 @@ pub(crate) struct Report<'a> {
     pub(crate) settings: &'a Settings,
     /// The models of joints that have one, each with its revisions.
     pub(crate) models: &'a [ImprovedJoint<'a>],
+    /// Other results that the decisions are compared with.
+    pub(crate) against: &'a [Against<'a>],
     /// The model file that they come from.
     pub(crate) model: Option<&'a ModelFile>,
     /// The model file with what was found, as text.

@@ -10,7 +10,7 @@ use crate::figure::Role;
 use crate::figure::{Axis, Mark, Panel, Place, Shape};
 use crate::figure::{Span, thinned_to};
 use crate::fit::{FitRecord, Horizon, Part, Split, Window};
-use crate::report::ComparedJoint;
+use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::wording::bracketed;
 use crate::wording::percent;
 
@@ -59,6 +59,46 @@ pub(super) fn figure(
     let svg = draw(&[output, left], WIDTH, &name)?;
     let caption = "The measured output beside the simulated one, and the residual.".to_owned();
     Ok(Figure { file, svg, caption })
+}
+
+/// What each revision before the last one left, over time, each at its own scale; none where there
+/// was none before.
+pub(super) fn earlier(
+    improved: &ImprovedJoint<'_>,
+    file: String,
+) -> Result<Option<Figure>, PlotError> {
+    let last = improved.finding.compared;
+    let timeline = Timeline::of(last.joint);
+    let before = improved.numbered().filter(|(number, _)| *number != last.revision);
+    let before: Vec<_> = before
+        .map(|(revision, step)| ComparedJoint { revision, comparison: &step.comparison, ..last })
+        .collect();
+    let panel = |(place, compared): (usize, &ComparedJoint<'_>)| {
+        let name = format!("revision {}", compared.revision);
+        let unit = last.joint.output_unit.as_deref();
+        let axis = timeline.axis();
+        let lines = timeline.lines(|index, _| residual(compared, index));
+        let mut marks = vec![timeline.borders()];
+        let worst = worst_parts(compared, &timeline);
+        if !worst.is_empty() {
+            let worst = Mark::new(Role::Attention, Shape::Spans(worst, 0.3));
+            marks.push(worst.named("worst segments"));
+        }
+        marks.extend(noise(compared));
+        marks.push(Mark::new(Role::Model, Shape::Lines(lines, 1.0)).named(name));
+        marks.extend(noise_edges(compared, timeline.ends()));
+        let y = Axis::new(residuals(compared), bracketed("residual", unit), 4.0);
+        let x = if place + 1 < before.len() { axis.bare() } else { axis };
+        Panel { x, y, height: 80, marks }
+    };
+    if before.is_empty() {
+        return Ok(None);
+    }
+    let panels: Vec<_> = before.iter().enumerate().map(panel).collect();
+    let name = format!("Residual of the earlier revisions of {}", last.joint.name);
+    let svg = draw(&panels, WIDTH, &name)?;
+    let caption = "What the earlier revisions left, each at its own scale.".to_owned();
+    Ok(Some(Figure { file, svg, caption }))
 }
 
 /// The segment with the largest share of the squared error, larger; none where no lack of

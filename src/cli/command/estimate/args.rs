@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
 
-use crate::cli::args::{AlgorithmArgs, DataArgs, ReviewArgs, RunArgs, number};
+use crate::cli::args::{AgainstArgs, AlgorithmArgs, DataArgs, ReviewArgs, RunArgs, number};
 use crate::cli::each_log::FolderArgs;
 use crate::cli::output::Detail;
 use crate::cli::viewer::StreamArgs;
@@ -22,11 +22,21 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub(crate) review: ReviewArgs,
     #[command(flatten)]
+    pub(crate) against: AgainstArgs,
+    #[command(flatten)]
     pub(crate) follow: FollowArgs,
     #[command(flatten)]
     pub(crate) output: OutputArgs,
     #[command(flatten)]
     pub(crate) folder: FolderArgs,
+}
+
+impl Args {
+    /// The files that are read.
+    pub(super) fn inputs(&self) -> Vec<PathBuf> {
+        let further = self.review.review.iter().chain(&self.against.against);
+        self.data.files().into_iter().chain(further.cloned()).collect()
+    }
 }
 
 /// A log that still grows.

@@ -2,7 +2,8 @@
 
 use crate::delay::Settings;
 use crate::experiment::Experiment;
-use crate::report::EstimatedJoint;
+use crate::report::{Against, EstimatedJoint};
+use crate::study::OtherResult;
 
 /// The joints that have an estimate with some settings.
 pub(super) type Run<'a> = (&'a Settings, &'a [EstimatedJoint<'a>]);
@@ -16,4 +17,8 @@ pub(super) struct Estimated<'a> {
     pub(super) settings: &'a Settings,
     /// What came out by each method.
     pub(super) runs: &'a [Run<'a>],
+    /// What is shown beside the answer.
+    pub(super) others: &'a [OtherResult],
+    /// How it differs from the answer.
+    pub(super) against: &'a [Against<'a>],
 }

@@ -98,7 +98,7 @@ impl<'a> Files<'a> {
             command: "estimate",
             joints: result.joints,
             settings: result.settings,
-            also: result.runs.get(1..).unwrap_or_default(),
+            also: result.others,
             sources: &result.experiment.sources,
             reading: &result.experiment.options,
             models: &[],

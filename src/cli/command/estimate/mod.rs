@@ -8,9 +8,11 @@ mod follow;
 use crate::cli::each_log::Each;
 use crate::cli::exit::Completion;
 use crate::cli::failure::nothing_usable;
-use crate::cli::run::{Session, estimated, failures, notes};
+use crate::cli::run::{Session, compared, estimated, failures, left_over, notes, others};
 use crate::delay::{CandidateLines, Settings};
-use crate::report::{EstimateJson, against_table, delay_levels_text, estimate_table, steps_table};
+use crate::report::{
+    EstimateJson, against_table, against_text, delay_levels_text, estimate_table, steps_table,
+};
 use estimated::{Estimated, Run};
 use files::Files;
 
@@ -27,7 +29,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let with_lines = |settings| Settings { lines, ..settings };
     let settings: Vec<_> = args.algorithm.runs().into_iter().map(with_lines).collect();
     let csv_text = args.folder.csv_text();
-    let inputs: Vec<_> = args.data.files().into_iter().chain(args.review.review.clone()).collect();
+    let inputs = args.inputs();
     let files = Files::check(&args.output, &inputs, csv_text)?;
     let review = args.review.read()?;
     let stream = args.output.stream.open(verbosity)?;
@@ -39,6 +41,12 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let settings: Vec<_> = settings.iter().map(|one| session.in_samples(one)).collect();
     let work = || session.estimates_by_each(&settings, args.algorithm.automatic());
     let results = session.in_threads(work)?;
+    let others = others(
+        &session,
+        (&args.against, &args.data),
+        (&settings, args.algorithm.automatic()),
+        &results,
+    )?;
     let mut failures = results.first().map_or_else(Vec::new, |first| failures(experiment, first));
     let joints: Vec<_> = results.iter().map(|results| estimated(experiment, results)).collect();
     let runs: Vec<Run<'_>> =
@@ -49,11 +57,21 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     if let Some(followed) = followed {
         followed.say_changes(first_joints);
     }
-    let result = Estimated { experiment, joints: first_joints, settings: answer, runs: &runs };
+    let against = compared(first_joints, &others)?;
+    let result = Estimated {
+        experiment,
+        joints: first_joints,
+        settings: answer,
+        runs: &runs,
+        others: &others,
+        against: &against,
+    };
     failures.extend(files.left_out(&result));
-    session.warn(&failures, &notes(first_joints));
+    let further = left_over(&against, &args.data);
+    let notes: Vec<_> = notes(first_joints).into_iter().chain(further).collect();
+    session.warn(&failures, &notes);
     files.write(&result, &session.stream, verbosity)?;
-    let json = || EstimateJson::new(experiment, &runs, &failures);
+    let json = || EstimateJson::new(experiment, &runs, &against, &failures);
     session.end(Completion::without(&failures), || text(&args.output, &result), json)
 }
 
@@ -69,6 +87,7 @@ fn each_log(args: &Args, program: &clap::Command) -> anyhow::Result<Completion> 
             ("--output", output.recording.is_some()),
             ("--connect, --spawn or --serve", output.stream.is_asked()),
             ("--follow", args.follow.is_on),
+            ("--against", !args.against.against.is_empty()),
             ("--review", args.review.review.is_some()),
             ("--review-sheet", output.review_sheet.is_some()),
             ("--delays", output.delays.is_some()),
@@ -90,6 +109,7 @@ fn text(args: &args::OutputArgs, result: &Estimated<'_>) -> String {
             text += &steps_table(joints);
         }
     }
+    text.extend(result.against.iter().map(against_text));
     if args.table.is_some() {
         text += &delay_levels_text(result.joints);
     }

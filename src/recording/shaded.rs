@@ -1,0 +1,94 @@
+//! Parts of the record that are marked behind a residual: what the model was not fitted to, and
+//! where it fails.
+
+use std::ops::Range;
+
+use rerun::datatypes::Vec2D;
+
+use super::canvas::{Plot, Strips};
+use super::error_share::hatched;
+use super::layout::JointLayout;
+use crate::diagnosis::Comparison;
+use crate::diagnosis::failure::FailsWhere;
+use crate::fit::Part;
+
+/// Samples of a trial, counted from 0, with the trial's index among those of its joint.
+pub(super) type Spans = Vec<(usize, Range<usize>)>;
+
+/// The part that was not fitted to.
+pub(super) fn validation(comparison: &Comparison) -> Spans {
+    let steps = comparison.per_step.iter().filter(|step| step.part == Part::Validation);
+    joined(steps.map(|step| (step.trial, step.start..step.start + step.samples)))
+}
+
+/// The first condition under which the model fails.
+pub(super) fn condition(comparison: &Comparison) -> Option<&FailsWhere> {
+    comparison.failure.as_ref()?.fails_where.first()
+}
+
+/// Where that condition holds.
+pub(super) fn where_it_fails(comparison: &Comparison) -> Spans {
+    let mut trials = Vec::new();
+    let mut behind = 0;
+    for residual in &comparison.fit.evaluation.residuals {
+        trials.push(behind..behind + residual.len());
+        behind += residual.len();
+    }
+    let samples = condition(comparison).map_or(&[][..], |condition| &condition.samples);
+    let place = |sample: &usize| {
+        let index = trials.iter().position(|trial| trial.contains(sample))?;
+        let first = sample - trials.get(index)?.start;
+        Some((index, first..first + 1))
+    };
+    joined(samples.iter().filter_map(place))
+}
+
+/// Neighbours as one.
+fn joined(spans: impl Iterator<Item = (usize, Range<usize>)>) -> Spans {
+    let mut all: Spans = Vec::new();
+    for (trial, span) in spans {
+        match all.last_mut() {
+            Some((known, last)) if *known == trial && last.end == span.start => last.end = span.end,
+            _ => all.push((trial, span)),
+        }
+    }
+    all
+}
+
+/// Areas of `plot` over its whole height, each filled by a line to and fro.
+pub(super) fn areas(layout: &JointLayout<'_>, plot: &Plot, spans: &Spans) -> Strips {
+    /// Areas that are as near as this on the sheet are one.
+    const NEAR: f32 = 1.0;
+    let ends = spans.iter().filter_map(|(index, span)| {
+        let trial = layout.trials.iter().find(|trial| trial.index == *index)?;
+        let x = |k: usize| plot.x(trial.time_ns(k) as f64 * 1e-9);
+        Some((x(span.start + 1), x(span.end)))
+    });
+    let mut areas: Vec<(f32, f32)> = Vec::new();
+    for (left, right) in ends {
+        match areas.last_mut() {
+            Some((_, last)) if left - *last <= NEAR => *last = right,
+            _ => areas.push((left, right)),
+        }
+    }
+    let Plot { top, bottom, .. } = *plot;
+    let area = |(left, right): (f32, f32)| {
+        let column = |(number, x): (usize, f32)| {
+            let (from, to) = if number % 2 == 0 { (top, bottom) } else { (bottom, top) };
+            [Vec2D::new(x, from), Vec2D::new(x, to)]
+        };
+        hatched(left, right).enumerate().flat_map(column).collect()
+    };
+    areas.into_iter().map(area).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbours_are_joined_within_a_trial() {
+        let spans = [(0, 0..2), (0, 2..5), (0, 7..9), (1, 9..10)];
+        assert_eq!(joined(spans.into_iter()), [(0, 0..5), (0, 7..9), (1, 9..10)]);
+    }
+}

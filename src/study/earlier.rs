@@ -1,0 +1,270 @@
+//! Decisions of an earlier run, read from its JSON or from its table of decisions.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use super::difference::{JointResult, OtherResult, StepResult, verdict_of};
+use crate::numerics::Line;
+
+/// Why the result of an earlier run cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum EarlierError {
+    /// The file cannot be opened or is no text.
+    #[error("{path}: cannot be read")]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: std::io::Error,
+    },
+    /// The file is JSON, and not the result of an estimate.
+    #[error("{path}: expected the JSON of an estimate, schema `{}`; found {found}", SCHEMA)]
+    Schema {
+        /// The file.
+        path: PathBuf,
+        /// Its schema in words.
+        found: String,
+    },
+    /// The JSON is broken, or something that is needed is missing.
+    #[error("{path}: this is no whole result of an estimate")]
+    Json {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: serde_json::Error,
+    },
+    /// A row of the table of decisions cannot be understood.
+    #[error("{path}: the table of decisions cannot be read")]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: csv::Error,
+    },
+    /// A verdict that there is not.
+    #[error("{path}: joint `{joint}`, trial {trial}, step {i}: there is no verdict `{got}`")]
+    Verdict {
+        /// The file.
+        path: PathBuf,
+        /// The joint.
+        joint: String,
+        /// The trial.
+        trial: String,
+        /// Number of the step.
+        i: usize,
+        /// What is there.
+        got: String,
+    },
+}
+
+/// The schema of an estimate.
+const SCHEMA: &str = "tauscope/estimate/1";
+
+/// What a file is known by that has a table of decisions.
+const COLUMNS: [&str; 6] = ["joint", "trial", "i", "p", "verdict", "failed"];
+
+#[derive(Debug, Deserialize)]
+struct Document {
+    settings: Option<SettingsRead>,
+    joints: Vec<JointRead>,
+}
+
+/// What is said of the settings.
+#[derive(Debug, Deserialize)]
+struct SettingsRead {
+    method: String,
+    alpha: Option<f64>,
+    alpha_s: Option<f64>,
+    beta: Option<f64>,
+    beta_s: Option<f64>,
+    low_pass: Option<LowPassRead>,
+}
+
+#[derive(Debug, Deserialize)]
+struct LowPassRead {
+    cutoff_hz: f64,
+}
+
+#[derive(Debug, Deserialize)]
+struct JointRead {
+    joint: String,
+    decisions: Vec<Row>,
+}
+
+/// A decision as both kinds of file have it.
+#[derive(Debug, Deserialize)]
+struct Row {
+    joint: String,
+    trial: String,
+    i: usize,
+    p: usize,
+    r: usize,
+    end: usize,
+    delta: Option<f64>,
+    delta_s: Option<f64>,
+    slope_before: Option<f64>,
+    intercept_before: Option<f64>,
+    slope_after: Option<f64>,
+    intercept_after: Option<f64>,
+    verdict: String,
+    #[serde(default)]
+    delta_low: Option<f64>,
+    #[serde(default)]
+    delta_high: Option<f64>,
+    /// In a table of several methods: the first one is the answer.
+    #[serde(default)]
+    method: Option<String>,
+}
+
+impl OtherResult {
+    /// Reads what an earlier `estimate` found: its JSON, or its table of decisions as CSV. Of
+    /// several methods the first one is read. None where the file is neither.
+    ///
+    /// # Errors
+    /// [`EarlierError::File`] for what cannot be opened, [`EarlierError::Schema`],
+    /// [`EarlierError::Json`], [`EarlierError::Table`] and [`EarlierError::Verdict`] for what
+    /// is one of both and cannot be understood.
+    pub fn read(path: &Path) -> Result<Option<Self>, EarlierError> {
+        let file = |source| EarlierError::File { path: path.to_owned(), source };
+        let bytes = std::fs::read(path).map_err(file)?;
+        let Ok(text) = String::from_utf8(bytes) else { return Ok(None) };
+        Self::parse(text.trim_start_matches('\u{feff}'), path)
+    }
+
+    fn parse(text: &str, path: &Path) -> Result<Option<Self>, EarlierError> {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        if text.trim_start().starts_with(['{', '[']) {
+            let document = document(text, path)?;
+            let settings = document.settings.map(SettingsRead::in_short);
+            let joints = document.joints.into_iter();
+            let joints = joints.map(|joint| joint_of(joint.joint, joint.decisions, path));
+            return Ok(Some(Self { name, settings, joints: joints.collect::<Result<_, _>>()? }));
+        }
+        let Some(rows) = rows(text, path)? else { return Ok(None) };
+        let method = rows.first().and_then(|row| row.method.clone());
+        let mut joints: Vec<(String, Vec<Row>)> = Vec::new();
+        for row in rows.into_iter().filter(|row| row.method == method) {
+            match joints.iter_mut().find(|(joint, _)| *joint == row.joint) {
+                Some((_, rows)) => rows.push(row),
+                None => joints.push((row.joint.clone(), vec![row])),
+            }
+        }
+        let joints = joints.into_iter().map(|(joint, rows)| joint_of(joint, rows, path));
+        Ok(Some(Self { name, settings: method, joints: joints.collect::<Result<_, _>>()? }))
+    }
+}
+
+fn document(text: &str, path: &Path) -> Result<Document, EarlierError> {
+    let json = |source| EarlierError::Json { path: path.to_owned(), source };
+    let value: serde_json::Value = serde_json::from_str(text).map_err(json)?;
+    let schema = value.get("schema").and_then(serde_json::Value::as_str);
+    if schema != Some(SCHEMA) {
+        let found = schema.map_or_else(|| "none".to_owned(), |schema| format!("`{schema}`"));
+        return Err(EarlierError::Schema { path: path.to_owned(), found });
+    }
+    serde_json::from_value(value).map_err(json)
+}
+
+/// The rows of a table of decisions; none where `text` is no such table.
+fn rows(text: &str, path: &Path) -> Result<Option<Vec<Row>>, EarlierError> {
+    let table = |source| EarlierError::Table { path: path.to_owned(), source };
+    let header = text.lines().find(|line| !line.starts_with('#')).unwrap_or_default();
+    let delimiters = [b',', b';', b'\t'].into_iter();
+    let delimiter =
+        delimiters.max_by_key(|delimiter| header.bytes().filter(|byte| byte == delimiter).count());
+    let mut builder = csv::ReaderBuilder::new();
+    builder.delimiter(delimiter.unwrap_or(b',')).trim(csv::Trim::All).comment(Some(b'#'));
+    let mut reader = builder.from_reader(text.as_bytes());
+    let Ok(found) = reader.headers().cloned() else { return Ok(None) };
+    if COLUMNS.into_iter().any(|name| found.iter().all(|column| column != name)) {
+        return Ok(None);
+    }
+    reader.deserialize().collect::<Result<Vec<Row>, _>>().map(Some).map_err(table)
+}
+
+fn joint_of(joint: String, rows: Vec<Row>, path: &Path) -> Result<JointResult, EarlierError> {
+    let steps = rows.into_iter().map(|row| row.step(path));
+    Ok(JointResult { joint, steps: steps.collect::<Result<_, _>>()? })
+}
+
+impl Row {
+    fn step(self, path: &Path) -> Result<StepResult, EarlierError> {
+        let Some(verdict) = verdict_of(&self.verdict) else {
+            let Self { joint, trial, i, verdict: got, .. } = self;
+            return Err(EarlierError::Verdict { path: path.to_owned(), joint, trial, i, got });
+        };
+        let line = |slope: Option<f64>, intercept: Option<f64>| {
+            Some(Line { slope: slope?, intercept: intercept? })
+        };
+        let before = line(self.slope_before, self.intercept_before);
+        let after = line(self.slope_after, self.intercept_after);
+        Ok(StepResult {
+            trial: self.trial,
+            i: self.i,
+            p: self.p,
+            segment: (self.r, self.end),
+            verdict,
+            delay: self.delta,
+            delay_s: self.delta_s,
+            interval: self.delta_low.zip(self.delta_high),
+            lines: before.zip(after).map(|(before, after)| [before, after]),
+        })
+    }
+}
+
+impl SettingsRead {
+    fn in_short(self) -> String {
+        let length = |samples: Option<f64>, seconds: Option<f64>| {
+            let samples = samples.map(|samples| format!("{samples} samples"));
+            samples.or_else(|| seconds.map(|seconds| format!("{seconds} s")))
+        };
+        let alpha = length(self.alpha, self.alpha_s).map(|length| format!("α {length}"));
+        let beta = length(self.beta, self.beta_s).map(|length| format!("β {length}"));
+        let low_pass = self.low_pass.map(|filter| format!("{} Hz", filter.cutoff_hz));
+        let parts = [alpha, beta, low_pass].into_iter().flatten();
+        std::iter::once(self.method).chain(parts).collect::<Vec<_>>().join(", ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delay::{Condition, Verdict};
+
+    const HEADER: &str = "joint,trial,i,p,r,end,candidates,f_opt,q,delta,delta_s,sse,\
+        slope_before,intercept_before,slope_after,intercept_after,verdict,failed";
+
+    fn parse(text: &str) -> Result<Option<OtherResult>, EarlierError> {
+        OtherResult::parse(text, Path::new("earlier.csv"))
+    }
+
+    #[test]
+    fn a_table_of_decisions_is_read() {
+        let rows = "boom,1,1,89,79,126,8,5,104,15,0.15,1.5,0,2,0.1,-8,accepted,\n\
+                    boom,1,2,120,110,126,0,,,,,,,,,,too_short,too_short\n";
+        let read = parse(&format!("{HEADER}\n{rows}")).unwrap().unwrap();
+        let [joint] = read.joints.as_slice() else { panic!("{read:?}") };
+        let [first, second] = joint.steps.as_slice() else { panic!("{joint:?}") };
+        assert_eq!((read.name.as_str(), first.p, first.delay), ("earlier", 89, Some(15.0)));
+        assert_eq!(first.lines.map(|lines| lines[1].slope), Some(0.1));
+        assert_eq!(second.verdict, Verdict::Rejected(Condition::TooShort));
+        assert_eq!((second.delay, second.lines), (None, None));
+    }
+
+    #[test]
+    fn what_is_no_result_is_none_and_what_is_a_broken_one_names_its_place() {
+        assert_eq!(parse("time_s,boom.input,boom.output\n0,1,2\n").unwrap(), None);
+        let other = r#"{"schema": "tauscope/sweep/1"}"#;
+        assert!(
+            matches!(parse(other), Err(EarlierError::Schema { found, .. }) if found.contains("sweep"))
+        );
+        assert!(matches!(parse("{"), Err(EarlierError::Json { .. })));
+        let unknown = "boom,1,1,89,79,126,8,5,104,15,0.15,1.5,0,2,0.1,-8,perhaps,\n";
+        let error = parse(&format!("{HEADER}\n{unknown}"));
+        assert!(matches!(error, Err(EarlierError::Verdict { i: 1, .. })));
+        let ragged = parse(&format!("{HEADER}\nboom,1\n"));
+        assert!(matches!(ragged, Err(EarlierError::Table { .. })));
+    }
+}
