@@ -93,7 +93,7 @@ fn delays_of_servos_are_those_of_their_departures() {
             // A step in the direction in which it moves already shows nothing.
             assert!(accepted as f64 > 0.8 * found.decisions.len() as f64);
             assert!(median <= near_s, "servo {index}: {median}");
-            assert!(far <= 2, "servo {index}: {far}");
+            assert!(25 * far <= accepted, "servo {index}: {far}");
         }
     }
 }

@@ -19,8 +19,9 @@ pub(super) struct Prepared<'a> {
     pub(super) steps: Vec<InputStep>,
     /// What the output does about each step, where rest or a stop is shown.
     pub(super) motions: Vec<Option<StepMotion>>,
-    /// Whether the output comes to rest where the input says.
-    pub(super) tracks: bool,
+    /// Whether the output comes to rest between steps, so that some of them change nothing: each
+    /// reaction is then tested against noise.
+    pub(super) is_tested: bool,
 }
 
 impl<'a> Prepared<'a> {
@@ -35,7 +36,7 @@ impl<'a> Prepared<'a> {
         };
         let period = trial.period();
         let motions = motions(&raw, &steps, period, &settings.at(period));
-        Ok(Self { raw, smoothed, period, steps, motions, tracks: false })
+        Ok(Self { raw, smoothed, period, steps, motions, is_tested: false })
     }
 
     /// What the method is to look at.

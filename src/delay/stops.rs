@@ -9,7 +9,7 @@ use super::steps::InputStep;
 use crate::experiment::Trial;
 use crate::numerics::{median, robust_scale};
 
-/// Holds that end at the same end of the range, which show a stop.
+/// Holds in which the joint comes to the same end of its range, which show a stop.
 const FEWEST: usize = 3;
 
 /// Samples at the end of a hold that stand at a stop.
@@ -32,14 +32,21 @@ pub(super) struct Stops {
 impl Stops {
     /// The stops that `trials` with these `steps` show; `None` where there is none.
     pub(super) fn of(trials: &[Trial], steps: &[Vec<InputStep>]) -> Option<Self> {
-        let outputs = || trials.iter().flat_map(|trial| trial.output().iter().copied());
-        let (low, high) = outputs().fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
-        let ends: Vec<&[f64]> = trials.iter().zip(steps).flat_map(hold_ends).collect();
+        let held: Vec<&[f64]> = trials.iter().zip(steps).flat_map(holds).collect();
+        let last = |held: &&[f64]| median(held.get(held.len().checked_sub(STANDING)?..)?);
+        let (low, high) = held
+            .iter()
+            .filter_map(last)
+            .fold((f64::MAX, f64::MIN), |(low, high), y| (low.min(y), high.max(y)));
         let near = |end: f64| {
-            let is_near =
-                |values: &&&[f64]| values.iter().all(|y| (y - end).abs() <= NEAR * (high - low));
-            let levels: Vec<f64> =
-                ends.iter().filter(is_near).filter_map(|values| median(values)).collect();
+            let is_near = |y: &f64| (y - end).abs() <= NEAR * (high - low);
+            // One that stands there all the time may rest there, where its input moves nothing.
+            let moved = held.iter().filter(|held| !held.first().is_some_and(is_near));
+            let standing = |held: &&[f64]| {
+                let last = held.get(held.len().checked_sub(STANDING)?..)?;
+                median(last).filter(|_| last.iter().all(is_near))
+            };
+            let levels: Vec<f64> = moved.filter_map(standing).collect();
             (levels.len() >= FEWEST).then_some(levels)
         };
         let (at_low, at_high) = (near(low), near(high));
@@ -71,6 +78,7 @@ impl Stops {
         for (motion, (&start, end)) in trial.motions.iter_mut().zip(starts.iter().zip(ends)) {
             let arrival = self.arrival(trial.raw.get(start..end).unwrap_or_default());
             if motion.is_none() && (arrival.is_some_and(|after| after > 0) || before.is_some()) {
+                trial.is_tested = true;
                 let until = arrival.filter(|after| *after > 0).map(|after| start + after);
                 *motion = Some(StepMotion {
                     first: before.unwrap_or(0),
@@ -98,15 +106,11 @@ impl Stops {
     }
 }
 
-/// The last samples of each hold.
-fn hold_ends<'a>((trial, steps): (&'a Trial, &Vec<InputStep>)) -> Vec<&'a [f64]> {
+/// The output of each hold.
+fn holds<'a>((trial, steps): (&'a Trial, &Vec<InputStep>)) -> Vec<&'a [f64]> {
     let starts = || steps.iter().map(|step| step.sample - 1);
     let ends = starts().skip(1).chain([trial.output().len()]);
-    let tail = |(start, end): (usize, usize)| {
-        let from = end.checked_sub(STANDING).filter(|from| *from >= start)?;
-        trial.output().get(from..end)
-    };
-    starts().zip(ends).filter_map(tail).collect()
+    starts().zip(ends).filter_map(|(start, end)| trial.output().get(start..end)).collect()
 }
 
 #[cfg(test)]

@@ -118,7 +118,7 @@ impl Tracking {
             arrived = hold.arrival().map_or(arrived, |arrival| start + arrival);
             previous = hold.target;
         }
-        trial.tracks = true;
+        trial.is_tested = true;
     }
 
     fn rest_at(&self, level: f64) -> f64 {

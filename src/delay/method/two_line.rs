@@ -90,7 +90,7 @@ fn decide_all(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
 fn confidence(trial: &Prepared<'_>, settings: &Settings) -> Option<f64> {
     let few =
         settings.first_last == FirstLast::Auto && settings.first_last.are_judged(trial.steps.len());
-    settings.confidence.or((few || trial.tracks).then_some(CONFIDENCE))
+    settings.confidence.or((few || trial.is_tested).then_some(CONFIDENCE))
 }
 
 /// The first sample that a segment may have, the last breakpoint, and the last sample.

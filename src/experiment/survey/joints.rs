@@ -39,6 +39,7 @@ impl Columns<'_> {
         {
             let follower = self.follower(*input, &outputs);
             let is_sure = follower.is_some() || outputs.len() == 1;
+            let is_sure = is_sure && !self.is_bare(*input);
             let output = follower.or(outputs.first().copied());
             joints.extend(output.map(|output| self.joint(None, *input, output, is_sure)));
         }
@@ -95,6 +96,12 @@ impl Columns<'_> {
         let others: Vec<usize> = all.filter(moving).collect();
         let output = self.follower(*input, if outputs.is_empty() { &others } else { outputs })?;
         Some(self.joint(None, *input, output, false))
+    }
+
+    /// Whether a name is no more than a word of block diagrams, which any column may have.
+    fn is_bare(&self, column: usize) -> bool {
+        const BARE: [&str; 5] = ["u", "in", "input", "control", "signal"];
+        matches!(self.words(column).as_slice(), [word] if BARE.contains(&word.as_str()))
     }
 
     /// Whether nothing but the little word `in` says that a joint's input is one: neither another
