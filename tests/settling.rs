@@ -128,7 +128,7 @@ fn intervals_hold_the_dead_times_behind_a_further_lag_and_without() {
 #[test]
 fn a_joint_that_moves_on_does_not_settle_and_the_paper_asks_nothing() {
     let (trial, _) = record(PLAIN, 2);
-    let paper = Settings { paper: true, every_change: true, ..settings(Method::TWO_LINE) };
+    let paper = Settings { paper: true, ..settings(Method::TWO_LINE) };
     assert_eq!(estimate(&trial, &paper).unwrap().settling, None);
     let told = Settings { settles: Some(false), ..settings(Method::HINGE) };
     assert_eq!(estimate(&trial, &told).unwrap().settling, None);

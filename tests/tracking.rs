@@ -17,10 +17,20 @@ impl Chance {
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
+    /// A whole number below `end`.
+    fn below(&mut self, end: usize) -> usize {
+        floor(self.next() * end as f64)
+    }
+
     /// About normal, with a standard deviation of 1.
     fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.next()).sum::<f64>() - 6.0
     }
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small, not below 0")]
+fn floor(value: f64) -> usize {
+    value as usize
 }
 
 /// A servo that is commanded to random levels, sampled at 50 Hz.
@@ -43,11 +53,11 @@ impl Servo {
         let (mut input, mut level) = (Vec::new(), 2);
         for _ in 0..=steps {
             let [short, long] = self.hold_s;
-            let samples = ((short + (long - short) * chance.next()) / FINE_S) as usize / EVERY;
+            let samples = floor((short + (long - short) * chance.next()) / FINE_S) / EVERY;
             input.extend(std::iter::repeat_n(LEVELS[level], samples * EVERY));
-            level = (level + 1 + (4.0 * chance.next()) as usize) % LEVELS.len();
+            level = (level + 1 + chance.below(4)) % LEVELS.len();
         }
-        let late = (self.delay_s / FINE_S) as usize;
+        let late = floor(self.delay_s / FINE_S);
         let (mut angle, mut speed) = (0.0, 0.0);
         let output: Vec<f64> = (0..input.len())
             .map(|k| {

@@ -161,7 +161,8 @@ impl<'a> Record<'a> {
             },
             min_step: settings.min_step,
             input: settings.with_input_of(trials).input,
-            every_change: settings.every_change,
+            // Every change of the input is a step where it is for the paper.
+            grows: settings.paper || settings.grows,
             first_last: FirstLast::Keep,
             ..Settings::of(Method::HINGE)
         };

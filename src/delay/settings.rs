@@ -94,14 +94,12 @@ pub struct Settings {
     /// Whether the input is taken as steps or as moving all the time.
     pub input: InputKind,
     /// Whether the record still grows: nothing is then taken from the whole of it, neither whether
-    /// the output settles or tracks its input, nor what its sensor's noise is.
+    /// the output settles or tracks its input, nor what its sensor's noise is, and every change of
+    /// the input is a step, as with `paper`.
     pub grows: bool,
     /// Whether the output settles at a level for each level of the input, as a speed or a pressure
     /// does; none where the record is to show it.
     pub settles: Option<bool>,
-    /// Every change of the input is a step, to the letter of the paper: noise of the input
-    /// counts, and an edge of several samples is several steps.
-    pub every_change: bool,
     /// How `τ_k` goes on between two steps.
     pub interpolation: Interpolation,
     /// Reject a step as `nothing_happened` unless its change of slope is this unlikely to
@@ -143,7 +141,6 @@ impl Settings {
             input: InputKind::Auto,
             grows: false,
             settles: None,
-            every_change: false,
             interpolation: Interpolation::Hold,
             confidence: spec.confidence,
             interval: 0.95,

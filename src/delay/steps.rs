@@ -53,7 +53,7 @@ pub fn joint_steps(trials: &[Trial], settings: &Settings) -> Vec<Vec<InputStep>>
 /// edge over a few samples is one, which begins where the edge begins.
 pub(super) fn trial_steps(trial: &Trial, settings: &Settings) -> Vec<InputStep> {
     let input = trial.input();
-    if settings.every_change {
+    if settings.paper || settings.grows {
         return input_steps(input, settings.min_step);
     }
     let is_given = settings.min_step > 0.0;

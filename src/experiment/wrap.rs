@@ -29,7 +29,10 @@ impl Wrap {
         let (low, high) = known().fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
         let range = high - low;
         let is_turn = |turn: &f64| (RANGE * turn..=BEYOND * turn).contains(&range);
-        let turn = turns(unit, known().all(|value| value.fract() == 0.0)).find(is_turn)?;
+        let counts = || known().all(|value| value.fract() == 0.0);
+        let turn = turns(unit)
+            .find(is_turn)
+            .or_else(|| powers_of_two(unit).find(is_turn).filter(|_| counts()))?;
         let wrap = Self { turn };
         let known = |trial: &&[f64]| trial.iter().copied().filter(is_known).collect();
         wrap.explains(&trials.iter().map(known).collect::<Vec<_>>()).then_some(wrap)
@@ -75,14 +78,22 @@ impl Wrap {
     }
 }
 
-/// The turns that sensors have: degrees, radians, or counts that are powers of two.
-fn turns(unit: Option<&str>, is_whole: bool) -> impl Iterator<Item = f64> {
-    let said = |units: &[&str]| unit.is_none_or(|unit| units.contains(&unit));
-    let degrees = said(&["deg", "°", "degrees"]).then_some(360.0);
-    let radians = said(&["rad", "radians"]).then_some(std::f64::consts::TAU);
-    let are_counts = is_whole && said(&["cnt", "count", "counts", "inc", "ticks"]);
-    let counts = (8..=24).map(|bits| f64::from(1_u32 << bits)).filter(move |_| are_counts);
-    degrees.into_iter().chain(radians).chain(counts)
+/// The turns of sensors of angles.
+fn turns(unit: Option<&str>) -> impl Iterator<Item = f64> {
+    let degrees = is_one_of(unit, &["deg", "°", "degrees"]).then_some(360.0);
+    let radians = is_one_of(unit, &["rad", "radians"]).then_some(std::f64::consts::TAU);
+    degrees.into_iter().chain(radians)
+}
+
+/// Those of sensors that count.
+fn powers_of_two(unit: Option<&str>) -> impl Iterator<Item = f64> {
+    let is_count = is_one_of(unit, &["cnt", "count", "counts", "inc", "ticks"]);
+    (8..=24).map(|bits| f64::from(1_u32 << bits)).filter(move |_| is_count)
+}
+
+/// Whether `unit` is one of `units`, or not said.
+fn is_one_of(unit: Option<&str>, units: &[&str]) -> bool {
+    unit.is_none_or(|unit| units.contains(&unit))
 }
 
 #[cfg(test)]

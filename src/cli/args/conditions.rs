@@ -199,7 +199,6 @@ impl ConditionArgs {
             paper: self.paper,
             min_step: self.min_step,
             input: if self.paper { InputKind::Steps } else { self.input.into() },
-            every_change: self.paper,
             confidence,
             interval: self.interval,
             ..usual

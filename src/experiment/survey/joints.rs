@@ -41,7 +41,8 @@ impl Columns<'_> {
             let is_sure = follower.is_some() || outputs.len() == 1;
             let is_sure = is_sure && !self.is_bare(*input);
             let output = follower.or(outputs.first().copied());
-            joints.extend(output.map(|output| self.joint(None, *input, output, is_sure)));
+            let joint = |output| FoundJoint { is_sure, ..self.joint(None, *input, output) };
+            joints.extend(output.map(joint));
         }
         joints.retain(|joint| !self.is_doubtful(joint));
         if joints.is_empty() { self.by_data(&outputs).into_iter().collect() } else { joints }
@@ -79,7 +80,7 @@ impl Columns<'_> {
                 joint.input == input || joint.output == output || joint.name == name
             };
             if !joints.iter().any(is_taken) {
-                joints.push(self.joint(Some(name), input, output, true));
+                joints.push(self.joint(Some(name), input, output));
             }
         }
         joints.sort_by_key(|joint| joint.input);
@@ -95,7 +96,7 @@ impl Columns<'_> {
         let moving = |column: &usize| column != input && self.signal(*column).is_some();
         let others: Vec<usize> = all.filter(moving).collect();
         let output = self.follower(*input, if outputs.is_empty() { &others } else { outputs })?;
-        Some(self.joint(None, *input, output, false))
+        Some(FoundJoint { is_sure: false, ..self.joint(None, *input, output) })
     }
 
     /// Whether a name is no more than a word of block diagrams, which any column may have.
@@ -112,13 +113,7 @@ impl Columns<'_> {
         rank(&words, &INPUT_WORDS).is_none() && self.following(joint.input, joint.output).is_none()
     }
 
-    fn joint(
-        &self,
-        name: Option<String>,
-        input: usize,
-        output: usize,
-        is_sure: bool,
-    ) -> FoundJoint {
+    fn joint(&self, name: Option<String>, input: usize, output: usize) -> FoundJoint {
         let word = |column: usize, known: &[&str]| {
             let words = self.words(column);
             let found = rank(&words, known).and_then(|rank| known.get(rank).copied());
@@ -135,7 +130,7 @@ impl Columns<'_> {
             *output = format!("{output}; its rate follows the input (correlation {follows:+.2})");
         }
         let name = name.or(own).unwrap_or_else(|| "joint".to_owned());
-        FoundJoint { name, input, output, why, is_sure }
+        FoundJoint { name, input, output, why, is_sure: true }
     }
 
     fn words(&self, column: usize) -> Vec<String> {

@@ -51,7 +51,7 @@ pub(crate) fn follow(args: &Args, runs: &[Settings], stream: &Stream) -> anyhow:
 /// What the whole record decides is not known yet: each change of the input is a step.
 fn as_it_grows(settings: &Settings) -> Settings {
     let input = InputKind::Steps;
-    Settings { input, every_change: true, grows: true, ..settings.clone() }
+    Settings { input, grows: true, ..settings.clone() }
 }
 
 fn watch(
