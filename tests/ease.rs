@@ -260,3 +260,32 @@ fn progress_has_rate_and_time_left_on_a_terminal_and_none_where_it_is_not_wanted
     let piped = desk.run(improve);
     assert!(!bar(&String::from_utf8_lossy(&piped.stderr)));
 }
+
+#[test]
+fn steps_that_lie_in_gaps_have_delays_without_an_option() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut log = "run,t_s,u_boom,y_boom\n".to_owned();
+    for run in 0..3 {
+        for k in 0..300 {
+            // The valve is switched while nothing is logged, just before the rows go on.
+            let (paused, late) = ((100..200).contains(&k), (f64::from(k) - 220.0).max(0.0));
+            if !paused {
+                let level = u8::from(k >= 200);
+                let (time, angle) = (0.01 * f64::from(k), 0.1 * late);
+                log.extend([format!("{run},{time:.2},{level},{angle:.4}\n")]);
+            }
+        }
+    }
+    let path = folder.path().join("pauses.csv");
+    std::fs::write(&path, log).unwrap();
+    let output =
+        tauscope(&["estimate", "--format", "json", "--method", "hinge"]).arg(&path).output();
+    let output = output.unwrap();
+    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(notes.contains("its input changes in gaps alone"), "{notes}");
+    let found: Value = serde_json::from_str(&printed(&output)).unwrap();
+    let joint = &found["joints"][0];
+    assert_eq!((&joint["joint"], &joint["accepted"]), (&"boom".into(), &3.into()), "{found}");
+    let median = joint["delay_s"]["median"].as_f64().unwrap();
+    assert!((median - 0.2).abs() < 0.02, "{median}");
+}

@@ -235,6 +235,29 @@ fn jumps() -> Vec<Messy> {
     ]
 }
 
+/// Sensors that begin anew after a turn, or say nonsense now and then.
+fn sensors() -> Vec<Messy> {
+    let outputs = || clean().into_iter().map(|row| row.output);
+    let (low, high) = outputs().fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
+    let turns = |row: Row| Row {
+        output: (720.0 * (row.output - low) / (high - low) + 100.0).rem_euclid(360.0),
+        ..row
+    };
+    let wrapped: Vec<Row> = clean().into_iter().map(turns).collect();
+    let mut spiky = clean();
+    for row in spiky.iter_mut().skip(40).step_by(97) {
+        row.output += 2.0 * (high - low);
+    }
+    vec![
+        messy(
+            "turns.csv",
+            table(HEADER, &wrapped, ",", |x| x.to_string()),
+            read(1e-6, "begins anew after a turn of 360"),
+        ),
+        messy("spikes.csv", plain(&spiky), read(0.051, "")),
+    ]
+}
+
 /// Logs without a word on which columns are those of a joint.
 fn names_alone() -> Vec<Messy> {
     let foreign = |header: &str| table(header, &clean(), ",", |x| x.to_string());
@@ -436,6 +459,7 @@ fn every_messy_log_is_read_as_the_clean_one_or_refused_with_the_remedy() {
     let logs: Vec<Messy> = clocks()
         .into_iter()
         .chain(jumps())
+        .chain(sensors())
         .chain(names_alone())
         .chain(units_and_names())
         .chain(texts())

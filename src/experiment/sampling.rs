@@ -18,6 +18,10 @@ pub struct Repair {
     /// depends on the whole log, which may still grow.
     #[serde(skip)]
     pub as_it_stands: bool,
+    /// Fill the gaps in which all steps of a joint lie, so that delays count from their ends. What
+    /// is filled is no motion that a model should follow.
+    #[serde(skip)]
+    pub joins_steps: bool,
 }
 
 /// Largest difference of a time step from the median, as a part of it, that still
@@ -415,6 +419,7 @@ mod tests {
             resample: resample.and_then(SamplePeriod::from_seconds),
             fill_s,
             as_it_stands: false,
+            joins_steps: false,
         }
     }
 

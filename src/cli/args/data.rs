@@ -239,7 +239,12 @@ impl ReadingArgs {
                 }
             }
         }
-        let repair = Repair { resample: self.resample, fill_s: self.fill, as_it_stands: false };
+        let repair = Repair {
+            resample: self.resample,
+            fill_s: self.fill,
+            as_it_stands: false,
+            joins_steps: false,
+        };
         let memory = self.memory.limit();
         Ok(ReadOptions { columns, joints, others: false, repair, memory })
     }

@@ -45,7 +45,9 @@ impl<'a> Session<'a> {
         run: &'a RunArgs,
         stream: Stream,
     ) -> anyhow::Result<Self> {
-        Self::reading(command, data, &data.options()?, (run, stream))
+        let mut options = data.options()?;
+        options.repair.joins_steps = true;
+        Self::reading(command, data, &options, (run, stream))
     }
 
     fn reading(
