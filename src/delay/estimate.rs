@@ -2,17 +2,14 @@
 
 use std::fmt;
 
+use super::coming_to_rest::ComingToRest;
 use super::input_motion::InputKind;
 use super::lag::Lag;
 use super::method::{DelayMethod, decide_settling, implementation};
 use super::prepared::Prepared;
 use super::profile::DelayProfile;
 use super::settings::Settings;
-use super::settling::Settling;
 use super::spec::Scope;
-use super::steps::joint_steps;
-use super::stops::Stops;
-use super::tracking::Tracking;
 use super::trial_estimate::{EstimateError, TrialEstimate};
 use crate::experiment::Trial;
 
@@ -46,12 +43,7 @@ pub struct Estimator {
     settings: Settings,
     method: &'static dyn DelayMethod,
     lag: Option<Lag>,
-    /// How the output settles, where it does.
-    settling: Option<Settling>,
-    /// Where it comes to rest, where its input says that.
-    tracking: Option<Tracking>,
-    /// Where it comes to rest whatever its input.
-    stops: Option<Stops>,
+    rest: ComingToRest,
 }
 
 impl Estimator {
@@ -67,25 +59,19 @@ impl Estimator {
             settings.low_pass = None;
         }
         let method = implementation(settings.method);
-        let settling = settling_of(trials, &settings);
-        let tracking = if settling.is_none() { tracking_of(trials, &settings) } else { None };
-        let stops = if settling.is_none() && tracking.is_none() {
-            stops_of(trials, &settings)
-        } else {
-            None
-        };
-        let is_joint = settling.is_none() && settings.method.spec().scope == Scope::Joint;
+        let rest = ComingToRest::of(trials, &settings);
+        let is_joint = rest.settling().is_none() && settings.method.spec().scope == Scope::Joint;
         let lag = is_joint.then(|| {
-            let mut prepared = prepared(trials, &settings);
+            let mut prepared = Prepared::all(trials, &settings);
             for trial in &mut prepared {
-                bound(trial, tracking.as_ref(), stops.as_ref(), &settings.at(trial.period));
+                rest.bound(trial, &settings.at(trial.period));
             }
             let period = prepared.first().map(|trial| trial.period);
             // A lag is looked for in the trials of the first one's period.
             let settings = period.map_or_else(|| settings.clone(), |period| settings.at(period));
             method.shared_lag(&prepared, &settings)
         });
-        Ok(Self { settings, method, lag: lag.flatten(), settling, tracking, stops })
+        Ok(Self { settings, method, lag: lag.flatten(), rest })
     }
 
     /// Estimates one trial of the joint.
@@ -95,70 +81,17 @@ impl Estimator {
     pub fn estimate(&self, trial: &Trial) -> Result<TrialEstimate, EstimateError> {
         let settings = self.settings.at(trial.period());
         let mut prepared = Prepared::of(trial, &settings)?;
-        bound(&mut prepared, self.tracking.as_ref(), self.stops.as_ref(), &settings);
-        let decisions = match &self.settling {
+        self.rest.bound(&mut prepared, &settings);
+        let decisions = match self.rest.settling() {
             Some(settling) => decide_settling(&prepared, settling, &settings),
             None => self.method.decide(&prepared, self.lag.as_ref(), &settings),
         };
         let profile = DelayProfile::of(&decisions, trial.len(), settings.interpolation);
-        let (lag, settling) = (self.lag.clone(), self.settling.clone());
+        let (lag, settling) = (self.lag.clone(), self.rest.settling().cloned());
         let (label, smoothed) = (trial.label().to_owned(), prepared.smoothed);
-        let tracking = self.tracking;
+        let tracking = self.rest.tracking();
         Ok(TrialEstimate { label, smoothed, decisions, profile, lag, settling, tracking })
     }
-}
-
-/// The trials that can be prepared.
-fn prepared<'a>(trials: &'a [Trial], settings: &Settings) -> Vec<Prepared<'a>> {
-    trials.iter().filter_map(|trial| Prepared::of(trial, settings).ok()).collect()
-}
-
-/// How the output settles, where it is to be asked.
-fn settling_of(trials: &[Trial], settings: &Settings) -> Option<Settling> {
-    if settings.paper || settings.grows || settings.input == InputKind::Continuous {
-        return None;
-    }
-    // Most outputs do not settle, which is seen without a low-pass.
-    let plain = Settings { low_pass: None, ..settings.clone() };
-    let start = Settling::start(trials, &prepared(trials, &plain), settings)?;
-    let prepared = prepared(trials, settings);
-    let period = prepared.first()?.period;
-    Settling::of(start, &prepared, &settings.at(period))
-}
-
-/// Bounds what says anything of each step of `trial` by where it comes to rest.
-fn bound(
-    trial: &mut Prepared<'_>,
-    tracking: Option<&Tracking>,
-    stops: Option<&Stops>,
-    settings: &Settings,
-) {
-    if let Some(tracking) = tracking {
-        tracking.bound(trial, settings);
-    }
-    if let Some(stops) = stops {
-        stops.bound(trial);
-    }
-}
-
-/// Where the output comes to rest whatever its input.
-fn stops_of(trials: &[Trial], settings: &Settings) -> Option<Stops> {
-    if settings.paper || settings.grows || settings.input == InputKind::Continuous {
-        return None;
-    }
-    Stops::of(trials, &joint_steps(trials, settings))
-}
-
-/// Where the outputs of `trials` come to rest, where their input says that.
-pub(crate) fn tracking(trials: &[Trial]) -> Option<Tracking> {
-    tracking_of(trials, &Settings::default().with_input_of(trials))
-}
-
-fn tracking_of(trials: &[Trial], settings: &Settings) -> Option<Tracking> {
-    if settings.paper || settings.grows || settings.input == InputKind::Continuous {
-        return None;
-    }
-    Tracking::of(trials, &joint_steps(trials, settings))
 }
 
 impl fmt::Debug for Estimator {

@@ -2,7 +2,7 @@
 
 use super::steps::input_steps;
 use crate::experiment::Trial;
-use crate::numerics::{median, quantile_of, robust_scale_of};
+use crate::numerics::{median, noise_of_differences, quantile_of};
 
 /// Part of the input's range within which two levels are one: chosen; converters and
 /// potentiometers scatter by less, and no experiment steps by so little.
@@ -43,9 +43,7 @@ pub fn level_tolerance(trials: &[Trial]) -> f64 {
     let inputs = trials.iter().flat_map(Trial::input).copied();
     let ends = quantile_of(&inputs, GLITCHES).zip(quantile_of(&inputs, 1.0 - GLITCHES));
     let range = ends.map_or(0.0, |(low, high)| high - low);
-    let change = |pair: &[f64]| pair.last().zip(pair.first()).map_or(0.0, |(b, a)| b - a);
-    let changes = trials.iter().flat_map(|trial| trial.input().windows(2).map(change));
-    let noise = robust_scale_of(changes) / std::f64::consts::SQRT_2;
+    let noise = noise_of_differences(trials.iter().map(Trial::input));
     (SAME_LEVEL * range).max((REACH * noise).min(MOST_NOISE * range))
 }
 

@@ -92,6 +92,11 @@ impl Rest {
     }
 }
 
+/// Samples of a hold until its output stays so near to `level`; all where it does not.
+pub(super) fn arrival(held: &[f64], level: f64, near: f64) -> usize {
+    held.iter().rposition(|y| (y - level).abs() > near).map_or(0, |last| last + 1)
+}
+
 /// What the output does about each of `steps`; none where neither rest nor a stop is shown.
 ///
 /// What is found of a step depends on no sample behind the next one, so that it stays as a

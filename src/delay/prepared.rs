@@ -39,6 +39,23 @@ impl<'a> Prepared<'a> {
         Ok(Self { raw, smoothed, period, steps, motions, is_tested: false })
     }
 
+    /// The output as it was measured and the steps alone: enough to see what most joints do not.
+    pub(super) fn bare(trial: &'a Trial, settings: &Settings) -> Self {
+        Self {
+            raw: Cow::Borrowed(trial.output()),
+            smoothed: None,
+            period: trial.period(),
+            steps: trial_steps(trial, settings),
+            motions: Vec::new(),
+            is_tested: false,
+        }
+    }
+
+    /// The `trials` that can be prepared.
+    pub(super) fn all(trials: &'a [Trial], settings: &Settings) -> Vec<Self> {
+        trials.iter().filter_map(|trial| Self::of(trial, settings).ok()).collect()
+    }
+
     /// What the method is to look at.
     pub(super) fn output(&self) -> &[f64] {
         self.smoothed.as_deref().unwrap_or(&self.raw)

@@ -5,6 +5,8 @@
 //! edge for one step and noise for none. An input whose levels are exact and last for three
 //! samples or more has the paper's steps.
 
+use std::ops::Range;
+
 use super::input_motion::{edge_samples, tolerance};
 use super::settings::Settings;
 use crate::experiment::Trial;
@@ -38,6 +40,16 @@ pub fn input_steps(input: &[f64], min_step: f64) -> Vec<InputStep> {
         }
     }
     steps
+}
+
+/// From each step to the next, and from the last one to the end: indices of a trial of `samples`.
+pub(super) fn hold_ranges(
+    steps: &[InputStep],
+    samples: usize,
+) -> impl Iterator<Item = Range<usize>> + Clone {
+    let starts = steps.iter().map(|step| step.sample - 1);
+    let ends = starts.clone().skip(1).chain([samples]);
+    starts.zip(ends).map(|(start, end)| start..end)
 }
 
 /// The steps of each of the `trials` of a joint, as `settings` ask for: none of an input that

@@ -3,11 +3,11 @@
 //! A joint that is driven against its stop bends there as much as where it departed, and answers
 //! no step of the input.
 
-use super::motion::StepMotion;
+use super::motion::{StepMotion, arrival};
 use super::prepared::Prepared;
-use super::steps::InputStep;
+use super::steps::{InputStep, hold_ranges};
 use crate::experiment::Trial;
-use crate::numerics::{median, robust_scale};
+use crate::numerics::{median, noise_of_differences};
 
 /// Holds in which the joint comes to the same end of its range, which show a stop.
 const FEWEST: usize = 3;
@@ -31,40 +31,37 @@ pub(super) struct Stops {
 
 impl Stops {
     /// The stops that `trials` with these `steps` show; `None` where there is none.
-    pub(super) fn of(trials: &[Trial], steps: &[Vec<InputStep>]) -> Option<Self> {
-        let held: Vec<&[f64]> = trials.iter().zip(steps).flat_map(holds).collect();
-        let last = |held: &&[f64]| median(held.get(held.len().checked_sub(STANDING)?..)?);
-        let (low, high) = held
-            .iter()
-            .filter_map(last)
-            .fold((f64::MAX, f64::MIN), |(low, high), y| (low.min(y), high.max(y)));
-        let near = |end: f64| {
-            let is_near = |y: &f64| (y - end).abs() <= NEAR * (high - low);
-            // One that stands there all the time may rest there, where its input moves nothing.
-            let moved = held.iter().filter(|held| !held.first().is_some_and(is_near));
-            let standing = |held: &&[f64]| {
-                let last = held.get(held.len().checked_sub(STANDING)?..)?;
-                median(last).filter(|_| last.iter().all(is_near))
-            };
-            let levels: Vec<f64> = moved.filter_map(standing).collect();
-            (levels.len() >= FEWEST).then_some(levels)
+    pub(super) fn of<'a>(trials: &'a [Trial], steps: &[Vec<InputStep>]) -> Option<Self> {
+        let of_trial = |(trial, steps): (&'a Trial, &Vec<InputStep>)| -> Vec<&'a [f64]> {
+            let output = trial.output();
+            hold_ranges(steps, output.len()).filter_map(|hold| output.get(hold)).collect()
         };
-        let (at_low, at_high) = (near(low), near(high));
-        if at_low.is_none() && at_high.is_none() {
+        let holds: Vec<&[f64]> = trials.iter().zip(steps).flat_map(of_trial).collect();
+        let ends = || holds.iter().filter_map(|held| Some((held, end_of(held)?)));
+        let levels = ends().filter_map(|(_, end)| median(end));
+        let (low, high) = levels.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
+        // One that stands there all the time may rest there, where its input moves nothing.
+        let arrived_near = |level: f64| -> Vec<f64> {
+            let is_near = |y: &f64| (y - level).abs() <= NEAR * (high - low);
+            let arrived = ends().filter(|(held, _)| !held.first().is_some_and(is_near));
+            arrived
+                .filter(|(_, end)| end.iter().all(is_near))
+                .filter_map(|(_, end)| median(end))
+                .collect()
+        };
+        let (at_low, at_high) = (arrived_near(low), arrived_near(high));
+        if at_low.len().max(at_high.len()) < FEWEST {
             return None;
         }
-        let differences = trials.iter().flat_map(|trial| trial.output().windows(2));
-        let differences: Vec<f64> = differences.map(|pair| pair[1] - pair[0]).collect();
-        let noise = robust_scale(&differences) / std::f64::consts::SQRT_2;
+        let noise = noise_of_differences(trials.iter().map(Trial::output));
         let tolerance = (4.0 * noise).max(THERE * (high - low));
         // Ends of holds that are only by chance at the end of the range are apart.
-        let stop = |levels: Option<Vec<f64>>| {
-            let levels = levels?;
-            let level = median(&levels)?;
+        let stop = |levels: &[f64]| {
+            let level = median(levels)?;
             let standing = levels.iter().filter(|y| (*y - level).abs() <= tolerance).count();
             (standing >= FEWEST && 2 * standing > levels.len()).then_some(level)
         };
-        let (low, high) = (stop(at_low), stop(at_high));
+        let (low, high) = (stop(&at_low), stop(&at_high));
         (low.is_some() || high.is_some()).then_some(Self { low, high, tolerance })
     }
 
@@ -72,11 +69,11 @@ impl Stops {
     /// is known of it.
     pub(super) fn bound(&self, trial: &mut Prepared<'_>) {
         let samples = trial.raw.len();
-        let starts: Vec<usize> = trial.steps.iter().map(|step| step.sample - 1).collect();
-        let ends = starts.iter().skip(1).copied().chain([samples]);
         let mut before = None;
-        for (motion, (&start, end)) in trial.motions.iter_mut().zip(starts.iter().zip(ends)) {
-            let arrival = self.arrival(trial.raw.get(start..end).unwrap_or_default());
+        let holds = hold_ranges(&trial.steps, samples);
+        for (motion, hold) in trial.motions.iter_mut().zip(holds) {
+            let start = hold.start;
+            let arrival = self.arrival(trial.raw.get(hold).unwrap_or_default());
             if motion.is_none() && (arrival.is_some_and(|after| after > 0) || before.is_some()) {
                 trial.is_tested = true;
                 let until = arrival.filter(|after| *after > 0).map(|after| start + after);
@@ -98,19 +95,15 @@ impl Stops {
     fn arrival(&self, held: &[f64]) -> Option<usize> {
         let last = held.len().checked_sub(STANDING)?;
         let at = |stop: f64| {
-            let is_off = |y: &f64| (y - stop).abs() > self.tolerance;
-            let arrival = held.iter().rposition(is_off).map_or(0, |off| off + 1);
-            (arrival <= last).then_some(arrival)
+            Some(arrival(held, stop, self.tolerance)).filter(|arrival| *arrival <= last)
         };
         [self.low, self.high].into_iter().flatten().find_map(at)
     }
 }
 
-/// The output of each hold.
-fn holds<'a>((trial, steps): (&'a Trial, &Vec<InputStep>)) -> Vec<&'a [f64]> {
-    let starts = || steps.iter().map(|step| step.sample - 1);
-    let ends = starts().skip(1).chain([trial.output().len()]);
-    starts().zip(ends).filter_map(|(start, end)| trial.output().get(start..end)).collect()
+/// The last samples of a hold.
+fn end_of<'a>(held: &&'a [f64]) -> Option<&'a [f64]> {
+    held.get(held.len().checked_sub(STANDING)?..)
 }
 
 #[cfg(test)]

@@ -5,12 +5,14 @@
 //! as much as its departure does, and answers no step of the input. What says anything of a step
 //! lies between the arrival of the step before and its own.
 
-use super::motion::StepMotion;
+use std::ops::Range;
+
+use super::motion::{StepMotion, arrival};
 use super::prepared::Prepared;
 use super::settings::Settings;
-use super::steps::InputStep;
+use super::steps::{InputStep, hold_ranges, joint_steps};
 use crate::experiment::Trial;
-use crate::numerics::robust_scale;
+use crate::numerics::noise_of_differences;
 
 /// Levels of the input, and holds at whose end the output rests, that show a relation.
 const FEWEST_LEVELS: usize = 3;
@@ -30,6 +32,12 @@ pub struct Tracking {
     /// How far from there it counts as arrived, output units.
     tolerance: f64,
     r_squared: f64,
+}
+
+/// Where the outputs of `trials` come to rest, where their input says that.
+pub(crate) fn tracking(trials: &[Trial]) -> Option<Tracking> {
+    let settings = Settings::default().with_input_of(trials);
+    Tracking::of(trials, &joint_steps(trials, &settings))
 }
 
 /// A hold of the input at whose end the output rests.
@@ -70,9 +78,7 @@ impl Tracking {
         if !enough || levels.len() < FEWEST_LEVELS {
             return None;
         }
-        let differences = trials.iter().flat_map(|trial| trial.output().windows(2));
-        let differences: Vec<f64> = differences.map(|pair| pair[1] - pair[0]).collect();
-        Self::through(&rests, robust_scale(&differences) / std::f64::consts::SQRT_2)
+        Self::through(&rests, noise_of_differences(trials.iter().map(Trial::output)))
     }
 
     /// The regression line of where the output rests, if it is near to it.
@@ -100,14 +106,13 @@ impl Tracking {
 
     /// Bounds what says anything of each step of `trial`, where nothing else is known of it.
     pub(super) fn bound(&self, trial: &mut Prepared<'_>, settings: &Settings) {
-        let starts: Vec<usize> = trial.steps.iter().map(|step| step.sample - 1).collect();
-        let ends = starts.iter().skip(1).copied().chain([trial.raw.len()]);
         let mut arrived = 0;
         let mut previous = trial.steps.first().map_or(0.0, |step| self.rest_at(step.before));
-        let holds = trial.steps.iter().zip(&mut trial.motions).zip(starts.iter().zip(ends));
-        for ((step, motion), (&start, end)) in holds {
+        let ranges = hold_ranges(&trial.steps, trial.raw.len());
+        for ((step, motion), range) in trial.steps.iter().zip(&mut trial.motions).zip(ranges) {
+            let start = range.start;
             let hold = Hold {
-                output: trial.raw.get(start..end).unwrap_or_default(),
+                output: trial.raw.get(range).unwrap_or_default(),
                 previous,
                 target: self.rest_at(step.after),
                 tolerance: self.tolerance,
@@ -139,14 +144,8 @@ struct Hold<'a> {
 impl Hold<'_> {
     /// Samples until the output has arrived for good.
     fn arrival(&self) -> Option<usize> {
-        let arrival = self.within(self.tolerance);
+        let arrival = arrival(self.output, self.target, self.tolerance);
         (arrival < self.output.len()).then_some(arrival)
-    }
-
-    /// Samples until the output stays so near to where it goes; all where it does not.
-    fn within(&self, distance: f64) -> usize {
-        let is_off = |y: &f64| (y - self.target).abs() > distance;
-        self.output.iter().rposition(is_off).map_or(0, |last| last + 1)
     }
 
     /// What bounds the reaction to a step at the index `start`, before which the output had
@@ -162,7 +161,7 @@ impl Hold<'_> {
         }
         let rested = (from - self.previous).abs() <= self.tolerance;
         let slow = ((1.0 - SLOWS) * way.abs()).max(self.tolerance);
-        let slows = start + self.within(slow);
+        let slows = start + arrival(self.output, self.target, slow);
         let (latest, end) = if rested {
             let is_away = |y: &f64| (y - from) / way >= DEPARTED;
             let latest = start + self.output.iter().position(is_away)?;
@@ -181,17 +180,18 @@ fn resting_holds(output: &[f64], steps: &[InputStep], range: f64) -> Vec<Resting
     const PARTS: usize = 5;
     const FEWEST: usize = 6;
     const STILL: f64 = 0.01;
-    let starts = || steps.iter().map(|step| step.sample - 1);
-    let ends = starts().skip(1).chain([output.len()]);
-    let resting = |((step, start), end): ((&InputStep, usize), usize)| {
-        let samples = ((end - start) / PARTS).max(FEWEST);
-        let tail = output.get(end.checked_sub(samples).filter(|tail| *tail >= start)?..end)?;
+    let resting = |(step, hold): (&InputStep, Range<usize>)| {
+        let samples = (hold.len() / PARTS).max(FEWEST);
+        let tail = output.get(hold.end.checked_sub(samples)?.max(hold.start)..hold.end)?;
+        if tail.len() < samples {
+            return None;
+        }
         let (first, last) = tail.split_at(tail.len() / 2);
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
         let rests = (mean(last) - mean(first)).abs() <= STILL * range;
         rests.then(|| RestingHold { level: step.after, output: mean(tail) })
     };
-    steps.iter().zip(starts()).zip(ends).filter_map(resting).collect()
+    steps.iter().zip(hold_ranges(steps, output.len())).filter_map(resting).collect()
 }
 
 #[cfg(test)]

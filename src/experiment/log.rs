@@ -257,7 +257,7 @@ impl Log<'_> {
         let output = &self.column(layout.output.column)?.values;
         // Where outputs are missing, the reaction may be among them.
         let is_whole = !output.iter().any(|value| value.is_nan());
-        if !repair.joins_steps || repair.as_it_stands || repair.fill_s.is_some() || !is_whole {
+        if !repair.joins_steps || repair.fill_s.is_some() || !is_whole {
             return None;
         }
         let gap_s = gap_with_all_steps_s(read)?;

@@ -34,4 +34,4 @@ pub use statistics::{
     RankTest, chi_square_tail, fisher_tail, holm, mann_whitney, median, normal_below, quantile,
     ranks, spearman, student_quantile,
 };
-pub(crate) use statistics::{quantile_of, robust_scale, robust_scale_of};
+pub(crate) use statistics::{noise_of_differences, quantile_of, robust_scale};

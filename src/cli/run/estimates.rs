@@ -3,7 +3,7 @@
 use crate::cli::failure::{read_failures, said};
 use crate::delay::{Condition, Decision, EstimateError, Verdict};
 use crate::experiment::{Experiment, Joint, Trial, spike_count};
-use crate::report::{EstimatedJoint, JointSummary, input_note};
+use crate::report::{EstimatedJoint, input_note};
 use crate::study::JointEstimate;
 
 /// The delays of each joint.
@@ -57,8 +57,10 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
             notes.extend(unresolved(joint, estimate));
             notes.extend(spikes(joint, estimate));
         }
-        let summary = JointSummary::of(EstimatedJoint { joint, estimate });
-        if steps > 0 && summary.rejected == [(Condition::FirstOrLast, steps)] {
+        let verdicts =
+            || estimate.estimated().flat_map(|trial| &trial.decisions).map(Decision::verdict);
+        let is_end = |verdict| verdict == Verdict::Rejected(Condition::FirstOrLast);
+        if steps > 0 && verdicts().all(is_end) {
             notes.push(format!(
                 "joint `{name}`: every step is the first or the last of its trial; \
                  `--keep-first-last` judges them like the others"

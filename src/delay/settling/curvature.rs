@@ -1,6 +1,9 @@
 //! Whether the output bends towards a level while the input is held.
 
+use std::ops::Range;
+
 use crate::delay::prepared::Prepared;
+use crate::delay::steps::hold_ranges;
 use crate::numerics::NormalEquations;
 
 /// Samples between two steps of the input, on average.
@@ -32,10 +35,9 @@ pub(super) fn is_curved(trials: &[&Prepared<'_>]) -> bool {
 fn late_parts<'a>(trial: &'a Prepared<'_>, part: usize) -> Vec<&'a [f64]> {
     /// Samples of a part that says something.
     const FEWEST: usize = 8;
-    let starts = trial.steps.iter().map(|step| step.sample - 1);
-    let ends = starts.clone().skip(1).chain([trial.raw.len()]);
-    let late = |(start, end): (usize, usize)| trial.raw.get(start + (end - start) / part..end);
-    starts.zip(ends).filter_map(late).filter(|late| late.len() >= FEWEST).collect()
+    let late = |hold: Range<usize>| trial.raw.get(hold.start + hold.len() / part..hold.end);
+    let holds = hold_ranges(&trial.steps, trial.raw.len());
+    holds.filter_map(late).filter(|late| late.len() >= FEWEST).collect()
 }
 
 /// What a level and a multiple of `column` leave of `values`.

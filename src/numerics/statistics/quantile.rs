@@ -91,12 +91,19 @@ pub(crate) fn robust_scale(values: &[f64]) -> f64 {
 }
 
 /// [`robust_scale`] of values that are not copied where they are very many.
-pub(crate) fn robust_scale_of(values: impl Iterator<Item = f64> + Clone) -> f64 {
+fn robust_scale_of(values: impl Iterator<Item = f64> + Clone) -> f64 {
     let count = values.clone().count();
     if count <= COPIED {
         return robust_scale(&values.collect::<Vec<f64>>());
     }
     nth(&values.map(f64::abs), count / 2) / NORMAL
+}
+
+/// The standard deviation of the noise of several series, from differences of neighbours, which
+/// leave little of a motion.
+pub(crate) fn noise_of_differences<'a>(series: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
+    let differences = series.flat_map(|values| values.windows(2).map(|pair| pair[1] - pair[0]));
+    robust_scale_of(differences) / std::f64::consts::SQRT_2
 }
 
 #[cfg(test)]
