@@ -252,7 +252,7 @@ fn sensors() -> Vec<Messy> {
         messy(
             "turns.csv",
             table(HEADER, &wrapped, ",", |x| x.to_string()),
-            read(1e-6, "begins anew after a turn of 360"),
+            read(1e-6, "wraps at a turn of 360"),
         ),
         messy("spikes.csv", plain(&spiky), read(0.051, "")),
     ]
@@ -265,7 +265,7 @@ fn names_alone() -> Vec<Messy> {
         messy(
             "names_say_it.csv",
             foreign("t_s,u_boom_duty_pct,y_boom (deg)"),
-            read(1e-6, "names of its columns are taken to say the joints: boom (driven by"),
+            read(1e-6, "joints by the names of the columns: boom (input `u_boom_duty_pct`"),
         ),
         messy("one_joint.csv", foreign("t_s,valve_cmd,angle"), read(1e-6, "`valve_cmd`")),
         messy(

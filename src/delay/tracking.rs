@@ -47,9 +47,10 @@ struct RestingHold {
 }
 
 impl Tracking {
-    /// The output at rest while the input is zero, output units.
+    /// The output at rest while the input is zero, output units; 0 where it is nearer to that than
+    /// is known.
     pub fn offset(&self) -> f64 {
-        self.offset
+        if self.offset.abs() < self.tolerance { 0.0 } else { self.offset }
     }
 
     /// How much farther it rests for one more of the input, output units per input unit.

@@ -234,7 +234,7 @@ impl Log<'_> {
         Ok((joint, notes))
     }
 
-    /// The turn after which the output of a joint begins anew. Of a log that still grows it is
+    /// The turn after which the output of a joint wraps. Of a log that still grows it is
     /// not known.
     fn wrap(&self, layout: &JointLayout, trials: &[TrialRows], repair: Repair) -> Option<Wrap> {
         let output = self.column(layout.output.column).filter(|_| !repair.as_it_stands)?;
@@ -265,8 +265,8 @@ impl Log<'_> {
         let (grids, _) = self.grids(time, trials, repair).ok()?;
         let (joint, mut notes) = self.joint(layout, trials, &grids, time, repair).ok()?;
         notes.push(format!(
-            "joint `{}`: its input changes in gaps alone: those of up to {gap_s} s are filled, the \
-             output in a line and the input held, so that delays count from their ends",
+            "joint `{}`: its input changes only in gaps (of up to {gap_s} s): they are filled, the \
+             output interpolated and the input held, and delays count from their ends",
             joint.name
         ));
         Some((joint, notes))

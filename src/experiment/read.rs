@@ -249,11 +249,11 @@ pub(super) fn laid_out_by_names(
     }
     let (layout, mut found) = laid_out(head, &options)?;
     let joint = |joint: &JointColumns| {
-        format!("{} (driven by `{}`, measured by `{}`)", joint.name, joint.input, joint.output)
+        format!("{} (input `{}`, output `{}`)", joint.name, joint.input, joint.output)
     };
     let joints: Vec<String> = options.columns.joints.iter().map(joint).collect();
     found.notes.push(format!(
-        "{}: the names of its columns are taken to say the joints: {}",
+        "{}: joints by the names of the columns: {}",
         head.path.display(),
         joints.join(", ")
     ));

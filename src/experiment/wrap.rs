@@ -1,10 +1,10 @@
-//! Outputs of a sensor that begins anew after a turn.
+//! Outputs that wrap, of sensors that begin anew after a turn.
 //!
 //! An absolute encoder on a slewing joint shows 179.9 deg and then −179.9: a turn of 360 deg in one
 //! sample, which no joint makes. Where all large jumps of an output are of a turn, they are taken
 //! out.
 
-/// A sensor that begins anew after so much, output units.
+/// A sensor that wraps after so much, output units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Wrap {
     turn: f64,
@@ -72,7 +72,7 @@ impl Wrap {
         let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
         let times = if count == 1 { "once".to_owned() } else { format!("{count} times") };
         format!(
-            "the output begins anew after a turn of {}{unit}, {times}: it is taken to go on",
+            "the output wraps at a turn of {}{unit}, {times}: it is unwrapped",
             (self.turn * 1e4).round() / 1e4
         )
     }

@@ -457,7 +457,7 @@ fn settling_rows(settling: &Settling) -> Vec<(String, String)> {
 /// Where the output comes to rest.
 fn tracking_row(tracking: &Tracking) -> (String, String) {
     let at = format!("{} + {}·u", number(tracking.offset()), number(tracking.gain()));
-    ("output comes to rest at".to_owned(), at)
+    ("output tracks the input, at rest".to_owned(), at)
 }
 
 /// What all steps of the joint follow their dead times with.

@@ -112,8 +112,8 @@ pub(super) fn tracking_line(joint: &EstimatedJoint<'_>) -> Option<String> {
     let tracking = joint.tracking()?;
     let sign = if tracking.gain() < 0.0 { '−' } else { '+' };
     Some(format!(
-        "{}: the output comes to rest where the input says, at {} {sign} {}·u: where it arrives is \
-         no reaction to a step\n",
+        "{}: the output tracks the input, as a servo's position does (at rest {} {sign} {}·u): its \
+         arrival there is not taken for a reaction\n",
         joint.joint.name,
         rounded(tracking.offset()),
         rounded(tracking.gain().abs())

@@ -82,8 +82,8 @@ fn spikes(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
         let samples = if spikes == 1 { "sample is an" } else { "samples are" };
         let spike = if spikes == 1 { "isolated spike" } else { "isolated spikes" };
         format!(
-            "joint `{}`: {spikes} {samples} {spike} of the sensor, beyond all neighbours and the \
-             noise: lines take their place where delays are looked for",
+            "joint `{}`: {spikes} {samples} {spike} of the sensor: interpolated where delays are \
+             estimated",
             joint.name
         )
     })
