@@ -73,10 +73,11 @@ pub(crate) fn simulate<'py>(
     start_s: f64,
     others: Option<PyReadonlyArray1<'py, f64>>,
     radians_per_output_unit: f64,
+    trial: &str,
     functions: Functions<'py>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let file = parsed(text, "model", &functions)?;
-    let model = joint(&file, of)?.clone();
+    let model = joint(&file, of)?.in_trial(trial).into_owned();
     let input = input.as_array().to_vec();
     let others = others.map(|others| others.as_array().to_vec()).unwrap_or_default();
     let simulated = py.detach(|| {

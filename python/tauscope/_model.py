@@ -166,11 +166,13 @@ class Model:
         start_s: float = 0.0,
         others: npt.ArrayLike | None = None,
         output_unit: str = "deg",
+        trial: str = "",
     ) -> npt.NDArray[np.float64]:
         """The output for each of the n samples of ``input``, from ``output`` on.
 
         The first level has long been held. ``others`` is the activity of the other joints, 0 to
-        1, n samples; ``start_s`` the time of the record at the first one.
+        1, n samples; ``start_s`` the time of the record at the first one. ``trial`` is a label:
+        effects such as ``gravity_load[H]`` act where it has their word.
         """
         return _tauscope.simulate(
             self.text,
@@ -181,6 +183,7 @@ class Model:
             float(start_s),
             None if others is None else np.ascontiguousarray(others, dtype=np.float64),
             RADIANS.get(output_unit, math.pi / 180),
+            trial,
             self.functions,
         )
 

@@ -53,5 +53,6 @@ def simulate(
     start_s: float,
     others: npt.NDArray[np.float64] | None,
     radians_per_output_unit: float,
+    trial: str,
     functions: Sequence[Function],
 ) -> npt.NDArray[np.float64]: ...

@@ -79,7 +79,11 @@ fn is_found(
     let joint = rig.log(schedule, output)?;
     let record = FitRecord::new(&joint, Split::of(&joint), Horizon::Steps);
     let base = starting_model(&record, &joint, &suspects.base)?;
-    let options = Options { effects: suspects.effects.to_vec(), ..Options::default() };
+    let options = Options {
+        effects: suspects.effects.to_vec(),
+        tries_conditions: false,
+        ..Options::default()
+    };
     let ranking = named(&record, base, &options, &Sequential);
     let best = ranking.first()?;
     let id = suspects.effects[truth].spec().id;

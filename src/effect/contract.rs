@@ -12,6 +12,7 @@
 
 use std::iter::repeat;
 
+use super::within_trials::parts_of;
 use super::{Effect, InputChange, Moment, RecordRange, Spec, by_id};
 
 /// A promise that an effect breaks.
@@ -175,7 +176,9 @@ fn check_spec(spec: &Spec) -> Result<(), Fault> {
         return Err(Fault::Empty { field });
     }
     let names = spec.parameters.iter().map(|parameter| parameter.name);
-    if let Some(name) = names.chain([spec.id]).find(|name| !is_snake_case(name)) {
+    // Behind it may stand the condition in which it acts.
+    let id = parts_of(spec.id).map_or(spec.id, |(effect, _)| effect);
+    if let Some(name) = names.chain([id]).find(|name| !is_snake_case(name)) {
         return Err(Fault::Name { name });
     }
     let mut others = spec.confused_with.iter().chain(spec.absorbs).copied().chain(spec.refines);

@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use super::{Definition, Equations, InputChange, Moment, RecordRange, Spec, Stage};
+use super::{Definition, Equations, InputChange, Moment, RecordRange, Spec, Stage, WithinTrials};
 
 /// One physical effect.
 ///
@@ -85,6 +85,12 @@ pub trait Effect: Debug + Send + Sync {
     /// [`settle`](Self::settle), [`step`](Self::step) and
     /// [`extra_delay_s`](Self::extra_delay_s). `None` where it cannot leave the program.
     fn equations(&self) -> Option<Equations> {
+        None
+    }
+
+    /// The effect that it is in the trials of one condition, where it belongs to such alone. A
+    /// simulation of any other trial is one without it.
+    fn within_trials(&self) -> Option<WithinTrials<'_>> {
         None
     }
 

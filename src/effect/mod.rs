@@ -54,6 +54,7 @@ mod swing;
 mod testing;
 pub mod thermal_drift;
 pub mod variable_delay;
+mod within_trials;
 
 pub use actuator_lag::ActuatorLag;
 pub use asymmetric_friction::AsymmetricFriction;
@@ -87,3 +88,4 @@ pub use stiction::Stiction;
 pub use supply_droop::SupplyDroop;
 pub use thermal_drift::ThermalDrift;
 pub use variable_delay::VariableDelay;
+pub use within_trials::{OF_CONDITIONS, TrialGain, WithinTrials, within_trials};

@@ -1,5 +1,6 @@
 //! The catalogue: one line for each effect.
 
+use super::within_trials::{OF_CONDITIONS, parts_of, within_trials};
 use super::{
     ActuatorLag, AsymmetricFriction, AsymmetricSaturation, Backlash, CoulombFriction, DeadBand,
     DirectionGain, Effect, EndStop, FlowCurve, GravityLoad, InputOffset, InputSaturation, Leakage,
@@ -63,7 +64,8 @@ pub fn find(id: &str) -> Result<&'static dyn Effect, UnknownEffect> {
     find_among(id, &[])
 }
 
-/// The effect with this id, built in or one of `others`.
+/// The effect with this id, built in or one of `others`; in the trials of one condition where
+/// the id says so, as `gravity_load[H]` does.
 ///
 /// # Errors
 /// [`UnknownEffect`] when none has it.
@@ -71,6 +73,12 @@ pub fn find_among(
     id: &str,
     others: &[&'static dyn Effect],
 ) -> Result<&'static dyn Effect, UnknownEffect> {
+    if let Some((effect, word)) = parts_of(id) {
+        let of_conditions = |known: &&dyn Effect| known.spec().id == effect;
+        let known = OF_CONDITIONS.iter().copied().find(of_conditions);
+        let effect = known.map_or_else(|| find_among(effect, others), Ok)?;
+        return Ok(within_trials(effect, word));
+    }
     let all = || REGISTRY.iter().chain(others).copied();
     let likeness = |known: &str| strsim::jaro_winkler(id, known);
     let ids = all().map(|effect| effect.spec().id);
@@ -118,5 +126,15 @@ mod tests {
         assert_eq!(find("couloumb").unwrap_err().nearest, "coulomb_friction");
         assert_eq!(find("gravity").unwrap_err().nearest, "gravity_load");
         assert!(by_id("").is_none());
+        assert_eq!(find("gravity[H]").unwrap_err().nearest, "gravity_load");
+    }
+
+    #[test]
+    fn an_id_may_name_a_condition() {
+        let heavy = find("gravity_load[heavy]").unwrap();
+        let of = heavy.within_trials().unwrap();
+        assert_eq!((of.effect.spec().id, of.word), ("gravity_load", "heavy"));
+        assert_eq!(find("gain[H]").unwrap().spec().id, "gain[H]");
+        assert!(find("gain").is_err());
     }
 }

@@ -7,6 +7,7 @@
 mod activity;
 mod clock;
 mod columns;
+mod conditions;
 mod error;
 mod even;
 mod format;
@@ -29,6 +30,7 @@ mod wrap;
 
 pub use activity::{Other, activity};
 pub use columns::{ColumnMap, ColumnMapError, JointColumns};
+pub use conditions::{conditions, has_word};
 pub use error::ReadError;
 pub(crate) use gaps::longest_gap_s;
 pub use growing::GrowingLog;

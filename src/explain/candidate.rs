@@ -3,7 +3,7 @@
 use super::extension::components_of;
 use super::separation::Separation;
 use crate::diagnosis::ErrorFigures;
-use crate::effect::{Dimension, Parameter, Stage};
+use crate::effect::{Dimension, Parameter, Spec, Stage};
 use crate::fit::{Fit, Status};
 use crate::model::Component;
 
@@ -123,6 +123,22 @@ impl Candidate {
             fit.parameters.iter().filter(|parameter| parameter.status == Status::Fitted).count()
         };
         determined(&self.fit) >= determined(base)
+    }
+
+    /// Whether a value of what it adds is known to be another than that at which it does nothing:
+    /// by two standard errors, where there are any.
+    pub(super) fn is_distinct(&self) -> bool {
+        let distance = |spec: &'static Spec, parameter: &Parameter| {
+            let name = format!("{}.{}", spec.id, parameter.name);
+            let fitted = self.fit.parameters.iter().find(|fitted| fitted.name == name)?;
+            Some((fitted.value - parameter.neutral).abs() / fitted.std_error?)
+        };
+        let of = |component: &Component| component.effect().spec();
+        let mut known = self.added().map(of).flat_map(|spec| {
+            spec.parameters.iter().filter_map(move |parameter| distance(spec, parameter))
+        });
+        let first = known.next();
+        first.is_none_or(|first| first > 2.0 || known.any(|other| other > 2.0))
     }
 
     /// Whether it is needed even where the model passes for adequate.

@@ -30,6 +30,7 @@ pub(super) fn could_be_missing(
     let has_steps = || !InputMotion::of(&record.joint().trials).is_continuous();
     !has(model, is_it)
         && (!effect.depends_on_others() || record.has_others())
+        && effect.within_trials().is_none_or(|of| record.shows_condition(of.word))
         && (!effect.depends_on_steps() || has_steps())
 }
 

@@ -27,6 +27,7 @@ pub fn improve(
     workers: &impl Workers,
     mut done: impl FnMut(&Revision) -> bool,
 ) -> Improvement {
+    let options = &*options.of(record.joint());
     let start = fit;
     let given = ids(&start.model);
     let first = Step::new(record, Change::Start, start.clone());

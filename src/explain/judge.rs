@@ -35,6 +35,7 @@ pub fn explain(
     options: &Options,
     workers: &impl Workers,
 ) -> Explanation {
+    let options = &*options.of(record.joint());
     let mut step = Step::new(record, Change::Start, fit);
     let lacks = step.rank_missing(record, options, workers);
     let Step { fit, lack_of_fit, mut ranking, .. } = step;

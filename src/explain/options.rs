@@ -1,6 +1,9 @@
 //! Which effects are tried as explanations, and how many may be added.
 
-use crate::effect::{Effect, REGISTRY};
+use std::borrow::Cow;
+
+use crate::effect::{Effect, OF_CONDITIONS, REGISTRY, within_trials};
+use crate::experiment::{Joint, conditions};
 
 /// Which effects are tried, and which may stay.
 #[derive(Clone, Debug)]
@@ -11,6 +14,25 @@ pub struct Options {
     pub max_effects: usize,
     /// Whether effects without practical consequence stay in an improved model.
     pub keeps_refinements: bool,
+    /// Whether what [differs between trials](conditions) is tried, too: the effects of
+    /// [`OF_CONDITIONS`], each in the trials of one condition.
+    pub tries_conditions: bool,
+}
+
+impl Options {
+    /// These options for `joint`, with the effects of its conditions.
+    pub(super) fn of(&self, joint: &Joint) -> Cow<'_, Self> {
+        let words = if self.tries_conditions { conditions(&joint.trials) } else { Vec::new() };
+        if words.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        let mut options = self.clone();
+        for word in &words {
+            let effects = OF_CONDITIONS.iter().map(|effect| within_trials(*effect, word));
+            options.effects.extend(effects);
+        }
+        Cow::Owned(options)
+    }
 }
 
 /// Effects that are added one after the other where nothing else is said: a cylinder has so
@@ -20,6 +42,11 @@ pub const MAX_EFFECTS: usize = 8;
 /// The whole catalogue, up to [`MAX_EFFECTS`].
 impl Default for Options {
     fn default() -> Self {
-        Self { effects: REGISTRY.to_vec(), max_effects: MAX_EFFECTS, keeps_refinements: false }
+        Self {
+            effects: REGISTRY.to_vec(),
+            max_effects: MAX_EFFECTS,
+            keeps_refinements: false,
+            tries_conditions: true,
+        }
     }
 }

@@ -113,7 +113,8 @@ pub(super) fn add_stepwise(
             options.keeps_refinements || misfit.has_consequence(record, &step.fit, &candidate.fit)
         };
         let is_sound = |candidate: &&Candidate| {
-            let is_known = !makes_strokes || candidate.determines_as_much_as(&step.fit);
+            let is_known = !makes_strokes
+                || candidate.determines_as_much_as(&step.fit) && candidate.is_distinct();
             candidate.is_significant() && is_known
         };
         let counts = |candidate: &Candidate| is_sound(&candidate) && has_consequence(candidate);

@@ -178,6 +178,12 @@ fn own_parameters(model: &JointModel, units: &Units, taken: &mut Taken) -> Vec<P
     own.map(parameter).to_vec()
 }
 
+/// A name of every language for `gravity_load[H]`: `gravity_load_H`.
+fn identifier(id: &str) -> String {
+    let id = id.trim_end_matches(']');
+    id.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect()
+}
+
 fn exported(
     component: &Component,
     units: &Units,
@@ -198,7 +204,7 @@ fn exported(
     if !step.gives_result() {
         return Err(ExportError::NoResult { effect: spec.id });
     }
-    let id = taken.give(spec.id.to_owned());
+    let id = taken.give(identifier(spec.id));
     let mut give = |name: &str| taken.give(format!("{id}_{name}"));
     let own = spec.parameters.iter().zip(component.parameters());
     let parameters: Vec<_> = own

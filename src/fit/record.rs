@@ -13,7 +13,7 @@ use super::thin::thinned;
 use super::window::{Horizon, Part, Split, Window, changes, cut, shorter};
 use crate::delay::{StepDelay, step_delays};
 use crate::effect::RecordRange;
-use crate::experiment::{Joint, Trial, spike_weights};
+use crate::experiment::{Joint, Trial, has_word, spike_weights};
 use crate::model::{Arrivals, Commands, JointModel, Surroundings};
 use crate::units::radians_in;
 
@@ -119,6 +119,17 @@ impl<'a> FitRecord<'a> {
     /// Whether it is known what other joints did.
     pub fn has_others(&self) -> bool {
         self.others.iter().flatten().any(|activity| *activity > 0.0)
+    }
+
+    /// Whether each part has trials with `word` in their labels, and without.
+    pub(crate) fn shows_condition(&self, word: &str) -> bool {
+        let has = |window: &Window| has_word(self.joint.trials[window.trial].label(), word);
+        let shows = |part| {
+            let with = self.part(part).filter(|window| has(window)).count();
+            let all = self.part(part).count();
+            all == 0 || (0 < with && with < all)
+        };
+        shows(Part::Training) && shows(Part::Validation)
     }
 
     /// The joint.
@@ -235,9 +246,9 @@ impl<'a> FitRecord<'a> {
             start_s: self.start_s(index),
         };
         let windows = self.windows.iter().filter(|window| window.trial == index).copied();
-        let arrivals = self.arrivals(model, index);
+        let model = model.in_trial(trial.label());
+        let arrivals = self.arrivals(&model, index);
         Some(Run {
-            model,
             trial,
             arrivals,
             surroundings,
@@ -245,12 +256,14 @@ impl<'a> FitRecord<'a> {
             weights: self.weights_of(index),
             span: self.spans[index],
             speeds_measured: self.speeds_measured && model.has_dynamics(),
+            model,
         })
     }
 
     /// When each level of the input of a trial begins to act.
     pub fn arrivals(&self, model: &JointModel, trial: usize) -> Arrivals {
         let Some(commands) = self.commands.get(trial) else { return Arrivals::default() };
+        let model = &*model.in_trial(self.joint.trials[trial].label());
         let delays = model.takes_measured_delays().then(|| self.delays());
         let delays = delays.and_then(|delays| delays.get(trial));
         commands.arriving(model, self.start_s(trial), delays.map(Vec::as_slice))

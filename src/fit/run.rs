@@ -1,5 +1,6 @@
 //! The simulations of a model on one trial.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use super::speed;
@@ -14,7 +15,8 @@ type Simulate = fn(&JointModel, &Arrivals, usize, f64, &[Restart], &Surroundings
 
 /// A model on one trial, and what the two need of the record.
 pub(super) struct Run<'a> {
-    pub(super) model: &'a JointModel,
+    /// The model in this trial: without the effects of other conditions.
+    pub(super) model: Cow<'a, JointModel>,
     pub(super) trial: &'a Trial,
     pub(super) arrivals: Arrivals,
     pub(super) surroundings: Surroundings<'a>,
@@ -131,7 +133,7 @@ impl Run<'_> {
         };
         let later = (stretch.start > 0).then(|| self.arrivals.after(from_s));
         let arrivals = later.as_ref().unwrap_or(&self.arrivals);
-        simulate(self.model, arrivals, stretch.len(), period_s, restarts, &surroundings)
+        simulate(&self.model, arrivals, stretch.len(), period_s, restarts, &surroundings)
     }
 
     /// By how much the start of each window is wrong: `Σ w g r / Σ w g²`, with the slope

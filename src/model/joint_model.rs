@@ -1,6 +1,9 @@
 //! Structure and parameters of one joint's model.
 
+use std::borrow::Cow;
+
 use crate::effect::{Effect, InputChange, Stage};
+use crate::experiment::has_word;
 
 /// A parameter: its value, whether a fit may change it, and within which bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -127,6 +130,20 @@ impl JointModel {
         let mut model = self.clone();
         model.components.retain(|component| component.effect.spec().id != id);
         model
+    }
+
+    /// This model in a trial of this label: without the effects of other conditions (see
+    /// [`Effect::within_trials`]).
+    pub fn in_trial(&self, label: &str) -> Cow<'_, Self> {
+        let acts = |component: &Component| {
+            component.effect.within_trials().is_none_or(|of| has_word(label, of.word))
+        };
+        if self.components.iter().all(acts) {
+            return Cow::Borrowed(self);
+        }
+        let mut model = self.clone();
+        model.components.retain(acts);
+        Cow::Owned(model)
     }
 
     /// Whether it takes time until the speed is what the input says.

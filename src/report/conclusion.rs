@@ -45,10 +45,27 @@ impl Finding<'_> {
             (_, None) => (self.unexplained_headline(), self.unexplained()),
         };
         sentences.extend(first_order(self.joint(), self.consequence().fit));
+        sentences.extend(self.conditions(best));
         sentences.extend(self.delay());
-        let command = |id: &&'static str| format!("tauscope add {id} {}", self.add_arguments);
+        let command = |id: &&'static str| {
+            // A bracket is a pattern to a shell.
+            let id = if id.contains('[') { format!("'{id}'") } else { (*id).to_owned() };
+            format!("tauscope add {id} {}", self.add_arguments)
+        };
         let commands = best.iter().flat_map(|best| &best.effects).map(command).collect();
         Conclusion { headline, paragraph: sentences.join(" "), commands }
+    }
+
+    /// In which trials the effects act that do not act in all.
+    fn conditions(&self, best: Option<&Candidate>) -> Option<String> {
+        let model = self.consequence().fit.model.components().iter();
+        let components = model.chain(best.into_iter().flat_map(added));
+        let of = components.filter_map(|component| component.effect().within_trials());
+        let mut words: Vec<&str> = of.map(|of| of.word).collect();
+        words.sort_unstable();
+        words.dedup();
+        let acts = |word: &&str| format!("`[{word}]`: in trials with `{word}` in their label.");
+        (!words.is_empty()).then(|| words.iter().map(acts).collect::<Vec<_>>().join(" "))
     }
 
     /// The delay of the model beside those that were measured.

@@ -144,7 +144,9 @@ fn improved(
 ) -> Option<Judged> {
     /// Effects that are added at most: of later ones a prediction gains little.
     const MOST_EFFECTS: usize = 5;
-    let options = Options { max_effects: MOST_EFFECTS, ..Options::default() };
+    // The condition in which a plan is played is not known.
+    let options =
+        Options { max_effects: MOST_EFFECTS, tries_conditions: false, ..Options::default() };
     let joint = record.joint();
     let part = part_of(joint);
     let judged = FitRecord::new(&part, Split::of(&part), horizon);

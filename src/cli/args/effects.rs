@@ -4,6 +4,7 @@ use anyhow::{Context as _, anyhow};
 use clap::Args;
 
 use crate::effect::{Effect, REGISTRY, find_among};
+use crate::explain::Options;
 
 /// Which effects are tried.
 #[derive(Args, Debug)]
@@ -15,8 +16,15 @@ pub(crate) struct EffectArgs {
 }
 
 impl EffectArgs {
+    /// How models are explained with these effects and those of `own`. What differs between
+    /// trials is tried, too, where no list was given.
+    pub(crate) fn options(&self, own: &[&'static dyn Effect]) -> anyhow::Result<Options> {
+        let tries_conditions = self.effects.is_empty();
+        Ok(Options { effects: self.effects(own)?, tries_conditions, ..Options::default() })
+    }
+
     /// The effects of the list; all of the catalogue and of `own` without one.
-    pub(crate) fn effects(
+    fn effects(
         &self,
         own: &[&'static dyn Effect],
     ) -> anyhow::Result<Vec<&'static dyn Effect>> {

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::model::{ModelError, ModelFile};
+use crate::model::{Component, JointModel, ModelError, ModelFile};
 use anyhow::{Context as _, bail};
 use clap::Args;
 
 use crate::cli::console::{Host, Verbosity, message};
 use crate::cli::output::{target_of, write_file};
-use crate::experiment::{Joint, nearest_name};
+use crate::experiment::{Joint, has_word, nearest_name};
 
 /// The name of a model file where none is given.
 const DEFAULT: &str = "model.toml";
@@ -132,6 +132,17 @@ pub(crate) fn note_missing(file: &ModelFile, joints: &[Joint], verbosity: Verbos
             "note",
             &format!("joint `{name}`: not in the model file{near}; a plain integrator"),
         );
+    }
+    for joint in joints {
+        let model = file.joint(&joint.name).into_iter();
+        for effect in model.flat_map(JointModel::components).map(Component::effect) {
+            let Some(of) = effect.within_trials() else { continue };
+            if !joint.trials.iter().any(|trial| has_word(trial.label(), of.word)) {
+                let (name, id, word) = (&joint.name, effect.spec().id, of.word);
+                let none = format!("no trial has `{word}` in its label: `{id}` does nothing");
+                message("note", &format!("joint `{name}`: {none}"));
+            }
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use crate::batch::Threads;
 use crate::delay::Settings;
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
-use crate::explain::{Change, Explanation, Options, Revision};
+use crate::explain::{Change, Explanation, Revision};
 use crate::fit::Horizon;
 use crate::model::ModelFile;
 use crate::report::{ComparedJoint, ExplainJson, Finding, ImprovedJoint, explain_text};
@@ -47,8 +47,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let file = args.model.as_deref().map(read_model).transpose()?.unwrap_or_default();
-    let effects = args.effects.effects(file.candidates())?;
-    let options = Options { effects, ..Options::default() };
+    let options = args.effects.options(file.candidates())?;
     if let Some(path) = &args.output.recording {
         let inputs: Vec<_> = args.data.files().into_iter().chain(args.model.clone()).collect();
         check_outputs(&[path.as_path()], &inputs)?;

@@ -1,5 +1,6 @@
 //! `tauscope export`: a model as source code or as an FMU.
 
+use std::borrow::Cow;
 use std::ffi::OsStr;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -13,7 +14,7 @@ use crate::cli::exit::Completion;
 use crate::cli::output::{check_outputs, write_file};
 use crate::experiment::nearest_name;
 use crate::export::{Export, File, Language, Units, by_ending, endings};
-use crate::model::ModelFile;
+use crate::model::{Component, JointModel, ModelFile};
 
 /// Write a joint's model as source code that stands alone, or as an FMU
 ///
@@ -34,6 +35,11 @@ pub(crate) struct Args {
     /// The joint, where the model file has several
     #[arg(long, value_name = "NAME")]
     joint: Option<String>,
+
+    /// The label of a trial, or words of it, where effects act in some trials alone:
+    /// `--trial H` has those of trials with `H` in their labels, `--trial none` has none
+    #[arg(long, value_name = "LABEL")]
+    trial: Option<String>,
 
     /// Unit of the input, as in the log
     #[arg(long, value_name = "UNIT")]
@@ -124,6 +130,25 @@ fn exported(args: &Args, model: &ModelFile, joint: &str) -> anyhow::Result<Expor
         env!("CARGO_PKG_VERSION")
     );
     let units = Units { input: args.input_unit.clone(), output: args.output_unit.clone() };
-    Export::new(joint, of, units, &[origin])
-        .with_context(|| format!("{}: joint `{joint}`", args.model.display()))
+    let place = || format!("{}: joint `{joint}`", args.model.display());
+    let of = in_trial(of, args.trial.as_deref()).with_context(place)?;
+    Export::new(joint, &of, units, &[origin]).with_context(place)
+}
+
+/// `model` in a trial of this label; as it is where it is the same in all.
+fn in_trial<'m>(model: &'m JointModel, label: Option<&str>) -> anyhow::Result<Cow<'m, JointModel>> {
+    if let Some(label) = label {
+        return Ok(model.in_trial(label));
+    }
+    let effects = model.components().iter().map(Component::effect);
+    for effect in effects {
+        if let Some(of) = effect.within_trials() {
+            let (id, word) = (effect.spec().id, of.word);
+            return Err(anyhow!(
+                "its effect `{id}` acts in trials with `{word}` in their label alone: say whether \
+                 it is to act, `--trial {word}` or `--trial none`"
+            ));
+        }
+    }
+    Ok(Cow::Borrowed(model))
 }

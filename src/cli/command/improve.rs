@@ -80,9 +80,11 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
         return each_log(args, program);
     }
     let file = args.model.read()?;
-    let effects = args.effects.effects(file.candidates())?;
-    let options =
-        Options { effects, max_effects: args.max_effects, keeps_refinements: args.refine };
+    let options = Options {
+        max_effects: args.max_effects,
+        keeps_refinements: args.refine,
+        ..args.effects.options(file.candidates())?
+    };
     let target = args.model.target();
     let recording = args.output.recording.as_deref();
     let outputs: Vec<_> = std::iter::once(target).chain(recording).collect();

@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 
 use crate::batch::Threads;
 use crate::delay::Automatic;
-use crate::effect::Effect;
 use crate::experiment::Joint;
 use crate::explain::{Change, Explanation, Improvement, MAX_EFFECTS, Options, Revision};
 use crate::fit::Horizon;
@@ -130,7 +129,7 @@ struct OutputArgs {
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let settings = args.algorithm.only()?;
     let file = args.model.file()?;
-    let effects = args.model.effects.effects(file.candidates())?;
+    let options = args.model.options(&file)?;
     let target = args.output.target()?;
     let inputs = args.data.files().into_iter().chain(args.model.model.clone());
     let inputs = inputs.chain(args.review.review.clone());
@@ -143,7 +142,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let asked = (std::slice::from_ref(&settings), Automatic::default());
     let others = others(&session, (&args.against, &args.data), asked, &[])?;
     let session = session.with_results(others);
-    let study = Study::of(session, &settings, |begun| args.model.improved(&file, begun, effects))?;
+    let study = Study::of(session, &settings, |begun| args.model.improved(&file, begun, &options))?;
     if study.result.is_some() {
         note_missing(&file, &study.experiment().joints, study.verbosity());
     }
@@ -156,15 +155,19 @@ impl ModelArgs {
         Ok(self.model.as_deref().map(read_model).transpose()?.unwrap_or_default())
     }
 
+    fn options(&self, file: &ModelFile) -> anyhow::Result<Options> {
+        let options = self.effects.options(file.candidates())?;
+        Ok(Options { max_effects: self.max_effects, ..options })
+    }
+
     /// The model of each joint with what it lacks; none where no model is asked for.
     fn improved(
         &self,
         file: &ModelFile,
         begun: Begun<'_>,
-        effects: Vec<&'static dyn Effect>,
+        options: &Options,
     ) -> Option<OfJoints<Improvement>> {
         let (joints, estimates) = (begun.joints, begun.estimates);
-        let options = Options { effects, max_effects: self.max_effects, ..Options::default() };
         let starts = |joint: &Joint| file.joint(&joint.name).cloned();
         let protocol = self.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
         if self.improve {
