@@ -247,7 +247,6 @@ fn each_library_is_named_in_its_own_place_only() {
         ("rerun", "src/recording"),
         ("sci_rs", "src/numerics/filter.rs"),
         ("statrs", "src/numerics/statistics"),
-        ("levenberg_marquardt", "src/fit"),
         ("winnow", "src/effect/expression"),
         ("toml_edit", "src/model/file"),
         ("ctrlc", "src/cli/console/interrupt.rs"),

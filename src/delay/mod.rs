@@ -2,7 +2,8 @@
 //!
 //! Algorithm 1 of Albrecht and Taylor: around each input step the output is cut into a
 //! segment, every pair of regression lines through it is a candidate, the pair with the
-//! least squared error wins, and six conditions decide whether its breakpoint counts.
+//! least squared error wins, and [conditions](Condition) decide whether its breakpoint counts:
+//! the paper's six, one for segments without a candidate, and two for joints at rest.
 //! Two more [methods](Method) find it between samples and tell how well it is known.
 //!
 //! - [`steps`](InputStep): where the input changes

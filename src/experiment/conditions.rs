@@ -7,6 +7,11 @@
 
 use super::Trial;
 
+/// Whether each of `trials` has one of the two words and not the other.
+pub(crate) fn are_opposites(trials: &[Trial], [one, other]: [&str; 2]) -> bool {
+    trials.iter().all(|trial| has_word(trial.label(), one) != has_word(trial.label(), other))
+}
+
 /// Whether `label` has `word`, between what is no letter and no digit.
 pub fn has_word(label: &str, word: &str) -> bool {
     words(label).any(|other| other == word)
@@ -31,12 +36,12 @@ fn words(label: &str) -> impl Iterator<Item = &str> {
 /// let levels = [40.0, 60.0, 80.0];
 /// let of = |load| levels.map(|level| trial(&format!("out-{level}-{load}"), level));
 /// let trials = ["heavy", "light"].into_iter().flat_map(of).collect::<Result<Vec<_>, _>>()?;
-/// assert_eq!(conditions(&trials), ["heavy"]);
+/// assert_eq!(conditions(&trials), ["heavy", "light"]);
 /// # Ok::<(), tauscope::experiment::TrialError>(())
 /// ```
 pub fn conditions(trials: &[Trial]) -> Vec<String> {
     /// Words that are tried, at most: each costs fits.
-    const MOST: usize = 3;
+    const MOST: usize = 4;
     let mut found: Vec<(&str, Vec<bool>)> = Vec::new();
     for word in trials.iter().flat_map(|trial| words(trial.label())) {
         let is_number = word.chars().all(|c| c.is_ascii_digit());
@@ -44,9 +49,7 @@ pub fn conditions(trials: &[Trial]) -> Vec<String> {
             continue;
         }
         let with: Vec<bool> = trials.iter().map(|trial| has_word(trial.label(), word)).collect();
-        let says_the_same = |(_, other): &(&str, Vec<bool>)| {
-            *other == with || other.iter().zip(&with).all(|(a, b)| a != b)
-        };
+        let says_the_same = |(_, other): &(&str, Vec<bool>)| *other == with;
         if is_balanced(&with) && !found.iter().any(says_the_same) && crosses_input(trials, &with) {
             found.push((word, with));
         }
@@ -64,27 +67,49 @@ fn is_balanced(with: &[bool]) -> bool {
     fewer >= FEWEST && fewer as f64 >= SHARE * with.len() as f64
 }
 
-/// Whether most trials of the rarer kind have one of the other kind that is driven alike.
+/// Whether most trials have one of the other kind that is driven alike.
 fn crosses_input(trials: &[Trial], with: &[bool]) -> bool {
-    let drives: Vec<[f64; 2]> = trials.iter().map(drive).collect();
-    let largest = drives.iter().flatten().fold(0.0, |most: f64, value| most.max(value.abs()));
-    // Levels as they were commanded, and measured ones of the same command.
-    let is_near =
-        |a: &[f64; 2], b: &[f64; 2]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 0.05 * largest);
+    let drives: Vec<Drive> = trials.iter().map(Drive::of).collect();
     let both = || drives.iter().zip(with);
-    let rarer = with.iter().filter(|has| **has).count() * 2 <= with.len();
-    let of_rarer: Vec<_> = both().filter(|(_, has)| **has == rarer).collect();
-    let has_twin = |(own, _): &&(&[f64; 2], &bool)| {
-        both().any(|(other, has)| *has != rarer && is_near(own, other))
+    let has_twin = |(own, kind): &(&Drive, &bool)| {
+        both().any(|(other, other_kind)| *kind != other_kind && own.is_like(other))
     };
-    of_rarer.iter().filter(|one| has_twin(one)).count() * 2 > of_rarer.len()
+    both().filter(has_twin).count() * 2 > trials.len()
 }
 
-/// The lowest and the highest level that drive a trial.
-fn drive(trial: &Trial) -> [f64; 2] {
-    let input = trial.input().iter().copied();
-    let (low, high) = input.fold((f64::MAX, f64::MIN), |(l, h), u| (l.min(u), h.max(u)));
-    [low, high]
+/// What drives a trial.
+#[derive(Clone, Copy, Debug)]
+struct Drive {
+    low: f64,
+    high: f64,
+    /// How often the level changes.
+    changes: usize,
+}
+
+impl Drive {
+    fn of(trial: &Trial) -> Self {
+        let input = trial.input();
+        let (low, high) = input.iter().fold((f64::MAX, f64::MIN), |(l, h), u| (u.min(l), u.max(h)));
+        let changes = input.windows(2).filter(|pair| (pair[1] - pair[0]).abs() > 0.0).count();
+        Self { low, high, changes }
+    }
+
+    /// Whether both have about the same levels: those of a stroke, or most of the range of many.
+    fn is_like(&self, other: &Self) -> bool {
+        /// Changes from which on a trial is no stroke.
+        const MANY: usize = 6;
+        /// Part of the range that two strokes of the same level may differ by, as of a measured
+        /// input, and that many random levels have in common at least.
+        const SAME: f64 = 0.05;
+        const COMMON: f64 = 0.6;
+        let whole = self.high.max(other.high) - self.low.min(other.low);
+        if self.changes.min(other.changes) >= MANY {
+            let common = self.high.min(other.high) - self.low.max(other.low);
+            return common >= COMMON * whole;
+        }
+        (self.low - other.low).abs() <= SAME * whole
+            && (self.high - other.high).abs() <= SAME * whole
+    }
 }
 
 #[cfg(test)]
@@ -108,7 +133,7 @@ mod tests {
 
     #[test]
     fn a_word_that_crosses_the_levels_is_a_condition() {
-        assert_eq!(conditions(&strokes(&["H", "L"])), ["H"]);
+        assert_eq!(conditions(&strokes(&["H", "L"])), ["H", "L"]);
         assert_eq!(conditions(&strokes(&["cold", "warm", "hot"])), ["cold", "warm", "hot"]);
     }
 

@@ -30,6 +30,7 @@ mod wrap;
 
 pub use activity::{Other, activity};
 pub use columns::{ColumnMap, ColumnMapError, JointColumns};
+pub(crate) use conditions::are_opposites;
 pub use conditions::{conditions, has_word};
 pub use error::ReadError;
 pub(crate) use gaps::longest_gap_s;

@@ -2,7 +2,8 @@
 
 use super::options::Options;
 use crate::delay::InputMotion;
-use crate::effect::{Effect, RecordRange, Spec};
+use crate::effect::{Effect, RecordRange, Spec, WithinTrials};
+use crate::experiment::are_opposites;
 use crate::fit::FitRecord;
 use crate::model::JointModel;
 
@@ -30,8 +31,20 @@ pub(super) fn could_be_missing(
     let has_steps = || !InputMotion::of(&record.joint().trials).is_continuous();
     !has(model, is_it)
         && (!effect.depends_on_others() || record.has_others())
-        && effect.within_trials().is_none_or(|of| record.shows_condition(of.word))
+        && effect.within_trials().is_none_or(|of| shows_condition(record, model, of))
         && (!effect.depends_on_steps() || has_steps())
+}
+
+/// Whether `record` can show what an effect does in the trials of its condition: not where the
+/// model has it in all the other trials.
+fn shows_condition(record: &FitRecord<'_>, model: &JointModel, of: WithinTrials<'_>) -> bool {
+    let is_opposite = |other: WithinTrials<'_>| {
+        std::ptr::eq(other.effect.spec(), of.effect.spec())
+            && are_opposites(&record.joint().trials, [other.word, of.word])
+    };
+    let components = model.components().iter();
+    let mut others = components.filter_map(|component| component.effect().within_trials());
+    record.shows_condition(of.word) && !others.any(is_opposite)
 }
 
 /// Whether it is time to look for `effect`: what it refines is in the model, or is not to be

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::effect::{Effect, OF_CONDITIONS, REGISTRY, within_trials};
-use crate::experiment::{Joint, conditions};
+use crate::experiment::{Joint, are_opposites, conditions};
 
 /// Which effects are tried, and which may stay.
 #[derive(Clone, Debug)]
@@ -27,9 +27,12 @@ impl Options {
             return Cow::Borrowed(self);
         }
         let mut options = self.clone();
-        for word in &words {
-            let effects = OF_CONDITIONS.iter().map(|effect| within_trials(*effect, word));
-            options.effects.extend(effects);
+        for (index, word) in words.iter().enumerate() {
+            let is_opposite = |other: &String| are_opposites(&joint.trials, [other, word]);
+            // A gain that is higher with one word is lower with its opposite: the same model.
+            let skipped = usize::from(words[..index].iter().any(is_opposite));
+            let effects = OF_CONDITIONS.iter().skip(skipped);
+            options.effects.extend(effects.map(|effect| within_trials(*effect, word)));
         }
         Cow::Owned(options)
     }

@@ -1,7 +1,8 @@
 //! What is drawn, as data: panels with axes and marks, coloured by what they mean.
 //!
-//! It is rendered twice: as SVG for the page of a report, and in Rerun for recordings. What
-//! differs between the two, such as timelines and where plots lie, stays there.
+//! What is drawn, and in which role, stands here once: a segment with its lines, shares of an error,
+//! the errors of revisions, delays by level. A report draws a [`Panel`] as SVG; a recording draws the
+//! same data in Rerun's own views, which scale and label themselves.
 
 #[cfg(feature = "rrd")]
 pub(crate) mod correlogram;

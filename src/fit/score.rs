@@ -130,7 +130,7 @@ mod tests {
     use crate::units::SamplePeriod;
 
     #[test]
-    fn the_share_share_of_two_directions_is_that_of_least_squares() {
+    fn the_share_of_two_directions_is_that_of_least_squares() {
         let vector = |phase: f64| {
             let values = (0..40).map(|k| (f64::from(k) * 0.3 + phase).sin() + phase);
             unit(DVector::from_iterator(40, values), 1.0).unwrap()

@@ -15,7 +15,7 @@ use clap::Args;
 /// Where the logs are and how they are read.
 #[derive(Args, Debug)]
 pub(crate) struct DataArgs {
-    /// Logs (CSV, Parquet, MATLAB, MCAP), or folders of logs
+    /// Logs (CSV, XLSX, Parquet, MATLAB, MCAP), or folders of logs
     #[arg(required = true, value_name = "DATA")]
     data: Vec<PathBuf>,
 

@@ -24,10 +24,7 @@ impl EffectArgs {
     }
 
     /// The effects of the list; all of the catalogue and of `own` without one.
-    fn effects(
-        &self,
-        own: &[&'static dyn Effect],
-    ) -> anyhow::Result<Vec<&'static dyn Effect>> {
+    fn effects(&self, own: &[&'static dyn Effect]) -> anyhow::Result<Vec<&'static dyn Effect>> {
         if self.effects.is_empty() {
             return Ok(REGISTRY.iter().chain(own).copied().collect());
         }

@@ -18,7 +18,9 @@ pub(crate) use algorithm::AlgorithmArgs;
 pub(crate) use conditions::{ConditionArgs, Passband, ids_with, passband};
 pub(crate) use data::{DataArgs, MemoryArgs, ReadingArgs};
 pub(crate) use effects::{EffectArgs, find};
-pub(crate) use model_file::{ModelFileArgs, fresh_name, name_of, note_missing, read_model};
+pub(crate) use model_file::{
+    ModelFileArgs, fresh_name, name_of, note_conditions, note_missing, read_model,
+};
 pub(crate) use own_settings::OwnSettings;
 pub(crate) use protocol::ProtocolArgs;
 pub(crate) use results::{Format, ResultArgs, RunArgs};

@@ -133,6 +133,14 @@ pub(crate) fn note_missing(file: &ModelFile, joints: &[Joint], verbosity: Verbos
             &format!("joint `{name}`: not in the model file{near}; a plain integrator"),
         );
     }
+    note_conditions(file, joints, verbosity);
+}
+
+/// Says which effects do nothing as no trial is of their condition.
+pub(crate) fn note_conditions(file: &ModelFile, joints: &[Joint], verbosity: Verbosity) {
+    if verbosity == Verbosity::Quiet {
+        return;
+    }
     for joint in joints {
         let model = file.joint(&joint.name).into_iter();
         for effect in model.flat_map(JointModel::components).map(Component::effect) {

@@ -12,7 +12,7 @@ use crate::report::{CompareJson, ComparedJoint, compare_text};
 use crate::study::{Mode, compare_joints};
 use clap::Args as ClapArgs;
 
-use crate::cli::args::{DataArgs, ProtocolArgs, ResultArgs, read_model};
+use crate::cli::args::{DataArgs, ProtocolArgs, ResultArgs, note_conditions, read_model};
 use crate::cli::exit::Completion;
 use crate::cli::failure::{joint_left_out, nothing_usable, read_failures};
 use crate::cli::output::check_outputs;
@@ -82,6 +82,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         };
         models.iter().map(one).collect::<Vec<_>>()
     })?;
+    for file in models.iter().filter_map(|named| named.file.as_ref()) {
+        note_conditions(file, &study.experiment().joints, study.verbosity());
+    }
     let mut failures = read_failures(study.experiment());
     let mut compared = Vec::new();
     for (named, results) in models.iter().zip(&study.result) {

@@ -50,7 +50,7 @@ impl Basis {
         let mut modes = vec![[0.0; MAX_PARAMETERS]; felt];
         for (index, column) in columns.chunks_exact(felt.max(1)).enumerate() {
             for (row, value) in modes.iter_mut().zip(column) {
-                row.iter_mut().skip(index).take(1).for_each(|slot| *slot = *value);
+                row[index] = *value;
             }
         }
         let mut sums = vec![Sums::default()];

@@ -15,8 +15,8 @@ use crate::cli::args::{ReadingArgs, RunArgs};
 /// effects, and says how surely.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct Args {
-    /// Logs of earlier experiments (CSV, Parquet, MATLAB, MCAP), or folders of logs: what they show of
-    /// the joints is used
+    /// Logs of earlier experiments (CSV, XLSX, Parquet, MATLAB, MCAP), or folders of logs: what they
+    /// show of the joints is used
     #[arg(value_name = "DATA")]
     pub(super) data: Vec<PathBuf>,
 
