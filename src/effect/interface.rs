@@ -2,7 +2,16 @@
 
 use std::fmt::Debug;
 
-use super::{Definition, Equations, InputChange, Moment, RecordRange, Spec, Stage, WithinTrials};
+use super::{Definition, Equations, InputChange, Moment, RecordRange, Spec, Stage};
+
+/// An effect, and the word in the labels of the trials in which it acts.
+#[derive(Clone, Copy, Debug)]
+pub struct WithinTrials<'a> {
+    /// The effect.
+    pub effect: &'static dyn Effect,
+    /// The word.
+    pub word: &'a str,
+}
 
 /// One physical effect.
 ///

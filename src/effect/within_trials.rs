@@ -14,7 +14,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::{
     DeadBand, Dimension, Effect, Equations, GravityLoad, InputChange, Moment, Parameter,
-    PositionGain, RecordRange, Spec, Stage,
+    PositionGain, RecordRange, Spec, Stage, WithinTrials,
 };
 
 /// What a load, a supply or another pose of the machine may change; first the gain.
@@ -65,15 +65,6 @@ impl Effect for TrialGain {
 pub(super) fn parts_of(id: &str) -> Option<(&str, &str)> {
     let (effect, word) = id.strip_suffix(']')?.split_once('[')?;
     (!word.is_empty() && word.chars().all(char::is_alphanumeric)).then_some((effect, word))
-}
-
-/// An effect, and the word in the labels of the trials in which it acts.
-#[derive(Clone, Copy, Debug)]
-pub struct WithinTrials<'a> {
-    /// The effect.
-    pub effect: &'static dyn Effect,
-    /// The word.
-    pub word: &'a str,
 }
 
 #[derive(Debug)]
