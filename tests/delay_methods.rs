@@ -111,7 +111,7 @@ fn nothing_happens_in_a_dead_band() {
 fn the_papers_method_tests_nothing_by_itself() {
     let made = made(joint());
     let found = found(&made, Method::TWO_LINE);
-    let checks = found.decisions.iter().flat_map(|decision| &decision.checks);
+    let checks = found.decisions.iter().flat_map(|decision| decision.checks.iter());
     let mut tests = checks.filter(|check| check.condition == Condition::NothingHappened);
     assert!(tests.all(|check| check.value.is_none() && check.limit.is_none()));
 }

@@ -220,7 +220,7 @@ fn a_lookup_without_a_delay_is_not_written() {
 fn the_one_dead_time_of_an_input_that_moves_is_exported() {
     let folder = tempfile::tempdir().unwrap();
     let moving = |k: i32| (f64::from(k) * 0.05).sin() + (f64::from(k) * 0.137).sin();
-    for file in ["lookup.c", "lookup.py"] {
+    for file in ["lookup.c", "lookup.m", "lookup.py"] {
         let output = estimated(folder.path(), moving, &["--export", file]);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let text = String::from_utf8_lossy(&output.stdout).into_owned();

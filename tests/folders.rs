@@ -267,7 +267,13 @@ fn python() -> Option<String> {
 #[test]
 fn dask_makes_the_bytes_of_one_process() {
     let Some(python) = python() else {
-        eprintln!("skipped: no Python with dask.distributed; see examples/dask/requirements.txt");
+        // Not `eprintln`, which the test runner keeps to itself.
+        let mut terminal = std::io::stderr();
+        std::io::Write::write_all(
+            &mut terminal,
+            b"skipped: no Python with dask.distributed; see examples/dask/requirements.txt\n",
+        )
+        .unwrap();
         return;
     };
     // Four logs for each of two workers.

@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::ffi::OsString;
+use std::io;
 use std::path::PathBuf;
 use std::process::Command;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -15,12 +16,18 @@ use tauscope::experiment::{Experiment, ReadOptions};
 #[derive(Default)]
 struct Program {
     logs: Mutex<Option<Experiment>>,
-    printed: Mutex<String>,
+    printed: Mutex<Vec<u8>>,
     said: Mutex<Vec<(String, String)>>,
     steps: AtomicU64,
     stops: bool,
     ends: bool,
     effects: Vec<&'static dyn Effect>,
+}
+
+impl Program {
+    fn text(&self) -> String {
+        String::from_utf8(self.printed.lock().unwrap().clone()).unwrap()
+    }
 }
 
 /// An effect of the program's own.
@@ -54,8 +61,9 @@ impl Hosting for Program {
         self.logs.lock().unwrap().take()
     }
 
-    fn print(&self, results: String) {
-        self.printed.lock().unwrap().push_str(&results);
+    fn print(&self, results: &[u8]) -> io::Result<()> {
+        self.printed.lock().unwrap().extend(results);
+        Ok(())
     }
 
     fn say(&self, kind: &str, text: &str) {
@@ -91,13 +99,13 @@ fn results_are_those_of_the_program_wherever_the_log_is() {
     let program = Arc::new(Program::default());
     assert!(run_within(&arguments(words), program.clone()).unwrap());
     let expected = printed(words);
-    assert_eq!(*program.printed.lock().unwrap(), expected.trim_end());
+    assert_eq!(program.text(), expected.trim_end());
     assert_eq!(program.steps.load(Ordering::Relaxed), 2);
     let log = PathBuf::from("data/hidden_effect.csv");
     let log = Experiment::read(&[log], &ReadOptions::default());
     let handed = Arc::new(Program { logs: Mutex::new(Some(log)), ..Program::default() });
     assert!(run_within(&arguments("estimate memory --format json"), handed.clone()).unwrap());
-    assert_eq!(*handed.printed.lock().unwrap(), expected.trim_end());
+    assert_eq!(handed.text(), expected.trim_end());
 }
 
 #[test]
@@ -130,7 +138,7 @@ fn a_command_that_is_ended_leaves_no_results_and_one_that_is_stopped_what_it_has
     let stopped = Arc::new(Program { stops: true, ..Program::default() });
     let words = words.to_owned() + model.to_str().unwrap();
     assert!(!run_within(&arguments(&words), stopped.clone()).unwrap());
-    let found: serde_json::Value = serde_json::from_str(&stopped.printed.lock().unwrap()).unwrap();
+    let found: serde_json::Value = serde_json::from_str(&stopped.text()).unwrap();
     assert_eq!(found["joints"][0]["interrupted"], true);
     assert_eq!(found["joints"][0]["revisions"].as_array().unwrap().len(), 1);
 }
@@ -148,7 +156,7 @@ fn a_model_may_name_the_effects_of_the_program() {
     assert!(refused.message.contains("half"), "{}", refused.message);
     let program = Arc::new(Program { effects: vec![&Half], ..Program::default() });
     assert!(run_within(&arguments(&words), program.clone()).unwrap());
-    let found: serde_json::Value = serde_json::from_str(&program.printed.lock().unwrap()).unwrap();
+    let found: serde_json::Value = serde_json::from_str(&program.text()).unwrap();
     assert_eq!(found["joints"][0]["effects"], serde_json::json!(["half", "dead_band"]));
     let revised = std::fs::read_to_string(&model).unwrap();
     assert!(revised.contains("kind = \"half\"") && revised.contains("kind = \"dead_band\""));

@@ -2,6 +2,7 @@
 //! calling thread looks out for Ctrl-C and says how far the work is.
 
 use std::ffi::OsString;
+use std::io;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -19,6 +20,7 @@ use tauscope::experiment::{Experiment, ReadOptions};
 use crate::TauscopeError;
 use crate::arrays::{ArrayJoint, Logs, Table};
 use crate::function::Function;
+use crate::printed::Printed;
 
 /// How often the calling thread looks up from its waiting.
 const TICK: Duration = Duration::from_millis(50);
@@ -31,7 +33,7 @@ const STACK: usize = 8 << 20;
 struct Shared {
     logs: Mutex<Option<Logs>>,
     effects: Vec<&'static dyn Effect>,
-    results: Mutex<String>,
+    results: Printed,
     messages: Mutex<Vec<(String, String)>>,
     what: Mutex<String>,
     done: AtomicU64,
@@ -64,14 +66,8 @@ impl Hosting for Shared {
         }
     }
 
-    fn print(&self, results: String) {
-        let mut all = lock(&self.results);
-        // What is printed at once is not copied.
-        if all.is_empty() {
-            *all = results;
-        } else {
-            all.push_str(&results);
-        }
+    fn print(&self, results: &[u8]) -> io::Result<()> {
+        self.results.push(results)
     }
 
     fn say(&self, kind: &str, text: &str) {
@@ -112,7 +108,7 @@ fn given(logs: Option<Given<'_>>) -> PyResult<Option<Logs>> {
 
 /// What a command gives: whether all was done, its results, its messages, and whether it was
 /// stopped before its end.
-type Answer = (bool, String, Vec<(String, String)>, bool);
+type Answer = (bool, Printed, Vec<(String, String)>, bool);
 
 /// Runs a command: `arguments` from its name on, `logs` in memory, `progress(what, done, of)`
 /// called now and then. With `keeps` an interrupt stops it with what was reached. Models may
@@ -135,9 +131,8 @@ pub(crate) fn run(
     let done = waited(py, &shared, progress.as_ref(), interrupted, work);
     Function::check(&functions)?;
     let is_whole = done?;
-    let (results, messages) =
-        (std::mem::take(&mut *lock(&shared.results)), std::mem::take(&mut *lock(&shared.messages)));
-    Ok((is_whole, results, messages, shared.is_stopping()))
+    let messages = std::mem::take(&mut *lock(&shared.messages));
+    Ok((is_whole, shared.results.take(), messages, shared.is_stopping()))
 }
 
 /// What becomes of work that a person interrupts.

@@ -8,6 +8,7 @@ mod frame;
 mod function;
 mod host;
 mod model;
+mod printed;
 
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
@@ -26,6 +27,7 @@ fn _tauscope(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("TauscopeError", module.py().get_type::<TauscopeError>())?;
     module.add_class::<frame::Frame>()?;
     module.add_class::<function::Function>()?;
+    module.add_class::<printed::Printed>()?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("HAS_RECORDINGS", cfg!(feature = "recordings"))?;
     module.add_function(wrap_pyfunction!(host::run, module)?)?;

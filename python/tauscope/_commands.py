@@ -21,6 +21,9 @@ from ._settings import arguments
 R = TypeVar("R", bound=_results.Result)
 
 
+#: Whether all was done, what was printed, what was said, whether it was stopped, and the model.
+_Done = tuple[bool, _tauscope.Printed, list[tuple[str, str]], bool, Model | None]
+
 #: Commands whose work takes longer than its recording, which they make at once.
 FITTING = frozenset({"explain", "add", "improve"})
 
@@ -50,7 +53,7 @@ def _run(
     name = given.name if given is not None else "model.toml"
     functions = given.functions if given is not None else ()
 
-    def run(output: str | None) -> tuple[bool, str, list[tuple[str, str]], bool, Model | None]:
+    def run(output: str | None) -> _Done:
         with tempfile.TemporaryDirectory() as folder:
             typed = arguments(command, {**settings, "output": output})
             if given is not None:
@@ -71,7 +74,7 @@ def _run(
     if is_recorded and output is None and command in FITTING:
         folder = tempfile.TemporaryDirectory(prefix="tauscope_")
         output = Path(folder.name) / f"{command}.rrd"
-    complete, text, messages, stopped, left = run(output and os.fspath(output))
+    complete, printed, messages, stopped, left = run(output and os.fspath(output))
     for what, said in messages:
         if what == "warning":
             warnings.warn(said, TauscopeWarning, stacklevel=3)
@@ -81,7 +84,7 @@ def _run(
 
     return kind(
         command,
-        text,
+        printed,
         messages,
         complete=complete,
         stopped=stopped,

@@ -17,6 +17,7 @@ import pandas as pd
 from . import _svg
 
 if TYPE_CHECKING:
+    from . import _tauscope
     from ._model import Model
 
 
@@ -31,7 +32,7 @@ class Result:
     def __init__(
         self,
         command: str,
-        text: str,
+        printed: _tauscope.Printed,
         messages: list[tuple[str, str]],
         *,
         complete: bool = True,
@@ -42,7 +43,7 @@ class Result:
         model: Model | None = None,
     ) -> None:
         self.command = command
-        self._text = text
+        self._printed = printed
         self.notes = [said for kind, said in messages if kind == "note"]
         self.complete = complete
         self.stopped = stopped
@@ -56,12 +57,13 @@ class Result:
     @cached_property
     def data(self) -> dict[str, Any]:
         """The JSON as a dictionary."""
-        data: dict[str, Any] = json.loads(self._text) if self._text else {}
+        text = self.to_json()
+        data: dict[str, Any] = json.loads(text) if text else {}
         return data
 
     def to_json(self) -> str:
         """The JSON, as the program prints it with ``--format json``."""
-        return self._text
+        return self._printed.text()
 
     @property
     def joints(self) -> list[dict[str, Any]]:

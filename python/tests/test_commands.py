@@ -118,6 +118,28 @@ def test_arrays_give_the_same_as_the_file() -> None:
     assert [joint["decisions"] for joint in found] == [joint["decisions"] for joint in expected]
 
 
+def test_a_long_result_is_whole_wherever_it_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beyond 4 MB it goes to a file; where none can be made, or the disk is full, to memory."""
+    resource = pytest.importorskip("resource")
+    rng = np.random.default_rng(1)
+    u = np.repeat(rng.uniform(-2, 2, 15_000), 20)
+    y = np.concatenate([np.zeros(5), np.cumsum(0.1 * u)[:-5]]) + rng.normal(0, 0.01, len(u))
+    found = tauscope.estimate((u, y), sample_period=0.01)
+    text = found.to_json()
+    assert len(text) > 9 << 20
+    assert len(found.decisions) == len(json.loads(text)["joints"][0]["decisions"])
+    assert found.to_json() == text
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (8500 << 10, limits[1]))
+    try:
+        full = tauscope.estimate((u, y), sample_period=0.01)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert full.to_json() == text
+    monkeypatch.setenv("TMPDIR", "/nowhere")
+    assert tauscope.estimate((u, y), sample_period=0.01).to_json() == text
+
+
 def test_polars_gives_the_same_as_pandas() -> None:
     polars = pytest.importorskip("polars")
     table = pd.read_csv(LOG)

@@ -120,10 +120,11 @@ impl AgainstState {
         let estimated = trials.filter_map(|(trial, estimate)| Some((trial, estimate?)));
         let steps: Vec<_> =
             estimated.flat_map(|(trial, found)| states(trial, found, neutral.as_ref())).collect();
-        let (correlations, direction) = compare(joint, &steps);
+        let all: Vec<&StepState> = steps.iter().collect();
+        let (correlations, direction) = compare(joint, &all);
         let kinds = Transition::ALL.into_iter().filter_map(|kind| {
             let same = steps.iter().filter(|step| step.transition == kind);
-            let same: Vec<StepState> = same.cloned().collect();
+            let same: Vec<&StepState> = same.collect();
             let (correlations, direction) = compare(joint, &same);
             let of_kind =
                 AgainstOfKind { transition: kind, steps: same.len(), correlations, direction };
@@ -134,7 +135,7 @@ impl AgainstState {
 }
 
 /// The delays of `steps` against every variable and direction, corrected for their number.
-fn compare(joint: &Joint, steps: &[StepState]) -> (Vec<Correlation>, Direction) {
+fn compare(joint: &Joint, steps: &[&StepState]) -> (Vec<Correlation>, Direction) {
     let named = variables(joint).into_iter().enumerate();
     let mut correlations: Vec<_> =
         named.map(|(number, variable)| correlate(steps, number, variable)).collect();
@@ -227,7 +228,7 @@ impl StepState {
 
 /// Correlates the delays with a variable, named and numbered.
 fn correlate(
-    steps: &[StepState],
+    steps: &[&StepState],
     variable: usize,
     (name, unit): (&str, Option<String>),
 ) -> Correlation {
@@ -249,7 +250,7 @@ impl Direction {
     /// Steps below which neither variables nor directions are compared.
     const MIN_STEPS: usize = 4;
 
-    fn of(steps: &[StepState]) -> Self {
+    fn of(steps: &[&StepState]) -> Self {
         let delays = |up: bool| {
             let same = steps.iter().filter(|step| (step.input_change > 0.0) == up);
             same.map(|step| step.delay_s).collect::<Vec<f64>>()

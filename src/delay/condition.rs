@@ -131,8 +131,8 @@ pub(super) struct Facts<'a> {
 
 impl Facts<'_> {
     /// All conditions, in the order of [`Condition::ALL`]; none of them depends on another.
-    pub(super) fn check(&self, settings: &Settings) -> Vec<Check> {
-        vec![
+    pub(super) fn check(&self, settings: &Settings) -> [Check; Condition::ALL.len()] {
+        [
             self.first_or_last(settings),
             self.output_limit(settings),
             self.before_input(),

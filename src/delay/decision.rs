@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use super::condition::{Check, Condition, Outcome, nothing_happened};
+use super::checks::Checks;
+use super::condition::{Condition, nothing_happened};
 use super::interval::FineDelay;
 use super::search::{Candidate, Candidates};
 use super::segment::Segment;
@@ -25,11 +26,11 @@ pub struct Decision {
     /// method compares none.
     pub candidates: Candidates,
     /// Every condition, in the order of [`Condition::ALL`].
-    pub checks: Vec<Check>,
+    pub checks: Checks,
     /// The delay between samples, where the method gives it.
     pub fine: Option<FineDelay>,
     /// What a reviewer said of it.
-    pub word: Option<Word>,
+    pub word: Option<Box<Word>>,
 }
 
 /// The best breakpoint of a segment, accepted or not.
@@ -88,16 +89,12 @@ impl Decision {
 
     /// All conditions that failed.
     pub fn failed(&self) -> impl Iterator<Item = Condition> + '_ {
-        let failed = self.checks.iter().filter(|check| check.outcome == Outcome::Failed);
-        failed.map(|check| check.condition)
+        self.checks.failed().map(|check| check.condition)
     }
 
     /// Puts the result of a test against noise among the checks.
     pub(super) fn test_reaction(&mut self, p_value: Option<f64>, confidence: f64) {
-        let found = nothing_happened(p_value, confidence);
-        for check in self.checks.iter_mut().filter(|check| check.condition == found.condition) {
-            *check = found;
-        }
+        self.checks.put(nothing_happened(p_value, confidence));
     }
 
     /// The delay in samples, if it was accepted.

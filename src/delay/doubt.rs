@@ -176,13 +176,13 @@ impl Decision {
     /// Of an accepted step the condition nearest its limit, of a rejected one the failed
     /// condition farthest from it.
     fn nearest(&self, range: f64) -> Option<(Condition, f64)> {
-        let margin = |check: &Check| Some((check.condition, self.margin(check, range)?));
+        let margin = |check: Check| Some((check.condition, self.margin(&check, range)?));
         let by_margin = |a: &(Condition, f64), b: &(Condition, f64)| a.1.total_cmp(&b.1);
         let of = |outcome| self.checks.iter().filter(move |check| check.outcome == outcome);
         match self.program_verdict() {
             Verdict::Accepted => of(Outcome::Passed).filter_map(margin).min_by(by_margin),
             Verdict::Rejected(_) => {
-                let sure = |check: &Check| margin(check).unwrap_or((check.condition, 1.0));
+                let sure = |check: Check| margin(check).unwrap_or((check.condition, 1.0));
                 of(Outcome::Failed).map(sure).max_by(by_margin)
             }
         }

@@ -80,7 +80,10 @@ impl Estimator {
     /// [`EstimateError::Filter`] when the filter does not fit this trial.
     pub fn estimate(&self, trial: &Trial) -> Result<TrialEstimate, EstimateError> {
         let settings = self.settings.at(trial.period());
-        let mut prepared = Prepared::of(trial, &settings)?;
+        let mut prepared = match self.rest.settling() {
+            Some(_) => Prepared::of(trial, &settings)?,
+            None => Prepared::lean(trial, &settings)?,
+        };
         self.rest.bound(&mut prepared, &settings);
         let decisions = match self.rest.settling() {
             Some(settling) => decide_settling(&prepared, settling, &settings),

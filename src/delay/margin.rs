@@ -1,6 +1,6 @@
 //! How near a verdict was: what would have accepted a step, and what came second.
 
-use super::condition::{Check, Condition, Outcome};
+use super::condition::{Check, Condition};
 use super::decision::Decision;
 use super::settings::Settings;
 
@@ -42,8 +42,7 @@ impl Decision {
     /// What would have accepted this step: one remedy for each condition that failed, none
     /// for an accepted step. `output` is what the method looked at.
     pub fn remedies(&self, settings: &Settings, output: &[f64]) -> Vec<Remedy> {
-        let failed = self.checks.iter().filter(|check| check.outcome == Outcome::Failed);
-        failed.map(|check| self.remedy(check, settings, output)).collect()
+        self.checks.failed().map(|check| self.remedy(&check, settings, output)).collect()
     }
 
     fn remedy(&self, check: &Check, settings: &Settings, output: &[f64]) -> Remedy {
@@ -81,20 +80,7 @@ impl Decision {
     /// The best breakpoint in another valley of the squared error; where there is only one
     /// valley, the better neighbour of the best.
     pub fn runner_up(&self) -> Option<RunnerUp> {
-        let best = self.candidates.best()?;
-        let sse = self.candidates.sse();
-        let chosen = best.f.checked_sub(1)?;
-        let at = |index: usize| sse.get(index).copied().unwrap_or(f64::INFINITY);
-        let is_valley = |index: &usize| {
-            let before = index.checked_sub(1).map_or(f64::INFINITY, at);
-            *index != chosen && at(*index) < before && at(*index) <= at(index + 1)
-        };
-        let least = |a: &usize, b: &usize| at(*a).total_cmp(&at(*b));
-        let apart = |index: &usize| index.abs_diff(chosen) > 1;
-        let valley = (0..sse.len()).filter(apart).filter(is_valley).min_by(least);
-        let neighbours = chosen.checked_sub(1).into_iter().chain([chosen + 1]);
-        let neighbour = neighbours.filter(|index| *index < sse.len()).min_by(least);
-        let second = self.candidates.get(valley.or(neighbour)?)?;
+        let (best, second) = (self.candidates.best()?, self.candidates.second()?);
         let margin = if best.sse > 0.0 { second.sse / best.sse - 1.0 } else { f64::INFINITY };
         Some(RunnerUp { breakpoint: second.breakpoint, sse: second.sse, margin })
     }

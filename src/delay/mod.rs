@@ -36,6 +36,7 @@
 mod against;
 mod auto;
 mod broken_line;
+mod checks;
 mod coming_to_rest;
 mod condition;
 mod dead_time;
@@ -80,6 +81,7 @@ pub use auto::{Automatic, Chosen, Grounds, choose};
 pub use broken_line::{
     BrokenLine, BrokenRegression, Stroke, broken_line, broken_regression, stroke,
 };
+pub use checks::Checks;
 pub use condition::{Check, Condition, Outcome};
 pub use dead_time::{Bounds, DeadTime, ErrorPoint, Feedback, Finding, Unknown, Window, dead_time};
 pub use decision::{Breakpoint, Decision, Verdict};

@@ -1,6 +1,7 @@
 //! A trial as a method sees it: its steps, and its output smoothed as asked.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use super::input_motion::InputKind;
 use super::motion::{StepMotion, motions};
@@ -12,8 +13,11 @@ use crate::units::SamplePeriod;
 
 /// A trial as a method sees it.
 pub(super) struct Prepared<'a> {
-    /// The output as it was measured, without isolated spikes of the sensor.
+    /// The output as it was measured, without isolated spikes of the sensor; with those in
+    /// `mended` where there are any.
     pub(super) raw: Cow<'a, [f64]>,
+    /// Samples that are not as in `raw`, in their order: their indices and their values.
+    mended: Vec<(usize, f64)>,
     pub(super) smoothed: Option<Vec<f64>>,
     pub(super) period: SamplePeriod,
     pub(super) steps: Vec<InputStep>,
@@ -36,13 +40,38 @@ impl<'a> Prepared<'a> {
         };
         let period = trial.period();
         let motions = motions(&raw, &steps, period, &settings.at(period));
-        Ok(Self { raw, smoothed, period, steps, motions, is_tested: false })
+        let mended = Vec::new();
+        Ok(Self { raw, mended, smoothed, period, steps, motions, is_tested: false })
+    }
+
+    /// The same in less memory, where the output is smoothed: of what was mended, the samples
+    /// alone.
+    pub(super) fn lean(trial: &'a Trial, settings: &Settings) -> Result<Self, FilterError> {
+        let Some(filter) = settings.low_pass_at(trial.period()) else {
+            return Self::of(trial, settings);
+        };
+        // What does not fit is not found out after the work.
+        filter.reach(trial.period())?;
+        let mut prepared = Self::of(trial, &Settings { low_pass: None, ..settings.clone() })?;
+        let raw = std::mem::replace(&mut prepared.raw, Cow::Borrowed(trial.output()));
+        let raw = match raw {
+            Cow::Borrowed(raw) => raw.to_vec(),
+            Cow::Owned(raw) => {
+                let pairs = raw.iter().zip(trial.output()).enumerate();
+                let differ = pairs.filter(|(_, (now, was))| now.to_bits() != was.to_bits());
+                prepared.mended = differ.map(|(index, (now, _))| (index, *now)).collect();
+                raw
+            }
+        };
+        prepared.smoothed = Some(filter.smooth_in_place(raw, trial.period())?);
+        Ok(prepared)
     }
 
     /// The output as it was measured and the steps alone: enough to see what most joints do not.
     pub(super) fn bare(trial: &'a Trial, settings: &Settings) -> Self {
         Self {
             raw: Cow::Borrowed(trial.output()),
+            mended: Vec::new(),
             smoothed: None,
             period: trial.period(),
             steps: trial_steps(trial, settings),
@@ -54,6 +83,18 @@ impl<'a> Prepared<'a> {
     /// The `trials` that can be prepared.
     pub(super) fn all(trials: &'a [Trial], settings: &Settings) -> Vec<Self> {
         trials.iter().filter_map(|trial| Self::of(trial, settings).ok()).collect()
+    }
+
+    /// What was measured over `range`, without spikes.
+    pub(super) fn measured(&self, range: Range<usize>) -> Cow<'_, [f64]> {
+        let values = self.raw.get(range.clone()).unwrap_or_default();
+        let from = self.mended.partition_point(|(index, _)| *index < range.start);
+        let mended = self.mended[from..].iter().take_while(|(index, _)| *index < range.end);
+        let mut values = Cow::Borrowed(values);
+        for (index, value) in mended {
+            values.to_mut()[index - range.start] = *value;
+        }
+        values
     }
 
     /// What the method is to look at.

@@ -16,8 +16,21 @@ pub struct Candidates {
     first_sample: usize,
     beta: usize,
     sse: Vec<f64>,
+    /// What is kept of them where they are not.
+    few: Option<Box<Few>>,
     lines: Lines,
     best: Option<usize>,
+}
+
+/// What is kept of the squared errors of many candidates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Few {
+    /// Candidates that there were.
+    count: usize,
+    /// The squared error of the best.
+    best: f64,
+    /// The second-best, where there is one: its index and its squared error.
+    second: Option<(usize, f64)>,
 }
 
 /// Both lines of every candidate.
@@ -111,7 +124,8 @@ impl Candidates {
         best: usize,
     ) -> Self {
         let best = (best < sse.len()).then_some(best);
-        Self { first_sample, beta: 1, sse, lines: Lines::Apart(lines.0, lines.1), best }
+        let lines = Lines::Apart(lines.0, lines.1);
+        Self { first_sample, beta: 1, sse, few: None, lines, best }
     }
 
     /// The same for lines that meet; the best ones meet between two samples.
@@ -123,7 +137,7 @@ impl Candidates {
     ) -> Self {
         let chosen = (best.0 < sse.len()).then_some(best.0);
         let lines = Lines::Meeting(Box::new(bends), best);
-        Self { first_sample, beta: 1, sse, lines, best: chosen }
+        Self { first_sample, beta: 1, sse, few: None, lines, best: chosen }
     }
 
     /// The same with the lines of the best candidate alone, a fifth of the memory; the lines of
@@ -132,6 +146,15 @@ impl Candidates {
         let best = self.best.and_then(|best| Some((best, self.lines.get(best)?)));
         self.lines = best.map_or_else(Lines::default, |(best, lines)| Lines::One(best, lines));
         self
+    }
+
+    /// The best candidate and the squared error of the second alone; how many there were is
+    /// known.
+    pub(super) fn with_best_alone(self) -> Self {
+        let Some(best) = self.best.and_then(|best| self.error(best)) else { return self };
+        let second = self.second_index().and_then(|index| Some((index, self.error(index)?)));
+        let few = Few { count: self.len(), best, second };
+        Self { sse: Vec::new(), few: Some(Box::new(few)), ..self.with_best_lines() }
     }
 
     /// Fits the lines before each breakpoint, from the front.
@@ -179,17 +202,23 @@ impl Candidates {
 
     /// Number of candidates: rows of Φ less one.
     pub fn len(&self) -> usize {
-        self.sse.len()
+        self.few.as_ref().map_or(self.sse.len(), |few| few.count)
     }
 
     /// Whether the segment was too short for two lines.
     pub fn is_empty(&self) -> bool {
-        self.sse.is_empty()
+        self.len() == 0
     }
 
     /// The candidate at `index`, which is `f − 1`.
     pub fn get(&self, index: usize) -> Option<Candidate> {
-        Some(self.candidate(index, *self.sse.get(index)?))
+        Some(self.candidate(index, self.error(index)?))
+    }
+
+    fn error(&self, index: usize) -> Option<f64> {
+        let Some(few) = &self.few else { return self.sse.get(index).copied() };
+        let best = self.best.filter(|best| *best == index).map(|_| few.best);
+        best.or_else(|| few.second.filter(|(second, _)| *second == index).map(|(_, sse)| sse))
     }
 
     fn candidate(&self, index: usize, sse: f64) -> Candidate {
@@ -199,7 +228,7 @@ impl Candidates {
         Candidate { f, breakpoint: self.first_sample + f * self.beta, sse, before, after }
     }
 
-    /// All candidates, in the order of their breakpoints.
+    /// All candidates, in the order of their breakpoints; none where only the best were kept.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = Candidate> + '_ {
         self.sse.iter().enumerate().map(|(index, sse)| self.candidate(index, *sse))
     }
@@ -209,7 +238,30 @@ impl Candidates {
         self.best.and_then(|index| self.get(index))
     }
 
-    /// Squared errors, output units squared, in the order of the breakpoints.
+    /// The best candidate in another valley of the squared error; where there is only one
+    /// valley, the better neighbour of the best.
+    pub fn second(&self) -> Option<Candidate> {
+        let kept = self.few.as_ref().map(|few| few.second.map(|(index, _)| index));
+        self.get(kept.unwrap_or_else(|| self.second_index())?)
+    }
+
+    fn second_index(&self) -> Option<usize> {
+        let chosen = self.best?;
+        let at = |index: usize| self.sse.get(index).copied().unwrap_or(f64::INFINITY);
+        let is_valley = |index: &usize| {
+            let before = index.checked_sub(1).map_or(f64::INFINITY, at);
+            *index != chosen && at(*index) < before && at(*index) <= at(index + 1)
+        };
+        let least = |a: &usize, b: &usize| at(*a).total_cmp(&at(*b));
+        let apart = |index: &usize| index.abs_diff(chosen) > 1;
+        let valley = (0..self.sse.len()).filter(apart).filter(is_valley).min_by(least);
+        let neighbours = chosen.checked_sub(1).into_iter().chain([chosen + 1]);
+        let neighbour = neighbours.filter(|index| *index < self.sse.len()).min_by(least);
+        valley.or(neighbour)
+    }
+
+    /// Squared errors, output units squared, in the order of the breakpoints; none where only
+    /// the best were kept.
     pub fn sse(&self) -> &[f64] {
         &self.sse
     }
@@ -279,6 +331,18 @@ mod tests {
         assert_eq!((fewer.best(), fewer.sse()), (all.best(), all.sse()));
         assert!(fewer.get(0).unwrap().before.slope.is_nan());
         assert_eq!(fewer.get(0).unwrap().breakpoint, all.get(0).unwrap().breakpoint);
+    }
+
+    #[test]
+    fn the_best_alone_and_the_second_are_those_of_all() {
+        for (length, kink) in [(9, 4), (10, 5), (48, 25), (48, 3), (400, 390)] {
+            let all = Candidates::search(&kinked(length, kink), 79, 5);
+            let few = all.clone().with_best_alone();
+            assert_eq!((few.best(), few.len()), (all.best(), all.len()));
+            let error = |found: &Candidates| found.second().map(|it| (it.breakpoint, it.sse));
+            assert_eq!(error(&few), error(&all));
+            assert_eq!((few.is_empty(), few.sse().len()), (all.is_empty(), 0));
+        }
     }
 
     #[test]

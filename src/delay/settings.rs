@@ -54,6 +54,11 @@ pub enum CandidateLines {
     All,
     /// Of the best one, where the method compares many: a fifth of the memory.
     Best,
+    /// Of the best one, and of the others nothing but their number and the second-best error,
+    /// where the method compares many: enough for a verdict, but not for a drawing or a [`Doubt`].
+    ///
+    /// [`Doubt`]: super::Doubt
+    BestAlone,
 }
 
 /// A method and its settings; the default is the paper's search with what real logs need

@@ -110,10 +110,11 @@ impl Tracking {
         let mut arrived = 0;
         let mut previous = trial.steps.first().map_or(0.0, |step| self.rest_at(step.before));
         let ranges = hold_ranges(&trial.steps, trial.raw.len());
-        for ((step, motion), range) in trial.steps.iter().zip(&mut trial.motions).zip(ranges) {
+        let mut motions = std::mem::take(&mut trial.motions);
+        for ((step, motion), range) in trial.steps.iter().zip(&mut motions).zip(ranges) {
             let start = range.start;
             let hold = Hold {
-                output: trial.raw.get(range).unwrap_or_default(),
+                output: &trial.measured(range),
                 previous,
                 target: self.rest_at(step.after),
                 tolerance: self.tolerance,
@@ -124,6 +125,7 @@ impl Tracking {
             arrived = hold.arrival().map_or(arrived, |arrival| start + arrival);
             previous = hold.target;
         }
+        trial.motions = motions;
         trial.is_tested = true;
     }
 

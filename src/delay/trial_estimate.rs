@@ -63,7 +63,7 @@ impl TrialEstimate {
         let Some(decision) = self.decisions.iter_mut().find(|known| known.number == number) else {
             return false;
         };
-        decision.word = Some(word);
+        decision.word = Some(Box::new(word));
         self.profile = DelayProfile::of(&self.decisions, samples, between);
         true
     }

@@ -171,7 +171,7 @@ fn values(model: &JointModel) -> Vec<f64> {
 
 /// What `model` leaves of the record, in variances of the noise.
 fn cost(record: &FitRecord<'_>, model: &JointModel, noise: f64) -> f64 {
-    let left = record.evaluate(model).residuals;
+    let left = record.evaluate_residuals(model).residuals;
     left.iter().flatten().map(|e| e * e).sum::<f64>() / (noise * noise)
 }
 

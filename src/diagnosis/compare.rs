@@ -13,7 +13,7 @@ use super::{ErrorFigures, InputCorrelation, LackOfFit, TestColumns, TrialSignals
 use super::{input_correlation, lack_of_fit, noise_floor, whiteness};
 use crate::experiment::Trial;
 use crate::fit::{Assessment, Evaluation, Excerpt, Fit, FitRecord, Horizon, Part, Termination};
-use crate::model::JointModel;
+use crate::model::{JointModel, Simulated};
 
 /// A model beside the measurement.
 #[derive(Clone, Debug)]
@@ -83,26 +83,34 @@ fn figures(
 ) -> Comparison {
     let error = |part| ErrorFigures::of(record, &fit.evaluation, part);
     let fails = lack_of_fit.is_some_and(|test| !test.adequate);
+    let (whiteness, input_correlation) = correlations(record, &fit.evaluation);
     let by_step = record.with_horizon(Horizon::Steps);
     let evaluation = by_step.evaluate(&fit.model);
     let per_step = step_errors(&by_step, &evaluation);
-    let restarted = restarted(&by_step, &evaluation);
-    let failure = restarted.as_ref().filter(|_| fails).map(diagnose);
-    let signals = training_signals(record, &fit.evaluation);
-    let period_s = common_period_s(record);
+    let restarted = restarted(&by_step, evaluation);
     Comparison {
         training: error(Part::Training),
         validation: error(Part::Validation),
         noise_floor: floor_of(record, &fit),
         lack_of_fit,
-        whiteness: period_s.and_then(|period_s| whiteness(&signals, period_s)),
-        input_correlation: period_s.and_then(|period_s| input_correlation(&signals, period_s)),
-        failure,
+        whiteness,
+        input_correlation,
+        failure: restarted.as_ref().filter(|_| fails).map(diagnose),
         regions: restarted.as_ref().map(regions).unwrap_or_default(),
         per_step,
         fit,
         termination,
     }
+}
+
+/// How the residual of the training part is correlated with itself, and with the input.
+fn correlations(
+    record: &FitRecord<'_>,
+    evaluation: &Evaluation,
+) -> (Option<Whiteness>, Option<InputCorrelation>) {
+    let Some(period_s) = common_period_s(record) else { return (None, None) };
+    let signals = training_signals(record, evaluation);
+    (whiteness(&signals, period_s), input_correlation(&signals, period_s))
 }
 
 /// The noise of the measurement, with the delay of `fit`, without what `fit` follows of it.
@@ -161,15 +169,21 @@ fn common_period_s(record: &FitRecord<'_>) -> Option<f64> {
 }
 
 /// The residual of a model that `record` restarts at every step of the input, with what happened.
-fn restarted(record: &FitRecord<'_>, evaluation: &Evaluation) -> Option<failure::ResidualRecord> {
+///
+/// The columns of `evaluation` become those of the record: of a long one each is as long as the
+/// log.
+fn restarted(record: &FitRecord<'_>, evaluation: Evaluation) -> Option<failure::ResidualRecord> {
     let trials = &record.joint().trials;
-    let mut samples = Samples::with_capacity(trials.iter().map(Trial::len).sum());
+    let all = trials.iter().map(Trial::len).sum();
+    let mut samples = Samples::with_capacity(all);
     let mut segments = Vec::new();
-    let simulated = evaluation.simulated.iter().zip(&evaluation.residuals);
+    let simulated = evaluation.simulated.into_iter().zip(evaluation.residuals);
     for (index, (trial, (simulated, residual))) in trials.iter().zip(simulated).enumerate() {
+        let Simulated { output, velocity, acting } = simulated;
+        drop(output);
         let first = samples.residual.len();
         let period = trial.period().seconds();
-        let levels = levels(&simulated.acting);
+        let levels = levels(&acting);
         for level in &levels {
             let held = level.len() as f64 * period;
             samples.since_step_s.extend((0..level.len()).map(|k| k as f64 * period));
@@ -178,18 +192,29 @@ fn restarted(record: &FitRecord<'_>, evaluation: &Evaluation) -> Option<failure:
         // An input that is never held has no levels to look at.
         let windows = record.windows().iter().filter(|window| window.trial == index);
         let windows: Vec<_> = windows.map(|window| window.start..window.end).collect();
-        samples.speed_error.extend(speed_error(residual, &windows, period));
+        samples.speed_error.extend(speed_error(&residual, &windows, period));
         let own = if levels.len() > windows.len().saturating_mul(20) { windows } else { levels };
         segments.extend(own.into_iter().map(|span| first + span.start..first + span.end));
-        samples.residual.extend(residual);
-        samples.input.extend(&simulated.acting);
+        append(&mut samples.residual, residual, all);
+        append(&mut samples.input, acting, all);
+        append(&mut samples.speed, velocity, all);
         samples.output.extend(trial.output());
-        samples.speed.extend(&simulated.velocity);
         samples.time_s.extend((1..=trial.len()).map(|k| trial.time_s(k)));
         samples.trial.extend(std::iter::repeat_n(index, trial.len()));
     }
     let labels = trials.iter().map(|trial| trial.label().to_owned()).collect();
     failure::ResidualRecord::new(samples, labels, segments).ok()
+}
+
+/// Puts a column of one trial behind those before, of which all together will have `all` samples;
+/// without a copy where it is the first.
+fn append(column: &mut Vec<f64>, mut own: Vec<f64>, all: usize) {
+    if column.is_empty() {
+        own.reserve_exact(all - own.len().min(all));
+        *column = own;
+    } else {
+        column.append(&mut own);
+    }
 }
 
 /// Spans of samples with one level.
@@ -217,7 +242,7 @@ fn sensitivities(record: &FitRecord<'_>, fit: &Assessment, tested: &Excerpt) -> 
             let mut values = values.clone();
             values[index] += shift;
             let model: JointModel = fit.model.with_values(&values);
-            tested.cut(&record.evaluate(&model).residuals)
+            tested.cut(&record.evaluate_residuals(&model).residuals)
         });
         let pairs = above.into_iter().zip(below);
         pairs

@@ -87,12 +87,12 @@ impl TrialSignals<'_> {
     /// Changes of the residual from block to block, both of one window; zero elsewhere.
     fn residual_changes(&self, block: usize) -> Vec<f64> {
         let inside = self.whole_blocks(block).map(|blocks| blocks.start + 1..blocks.end);
-        kept(&changes(&means(self.residual, block)), inside)
+        kept(changes(means(self.residual, block)), inside)
     }
 
     /// Changes of `levels` that arrive in a window; zero elsewhere.
     fn input_changes(&self, levels: &[f64], block: usize) -> Vec<f64> {
-        kept(&changes(&means(levels, block)), self.whole_blocks(block))
+        kept(changes(means(levels, block)), self.whole_blocks(block))
     }
 }
 
@@ -158,20 +158,25 @@ fn deviation(residual: &Changes, input: &Changes, samples: usize) -> f64 {
 }
 
 /// Each value minus the one before; zero for the first.
-fn changes(values: &[f64]) -> Vec<f64> {
-    let before = values.first().into_iter().chain(values);
-    values.iter().zip(before).map(|(value, before)| value - before).collect()
+fn changes(mut values: Vec<f64>) -> Vec<f64> {
+    let mut before = values.first().copied().unwrap_or_default();
+    for value in &mut values {
+        let now = *value;
+        *value = now - before;
+        before = now;
+    }
+    values
 }
 
-/// `values` within `spans`, zero elsewhere.
-fn kept(values: &[f64], spans: impl Iterator<Item = Range<usize>>) -> Vec<f64> {
-    let mut kept = vec![0.0; values.len()];
-    for span in spans {
-        if let (Some(to), Some(from)) = (kept.get_mut(span.clone()), values.get(span)) {
-            to.copy_from_slice(from);
-        }
+/// `values` within `spans`, which are in their order, zero elsewhere.
+fn kept(mut values: Vec<f64>, spans: impl Iterator<Item = Range<usize>>) -> Vec<f64> {
+    let (mut done, samples) = (0, values.len());
+    for span in spans.filter(|span| span.start <= span.end && span.end <= samples) {
+        values[done..span.start.max(done)].fill(0.0);
+        done = span.end.max(done);
     }
-    kept
+    values[done..].fill(0.0);
+    values
 }
 
 #[cfg(test)]

@@ -24,6 +24,8 @@
 //! C. G. Broyden, "A class of methods for solving nonlinear simultaneous equations", Mathematics
 //! of Computation 19 (1965), 577-593.
 
+use std::rc::Rc;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::bounds::Bounds;
@@ -91,8 +93,8 @@ pub(super) fn descend(
 struct Descent<'d, 'p, 'r> {
     problem: &'d mut Problem<'p, 'r>,
     at: DVector<f64>,
-    residuals: DVector<f64>,
-    slopes: DMatrix<f64>,
+    residuals: Rc<DVector<f64>>,
+    slopes: Rc<DMatrix<f64>>,
     normal: Normal,
     /// Whether `slopes` are differenced at `at`.
     fresh: bool,
@@ -109,9 +111,9 @@ struct Descent<'d, 'p, 'r> {
 /// steps that seemed to gain may have lost.
 struct Anchor {
     at: DVector<f64>,
-    residuals: DVector<f64>,
+    residuals: Rc<DVector<f64>>,
     /// The slopes there, where they are known.
-    slopes: Option<DMatrix<f64>>,
+    slopes: Option<Rc<DMatrix<f64>>>,
     cost: f64,
     damping: f64,
     growth: f64,
@@ -119,15 +121,15 @@ struct Anchor {
 
 impl<'d, 'p, 'r> Descent<'d, 'p, 'r> {
     fn new(problem: &'d mut Problem<'p, 'r>, slopes: Option<DMatrix<f64>>) -> Self {
-        let (at, residuals) = (problem.free.clone(), problem.residuals());
+        let (at, residuals) = (problem.free.clone(), Rc::new(problem.residuals()));
         let fresh = slopes.is_none();
-        let slopes = slopes.unwrap_or_else(|| problem.jacobian(&residuals));
+        let slopes = Rc::new(slopes.unwrap_or_else(|| problem.jacobian(&residuals)));
         let normal = Normal::of(&slopes, &residuals);
         let (damping, growth) = (FIRST_DAMPING, 2.0);
         let anchor = Anchor {
             at: at.clone(),
-            residuals: residuals.clone(),
-            slopes: fresh.then(|| slopes.clone()),
+            residuals: Rc::clone(&residuals),
+            slopes: fresh.then(|| Rc::clone(&slopes)),
             cost: normal.cost,
             damping,
             growth,
@@ -162,10 +164,12 @@ impl<'d, 'p, 'r> Descent<'d, 'p, 'r> {
             self.problem.move_to(&self.at);
             if self.problem.cost() > self.anchor.cost {
                 self.problem.move_to(&self.anchor.at);
-                return (termination, self.anchor.slopes.take());
+                return (termination, self.anchor.slopes.take().map(Rc::unwrap_or_clone));
             }
         }
-        (termination, self.fresh.then_some(self.slopes))
+        // That of the anchor may be the same.
+        drop(self.anchor);
+        (termination, self.fresh.then(|| Rc::unwrap_or_clone(self.slopes)))
     }
 
     fn is_finite(&self) -> bool {
@@ -189,11 +193,14 @@ impl<'d, 'p, 'r> Descent<'d, 'p, 'r> {
     /// place, to leave it by a shorter step, where the steps since have gained nothing.
     fn refresh(&mut self) {
         self.problem.move_to(&self.at);
-        self.residuals = self.problem.residuals();
+        self.residuals = Rc::new(self.problem.residuals());
         if cost_of(&self.residuals) > self.anchor.cost {
             return self.back();
         }
-        self.slopes = self.problem.jacobian(&self.residuals);
+        // The old ones go before there are new ones: they are most of the memory of a fit.
+        self.anchor.residuals = Rc::clone(&self.residuals);
+        (self.anchor.slopes, self.slopes) = (None, Rc::new(DMatrix::zeros(0, 0)));
+        self.slopes = Rc::new(self.problem.jacobian(&self.residuals));
         self.set_anchor();
     }
 
@@ -203,11 +210,11 @@ impl<'d, 'p, 'r> Descent<'d, 'p, 'r> {
         anchor.growth *= 2.0;
         (self.damping, self.growth) = (anchor.damping, anchor.growth);
         self.at.copy_from(&anchor.at);
-        self.residuals.copy_from(&anchor.residuals);
+        self.residuals = Rc::clone(&anchor.residuals);
         self.problem.move_to(&self.at);
         match &anchor.slopes {
-            Some(slopes) => self.slopes.copy_from(slopes),
-            None => self.slopes = self.problem.jacobian(&self.residuals),
+            Some(slopes) => self.slopes = Rc::clone(slopes),
+            None => self.slopes = Rc::new(self.problem.jacobian(&self.residuals)),
         }
         self.normal = Normal::of(&self.slopes, &self.residuals);
         self.fresh = true;
@@ -220,8 +227,8 @@ impl<'d, 'p, 'r> Descent<'d, 'p, 'r> {
         self.fresh = true;
         self.anchor = Anchor {
             at: self.at.clone(),
-            residuals: self.residuals.clone(),
-            slopes: Some(self.slopes.clone()),
+            residuals: Rc::clone(&self.residuals),
+            slopes: Some(Rc::clone(&self.slopes)),
             cost: self.normal.cost,
             damping: self.damping,
             growth: self.growth,
@@ -240,8 +247,9 @@ impl<'d, 'p, 'r> Descent<'d, 'p, 'r> {
         if part <= 0.0 {
             return self.step_failed();
         }
-        mend(&mut self.slopes, &step, &(&residuals - &self.residuals), &self.normal.scales);
-        (self.at, self.residuals, self.fresh) = (there, residuals, false);
+        let change = &residuals - &*self.residuals;
+        mend(Rc::make_mut(&mut self.slopes), &step, &change, &self.normal.scales);
+        (self.at, self.residuals, self.fresh) = (there, Rc::new(residuals), false);
         self.damping *= (1.0 - (2.0 * part - 1.0).powi(3)).clamp(1.0 / 10.0, 2.0);
         self.damping = self.damping.max(LEAST_DAMPING);
         self.growth = 2.0;

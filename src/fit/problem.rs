@@ -18,7 +18,7 @@ pub(super) struct Problem<'p, 'r> {
     pub(super) start: Vec<f64>,
     /// The free values, in the order of the space.
     pub(super) free: DVector<f64>,
-    /// The evaluation at `free`, once it is asked for.
+    /// The evaluation at `free`, once it is asked for: its residuals alone.
     pub(super) here: OnceCell<Evaluation>,
 }
 
@@ -32,7 +32,7 @@ impl Problem<'_, '_> {
     }
 
     pub(super) fn here(&self) -> &Evaluation {
-        self.here.get_or_init(|| self.record.evaluate(&self.model_now()))
+        self.here.get_or_init(|| self.record.evaluate_residuals(&self.model_now()))
     }
 
     /// The residuals of the training windows, one behind the other; 0 at spikes.
@@ -47,12 +47,11 @@ impl Problem<'_, '_> {
 
     /// The slopes of the residuals, which are `residuals` here, by differences.
     pub(super) fn jacobian(&self, residuals: &DVector<f64>) -> DMatrix<f64> {
-        let column = |index| self.slope(index, residuals);
-        let columns: Vec<_> = (0..self.free.len()).map(column).collect();
-        if columns.is_empty() {
-            return DMatrix::zeros(residuals.len(), 0);
+        let mut slopes = DMatrix::zeros(residuals.len(), self.free.len());
+        for index in 0..self.free.len() {
+            slopes.set_column(index, &self.slope(index, residuals));
         }
-        DMatrix::from_columns(&columns)
+        slopes
     }
 
     /// The slope of the residuals, which are `here` now, to one free value.

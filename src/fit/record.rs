@@ -25,7 +25,7 @@ pub struct FitRecord<'a> {
     horizon: Horizon,
     windows: Vec<Window>,
     /// Activity of the other joints, per trial; empty where there are none.
-    others: Vec<Vec<f64>>,
+    others: Arc<Vec<Vec<f64>>>,
     /// Delay of each change of the input in seconds, per trial, where it is known; measured
     /// when a model first asks for it.
     delays: Arc<OnceLock<Delays>>,
@@ -55,11 +55,9 @@ impl<'a> FitRecord<'a> {
     /// else the simulation goes on with its own, and is steady where a trial begins.
     pub fn new(joint: &'a Joint, split: Split, horizon: Horizon) -> Self {
         let horizon = horizon.of(joint);
-        let windows = joint.trials.iter().enumerate();
-        let windows = windows.flat_map(|(index, trial)| cut(trial, index, split, horizon));
-        let windows: Vec<_> = windows.collect();
+        let windows = windows(joint, split, horizon);
         let speeds_measured = speed::are_measured(&joint.trials, &windows);
-        let others = vec![Vec::new(); joint.trials.len()];
+        let others = Arc::new(vec![Vec::new(); joint.trials.len()]);
         let radians_per_output_unit = radians_in(joint.output_unit.as_deref());
         Self {
             joint,
@@ -80,10 +78,9 @@ impl<'a> FitRecord<'a> {
 
     /// This record with the activity of the other joints, per trial and sample.
     #[must_use]
-    pub fn with_others(mut self, others: Vec<Vec<f64>>) -> Self {
-        self.others = others;
-        self.others.resize(self.joint.trials.len(), Vec::new());
-        self
+    pub fn with_others(self, mut others: Vec<Vec<f64>>) -> Self {
+        others.resize(self.joint.trials.len(), Vec::new());
+        Self { others: Arc::new(others), ..self }
     }
 
     /// This record with each change's own delay in seconds, per trial, for models that take
@@ -112,8 +109,10 @@ impl<'a> FitRecord<'a> {
     /// The trials and surroundings with another horizon.
     #[must_use]
     pub fn with_horizon(&self, horizon: Horizon) -> Self {
-        let (others, delays) = (self.others.clone(), self.delays.clone());
-        Self { others, delays, ..Self::new(self.joint, self.split, horizon) }
+        let horizon = horizon.of(self.joint);
+        let windows = windows(self.joint, self.split, horizon);
+        let speeds_measured = speed::are_measured(&self.joint.trials, &windows);
+        Self { horizon, windows, speeds_measured, ..self.clone() }
     }
 
     /// Whether it is known what other joints did.
@@ -155,7 +154,25 @@ impl<'a> FitRecord<'a> {
 
     /// Simulates `model` on all trials, each to the end of its last window.
     pub fn evaluate(&self, model: &JointModel) -> Evaluation {
-        let indices = 0..self.joint.trials.len();
+        let mut simulated = Vec::new();
+        let all = self.evaluated(model, |run, starts, slope| {
+            let (own, residuals) = run.from(starts, slope);
+            simulated.push(own);
+            residuals
+        });
+        Evaluation { simulated, ..all }
+    }
+
+    /// The same without what was simulated: a quarter of the memory.
+    pub(crate) fn evaluate_residuals(&self, model: &JointModel) -> Evaluation {
+        self.evaluated(model, |run, starts, slope| run.residuals_from(starts, slope))
+    }
+
+    fn evaluated(
+        &self,
+        model: &JointModel,
+        mut residuals: impl FnMut(&Run<'_>, &[f64], Option<&[f64]>) -> Vec<f64>,
+    ) -> Evaluation {
         let mut all = Evaluation {
             horizon: self.horizon,
             simulated: Vec::new(),
@@ -163,11 +180,10 @@ impl<'a> FitRecord<'a> {
             starts: Vec::new(),
             slopes: Vec::new(),
         };
+        let indices = 0..self.joint.trials.len();
         for run in indices.filter_map(|index| self.run(model, index)) {
             let (starts, slope) = run.best();
-            let (simulated, residuals) = run.from(&starts, slope.as_deref());
-            all.simulated.push(simulated);
-            all.residuals.push(residuals);
+            all.residuals.push(residuals(&run, &starts, slope.as_deref()));
             all.starts.push(starts);
             all.slopes.push(slope);
         }
@@ -306,6 +322,12 @@ impl<'a> FitRecord<'a> {
         levels.dedup();
         levels
     }
+}
+
+/// All windows of a joint.
+fn windows(joint: &Joint, split: Split, horizon: Horizon) -> Vec<Window> {
+    let trials = joint.trials.iter().enumerate();
+    trials.flat_map(|(index, trial)| cut(trial, index, split, horizon)).collect()
 }
 
 /// Seconds from the start of the record to that of each of `trials`.

@@ -70,7 +70,7 @@ impl<'r> Score<'r> {
     #[must_use]
     pub fn directions(&self, model: &JointModel, range: &RecordRange<'_>) -> Directions {
         let direction = |start: Vec<f64>| {
-            let residuals = self.record.evaluate(&model.with_values(&start)).residuals;
+            let residuals = self.record.evaluate_residuals(&model.with_values(&start)).residuals;
             let change = &self.raw - self.record.training(&residuals);
             let size = change.norm();
             let direction = unit(residual(&self.slopes, &change), size)?;

@@ -71,18 +71,28 @@ impl LowPass {
     /// # Errors
     /// [`FilterError`] when the cutoff or the order is out of range.
     pub fn smooth(&self, signal: &[f64], period: SamplePeriod) -> Result<Vec<f64>, FilterError> {
+        self.smooth_in_place(signal.to_vec(), period)
+    }
+
+    /// The same of a signal that is not needed any more: in its memory.
+    pub(crate) fn smooth_in_place(
+        &self,
+        signal: Vec<f64>,
+        period: SamplePeriod,
+    ) -> Result<Vec<f64>, FilterError> {
         let mut sections = self.design(period)?;
         let Some(&offset) = signal.first() else {
             return Ok(Vec::new());
         };
-        let pad = padding(&sections).min(signal.len() - 1);
+        let samples = signal.len();
+        let pad = padding(&sections).min(samples - 1);
         sosfilt_zi_dyn::<_, _, Sos<f64>>(sections.iter_mut());
         let mut smoothed = extend_odd(signal, pad, offset);
         one_pass(&sections, &mut smoothed);
         smoothed.reverse();
         one_pass(&sections, &mut smoothed);
         smoothed.reverse();
-        smoothed.truncate(pad + signal.len());
+        smoothed.truncate(pad + samples);
         smoothed.drain(..pad);
         for value in &mut smoothed {
             *value += offset;
@@ -157,12 +167,20 @@ fn padding(sections: &[Sos<f64>]) -> usize {
 /// `signal − offset`, extended by its point reflection at both ends.
 ///
 /// Taking the offset off keeps the digits of a joint that is at 1e6 degrees.
-fn extend_odd(signal: &[f64], pad: usize, offset: f64) -> Vec<f64> {
+fn extend_odd(mut signal: Vec<f64>, pad: usize, offset: f64) -> Vec<f64> {
     let first = signal.first().copied().unwrap_or_default();
     let last = signal.last().copied().unwrap_or_default();
     let head = signal.iter().skip(1).take(pad).rev().map(|value| 2.0 * first - value);
+    let head: Vec<f64> = head.collect();
     let tail = signal.iter().rev().skip(1).take(pad).map(|value| 2.0 * last - value);
-    head.chain(signal.iter().copied()).chain(tail).map(|value| value - offset).collect()
+    let tail: Vec<f64> = tail.collect();
+    signal.reserve_exact(2 * pad);
+    signal.extend(tail);
+    signal.splice(0..0, head);
+    for value in &mut signal {
+        *value -= offset;
+    }
+    signal
 }
 
 /// One run of the sections over `signal`, in its place, from the steady state at the first value.

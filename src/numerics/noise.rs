@@ -4,7 +4,7 @@
 //! fitted to the windows before: so many parameters each, columns that are known, or the mean.
 
 use super::autoregression::Autoregression;
-use super::moments::{autocovariances, dot};
+use super::moments::dot;
 use super::projection::{self, Projection};
 
 /// Longest memory of the noise that is looked for in short windows, samples (chosen).
@@ -66,14 +66,23 @@ impl NoiseModel {
     /// Each parameter removes the power of slow noise from the residuals, `S/n` from every
     /// autocovariance, with `S` their sum over all lags and `n` the length of a fit; it is
     /// put back.
-    pub(crate) fn of(residuals: &[Vec<f64>], parameters: usize) -> Self {
+    ///
+    /// They are looked at one after the other: together they may be longer than the record.
+    pub(crate) fn of<R: AsRef<[f64]>>(
+        residuals: impl IntoIterator<Item = R>,
+        parameters: usize,
+    ) -> Self {
         /// Times that `S` is estimated from what it corrects.
         const ROUNDS: usize = 3;
-        let power = |values: &Vec<f64>| dot(values, values) / values.len().max(1) as f64;
-        let residuals = without_misfits(residuals, power);
-        let samples: usize = residuals.iter().map(|values| values.len()).sum();
-        let length = samples as f64 / residuals.len().max(1) as f64;
-        let measured = autocovariances(&residuals, LONGEST_MEMORY.min(samples / 10));
+        let all: Vec<LaggedProducts> =
+            residuals.into_iter().map(|values| LaggedProducts::of(values.as_ref())).collect();
+        let usual = without_misfits(&all, LaggedProducts::power);
+        let samples: usize = usual.iter().map(|found| found.samples).sum();
+        let length = samples as f64 / usual.len().max(1) as f64;
+        let covariance = |lag: usize| {
+            usual.iter().map(|found| found.products[lag]).sum::<f64>() / samples.max(1) as f64
+        };
+        let measured: Vec<f64> = (0..=LONGEST_MEMORY.min(samples / 10)).map(covariance).collect();
         let mut found = Autoregression::default();
         for _ in 0..ROUNDS {
             let noise = Self::about_line(found.coefficients.clone());
@@ -277,6 +286,25 @@ fn covariances_of_pairs(windows: &[Vec<f64>]) -> Vec<f64> {
         products.sum::<f64>() / pairs.max(1) as f64
     };
     (0..=LONGEST_OF_RESIDUAL.min(samples / 10)).map(covariance).collect()
+}
+
+/// What the residual of one fit says of its noise.
+struct LaggedProducts {
+    samples: usize,
+    /// Sums of the products of its values with those 0, 1, … samples before.
+    products: [f64; LONGEST_MEMORY + 1],
+}
+
+impl LaggedProducts {
+    fn of(values: &[f64]) -> Self {
+        let product = |lag: usize| values.get(lag..).map_or(0.0, |later| dot(values, later));
+        Self { samples: values.len(), products: std::array::from_fn(product) }
+    }
+
+    /// The mean square.
+    fn power(&self) -> f64 {
+        self.products[0] / self.samples.max(1) as f64
+    }
 }
 
 /// Those whose `power` is not far larger than that of most: the residual of the others is no

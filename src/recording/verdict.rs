@@ -270,8 +270,8 @@ impl Facts<'_, '_> {
             }
             (Verdict::Accepted, None) => "## ✓ accepted".to_owned(),
             (Verdict::Rejected(first), _) => {
-                let failed = decision.checks.iter().filter(|c| c.outcome == Outcome::Failed);
-                let whys: Vec<_> = failed.map(|check| format!("- {}", self.why(check))).collect();
+                let failed = decision.checks.failed();
+                let whys: Vec<_> = failed.map(|check| format!("- {}", self.why(&check))).collect();
                 format!("## ✗ rejected: {}\n{}", first.meaning(), whys.join("\n"))
             }
         }
@@ -372,7 +372,7 @@ impl Facts<'_, '_> {
                 Outcome::Failed => "✗",
                 Outcome::NotChecked => "–",
             };
-            let (value, limit) = self.compared(check);
+            let (value, limit) = self.compared(&check);
             format!("| {mark} | {} | {value} | {limit} |", check.condition)
         };
         let rows: Vec<_> = self.segment.decision.checks.iter().map(row).collect();

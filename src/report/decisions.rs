@@ -5,7 +5,7 @@ use std::io::Write;
 use serde::{Serialize, Serializer};
 
 use super::{DataTable, EstimatedJoint, Kind};
-use crate::delay::{Check, Condition, Decision, Method, Settings};
+use crate::delay::{Check, Condition, Decision, Method, Settings, Verdict};
 use crate::experiment::Trial;
 use crate::wording::remedy_text;
 
@@ -77,7 +77,7 @@ impl DecisionDetail {
         let second = decision.runner_up();
         let remedies = decision.remedies(settings, output);
         let remedies: Vec<_> = remedies.into_iter().map(|remedy| remedy_text(remedy, "")).collect();
-        let tested = |check: &&Check| check.condition == Condition::NothingHappened;
+        let tested = |check: &Check| check.condition == Condition::NothingHappened;
         Self {
             method: settings.method.id(),
             delta_low: decision.fine.map(|fine| fine.low),
@@ -148,6 +148,21 @@ pub fn decision_rows(
     estimated.flat_map(move |(trial, estimate)| {
         let row = move |decision| (trial, DecisionRow::new(&joint.name, trial, decision));
         estimate.decisions.iter().map(row)
+    })
+}
+
+/// The verdict on each step of a joint, and its delay in samples and in seconds.
+pub(super) fn verdicts(
+    joint: EstimatedJoint<'_>,
+) -> impl Iterator<Item = (Verdict, Option<f64>, Option<f64>)> + '_ {
+    let trials = joint.joint.trials.iter().zip(&joint.estimate.trials);
+    let estimated = trials.filter_map(|(trial, result)| Some((trial, result.as_ref().ok()?)));
+    estimated.flat_map(|(trial, estimate)| {
+        let period_s = trial.period().seconds();
+        estimate.decisions.iter().map(move |decision| {
+            let delay = decision.delay();
+            (decision.verdict(), delay, delay.map(|delay| tidy_seconds(delay * period_s)))
+        })
     })
 }
 

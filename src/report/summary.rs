@@ -2,8 +2,9 @@
 
 use serde::Serialize;
 
-use super::{EstimatedJoint, Words, decision_rows};
-use crate::delay::{Condition, KindDelay};
+use super::decisions::verdicts;
+use super::{EstimatedJoint, Words};
+use crate::delay::{Condition, KindDelay, Verdict};
 use crate::experiment::longest_gap_s;
 
 /// How many steps were accepted, why the others were not, and what the delays are.
@@ -87,19 +88,15 @@ impl DelayRange {
 impl JointSummary {
     /// Counts the decisions of `joint`.
     pub(crate) fn of(joint: EstimatedJoint<'_>) -> Self {
-        let rows: Vec<_> = decision_rows(joint).map(|(_, row)| row).collect();
-        let accepted: Vec<_> = rows.iter().filter(|row| row.verdict == "accepted").collect();
-        let samples = accepted.iter().filter_map(|row| row.delta);
-        let seconds = accepted.iter().filter_map(|row| row.delta_s);
-        let count = |condition: Condition| {
-            let verdict = condition.id();
-            (condition, rows.iter().filter(|row| row.verdict == verdict).count())
-        };
+        let with = |verdict: Verdict| verdicts(joint).filter(move |(found, ..)| *found == verdict);
+        let samples = with(Verdict::Accepted).filter_map(|(_, samples, _)| samples);
+        let seconds = with(Verdict::Accepted).filter_map(|(_, _, seconds)| seconds);
+        let count = |condition: Condition| (condition, with(Verdict::Rejected(condition)).count());
         let delay_s = DelayRange::of(seconds.collect());
         Self {
             headline: Headline::of(joint.delay_table().kinds),
-            steps: rows.len(),
-            accepted: accepted.len(),
+            steps: verdicts(joint).count(),
+            accepted: with(Verdict::Accepted).count(),
             rejected: Condition::ALL
                 .into_iter()
                 .chain([Condition::Reviewer])

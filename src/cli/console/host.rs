@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::fmt;
+use std::io;
 use std::sync::Arc;
 
 use crate::effect::Effect;
@@ -24,8 +25,11 @@ pub trait Hosting: Send + Sync {
         thread();
     }
 
-    /// Takes the results.
-    fn print(&self, results: String);
+    /// Takes a piece of the results, UTF-8; characters may be cut.
+    ///
+    /// # Errors
+    /// When it cannot be kept.
+    fn print(&self, results: &[u8]) -> io::Result<()>;
 
     /// Takes a message: its kind, such as `warning`, and its text.
     fn say(&self, kind: &str, text: &str);
@@ -53,6 +57,16 @@ impl fmt::Debug for Host {
 thread_local! {
     /// Of this thread: two programs may run commands at the same time.
     static CURRENT: RefCell<Option<Host>> = const { RefCell::new(None) };
+}
+
+impl io::Write for Host {
+    fn write(&mut self, results: &[u8]) -> io::Result<usize> {
+        self.0.print(results).map(|()| results.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 /// What a thread that is to end is unwound with.
@@ -84,10 +98,6 @@ impl Host {
 
     pub(crate) fn run_thread(&self, thread: &mut (dyn FnMut() + Send)) {
         self.0.run_thread(thread);
-    }
-
-    pub(crate) fn print(&self, results: String) {
-        self.0.print(results);
     }
 
     pub(crate) fn say(&self, kind: &str, text: &str) {

@@ -3,7 +3,7 @@
 //! `NO_COLOR`, `CLICOLOR` and `CLICOLOR_FORCE` are heeded. What is written to a file or a
 //! pipe is the text alone.
 
-use std::io::{self, StdoutLock, Write as _};
+use std::io::{self, BufWriter, StdoutLock, Write};
 
 use anstream::AutoStream;
 use anstyle::{AnsiColor, Style};
@@ -107,11 +107,14 @@ pub(crate) fn warn(failures: &[String]) {
     }
 }
 
+/// What is wrong where a program that runs commands cannot take their results.
+const NOT_KEPT: &str = "the results cannot be kept";
+
 /// Prints results on stdout, tables with their frames dimmed.
 pub(crate) fn print(text: &str) -> anyhow::Result<()> {
-    if let Some(host) = Host::current() {
-        host.print(anstream::adapter::strip_str(text).to_string());
-        return Ok(());
+    if let Some(mut host) = Host::current() {
+        let text = anstream::adapter::strip_str(text).to_string();
+        return host.write_all(text.as_bytes()).context(NOT_KEPT);
     }
     let mut out = anstream::stdout().lock();
     let text = shown_in_tones(text);
@@ -123,13 +126,18 @@ pub(crate) fn print(text: &str) -> anyhow::Result<()> {
 /// Prints results on stdout as one line of JSON.
 pub(crate) fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
     if let Some(host) = Host::current() {
-        host.print(serde_json::to_string(value)?);
-        return Ok(());
+        return write_json(value, host).and_then(|mut out| out.flush()).context(NOT_KEPT);
     }
-    print_with(|out| {
-        serde_json::to_writer(&mut *out, value)?;
-        out.write_all(b"\n")
-    })
+    print_with(|out| write_json(value, out)?.write_all(b"\n"))
+}
+
+/// Writes JSON as it is made: all decisions of a long log are many times as long as a buffer.
+fn write_json<W: Write>(value: &impl Serialize, out: W) -> io::Result<BufWriter<W>> {
+    /// Bytes that are written at once.
+    const PIECE: usize = 1 << 16;
+    let mut out = BufWriter::with_capacity(PIECE, out);
+    serde_json::to_writer(&mut out, value)?;
+    Ok(out)
 }
 
 /// Lets `write` print on stdout as it is, without a thought for colours.

@@ -4,8 +4,11 @@
 //! and by the best broken line; how often noise alone gains as much is the p-value of
 //! [`Window`]. The noise, with its memory, is taken from the residuals of the broken lines.
 
+use std::borrow::Cow;
+
 use crate::delay::broken_line::{BrokenLine, PARAMETERS, Window};
 use crate::delay::decision::Decision;
+use crate::delay::prepared::Prepared;
 use crate::numerics::NoiseModel;
 
 /// Steps from which the noise is known well enough to say that there is nothing else; chosen: one
@@ -19,14 +22,16 @@ const PLAIN: f64 = 1e-6;
 const LATEST: usize = 20;
 
 /// Puts the verdict on each decision of a method that has none of its own.
-pub(super) fn judge(decisions: &mut [Decision], raw: &[f64], confidence: f64) {
-    let windows: Vec<&[f64]> = decisions.iter().map(|decision| window(decision, raw)).collect();
+pub(super) fn judge(decisions: &mut [Decision], trial: &Prepared<'_>, confidence: f64) {
     let white = NoiseModel::white();
-    let residuals = |values: &&[f64]| Some(best(values, &white)?.residuals(values));
-    let noise =
-        NoiseModel::of(&windows.iter().filter_map(residuals).collect::<Vec<_>>(), PARAMETERS);
-    for (decision, values) in decisions.iter_mut().zip(windows) {
-        decision.test_reaction(best(values, &noise).map(|line| line.p_value), confidence);
+    let residuals = |decision: &Decision| {
+        let values = window(decision, trial);
+        Some(best(&values, &white)?.residuals(&values))
+    };
+    let noise = NoiseModel::of(decisions.iter().filter_map(residuals), PARAMETERS);
+    for decision in decisions {
+        let line = best(&window(decision, trial), &noise);
+        decision.test_reaction(line.map(|line| line.p_value), confidence);
     }
 }
 
@@ -38,7 +43,7 @@ pub(super) fn judge(decisions: &mut [Decision], raw: &[f64], confidence: f64) {
 /// so that a verdict stays as a record grows.
 pub(super) fn judge_until_one_reacts(
     decisions: &mut [Decision],
-    raw: &[f64],
+    trial: &Prepared<'_>,
     departs: impl Fn(usize) -> bool,
     confidence: f64,
 ) {
@@ -48,12 +53,12 @@ pub(super) fn judge_until_one_reacts(
         if departs(index) {
             break;
         }
-        let values = window(decision, raw);
-        let Some(line) = best(values, &white) else { continue };
-        residuals.push(line.residuals(values));
+        let values = window(decision, trial);
+        let Some(line) = best(&values, &white) else { continue };
+        residuals.push(line.residuals(&values));
         let latest = residuals.len().saturating_sub(LATEST);
         let noise = NoiseModel::of(&residuals[latest..], PARAMETERS);
-        let p_value = best(values, &noise).map(|line| line.p_value);
+        let p_value = best(&values, &noise).map(|line| line.p_value);
         if p_value.is_some_and(|p_value| p_value < PLAIN) {
             break;
         }
@@ -64,10 +69,10 @@ pub(super) fn judge_until_one_reacts(
 }
 
 /// The samples of a decision's segment that its own step alone can have moved.
-fn window<'a>(decision: &Decision, raw: &'a [f64]) -> &'a [f64] {
+fn window<'a>(decision: &Decision, trial: &'a Prepared<'_>) -> Cow<'a, [f64]> {
     let indices = decision.segment.indices();
     let end = indices.end.min(decision.next_sample() - 1);
-    raw.get(indices.start..end).unwrap_or_default()
+    trial.measured(indices.start..end)
 }
 
 /// The best broken line through `values`, if they are enough.

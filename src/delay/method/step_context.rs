@@ -1,5 +1,6 @@
 //! A step among all of its trial, and the decision that follows from what was found there.
 
+use crate::delay::checks::Checks;
 use crate::delay::condition::Facts;
 use crate::delay::decision::Decision;
 use crate::delay::interval::FineDelay;
@@ -109,7 +110,7 @@ impl StepContext<'_> {
             best: candidates.best(),
             fine,
         };
-        let checks = facts.check(self.settings);
+        let checks = Checks::of(facts.check(self.settings));
         Decision { number, input_step, hold, segment, candidates, checks, fine, word: None }
     }
 }

@@ -71,7 +71,7 @@ fn decide_all(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
         decisions.push(decide(&context, decisions.last()));
     }
     if let Some(confidence) = confidence(trial, settings) {
-        noise_test::judge(&mut decisions, &trial.raw, confidence);
+        noise_test::judge(&mut decisions, trial, confidence);
         for (index, decision) in decisions.iter_mut().enumerate() {
             let context = StepContext { trial, index, settings };
             if let Some(p_value) = context.departed() {
@@ -80,7 +80,7 @@ fn decide_all(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
         }
     } else if !settings.paper {
         let departs = |index| StepContext { trial, index, settings }.departed().is_some();
-        noise_test::judge_until_one_reacts(&mut decisions, &trial.raw, departs, CONFIDENCE);
+        noise_test::judge_until_one_reacts(&mut decisions, trial, departs, CONFIDENCE);
     }
     decisions
 }
@@ -131,6 +131,7 @@ fn decide(context: &StepContext<'_>, before: Option<&Decision>) -> Decision {
     let candidates = match settings.lines {
         CandidateLines::All => candidates,
         CandidateLines::Best => candidates.with_best_lines(),
+        CandidateLines::BestAlone => candidates.with_best_alone(),
     };
     context.decision(segment, settings.beta, candidates, None)
 }

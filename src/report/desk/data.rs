@@ -51,8 +51,8 @@ struct ConditionJson {
     met: Option<bool>,
 }
 
-impl From<&Check> for ConditionJson {
-    fn from(check: &Check) -> Self {
+impl From<Check> for ConditionJson {
+    fn from(check: Check) -> Self {
         let met = match check.outcome {
             Outcome::Passed => Some(true),
             Outcome::Failed => Some(false),
