@@ -16,6 +16,7 @@ mod family;
 mod free_run;
 mod judge;
 mod known;
+mod left_out;
 mod levels;
 mod limits;
 mod linear_screen;
