@@ -15,6 +15,11 @@ pub const RESERVE: f64 = 2.0;
 /// and no turn. Chosen, as [`RESERVE`] is.
 const UNSEEN: f64 = 1.5;
 
+/// How many times as long as the longest run a prediction may be for which the margin stands. That
+/// an error goes on in proportion is a guess, and farther out a wrong one: a load that changes along
+/// the stroke shows in two minutes and not in ten seconds. Chosen, as [`RESERVE`] is.
+const EXTRAPOLATED: f64 = 2.0;
+
 /// How far free-running predictions were off on parts of a record that were left out of the fit,
 /// by the time since their start, and by the way that the joint was to go.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,6 +83,12 @@ impl FreeRunError {
     /// How many times the errors so far a margin is.
     pub fn reserve(&self) -> f64 {
         if self.trend.is_some() { UNSEEN * RESERVE } else { RESERVE }
+    }
+
+    /// How long a prediction may be for which the margin stands, seconds: beyond the longest run it
+    /// is an extrapolation.
+    pub fn trusted_s(&self) -> f64 {
+        if self.is_bounded { f64::INFINITY } else { EXTRAPOLATED * self.longest_s() }
     }
 
     /// Whether the error of a prediction does not grow with its length.
