@@ -45,6 +45,10 @@ struct Args {
     #[arg(long, value_name = "DIGITS", value_delimiter = ',')]
     ending: Vec<u64>,
 
+    /// Without the fitted integrator that each plan is compared with
+    #[arg(long)]
+    plans_only: bool,
+
     /// Joints at the same time [default: as many as there are processors]
     #[arg(long)]
     threads: Option<usize>,
@@ -58,7 +62,7 @@ fn main() -> anyhow::Result<()> {
     let seeds: Vec<u64> = seeds.filter(is_wanted).collect();
     let judged = in_order(&seeds, args.threads.unwrap_or(processors).max(1), |index, seed| {
         // One thread for each joint: there are enough of them.
-        let judged: Judged = with_threads(Some(1), || examine(*seed))??;
+        let judged: Judged = with_threads(Some(1), || examine(*seed, !args.plans_only))??;
         eprintln!("{} of {}: {judged}", index + 1, seeds.len());
         Ok(judged)
     })?;

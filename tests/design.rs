@@ -94,7 +94,29 @@ fn a_joint_stays_in_the_range_that_was_promised() {
     assert!((15.0..40.0).contains(&farthest), "{farthest}");
 }
 
-/// What `joint` does with the input of `in.csv` from `start` on, 50 samples a second.
+/// The trials of a file that is to be played: its only one, or each by its number.
+fn trials(text: &str, name: &str) -> Vec<Vec<f64>> {
+    let values = column(text, name);
+    if !text.starts_with("trial,") {
+        return vec![values];
+    }
+    let mut trials: Vec<Vec<f64>> = Vec::new();
+    for (number, value) in column(text, "trial").into_iter().zip(values) {
+        while (trials.len() as f64) < number {
+            trials.push(Vec::new());
+        }
+        trials.last_mut().unwrap().push(value);
+    }
+    trials
+}
+
+/// What `joint` does with the trials of `in.csv`, each from `start` on, 50 samples a second.
+fn driven_trials(desk: &Desk, joint: &JointSpec, start: f64) -> Vec<f64> {
+    let trials = trials(&desk.read("in.csv"), "boom.input");
+    trials.iter().flat_map(|input| driven(joint, input, start)).collect()
+}
+
+/// What `joint` does with an input from `start` on, 50 samples a second.
 fn driven(joint: &JointSpec, input: &[f64], start: f64) -> Vec<f64> {
     let changes = (1..input.len()).filter(|k| (input[*k] - input[k - 1]).abs() > 0.0);
     let steps = changes.map(|k| (k + 1, input[k])).collect();
@@ -150,7 +172,7 @@ fn joints_with_other_physics_than_the_model_stay_in_the_range_that_is_promised()
         let options = format!("design log.csv --output-range={low},{high} -o in.csv -q");
         let designed = &desk.json(&options, 0)["joints"][0];
         let start = number(&designed["start"]);
-        let output = driven(&joint, &column(&desk.read("in.csv"), "boom.input"), start);
+        let output = driven_trials(&desk, &joint, start);
         let lowest = output.iter().copied().fold(f64::INFINITY, f64::min);
         let highest = output.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         assert!(lowest >= low && highest <= high, "{index}: {lowest} to {highest}");
@@ -158,6 +180,47 @@ fn joints_with_other_physics_than_the_model_stay_in_the_range_that_is_promised()
         assert!(highest - lowest > 0.3 * (high - low), "{index}: {lowest} to {highest}");
         assert!(number(&designed["steps"]) >= 6.0, "{index}");
     }
+}
+
+/// A short log says little of a long input. The joint is brought back before each trial, and the file
+/// says so; what is played is a log that can be read.
+#[test]
+fn what_one_input_cannot_promise_is_played_in_trials() {
+    let joint = others().remove(0).0;
+    let desk = Desk::for_seconds(45.0, vec![joint.clone()]);
+    let options = "design log.csv --output-range=-20,25 --duration 90 -o in.csv --preview see.csv";
+    let designed = &desk.json(&format!("{options} -q"), 0)["joints"][0];
+    let played = designed["trials"].as_array().unwrap();
+    assert!(played.len() > 1);
+    let seconds: f64 = played.iter().map(|trial| number(&trial["duration_s"])).sum();
+    assert!(
+        (seconds - 90.0).abs() < 0.1 && (number(&designed["duration_s"]) - seconds).abs() < 1e-6
+    );
+    let last = designed["holds"].as_array().unwrap().last().unwrap();
+    assert_eq!(number(&last["trial"]) as usize, played.len());
+    assert!(designed["predicted"]["kept_until_s"].is_null());
+
+    let text = desk.read("in.csv");
+    assert!(text.starts_with("trial,time_s,boom.input\n1,0,0\n1,0.02,0\n"), "{}", &text[..60]);
+    assert!(desk.read("see.csv").starts_with("trial,time_s,boom.input,boom.output,"));
+    let (start, tolerance) = (number(&designed["start"]), number(&designed["start_tolerance"]));
+    let mut made = Vec::new();
+    for (place, input) in trials(&text, "boom.input").into_iter().enumerate() {
+        let off = if place % 2 == 0 { tolerance } else { -tolerance };
+        let output = driven(&joint, &input, start + off);
+        assert!(output.iter().all(|y| (-20.0..=25.0).contains(y)), "trial {}", place + 1);
+        made.push((input, output));
+    }
+    write_trials(&desk, "next.csv", &made);
+    let estimated = desk.json("estimate next.csv -q", 0);
+    assert!(!estimated["joints"][0].is_null());
+
+    let said = String::from_utf8(desk.run(&format!("{options} -q")).stdout).unwrap();
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("trials drive it back to") && said.contains("Input, trial 1:"), "{said}");
+    let one = &desk.json("design log.csv --output-range=-20,25 --trials 1 -q", 0)["joints"][0];
+    assert_eq!(one["trials"].as_array().unwrap().len(), 1);
+    assert!(number(&one["duration_s"]) < 45.0);
 }
 
 /// A servo valve of a hobby excavator: 7.5 % duty is neutral.
@@ -251,9 +314,10 @@ fn a_plan_from_strokes_keeps_its_range_for_as_long_as_it_is() {
     write_trials(&desk, "strokes.csv", &strokes.collect::<Vec<_>>());
     let options = "design strokes.csv --output-range=-35,35 -o in.csv -q";
     let designed = &desk.json(options, 0)["joints"][0];
-    let input = column(&desk.read("in.csv"), "boom.input");
-    let output = by_hand(&input, number(&designed["start"]), None);
-    assert!(output.iter().all(|y| (-35.0..=35.0).contains(y)));
+    let start = number(&designed["start"]);
+    let trials = trials(&desk.read("in.csv"), "boom.input");
+    let output = trials.iter().flat_map(|input| by_hand(input, start, None));
+    assert!(output.into_iter().all(|y| (-35.0..=35.0).contains(&y)));
     assert!(number(&designed["steps"]) >= 6.0 && number(&designed["duration_s"]) >= 10.0);
 }
 
@@ -387,6 +451,7 @@ fn what_cannot_be_designed_is_refused_in_one_message_and_leaves_no_file() {
     desk.write("plain.toml", MODEL.split("[[joint.boom.effect]]").next().unwrap());
     let cases = [
         ("--levels 1", "expected two levels or more"),
+        ("--trials 0", "expected a whole number from 1 on"),
         ("--hold 2,1", "expected two numbers, the lower one first"),
         ("--output-range=-1,1", "give --model or a log"),
         ("--dead-band avoid", "no model has it"),

@@ -41,6 +41,7 @@ pub(crate) struct Judged {
 pub(crate) struct Played {
     pub(crate) duration_s: f64,
     pub(crate) steps: usize,
+    pub(crate) trials: usize,
     /// Part of the range through which the joint went.
     pub(crate) used: f64,
     /// How far it left the range, as a part of that; zero where it did not.
@@ -65,9 +66,9 @@ impl fmt::Display for Judged {
             range.0, range.1
         )?;
         match &self.outcome {
-            Ok(Played { duration_s, steps, used, beyond, needed }) => write!(
+            Ok(Played { duration_s, steps, trials, used, beyond, needed }) => write!(
                 f,
-                "{duration_s:.0} s, {steps} steps, {:.0} % used, {:.2} of the margin needed, {}",
+                "{duration_s:.0} s, {steps} steps, {trials} trials, {:.0} % used, {:.2} of the margin needed, {}",
                 100.0 * used,
                 needed,
                 if *beyond > 0.0 {
@@ -85,8 +86,8 @@ impl fmt::Display for Judged {
 const PROTOCOL: Protocol =
     Protocol { mode: Mode::FitOrIntegrator, split: Some(Split::Time(1.0)), horizon: Horizon::Auto };
 
-/// What becomes of the joint number `seed`.
-pub(crate) fn examine(seed: u64) -> anyhow::Result<Judged> {
+/// What becomes of the joint number `seed`, beside a fitted integrator where that is wanted.
+pub(crate) fn examine(seed: u64, with_integrator: bool) -> anyhow::Result<Judged> {
     let Drawn { plant, log, kind, hidden } = drawn(seed)?;
     let begun = Instant::now();
     let logged = Logged::of(&log);
@@ -102,11 +103,13 @@ pub(crate) fn examine(seed: u64) -> anyhow::Result<Judged> {
     let planned = plan(&wishes, &rig, Some(&known), Some(&logged), 0);
     let design_s = begun.elapsed().as_secs_f64();
     let integrator_leaves = match &planned {
-        Ok(plan) => Some(integrator_leaves(&plant, &log, (&rig, &logged), plan, seed)?),
-        Err(_) => None,
+        Ok(plan) if with_integrator => {
+            Some(integrator_leaves(&plant, &log, (&rig, &logged), plan, seed)?)
+        }
+        _ => None,
     };
     let outcome = match planned {
-        Ok(plan) => Ok(played(&plant, &rig, &logged, &plan)?),
+        Ok(plan) => Ok(played(&plant, &rig, &logged, &plan, seed)?),
         Err(why) => Err(why.to_string()),
     };
     Ok(Judged { seed, kind, hidden, model: effects, range, outcome, design_s, integrator_leaves })
@@ -150,20 +153,36 @@ fn known(log: &Joint) -> anyhow::Result<Uncertain> {
     Ok(known.into_iter().next().flatten().context("no model")??)
 }
 
-/// What the joint does with `plan`.
-fn played(plant: &Plant, rig: &TestRig, logged: &Logged, plan: &Plan) -> anyhow::Result<Played> {
+/// What the joint does with `plan`: it starts each trial as far off as it may.
+fn played(
+    plant: &Plant,
+    rig: &TestRig,
+    logged: &Logged,
+    plan: &Plan,
+    seed: u64,
+) -> anyhow::Result<Played> {
     let schedule = plan.schedule.about(logged.rest);
-    let angles = plant.played(rig.start, &schedule)?;
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(2);
+    let tolerance = plan.start_tolerance.unwrap_or(0.0);
+    let (mut angles, mut number) = (Vec::new(), 0);
+    for trial in schedule.trials() {
+        let start = rig.start + tolerance * (2.0 * random.random::<f64>() - 1.0);
+        angles.extend(plant.played(start, &trial, number)?);
+        number += 1;
+    }
     let range = rig.range.context("a range")?;
     let prediction = plan.prediction.as_ref().context("a prediction")?;
     let width = range.1 - range.0;
     let low = angles.iter().copied().fold(f64::INFINITY, f64::min);
     let high = angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let off = angles.iter().zip(&prediction.output).map(|(angle, own)| (angle - own).abs());
-    let needed = off.zip(&prediction.margin).map(|(off, margin)| off / margin.max(1e-9));
+    let needed =
+        off.zip(&prediction.margin).map(|(off, margin)| off / (margin + tolerance).max(1e-9));
     Ok(Played {
         duration_s: schedule.duration_s(),
         steps: schedule.steps(),
+        trials: schedule.trial_count(),
         used: (high - low) / width,
         beyond: (range.0 - low).max(high - range.1).max(0.0) / width,
         needed: needed.fold(0.0, f64::max),
@@ -196,7 +215,7 @@ fn integrator_leaves(
         seed,
     };
     let schedule = random_steps(&steps, rig, Some(&known), 0).about(logged.rest);
-    let angles = plant.played(rig.start, &schedule)?;
+    let angles = plant.played(rig.start, &schedule, 0)?;
     let (low, high) = rig.range.context("a range")?;
     Ok(angles.iter().any(|angle| *angle < low || *angle > high))
 }

@@ -8,8 +8,8 @@ use crate::plants::KINDS;
 /// The table, and what it says in sentences.
 pub(crate) fn page(judged: &[Judged]) -> String {
     let mut page = String::from(
-        "| joints | designed | kept the range | left it | farthest | length | steps | range used | \
-         time | integrator leaves it |\n|---|---|---|---|---|---|---|---|---|---|\n",
+        "| joints | designed | kept the range | left it | farthest | trials | length | steps | range used | \
+         time | integrator leaves it |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for kind in KINDS {
         let own: Vec<&Judged> = judged.iter().filter(|judged| judged.kind == kind).collect();
@@ -32,11 +32,12 @@ fn row(name: &str, judged: &[&Judged]) -> String {
     let mut row = String::new();
     let _ = writeln!(
         row,
-        "| {name} | {} of {} | {kept} | {} | {:.1} % | {:.0} s | {:.0} | {:.0} % | {:.1} s | {leaves} |",
+        "| {name} | {} of {} | {kept} | {} | {:.1} % | {:.0} | {:.0} s | {:.0} | {:.0} % | {:.1} s | {leaves} |",
         played.len(),
         judged.len(),
         played.len() - kept,
         100.0 * farthest,
+        median(played.iter().map(|played| played.trials as f64)),
         median(played.iter().map(|played| played.duration_s)),
         median(played.iter().map(|played| played.steps as f64)),
         100.0 * median(played.iter().map(|played| played.used)),

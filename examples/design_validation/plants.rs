@@ -55,9 +55,14 @@ fn of_machine(seed: u64, source: Source, kind: &'static str) -> anyhow::Result<D
 }
 
 impl Plant {
-    /// The output, without noise, while `schedule` is played from `start` on, or from where it
-    /// settles.
-    pub(crate) fn played(&self, start: f64, schedule: &Schedule) -> anyhow::Result<Vec<f64>> {
+    /// The output, without noise, while `schedule` is played as the trial number `trial`, from
+    /// `start` on, or from where it settles.
+    pub(crate) fn played(
+        &self,
+        start: f64,
+        schedule: &Schedule,
+        trial: u64,
+    ) -> anyhow::Result<Vec<f64>> {
         /// The delays of the play are others than those of the log.
         const ANOTHER: u64 = 1_000_000;
         let input = schedule.input();
@@ -73,7 +78,7 @@ impl Plant {
         joint.input = InputSpec::Steps { steps, initial: 0.0 };
         (joint.start, joint.range, joint.noise) = (start, None, 0.0);
         plant.duration_s = schedule.duration_s();
-        plant.seed += ANOTHER;
+        plant.seed += ANOTHER * (trial + 1);
         let trials = simulate(&plant)?.joints.remove(0).trials;
         Ok(trials.first().map_or(&[][..], Trial::output).to_vec())
     }

@@ -166,6 +166,14 @@ fn measured_margin(free_run: &FreeRunError, output: &[f64], period_s: f64) -> Ve
 }
 
 impl Prediction {
+    /// This one, and that of the trial behind it.
+    #[must_use]
+    pub(super) fn followed_by(mut self, next: Self) -> Self {
+        self.output.extend(next.output);
+        self.margin.extend(next.margin);
+        self
+    }
+
     /// Lowest and highest angle with the margin.
     pub fn extent(&self) -> (f64, f64) {
         let both = self.output.iter().zip(&self.margin);

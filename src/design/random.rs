@@ -43,19 +43,30 @@ pub fn random_steps(
     Schedule::new(rig.period, drawing.holds)
 }
 
-/// Draws an input as [`random_steps`] does, within `range`, which ends before its time where
-/// no level is left after which the joint surely stays there.
+/// A trial that is drawn behind others.
+#[derive(Clone, Copy)]
+pub(super) struct Behind<'a> {
+    /// The trials before, whose transitions count.
+    pub(super) before: Option<&'a Schedule>,
+    /// Number of the draw, from 0: each is another.
+    pub(super) draw: usize,
+    /// Whether the joint is brought back to its start after the trial, wherever it ends.
+    pub(super) is_brought_back: bool,
+}
+
+/// Draws a trial as [`random_steps`] draws an input, within `range`, which ends before its time
+/// where no level is left after which the joint surely stays there.
 ///
 /// Beyond half the way from the middle of the range to its ends, levels come first that lead
-/// back; so they do towards the end, and the last level is rest.
+/// back; so they do towards the end, unless the joint is brought back, and the last level is rest.
 pub(super) fn random_steps_within(
     steps: &RandomSteps,
-    rig: &TestRig,
+    (rig, index): (&TestRig, usize),
     model: &Uncertain,
     range: (f64, f64),
-    index: usize,
+    behind: Behind<'_>,
 ) -> Schedule {
-    let mut drawing = Drawing::new(steps, rig, Some(model), index);
+    let mut drawing = Drawing::new(steps, rig, Some(model), index).behind(behind);
     let rest = samples_in(steps.hold_s.0, rig.period);
     drawing.samples = drawing.samples.saturating_sub(rest);
     drawing.push(Hold { level: 0.0, samples: rest });
@@ -79,6 +90,10 @@ struct Drawing<'a> {
     random: ChaCha8Rng,
     samples: usize,
     holds: Vec<Hold>,
+    /// Levels of the trials before, in their order.
+    before: Vec<f64>,
+    /// Whether the joint is brought back to its start.
+    is_brought_back: bool,
     /// Time in which a level acts, seconds.
     settling_s: f64,
 }
@@ -106,7 +121,19 @@ impl<'a> Drawing<'a> {
         let levels = steps.levels.iter();
         let largest = levels.fold(0.0, |largest: f64, level| largest.max(level.abs()));
         let settling_s = model.map_or(0.0, |known| response_s(&known.model, rig, largest));
-        Self { steps, rig, model, random, samples, holds: Vec::new(), settling_s }
+        let (holds, before) = (Vec::new(), Vec::new());
+        let is_brought_back = false;
+        Self { steps, rig, model, random, samples, holds, before, is_brought_back, settling_s }
+    }
+
+    /// The same behind other trials.
+    fn behind(mut self, Behind { before, draw, is_brought_back }: Behind<'_>) -> Self {
+        /// Joints of one experiment, at most: streams of random numbers of another draw lie apart.
+        const JOINTS: u64 = 1 << 32;
+        let levels = before.iter().flat_map(|before| before.holds());
+        self.before = levels.map(|hold| hold.level).collect();
+        self.random.set_stream(self.random.get_stream() + JOINTS * draw as u64);
+        Self { is_brought_back, ..self }
     }
 
     /// Samples that are not drawn yet.
@@ -148,25 +175,29 @@ impl<'a> Drawing<'a> {
             [shortest, longest, seconds].map(|seconds| samples_in(seconds, self.rig.period));
         let now = self.leading(Hold { level: 0.0, samples: 1 }, model, range).off_middle;
         let is_out = now > OUT * 0.5 * (range.1 - range.0);
-        let is_closing = self.left() <= CLOSING * longest;
-        for samples in [drawn, shortest] {
+        let is_closing = self.left() <= CLOSING * longest && !self.is_brought_back;
+        let [drawn, shortest] = [drawn, shortest].map(|samples| {
             let samples = samples.min(self.left());
             // No level is played for less than the shortest hold.
             let is_last = self.left() - samples < shortest;
-            let samples = if is_last { self.left() } else { samples };
-            let leading = levels.iter().map(|level| Hold { level: *level, samples });
-            let leading = leading.map(|hold| self.leading(hold, model, range));
+            if is_last { self.left() } else { samples }
+        });
+        let tried = if self.is_brought_back {
+            // In a short trial a level that is rare comes first, be it for a short time.
+            vec![holds(&levels, &[drawn, shortest])]
+        } else {
+            vec![holds(&levels, &[drawn]), holds(&levels, &[shortest])]
+        };
+        tried.into_iter().find_map(|holds| {
+            let leading = holds.into_iter().map(|hold| self.leading(hold, model, range));
             let kept = leading.filter(|found| found.excess <= 0.0);
             let chosen = if is_closing {
                 kept.min_by(|a, b| a.off_middle.total_cmp(&b.off_middle))
             } else {
                 first_that(kept, |found| !is_out || found.off_middle < now)
             };
-            if let Some(found) = chosen {
-                return Some(found.hold);
-            }
-        }
-        None
+            chosen.map(|found| found.hold)
+        })
     }
 
     /// Where the joint comes to by `hold` when it rests after it, until that acts.
@@ -204,10 +235,15 @@ impl<'a> Drawing<'a> {
 
     /// How often the input went from `before` to `after`, and to `after` at all.
     fn counts(&self, before: f64, after: f64) -> (usize, usize) {
-        let pairs = self.holds.windows(2).filter_map(|pair| match pair {
+        let own = self.holds.windows(2).filter_map(|pair| match pair {
             [a, b] => Some((a.level, b.level)),
             _ => None,
         });
+        let earlier = self.before.windows(2).filter_map(|pair| match pair {
+            [a, b] => Some((*a, *b)),
+            _ => None,
+        });
+        let pairs = own.chain(earlier);
         let into = pairs.filter(|(_, to)| !differ(*to, after));
         into.fold((0, 0), |(transitions, visits), (from, _)| {
             (transitions + usize::from(!differ(from, before)), visits + 1)
@@ -224,6 +260,14 @@ impl<'a> Drawing<'a> {
         let schedule = Schedule::new(self.rig.period, holds);
         self.rig.prediction(uncertain, &schedule).excess(range, from)
     }
+}
+
+/// Each of `levels` for each of so many samples.
+fn holds(levels: &[f64], samples: &[usize]) -> Vec<Hold> {
+    let holds = levels
+        .iter()
+        .flat_map(|level| samples.iter().map(|samples| Hold { level: *level, samples: *samples }));
+    holds.collect()
 }
 
 /// The first of `items` for which `is_it`, else the first of all.

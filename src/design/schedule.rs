@@ -11,17 +11,43 @@ pub struct Hold {
     pub samples: usize,
 }
 
-/// An input, level by level.
+/// An input, level by level, in one trial or in several, before each of which the joint is brought
+/// back to where it starts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {
     period: SamplePeriod,
     holds: Vec<Hold>,
+    /// The first hold of each trial behind the first.
+    borders: Vec<usize>,
 }
 
 impl Schedule {
-    /// `holds` one behind the other.
+    /// `holds` one behind the other, in one trial.
     pub fn new(period: SamplePeriod, holds: Vec<Hold>) -> Self {
-        Self { period, holds }
+        Self { period, holds, borders: Vec::new() }
+    }
+
+    /// The same with another trial behind it.
+    #[must_use]
+    pub(super) fn followed_by(mut self, trial: &Self) -> Self {
+        let behind = trial.borders.iter().map(|border| self.holds.len() + border);
+        let borders: Vec<usize> = std::iter::once(self.holds.len()).chain(behind).collect();
+        self.borders.extend(borders);
+        self.holds.extend_from_slice(&trial.holds);
+        self
+    }
+
+    /// Its trials.
+    pub fn trials(&self) -> Vec<Self> {
+        let from = std::iter::once(0).chain(self.borders.iter().copied());
+        let to = self.borders.iter().copied().chain(std::iter::once(self.holds.len()));
+        let holds = from.zip(to).map(|(from, to)| self.holds.get(from..to).unwrap_or_default());
+        holds.map(|holds| Self::new(self.period, holds.to_vec())).collect()
+    }
+
+    /// How many trials it has.
+    pub fn trial_count(&self) -> usize {
+        self.borders.len() + 1
     }
 
     /// Seconds between samples.
@@ -70,17 +96,17 @@ impl Schedule {
 
     /// Changes of the level.
     pub fn steps(&self) -> usize {
-        self.holds.len().saturating_sub(1)
+        self.holds.len().saturating_sub(self.trial_count())
     }
 
-    /// Shortest and longest hold in seconds, but for the first and the last.
+    /// Shortest and longest hold in seconds, but for the first and the last of each trial.
     pub fn hold_range_s(&self) -> (f64, f64) {
-        let inner = match self.holds.as_slice() {
+        let trials = self.trials();
+        let inner = trials.iter().flat_map(|trial| match trial.holds.as_slice() {
             [_, inner @ .., _] if !inner.is_empty() => inner,
             all => all,
-        };
-        let seconds = |hold: &Hold| hold.samples as f64 * self.period.seconds();
-        let all = inner.iter().map(seconds);
+        });
+        let all = inner.map(|hold| hold.samples as f64 * self.period.seconds());
         all.fold((f64::INFINITY, 0.0), |(low, high), hold| (low.min(hold), high.max(hold)))
     }
 
@@ -98,13 +124,13 @@ impl Schedule {
     #[must_use]
     pub fn about(&self, rest: f64) -> Self {
         let about = |hold: &Hold| Hold { level: hold.level + rest, ..*hold };
-        Self { period: self.period, holds: self.holds.iter().map(about).collect() }
+        Self { holds: self.holds.iter().map(about).collect(), ..self.clone() }
     }
 
     /// The first `count` holds.
     #[must_use]
     pub(super) fn first(&self, count: usize) -> Self {
-        Self { period: self.period, holds: self.holds.iter().take(count).copied().collect() }
+        Self::new(self.period, self.holds.iter().take(count).copied().collect())
     }
 }
 
@@ -130,5 +156,19 @@ mod tests {
         assert_eq!(made.first(2).input(), [0.0, 2.0, 2.0, 2.0]);
         assert_eq!((made.fitting(2.0), made.fitting(1.9)), (2, 2));
         assert_eq!((made.fitting(1.7), samples_in(0.1, period)), (1, 1));
+    }
+
+    #[test]
+    fn trials_are_played_one_after_the_other_and_no_step_lies_between() {
+        let period = SamplePeriod::from_seconds(0.5).unwrap();
+        let trial = |level| {
+            let holds = [(0.0, 2), (level, 3), (0.0, 4)];
+            let holds = holds.map(|(level, samples)| Hold { level, samples });
+            Schedule::new(period, holds.to_vec())
+        };
+        let made = trial(1.0).followed_by(&trial(-1.0)).followed_by(&trial(2.0));
+        assert_eq!((made.trial_count(), made.steps(), made.samples()), (3, 6, 27));
+        assert_eq!(made.trials(), [trial(1.0), trial(-1.0), trial(2.0)]);
+        assert_eq!((made.hold_range_s(), made.about(1.0).trial_count()), ((1.5, 1.5), 3));
     }
 }

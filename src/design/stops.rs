@@ -56,38 +56,29 @@ impl Stops {
         self.places.is_empty()
     }
 
-    /// Parts of the samples `from..to` of `trial` in which the joint is free, each from where what
-    /// leads it away from a stop begins to act, `delay_s` after it is played.
+    /// Parts of the samples `from..to` of `trial` in which the joint is free: each from where what
+    /// leads it away from a stop begins to act, `delay_s` after it is played, to where it comes
+    /// near one, be it that it touches it for too short a time to be seen to stand.
     pub(super) fn free(
         &self,
         trial: &Trial,
         (from, to): (usize, usize),
         delay_s: f64,
     ) -> Vec<(usize, usize)> {
-        let standing = self.standing(trial);
-        let at_stop: Vec<bool> = trial
-            .output()
-            .iter()
-            .zip(standing)
-            .map(|(output, stands)| stands && self.is_near(*output))
-            .collect();
-        let is_at_stop = |sample: usize| at_stop.get(sample).copied().unwrap_or(false);
-        let (delay, near) = (samples_of(delay_s, trial), samples_of(TIME_S, trial));
-        let (mut found, mut sample) = (Vec::new(), from);
+        let output = trial.output();
+        let is_at_stop = |sample: usize| output.get(sample).is_some_and(|y| self.is_near(*y));
+        let delay = samples_of(delay_s, trial);
+        let (mut found, mut sample, mut arrived) = (Vec::new(), from, from);
         while sample < to {
-            let stands = (sample..to).find(|k| is_at_stop(*k));
-            // It has stood for that long where it is seen to stand.
-            let arrived = stands.map_or(to, |k| k.saturating_sub(near).max(sample));
-            let end = stands.unwrap_or(to);
-            // It stands no more before it is seen to move.
-            let moves = (sample + near).min(to);
-            let begin = match played_before(trial, moves, from) {
-                Some(played) if sample > from => (played + delay).min(moves),
+            let end = (sample..to).find(|k| is_at_stop(*k)).unwrap_or(to);
+            let begin = match played_before(trial, sample, from) {
+                Some(played) if sample > from => (played + delay).clamp(arrived, sample),
                 _ => sample,
             };
-            if arrived >= begin + SHORTEST_RUN {
-                found.push((begin, arrived));
+            if end >= begin + SHORTEST_RUN {
+                found.push((begin, end));
             }
+            arrived = end;
             sample = (end..to).find(|k| !is_at_stop(*k)).unwrap_or(to);
         }
         found
@@ -166,6 +157,31 @@ mod tests {
             // Played at sample 50, seen to move from 56 on, and at the stop from 205 on.
             assert!((50..=60).contains(from) && (190..=209).contains(to), "{from} to {to}");
         }
+    }
+
+    #[test]
+    fn a_touch_of_a_stop_ends_a_motion_though_the_joint_does_not_stand_there() {
+        // It is turned round as it arrives: on the stop for some 0.1 s.
+        let touching = |sample: usize| match sample {
+            50..205 => 1.0,
+            205..300 => -1.0,
+            _ => 0.0,
+        };
+        let input: Vec<f64> = (0..450).map(touching).collect();
+        let mut y: f64 = 0.0;
+        let output = (0..450_usize).map(|k| {
+            let now = y;
+            y = (y + 0.4 * input[k.saturating_sub(5)]).clamp(0.0, 60.0);
+            now
+        });
+        let output = output.collect();
+        let period = SamplePeriod::from_seconds(0.02).unwrap();
+        let touching = Trial::new("touch", 0.0, period, input, output).unwrap();
+        let joint = joint(vec![stroke(1.0), stroke(-1.0), touching]);
+        let free = Stops::of(&joint).free(&joint.trials[2], (0, 450), 0.1);
+        let [(_, arrived), (left, end)] = free.as_slice() else { panic!("{free:?}") };
+        assert!((190..=206).contains(arrived) && (205..=214).contains(left), "{free:?}");
+        assert_eq!(*end, 450);
     }
 
     #[test]

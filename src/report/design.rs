@@ -36,6 +36,8 @@ pub(crate) struct Basis {
     pub(crate) within: Option<(f64, f64)>,
     /// Whether the output comes to rest by itself, at a place that the input decides.
     pub(crate) regulates_itself: bool,
+    /// How far the joint may be from its start when a trial begins, output units.
+    pub(crate) start_tolerance: Option<f64>,
 }
 
 /// Two suspects that an input distinguishes.
@@ -72,15 +74,32 @@ pub(super) fn kept_until_s(joint: &DesignedJoint, prediction: &Prediction) -> Op
     Some(sample as f64 * joint.schedule.period().seconds())
 }
 
-/// Start, level and duration of each hold, in seconds and input units.
-pub(super) fn holds(schedule: &Schedule) -> Vec<(f64, f64, f64)> {
+/// A level that is held.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Held {
+    /// Number of the trial, from 1.
+    pub(super) trial: usize,
+    /// Seconds since the trial began.
+    pub(super) start_s: f64,
+    /// Input units.
+    pub(super) level: f64,
+    /// Seconds for which it is held.
+    pub(super) hold_s: f64,
+}
+
+/// Each hold of `schedule`.
+pub(super) fn holds(schedule: &Schedule) -> Vec<Held> {
     let period_s = schedule.period().seconds();
-    let hold = |start: &mut usize, hold: &Hold| {
-        let start_s = tidy_seconds(*start as f64 * period_s);
-        *start += hold.samples;
-        Some((start_s, hold.level, tidy_seconds(hold.samples as f64 * period_s)))
+    let of_trial = |(trial, schedule): (usize, Schedule)| {
+        let hold = |start: &mut usize, hold: &Hold| {
+            let start_s = tidy_seconds(*start as f64 * period_s);
+            *start += hold.samples;
+            let hold_s = tidy_seconds(hold.samples as f64 * period_s);
+            Some(Held { trial, start_s, level: hold.level, hold_s })
+        };
+        schedule.holds().iter().scan(0, hold).collect::<Vec<_>>()
     };
-    schedule.holds().iter().scan(0, hold).collect()
+    (1..).zip(schedule.trials()).flat_map(of_trial).collect()
 }
 
 /// What the order of the levels is called.
@@ -94,17 +113,36 @@ pub(super) fn order(order: Order) -> &'static str {
     }
 }
 
-/// Writes `time_s,<joint>.input…` as CSV, to be played. A joint whose input ends before that of
-/// another rests.
+/// A column of a file, trial by trial.
+struct Column {
+    name: String,
+    trials: Vec<Vec<f64>>,
+    /// The value behind the end of a trial; not a number: an empty cell.
+    after: f64,
+}
+
+impl Column {
+    /// `values` of `joint`, one for each sample of its input.
+    fn of(joint: &DesignedJoint, name: &str, values: &[f64], after: f64) -> Self {
+        let mut rest = values;
+        let of_trial = |trial: Schedule| {
+            let (own, others) = rest.split_at(trial.samples().min(rest.len()));
+            rest = others;
+            own.to_vec()
+        };
+        let trials = joint.schedule.trials().into_iter().map(of_trial).collect();
+        Self { name: format!("{}.{name}", joint.rig.name), trials, after }
+    }
+}
+
+/// Writes `time_s,<joint>.input…` as CSV, to be played; in several trials, each from time zero on,
+/// `trial` before it. A joint whose input ends before that of another rests.
 ///
 /// # Errors
 /// When `out` cannot be written.
 pub(crate) fn write_input(joints: &[DesignedJoint], out: impl Write) -> csv::Result<()> {
-    let columns = joints.iter().map(|joint| {
-        let name = format!("{}.input", joint.rig.name);
-        (name, joint.schedule.input(), joint.rest)
-    });
-    write_columns(joints, &columns.collect::<Vec<_>>(), out)
+    let column = |joint| Column::of(joint, "input", &joint.schedule.input(), joint.rest);
+    write_columns(joints, &joints.iter().map(column).collect::<Vec<_>>(), out)
 }
 
 /// Writes the input and what is expected: `<joint>.output`, and `<joint>.low` and `.high` with
@@ -115,44 +153,50 @@ pub(crate) fn write_input(joints: &[DesignedJoint], out: impl Write) -> csv::Res
 pub(crate) fn write_preview(joints: &[DesignedJoint], out: impl Write) -> csv::Result<()> {
     let mut columns = Vec::new();
     for joint in joints {
-        let mut add = |name: &str, values: Vec<f64>, after: f64| {
-            columns.push((format!("{}.{name}", joint.rig.name), values, after));
+        let mut add = |name: &str, values: &[f64], after: f64| {
+            columns.push(Column::of(joint, name, values, after));
         };
-        add("input", joint.schedule.input(), joint.rest);
+        add("input", &joint.schedule.input(), joint.rest);
         let Some(Prediction { output, margin }) = &joint.prediction else { continue };
-        let with = |sign: f64| output.iter().zip(margin).map(|(y, m)| y + sign * m).collect();
-        add("output", output.clone(), f64::NAN);
-        add("low", with(-1.0), f64::NAN);
-        add("high", with(1.0), f64::NAN);
+        let with = |sign: f64| -> Vec<f64> {
+            output.iter().zip(margin).map(|(y, m)| y + sign * m).collect()
+        };
+        add("output", output, f64::NAN);
+        add("low", &with(-1.0), f64::NAN);
+        add("high", &with(1.0), f64::NAN);
         if let Some(Discrimination { ids: [one, other], other: outputs, .. }) =
             &joint.discrimination
         {
-            add(one, output.clone(), f64::NAN);
-            add(other, outputs.output.clone(), f64::NAN);
+            add(one, output, f64::NAN);
+            add(other, &outputs.output, f64::NAN);
         }
     }
     write_columns(joints, &columns, out)
 }
 
-/// Columns with their names and the value behind their ends; not a number: an empty cell.
-fn write_columns(
-    joints: &[DesignedJoint],
-    columns: &[(String, Vec<f64>, f64)],
-    out: impl Write,
-) -> csv::Result<()> {
+fn write_columns(joints: &[DesignedJoint], columns: &[Column], out: impl Write) -> csv::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    let names = columns.iter().map(|(name, _, _)| name.as_str());
-    writer.write_record(std::iter::once("time_s").chain(names))?;
+    let trials = columns.iter().map(|column| column.trials.len()).max().unwrap_or(0);
+    let names = columns.iter().map(|column| column.name.as_str());
+    let number = (trials > 1).then_some("trial");
+    writer.write_record(number.into_iter().chain(["time_s"]).chain(names))?;
     let period_s = joints.first().map_or(0.0, |joint| joint.schedule.period().seconds());
-    let rows = columns.iter().map(|(_, values, _)| values.len()).max().unwrap_or(0);
-    for row in 0..rows {
-        writer.write_field(tidy_seconds(row as f64 * period_s).to_string())?;
-        for (_, values, after) in columns {
-            let value = values.get(row).copied().unwrap_or(*after);
-            let text = if value.is_nan() { String::new() } else { value.to_string() };
-            writer.write_field(text)?;
+    for trial in 0..trials {
+        let of_trial = |column: &Column| column.trials.get(trial).map_or(0, Vec::len);
+        let rows = columns.iter().map(of_trial).max().unwrap_or(0);
+        for row in 0..rows {
+            if trials > 1 {
+                writer.write_field((trial + 1).to_string())?;
+            }
+            writer.write_field(tidy_seconds(row as f64 * period_s).to_string())?;
+            for Column { trials, after, .. } in columns {
+                let value = trials.get(trial).and_then(|values| values.get(row));
+                let value = value.copied().unwrap_or(*after);
+                let text = if value.is_nan() { String::new() } else { value.to_string() };
+                writer.write_field(text)?;
+            }
+            writer.write_record(None::<&[u8]>)?;
         }
-        writer.write_record(None::<&[u8]>)?;
     }
     Ok(writer.flush()?)
 }

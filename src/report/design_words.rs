@@ -1,6 +1,6 @@
 //! The next experiment in words.
 
-use super::design::{Basis, DesignedJoint, Discrimination, holds, kept_until_s, order};
+use super::design::{Basis, DesignedJoint, Discrimination, Held, holds, kept_until_s, order};
 use super::text_table::TextTable;
 use crate::design::{
     Expected, FreeRunError, OpenThreshold, Prediction, Rehearsal, Schedule, transitions,
@@ -47,7 +47,7 @@ fn headline(joint: &DesignedJoint) -> String {
     let levels: Vec<String> = schedule.levels().iter().map(|level| rounded(*level)).collect();
     let levels = listed(&levels, "and") + &unit_suffix(unit);
     let (hold, steps) = (hold_text(schedule), schedule.steps());
-    let duration = measure(schedule.duration_s(), Some("s"));
+    let duration = duration_text(schedule);
     let name = &rig.name;
     if let Some(Discrimination { ids: [one, other], design, .. }) = &joint.discrimination {
         if !design.explores.is_empty() {
@@ -67,6 +67,16 @@ fn headline(joint: &DesignedJoint) -> String {
         "{name}: random steps of {levels}, each held for {hold}: {steps} steps in {duration}, from \
          each level to each other {least} to {most} times."
     )
+}
+
+/// How long it is, and in how many trials.
+fn duration_text(schedule: &Schedule) -> String {
+    let seconds = |schedule: &Schedule| measure(schedule.duration_s(), Some("s"));
+    let trials = schedule.trials();
+    match trials.as_slice() {
+        [first, _, ..] => format!("{} trials of {}", trials.len(), seconds(first)),
+        _ => seconds(schedule),
+    }
 }
 
 fn hold_text(schedule: &Schedule) -> String {
@@ -191,7 +201,7 @@ fn promise(joint: &DesignedJoint, prediction: &Prediction, basis: &Basis) -> [St
         }
         None => format!("Output: {expected}."),
     };
-    [start, range, margin_text(prediction, basis, unit)]
+    [start, range, margin_text(joint, prediction, basis)]
 }
 
 /// What is done before the input is played.
@@ -201,15 +211,26 @@ fn start_text(joint: &DesignedJoint, basis: &Basis) -> String {
         let rest = measure(joint.rest, joint.rig.input_unit.as_deref());
         return format!("Start: hold the input at {rest} until the output settles, near {start}.");
     }
-    format!("Start: bring it to {start} and let it rest.")
+    let near = basis.start_tolerance.map_or_else(String::new, |tolerance| {
+        format!(", to within {}", measure(tolerance, joint.rig.output_unit.as_deref()))
+    });
+    match joint.schedule.trial_count() {
+        1 if near.is_empty() => format!("Start: bring it to {start} and let it rest."),
+        1 => format!("Start: bring it to {start}{near}, and let it rest."),
+        trials => format!(
+            "Start: before each of the {trials} trials drive it back to {start}{near}, by hand or by \
+             its position controller, and let it rest."
+        ),
+    }
 }
 
 /// How large the margin is, and where it comes from.
 fn margin_text(
+    joint: &DesignedJoint,
     prediction: &Prediction,
     Basis { effects, free_run, .. }: &Basis,
-    unit: Option<&str>,
 ) -> String {
+    let unit = joint.rig.output_unit.as_deref();
     let is_bounded = free_run.as_ref().is_some_and(FreeRunError::is_bounded);
     let effects = effects.iter().filter(|id| !is_bounded || **id != "leakage");
     let effects: Vec<String> = effects.map(|id| (*id).to_owned()).collect();
@@ -228,8 +249,9 @@ fn margin_text(
     };
     let (largest, longest) = (measure(free_run.largest(), unit), free_run.longest_s());
     let beyond = if is_bounded { "no more" } else { "in proportion" };
+    let within = if joint.schedule.trial_count() > 1 { " within a trial" } else { "" };
     format!(
-        "Margin: grows to {margin}. It is {} times the most by which the model, {model}, was off on \
+        "Margin: grows to {margin}{within}. It is {} times the most by which the model, {model}, was off on \
          parts of the log that its fit did not see: {largest} within {}, and {beyond} beyond.",
         rounded(free_run.reserve()),
         measure(longest, Some("s"))
@@ -252,10 +274,26 @@ pub(crate) fn left_out_note(levels: &[f64], unit: Option<&str>) -> String {
 }
 
 /// Why the input is no longer.
-pub(crate) fn shortened_note(duration_s: f64, usual_s: f64) -> String {
+pub(crate) fn shortened_note(schedule: &Schedule, usual_s: f64) -> String {
+    let duration_s = schedule.duration_s();
+    if schedule.trial_count() > 1 {
+        return format!(
+            "Length: {duration_s:.0} s instead of {usual_s:.0} s, since the trials are short. For more \
+             data, play another (--seed 2), or give --duration {usual_s:.0}."
+        );
+    }
     format!(
         "Length: {duration_s:.0} s instead of {usual_s:.0} s, since the range cannot be promised for \
          longer. For more data, go back to the start and play another (--seed 2)."
+    )
+}
+
+/// Why there are several trials.
+pub(crate) fn trials_note(trials: usize) -> String {
+    format!(
+        "Trials: what a prediction is off by adds up, and the range cannot be promised without a \
+         break. The {trials} trials start anew, so that it does not; --trials 1 makes one input, as \
+         long as it can be."
     )
 }
 
@@ -264,17 +302,22 @@ pub(crate) fn no_range_note() -> String {
     "No range is kept: --output-range LO,HI says where the joint may go.".to_owned()
 }
 
-/// `0 V for 0.55 s, 1 V for 1 s, …`, as far as anybody reads it.
+/// `0 V for 0.55 s, 1 V for 1 s, …`, as far as anybody reads it: of several trials the first.
 fn level_by_level(joint: &DesignedJoint) -> String {
     const SHOWN: usize = 24;
     let holds = holds(&joint.schedule);
     let unit = joint.rig.input_unit.as_deref();
-    let shown = holds.iter().take(SHOWN);
-    let shown = shown
-        .map(|(_, level, hold_s)| format!("{} for {} s", measure(*level, unit), rounded(*hold_s)));
-    let more = match holds.len().saturating_sub(SHOWN) {
+    let first: Vec<&Held> = holds.iter().filter(|held| held.trial == 1).collect();
+    let shown = first.iter().take(SHOWN);
+    let shown =
+        shown.map(|held| format!("{} for {} s", measure(held.level, unit), rounded(held.hold_s)));
+    let shown = shown.collect::<Vec<_>>().join(", ");
+    let more = match first.len().saturating_sub(SHOWN) {
         0 => String::new(),
         more => format!(", and {more} more"),
     };
-    format!("Input: {}{more}.", shown.collect::<Vec<_>>().join(", "))
+    match joint.schedule.trial_count() {
+        1 => format!("Input: {shown}{more}."),
+        _ => format!("Input, trial 1: {shown}{more}. The others are in the file (-o)."),
+    }
 }

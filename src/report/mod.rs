@@ -61,7 +61,7 @@ pub(crate) use design::{Basis, DesignedJoint, Discrimination, write_input, write
 #[cfg(feature = "rrd")]
 pub(crate) use design_words::{SIDE_HEADER, design_sentences, side_rows};
 pub(crate) use design_words::{
-    design_text, hold_note, left_out_note, no_range_note, shortened_note,
+    design_text, hold_note, left_out_note, no_range_note, shortened_note, trials_note,
 };
 pub(crate) use desk::review_page;
 pub(crate) use difference::{Against, against_text};

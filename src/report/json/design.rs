@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::header::Header;
-use crate::design::{Expected, OpenThreshold, Prediction, Rehearsal, Side, transitions};
-use crate::report::design::{DesignedJoint, Discrimination, holds, kept_until_s, order};
+use crate::design::{Expected, OpenThreshold, Prediction, Rehearsal, Schedule, Side, transitions};
+use crate::report::design::{DesignedJoint, Discrimination, Held, holds, kept_until_s, order};
 
 /// The document of `design --format json`.
 #[derive(Debug, Serialize)]
@@ -28,10 +28,12 @@ struct JointJson<'a> {
     hold_s: Ends,
     transitions: [usize; 2],
     start: f64,
+    start_tolerance: Option<f64>,
     output_range: Option<Ends>,
     predicted: Option<PredictedJson>,
     separates: Option<DiscriminationJson>,
     notes: &'a [String],
+    trials: Vec<TrialJson>,
     holds: Vec<HoldJson>,
 }
 
@@ -50,7 +52,14 @@ struct PredictedJson {
 }
 
 #[derive(Debug, Serialize)]
+struct TrialJson {
+    duration_s: f64,
+    steps: usize,
+}
+
+#[derive(Debug, Serialize)]
 struct HoldJson {
+    trial: usize,
     start_s: f64,
     level: f64,
     hold_s: f64,
@@ -113,15 +122,26 @@ impl<'a> JointJson<'a> {
             hold_s: Ends { low: shortest, high: longest },
             transitions: [least, most],
             start: rig.start,
+            start_tolerance: joint.basis.as_ref().and_then(|basis| basis.start_tolerance),
             output_range: rig.range.map(|(low, high)| Ends { low, high }),
             predicted: joint.prediction.as_ref().map(|found| predicted(joint, found)),
             separates: joint.discrimination.as_ref().map(DiscriminationJson::new),
             notes: &joint.notes,
-            holds: holds(schedule)
-                .into_iter()
-                .map(|(start_s, level, hold_s)| HoldJson { start_s, level, hold_s })
-                .collect(),
+            trials: schedule.trials().iter().map(TrialJson::new).collect(),
+            holds: holds(schedule).into_iter().map(HoldJson::new).collect(),
         }
+    }
+}
+
+impl TrialJson {
+    fn new(trial: &Schedule) -> Self {
+        Self { duration_s: trial.duration_s(), steps: trial.steps() }
+    }
+}
+
+impl HoldJson {
+    fn new(Held { trial, start_s, level, hold_s }: Held) -> Self {
+        Self { trial, start_s, level, hold_s }
     }
 }
 

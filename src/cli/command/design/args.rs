@@ -65,6 +65,14 @@ pub(crate) struct Args {
     )]
     pub(super) duration: Option<f64>,
 
+    /// Most trials, before each of which the joint is brought back to its start: 1 for an input
+    /// without a break [default: as many as the range needs]
+    #[arg(
+        long, value_name = "N", value_parser = values::trials, conflicts_with = "separate",
+        allow_negative_numbers = true, help_heading = "Input"
+    )]
+    pub(super) trials: Option<usize>,
+
     /// Samples per second [default: as the logs, but no more than 100 without `--separate`]
     #[arg(
         long, value_name = "HZ", value_parser = values::above_zero,

@@ -7,7 +7,7 @@ use crate::design::{
 };
 use crate::experiment::Joint;
 use crate::report::{
-    Basis, DesignedJoint, hold_note, left_out_note, no_range_note, shortened_note,
+    Basis, DesignedJoint, hold_note, left_out_note, no_range_note, shortened_note, trials_note,
 };
 use crate::study::{OfJoints, know_joints};
 use anyhow::{anyhow, bail};
@@ -67,7 +67,7 @@ fn steps_of(
     let wishes = wishes(args, uncertain, &rig, logged)?;
     let planned = plan(&wishes, &rig, uncertain, logged, index)?;
     let notes = notes(&planned, &rig, uncertain, rest);
-    let basis = uncertain.map(|known| basis(known, &rig, logged));
+    let basis = uncertain.map(|known| basis(known, &rig, logged, &planned));
     let Plan { schedule, prediction, .. } = planned;
     let schedule = schedule.about(rest);
     Ok(DesignedJoint { rig, schedule, rest, prediction, discrimination: None, basis, notes })
@@ -94,6 +94,7 @@ fn wishes(
         band: band.transpose()?,
         hold_s: args.hold,
         duration_s: args.duration,
+        trials: args.trials,
         seed: args.seed,
     })
 }
@@ -103,12 +104,13 @@ fn model(uncertain: Option<&Uncertain>) -> Option<&crate::model::JointModel> {
 }
 
 /// What the expectation rests on.
-fn basis(known: &Uncertain, rig: &TestRig, logged: Option<&Logged>) -> Basis {
+fn basis(known: &Uncertain, rig: &TestRig, logged: Option<&Logged>, plan: &Plan) -> Basis {
     let effects = known.model.components().iter().map(|component| component.effect().spec().id);
     let within = rig.range.and_then(|range| reach(range, logged).ok());
     let regulates_itself = logged.is_some_and(|logged| logged.settled().is_some());
     let (effects, free_run) = (effects.collect(), known.free_run.clone());
-    Basis { effects, free_run, within, regulates_itself }
+    let start_tolerance = plan.start_tolerance;
+    Basis { effects, free_run, within, regulates_itself, start_tolerance }
 }
 
 /// What whoever plays it should know.
@@ -120,9 +122,10 @@ fn notes(plan: &Plan, rig: &TestRig, uncertain: Option<&Uncertain>, rest: f64) -
     let left_out: Vec<f64> = plan.left_out.iter().map(|level| level + rest).collect();
     let left_out = (!left_out.is_empty()).then(|| left_out_note(&left_out, unit));
     let shortened = plan.shortened_from_s;
-    let shortened = shortened.map(|from_s| shortened_note(plan.schedule.duration_s(), from_s));
+    let shortened = shortened.map(|from_s| shortened_note(&plan.schedule, from_s));
     let no_range = (rig.range.is_none() && uncertain.is_some()).then(no_range_note);
-    [short, left_out, shortened, no_range].into_iter().flatten().collect()
+    let trials = Some(plan.schedule.trial_count()).filter(|count| *count > 1).map(trials_note);
+    [trials, short, left_out, shortened, no_range].into_iter().flatten().collect()
 }
 
 /// What is to become of which dead band.
