@@ -20,15 +20,15 @@ pub struct Checks {
 
 impl Checks {
     /// Packs `checks`, which are in the order of [`Condition::ALL`].
-    pub(super) fn of(checks: [Check; COUNT]) -> Self {
+    pub(super) fn of(checks: &[Check; COUNT]) -> Self {
         let bits = |has: fn(&Check) -> bool| {
             let ones = checks.iter().enumerate().filter(|(_, check)| has(check));
             ones.fold(0, |bits, (index, _)| bits | 1 << index)
         };
         Self {
-            values: checks.map(|check| check.value.unwrap_or_default()),
-            limits: checks.map(|check| check.limit.unwrap_or_default()),
-            outcomes: checks.map(|check| check.outcome),
+            values: checks.each_ref().map(|check| check.value.unwrap_or_default()),
+            limits: checks.each_ref().map(|check| check.limit.unwrap_or_default()),
+            outcomes: checks.each_ref().map(|check| check.outcome),
             with_value: bits(|check| check.value.is_some()),
             with_limit: bits(|check| check.limit.is_some()),
         }
@@ -76,7 +76,7 @@ mod tests {
             let outcome = outcomes[index % 3];
             Check { condition, value: number(index), limit: number(index + 1), outcome }
         });
-        let mut packed = Checks::of(checks);
+        let mut packed = Checks::of(&checks);
         assert!(packed.iter().eq(checks));
         assert_eq!(packed.failed().count(), 3);
         let other = Check { value: None, limit: Some(7.0), ..checks[5] };

@@ -101,17 +101,40 @@ impl<'a> LeftOut<'a> {
         motions.collect()
     }
 
-    /// Free runs over the parts: each piece by itself, or joined with those behind it in several
-    /// orders; without the stop of the model where `is_freed`.
-    pub(super) fn runs(&self, is_freed: bool, is_joined: bool) -> Vec<Run> {
+    /// Free runs over the parts.
+    pub(super) fn runs(&self, stops: EndStops, length: Length) -> Vec<Run> {
         let runs = self.parts.iter().flat_map(|(model, pieces)| {
-            let model = if is_freed { freed(model) } else { model.clone() };
-            let joined = if is_joined { in_orders(pieces) } else { each(pieces) };
+            let model = match stops {
+                EndStops::LeftOut => freed(model),
+                EndStops::Kept => model.clone(),
+            };
+            let joined = match length {
+                Length::Joined => in_orders(pieces),
+                Length::Each => each(pieces),
+            };
             let runs = joined.into_iter().flat_map(|pieces| runs(&model, &pieces, &self.around));
             runs.collect::<Vec<_>>()
         });
         runs.collect()
     }
+}
+
+/// What becomes of the model's stops in a free run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum EndStops {
+    /// They are left out, as they would take off errors.
+    LeftOut,
+    /// They stay.
+    Kept,
+}
+
+/// How long free runs are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Length {
+    /// Each piece by itself.
+    Each,
+    /// Pieces joined with those behind them, in several orders.
+    Joined,
 }
 
 /// `model` without a stop, which would take off errors as the joint's own does; of a joint that is

@@ -1,6 +1,7 @@
 //! Random steps that keep a joint in its range: in one trial, or in several, before each of which
 //! it is brought back, so that what a prediction is off by does not add up.
 
+use super::free_run::FreeRunError;
 use super::logged::Logged;
 use super::planned::{Plan, Wishes};
 use super::predict::{Prediction, TestRig, Uncertain};
@@ -90,9 +91,7 @@ impl Keeper<'_> {
         let shorter = asked(&divisions, range).map(|plan| plan.schedule.duration_s().round());
         let several = whole.iter().filter(|division| division.trials > 1);
         let trial_s = several.map(|division| division.trial_s).reduce(f64::min);
-        let margin = |of: &super::free_run::FreeRunError| {
-            of.margin(at_rest(trial_s.unwrap_or(self.duration_s)))
-        };
+        let margin = |of: &FreeRunError| of.margin(at_rest(trial_s.unwrap_or(self.duration_s)));
         let asked_for = self.rig.range.unwrap_or(range);
         let why = NotKept {
             duration_s: self.duration_s,
@@ -119,7 +118,7 @@ impl Keeper<'_> {
         let Self { duration_s, wishes, known, .. } = *self;
         let one = Division { trials: 1, trial_s: duration_s };
         let shortest_s = ways.iter().map(|(_, hold_s)| hold_s.0).fold(f64::INFINITY, f64::min);
-        let is_bounded = known.free_run.as_ref().is_some_and(|of| of.is_bounded());
+        let is_bounded = known.free_run.as_ref().is_some_and(FreeRunError::is_bounded);
         let others: Vec<Division> = if wishes.trials == Some(1) || is_bounded {
             let shorter = SHORTER.iter().map(|part| (part * duration_s).round());
             shorter.map(|trial_s| Division { trials: 1, trial_s }).collect()

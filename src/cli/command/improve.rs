@@ -80,11 +80,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
         return each_log(args, program);
     }
     let file = args.model.read()?;
-    let options = Options {
-        max_effects: args.max_effects,
-        keeps_refinements: args.refine,
-        ..args.effects.options(file.candidates())?
-    };
+    let options = args.options(&file)?;
     let target = args.model.target();
     let recording = args.output.recording.as_deref();
     let outputs: Vec<_> = std::iter::once(target).chain(recording).collect();
@@ -144,6 +140,14 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
 const STOPPING: &str = "after this revision; Ctrl-C again ends at once, without results";
 
 impl Args {
+    fn options(&self, file: &ModelFile) -> anyhow::Result<Options> {
+        Ok(Options {
+            max_effects: self.max_effects,
+            keeps_refinements: self.refine,
+            ..self.effects.options(file.candidates())?
+        })
+    }
+
     /// What follows the effect in the command that adds one more, for each joint.
     fn add_arguments(&self, joints: &[Joint]) -> Vec<String> {
         let model = self.model.target().display().to_string();

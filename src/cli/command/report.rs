@@ -176,13 +176,13 @@ impl ModelArgs {
             let done = |index, revision: &Revision| progress.done(index, revision);
             let protocol = protocol.watched(&bar).beside(begun.others);
             return Some(improve_joints(
-                joints, estimates, starts, protocol, &options, done, &Threads,
+                joints, estimates, starts, protocol, options, done, &Threads,
             ));
         }
         self.model.as_ref()?;
         let bar = begun.bar("explaining");
         let protocol = protocol.watched(&bar).beside(begun.others);
-        let explained = explain_joints(joints, estimates, starts, protocol, &options, &Threads);
+        let explained = explain_joints(joints, estimates, starts, protocol, options, &Threads);
         let one = |found: Option<Result<_, _>>| Some(found?.map(as_it_is));
         Some(explained.into_iter().map(one).collect())
     }

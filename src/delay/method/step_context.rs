@@ -110,7 +110,7 @@ impl StepContext<'_> {
             best: candidates.best(),
             fine,
         };
-        let checks = Checks::of(facts.check(self.settings));
+        let checks = Checks::of(&facts.check(self.settings));
         Decision { number, input_step, hold, segment, candidates, checks, fine, word: None }
     }
 }
