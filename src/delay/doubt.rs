@@ -32,7 +32,8 @@ pub enum Flag {
     Edge,
     /// The lines jump apart at the breakpoint: they cross more than two rows away.
     Jump,
-    /// The output stands at an end of its range, in the later half behind the breakpoint.
+    /// The output stands at an end of its range, in the later half behind the breakpoint, though
+    /// the input is not zero.
     Stop,
 }
 
@@ -238,12 +239,14 @@ impl Decision {
         let Some(best) = self.candidates.best() else { return Vec::new() };
         let is_edge = self.candidates.len() > 2 && (best.f == 1 || best.f == self.candidates.len());
         let is_jump = self.crossing(&best) > 2.0 * self.spacing() as f64;
+        // Where the input is let go, a joint that stands is at rest, wherever that is.
+        let is_driven = self.input_step.after.abs() > 0.0;
         // The joint may still be on its way at first.
         let behind = usize::midpoint(best.breakpoint, self.segment.last);
         let found = [
             (Flag::Edge, is_edge && self.fine.is_none()),
             (Flag::Jump, is_jump && self.fine.is_none()),
-            (Flag::Stop, stands(output, (behind, self.segment.last), range)),
+            (Flag::Stop, is_driven && stands(output, (behind, self.segment.last), range)),
         ];
         found.into_iter().filter_map(|(flag, is_on)| is_on.then_some(flag)).collect()
     }
