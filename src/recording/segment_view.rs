@@ -350,7 +350,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         }
         self.name_places(&mut labels);
         let output = bracketed("output", self.joint.output_unit.as_deref());
-        labels.put(Vec2D::new(62.0, 22.0), output);
+        labels.put_whole(Vec2D::new(62.0, 22.0), output);
         labels.put(Vec2D::new(190.0, 470.0), "residual".to_owned());
         labels.put(Vec2D::new(190.0, 578.0), "SSE (log)".to_owned());
         labels

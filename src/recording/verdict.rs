@@ -239,7 +239,7 @@ impl Facts<'_, '_> {
         let several = self.joint.trials.len() > 1;
         let of = if several { String::new() } else { format!(" of {of}") };
         format!(
-            "doubt **{percent}** (rank {rank}{of} on `doubt`): {}",
+            "doubt **{percent}** (rank {rank}{of} of this joint): {}",
             self.trial.reason(self.segment)
         )
     }
