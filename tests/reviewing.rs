@@ -35,6 +35,32 @@ fn review(sheet: &str) -> (String, [String; 2]) {
 }
 
 #[test]
+fn doubt_is_the_same_in_the_json_and_in_the_sheet_and_the_text_counts_it() {
+    let desk = Desk::with(vec![joint("boom")]);
+    let arguments = "--beta 2 --review-sheet sheet.csv";
+    let json = estimated(&desk, arguments);
+    let decisions = json["joints"][0]["decisions"].as_array().unwrap();
+    for row in rows(&desk.read("sheet.csv")) {
+        let same = |decision: &&serde_json::Value| decision["i"].as_u64() == row["i"].parse().ok();
+        let decision = decisions.iter().find(same).unwrap();
+        let rounded = |text: &str| (text.parse::<f64>().unwrap() * 1e3).round();
+        assert!((rounded(&row["doubt"]) - rounded(&decision["doubt"].to_string())).abs() < 1.5);
+        assert!(decision["flags"].is_array());
+    }
+    let doubtful = |decision: &&serde_json::Value| {
+        let is_flagged = decision["flags"] != serde_json::json!([]);
+        decision["doubt"].as_f64().unwrap() >= 0.3
+            || is_flagged && decision["verdict"] == "accepted"
+    };
+    let count = decisions.iter().filter(doubtful).count();
+    let output = desk.run(&format!("estimate log.csv {arguments}"));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let said = format!("{count} of {} decisions", decisions.len());
+    assert_eq!(text.contains(&said), count > 0, "{said}: {text}");
+    assert_eq!(text.contains("doubtful"), count > 0, "{text}");
+}
+
+#[test]
 fn a_sheet_lists_all_decisions_the_most_doubtful_first() {
     let desk = Desk::with(vec![joint("boom"), joint("stick")]);
     let json = estimated(&desk, "--review-sheet sheet.csv");

@@ -167,7 +167,10 @@ class Estimate(Result):
 
     @cached_property
     def decisions(self) -> pd.DataFrame:
-        """Every step: a row each, with the columns of ``--decisions``."""
+        """Every step: a row each, with the columns of ``--decisions`` and further ones.
+
+        ``doubt`` is from 0 to 1; ``flags`` is a list of what is odd: ``edge``, ``jump``, ``stop``.
+        """
         rows = [row for joint in self.joints for row in joint.get("decisions") or []]
         return pd.DataFrame(rows)
 

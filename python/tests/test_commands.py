@@ -160,6 +160,8 @@ def test_a_column_of_trials_and_an_index_of_times_are_read() -> None:
 def test_results_are_tables() -> None:
     found = tauscope.estimate(LOG)
     assert set(found.decisions["joint"]) == {"boom", "arm"}
+    assert found.decisions["doubt"].between(0, 1).all()
+    assert all(isinstance(flags, list) for flags in found.decisions["flags"])
     assert (found.delays["delta_s"] > 0).all()
     assert "delay_median_s" in found.delay_table
     html = found._repr_html_()

@@ -21,6 +21,10 @@ const NEAR_STOP: f64 = 0.05;
 /// Part of the output's range that is its end: within it a joint stands at a stop.
 const END: f64 = 0.01;
 
+/// Doubt from which on a decision is doubtful: on synthetic records every fifth accepted step or more
+/// above it is off by more than one and a half rows of β, of the others one in fifty.
+const DOUBTFUL: f64 = 0.3;
+
 /// Something odd about a decision, whatever the margins say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Flag {
@@ -28,7 +32,8 @@ pub enum Flag {
     Edge,
     /// The lines jump apart at the breakpoint: they cross more than two rows away.
     Jump,
-    /// The output stands at an end of its range, in the later half behind the breakpoint.
+    /// The output stands at an end of its range, in the later half behind the breakpoint, though
+    /// the input is not zero.
     Stop,
 }
 
@@ -96,6 +101,12 @@ impl Doubt {
         1.0 - explained * placed * meeting * nearest
     }
 
+    /// Whether a person should look at the decision: its doubt is 0.3 or more, or it is an accepted
+    /// one with a flag.
+    pub fn is_doubtful(&self) -> bool {
+        self.value() >= DOUBTFUL || (self.is_accepted && !self.flags.is_empty())
+    }
+
     /// Margins of the break itself: what it explains, how surely it is placed, how well the
     /// lines meet.
     pub fn margins(&self) -> [f64; 3] {
@@ -104,11 +115,25 @@ impl Doubt {
     }
 }
 
+/// Each of the decisions on a trial with its doubt; `output` is what the method looked at, the whole
+/// trial.
+pub fn doubts<'d>(
+    decisions: &'d [Decision],
+    output: &'d [f64],
+) -> impl Iterator<Item = (&'d Decision, Doubt)> {
+    let range = range(output);
+    decisions.iter().map(move |decision| (decision, decision.doubt_within(output, range)))
+}
+
 impl Decision {
     /// How doubtful the program's decision is; `output` is what the method looked at, the whole trial.
     pub fn doubt(&self, output: &[f64]) -> Doubt {
+        self.doubt_within(output, range(output))
+    }
+
+    /// The doubt where the range of the output is known.
+    fn doubt_within(&self, output: &[f64], range: (f64, f64)) -> Doubt {
         let best = self.candidates.best();
-        let range = range(output);
         let fine = self.fine.map(|fine| (fine.high - fine.low) / 2.0);
         Doubt {
             explained: best.map_or(1.0, |best| self.explained(&best)),
@@ -214,12 +239,14 @@ impl Decision {
         let Some(best) = self.candidates.best() else { return Vec::new() };
         let is_edge = self.candidates.len() > 2 && (best.f == 1 || best.f == self.candidates.len());
         let is_jump = self.crossing(&best) > 2.0 * self.spacing() as f64;
+        // Where the input is let go, a joint that stands is at rest, wherever that is.
+        let is_driven = self.input_step.after.abs() > 0.0;
         // The joint may still be on its way at first.
         let behind = usize::midpoint(best.breakpoint, self.segment.last);
         let found = [
             (Flag::Edge, is_edge && self.fine.is_none()),
             (Flag::Jump, is_jump && self.fine.is_none()),
-            (Flag::Stop, stands(output, (behind, self.segment.last), range)),
+            (Flag::Stop, is_driven && stands(output, (behind, self.segment.last), range)),
         ];
         found.into_iter().filter_map(|(flag, is_on)| is_on.then_some(flag)).collect()
     }
@@ -298,6 +325,17 @@ mod tests {
         assert_eq!(doubt(0.2, 0.0, 99.0).flags, []);
         assert_eq!(doubt(0.02, 1.5, 99.0).flags, [Flag::Jump]);
         assert!(doubt(0.2, 30.0, 30.0).flags.contains(&Flag::Stop));
+    }
+
+    #[test]
+    fn what_is_accepted_with_a_flag_is_doubtful_however_small_its_doubt() {
+        assert!(!doubt(0.2, 0.0, 99.0).is_doubtful());
+        let stopped = doubt(0.2, 30.0, 30.0);
+        let unflagged = Doubt { flags: Vec::new(), ..stopped.clone() };
+        assert!(stopped.is_doubtful(), "{stopped:?}");
+        assert_eq!(unflagged.is_doubtful(), unflagged.value() >= DOUBTFUL);
+        let rejected = Doubt { is_accepted: false, nearest: None, ..stopped };
+        assert!(!rejected.is_doubtful() && rejected.value() < DOUBTFUL);
     }
 
     #[test]

@@ -85,7 +85,7 @@ pub use checks::Checks;
 pub use condition::{Check, Condition, Outcome};
 pub use dead_time::{Bounds, DeadTime, ErrorPoint, Feedback, Finding, Unknown, Window, dead_time};
 pub use decision::{Breakpoint, Decision, Verdict};
-pub use doubt::{Doubt, Flag};
+pub use doubt::{Doubt, Flag, doubts};
 pub use estimate::{Estimator, estimate, estimate_joint};
 pub use growing::{Growing, check_growing, final_part};
 pub use hold::level_tolerance;

@@ -29,8 +29,8 @@ pub(super) struct Plot {
 /// How far below its point the middle of a text is drawn.
 const LABEL_DROP: f32 = 14.0;
 
-/// Half the width of a letter on the sheet, where it is shown at two thirds of its size.
-const HALF_LETTER: f32 = 5.0;
+/// Half the width of a letter on the sheet, where it is shown at half of its size.
+pub(super) const HALF_LETTER: f32 = 7.0;
 
 /// Left and right end of all plots: room for labels on the left.
 const SIDES: (f32, f32) = (120.0, SHEET.0 - 15.0);
@@ -213,7 +213,7 @@ mod tests {
         let mut labels = Labels::default();
         labels.put_whole(Vec2D::new(SHEET.0 - 15.0, 4.0), "end = 12000");
         labels.put_whole(Vec2D::new(800.0, 4.0), "end = 12000");
-        assert_eq!(labels.places, [Vec2D::new(SHEET.0 - 65.0, 4.0), Vec2D::new(800.0, 4.0)]);
+        assert_eq!(labels.places, [Vec2D::new(SHEET.0 - 91.0, 4.0), Vec2D::new(800.0, 4.0)]);
     }
 
     #[test]

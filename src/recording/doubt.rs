@@ -34,7 +34,7 @@ pub(super) fn add(
     let lines: Vec<_> = ranked.iter().map(|(trial, segment)| line(joint, trial, segment)).collect();
     let level = |segment: &SegmentLayout<'_>| match segment.doubt.value() {
         doubt if doubt >= LIKELY => "ERROR",
-        doubt if doubt >= SOME => "WARN",
+        _ if segment.doubt.is_doubtful() => "WARN",
         _ => "INFO",
     };
     let levels: Vec<_> = ranked.iter().map(|(_, segment)| level(segment)).collect();
@@ -44,11 +44,9 @@ pub(super) fn add(
     chunks.push_static(at(root, paths::DOUBT), &page)
 }
 
-/// Doubts from which on a line is red, and yellow. Chosen: on synthetic records about every second
-/// accepted step above the first one is off by more than one and a half rows of β, of those in
-/// between every fifth, of the others one in fifty.
+/// Doubt from which on a line is red; what is doubtful below it is yellow. Chosen: on synthetic
+/// records about every second accepted step above it is off by more than one and a half rows of β.
 const LIKELY: f64 = 0.6;
-const SOME: f64 = 0.3;
 
 fn line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     let doubt = doubt_percent(&segment.doubt);

@@ -17,7 +17,7 @@
 use std::collections::HashMap;
 
 use super::chunk::{Index, Moment, Opening};
-use crate::delay::{Decision, Doubt, TrialEstimate, Verdict};
+use crate::delay::{Decision, Doubt, TrialEstimate, Verdict, doubts};
 use crate::experiment::{Joint, Trial};
 use crate::report::EstimatedJoint;
 use crate::units::signed;
@@ -175,10 +175,9 @@ impl<'a> JointLayout<'a> {
             let idle = (tick, number.max(1));
             let mut segments = Vec::with_capacity(estimate.decisions.len());
             let output = estimate.smoothed.as_deref().unwrap_or(trial.output());
-            for decision in &estimate.decisions {
+            for (decision, doubt) in doubts(&estimate.decisions, output) {
                 number += 1;
                 let kept = kept(decision, detail);
-                let doubt = decision.doubt(output);
                 let segment = SegmentLayout {
                     decision,
                     number,

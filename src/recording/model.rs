@@ -148,18 +148,7 @@ fn page(
     let unit = joint.output_unit.as_deref().unwrap_or("");
     let of = if models.len() > 1 { format!(", {}", plain(judged.model)) } else { String::new() };
     writeln!(page, "### {}{of}: {}\n", plain(&joint.name), headline(judged))?;
-    writeln!(page, "| model | training | validation | fit | lack of fit |\n|---|---|---|---|---|")?;
-    for compared in models {
-        let Comparison { training, validation, lack_of_fit, .. } = compared.comparison;
-        let rmse = |error: &Option<ErrorFigures>| {
-            error.map_or_else(|| "–".to_owned(), |e| format!("{} {unit}", number(e.rmse)))
-        };
-        let percent =
-            validation.map_or_else(|| "–".to_owned(), |e| format!("{:.1} %", e.fit_percent));
-        let shown = lack_of_fit.map_or("–", |t| if t.adequate { "not shown" } else { "shown" });
-        let (train, valid) = (rmse(training), rmse(validation));
-        writeln!(page, "| {} | {train} | {valid} | {percent} | {shown} |", compared.model)?;
-    }
+    errors(&mut page, unit, models)?;
     let horizon = judged.comparison.fit.evaluation.horizon;
     writeln!(page, "\nErrors are root mean squares of simulations, {horizon}.")?;
     if let Some(noise) = sensor_noise(&joint.trials) {
@@ -179,24 +168,60 @@ fn page(
             writeln!(page, "\n**Residual** ({}): {}", compared.model, plain(&residual))?;
         }
     }
-    if let Some(failure) = &judged.comparison.failure {
-        writeln!(page, "\nWorst segments of {}, {}:", judged.model, Horizon::Steps)?;
-        // What is listed restarts at every step; what is plotted may not.
-        let plotted = format!("in the plot ({horizon})");
-        writeln!(page, "\n| rank | trial | time | `sample` | share | {plotted} |")?;
-        writeln!(page, "|---|---|---|---|---|---|")?;
-        for (rank, worst) in (1..).zip(&failure.worst_segments) {
-            let (from, to) = (number(worst.start_s), number(worst.end_s));
-            let share = 100.0 * worst.share_of_squared_error;
-            let samples = on_timeline(layout, worst);
-            let trial = plain(&worst.trial);
-            let plotted = plotted_share(layout, judged.comparison, worst);
-            let shares = format!("{share:.0} % | {plotted:.1} %");
-            writeln!(page, "| {rank} | {trial} | {from} … {to} s | {samples} | {shares} |")?;
-        }
-    }
+    worst_segments(&mut page, layout, judged)?;
     parameters(&mut page, joint, models)?;
     Ok(page)
+}
+
+/// The error figures of each model, and whether a lack of fit is shown.
+fn errors(page: &mut String, unit: &str, models: &[&ComparedJoint<'_>]) -> std::fmt::Result {
+    writeln!(page, "| model | training | validation | fit |\n|---|---|---|---|")?;
+    let mut shown = Vec::new();
+    for compared in models {
+        let Comparison { training, validation, lack_of_fit, .. } = compared.comparison;
+        let rmse = |error: &Option<ErrorFigures>| {
+            error.map_or_else(|| "–".to_owned(), |e| format!("{} {unit}", number(e.rmse)))
+        };
+        let percent =
+            validation.map_or_else(|| "–".to_owned(), |e| format!("{:.1} %", e.fit_percent));
+        let is = lack_of_fit.map_or("unknown", |t| if t.adequate { "not shown" } else { "shown" });
+        shown.push(if models.len() > 1 {
+            format!("{is} ({})", compared.model)
+        } else {
+            is.to_owned()
+        });
+        let (train, valid) = (rmse(training), rmse(validation));
+        writeln!(page, "| {} | {train} | {valid} | {percent} |", compared.model)?;
+    }
+    writeln!(page, "\nA lack of fit is {}.", shown.join(", "))
+}
+
+/// Where the judged model is worst.
+fn worst_segments(
+    page: &mut String,
+    layout: &JointLayout<'_>,
+    judged: &ComparedJoint<'_>,
+) -> std::fmt::Result {
+    let Some(failure) = &judged.comparison.failure else { return Ok(()) };
+    let horizon = judged.comparison.fit.evaluation.horizon;
+    writeln!(page, "\nWorst segments of {}, {}:", judged.model, Horizon::Steps)?;
+    // What is listed restarts at every step; what is plotted may not.
+    let plotted = format!("in the plot ({horizon})");
+    // A narrow page has no room for what is the same in each row.
+    let several = judged.joint.trials.len() > 1;
+    let (head, rule) = if several { ("trial |", "---|") } else { ("", "") };
+    writeln!(page, "\n| rank |{head} time | `sample` | share | {plotted} |")?;
+    writeln!(page, "|---|{rule}---|---|---|---|")?;
+    for (rank, worst) in (1..).zip(&failure.worst_segments) {
+        let (from, to) = (number(worst.start_s), number(worst.end_s));
+        let share = 100.0 * worst.share_of_squared_error;
+        let samples = on_timeline(layout, worst);
+        let trial = if several { format!("{} |", plain(&worst.trial)) } else { String::new() };
+        let plotted = plotted_share(layout, judged.comparison, worst);
+        let shares = format!("{share:.0} % | {plotted:.1} %");
+        writeln!(page, "| {rank} |{trial} {from} … {to} s | {samples} | {shares} |")?;
+    }
+    Ok(())
 }
 
 /// Whether models are compared with the first one; revisions of a model are shown by their ladder.

@@ -169,7 +169,7 @@ struct Map {
 }
 
 /// Height of the map on its sheet.
-pub(super) const MAP_HEIGHT: f32 = 168.0;
+pub(super) const MAP_HEIGHT: f32 = 182.0;
 
 impl Map {
     fn of(layout: &JointLayout<'_>) -> Self {
@@ -201,7 +201,7 @@ impl Map {
         let mut grid = self.output.grid(&x_ticks, &named(self.output.y_span(), 3.0), &mut labels);
         grid.extend(self.input.grid(&x_ticks, &named(self.input.y_span(), 1.5), &mut labels));
         for k in x_ticks {
-            labels.put(self.input.below(k, 4.0), number(k));
+            labels.put_whole(self.input.below(k, 4.0), number(k));
         }
         strips(chunks, at(root, map::GRID), palette::GRID, 0.7, grid)?;
         let outputs = layout.trials.iter().map(|trial| self.output_curve(trial)).collect();
@@ -224,16 +224,14 @@ impl Map {
     }
 
     fn output_curve(&self, trial: &TrialLayout<'_>) -> Vec<Vec2D> {
-        let output = trial.trial.output();
-        let place = |index: usize| {
-            let y = output.get(index).copied().unwrap_or_default();
-            self.output.at(trial.sample(index + 1) as f64, y)
-        };
-        thinned(output).into_iter().map(place).collect()
+        self.output.places(curve(trial, trial.trial.output()))
     }
 
-    /// The levels of the input, with an edge at every step.
+    /// The levels of the input, with an edge at every step; all of it where there are no steps.
     fn input_curve(&self, trial: &TrialLayout<'_>) -> Vec<Vec2D> {
+        if trial.segments.is_empty() {
+            return self.input.places(curve(trial, trial.trial.input()));
+        }
         let first = trial.trial.input().first().copied().unwrap_or_default();
         let mut curve = vec![self.input.at(trial.sample(1) as f64, first)];
         let mut level = first;
@@ -274,6 +272,15 @@ impl Map {
         let boxes = Boxes2D::update_fields().with_centers(centers).with_half_sizes(halves);
         chunks.push(entity.clone(), index, boxes.columns_of_unit_batches()?)
     }
+}
+
+/// A signal of a trial, thinned.
+fn curve(trial: &TrialLayout<'_>, signal: &[f64]) -> Vec<(f64, f64)> {
+    let place = |index: usize| {
+        let value = signal.get(index).copied().unwrap_or_default();
+        (trial.sample(index + 1) as f64, value)
+    };
+    thinned(signal).into_iter().map(place).collect()
 }
 
 /// Width of the sheet, for the view's bounds.

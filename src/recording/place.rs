@@ -19,14 +19,20 @@ pub(super) fn add(
     let entity = at(root, paths::PLACE);
     // The first row of all: a viewer that knows a timeline begins at its first tick, and chooses
     // among those that it knows.
-    let opening = if layout.first.is_compared { OPENING_COMPARED } else { OPENING };
+    let opening = match layout.segments().next() {
+        None => WITHOUT_STEPS,
+        Some(_) if layout.first.is_compared => OPENING_COMPARED,
+        Some(_) => OPENING,
+    };
     let opening = std::iter::once(opening.to_owned());
     push(chunks, entity.clone(), Index::before_all(layout.first), opening)?;
     let start = layout.trials.iter().filter_map(|trial| trial.moments(1).next());
     let steps = layout.segments().map(|(trial, segment)| trial.opening(segment));
     let index: Index = start.take(1).chain(steps).collect();
     let steps = layout.segments().map(|(trial, segment)| words(layout, trial, segment));
-    let texts: Vec<_> = std::iter::once("before the first step".to_owned()).chain(steps).collect();
+    let start =
+        if layout.segments().next().is_none() { WITHOUT_STEPS } else { "before the first step" };
+    let texts: Vec<_> = std::iter::once(start.to_owned()).chain(steps).collect();
     let texts = texts.into_iter().take(index.len());
     push(chunks, entity.clone(), index.without_segment(), texts)?;
     let hint = std::iter::once(HINT.to_owned());
@@ -45,6 +51,8 @@ fn push(
 }
 
 const OPENING: &str = "**The most doubtful decision**; the right arrow begins with the first step.";
+
+const WITHOUT_STEPS: &str = "**No steps**: what is found of the whole record is on the right.";
 
 const OPENING_COMPARED: &str = "**The most different decision**; on `decision` the right arrow \
 begins with the first step.";

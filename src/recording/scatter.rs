@@ -12,8 +12,8 @@ use super::sheet::Sheet;
 use crate::report::ComparedJoint;
 use crate::wording::bracketed;
 
-/// Width and height of the sheet: two plots below one another.
-pub(super) const SIZE: (f32, f32) = (SHEET.0, 480.0);
+/// Width and height of the sheet: four plots side by side.
+pub(super) const SIZE: (f32, f32) = (SHEET.0, 280.0);
 
 /// Points that are drawn of each plot; more hide one another.
 const POINTS: usize = 3000;
@@ -41,7 +41,7 @@ pub(super) fn add(
     let others: Vec<Vec<Pairs>> = models.iter().map(|model| quantities(model)).collect();
     for (place, pairs) in quantities(first).iter().enumerate() {
         let plot = plot(place, pairs);
-        sheet.draw(&plot, 6.0, &pairs.name);
+        sheet.draw(&plot, 4.0, &pairs.name);
         let every = pairs.x.len().div_ceil(POINTS).max(1);
         let places = pairs.x.iter().zip(&pairs.residual).step_by(every);
         points.extend(places.map(|(x, r)| plot.at(*x, *r)));
@@ -61,8 +61,8 @@ pub(super) fn add(
 
 /// One of four places on the sheet.
 fn plot(place: usize, pairs: &Pairs) -> Plot {
-    let rows = if place < 2 { 36.0..=198.0 } else { 282.0..=444.0 };
-    let columns = if place.is_multiple_of(2) { (95.0, 780.0) } else { (905.0, 1590.0) };
+    let left = 400.0 * place as f32;
+    let (rows, columns) = (48.0..=226.0, (left + 105.0, left + 385.0));
     let x = Span::around(pairs.x.iter().copied(), 0.03);
     let y = Span::around(pairs.residual.iter().copied(), 0.05);
     Plot::within(columns, rows, x, y)
@@ -84,10 +84,10 @@ fn quantities(compared: &ComparedJoint<'_>) -> Vec<Pairs> {
         all(periods.zip(&evaluation.simulated).map(|(t, s)| since_step(&s.acting, t)).collect());
     let quantity = |name: String, x: Vec<f64>| Pairs { name, x, residual: residual.clone() };
     vec![
-        quantity(format!("residual{output} against the acting input{input}"), acting),
-        quantity(format!("residual{output} against the angle{output}"), angle),
-        quantity(format!("residual{output} against the speed{speed}"), velocity),
-        quantity(format!("residual{output} against the time since the step [s]"), since),
+        quantity(format!("acting input{input}"), acting),
+        quantity(format!("angle{output}"), angle),
+        quantity(format!("speed{speed}"), velocity),
+        quantity("time since the step [s]".to_owned(), since),
     ]
 }
 

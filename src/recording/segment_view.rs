@@ -11,7 +11,7 @@ use rerun::datatypes::Vec2D;
 use rerun::{EntityPath, LineStrips2D, Points2D};
 
 use super::beside::{Other, decided_in_short, in_short};
-use super::canvas::{CURVE_POINTS, Labels, Plot, SHEET, Span, simplified, thinned_to};
+use super::canvas::{CURVE_POINTS, HALF_LETTER, Labels, Plot, SHEET, Span, simplified, thinned_to};
 use super::chunk::{Chunks, Index};
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
@@ -27,7 +27,7 @@ use crate::units::signed;
 use crate::wording::{bracketed, number};
 
 /// Width and height of the sheet.
-pub(super) const SIZE: (f32, f32) = (SHEET.0, 750.0);
+pub(super) const SIZE: (f32, f32) = (SHEET.0, 770.0);
 
 /// Adds the drawings of all segments below `root`/drawing.
 pub(super) fn add(
@@ -165,7 +165,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
             trial,
             segment,
             figure,
-            output: Plot::new(64.0..=400.0, x, y),
+            output: Plot::new(76.0..=400.0, x, y),
             residual: (left, residual),
             error: Plot::new(606.0..=712.0, x, figure.error_span()),
         }
@@ -194,7 +194,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let errors: Vec<_> = errors.into_iter().map(|e| (e, number(10f64.powf(e)))).collect();
         strips.extend(self.error.grid(&x_ticks, &errors, &mut labels));
         for k in x_ticks {
-            labels.put(self.error.below(k, 4.0), number(k));
+            labels.put_whole(self.error.below(k, 4.0), number(k));
         }
         (strips, labels)
     }
@@ -298,37 +298,68 @@ impl<'l, 'a> Drawing<'l, 'a> {
         if self.figure.verdict() == wanted { self.best() } else { Vec::new() }
     }
 
+    /// Names p, q and both ends of the segment below their lines: on either side of two lines that
+    /// are near each other, and in a second row where there is no room in the first.
+    fn name_places(&self, labels: &mut Labels) {
+        /// Both rows, below the plot.
+        const ROWS: [f32; 2] = [2.0, 42.0];
+        let decision = self.segment.decision;
+        let half = |text: &str| HALF_LETTER * (text.chars().count() + 2) as f32;
+        let p = decision.input_step.sample as f64;
+        let step = format!("p = {}", decision.input_step.sample);
+        let mut names = vec![(self.output.x(p), step)];
+        if let Some((best, delay)) = decision.candidates.best().zip(decision.delay()) {
+            let place = self.segment.place().unwrap_or_default();
+            let text = format!("q = {place}, SSE = {}", number(best.sse));
+            names.push((self.output.x(p + delay), text));
+        }
+        if let [(at_p, step), (at_q, text)] = &mut names[..] {
+            let (of_p, of_q) = (half(step), half(text));
+            if collide((*at_p, of_p), (*at_q, of_q)) {
+                let side = if at_q < at_p { -1.0 } else { 1.0 };
+                let middle = f32::midpoint(*at_p, *at_q);
+                (*at_p, *at_q) = (middle - side * of_p, middle + side * of_q);
+            }
+        }
+        let ends = [("r", decision.segment.first), ("end", decision.segment.last)];
+        names.extend(ends.map(|(name, k)| (self.output.x(k as f64), format!("{name} = {k}"))));
+        let mut taken: Vec<(f32, f32)> = Vec::new();
+        for (x, text) in names {
+            let half = half(&text);
+            let x = x.min(SHEET.0 - half).max(half);
+            let row = usize::from(taken.iter().any(|other| collide((x, half), *other)));
+            if row == 0 {
+                taken.push((x, half));
+            }
+            labels.put(Vec2D::new(x, self.output.bottom + ROWS[row]), text);
+        }
+    }
+
     fn names(&self) -> Labels {
         let decision = self.segment.decision;
         let mut labels = Labels::default();
         let p = decision.input_step.sample as f64;
-        if let Some((best, delay)) = decision.candidates.best().zip(decision.delay()) {
+        if let Some(delay) = decision.delay() {
             let seconds = number(delay * self.trial.trial.period().seconds());
             let interval = decision.fine.map_or_else(String::new, |fine| {
                 format!(" ({} … {})", number(fine.low), number(fine.high))
             });
-            let (q, place) = (p + delay, self.segment.place().unwrap_or_default());
-            let delay = format!("δ = {} samples{interval} = {seconds} s", number(delay));
-            labels.put_whole(self.output.above(f64::midpoint(p, q), 48.0), delay);
-            let text = format!("q = {place}, SSE = {}", number(best.sse));
-            labels.put_whole(self.output.below(q, 2.0), text);
+            let unit = if number(delay) == "1" { "sample" } else { "samples" };
+            let text = format!("δ = {} {unit}{interval} = {seconds} s", number(delay));
+            labels.put_whole(self.output.above(p + delay / 2.0, 62.0), text);
         }
-        labels.put_whole(self.output.below(p, 24.0), format!("p = {}", decision.input_step.sample));
-        let (first, last) = (decision.segment.first, decision.segment.last);
-        // Below what is said of a breakpoint that is near.
-        let near = self.segment.decision.candidates.best().is_some_and(|best| {
-            let apart = self.output.x(best.breakpoint as f64) - self.output.x(first as f64);
-            apart < 190.0
-        });
-        let row = if near { 46.0 } else { 2.0 };
-        labels.put_whole(self.output.below(first as f64, row), format!("r = {first}"));
-        labels.put_whole(self.output.below(last as f64, 2.0), format!("end = {last}"));
+        self.name_places(&mut labels);
         let output = bracketed("output", self.joint.output_unit.as_deref());
-        labels.put(Vec2D::new(62.0, 22.0), output);
+        labels.put_whole(Vec2D::new(62.0, 22.0), output);
         labels.put(Vec2D::new(190.0, 470.0), "residual".to_owned());
         labels.put(Vec2D::new(190.0, 578.0), "SSE (log)".to_owned());
         labels
     }
+}
+
+/// Whether two texts whose middles and halves these are would cover each other.
+fn collide(a: (f32, f32), b: (f32, f32)) -> bool {
+    (a.0 - b.0).abs() < a.1 + b.1
 }
 
 fn diamond(Vec2D([x, y]): Vec2D, radius: f32) -> Vec<Vec2D> {

@@ -24,7 +24,7 @@ impl Sheet {
         let x_ticks = plot.x_span().ticks(x_ticks);
         self.frame(plot, &x_ticks, &numbered(plot.y_span().ticks(3.0)), title);
         for x in x_ticks {
-            self.put(plot.below(x, 2.0), number(x));
+            self.labels.put_whole(plot.below(x, 2.0), number(x));
         }
     }
 

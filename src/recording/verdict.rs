@@ -13,7 +13,7 @@ use crate::delay::{Check, Condition, Decision, FineDelay, Lag, LagPart, Outcome}
 use crate::delay::{Settings, Settling, Tracking, Verdict};
 use crate::experiment::Joint;
 use crate::report::{EstimatedJoint, dead_time_sentences};
-use crate::wording::{doubt_percent, number, remedy_text};
+use crate::wording::{counted, doubt_percent, number, remedy_text};
 
 /// Adds `/verdict` (text, log line and lane), `/segment` and `/trial` (lanes).
 pub(super) fn add(
@@ -236,9 +236,10 @@ impl Facts<'_, '_> {
     /// How doubtful the decision is, and why.
     fn doubt(&self, of: usize) -> String {
         let (percent, rank) = (doubt_percent(&self.segment.doubt), self.segment.rank);
-        let all = if self.joint.trials.len() > 1 { "the joint's" } else { &of.to_string() };
+        let several = self.joint.trials.len() > 1;
+        let of = if several { String::new() } else { format!(" of {of}") };
         format!(
-            "doubt **{percent}** (`doubt` {rank} of {all}): {}",
+            "doubt **{percent}** (rank {rank}{of} of this joint): {}",
             self.trial.reason(self.segment)
         )
     }
@@ -294,7 +295,11 @@ impl Facts<'_, '_> {
             ("input".to_owned(), format!("{} → {}", input(step.before), input(step.after))),
             (
                 "held for".to_owned(),
-                format!("{} samples = {}", decision.hold, self.seconds(decision.hold as f64)),
+                format!(
+                    "{} = {}",
+                    counted(decision.hold, "sample"),
+                    self.seconds(decision.hold as f64)
+                ),
             ),
             (
                 "segment r … end".to_owned(),
@@ -305,7 +310,8 @@ impl Facts<'_, '_> {
             let candidate = best.candidate;
             let slope = |slope| with_unit(slope, self.joint.output_unit.as_deref(), "/sample");
             let samples = decision.delay().unwrap_or(best.delay as f64);
-            let delay = format!("**{} samples = {}**", number(samples), self.delay(samples));
+            let unit = if number(samples) == "1" { "sample" } else { "samples" };
+            let delay = format!("**{} {unit} = {}**", number(samples), self.delay(samples));
             let count = decision.candidates.len();
             rows.extend([
                 ("breakpoint q".to_owned(), self.breakpoint(candidate.breakpoint)),

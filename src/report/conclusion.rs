@@ -108,7 +108,8 @@ impl Finding<'_> {
                 let spec = component.effect().spec();
                 let parameters = self.parameters(&best.fit, &format!("{}.", spec.id));
                 let law = filled_in(component);
-                format!("{} ({}): here {law}, with {parameters}.", spec.id, spec.summary)
+                let with = if parameters.is_empty() { "" } else { ", with " };
+                format!("{} ({}): here {law}{with}{parameters}.", spec.id, spec.summary)
             })
             .collect();
         sentences.push(self.improvement(best));
@@ -397,10 +398,12 @@ impl Finding<'_> {
         ))
     }
 
-    /// `upper = 0.612 ± 0.021 V` for each of the parameters that start with `prefix`.
+    /// `upper = 0.612 ± 0.021 V` for each of the parameters that start with `prefix`; those that were
+    /// not fitted say nothing of the joint.
     fn parameters(&self, fit: &Fit, prefix: &str) -> String {
         let units = parameter_units(self.joint(), &fit.model);
         let own = fit.parameters.iter().zip(units);
+        let own = own.filter(|(parameter, _)| parameter.status != Status::Fixed);
         let own = own.filter_map(|(parameter, unit)| {
             let name = parameter.name.strip_prefix(prefix)?;
             Some(measured(name, parameter, &unit))

@@ -1,8 +1,9 @@
 //! Decisions in the order of their doubt.
 
 use super::EstimatedJoint;
-use crate::delay::{Decision, Doubt};
+use crate::delay::{Decision, Doubt, doubts};
 use crate::experiment::Trial;
+use crate::wording::{counted, doubt_percent, doubt_sentence, number};
 
 /// A decision with its doubt.
 #[derive(Clone, Debug)]
@@ -14,18 +15,52 @@ pub(crate) struct Doubted<'a> {
     pub(crate) doubt: Doubt,
 }
 
+/// All decisions on `joint` in their order, each with its doubt.
+pub(super) fn doubted(joint: EstimatedJoint<'_>) -> impl Iterator<Item = Doubted<'_>> {
+    let trials = joint.joint.trials.iter().zip(&joint.estimate.trials);
+    let trials = trials.filter_map(|(trial, found)| Some((trial, found.as_ref().ok()?)));
+    trials.flat_map(|(trial, found)| {
+        let smoothed = found.smoothed.as_deref();
+        let all = doubts(&found.decisions, smoothed.unwrap_or(trial.output()));
+        all.map(move |(decision, doubt)| Doubted { trial, smoothed, decision, doubt })
+    })
+}
+
 /// All decisions on `joint`, the most doubtful first; equally doubtful ones in their order.
 pub(crate) fn by_doubt(joint: EstimatedJoint<'_>) -> Vec<Doubted<'_>> {
-    let trials = joint.joint.trials.iter().zip(&joint.estimate.trials);
-    let mut all = Vec::new();
-    for (trial, found) in trials.filter_map(|(trial, found)| Some((trial, found.as_ref().ok()?))) {
-        let smoothed = found.smoothed.as_deref();
-        let output = smoothed.unwrap_or(trial.output());
-        all.extend(found.decisions.iter().map(|decision| {
-            let doubt = decision.doubt(output);
-            Doubted { trial, smoothed, decision, doubt }
-        }));
-    }
+    let mut all: Vec<_> = doubted(joint).collect();
     all.sort_by(|a, b| b.doubt.value().total_cmp(&a.doubt.value()));
     all
+}
+
+/// How many decisions are doubtful, and the most doubtful ones, a line each; nothing where none is.
+pub(super) fn doubtful_text(joints: &[EstimatedJoint<'_>]) -> String {
+    /// Decisions that are named.
+    const MOST: usize = 3;
+    let mut all: Vec<_> =
+        joints.iter().flat_map(|joint| doubted(*joint).map(move |found| (*joint, found))).collect();
+    let steps = all.len();
+    all.retain(|(_, found)| found.doubt.is_doubtful());
+    all.sort_by(|(_, a), (_, b)| b.doubt.value().total_cmp(&a.doubt.value()));
+    let are = match all.len() {
+        0 => return String::new(),
+        1 => "is",
+        _ => "are",
+    };
+    let lines = all.iter().take(MOST).map(|(joint, found)| format!("  {}\n", line(*joint, found)));
+    let (count, lines) = (all.len(), lines.collect::<String>());
+    let first = if count > MOST { "look first at" } else { "look at" };
+    format!("{count} of {} {are} doubtful; {first}\n{lines}", counted(steps, "decision"))
+}
+
+/// Where a decision is, and what speaks against it.
+fn line(joint: EstimatedJoint<'_>, found: &Doubted<'_>) -> String {
+    let Doubted { trial, decision, doubt, .. } = found;
+    let several = joint.joint.trials.len() > 1;
+    let label = if several { format!(", trial {}", trial.label()) } else { String::new() };
+    let time = number(trial.time_s(decision.input_step.sample));
+    let verdict = decision.program_verdict();
+    let why = doubt_sentence(doubt, verdict, trial.period().seconds());
+    let (name, step, percent) = (&joint.joint.name, decision.number, doubt_percent(doubt));
+    format!("{name}{label}, step {step} at {time} s: {verdict}, doubt {percent}: {why}")
 }

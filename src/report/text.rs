@@ -1,6 +1,7 @@
 //! Tables for the terminal.
 
 use super::delay_table::kind_sentence;
+use super::doubt::doubtful_text;
 use super::settings::{length, own_settings};
 use super::text_table::TextTable;
 use super::{DelayRange, EstimatedJoint, Headline, JointSummary, dead_time_sentences};
@@ -20,6 +21,7 @@ pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings)
         kinds.extend(sentences.map(|sentence| format!("{name}: {sentence}\n")));
         kinds.extend(summary.words.map(|words| format!("{name}: {}\n", words.sentence())));
     }
+    let doubtful = doubtful_text(joints);
     let dead_times: String = joints.iter().flat_map(dead_time_lines).collect();
     let lags: String =
         joints.iter().flat_map(|joint| [tracking_line(joint), lag_line(joint)]).flatten().collect();
@@ -37,7 +39,7 @@ pub(crate) fn estimate_table(joints: &[EstimatedJoint<'_>], settings: &Settings)
     // Nothing of it is used where all inputs move all the time.
     let is_used = |joint: &EstimatedJoint<'_>| joint.estimate.dead_time.is_none();
     let settings = if joints.iter().any(is_used) { settings } else { String::new() };
-    format!("{table}\n{kinds}{dead_times}{lags}{chosen}{own}{settings}")
+    format!("{table}\n{kinds}{doubtful}{dead_times}{lags}{chosen}{own}{settings}")
 }
 
 /// What is said of the dead time of a joint, a line each.

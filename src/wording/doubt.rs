@@ -1,7 +1,7 @@
 //! The doubt of a decision in words.
 
 use super::number;
-use crate::delay::{Doubt, Flag, Verdict};
+use crate::delay::{Condition, Doubt, Flag, Verdict};
 
 /// What speaks most against a decision with this verdict, on a trial sampled every `period_s`
 /// seconds.
@@ -17,18 +17,34 @@ pub(crate) fn doubt_sentence(doubt: &Doubt, verdict: Verdict, period_s: f64) -> 
     let [explained, placed, meeting] = doubt.margins();
     let mut reasons = vec![
         (explained, {
-            let percent = number((100.0 * explained).round());
-            format!("the break removes {percent} % of the squared error of one line")
+            let percent = number((100.0 * (1.0 - explained)).round());
+            format!("the break leaves {percent} % of the squared error of one line")
         }),
         (placed, format!("breakpoints {} s apart fit about as well", seconds(doubt.spread))),
         (meeting, format!("the lines cross {} s from the breakpoint", seconds(doubt.crossing))),
     ];
-    reasons
-        .extend(near.map(|(condition, margin)| (margin, format!("{condition} is near its limit"))));
+    reasons.extend(near.map(|(condition, margin)| (margin, by_little(condition))));
     let least = reasons.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
     let flags = doubt.flags.iter().map(|flag: &Flag| flag.meaning().to_owned());
-    let sentences = least.into_iter().map(|(_, reason)| reason).chain(flags);
+    let sentences = flags.chain(least.map(|(_, reason)| reason));
     sentences.collect::<Vec<_>>().join("; ")
+}
+
+/// A condition that holds by little.
+fn by_little(condition: Condition) -> String {
+    let words = match condition {
+        Condition::BeforeInput => "the breakpoint is hardly behind the input step",
+        Condition::SlopeChange => "the slope hardly changes enough",
+        Condition::ShortHold => "the input is held hardly long enough",
+        Condition::OutputLimit => "the output is near its limit",
+        Condition::Sse => "the squared error is near its limit",
+        Condition::AtRest => "the joint hardly leaves its rest",
+        Condition::NothingHappened => "noise might look so",
+        Condition::FirstOrLast | Condition::TooShort | Condition::Reviewer => {
+            return format!("{condition} is near its limit");
+        }
+    };
+    format!("{words} ({condition})")
 }
 
 /// The doubt in percent.

@@ -66,7 +66,7 @@ pub(super) fn named(grid: &Grid) -> Vec<Block> {
 /// Where the name of a block is put: left of the middle of its rows.
 pub(super) fn beside(plot: &Plot, block: &Block) -> Vec2D {
     let middle = block.first as f64 + 0.5 * block.count as f64;
-    plot.left_of(plot.y_span().high - middle, 74.0)
+    plot.left_of(plot.y_span().high - middle, 98.0)
 }
 
 /// Rows of combinations that follow one another and are of `run`: the first and the last.

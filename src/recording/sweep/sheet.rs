@@ -22,10 +22,10 @@ use crate::report::settings_in_words;
 use crate::wording::number;
 
 /// Width and height of the sheet.
-pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1090.0);
+pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1130.0);
 
 /// Left and right ends of the plots: names stand on the left, counts on the right.
-const SIDES: (f32, f32) = (150.0, SHEET.0 - 70.0);
+const SIDES: (f32, f32) = (196.0, SHEET.0 - 70.0);
 
 /// Points times combinations up to which the pointer names settings in words, which takes
 /// time; with more it counts them.
@@ -105,9 +105,9 @@ impl<'s> Page<'s> {
         let combinations = Span::new(0.0, swept.grid.combinations().len().max(1) as f64);
         Self {
             swept,
-            delays: Plot::within(SIDES, 100.0..=424.0, x, delay_span(swept)),
-            sensitive: Plot::within(SIDES, 494.0..=674.0, x, rows),
-            map: Plot::within(SIDES, 744.0..=1030.0, x, combinations),
+            delays: Plot::within(SIDES, 100.0..=390.0, x, delay_span(swept)),
+            sensitive: Plot::within(SIDES, 466.0..=700.0, x, rows),
+            map: Plot::within(SIDES, 772.0..=1042.0, x, combinations),
             causes,
         }
     }
@@ -142,7 +142,7 @@ impl<'s> Page<'s> {
         sheet.put(end, "step");
         for ((name, _), row) in self.causes.iter().zip(0_u32..) {
             let y = self.sensitive.y_span().high - f64::from(row) - 0.5;
-            sheet.put(self.sensitive.left_of(y, 74.0), name);
+            sheet.put(self.sensitive.left_of(y, 98.0), name);
         }
         sheet.push(chunks, root)
     }
@@ -224,6 +224,8 @@ impl<'s> Page<'s> {
 
     /// The picture of all settings and steps, and what its rows are.
     fn add_map(&self, chunks: &mut Chunks, root: &EntityPath) -> Result<(), RecordError> {
+        /// Names nearer than this would cover each other.
+        const APART: f32 = 36.0;
         let entity = at(root, sheet::MAP);
         if let Some((image, place)) = picture(self.swept, &self.map) {
             chunks.push_static(entity.clone(), &image)?;
@@ -239,7 +241,10 @@ impl<'s> Page<'s> {
         chunks.push_static(at(root, sheet::BLOCKS), &lines)?;
         let mut texts = Labels::default();
         for block in named(self.swept.grid) {
-            texts.put(beside(&self.map, &block), block.label);
+            let place = beside(&self.map, &block);
+            if texts.places.last().is_none_or(|last| place.y() - last.y() > APART) {
+                texts.put(place, block.label);
+            }
         }
         put_texts(chunks, at(root, sheet::ROWS), texts, &[color(palette::BORDER)])
     }
@@ -387,7 +392,7 @@ fn put_legend(
     swept: &Swept<'_>,
 ) -> Result<(), RecordError> {
     /// Row of the legend on the sheet.
-    const LEGEND: f32 = 1062.0;
+    const LEGEND: f32 = 1088.0;
     let entries: [(f32, f32, String, Rgb); 6] = [
         (SHEET.0 / 2.0, 4.0, headline(swept), palette::BORDER),
         (330.0, LEGEND, "● as most settings say".to_owned(), palette::SAME),

@@ -20,7 +20,7 @@ use crate::wording::{bracketed, number as shown};
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 1090.0);
 
 /// Left and right ends of the plots: names of settings are on the left.
-const SIDES: (f32, f32) = (150.0, SHEET.0 - 40.0);
+const SIDES: (f32, f32) = (196.0, SHEET.0 - 40.0);
 
 /// Draws each step below `root`. On the timeline of settings, where one step is all that can
 /// be seen, it is the one that is most sensitive to a setting.

@@ -36,6 +36,7 @@ pub(super) fn tab(
     revisions: usize,
     others: usize,
 ) -> Result<Node, RecordError> {
+    let is_continuous = estimate.dead_time.is_some();
     let mut decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
     let fine = decisions.any(|decision| decision.fine.is_some());
     let mut views = Views { builder, joint, fine, others, revisions };
@@ -49,9 +50,13 @@ pub(super) fn tab(
     if others > 0 {
         pages.push(views.differences()?);
     }
-    let delay = views.delay_state();
-    let delay = views.view(delay)?;
-    pages.extend([views.decisions()?, views.record()?, delay, views.table()?]);
+    if is_continuous {
+        pages.push(views.without_steps()?);
+    } else {
+        let delay = views.delay_state();
+        let delay = views.view(delay)?;
+        pages.extend([views.decisions()?, views.record(Steps::Some)?, delay, views.table()?]);
+    }
     views.builder.container(ContainerKind::Tabs, &joint.name, &pages, &[])
 }
 
@@ -60,6 +65,32 @@ pub(super) fn tab(
 enum Legend {
     InTitle,
     Apart,
+}
+
+/// Whether the input has steps, or moves all the time.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Steps {
+    Some,
+    None,
+}
+
+impl Steps {
+    /// What the plots of output and delay, and the lanes below them, show.
+    fn titles(self) -> (&'static str, &'static str, &'static str) {
+        match self {
+            Self::Some => (
+                "Output: measured grey, smoothed blue; chosen lines orange and green; breakpoints: \
+                 dot accepted, cross rejected",
+                "Delay [samples]: τ, dot accepted, cross rejected",
+                "Steps and verdicts",
+            ),
+            Self::None => (
+                "Output: measured grey, smoothed blue",
+                "Dead time of each window [samples]",
+                "Trials",
+            ),
+        }
+    }
 }
 
 struct Views<'b, 'i> {
@@ -96,7 +127,8 @@ impl Views<'_, '_> {
     fn decisions(&mut self) -> Result<Node, RecordError> {
         let drawing = self.view(self.drawing())?;
         let map = self.view(self.map())?;
-        let lanes = self.view(self.lanes())?;
+        let (.., lanes) = Steps::Some.titles();
+        let lanes = self.view(self.lanes(lanes))?;
         let verdict = [self.path(paths::VERDICT)];
         let verdict = self.view(View::new("TextDocument", "Verdict", &verdict))?;
         let lists = self.lists()?;
@@ -133,12 +165,12 @@ impl Views<'_, '_> {
         View::drawing(name, &self.at(map::ROOT), &map::PARTS, (MAP_WIDTH, MAP_HEIGHT))
     }
 
-    fn lanes(&self) -> View<'static> {
+    fn lanes(&self, name: &'static str) -> View<'static> {
         let mut paths = vec![self.path(paths::VERDICT), self.path(paths::SEGMENT)];
         if self.joint.trials.len() > 1 {
             paths.push(self.path(paths::TRIAL));
         }
-        View::new("StateTimeline", "Steps and verdicts", &paths)
+        View::new("StateTimeline", name, &paths)
     }
 
     /// The decisions by doubt, in their order, and by doubt with the reasons.
@@ -186,11 +218,11 @@ impl Views<'_, '_> {
     }
 
     /// The whole record on the time axis.
-    fn record(&mut self) -> Result<Node, RecordError> {
+    fn record(&mut self, steps: Steps) -> Result<Node, RecordError> {
+        let (output, delay, lanes) = steps.titles();
         let input = self.plot("Input", &[self.at(paths::INPUT)], Legend::InTitle)?;
         let output = self.plot(
-            "Output: measured grey, smoothed blue; chosen lines orange and green; breakpoints: dot \
-             accepted, cross rejected",
+            output,
             &[
                 paths::OUTPUT_RAW,
                 paths::OUTPUT_SMOOTHED,
@@ -203,7 +235,7 @@ impl Views<'_, '_> {
             Legend::InTitle,
         )?;
         let delay = self.plot(
-            "Delay [samples]: τ, dot accepted, cross rejected",
+            delay,
             &[paths::TAU, paths::DELAY_ACCEPTED, paths::DELAY_REJECTED].map(|path| self.at(path)),
             Legend::InTitle,
         )?;
@@ -215,9 +247,18 @@ impl Views<'_, '_> {
             rows.push(self.plot("Covariates", &all.collect::<Vec<_>>(), Legend::Apart)?);
             shares.push(1.5);
         }
-        rows.push(self.view(self.lanes())?);
+        rows.push(self.view(self.lanes(lanes))?);
         shares.push(if self.joint.trials.len() > 1 { 2.2 } else { 1.6 });
         self.builder.container(ContainerKind::Vertical, "Record", &rows, &shares)
+    }
+
+    /// The record of a joint whose input moves all the time, and its dead time in words.
+    fn without_steps(&mut self) -> Result<Node, RecordError> {
+        let record = self.record(Steps::None)?;
+        let words = [self.path(paths::VERDICT)];
+        let words = self.view(View::new("TextDocument", "Dead time", &words))?;
+        let columns = [record, words];
+        self.builder.container(ContainerKind::Horizontal, "Record", &columns, &[7.0, 3.0])
     }
 
     /// The delay against what it may depend on.
@@ -282,7 +323,7 @@ impl Views<'_, '_> {
             ContainerKind::Vertical,
             "Plots",
             &rows,
-            &[1.2, 3.0, 2.4, 1.0, 2.4, 3.2],
+            &[1.1, 2.8, 2.2, 1.0, 2.3, 3.8],
         )?;
         let page = [self.path(paths::MODEL_PAGE)];
         let page = self.view(View::new("TextDocument", "Models", &page))?;
@@ -317,7 +358,7 @@ impl Views<'_, '_> {
     fn residuals(&mut self, names: &[&str]) -> Result<Node, RecordError> {
         let models = names.len();
         let scatter = self.sheet(
-            ("What the residual depends on: points, and their mean", scatter::SIZE),
+            ("Residual against four quantities: points, and their mean", scatter::SIZE),
             (paths::scatter::ROOT, &paths::scatter::PARTS),
             (&[paths::scatter::CURVE], models),
         );

@@ -9,10 +9,15 @@ use crate::recording::blueprint::Builder;
 use crate::recording::content::Growth;
 use crate::recording::error::RecordError;
 use crate::recording::recorded::Recording;
+use crate::report::EstimatedJoint;
 
 /// What decides which views there are.
 pub(in crate::recording) fn in_words(recording: &Recording<'_>, growth: Growth) -> String {
-    let joints: Vec<_> = recording.joints.iter().map(|joint| &joint.joint.name).collect();
+    let name = |joint: &EstimatedJoint<'_>| match joint.estimate.dead_time {
+        Some(_) => format!("{} without steps", joint.joint.name),
+        None => joint.joint.name.clone(),
+    };
+    let joints: Vec<_> = recording.joints.iter().map(name).collect();
     let models: Vec<_> = recording.models.iter().map(|m| (&m.joint.name, m.model)).collect();
     let counted = recording.revisions.iter().map(|improved| improved.revisions.len().min(2));
     match growth {
@@ -43,10 +48,12 @@ pub(in crate::recording) fn messages(
     }
     // One revision alone is there on every timeline.
     let is_ladder = recording.revisions.iter().any(|improved| improved.revisions.len() > 1);
+    let has_steps = recording.joints.iter().any(|joint| joint.estimate.dead_time.is_none());
     let opening = match growth {
         Growth::Growing => ("revision", PlayState::Following),
         Growth::Finished if is_ladder => ("revision", PlayState::Paused),
         Growth::Finished if !recording.also.is_empty() => ("difference", PlayState::Paused),
+        Growth::Finished if !has_steps => ("time", PlayState::Paused),
         Growth::Finished => ("decision", PlayState::Paused),
     };
     builder.tabbed(tabs, opening, application)

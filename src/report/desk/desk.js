@@ -125,6 +125,11 @@ function draw() {
   if (program) lines(program, verdict);
   if (moved) lines(mine, "mine");
   const seen = mine || program;
+  // Each name on its own side of two lines that may be near.
+  const isBefore = !!seen && seen.q < s.p;
+  const name = (k, text, isLeft) => put("text", { x: X(k) + (isLeft ? -5 : 5), y: rows[0][1] - 6, "text-anchor": isLeft ? "end" : "start" }, text);
+  name(s.p, "input step", !isBefore);
+  if (seen) name(seen.q, "breakpoint", isBefore);
   if (seen) {
     const left = [];
     for (let k = s.segment[0]; k <= s.segment[1]; k++) {
@@ -143,6 +148,7 @@ function draw() {
     path(s.errors.map(([q, e]) => [X(q), E(log(e))]), "error", 1.6);
   }
   for (const k of ticks(s.first, last, 8)) put("text", { x: X(k), y: h - 5, "text-anchor": "middle", class: "faint" }, k);
+  put("text", { x: left - 8, y: h - 5, "text-anchor": "end", class: "faint" }, "sample");
   by("plot-title").textContent = `Step ${s.i} of ${s.joint}`;
   by("plot-desc").textContent = `Output around the input step at sample ${s.p}, with the lines before and after the breakpoint` + (mine ? ` at sample ${number(mine.q)}.` : ".");
   const shown = moved ? mine : program;

@@ -13,9 +13,10 @@ use crate::delay::{DelayRow, DelayTable, KindDelay, Neutral, Settings, Settling,
 use crate::experiment::{Experiment, ReadOptions, Source};
 use crate::report::decisions::detailed_rows;
 use crate::report::delay_table::DelayTableRow;
+use crate::report::doubt::doubted;
 use crate::report::settings::own_settings;
 use crate::report::{
-    Against, DecisionDetail, DecisionRow, DelayRange, EstimatedJoint, JointSummary, Words,
+    Against, DecisionDetail, DecisionRow, DelayRange, Doubted, EstimatedJoint, JointSummary, Words,
 };
 
 /// The document of `estimate --format json`.
@@ -222,18 +223,25 @@ struct DecisionsJson<'a>(EstimatedJoint<'a>);
 
 impl Serialize for DecisionsJson<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let rows = detailed_rows(self.0);
-        serializer.collect_seq(rows.map(|(row, detail)| DecisionJson { row, detail }))
+        let rows = detailed_rows(self.0).zip(doubted(self.0));
+        serializer.collect_seq(rows.map(|((row, detail), Doubted { doubt, .. })| DecisionJson {
+            row,
+            detail,
+            doubt: doubt.value(),
+            flags: doubt.flags.iter().map(|flag| flag.id()).collect(),
+        }))
     }
 }
 
-/// A decision with its details.
+/// A decision with its details, its doubt from 0 to 1, and what is odd about it.
 #[derive(Debug, Serialize)]
 struct DecisionJson<'a> {
     #[serde(flatten)]
     row: DecisionRow<'a>,
     #[serde(flatten)]
     detail: DecisionDetail,
+    doubt: f64,
+    flags: Vec<&'static str>,
 }
 
 impl<'a> EstimateJson<'a> {

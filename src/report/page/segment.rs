@@ -3,7 +3,7 @@
 use super::document::Figure;
 use super::layout::NARROW;
 use super::plot::{PlotError, draw};
-use crate::delay::{Condition, Decision, Verdict};
+use crate::delay::{Condition, Decision, Doubt, Verdict};
 use crate::experiment::{Joint, Trial};
 use crate::figure::Role;
 use crate::figure::Span;
@@ -35,7 +35,10 @@ fn choices(estimated: EstimatedJoint<'_>) -> Vec<Choice<'_>> {
         all(estimated).filter_map(|choice| Some((choice.doubt()?, choice))).collect();
     accepted.sort_by(|a, b| a.0.total_cmp(&b.0));
     let last = accepted.len().saturating_sub(1);
-    let places = [(0, "Clearest"), (last / 2, "Typical"), (last, "Most doubtful")];
+    // What is odd is never clear, however little its doubt.
+    let clearest = accepted.iter().position(|(_, choice)| !choice.is_odd());
+    let clearest = clearest.map_or((0, "Least doubtful"), |place| (place, "Clearest"));
+    let places = [clearest, (last / 2, "Typical"), (last, "Most doubtful")];
     let mut chosen: Vec<Choice<'_>> = Vec::new();
     for (place, why) in places {
         let Some((_, choice)) = accepted.get(place) else { continue };
@@ -75,8 +78,16 @@ impl Choice<'_> {
     fn doubt(&self) -> Option<f64> {
         self.decision.accepted_delay()?;
         self.decision.breakpoint()?;
-        let output = self.smoothed.unwrap_or(self.trial.output());
-        Some(self.decision.doubt(output).value())
+        Some(self.found().value())
+    }
+
+    /// Whether the decision has a flag.
+    fn is_odd(&self) -> bool {
+        !self.found().flags.is_empty()
+    }
+
+    fn found(&self) -> Doubt {
+        self.decision.doubt(self.smoothed.unwrap_or(self.trial.output()))
     }
 
     fn figure(&self, joint: &Joint, file: &str) -> Result<Figure, PlotError> {
