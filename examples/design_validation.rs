@@ -26,7 +26,7 @@ use std::thread;
 use clap::Parser;
 use tauscope::batch::with_threads;
 
-use case::{Judged, examine};
+use case::{Beside, Judged, examine};
 use in_order::in_order;
 use page::page;
 
@@ -62,7 +62,8 @@ fn main() -> anyhow::Result<()> {
     let seeds: Vec<u64> = seeds.filter(is_wanted).collect();
     let judged = in_order(&seeds, args.threads.unwrap_or(processors).max(1), |index, seed| {
         // One thread for each joint: there are enough of them.
-        let judged: Judged = with_threads(Some(1), || examine(*seed, !args.plans_only))??;
+        let beside = if args.plans_only { Beside::Nothing } else { Beside::Integrator };
+        let judged: Judged = with_threads(Some(1), || examine(*seed, beside))??;
         eprintln!("{} of {}: {judged}", index + 1, seeds.len());
         Ok(judged)
     })?;

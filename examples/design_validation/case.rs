@@ -86,8 +86,17 @@ impl fmt::Display for Judged {
 const PROTOCOL: Protocol =
     Protocol { mode: Mode::FitOrIntegrator, split: Some(Split::Time(1.0)), horizon: Horizon::Auto };
 
-/// What becomes of the joint number `seed`, beside a fitted integrator where that is wanted.
-pub(crate) fn examine(seed: u64, with_integrator: bool) -> anyhow::Result<Judged> {
+/// What a plan is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Beside {
+    /// The plan of a fitted integrator.
+    Integrator,
+    /// Nothing.
+    Nothing,
+}
+
+/// What becomes of the joint number `seed`.
+pub(crate) fn examine(seed: u64, beside: Beside) -> anyhow::Result<Judged> {
     let Drawn { plant, log, kind, hidden } = drawn(seed)?;
     let begun = Instant::now();
     let logged = Logged::of(&log);
@@ -103,7 +112,7 @@ pub(crate) fn examine(seed: u64, with_integrator: bool) -> anyhow::Result<Judged
     let planned = plan(&wishes, &rig, Some(&known), Some(&logged), 0);
     let design_s = begun.elapsed().as_secs_f64();
     let integrator_leaves = match &planned {
-        Ok(plan) if with_integrator => {
+        Ok(plan) if beside == Beside::Integrator => {
             Some(integrator_leaves(&plant, &log, (&rig, &logged), plan, seed)?)
         }
         _ => None,

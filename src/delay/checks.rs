@@ -58,7 +58,7 @@ impl Checks {
                 *check = old;
             }
         }
-        *self = Self::of(checks);
+        *self = Self::of(&checks);
     }
 }
 

@@ -134,7 +134,7 @@ impl Keeper<'_> {
             });
             divided.collect()
         };
-        let longest_s = known.free_run.as_ref().map_or(f64::INFINITY, |of| of.trusted_s());
+        let longest_s = known.free_run.as_ref().map_or(f64::INFINITY, FreeRunError::trusted_s);
         let has_steps = |division: &Division| {
             let holds = division.trial_s / shortest_s;
             let steps = FEWEST_STEPS_OF_TRIAL.max(FEWEST_STEPS.div_ceil(division.trials));

@@ -165,13 +165,13 @@ impl<'a> FitRecord<'a> {
 
     /// The same without what was simulated: a quarter of the memory.
     pub(crate) fn evaluate_residuals(&self, model: &JointModel) -> Evaluation {
-        self.evaluated(model, |run, starts, slope| run.residuals_from(starts, slope))
+        self.evaluated(model, Run::residuals_from)
     }
 
-    fn evaluated(
-        &self,
-        model: &JointModel,
-        mut residuals: impl FnMut(&Run<'_>, &[f64], Option<&[f64]>) -> Vec<f64>,
+    fn evaluated<'m>(
+        &'m self,
+        model: &'m JointModel,
+        mut residuals: impl FnMut(&Run<'m>, &[f64], Option<&[f64]>) -> Vec<f64>,
     ) -> Evaluation {
         let mut all = Evaluation {
             horizon: self.horizon,

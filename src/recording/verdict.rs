@@ -372,7 +372,7 @@ impl Facts<'_, '_> {
     }
 
     fn conditions(&self) -> String {
-        let row = |check: &Check| {
+        let row = |check: Check| {
             let mark = match check.outcome {
                 Outcome::Passed => "✓",
                 Outcome::Failed => "✗",

@@ -108,6 +108,8 @@ pub fn know_joints(
     share: f64,
     workers: &impl Workers,
 ) -> OfJoints<Uncertain> {
+    // The condition in which a plan is played is not known.
+    let models = |joint: &Joint| models(joint).map(|model| model.in_trial("").into_owned());
     let work = |_: usize, record: &FitRecord<'_>, given: Fit| {
         let joint = record.joint();
         let record = FitRecord::new(joint, Split::Time(1.0), protocol.horizon);
@@ -120,7 +122,7 @@ pub fn know_joints(
         let noise = floor_of(&record, &fit).unwrap_or(0.0).max(f64::MIN_POSITIVE);
         Uncertain { free_run, ..Uncertain::of_fit(&record, &fit, noise, share) }
     };
-    for_each_joint((joints, estimates), &models, protocol.into(), workers, (best_fit, work))
+    for_each_joint((joints, estimates), models, protocol.into(), workers, (best_fit, work))
 }
 
 /// A model with what its predictions were off.
