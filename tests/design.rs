@@ -347,13 +347,16 @@ fn an_output_that_regulates_itself_is_played_at_levels_of_its_log() {
 }
 
 #[test]
-fn what_never_goes_back_in_the_log_is_not_driven_back() {
+fn what_never_goes_back_in_the_log_is_driven_back_between_trials_alone() {
     let desk = desk();
     let input: Vec<f64> = (0..2000).map(|k| if k % 200 < 60 { 1.0 } else { 0.0 }).collect();
     let output = by_hand(&input, -39.0, None);
     write_trials(&desk, "up.csv", &[(input, output)]);
-    let said = desk.refusal("design up.csv --output-range=-30,30 -o none.csv");
+    let said = desk.refusal("design up.csv --output-range=-30,30 --trials 1 -o none.csv");
     assert!(said.contains("has positive inputs only"), "{said}");
+    let joint = &desk.json("design up.csv --output-range=-30,30 -o up_only.csv -q", 0)["joints"][0];
+    assert!(joint["trials"].as_array().unwrap().len() > 1);
+    assert!(joint["levels"].as_array().unwrap().iter().all(|level| number(level) >= 0.0));
 }
 
 #[test]

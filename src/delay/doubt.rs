@@ -6,12 +6,6 @@ use super::condition::{Check, Condition, Outcome};
 use super::decision::{Decision, Verdict};
 use super::search::Candidate;
 
-/// Weight of a candidate in the [spread](Doubt::spread): its squared error as a part of the
-/// best one's, to this power. The noise behind a low-pass is correlated, so that the power of
-/// independent samples, half their number, would leave the best candidate alone. Chosen on
-/// synthetic records: from 4 to a tenth of the samples the order hardly changes.
-const POWER: f64 = 4.0;
-
 /// A number this near its limit, as a part of their sum, is near; farther away it is no doubt.
 const NEAR: f64 = 0.25;
 
@@ -137,7 +131,7 @@ impl Decision {
         let fine = self.fine.map(|fine| (fine.high - fine.low) / 2.0);
         Doubt {
             explained: best.map_or(1.0, |best| self.explained(&best)),
-            spread: fine.or_else(|| Some(self.spread(&best?))).unwrap_or(0.0),
+            spread: fine.unwrap_or_else(|| self.candidates.spread()),
             crossing: best.map_or(0.0, |best| self.crossing(&best)),
             nearest: self.nearest(range.1 - range.0),
             flags: self.flags(output, range),
@@ -146,17 +140,10 @@ impl Decision {
         }
     }
 
-    /// Samples from one candidate to the next.
-    fn spacing(&self) -> usize {
-        let at = |index| self.candidates.get(index).map(|candidate| candidate.breakpoint);
-        let before = at(1).and(at(0)).unwrap_or(self.segment.first);
-        at(1).or(at(0)).map_or(1, |second| second.saturating_sub(before).max(1))
-    }
-
     /// `1 − SSE₂ / SSE₁`. The residuals of both lines are orthogonal to every line through
     /// either part, so that one line leaves SSE₂ and what it leaves of the two lines.
     fn explained(&self, best: &Candidate) -> f64 {
-        let last = self.segment.first + (self.candidates.len() + 1) * self.spacing();
+        let last = self.segment.first + (self.candidates.len() + 1) * self.candidates.spacing();
         let fitted = |k: usize| {
             let line = if k < best.breakpoint { best.before } else { best.after };
             line.at(k as f64)
@@ -174,18 +161,6 @@ impl Decision {
         let bend = (yy - xy * xy / xx.max(f64::MIN_POSITIVE)).max(0.0);
         let one_line = best.sse + bend;
         if one_line > 0.0 { bend / one_line } else { 0.0 }
-    }
-
-    fn spread(&self, best: &Candidate) -> f64 {
-        let (mut weights, mut squares) = (0.0, 0.0);
-        for candidate in self.candidates.iter() {
-            let ratio = if candidate.sse > 0.0 { best.sse / candidate.sse } else { 1.0 };
-            let weight = ratio.min(1.0).powf(POWER);
-            let distance = candidate.breakpoint as f64 - best.breakpoint as f64;
-            weights += weight;
-            squares += weight * distance * distance;
-        }
-        if weights > 0.0 { (squares / weights).sqrt() } else { 0.0 }
     }
 
     fn crossing(&self, best: &Candidate) -> f64 {
@@ -222,7 +197,7 @@ impl Decision {
             Condition::FirstOrLast | Condition::TooShort | Condition::Reviewer => None,
             Condition::OutputLimit => Some((apart / range / NEAR_STOP).min(1.0)),
             Condition::BeforeInput => {
-                Some(((apart + 1.0) / (1.0 + self.spacing() as f64)).min(1.0))
+                Some(((apart + 1.0) / (1.0 + self.candidates.spacing() as f64)).min(1.0))
             }
             // The probabilities of noise spread over many decades.
             Condition::NothingHappened => {
@@ -238,7 +213,7 @@ impl Decision {
     fn flags(&self, output: &[f64], range: (f64, f64)) -> Vec<Flag> {
         let Some(best) = self.candidates.best() else { return Vec::new() };
         let is_edge = self.candidates.len() > 2 && (best.f == 1 || best.f == self.candidates.len());
-        let is_jump = self.crossing(&best) > 2.0 * self.spacing() as f64;
+        let is_jump = self.crossing(&best) > 2.0 * self.candidates.spacing() as f64;
         // Where the input is let go, a joint that stands is at rest, wherever that is.
         let is_driven = self.input_step.after.abs() > 0.0;
         // The joint may still be on its way at first.

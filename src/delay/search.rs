@@ -31,7 +31,15 @@ struct Few {
     best: f64,
     /// The second-best, where there is one: its index and its squared error.
     second: Option<(usize, f64)>,
+    /// How far from the best those lie that fit nearly as well, samples.
+    spread: f64,
 }
+
+/// Weight of a candidate in the [spread](Candidates::spread): its squared error as a part of the
+/// best one's, to this power. The noise behind a low-pass is correlated, so that the power of
+/// independent samples, half their number, would leave the best candidate alone. Chosen on
+/// synthetic records: from 4 to a tenth of the samples the order of doubt hardly changes.
+const POWER: f64 = 4.0;
 
 /// Both lines of every candidate.
 #[derive(Clone, Debug, PartialEq)]
@@ -153,7 +161,7 @@ impl Candidates {
     pub(super) fn with_best_alone(self) -> Self {
         let Some(best) = self.best.and_then(|best| self.error(best)) else { return self };
         let second = self.second_index().and_then(|index| Some((index, self.error(index)?)));
-        let few = Few { count: self.len(), best, second };
+        let few = Few { count: self.len(), best, second, spread: self.spread() };
         Self { sse: Vec::new(), few: Some(Box::new(few)), ..self.with_best_lines() }
     }
 
@@ -260,6 +268,29 @@ impl Candidates {
         valley.or(neighbour)
     }
 
+    /// Samples from one candidate to the next.
+    pub(super) fn spacing(&self) -> usize {
+        if self.is_empty() { 1 } else { self.beta.max(1) }
+    }
+
+    /// How far from the best candidate those lie that fit nearly as well, samples: the root mean
+    /// square distance of all, weighted by `(SSE_best / SSE)⁴`.
+    pub(super) fn spread(&self) -> f64 {
+        if let Some(few) = &self.few {
+            return few.spread;
+        }
+        let Some(best) = self.best() else { return 0.0 };
+        let (mut weights, mut squares) = (0.0, 0.0);
+        for candidate in self.iter() {
+            let ratio = if candidate.sse > 0.0 { best.sse / candidate.sse } else { 1.0 };
+            let weight = ratio.min(1.0).powf(POWER);
+            let distance = candidate.breakpoint as f64 - best.breakpoint as f64;
+            weights += weight;
+            squares += weight * distance * distance;
+        }
+        if weights > 0.0 { (squares / weights).sqrt() } else { 0.0 }
+    }
+
     /// Squared errors, output units squared, in the order of the breakpoints; none where only
     /// the best were kept.
     pub fn sse(&self) -> &[f64] {
@@ -342,6 +373,7 @@ mod tests {
             let error = |found: &Candidates| found.second().map(|it| (it.breakpoint, it.sse));
             assert_eq!(error(&few), error(&all));
             assert_eq!((few.is_empty(), few.sse().len()), (all.is_empty(), 0));
+            assert!((few.spread() - all.spread()).abs() <= 0.0);
         }
     }
 

@@ -174,9 +174,9 @@ mod tests {
     #[test]
     fn each_keeps_the_contract_and_is_there_once() {
         for effect in OF_CONDITIONS {
-            let restricted = within_trials(*effect, "heavy load");
+            let restricted = within_trials(*effect, "heavy");
             assert_eq!(check(restricted), Ok(()));
-            assert!(std::ptr::eq(restricted.spec(), within_trials(*effect, "heavy load").spec()));
+            assert!(std::ptr::eq(restricted.spec(), within_trials(*effect, "heavy").spec()));
         }
         assert_eq!(within_trials(&DeadBand, "20kg").spec().id, "dead_band[20kg]");
     }
