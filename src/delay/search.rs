@@ -148,21 +148,17 @@ impl Candidates {
         Self { first_sample, beta: 1, sse, few: None, lines, best: chosen }
     }
 
-    /// The same with the lines of the best candidate alone, a fifth of the memory; the lines of
-    /// the others are not numbers.
-    pub(super) fn with_best_lines(mut self) -> Self {
-        let best = self.best.and_then(|best| Some((best, self.lines.get(best)?)));
-        self.lines = best.map_or_else(Lines::default, |(best, lines)| Lines::One(best, lines));
-        self
-    }
-
-    /// The best candidate and the squared error of the second alone; how many there were is
-    /// known.
+    /// The best candidate with its lines, and what is [kept](Few) of the errors of the others,
+    /// whose lines are not numbers.
     pub(super) fn with_best_alone(self) -> Self {
-        let Some(best) = self.best.and_then(|best| self.error(best)) else { return self };
+        let Some((index, best)) = self.best.and_then(|index| Some((index, self.error(index)?)))
+        else {
+            return self;
+        };
+        let lines = self.lines.get(index).map_or_else(Lines::default, |it| Lines::One(index, it));
         let second = self.second_index().and_then(|index| Some((index, self.error(index)?)));
         let few = Few { count: self.len(), best, second, spread: self.spread() };
-        Self { sse: Vec::new(), few: Some(Box::new(few)), ..self.with_best_lines() }
+        Self { sse: Vec::new(), few: Some(Box::new(few)), lines, ..self }
     }
 
     /// Fits the lines before each breakpoint, from the front.
@@ -353,15 +349,6 @@ mod tests {
         assert!(best.sse < 1e-20);
         assert!(best.before.slope.abs() < 1e-12 && (best.after.slope - 2.0).abs() < 1e-12);
         assert!((best.after.at(104.0)).abs() < 1e-9, "the lines are in sample numbers");
-    }
-
-    #[test]
-    fn the_best_keeps_its_lines_where_the_others_do_not() {
-        let all = Candidates::search(&kinked(48, 25), 79, 5);
-        let fewer = all.clone().with_best_lines();
-        assert_eq!((fewer.best(), fewer.sse()), (all.best(), all.sse()));
-        assert!(fewer.get(0).unwrap().before.slope.is_nan());
-        assert_eq!(fewer.get(0).unwrap().breakpoint, all.get(0).unwrap().breakpoint);
     }
 
     #[test]

@@ -46,19 +46,15 @@ impl FirstLast {
     }
 }
 
-/// Of which candidates a decision keeps both lines.
+/// Which candidates a decision keeps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CandidateLines {
-    /// Of all, which can be drawn then.
+    /// All with both lines, which can be drawn then.
     #[default]
     All,
-    /// Of the best one, where the method compares many: a fifth of the memory.
+    /// The best one, and of the others their number, the second-best error and how far those lie
+    /// that fit nearly as well, where the method compares many: enough for all but a drawing.
     Best,
-    /// Of the best one, and of the others nothing but their number and the second-best error,
-    /// where the method compares many: enough for a verdict, but not for a drawing or a [`Doubt`].
-    ///
-    /// [`Doubt`]: super::Doubt
-    BestAlone,
 }
 
 /// A method and its settings; the default is the paper's search with what real logs need

@@ -129,9 +129,14 @@ mod tests {
     /// One second of rest, `level` for 7 s, and rest again, from one stop to the other: 20 units a
     /// second, 0.1 s late.
     fn stroke(level: f64) -> Trial {
-        let input: Vec<f64> =
-            (0..450).map(|k| if (50..400).contains(&k) { level } else { 0.0 }).collect();
-        let mut y: f64 = if level > 0.0 { 0.0 } else { 60.0 };
+        let start = if level > 0.0 { 0.0 } else { 60.0 };
+        driven(start, |k| if (50..400).contains(&k) { level } else { 0.0 })
+    }
+
+    /// Nine seconds between the stops from `start` on.
+    fn driven(start: f64, level: impl Fn(usize) -> f64) -> Trial {
+        let input: Vec<f64> = (0..450).map(level).collect();
+        let mut y: f64 = start;
         let output = (0..450_usize).map(|k| {
             let now = y;
             y = (y + 0.4 * input[k.saturating_sub(5)]).clamp(0.0, 60.0);
@@ -139,7 +144,7 @@ mod tests {
         });
         let output = output.collect();
         let period = SamplePeriod::from_seconds(0.02).unwrap();
-        Trial::new(level.to_string(), 0.0, period, input, output).unwrap()
+        Trial::new("1", 0.0, period, input, output).unwrap()
     }
 
     fn joint(trials: Vec<Trial>) -> Joint {
@@ -167,16 +172,7 @@ mod tests {
             205..300 => -1.0,
             _ => 0.0,
         };
-        let input: Vec<f64> = (0..450).map(touching).collect();
-        let mut y: f64 = 0.0;
-        let output = (0..450_usize).map(|k| {
-            let now = y;
-            y = (y + 0.4 * input[k.saturating_sub(5)]).clamp(0.0, 60.0);
-            now
-        });
-        let output = output.collect();
-        let period = SamplePeriod::from_seconds(0.02).unwrap();
-        let touching = Trial::new("touch", 0.0, period, input, output).unwrap();
+        let touching = driven(0.0, touching);
         let joint = joint(vec![stroke(1.0), stroke(-1.0), touching]);
         let free = Stops::of(&joint).free(&joint.trials[2], (0, 450), 0.1);
         let [(_, arrived), (left, end)] = free.as_slice() else { panic!("{free:?}") };

@@ -17,7 +17,7 @@ use super::{
     PositionGain, RecordRange, Spec, Stage, WithinTrials,
 };
 
-/// What a load, a supply or another pose of the machine may change; first the gain.
+/// What a load, a supply or another pose of the machine may change.
 pub const OF_CONDITIONS: &[&dyn Effect] = &[&TrialGain, &GravityLoad, &PositionGain, &DeadBand];
 
 /// Another gain in the trials of a condition, for each direction: of all trials it would be the

@@ -5,6 +5,8 @@
 //! does. A word that comes with a level or a direction alone says nothing more; nor does a number,
 //! which counts trials or names a level.
 
+use std::collections::HashMap;
+
 use super::Trial;
 
 /// Whether each of `trials` has one of the two words and not the other.
@@ -42,39 +44,56 @@ fn words(label: &str) -> impl Iterator<Item = &str> {
 pub fn conditions(trials: &[Trial]) -> Vec<String> {
     /// Words that are tried, at most: each costs fits.
     const MOST: usize = 4;
-    let mut found: Vec<(&str, Vec<bool>)> = Vec::new();
-    for word in trials.iter().flat_map(|trial| words(trial.label())) {
-        let is_number = word.chars().all(|c| c.is_ascii_digit());
-        if is_number || found.iter().any(|(known, _)| *known == word) {
-            continue;
+    let mut order: Vec<&str> = Vec::new();
+    let mut labelled: HashMap<&str, Vec<usize>> = HashMap::new();
+    for (index, trial) in trials.iter().enumerate() {
+        for word in words(trial.label()).filter(|word| !is_number(word)) {
+            let with = labelled.entry(word).or_insert_with(|| {
+                order.push(word);
+                Vec::new()
+            });
+            if with.last() != Some(&index) {
+                with.push(index);
+            }
         }
-        let with: Vec<bool> = trials.iter().map(|trial| has_word(trial.label(), word)).collect();
-        let says_the_same = |(_, other): &(&str, Vec<bool>)| *other == with;
-        if is_balanced(&with) && !found.iter().any(says_the_same) && crosses_input(trials, &with) {
+    }
+    let mut found: Vec<(&str, &[usize])> = Vec::new();
+    for word in order {
+        let with = labelled[word].as_slice();
+        let says_the_same = found.iter().any(|(_, other)| *other == with);
+        let is_condition = is_balanced(with.len(), trials.len()) && !says_the_same;
+        if is_condition && crosses_input(trials, with) {
             found.push((word, with));
         }
     }
     found.into_iter().map(|(word, _)| word.to_owned()).take(MOST).collect()
 }
 
+fn is_number(word: &str) -> bool {
+    word.chars().all(|c| c.is_ascii_digit())
+}
+
 /// Whether there are trials of both kinds, enough to fit and to judge.
-fn is_balanced(with: &[bool]) -> bool {
+fn is_balanced(with: usize, all: usize) -> bool {
     /// Trials of either kind, and the part of all that they are.
     const FEWEST: usize = 3;
     const SHARE: f64 = 0.15;
-    let count = with.iter().filter(|has| **has).count();
-    let fewer = count.min(with.len() - count);
-    fewer >= FEWEST && fewer as f64 >= SHARE * with.len() as f64
+    let fewer = with.min(all - with);
+    fewer >= FEWEST && fewer as f64 >= SHARE * all as f64
 }
 
-/// Whether most trials have one of the other kind that is driven alike.
-fn crosses_input(trials: &[Trial], with: &[bool]) -> bool {
-    let drives: Vec<Drive> = trials.iter().map(Drive::of).collect();
-    let both = || drives.iter().zip(with);
-    let has_twin = |(own, kind): &(&Drive, &bool)| {
-        both().any(|(other, other_kind)| *kind != other_kind && own.is_like(other))
+/// Whether most trials have one of the other kind that is driven alike; those `with` a word are one
+/// kind.
+fn crosses_input(trials: &[Trial], with: &[usize]) -> bool {
+    let mut kinds = vec![false; trials.len()];
+    for index in with {
+        kinds[*index] = true;
+    }
+    let drives: Vec<(Drive, bool)> = trials.iter().map(Drive::of).zip(kinds).collect();
+    let has_twin = |(own, kind): &&(Drive, bool)| {
+        drives.iter().any(|(other, other_kind)| kind != other_kind && own.is_like(other))
     };
-    both().filter(has_twin).count() * 2 > trials.len()
+    drives.iter().filter(has_twin).count() * 2 > trials.len()
 }
 
 /// What drives a trial.

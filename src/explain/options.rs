@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::effect::{Effect, OF_CONDITIONS, REGISTRY, within_trials};
+use crate::effect::{Effect, OF_CONDITIONS, REGISTRY, TrialGain, within_trials};
 use crate::experiment::{Joint, are_opposites, conditions};
 
 /// Which effects are tried, and which may stay.
@@ -29,9 +29,11 @@ impl Options {
         let mut options = self.clone();
         for (index, word) in words.iter().enumerate() {
             let is_opposite = |other: &String| are_opposites(&joint.trials, [other, word]);
+            let has_opposite = words[..index].iter().any(is_opposite);
             // A gain that is higher with one word is lower with its opposite: the same model.
-            let skipped = usize::from(words[..index].iter().any(is_opposite));
-            let effects = OF_CONDITIONS.iter().skip(skipped);
+            let is_new =
+                |effect: &&&dyn Effect| !(has_opposite && effect.spec().id == TrialGain.spec().id);
+            let effects = OF_CONDITIONS.iter().filter(is_new);
             options.effects.extend(effects.map(|effect| within_trials(*effect, word)));
         }
         Cow::Owned(options)

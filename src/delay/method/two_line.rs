@@ -130,8 +130,7 @@ fn decide(context: &StepContext<'_>, before: Option<&Decision>) -> Decision {
     let candidates = Candidates::search_until(values, segment.first, settings.beta, latest);
     let candidates = match settings.lines {
         CandidateLines::All => candidates,
-        CandidateLines::Best => candidates.with_best_lines(),
-        CandidateLines::BestAlone => candidates.with_best_alone(),
+        CandidateLines::Best => candidates.with_best_alone(),
     };
     context.decision(segment, settings.beta, candidates, None)
 }

@@ -24,12 +24,8 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
         return each_log(args, program);
     }
     let verbosity = args.output.run.verbosity();
-    let lines = match (args.output.is_recorded(), &args.output.review_sheet) {
-        (true, _) => CandidateLines::All,
-        // Doubt is in the errors of all candidates.
-        (false, Some(_)) => CandidateLines::Best,
-        (false, None) => CandidateLines::BestAlone,
-    };
+    let is_drawn = args.output.is_recorded();
+    let lines = if is_drawn { CandidateLines::All } else { CandidateLines::Best };
     let with_lines = |settings| Settings { lines, ..settings };
     let settings: Vec<_> = args.algorithm.runs().into_iter().map(with_lines).collect();
     let csv_text = args.folder.csv_text();
