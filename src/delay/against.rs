@@ -4,7 +4,8 @@
 //! whether the delay rises or falls with it. Starts, stops, changes and reversals are compared
 //! each among themselves: together they would show how they differ, not what each depends on.
 
-use super::decision::{Breakpoint, Decision};
+use std::sync::Arc;
+
 use super::neutral::Neutral;
 use super::transition::Transition;
 use super::trial_estimate::TrialEstimate;
@@ -20,8 +21,8 @@ const LEVEL: f64 = 0.05;
 /// An accepted step: its delay, and the joint's state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepState {
-    /// Label of the trial.
-    pub trial: String,
+    /// Label of the trial; all steps of a trial share it.
+    pub trial: Arc<str>,
     /// `i`: number of the step in its trial, from 1.
     pub number: usize,
     /// Which kind of step it is.
@@ -109,17 +110,17 @@ pub struct AgainstOfKind {
 }
 
 impl AgainstState {
-    /// Compares the delays of `joint`; `estimates` has one entry per trial of it, in order,
-    /// none where there is no estimate.
+    /// Compares the delays of `joint`, by the kinds of steps about its `neutral` input;
+    /// `estimates` has one entry per trial of it, in order, none where there is no estimate.
     pub fn of<'a>(
         joint: &'a Joint,
+        neutral: Option<&'a Neutral>,
         estimates: impl IntoIterator<Item = Option<&'a TrialEstimate>>,
     ) -> Self {
-        let neutral = Neutral::of(&joint.trials);
         let trials = joint.trials.iter().zip(estimates);
         let estimated = trials.filter_map(|(trial, estimate)| Some((trial, estimate?)));
         let steps: Vec<_> =
-            estimated.flat_map(|(trial, found)| states(trial, found, neutral.as_ref())).collect();
+            estimated.flat_map(|(trial, found)| states(trial, found, neutral)).collect();
         let all: Vec<&StepState> = steps.iter().collect();
         let (correlations, direction) = compare(joint, &all);
         let kinds = Transition::ALL.into_iter().filter_map(|kind| {
@@ -151,37 +152,26 @@ fn states<'a>(
     neutral: Option<&'a Neutral>,
 ) -> impl Iterator<Item = StepState> + 'a {
     let output = estimate.smoothed.as_deref().unwrap_or(trial.output());
+    let (label, period_s): (Arc<str>, _) = (trial.label().into(), trial.period().seconds());
     let decisions = estimate.decisions.iter().enumerate();
-    let accepted = decisions.filter(|(_, decision)| decision.accepted_delay().is_some());
-    accepted.filter_map(move |(index, decision)| {
+    decisions.filter_map(move |(index, decision)| {
+        let (delay, best) = (decision.accepted_delay()?, decision.breakpoint()?);
         let before = index.checked_sub(1).and_then(|before| estimate.decisions.get(before));
-        let kind = Transition::of(&decision.input_step, neutral);
-        state(trial, output, before, decision, (kind, decision.breakpoint()?))
-    })
-}
-
-fn state(
-    trial: &Trial,
-    output: &[f64],
-    before: Option<&Decision>,
-    decision: &Decision,
-    (transition, best): (Transition, Breakpoint),
-) -> Option<StepState> {
-    let period_s = trial.period().seconds();
-    let step = decision.input_step;
-    let dwell = before.map(|before| step.sample - before.input_step.sample);
-    let covariate = |signal: &Vec<f64>| mean_before(signal, step.sample);
-    Some(StepState {
-        trial: trial.label().to_owned(),
-        number: decision.number,
-        transition,
-        delay_s: decision.delay()? * period_s,
-        average_speed: best.candidate.after.slope.abs() / period_s,
-        input_change: step.after - step.before,
-        dwell_s: dwell.map(|samples| samples as f64 * period_s),
-        angle: *output.get(best.candidate.breakpoint.checked_sub(1)?)?,
-        time_s: trial.time_s(step.sample),
-        covariates: trial.covariates().iter().map(covariate).collect(),
+        let step = decision.input_step;
+        let dwell = before.map(|before| step.sample - before.input_step.sample);
+        let covariate = |signal: &Vec<f64>| mean_before(signal, step.sample);
+        Some(StepState {
+            trial: Arc::clone(&label),
+            number: decision.number,
+            transition: Transition::of(&step, neutral),
+            delay_s: delay * period_s,
+            average_speed: best.candidate.after.slope.abs() / period_s,
+            input_change: step.after - step.before,
+            dwell_s: dwell.map(|samples| samples as f64 * period_s),
+            angle: *output.get(best.candidate.breakpoint.checked_sub(1)?)?,
+            time_s: trial.time_s(step.sample),
+            covariates: trial.covariates().iter().map(covariate).collect(),
+        })
     })
 }
 

@@ -9,8 +9,8 @@ const COUNT: usize = Condition::ALL.len();
 /// memory of a list of [`Check`]s.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checks {
-    values: [f64; COUNT],
-    limits: [f64; COUNT],
+    /// The value and the limit of each condition, those that there are.
+    numbers: Box<[f64]>,
     outcomes: [Outcome; COUNT],
     /// A bit for each condition that has a value; that of the first is the lowest.
     with_value: u16,
@@ -26,8 +26,7 @@ impl Checks {
             ones.fold(0, |bits, (index, _)| bits | 1 << index)
         };
         Self {
-            values: checks.each_ref().map(|check| check.value.unwrap_or_default()),
-            limits: checks.each_ref().map(|check| check.limit.unwrap_or_default()),
+            numbers: checks.iter().flat_map(|check| [check.value, check.limit]).flatten().collect(),
             outcomes: checks.each_ref().map(|check| check.outcome),
             with_value: bits(|check| check.value.is_some()),
             with_limit: bits(|check| check.limit.is_some()),
@@ -36,11 +35,14 @@ impl Checks {
 
     /// All of them.
     pub fn iter(&self) -> impl Iterator<Item = Check> + '_ {
-        let has = |bits: u16, index: usize| bits >> index & 1 == 1;
+        let mut numbers = self.numbers.iter().copied();
+        let mut next = move |bits: u16, index: usize| {
+            if bits >> index & 1 == 1 { numbers.next() } else { None }
+        };
         Condition::ALL.into_iter().enumerate().map(move |(index, condition)| Check {
             condition,
-            value: has(self.with_value, index).then(|| self.values[index]),
-            limit: has(self.with_limit, index).then(|| self.limits[index]),
+            value: next(self.with_value, index),
+            limit: next(self.with_limit, index),
             outcome: self.outcomes[index],
         })
     }

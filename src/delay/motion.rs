@@ -106,7 +106,7 @@ pub(super) fn motions(
     steps: &[InputStep],
     period: SamplePeriod,
     settings: &Settings,
-) -> Vec<Option<StepMotion>> {
+) -> Vec<Option<Box<StepMotion>>> {
     if settings.paper {
         return vec![None; steps.len()];
     }
@@ -129,7 +129,8 @@ pub(super) fn motions(
             is_stroke,
         };
         so_far.add(&hold);
-        hold.motion(&so_far)
+        // Of most steps nothing is shown, and a long log has a hundred thousand.
+        hold.motion(&so_far).map(Box::new)
     };
     steps.iter().enumerate().map(motion).collect()
 }

@@ -38,7 +38,11 @@ impl Neutral {
     /// The band reaches to those held levels that do not move the joint from rest, and beyond
     /// them by the [tolerance](super::level_tolerance) of levels.
     pub fn of(trials: &[Trial]) -> Option<Self> {
-        let tolerance = level_tolerance(trials);
+        Self::within(trials, level_tolerance(trials))
+    }
+
+    /// The same where the tolerance of levels is known.
+    pub(super) fn within(trials: &[Trial], tolerance: f64) -> Option<Self> {
         let held: Vec<Vec<Hold>> = trials.iter().map(|trial| holds(trial, tolerance)).collect();
         let levels = Level::all(&held.concat(), tolerance);
         let level = neutral_level(&levels, tolerance)?;

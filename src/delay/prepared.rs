@@ -22,7 +22,7 @@ pub(super) struct Prepared<'a> {
     pub(super) period: SamplePeriod,
     pub(super) steps: Vec<InputStep>,
     /// What the output does about each step, where rest or a stop is shown.
-    pub(super) motions: Vec<Option<StepMotion>>,
+    pub(super) motions: Vec<Option<Box<StepMotion>>>,
     /// Whether the output comes to rest between steps, so that some of them change nothing: each
     /// reaction is then tested against noise.
     pub(super) is_tested: bool,

@@ -78,12 +78,12 @@ impl Stops {
             if motion.is_none() && (arrival.is_some_and(|after| after > 0) || before.is_some()) {
                 is_tested = true;
                 let until = arrival.filter(|after| *after > 0).map(|after| start + after);
-                *motion = Some(StepMotion {
+                *motion = Some(Box::new(StepMotion {
                     first: before.unwrap_or(0),
                     latest: until.unwrap_or(samples),
                     end: until.unwrap_or(samples),
                     rest: None,
-                });
+                }));
             }
             before = match arrival {
                 Some(0) => before.or(Some(start)),

@@ -118,6 +118,8 @@ impl KindDelay {
 /// A step, its levels put together with those that are the same.
 #[derive(Clone, Copy, Debug)]
 struct KindStep {
+    /// Among all steps of the joint; equal ones stay in this order.
+    number: usize,
     course: Course,
     from: f64,
     to: f64,
@@ -140,32 +142,45 @@ impl DelayTable {
         joint: &'a Joint,
         estimates: impl IntoIterator<Item = Option<&'a TrialEstimate>>,
     ) -> Self {
-        let neutral = Neutral::of(&joint.trials);
+        let tolerance = level_tolerance(&joint.trials);
+        let neutral = Neutral::within(&joint.trials, tolerance);
         let trials = joint.trials.iter().zip(estimates);
         let estimated = trials.filter_map(|(trial, estimate)| Some((trial, estimate?)));
         let decisions = estimated.flat_map(|(trial, estimate)| {
             estimate.decisions.iter().map(move |decision| (trial, decision))
         });
-        let mut steps: Vec<KindStep> = decisions
-            .map(|(trial, decision)| KindStep::of(trial, decision, neutral.as_ref()))
+        let numbered = decisions.enumerate();
+        let mut steps: Vec<KindStep> = numbered
+            .map(|(number, (trial, decision))| {
+                KindStep::of(number, trial, decision, neutral.as_ref())
+            })
             .collect();
-        join_levels(&mut steps, level_tolerance(&joint.trials));
-        Self {
-            neutral,
-            rows: Transition::ALL.into_iter().flat_map(|kind| rows(&steps, kind)).collect(),
-            curves: curves(&steps),
-            kinds: Transition::ALL.into_iter().filter_map(|kind| summary(&steps, kind)).collect(),
+        join_levels(&mut steps, tolerance);
+        Self::of_steps(neutral, steps)
+    }
+
+    /// The table of `steps`. They are sorted anew for each part of it, since copies of a hundred
+    /// thousand take as much memory as a hundred thousand decisions.
+    fn of_steps(neutral: Option<Neutral>, mut steps: Vec<KindStep>) -> Self {
+        let (mut kinds, mut curves, mut rows) = (Vec::new(), Vec::new(), Vec::new());
+        steps.sort_unstable_by_key(|step| (step.course.transition, step.number));
+        for same in steps.chunk_by_mut(|a, b| a.course.transition == b.course.transition) {
+            kinds.extend(summary(same));
+            curves.extend(self::curves(same));
+            rows.extend(self::rows(same));
         }
+        Self { neutral, rows, curves, kinds }
     }
 }
 
 impl KindStep {
-    fn of(trial: &Trial, decision: &Decision, neutral: Option<&Neutral>) -> Self {
+    fn of(number: usize, trial: &Trial, decision: &Decision, neutral: Option<&Neutral>) -> Self {
         let step = decision.input_step;
         let transition = Transition::of(&step, neutral);
         let sided = if transition == Transition::Stop { step.before } else { step.after };
         let side = neutral.map_or(Ordering::Equal, |neutral| neutral.side(sided));
         Self {
+            number,
             course: Course { transition, side, rises: step.after > step.before },
             from: step.before,
             to: step.after,
@@ -209,18 +224,21 @@ fn join_levels(steps: &mut [KindStep], tolerance: f64) {
     }
 }
 
-/// The rows of a kind.
-fn rows(steps: &[KindStep], kind: Transition) -> Vec<DelayRow> {
-    let mut same: Vec<KindStep> =
-        steps.iter().filter(|step| step.course.transition == kind).copied().collect();
+/// The rows of a kind, of all its steps.
+fn rows(same: &mut [KindStep]) -> Vec<DelayRow> {
     let pair = |a: &KindStep, b: &KindStep| a.from.total_cmp(&b.from).then(a.to.total_cmp(&b.to));
-    same.sort_by(pair);
+    let in_order = |a: &KindStep, b: &KindStep| pair(a, b).then(a.number.cmp(&b.number));
+    same.sort_unstable_by(in_order);
     let pairs: Vec<_> = same.chunk_by(|a, b| pair(a, b).is_eq()).collect();
     if pairs.len() <= MOST_PAIRS {
         return each_with(&pairs, row);
     }
-    let most = if matches!(kind, Transition::Start | Transition::Stop) { 3 } else { 2 };
-    same.sort_by(|a, b| a.course.cmp(&b.course).then(a.size().total_cmp(&b.size())));
+    let transition = same.first().map(|step| step.course.transition);
+    let most = if matches!(transition, Some(Transition::Start | Transition::Stop)) { 3 } else { 2 };
+    same.sort_unstable_by(|a, b| {
+        let by_size = || a.size().total_cmp(&b.size());
+        a.course.cmp(&b.course).then_with(by_size).then_with(|| in_order(a, b))
+    });
     let courses = same.chunk_by(|a, b| a.course == b.course);
     let bins: Vec<_> = courses.flat_map(|course| bins(course, most, KindStep::size)).collect();
     each_with(&bins, row)
@@ -281,11 +299,15 @@ fn samples(steps: &[KindStep]) -> Vec<StepSample> {
     accepted.filter_map(|step| step.sample).collect()
 }
 
-/// The curves of all courses with an accepted step.
-fn curves(steps: &[KindStep]) -> Vec<DelayCurve> {
-    let mut accepted: Vec<KindStep> =
-        steps.iter().filter(|step| step.verdict == Verdict::Accepted).copied().collect();
-    accepted.sort_by(|a, b| a.course.cmp(&b.course).then(a.level().total_cmp(&b.level())));
+/// The curves of all courses of a kind with an accepted step.
+fn curves(same: &mut [KindStep]) -> Vec<DelayCurve> {
+    let is_rejected = |step: &KindStep| step.verdict != Verdict::Accepted;
+    same.sort_unstable_by(|a, b| {
+        let by_level = || a.level().total_cmp(&b.level());
+        let by_course = is_rejected(a).cmp(&is_rejected(b)).then(a.course.cmp(&b.course));
+        by_course.then_with(by_level).then(a.number.cmp(&b.number))
+    });
+    let accepted = same.split(is_rejected).next().unwrap_or_default();
     let courses = accepted.chunk_by(|a, b| a.course == b.course);
     courses.filter_map(|steps| Some(curve(steps.first()?.course, steps))).collect()
 }
@@ -304,10 +326,9 @@ fn curve(course: Course, steps: &[KindStep]) -> DelayCurve {
     DelayCurve { transition, side, rises, points: each_with(&groups, point) }
 }
 
-fn summary(steps: &[KindStep], kind: Transition) -> Option<KindDelay> {
-    let same: Vec<KindStep> =
-        steps.iter().filter(|step| step.course.transition == kind).copied().collect();
-    let samples = samples(&same);
+/// What the steps of a kind have in common.
+fn summary(same: &[KindStep]) -> Option<KindDelay> {
+    let samples = samples(same);
     let count = |condition: Condition| {
         let rejected = Verdict::Rejected(condition);
         (condition, same.iter().filter(|step| step.verdict == rejected).count())
@@ -315,8 +336,8 @@ fn summary(steps: &[KindStep], kind: Transition) -> Option<KindDelay> {
     let counts = Condition::ALL.into_iter().map(count).filter(|(_, steps)| *steps > 0);
     let enough =
         samples.len() >= FEWEST.max(1) && samples.len() as f64 >= LEAST_SHARE * same.len() as f64;
-    (!same.is_empty()).then(|| KindDelay {
-        transition: kind,
+    Some(KindDelay {
+        transition: same.first()?.course.transition,
         steps: same.len(),
         accepted: samples.len(),
         typical: TypicalDelay::of(&samples, Scatter::pooled([samples.as_slice()]))

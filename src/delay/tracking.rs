@@ -120,7 +120,7 @@ impl Tracking {
                 tolerance: self.tolerance,
             };
             if motion.is_none() {
-                *motion = hold.motion(start, arrived, settings);
+                *motion = hold.motion(start, arrived, settings).map(Box::new);
             }
             arrived = hold.arrival().map_or(arrived, |arrival| start + arrival);
             previous = hold.target;

@@ -1,6 +1,6 @@
 //! A joint with its estimate.
 
-use crate::delay::{AgainstState, DelayTable, Lag, Settling, Tracking};
+use crate::delay::{AgainstState, DelayTable, Lag, Neutral, Settling, Tracking};
 use crate::experiment::Joint;
 use crate::study::JointEstimate;
 
@@ -37,7 +37,12 @@ impl EstimatedJoint<'_> {
 
     /// The joint's accepted delays against its state.
     pub fn against_state(&self) -> AgainstState {
+        self.against_state_about(Neutral::of(&self.joint.trials).as_ref())
+    }
+
+    /// The same where its neutral input is known.
+    pub(super) fn against_state_about(&self, neutral: Option<&Neutral>) -> AgainstState {
         let estimates = self.estimate.trials.iter().map(|trial| trial.as_ref().ok());
-        AgainstState::of(self.joint, estimates)
+        AgainstState::of(self.joint, neutral, estimates)
     }
 }

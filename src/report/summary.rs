@@ -88,13 +88,18 @@ impl DelayRange {
 impl JointSummary {
     /// Counts the decisions of `joint`.
     pub(crate) fn of(joint: EstimatedJoint<'_>) -> Self {
+        Self::with(joint, joint.delay_table().kinds)
+    }
+
+    /// The same where the delays by kinds of steps are known.
+    pub(crate) fn with(joint: EstimatedJoint<'_>, kinds: Vec<KindDelay>) -> Self {
         let with = |verdict: Verdict| verdicts(joint).filter(move |(found, ..)| *found == verdict);
         let samples = with(Verdict::Accepted).filter_map(|(_, samples, _)| samples);
         let seconds = with(Verdict::Accepted).filter_map(|(_, _, seconds)| seconds);
         let count = |condition: Condition| (condition, with(Verdict::Rejected(condition)).count());
         let delay_s = DelayRange::of(seconds.collect());
         Self {
-            headline: Headline::of(joint.delay_table().kinds),
+            headline: Headline::of(kinds),
             steps: verdicts(joint).count(),
             accepted: with(Verdict::Accepted).count(),
             rejected: Condition::ALL

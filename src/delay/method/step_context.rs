@@ -36,7 +36,7 @@ impl StepContext<'_> {
 
     /// What the output does about the step, where rest or a stop is shown.
     pub(super) fn motion(&self) -> Option<StepMotion> {
-        self.trial.motions.get(self.index).copied().flatten()
+        self.trial.motions.get(self.index)?.as_deref().copied()
     }
 
     /// The p-value of a departure from rest, where the joint departed: the noise of its rest

@@ -23,8 +23,11 @@ const FOLLOWS: f64 = 0.7;
 const ENOUGH: usize = 5000;
 const FAR: f64 = 0.5;
 
-/// Samples that a correlation needs.
-const FEWEST: usize = 200;
+/// Samples that a correlation needs, and fewer ones of which it needs [`FOLLOWS_CLOSELY`]. Chosen: of
+/// a hundred samples of two random walks one pair in fifty has as much.
+const ENOUGH_SAMPLES: usize = 200;
+const FEWEST: usize = 100;
+const FOLLOWS_CLOSELY: f64 = 0.9;
 
 /// The lag in samples at which the output follows the input best, and the squared correlation
 /// there; none where it does not follow it.
@@ -44,7 +47,8 @@ pub(crate) fn followed(trials: &[Trial]) -> Option<(usize, f64)> {
         return None;
     }
     let best = |of| best(of, 1);
-    let follows = best(|input| input).filter(|(_, squared)| *squared >= FOLLOWS)?;
+    let least = if samples < ENOUGH_SAMPLES { FOLLOWS_CLOSELY } else { FOLLOWS };
+    let follows = best(|input| input).filter(|(_, squared)| *squared >= least)?;
     (follows.1 > best(sign)?.1).then_some(follows)
 }
 
@@ -118,6 +122,30 @@ impl FirstOrder {
         // A joint that runs into its stops follows the sign of the input as well.
         let of_sign = lagging(trials, time_constant_s, dead, sign).r_squared();
         (squared >= FOLLOWS && squared > of_sign).then_some(found)
+    }
+
+    /// Where a fit of a first order may start, though the input alone does not show one: its time
+    /// constant may be as long as a quarter of the record, if the input moves about enough.
+    pub(crate) fn likely(trials: &[Trial]) -> Option<Self> {
+        /// Samples that are looked at, and time constants (chosen).
+        const ENOUGH: usize = 50_000;
+        const COUNT: usize = 40;
+        const PART: f64 = 0.25;
+        /// Squared correlation (chosen).
+        const LIKELY: f64 = 0.7;
+        let mut left = ENOUGH;
+        let parts = trials.iter().map_while(|trial| {
+            let part = trial.part(0, trial.len().min(left));
+            left = left.saturating_sub(trial.len());
+            part
+        });
+        let trials: Vec<Trial> = parts.collect();
+        let longest = trials.iter().max_by_key(|trial| trial.len())?;
+        let longest_s = PART * longest.len() as f64 * longest.period().seconds();
+        let (found, squared) = best(&trials, usize::MAX, longest_s, COUNT)?;
+        let dead = floor_to_index(found.dead_time_s / longest.period().seconds());
+        let of_sign = lagging(&trials, found.time_constant_s, dead, sign).r_squared();
+        (squared >= LIKELY && squared > of_sign).then_some(found)
     }
 
     /// The best of what is said to settle, with the squared correlation.

@@ -31,7 +31,7 @@ fn quantile_by_digits(values: &(impl Iterator<Item = f64> + Clone), last: usize,
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index")]
     let index = place as usize;
     let lower = nth(values, index);
-    let upper = if index < last { nth(values, index + 1) } else { lower };
+    let upper = if index < last { next(values, lower, index) } else { lower };
     lower + place.fract() * (upper - lower)
 }
 
@@ -61,6 +61,17 @@ fn nth(values: &(impl Iterator<Item = f64> + Clone), mut rank: usize) -> f64 {
     }
     let bits = if known & SIGN == 0 { !known } else { known ^ SIGN };
     f64::from_bits(bits)
+}
+
+/// The value behind `value`, which is the one at `index` in their order.
+fn next(values: &(impl Iterator<Item = f64> + Clone), value: f64, index: usize) -> f64 {
+    let this = ordered(value);
+    let up_to = values.clone().filter(|other| ordered(*other) <= this).count();
+    if up_to > index + 1 {
+        return value;
+    }
+    let above = values.clone().filter(|other| ordered(*other) > this);
+    above.min_by(f64::total_cmp).unwrap_or(value)
 }
 
 /// The bit of the sign.

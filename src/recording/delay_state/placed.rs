@@ -60,7 +60,7 @@ pub(super) fn placed<'l, 'a>(
     let mut coming = steps.iter().enumerate().peekable();
     let place = |(trial, segment): (&'l TrialLayout<'a>, &'l SegmentLayout<'a>)| {
         let is_this = |step: &StepState| {
-            step.number == segment.decision.number && step.trial == trial.trial.label()
+            step.number == segment.decision.number && *step.trial == *trial.trial.label()
         };
         Placed { trial, segment, step: coming.next_if(|(_, step)| is_this(step)) }
     };

@@ -167,7 +167,7 @@ pub(super) struct LagPartJson {
 /// The delay against the state of the joint.
 #[derive(Debug, Serialize)]
 struct AgainstJson {
-    steps: Vec<StepStateJson>,
+    steps: StepStatesJson,
     correlations: Vec<CorrelationJson>,
     direction: DirectionJson,
     by_transition: Vec<AgainstKindJson>,
@@ -182,9 +182,19 @@ struct AgainstKindJson {
     direction: DirectionJson,
 }
 
+/// All accepted steps, each made as it is written.
+#[derive(Debug)]
+struct StepStatesJson(Vec<StepState>);
+
+impl Serialize for StepStatesJson {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.0.iter().map(StepStateJson::from))
+    }
+}
+
 #[derive(Debug, Serialize)]
-struct StepStateJson {
-    trial: String,
+struct StepStateJson<'a> {
+    trial: &'a str,
     number: usize,
     transition: &'static str,
     delay_s: f64,
@@ -193,7 +203,7 @@ struct StepStateJson {
     dwell_s: Option<f64>,
     angle: f64,
     time_s: f64,
-    covariates: Vec<Option<f64>>,
+    covariates: &'a [Option<f64>],
 }
 
 #[derive(Debug, Serialize)]
@@ -282,8 +292,9 @@ impl<'a> JointJson<'a> {
         let chosen = joint.estimate.chosen;
         let is_own = chosen.is_some() || own_settings(&joint, asked).is_some();
         let DelayTable { neutral, rows, kinds, .. } = joint.delay_table();
+        let against_state = joint.against_state_about(neutral.as_ref());
         let JointSummary { steps, accepted, rejected, delay_samples, delay_s, words, .. } =
-            JointSummary::of(joint);
+            JointSummary::with(joint, kinds.clone());
         let count = |(condition, count): (Condition, usize)| (condition.to_string(), count.into());
         Self {
             joint: &joint.joint.name,
@@ -307,7 +318,7 @@ impl<'a> JointJson<'a> {
             neutral: neutral.map(|Neutral { level, low, high }| NeutralJson { level, low, high }),
             delay_table: rows.iter().map(|row| DelayRowJson::new(&joint.joint.name, row)).collect(),
             delay_by_transition: kinds.into_iter().map(Into::into).collect(),
-            against_state: joint.against_state().into(),
+            against_state: against_state.into(),
             decisions: DecisionsJson(joint),
         }
     }
@@ -383,7 +394,7 @@ impl From<LagPart> for LagPartJson {
 impl From<AgainstState> for AgainstJson {
     fn from(AgainstState { steps, correlations, direction, kinds }: AgainstState) -> Self {
         Self {
-            steps: steps.into_iter().map(Into::into).collect(),
+            steps: StepStatesJson(steps),
             correlations: correlations.into_iter().map(Into::into).collect(),
             direction: direction.into(),
             by_transition: kinds.into_iter().map(Into::into).collect(),
@@ -402,10 +413,10 @@ impl From<AgainstOfKind> for AgainstKindJson {
     }
 }
 
-impl From<StepState> for StepStateJson {
-    fn from(step: StepState) -> Self {
+impl<'a> From<&'a StepState> for StepStateJson<'a> {
+    fn from(step: &'a StepState) -> Self {
         Self {
-            trial: step.trial,
+            trial: &step.trial,
             number: step.number,
             transition: step.transition.id(),
             delay_s: step.delay_s,
@@ -414,7 +425,7 @@ impl From<StepState> for StepStateJson {
             dwell_s: step.dwell_s,
             angle: step.angle,
             time_s: step.time_s,
-            covariates: step.covariates,
+            covariates: &step.covariates,
         }
     }
 }
