@@ -189,14 +189,33 @@ fn scanned(log: &Path, input: usize, output: usize) -> usize {
     (0..errors.len()).min_by(|a, b| errors[*a].total_cmp(&errors[*b])).unwrap()
 }
 
+/// The dead time of `estimate` and its interval, seconds, of a joint given as for `--joint`.
+fn dead_time(log: &Path, joint: &str) -> [f64; 3] {
+    let output = Command::new(env!("CARGO_BIN_EXE_tauscope"))
+        .args(["estimate", "--quiet", "--format=json", "--joint", joint])
+        .arg(log)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let dead_time = &found["joints"][0]["dead_time"];
+    ["value_s", "low_s", "high_s"].map(|key| dead_time[key].as_f64().unwrap())
+}
+
+/// The textbook's three samples hold the one that any sampled system takes.
 #[test]
 fn sales_follow_their_leading_indicator_after_three_months() {
     let Some(log) = log("bj_sales_seriesM.csv") else { return };
     assert_eq!(scanned(&log, 1, 2), 3);
+    let [value, low, high] = dead_time(&log, "sales=lead:sales");
+    assert!((1.9..2.1).contains(&value) && low > 1.8 && high < 2.2, "{value}, {low} to {high}");
 }
 
 #[test]
 fn carbon_dioxide_follows_the_gas_after_three_samples() {
     let Some(log) = log("gas_furnace_seriesJ.csv") else { return };
     assert_eq!(scanned(&log, 1, 2), 3);
+    let [value, low, high] = dead_time(&log, "co2=gas_rate:co2_pct");
+    assert!((18.0..=27.0).contains(&value), "{value}");
+    assert!(low < 20.0 && 18.0 < high && high - low < 20.0, "{low} to {high}");
 }

@@ -7,6 +7,8 @@ use super::Dimension;
 pub struct RecordRange<'a> {
     /// Largest magnitude of the input, in input units.
     pub input_abs_max: f64,
+    /// Highest minus lowest input, in input units.
+    pub input_span: f64,
     /// The distinct magnitudes of the input, in input units, ascending.
     pub input_levels: &'a [f64],
     /// Lowest output, in output units.
@@ -28,6 +30,7 @@ impl Default for RecordRange<'_> {
     fn default() -> Self {
         Self {
             input_abs_max: 1.0,
+            input_span: 2.0,
             input_levels: &[],
             output_min: -45.0,
             output_max: 45.0,

@@ -190,6 +190,7 @@ mod tests {
         let levels = [1.0, 2.0];
         let record = RecordRange {
             input_abs_max: 2.0,
+            input_span: 4.0,
             input_levels: &levels,
             output_min: -10.0,
             output_max: 10.0,

@@ -1,7 +1,7 @@
 //! Units in the names of columns: `boom.output [deg]`, `angle (rad)`, `u_duty_pct`, `t_ms`.
 
 /// How units are written in names, and how they are shown.
-const UNITS: [(&str, &str); 45] = [
+const UNITS: [(&str, &str); 55] = [
     ("deg", "deg"),
     ("degrees", "deg"),
     ("°", "°"),
@@ -47,6 +47,16 @@ const UNITS: [(&str, &str); 45] = [
     ("mm_s", "mm/s"),
     ("mm/s", "mm/s"),
     ("cm_s", "cm/s"),
+    ("inch", "in"),
+    ("K", "K"),
+    ("lpm", "l/min"),
+    ("l_min", "l/min"),
+    ("l/min", "l/min"),
+    ("L/min", "l/min"),
+    ("cnt", "counts"),
+    ("cnts", "counts"),
+    ("counts", "counts"),
+    ("ticks", "ticks"),
 ];
 
 /// Units of time, and their seconds.
@@ -149,9 +159,10 @@ mod tests {
         assert_eq!(of_native("j.input_pct"), Some(("j.input", "%".to_owned())));
         assert_eq!((of_native("j.pressure_bar"), of_native("j.input")), (None, None));
         assert_eq!(
-            (of("boom_v"), of("deg"), of("y_boom"), of("jaw_torque_counts")),
+            (of("boom_v"), of("deg"), of("y_boom"), of("jaw_torque_raw")),
             (None, None, None, None)
         );
+        assert_eq!(of("angle_cnt").as_deref(), Some("counts"));
         assert_eq!((of_time("time_ms"), of_time("t"), of_time("t_boom")), (Some("ms"), None, None));
     }
 }

@@ -115,8 +115,8 @@ impl Search<'_, '_> {
         self.compared(extensions)
     }
 
-    /// The base as the first order that the output follows, where it follows the input itself: too
-    /// far from an integrator for a descent to find it.
+    /// The base as the first order that the output follows, where it does or is likely to follow the
+    /// input itself: too far from an integrator for a descent to find it.
     fn as_first_order(&self) -> Option<Extension> {
         let (effects, model) = self.record.follower()?.started_at(&self.base.model)?;
         let is_allowed = |id: &&str| self.effects.iter().any(|effect| effect.spec().id == *id);

@@ -53,6 +53,11 @@ impl Follower {
         Some(Self { first_order, rate: usual_rate(trials) })
     }
 
+    /// Where a fit of a first order may start, though no correlation alone shows one.
+    pub(crate) fn likely(joint: &Joint) -> Option<Self> {
+        Some(Self { first_order: FirstOrder::likely(&joint.trials)?, rate: None })
+    }
+
     /// `model` as this first order, and the ids of the effects that make it one.
     pub(crate) fn started_at(self, model: &JointModel) -> Option<(Vec<&'static str>, JointModel)> {
         let (id, model) = self.first_order.started_at(model)?;
@@ -144,6 +149,17 @@ mod tests {
         let found = FirstOrder::of(&of.trials).unwrap();
         assert!((found.dead_time_s - 0.08).abs() < 0.015, "{found:?}");
         assert!((0.08..0.13).contains(&found.time_constant_s), "{found:?}");
+    }
+
+    #[test]
+    fn a_time_constant_longer_than_the_holds_is_where_a_fit_starts() {
+        let left = (-0.01_f64 / 2.0).exp();
+        let slow = joint(&LEVELS, |u, y| 3.0 * u + (y - 3.0 * u) * left);
+        assert_eq!(follows_input(&slow), None);
+        let found = FirstOrder::likely(&slow.trials).unwrap();
+        assert!((1.3..3.0).contains(&found.time_constant_s), "{found:?}");
+        let integrator = joint(&LEVELS, |u, y| y + 0.01 * u);
+        assert_eq!(FirstOrder::likely(&integrator.trials), None);
     }
 
     #[test]

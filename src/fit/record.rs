@@ -294,11 +294,14 @@ impl<'a> FitRecord<'a> {
     /// [`input_levels`](Self::input_levels).
     pub fn range<'l>(&self, levels: &'l [f64], speed_abs_max: f64) -> RecordRange<'l> {
         let outputs = || self.joint.trials.iter().flat_map(|trial| trial.output().iter().copied());
+        let inputs = || self.joint.trials.iter().flat_map(|trial| trial.input().iter().copied());
+        let lowest_input = inputs().fold(f64::INFINITY, f64::min);
         let ends = self.joint.trials.iter().zip(&self.starts_s);
         let ends = ends.map(|(trial, start_s)| start_s + length_s(trial));
         let periods = self.joint.trials.iter().map(|trial| trial.period().seconds());
         RecordRange {
             input_abs_max: levels.last().copied().unwrap_or(1.0),
+            input_span: inputs().fold(f64::NEG_INFINITY, f64::max) - lowest_input,
             input_levels: levels,
             output_min: outputs().fold(f64::INFINITY, f64::min),
             output_max: outputs().fold(f64::NEG_INFINITY, f64::max),
@@ -309,9 +312,10 @@ impl<'a> FitRecord<'a> {
         }
     }
 
-    /// How the output follows the input, where it follows the input itself.
+    /// How the output follows the input, where it does or is likely to follow the input itself.
     pub(crate) fn follower(&self) -> Option<Follower> {
-        *self.follower.get_or_init(|| Follower::of(self.joint))
+        let of = || Follower::of(self.joint).or_else(|| Follower::likely(self.joint));
+        *self.follower.get_or_init(of)
     }
 
     /// The distinct magnitudes of the input, ascending.

@@ -14,8 +14,10 @@ import time
 import numpy as np
 from scipy.optimize import least_squares
 
-TRIALS = ("test", "run", "trial")
-TIMES = ("t_s", "time_s")
+TRIALS = ("test", "run", "trial", "stroke")
+TIMES = ("t_s", "time_s", "t")
+# Of logs that tell none, seconds.
+PERIOD = 0.004
 LONGEST = 200
 SHORTEST = 10
 LADDER = ["integrator", "dead_band", "input_saturation", "direction_gain", "end_stop"]
@@ -26,10 +28,11 @@ def windows(path, u_name, y_name):
     with open(path, newline="") as file:
         rows = list(csv.DictReader(file))
     label = next((name for name in TRIALS if name in rows[0]), None)
-    at = next(name for name in TIMES if name in rows[0])
+    at = next((name for name in TIMES if name in rows[0]), None)
     trials = {}
-    for row in rows:
-        trials.setdefault(row.get(label), []).append([float(row[at]), float(row[u_name] or "nan"), float(row[y_name] or "nan")])
+    for number, row in enumerate(rows):
+        time_s = float(row[at]) if at else PERIOD * number
+        trials.setdefault(row.get(label), []).append([time_s, float(row[u_name] or "nan"), float(row[y_name] or "nan")])
     parts = ([], [])
     for number, rows in enumerate(trials.values()):
         t, u, y = np.array(rows).T
