@@ -82,6 +82,22 @@ fn a_further_signal_is_compared_where_it_was_measured() {
 }
 
 #[test]
+fn variables_that_go_together_are_said_not_to_be_told_apart() {
+    let mut joint = joint(DelayLaw::Warming { first: 0.4, last: 0.1 }, 120.0);
+    joint.covariates = vec![Signal { name: "oil".to_owned(), unit: Some("degC".to_owned()) }];
+    for trial in &mut joint.trials {
+        let oil = (0..trial.len()).map(|k| 20.0 + 0.001 * k as f64).collect();
+        *trial = trial.clone().with_covariates(vec![oil]).unwrap();
+    }
+    let found = found(&joint);
+    let pairs: Vec<_> = found.kinds.iter().flat_map(|kind| &kind.confounded).collect();
+    assert!(!pairs.is_empty());
+    assert!(pairs.iter().all(|pair| **pair == ["time", "oil"]), "{pairs:?}");
+    let text = against_table([("boom", &found)]);
+    assert!(text.contains("time and oil go together"), "{text}");
+}
+
+#[test]
 fn steps_have_the_state_of_their_joint() {
     let joint = joint(DelayLaw::Constant { seconds: 0.2 }, 60.0);
     let found = found(&joint);

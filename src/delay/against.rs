@@ -107,6 +107,9 @@ pub struct AgainstOfKind {
     pub correlations: Vec<Correlation>,
     /// Steps up against steps down.
     pub direction: Direction,
+    /// Pairs of variables on each of which the delay depends, and which go with one another: the
+    /// record does not tell which of them it is.
+    pub confounded: Vec<[String; 2]>,
 }
 
 impl AgainstState {
@@ -127,9 +130,13 @@ impl AgainstState {
             let same = steps.iter().filter(|step| step.transition == kind);
             let same: Vec<&StepState> = same.collect();
             let (correlations, direction) = compare(joint, &same);
-            let of_kind =
-                AgainstOfKind { transition: kind, steps: same.len(), correlations, direction };
-            (!same.is_empty()).then_some(of_kind)
+            (!same.is_empty()).then(|| AgainstOfKind {
+                transition: kind,
+                steps: same.len(),
+                confounded: confounded(&same, &correlations, &direction),
+                correlations,
+                direction,
+            })
         });
         Self { kinds: kinds.collect(), steps, correlations, direction }
     }
@@ -143,6 +150,37 @@ fn compare(joint: &Joint, steps: &[&StepState]) -> (Vec<Correlation>, Direction)
     let mut direction = Direction::of(steps);
     correct(&mut correlations, &mut direction);
     (correlations, direction)
+}
+
+/// The pairs, of what the delay depends on in `steps`, that go with one another.
+fn confounded(
+    steps: &[&StepState],
+    correlations: &[Correlation],
+    direction: &Direction,
+) -> Vec<[String; 2]> {
+    /// Rank correlation of two variables (chosen).
+    const TOGETHER: f64 = 0.8;
+    let value = |step: &StepState, variable: Option<usize>| match variable {
+        Some(number) => step.value(number),
+        None => Some(f64::from(u8::from(step.input_change > 0.0))),
+    };
+    let numbered = correlations.iter().enumerate().filter(|(_, one)| one.significant);
+    let depends: Vec<(&str, Option<usize>)> = numbered
+        .map(|(number, one)| (one.variable.as_str(), Some(number)))
+        .chain(direction.significant.then_some(("direction", None)))
+        .collect();
+    let go_together = |one: Option<usize>, other: Option<usize>| {
+        let pair = |step: &&StepState| Some((value(step, one)?, value(step, other)?));
+        let (one, other): (Vec<f64>, Vec<f64>) = steps.iter().filter_map(pair).unzip();
+        spearman(&one, &other).is_some_and(|test| test.statistic.abs() >= TOGETHER)
+    };
+    let mut pairs = Vec::new();
+    for (index, (one, number)) in depends.iter().enumerate() {
+        let others = depends.iter().skip(index + 1);
+        let others = others.filter(|(_, other)| go_together(*number, *other));
+        pairs.extend(others.map(|(other, _)| [(*one).to_owned(), (*other).to_owned()]));
+    }
+    pairs
 }
 
 /// The accepted steps of a trial.

@@ -7,12 +7,33 @@ use crate::wording::{bracketed, p_cell};
 /// A row per joint, kind of step and variable; `joints` are names and what was found.
 pub fn against_table<'a>(joints: impl IntoIterator<Item = (&'a str, &'a AgainstState)>) -> String {
     let mut table = TextTable::new(AGAINST_HEADER, &[3, 4, 5]);
+    let mut confounded = Vec::new();
     for (joint, found) in joints {
         for cells in against_rows(joint, found) {
             table.row(cells);
         }
+        confounded
+            .extend(confounded_sentences(found).into_iter().map(|one| format!("{joint}: {one}\n")));
     }
-    format!("{table}\nSpearman's rank correlation; `yes`: p at most 0.05 after Holm's correction\n")
+    let note = "Spearman's rank correlation; `yes`: p at most 0.05 after Holm's correction";
+    format!("{table}\n{note}\n{}", confounded.concat())
+}
+
+/// What the record does not tell apart, a sentence for each pair.
+pub(super) fn confounded_sentences(found: &AgainstState) -> Vec<String> {
+    let of_kind = |kind: &AgainstOfKind| {
+        let transition = kind.transition;
+        let sentence = move |[one, other]: &[String; 2]| {
+            format!(
+                "in steps of the kind `{transition}` {} and {} go together: the record does not \
+                 tell on which of them the delay depends",
+                variable_text(one, None),
+                variable_text(other, None)
+            )
+        };
+        kind.confounded.iter().map(sentence).collect::<Vec<_>>()
+    };
+    found.kinds.iter().flat_map(of_kind).collect()
 }
 
 /// What the cells of [`against_rows`] are.

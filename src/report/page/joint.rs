@@ -5,7 +5,7 @@ use super::plot::PlotError;
 use super::report::Report;
 use super::{dead_time, delays, model, record, segment};
 use crate::delay::{AgainstState, Condition, DelayTable, MethodSpec};
-use crate::report::against::{AGAINST_HEADER, against_rows};
+use crate::report::against::{AGAINST_HEADER, against_rows, confounded_sentences};
 use crate::report::decisions::detailed_rows;
 use crate::report::delay_table::{LEVEL_HEADER, kind_sentence, level_cells, neutral_sentence};
 use crate::report::difference::difference_table;
@@ -120,7 +120,12 @@ fn delay_blocks(estimated: EstimatedJoint<'_>, file: &str) -> Result<Vec<Block>,
     let table = Block::Table(against(&estimated.joint.name, &found));
     let note = "Spearman's rank correlation; `yes`: p at most 0.05 after Holm's correction.";
     let summary = "What the delay depends on".to_owned();
-    blocks.push(Block::Details { summary, blocks: vec![table, Block::text(note)] });
+    let mut details = vec![table, Block::text(note)];
+    let confounded = confounded_sentences(&found);
+    if !confounded.is_empty() {
+        details.push(Block::List(confounded.iter().map(|one| sentence(one)).collect()));
+    }
+    blocks.push(Block::Details { summary, blocks: details });
     Ok(blocks)
 }
 
