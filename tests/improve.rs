@@ -35,6 +35,16 @@ fn assert_history_is_that_of(desk: &Desk, file: &str, joint: &Value) {
 }
 
 #[test]
+fn nothing_is_made_of_rounding() {
+    let desk = Desk::with(vec![slow("boom")]);
+    let log = concat!(env!("CARGO_MANIFEST_DIR"), "/data/worked_example.csv");
+    let json = desk.json(&format!("improve {log} --write exact.toml"), 0);
+    let joint = &json["joints"][0];
+    assert!(number(&joint["error"]["train"]["rmse"]) < 1e-12, "{joint}");
+    assert_eq!((&joint["verdict"], &joint["effects"]), (&json!("adequate"), &json!([])));
+}
+
+#[test]
 fn the_error_falls_effect_by_effect_down_to_the_noise() {
     let desk = Desk::with(vec![slow("boom")]);
     desk.write(

@@ -123,8 +123,12 @@ pub(crate) fn floor_of(record: &FitRecord<'_>, fit: &Assessment) -> Option<f64> 
     Some(shown * share_not_followed(arrived(), &fit.evaluation.simulated))
 }
 
-/// Whether the residual of `fit` is more than noise on the training part of `record`.
+/// Whether the residual of `fit` is more than noise on the training part of `record`; none where it
+/// is no more than rounding.
 pub(crate) fn lack_of(record: &FitRecord<'_>, fit: &Assessment) -> Option<LackOfFit> {
+    if record.is_exact(&fit.evaluation) {
+        return None;
+    }
     let floor = floor_of(record, fit);
     let residuals = |part| record.cut(&fit.evaluation.residuals, part);
     let local = {

@@ -34,7 +34,8 @@ const HOPELESS: f64 = 3.0;
 /// Ranks the effects of `options` by how well the model of `base` with each of them, fitted,
 /// explains the record, best first.
 ///
-/// A long record is surveyed in part first, and as a whole where that shows nothing.
+/// A long record is surveyed in part first, and as a whole where that shows nothing. Of a residual
+/// that is rounding nothing is left to explain.
 pub(super) fn rank(
     record: &FitRecord<'_>,
     base: &Fit,
@@ -43,6 +44,9 @@ pub(super) fn rank(
     scope: Scope,
     workers: &impl Workers,
 ) -> Vec<Candidate> {
+    if record.is_exact(&base.evaluation) {
+        return Vec::new();
+    }
     let levels = record.input_levels();
     let range = signal_range(record, &base.model, &levels);
     let effects = eligible(record, &base.model, options);

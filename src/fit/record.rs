@@ -312,6 +312,17 @@ impl<'a> FitRecord<'a> {
         }
     }
 
+    /// Whether the residuals of `evaluation` are no more than rounding: there is nothing to explain.
+    pub(crate) fn is_exact(&self, evaluation: &Evaluation) -> bool {
+        /// Part of the largest output, some thousand times what a double is rounded by (chosen).
+        const ROUNDING: f64 = 1e-12;
+        let outputs = self.joint.trials.iter().flat_map(|trial| trial.output().iter());
+        let largest = outputs.fold(0.0_f64, |largest, output| largest.max(output.abs()));
+        let residuals = evaluation.residuals.iter().flatten();
+        let most = residuals.fold(0.0_f64, |most, residual| most.max(residual.abs()));
+        most <= ROUNDING * largest
+    }
+
     /// How the output follows the input, where it does or is likely to follow the input itself.
     pub(crate) fn follower(&self) -> Option<Follower> {
         let of = || Follower::of(self.joint).or_else(|| Follower::likely(self.joint));
