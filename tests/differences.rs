@@ -250,8 +250,8 @@ mod recorded {
         assert!(!desk.has("x_4.rrd"));
         let joints = page(&index, "/joints");
         for number in 1..=21 {
-            let file = format!("x\\_{}.rrd", (number - 1) / 8 + 1);
-            let row = |line: &&str| line.starts_with(&format!("| joint\\_{number:02} "));
+            let file = format!("x_{}.rrd", (number - 1) / 8 + 1);
+            let row = |line: &&str| line.starts_with(&format!("| joint_{number:02} "));
             let row = joints.lines().find(row).unwrap_or_default();
             assert!(row.contains(&file), "{row} has no {file}");
             let back = ReadBack::of(&bytes(&format!("x_{}.rrd", (number - 1) / 8 + 1)));

@@ -296,6 +296,29 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() < 1e-9
 }
 
+#[test]
+fn conditions_and_segments_share_one_error() {
+    // The speed errs where the input is large; the residual that stays is large elsewhere.
+    let mut made = Made::new(5, 6000, 1, [0.5, 1.0]);
+    let drives: Vec<bool> = made.samples.input.iter().map(|input| *input > 1.5).collect();
+    made.samples.residual = drives.iter().map(|drives| if *drives { 0.1 } else { 3.0 }).collect();
+    let noise: Vec<f64> = (0..6000).map(|_| 0.1 * made.random.normal()).collect();
+    let error = drives.iter().zip(noise).map(|(drives, noise)| f64::from(*drives) + noise);
+    made.samples.speed_error = error.collect();
+    let segments = made.segments.clone();
+    let record = ResidualRecord::new(made.samples, vec!["a".to_owned()], segments).unwrap();
+    let diagnosis = diagnose(&record);
+    let condition = diagnosis.fails_where.first().unwrap();
+    assert!(condition.share_of_squared_error > 0.9, "{condition:?}");
+    let outside = diagnosis
+        .worst_segments
+        .iter()
+        .filter(|segment| !condition.samples.iter().any(|sample| segment.samples.contains(sample)));
+    let outside: f64 = outside.map(|segment| segment.share_of_squared_error).sum();
+    assert!(outside + condition.share_of_squared_error <= 1.0 + 1e-9, "{diagnosis:?}");
+    assert!(!diagnosis.worst_segments.is_empty());
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 

@@ -18,7 +18,7 @@ use rerun::external::arrow::array::AsArray as _;
 use rerun::external::re_log_encoding::DecoderApp;
 use rerun::log::{Chunk, LogMsg};
 use tauscope::batch::Threads;
-use tauscope::delay::{Decision, FineDelay, FirstLast, Method, Settings};
+use tauscope::delay::{Decision, Doubt, FineDelay, FirstLast, Method, Settings};
 use tauscope::experiment::{Experiment, ReadOptions};
 use tauscope::recording::{Detail, RecordError, Recording, write_recording};
 use tauscope::report::{DecisionRow, EstimatedJoint, decision_rows};
@@ -380,14 +380,24 @@ fn it_opens_on_the_most_doubtful_decision_and_goes_by_doubt() {
         let name = &joint.joint.name;
         let trial = joint.estimate.estimated().next().unwrap();
         let output = trial.smoothed.as_deref().unwrap();
-        let doubts: Vec<f64> =
-            trial.decisions.iter().map(|decision| decision.doubt(output).value()).collect();
+        let doubts: Vec<Doubt> =
+            trial.decisions.iter().map(|decision| decision.doubt(output)).collect();
         let texts = back.texts(&format!("/{name}/verdict"), "TextDocument:text");
-        let mut ranks: Vec<(i64, f64)> =
-            texts.iter().zip(&doubts).map(|((times, _), doubt)| (times["doubt"], *doubt)).collect();
+        let order = |doubt: &Doubt| (doubt.is_doubtful(), doubt.value());
+        let mut ranks: Vec<(i64, (bool, f64))> = texts
+            .iter()
+            .zip(&doubts)
+            .map(|((times, _), doubt)| (times["doubt"], order(doubt)))
+            .collect();
         ranks.sort_by_key(|(rank, _)| *rank);
         assert!(ranks.iter().map(|(rank, _)| *rank).eq(1..=whole(doubts.len())));
         assert!(ranks.is_sorted_by(|a, b| a.1 >= b.1), "{ranks:?}");
+        let lines = back.texts(&format!("/{name}/doubt/log"), "TextLog:text");
+        let doubtful = doubts.iter().filter(|doubt| doubt.is_doubtful()).count();
+        let marked = lines.iter().filter(|(_, line)| line.contains("not doubtful"));
+        assert_eq!(marked.count(), lines.len() - doubtful);
+        let limits = texts.iter().filter(|(_, text)| text.contains("(≥ p "));
+        assert_eq!(limits.count(), texts.len(), "value and limit of a condition are in one cell");
         for entity in ["verdict", "drawing/borders", "place", "map/here"] {
             let ticks = back.ticks(&format!("/{name}/{entity}"), "decision");
             assert_eq!(ticks.iter().filter(|tick| **tick == 0).count(), 1, "{entity}");

@@ -100,6 +100,15 @@ fn the_error_falls_along_the_revisions_as_in_the_report() {
     assert_eq!(added, ["actuator_lag", "dead_band"]);
     assert!(back.texts("/boom/revision/removed", "TextDocument:text").is_empty());
     assert_eq!(back.opens_on, "revision");
+    // The answer is on every page, and each but the last says what comes next.
+    let pages = back.texts("/boom/revision/words", "TextDocument:text");
+    let parts: Vec<_> =
+        pages.iter().filter_map(|(_, page)| page.split_once("## Revision")).collect();
+    assert_eq!(parts.len(), revisions.len());
+    assert!(parts.iter().all(|(answer, _)| answer.contains("no missing effect found")));
+    assert!(parts.iter().all(|(answer, _)| *answer == parts[0].0));
+    let next = parts.iter().filter(|(_, page)| page.contains("is missing; with it"));
+    assert_eq!(next.count(), revisions.len() - 1);
 }
 
 #[test]
@@ -145,7 +154,7 @@ fn every_drawing_changes_with_the_revision_and_is_on_every_timeline() {
     let words = back.texts("/boom/revision/words", "TextDocument:text");
     for ((_, text), pair) in words.iter().zip(improvements[0].revisions.windows(2)) {
         let Change::Added(id) = pair[1].change else { panic!("{:?}", pair[1].change) };
-        assert!(text.contains(&format!("{} is missing", id.replace('_', "\\_"))), "{text}");
+        assert!(text.contains(&format!("{id} is missing")), "{text}");
     }
     assert!(words.last().unwrap().1.contains("no missing effect found"));
 }

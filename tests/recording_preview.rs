@@ -106,7 +106,7 @@ fn it_says_what_the_input_tells_and_shows_each_hold() {
     }
     let says = back.cell("/boom/says", "TextDocument:text");
     let says = rerun::external::arrow::array::AsArray::as_string::<i32>(&says).value(0).to_owned();
-    for expected in ["rehearsed", "λ", "explain", "dead\\_band"] {
+    for expected in ["rehearsed", "λ", "explain", "dead_band"] {
         assert!(says.contains(expected), "{expected}: {says}");
     }
     assert_eq!(back.labels("/boom/sheet/legend").len(), 4);

@@ -11,10 +11,12 @@ use super::markdown::plain;
 use super::origin::made_from;
 use super::paths::ABOUT;
 use super::recorded::Recording;
+use crate::figure::ladder::judged;
 use crate::report::{
-    EstimatedJoint, JointSummary, LEVEL_HEADER, SUMMARY_HEADER, Words, chosen_line,
-    dead_time_sentences, kind_sentence, level_cells, settings_rows, summary_cells,
+    EstimatedJoint, JointSummary, LEVEL_HEADER, SUMMARY_HEADER, Words, change_in_words,
+    chosen_line, dead_time_sentences, kind_sentence, level_cells, settings_rows, summary_cells,
 };
+use crate::wording::{counted, doubtful_sentence, measure};
 
 /// Adds the page at `/about`.
 pub(super) fn add(
@@ -29,7 +31,12 @@ pub(super) fn add(
 
 fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String, std::fmt::Error> {
     let mut page = String::new();
-    writeln!(page, "# Delays of {} joints\n", recording.joints.len())?;
+    answers(&mut page, recording)?;
+    writeln!(page, "# Delays of {}\n", counted(recording.joints.len(), "joint"))?;
+    let doubts = || layouts.iter().flat_map(JointLayout::segments).map(|(_, s)| &s.doubt);
+    if doubts().next().is_some() {
+        writeln!(page, "{}.\n", doubtful_sentence(doubts()))?;
+    }
     writeln!(page, "| {} |", SUMMARY_HEADER.join(" | "))?;
     writeln!(page, "|---|---|---|---|---|---|---|")?;
     let summary = |joint: &EstimatedJoint<'_>| JointSummary::of(*joint);
@@ -71,6 +78,28 @@ fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String
     Ok(page)
 }
 
+/// What was found of models and dead times, first of all: a headline per joint, and how the error
+/// fell.
+fn answers(page: &mut String, recording: &Recording<'_>) -> std::fmt::Result {
+    for joint in recording.joints {
+        if let [_, finding, ..] = dead_time_sentences(joint).as_slice() {
+            writeln!(page, "# {}: {}\n", plain(&joint.joint.name), plain(finding))?;
+        }
+    }
+    for improved in recording.revisions.iter().filter(|improved| !improved.revisions.is_empty()) {
+        let unit = improved.finding.compared.joint.output_unit.as_deref();
+        writeln!(page, "# {}\n", plain(&improved.finding.conclusion().headline))?;
+        writeln!(page, "| revision | change | error |\n|---|---|---|")?;
+        for (number, revision) in improved.numbered() {
+            let error = measure(judged(&revision.comparison), unit);
+            let change = plain(&change_in_words(revision));
+            writeln!(page, "| {number} | {change} | {error} |")?;
+        }
+        writeln!(page)?;
+    }
+    Ok(())
+}
+
 /// The delays by kind of step and levels.
 fn delay_levels(page: &mut String, joints: &[EstimatedJoint<'_>]) -> std::fmt::Result {
     /// Rows that a person reads, at most.
@@ -102,7 +131,12 @@ accepted segment, red that of a rejected one.
 - **A click on the number in a row** of the list of decisions jumps to that verdict.
 - The timeline `segment` goes from step to step; `sample` and `time` run through the record.
 - Sample numbers count from 1 within the trial, as in the paper: p is the input step, r the \
-first sample of the segment, q the breakpoint, δ = q − p the delay.";
+first sample of the segment, q the breakpoint, δ = q − p the delay.
+- **Doubt** is what speaks against a decision, from its own numbers: 0 % is nothing, at 100 % the \
+least change would turn it. It is no probability. The timeline `doubt` goes through the decisions, \
+the doubtful ones first.
+- **fit** is the part of the motion that a model follows: 100 % less its error over the standard \
+deviation of what was measured.";
 
 /// How many candidates of how many are in the recording.
 fn detail(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> String {

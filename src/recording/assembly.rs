@@ -91,7 +91,7 @@ fn add_joint(
     let root = joint_root(&joint.name);
     place::add(chunks, &root, layout)?;
     signals::add(chunks, &root, joint, layout)?;
-    decisions::add(chunks, &root, layout)?;
+    decisions::add(chunks, &root, joint, layout)?;
     verdict::add(chunks, &root, estimated, layout, others)?;
     segment_view::add(chunks, &root, joint, layout, (recording.settings.method, others))?;
     overview::add(chunks, &root, layout)?;

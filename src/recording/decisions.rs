@@ -10,6 +10,7 @@ use super::markdown::plain;
 use super::palette::{self, color};
 use super::paths::{self, at};
 use crate::delay::{Candidate, FineDelay, Verdict};
+use crate::experiment::Joint;
 use crate::units::signed;
 use crate::wording::{doubt_percent, number};
 
@@ -17,11 +18,12 @@ use crate::wording::{doubt_percent, number};
 pub(super) fn add(
     chunks: &mut Chunks,
     root: &EntityPath,
+    joint: &Joint,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
     add_errors(chunks, root, layout)?;
     add_minimum(chunks, root, layout)?;
-    add_page(chunks, root, layout)?;
+    add_page(chunks, root, joint, layout)?;
     add_table(chunks, root, layout)
 }
 
@@ -29,6 +31,7 @@ pub(super) fn add(
 fn add_page(
     chunks: &mut Chunks,
     root: &EntityPath,
+    joint: &Joint,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
     /// Rows that a person still reads.
@@ -36,14 +39,19 @@ fn add_page(
     let rows: Vec<_> = layout.segments().take(MOST).map(|(t, s)| page_row(t, s)).collect();
     let all = layout.segments().count();
     let more = if all > MOST { format!("\n\nThe first {MOST} of {all}.") } else { String::new() };
-    let page = format!("{PAGE_HEADER}\n{}{more}", rows.join("\n"));
+    let page = format!("{}\n{}{more}", page_header(joint), rows.join("\n"));
     let document = TextDocument::from_markdown(page);
     chunks.push_static(at(root, paths::DECISION_PAGE), &document)
 }
 
-const PAGE_HEADER: &str = "\
-| trial | i | verdict | δ [s] | δ | p | q | SSE | slope before | slope after | doubt |
-|---|---|---|---|---|---|---|---|---|---|---|";
+/// The head of the table, with the units of `joint`.
+fn page_header(joint: &Joint) -> String {
+    let unit = plain(joint.output_unit.as_deref().unwrap_or("unit"));
+    format!(
+        "| trial | i | verdict | δ, s | δ | p | q | SSE, {unit}² | slope before, {unit}/sample | \
+         slope after | doubt |\n|---|---|---|---|---|---|---|---|---|---|---|"
+    )
+}
 
 fn page_row(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     let decision = segment.decision;

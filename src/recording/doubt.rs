@@ -9,7 +9,7 @@ use super::markdown::plain;
 use super::paths::{self, at};
 use super::verdict::in_short;
 use crate::experiment::Joint;
-use crate::wording::doubt_percent;
+use crate::wording::{doubt_percent, doubtful_sentence};
 
 /// Adds `/doubt` and `/doubt/log`.
 pub(super) fn add(
@@ -50,7 +50,8 @@ const LIKELY: f64 = 0.6;
 
 fn line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     let doubt = doubt_percent(&segment.doubt);
-    format!("{doubt:>5}  {}: {}", in_short(joint, trial, segment), trial.reason(segment))
+    let not = if segment.doubt.is_doubtful() { "" } else { "not doubtful: " };
+    format!("{doubt:>5}  {not}{}: {}", in_short(joint, trial, segment), trial.reason(segment))
 }
 
 fn page(joint: &Joint, ranked: &[(&TrialLayout<'_>, &SegmentLayout<'_>)]) -> String {
@@ -58,17 +59,24 @@ fn page(joint: &Joint, ranked: &[(&TrialLayout<'_>, &SegmentLayout<'_>)]) -> Str
     const MOST: usize = 25;
     let row = |(trial, segment): &(&TrialLayout<'_>, &SegmentLayout<'_>)| {
         let (doubt, reason) = (doubt_percent(&segment.doubt), trial.reason(segment));
+        let is = if segment.doubt.is_doubtful() { "**doubtful**" } else { "no" };
         let step = plain(&in_short(joint, trial, segment));
-        format!("| {} | {doubt} | {step} | {reason} |", segment.rank)
+        format!("| {} | {doubt} | {is} | {step} | {reason} |", segment.rank)
     };
     let rows: Vec<_> = ranked.iter().take(MOST).map(row).collect();
-    let (name, shown, all) = (plain(&joint.name), rows.len(), ranked.len());
+    let (name, shown) = (plain(&joint.name), rows.len());
+    let count = doubtful_sentence(ranked.iter().map(|(_, segment)| &segment.doubt));
     format!(
-        "## {name}: the {shown} most doubtful of {all} decisions\n\n\
-         | `doubt` | doubt | step | what speaks against it |\n|---|---|---|---|\n{}\n\n{HOW}",
+        "## {name}: {count}\n\n{DOUBT_MEANS} The first {shown}:\n\n\
+         | `doubt` | doubt | is it | step | what speaks against it |\n|---|---|---|---|---|\n{}\n\n{HOW}",
         rows.join("\n")
     )
 }
+
+/// What the number says.
+pub(super) const DOUBT_MEANS: &str = "\
+A doubt of 0 % says that nothing speaks against the decision, one of 100 % that the least change \
+would turn it; it is no probability.";
 
 const HOW: &str = "\
 On the timeline `doubt` (bottom left) the right arrow goes through the decisions in this order; \

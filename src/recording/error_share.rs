@@ -23,8 +23,9 @@ const COLUMNS: usize = 4;
 /// Part of a slot that its bars fill.
 const FILLED: f64 = 0.7;
 
-/// Room that a label takes at the usual size of the view: its margins, and a character.
-const LABEL: (f64, f64) = (24.0, 12.0);
+/// Room that a label takes where the view is a third of a screen of 1280 x 720: its margins, and a
+/// character.
+const LABEL: (f64, f64) = (45.0, 20.0);
 
 /// Half the width of the lines that fill a bar: their ends are round.
 pub(super) const HATCH: f32 = 1.5;

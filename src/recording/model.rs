@@ -14,12 +14,12 @@ use super::palette::{self, Rgb, color};
 use super::paths::{self, at, child};
 use super::{correlogram, error_share, model_difference, model_lanes, scatter};
 use crate::diagnosis::failure::{Region, WorstSegment};
-use crate::diagnosis::{Comparison, ErrorFigures, sensor_noise};
+use crate::diagnosis::{Comparison, ErrorFigures, SIGNIFICANCE, sensor_noise};
 use crate::experiment::Joint;
 use crate::fit::Horizon;
-use crate::report::{ComparedJoint, model_differences};
+use crate::report::{ComparedJoint, model_differences, telling_parameters};
 use crate::wording::{
-    certainty, correlation_sentences, failure_sentences, number, parameter_units,
+    certainty, correlation_sentences, failure_sentences, number, parameter_value,
 };
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
@@ -150,7 +150,11 @@ fn page(
     writeln!(page, "### {}{of}: {}\n", plain(&joint.name), headline(judged))?;
     errors(&mut page, unit, models)?;
     let horizon = judged.comparison.fit.evaluation.horizon;
-    writeln!(page, "\nErrors are root mean squares of simulations, {horizon}.")?;
+    writeln!(
+        page,
+        "\nErrors are root mean squares of simulations, {horizon}; *fit* is the part of the motion \
+         that is followed, 100 % less the validation error over the standard deviation of the output."
+    )?;
     if let Some(noise) = sensor_noise(&joint.trials) {
         writeln!(page, "Noise of the sensor: {} {unit}.", number(noise))?;
     }
@@ -168,9 +172,30 @@ fn page(
             writeln!(page, "\n**Residual** ({}): {}", compared.model, plain(&residual))?;
         }
     }
+    reconciled(&mut page, models)?;
     worst_segments(&mut page, layout, judged)?;
     parameters(&mut page, joint, models)?;
     Ok(page)
+}
+
+/// Why a model may be adequate though its residual is not white.
+fn reconciled(page: &mut String, models: &[&ComparedJoint<'_>]) -> std::fmt::Result {
+    let is_odd = |compared: &&&ComparedJoint<'_>| {
+        let Comparison { lack_of_fit, whiteness, .. } = compared.comparison;
+        let white = whiteness.as_ref().is_none_or(|found| found.p_value >= SIGNIFICANCE);
+        lack_of_fit.is_some_and(|test| test.adequate) && !white
+    };
+    let odd: Vec<String> = models.iter().filter(is_odd).map(|it| plain(it.model)).collect();
+    if odd.is_empty() {
+        return Ok(());
+    }
+    writeln!(
+        page,
+        "\n{}: adequate and yet not white, since whiteness asks whether any memory is left in the \
+         residual, as noise may have it and the smallest misfit makes it in a long record; the lack \
+         of fit asks whether motion of a size that matters is left.",
+        odd.join(", ")
+    )
 }
 
 /// The error figures of each model, and whether a lack of fit is shown.
@@ -204,13 +229,13 @@ fn worst_segments(
 ) -> std::fmt::Result {
     let Some(failure) = &judged.comparison.failure else { return Ok(()) };
     let horizon = judged.comparison.fit.evaluation.horizon;
-    writeln!(page, "\nWorst segments of {}, {}:", judged.model, Horizon::Steps)?;
+    writeln!(page, "\nWhere the error of {} arises most, {}:", judged.model, Horizon::Steps)?;
     // What is listed restarts at every step; what is plotted may not.
-    let plotted = format!("in the plot ({horizon})");
+    let plotted = format!("of the residual that is plotted ({horizon})");
     // A narrow page has no room for what is the same in each row.
     let several = judged.joint.trials.len() > 1;
     let (head, rule) = if several { ("trial |", "---|") } else { ("", "") };
-    writeln!(page, "\n| rank |{head} time | `sample` | share | {plotted} |")?;
+    writeln!(page, "\n| rank |{head} time | `sample` | arises | {plotted} |")?;
     writeln!(page, "|---|{rule}---|---|---|---|")?;
     for (rank, worst) in (1..).zip(&failure.worst_segments) {
         let (from, to) = (number(worst.start_s), number(worst.end_s));
@@ -251,9 +276,9 @@ fn parameters(page: &mut String, joint: &Joint, models: &[&ComparedJoint<'_>]) -
             compared.model
         )?;
         let fit = &compared.comparison.fit;
-        for (parameter, unit) in fit.parameters.iter().zip(parameter_units(joint, &fit.model)) {
-            let (name, value) = (&parameter.name, number(parameter.value));
-            writeln!(page, "| {name} | {value} {unit} | {} |", certainty(parameter))?;
+        for (parameter, unit) in telling_parameters(joint, fit) {
+            let (name, value) = (plain(&parameter.name), parameter_value(parameter, &unit));
+            writeln!(page, "| {name} | {} | {} |", plain(&value), certainty(parameter))?;
         }
     }
     Ok(())
@@ -288,7 +313,9 @@ fn headline(judged: &ComparedJoint<'_>) -> String {
     let times = comparison.validation.zip(sensor_noise(&judged.joint.trials));
     let times = times.map(|(error, noise)| error.rmse / noise.max(f64::MIN_POSITIVE));
     match (comparison.lack_of_fit, times) {
-        (Some(test), _) if test.adequate => "the model is adequate".to_owned(),
+        (Some(test), _) if test.adequate => {
+            "the model is adequate: no lack of fit is shown".to_owned()
+        }
         (_, Some(times)) => {
             format!("the error is {} times the noise", number(times.max(0.0).round()))
         }

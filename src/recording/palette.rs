@@ -67,6 +67,9 @@ pub(super) fn models() -> impl Iterator<Item = Rgb> {
     .cycle()
 }
 
+/// What the first colours of [`models`] are called.
+pub(super) const NAMES: [&str; 3] = ["orange", "green", "pink"];
+
 /// Another result beside this one.
 pub(super) const OTHER: Rgb = rgb(180, 140, 255);
 

@@ -378,16 +378,49 @@ impl Facts<'_, '_> {
                 Outcome::Failed => "✗",
                 Outcome::NotChecked => "–",
             };
-            let (value, limit) = self.compared(&check);
-            format!("| {mark} | {} | {value} | {limit} |", check.condition)
+            format!("| {mark} | {} | {} |", check.condition, self.in_short(&check))
         };
         let rows: Vec<_> = self.segment.decision.checks.iter().map(row).collect();
-        format!("| | condition | value | limit |\n|---|---|---|---|\n{}", rows.join("\n"))
+        format!("| | condition | value (limit) |\n|---|---|---|\n{}", rows.join("\n"))
+    }
+
+    /// The same in a narrow cell: `q 11070 (≥ p 11069)`; without a limit where none is set.
+    fn in_short(&self, check: &Check) -> String {
+        let (value, limit) = match check.condition {
+            Condition::FirstOrLast => (self.compared(check).0, None),
+            Condition::NothingHappened => {
+                (check.value.map_or_else(none, |p| format!("p {}", number(p))), check.limit)
+            }
+            Condition::BeforeInput => {
+                let q = check.value.map_or_else(none, |q| format!("q {}", number(q)));
+                let p = check.limit.map_or_else(none, number);
+                return format!("{q} (≥ p {p})");
+            }
+            Condition::OutputLimit => {
+                let limits = self.settings.output_limits;
+                let value = self.compared(check).0;
+                return limits.map_or_else(
+                    || value.clone(),
+                    |(low, high)| format!("{value} ({} to {})", number(low), number(high)),
+                );
+            }
+            _ => (self.compared(check).0, check.limit),
+        };
+        let relation = match check.condition {
+            Condition::Sse => "<",
+            Condition::AtRest => ">",
+            Condition::NothingHappened => "≤",
+            _ => "≥",
+        };
+        limit.map_or_else(
+            || value.clone(),
+            |limit| format!("{value} ({relation} {})", number(limit)),
+        )
     }
 
     /// Value and limit of a condition, as a person reads them.
     fn compared(&self, check: &Check) -> (String, String) {
-        let missing = || "none".to_owned();
+        let missing = none;
         let value = check.value.map(number);
         let limit = check.limit.map(number);
         let not_set = limit.clone().unwrap_or_else(|| "not set".to_owned());
@@ -440,6 +473,10 @@ impl Facts<'_, '_> {
             Condition::Reviewer => (missing(), missing()),
         }
     }
+}
+
+fn none() -> String {
+    "none".to_owned()
 }
 
 /// A number with half of its 95 % interval.

@@ -1,9 +1,10 @@
 //! `compare` as text.
 
+use super::consequence::noise_of;
 use super::text_table::TextTable;
 use crate::diagnosis::{Comparison, ErrorFigures, ModelDifference};
 use crate::experiment::Joint;
-use crate::fit::{Parameter, Status};
+use crate::fit::{Assessment, Parameter, Status};
 use crate::model::JointModel;
 use crate::wording::{
     self, correlation_sentences, effects_text, model_difference_sentences, number, parameter_units,
@@ -138,39 +139,47 @@ fn row(compared: &ComparedJoint<'_>) -> [String; 7] {
     [compared.joint.name.clone(), effects, training, validation, fit, noise, lack]
 }
 
-/// Error on both parts, fit in percent, noise and lack of fit, for a table.
+/// Error on both parts, fit in percent, noise of the sensor and lack of fit, for a table.
 pub(super) fn figures(joint: &Joint, comparison: &Comparison) -> [String; 5] {
-    let Comparison { training, validation, noise_floor, lack_of_fit, .. } = comparison;
+    let Comparison { training, validation, lack_of_fit, .. } = comparison;
     let dash = || "-".to_owned();
     let output = |value: f64| with_unit(value, joint.output_unit.as_deref());
     let rmse = |error: &Option<ErrorFigures>| error.map_or_else(dash, |error| output(error.rmse));
     let percent = validation.map_or_else(dash, |error| format!("{:.1} %", error.fit_percent));
     let verdict = lack_of_fit.map_or_else(dash, wording::lack_of_fit);
-    let noise = noise_floor.map_or_else(dash, output);
+    let noise = noise_of(joint).map_or_else(dash, output);
     [rmse(training), rmse(validation), percent, noise, verdict]
 }
 
 /// The parameters of a model in one line.
 pub(super) fn parameters(compared: &ComparedJoint<'_>) -> String {
     let fit = &compared.comparison.fit;
-    let units = parameter_units(compared.joint, &fit.model);
     let parameter = |(parameter, unit): (&Parameter, String)| {
         let Parameter { name, value, std_error, status } = parameter;
         let error = std_error.map_or_else(String::new, |error| format!(" ± {}", number(error)));
         with_remark(&format!("{name} {}{error} {unit}", number(*value)), *status)
     };
-    let known = fit.parameters.iter().zip(units).zip(neutrals(&fit.model));
-    // What is held where it does nothing says nothing.
-    let says = |((parameter, _), neutral): &((&Parameter, String), Option<f64>)| {
-        parameter.status != Status::Fixed || *neutral != Some(parameter.value)
-    };
-    let parameters: Vec<_> = known.filter(says).map(|(known, _)| parameter(known)).collect();
+    let parameters: Vec<_> = telling_parameters(compared.joint, fit).map(parameter).collect();
     format!(
         "{}: {}; {}",
         compared.joint.name,
         parameters.join(", "),
         compared.comparison.termination
     )
+}
+
+/// The parameters of a model with their units, without those that say nothing: held where they do
+/// nothing.
+pub(crate) fn telling_parameters<'a>(
+    joint: &Joint,
+    fit: &'a Assessment,
+) -> impl Iterator<Item = (&'a Parameter, String)> + use<'a> {
+    let units = parameter_units(joint, &fit.model);
+    let known = fit.parameters.iter().zip(units).zip(neutrals(&fit.model));
+    let says = |((parameter, _), neutral): &((&Parameter, String), Option<f64>)| {
+        parameter.status != Status::Fixed || *neutral != Some(parameter.value)
+    };
+    known.filter(says).map(|(known, _)| known)
 }
 
 /// The value of each parameter of `model` at which it does nothing; gain and delay have none.

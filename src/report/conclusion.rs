@@ -203,7 +203,7 @@ impl Finding<'_> {
     }
 
     /// What the effects that were added explain of the error, where any were:
-    /// `dead_band and end_stop explain 70 % of the error (2.89 to 0.88 deg)`.
+    /// `dead_band and end_stop explain 70 % of the error beyond the noise (2.89 to 0.88 deg)`.
     fn explained(&self) -> Option<String> {
         let before = self.before?;
         let mut gained = gained(&before.fit.model, &self.comparison().fit.model);
@@ -214,7 +214,7 @@ impl Finding<'_> {
         };
         let share = percent(self.consequence().explained()?);
         let (from, to) = (rounded(before.judged()?.rmse), self.output(self.error()));
-        Some(format!("{names} {explain} {share} of the error ({from} to {to})"))
+        Some(format!("{names} {explain} {share} of the error beyond the noise ({from} to {to})"))
     }
 
     /// What the model explains of the motion: `1 − e/d` with the standard deviation `d` of what
@@ -334,7 +334,7 @@ impl Finding<'_> {
     }
 
     /// How large the error is, and where.
-    fn fails(&self) -> Vec<String> {
+    pub(super) fn fails(&self) -> Vec<String> {
         let mut sentences = vec![self.size()];
         sentences.extend(self.shown_beside_size());
         sentences.extend(self.where_it_fails());

@@ -8,9 +8,13 @@ use super::conclusion::Conclusion;
 use super::conclusion::printed;
 use super::finding::Finding;
 use super::text_table::TextTable;
+#[cfg(feature = "rrd")]
+use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::explain::{Candidate, Change, Revision, Verdict};
 use crate::wording::effects_text;
+#[cfg(feature = "rrd")]
+use crate::wording::measure;
 
 /// A joint whose model was improved.
 #[derive(Clone, Copy, Debug)]
@@ -78,7 +82,37 @@ impl<'a> ImprovedJoint<'a> {
                     .to_owned(),
                 commands: Vec::new(),
             },
+            None if ranking.is_empty() => self.added_unranked(index, &finding),
             None => finding.conclusion(),
+        }
+    }
+
+    /// What is to be said of the revision of `finding` at `index`, whose next effect was added
+    /// without others beside it.
+    #[cfg(feature = "rrd")]
+    fn added_unranked(&self, index: usize, finding: &Finding<'_>) -> Conclusion {
+        let joint = finding.compared.joint;
+        let next = self.revisions.get(index + 1).map(|next| &next.comparison);
+        let added = next.and_then(|next| next.fit.model.components().last());
+        let spec = added.map(|component| component.effect().spec());
+        let (id, summary) = spec.map_or(("an effect", ""), |spec| (spec.id, spec.summary));
+        let error = |comparison: Option<&Comparison>| {
+            let error = comparison.and_then(Comparison::judged).map(|error| error.rmse);
+            error.map_or_else(|| "-".to_owned(), |e| measure(e, joint.output_unit.as_deref()))
+        };
+        let (now, then) = (error(Some(finding.compared.comparison)), error(next));
+        let pair = |index: usize| self.proposed(index).is_some_and(|pair| pair.effects.len() > 1);
+        let why = if index.checked_sub(1).is_some_and(pair) {
+            "It is the second of a pair that was found together."
+        } else {
+            "It is one of the usual effects of a joint that makes strokes: these are added in their \
+             order before all others are compared, and go at the end where they explain nothing."
+        };
+        let sentences = [format!("Next comes {id} ({summary}). {why}")].into_iter();
+        Conclusion {
+            headline: format!("{}: {id} is added next: {now} → {then}", joint.name),
+            paragraph: sentences.chain(finding.fails()).collect::<Vec<_>>().join(" "),
+            commands: Vec::new(),
         }
     }
 

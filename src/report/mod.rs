@@ -45,7 +45,7 @@ pub(crate) use columns::columns_table;
 pub use compare::ComparedJoint;
 pub(crate) use compare::compare_text;
 #[cfg(feature = "rrd")]
-pub(crate) use compare::model_differences;
+pub(crate) use compare::{model_differences, telling_parameters};
 pub(crate) use dead_time::{dead_time_sentences, input_note};
 pub use decisions::DecisionRow;
 pub use decisions::decision_rows;

@@ -38,7 +38,6 @@ pub(crate) fn settings_rows(settings: &Settings) -> Vec<(&'static str, String)> 
     );
     let limits = settings.output_limits;
     let not_set = || "not set".to_owned();
-    let not_tested = || "not tested".to_owned();
     let percent = |part: f64| format!("{} %", number(100.0 * part));
     vec![
         ("method", method(settings.method)),
@@ -63,9 +62,18 @@ pub(crate) fn settings_rows(settings: &Settings) -> Vec<(&'static str, String)> 
         ("smallest input step", settings.min_step.to_string()),
         ("input", format!("{:?}", settings.input).to_lowercase()),
         ("τ between steps", format!("{:?}", settings.interpolation).to_lowercase()),
-        ("confidence of a reaction", settings.confidence.map_or_else(not_tested, percent)),
+        ("reaction beyond the noise", reaction(settings)),
         ("interval of a delay", percent(settings.interval)),
     ]
+}
+
+/// Whether it is tested that a step shows more than noise.
+fn reaction(settings: &Settings) -> String {
+    match settings.confidence {
+        Some(confidence) => format!("tested at p ≤ {}", number(1.0 - confidence)),
+        None if settings.paper => "not tested".to_owned(),
+        None => "tested at p ≤ 0.01 in trials of few steps and until a step has reacted".to_owned(),
+    }
 }
 
 /// The settings in one line: the method with its lengths and its low-pass, and what is not as the

@@ -1,5 +1,7 @@
 //! The doubt of a decision in words.
 
+#[cfg(feature = "rrd")]
+use super::counted;
 use super::number;
 use crate::delay::{Condition, Doubt, Flag, Verdict};
 
@@ -45,6 +47,20 @@ fn by_little(condition: Condition) -> String {
         }
     };
     format!("{words} ({condition})")
+}
+
+/// How many decisions are doubtful, and when one is: `6 of 587 decisions are doubtful (…)`.
+#[cfg(feature = "rrd")]
+pub(crate) fn doubtful_sentence<'d>(all: impl Iterator<Item = &'d Doubt>) -> String {
+    let (doubtful, all) = all.fold((0_usize, 0_usize), |(doubtful, all), doubt| {
+        (doubtful + usize::from(doubt.is_doubtful()), all + 1)
+    });
+    let (decisions, are) = (counted(all, "decision"), if doubtful == 1 { "is" } else { "are" });
+    let from = number(Doubt::DOUBTFUL_PERCENT);
+    format!(
+        "{doubtful} of {decisions} {are} doubtful (doubt of {from} % or more, or accepted with \
+         something odd)"
+    )
 }
 
 /// The doubt in percent.

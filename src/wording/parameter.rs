@@ -2,6 +2,8 @@
 
 use super::number;
 use crate::effect::Dimension;
+#[cfg(feature = "rrd")]
+use crate::effect::UNLIMITED;
 use crate::experiment::Joint;
 use crate::fit::{Parameter, Status};
 use crate::model::JointModel;
@@ -29,6 +31,15 @@ pub(crate) fn certainty(parameter: &Parameter) -> String {
         (None, Some(error)) => number(error),
         (None, None) => "not determined by this record".to_owned(),
     }
+}
+
+/// The value of a parameter with its unit; `none` for a limit that there is not.
+#[cfg(feature = "rrd")]
+pub(crate) fn parameter_value(parameter: &Parameter, unit: &str) -> String {
+    if parameter.value.abs() >= UNLIMITED {
+        return "none".to_owned();
+    }
+    format!("{} {unit}", number(parameter.value))
 }
 
 /// Units of a model's parameters, in the order of [`JointModel::values`].

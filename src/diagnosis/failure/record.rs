@@ -161,22 +161,11 @@ impl ResidualRecord {
         self.len() == 0
     }
 
-    /// The squared residual of each sample, as a share of their sum; `None` when that is 0.
-    pub(super) fn error_shares(&self) -> Option<Vec<f64>> {
-        squared_shares(&self.samples.residual)
-    }
-
     /// The squared error of the speed of each sample, or its residual where that is not
     /// known, as a share of their sum.
     pub(super) fn shares_of_what_arises(&self) -> Option<Vec<f64>> {
         let known = Some(&self.samples.speed_error).filter(|errors| !errors.is_empty());
         squared_shares(known.unwrap_or(&self.samples.residual))
-    }
-
-    /// Root mean square of all residuals, output units.
-    pub(super) fn rmse(&self) -> f64 {
-        let squares: f64 = self.samples.residual.iter().map(|r| r * r).sum();
-        (squares / self.len().max(1) as f64).sqrt()
     }
 
     /// Root mean square of the residuals of the samples `rows`, output units.
@@ -270,9 +259,9 @@ mod tests {
     fn shares_of_a_tiny_error_still_sum_to_one() {
         let tiny = Samples { residual: vec![1e-200, 3e-200], ..samples(2) };
         let record = ResidualRecord::new(tiny, vec!["a".into()], vec![]).unwrap();
-        let shares = record.error_shares().unwrap();
+        let shares = record.shares_of_what_arises().unwrap();
         assert!((shares[0] - 0.1).abs() < 1e-15 && (shares[1] - 0.9).abs() < 1e-15);
         let none = ResidualRecord::new(samples(2), vec!["a".into()], vec![]).unwrap();
-        assert_eq!(none.error_shares(), None);
+        assert_eq!(none.shares_of_what_arises(), None);
     }
 }

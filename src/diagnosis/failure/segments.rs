@@ -1,10 +1,10 @@
-//! The segments with more than their share of the error.
+//! The segments in which more than their share of the error arises.
 
 use std::ops::Range;
 
 use super::record::ResidualRecord;
 
-/// A segment with a larger share of the squared error than of the time.
+/// A segment in which a larger share of the squared error arises than it has of the time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorstSegment {
     /// Label of its trial.
@@ -15,7 +15,8 @@ pub struct WorstSegment {
     pub end_s: f64,
     /// Root mean square of its residual, output units.
     pub rmse: f64,
-    /// Its share of the sum of squared residuals.
+    /// Share of the squared error that arises in it: of the error of the speed, where that is known,
+    /// else of the residual; so with a condition of [`super::fails_where`] it adds up.
     pub share_of_squared_error: f64,
     /// Its samples, counted from 0 over all trials.
     pub samples: Range<usize>,
@@ -25,7 +26,7 @@ pub struct WorstSegment {
 ///
 /// Only those are named whose share is above what an even spread over the samples gives.
 pub fn worst_segments(record: &ResidualRecord, count: usize) -> Vec<WorstSegment> {
-    let Some(shares) = record.error_shares() else { return Vec::new() };
+    let Some(shares) = record.shares_of_what_arises() else { return Vec::new() };
     let segments = record.segments().iter().filter_map(|span| segment(record, span, &shares));
     let mut worst: Vec<_> = segments.collect();
     worst.sort_by(|a, b| b.share_of_squared_error.total_cmp(&a.share_of_squared_error));
@@ -45,7 +46,7 @@ fn segment(record: &ResidualRecord, span: &Range<usize>, shares: &[f64]) -> Opti
         trial: record.trials().get(trial)?.clone(),
         start_s: *times.first()?,
         end_s: *times.last()?,
-        rmse: record.rmse() * (share / share_of_time).sqrt(),
+        rmse: record.rmse_of(&span.clone().collect::<Vec<_>>()),
         share_of_squared_error: share,
         samples: span.clone(),
     })

@@ -188,13 +188,8 @@ impl<'f> Page<'f> {
         let entries: [(f32, f32, String, Rgb); 5] = [
             (SHEET.0 / 2.0, 0.0, self.headline(joint), palette::BORDER),
             (90.0, LEGEND, "● step up".to_owned(), palette::UP),
-            (215.0, LEGEND, "● step down".to_owned(), palette::DOWN),
-            (
-                430.0,
-                LEGEND,
-                "line: median; shaded: middle half of the steps".to_owned(),
-                palette::BORDER,
-            ),
+            (225.0, LEGEND, "● step down".to_owned(), palette::DOWN),
+            (495.0, LEGEND, "line: median; shaded: middle half".to_owned(), palette::BORDER),
             (850.0, LEGEND, axis.to_owned(), palette::RAW),
         ];
         let mut labels = Labels::default();

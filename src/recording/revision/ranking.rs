@@ -13,7 +13,7 @@ use crate::recording::error_share::{HATCH, short};
 use crate::recording::palette::{self, color};
 use crate::recording::paths::revision::sheet;
 use crate::recording::rows::Rows;
-use crate::report::ImprovedJoint;
+use crate::report::{ImprovedJoint, change_in_words};
 
 /// Left end, end of the names, and right end on the sheet.
 const COLUMNS: (f32, f32, f32) = (1270.0, 1570.0, 1890.0);
@@ -21,13 +21,12 @@ const COLUMNS: (f32, f32, f32) = (1270.0, 1570.0, 1890.0);
 /// Adds the bars of all revisions: the model as it is, then each candidate.
 pub(super) fn add(rows: &mut Rows<'_>, improved: &ImprovedJoint<'_>) -> Result<(), RecordError> {
     let of_each = improved.revisions.iter().enumerate().map(|(at, revision)| {
-        let proposed = improved.proposed(at).map(|candidate| &candidate.effects);
-        let candidates = revision.ranking.iter().map(|candidate| {
-            let taken = proposed == Some(&candidate.effects);
-            (candidate.rmse(), if taken { palette::PROPOSED } else { palette::RAW })
-        });
+        let all = tried(improved, at);
+        let bars = bars_of(revision, &all);
+        let candidates = all
+            .iter()
+            .map(|one| (one.error, if one.is_taken { palette::PROPOSED } else { palette::RAW }));
         let own = std::iter::once((judged(&revision.comparison), palette::REVISION));
-        let bars = bars_of(revision);
         let bar = |(row, (error, rgb))| bars.bar(row, error, color(rgb));
         let all: Vec<(Vec<Vec2D>, Color)> =
             own.chain(candidates).enumerate().flat_map(bar).collect();
@@ -43,19 +42,18 @@ pub(super) fn around(
     labels: &mut Labels,
     floor: &mut Labels,
 ) -> Strips {
-    let Some(((number, revision), bars)) =
-        improved.numbered().nth(at).map(|numbered| (numbered, bars_of(numbered.1)))
-    else {
-        return Vec::new();
-    };
+    let Some((number, revision)) = improved.numbered().nth(at) else { return Vec::new() };
+    let all = tried(improved, at);
+    let bars = bars_of(revision, &all);
     let unit = improved.finding.compared.joint.output_unit.as_deref().unwrap_or("");
-    let title = match revision.ranking.as_slice() {
-        [] => "no effect was looked for at this revision",
+    let title = match (all.as_slice(), revision.ranking.as_slice()) {
+        ([], _) => "nothing more was looked for",
+        (_, []) => "error at the next revision",
         _ => "error with one effect more",
     };
     bars.title(labels, title);
     let own = (format!("revision {number}"), judged(&revision.comparison));
-    let candidates = revision.ranking.iter().map(|c| (format!("+ {}", c.name()), c.rmse()));
+    let candidates = all.into_iter().map(|one| (one.name, one.error));
     for (row, (name, error)) in std::iter::once(own).chain(candidates).enumerate() {
         bars.name(labels, row, &name);
         bars.value(labels, row, error, format!("{} {unit}", short(error)));
@@ -65,8 +63,30 @@ pub(super) fn around(
     vec![bars.line(noise)]
 }
 
-fn bars_of(revision: &Revision) -> Bars {
-    let errors = revision.ranking.iter().map(Candidate::rmse);
-    let most = errors.fold(judged(&revision.comparison), f64::max);
-    Bars::new(COLUMNS, 1 + revision.ranking.len(), most)
+/// What may come next, and the error with it.
+struct Tried {
+    name: String,
+    error: f64,
+    is_taken: bool,
+}
+
+/// The candidates at a revision; where there was no choice, what came next.
+fn tried(improved: &ImprovedJoint<'_>, at: usize) -> Vec<Tried> {
+    let ranking = improved.revisions.get(at).map_or(&[][..], |revision| &revision.ranking);
+    if let ([], Some(next)) = (ranking, improved.revisions.get(at + 1)) {
+        let (name, error) = (change_in_words(next), judged(&next.comparison));
+        return vec![Tried { name, error, is_taken: true }];
+    }
+    let proposed = improved.proposed(at).map(|candidate| &candidate.effects);
+    let one = |candidate: &Candidate| Tried {
+        name: format!("+ {}", candidate.name()),
+        error: candidate.rmse(),
+        is_taken: proposed == Some(&candidate.effects),
+    };
+    ranking.iter().map(one).collect()
+}
+
+fn bars_of(revision: &Revision, all: &[Tried]) -> Bars {
+    let most = all.iter().map(|one| one.error).fold(judged(&revision.comparison), f64::max);
+    Bars::new(COLUMNS, 1 + all.len(), most)
 }

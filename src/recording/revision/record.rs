@@ -20,7 +20,7 @@ use crate::wording::{bracketed, misfit_units};
 use super::figure::noise;
 
 /// Width and height of the sheet.
-pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 600.0);
+pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 620.0);
 
 /// Points of a curve: two for each of 1500 columns of pixels.
 const POINTS: usize = 3000;
@@ -134,7 +134,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
     /// one's.
     fn residual_plot(&self, comparison: &Comparison) -> Plot {
         let residuals = comparison.fit.evaluation.residuals.iter().flatten().copied();
-        Plot::new(352.0..=560.0, self.x, Span::around(residuals, 0.05))
+        Plot::new(382.0..=580.0, self.x, Span::around(residuals, 0.05))
     }
 
     fn sheet(
@@ -170,7 +170,10 @@ impl<'l, 'a> Drawing<'l, 'a> {
             fails
         );
         let x_ticks = residual_plot.x_span().ticks(10.0);
-        sheet.frame(residual_plot, &x_ticks, &ticks(residual_plot), &residual);
+        // Its title lies above the bars of the worst segments, not on them.
+        sheet.outline(residual_plot, &x_ticks, &ticks(residual_plot));
+        let Span { low, high } = residual_plot.x_span();
+        sheet.put(residual_plot.above(f64::midpoint(low, high), 50.0), residual);
         for x in x_ticks {
             sheet.put(residual_plot.below(x, 2.0), short(x));
         }

@@ -6,9 +6,9 @@ use super::figure::noise;
 use crate::figure::ladder::judged;
 use crate::recording::error_share::short;
 use crate::recording::markdown::plain;
-use crate::report::{ImprovedJoint, change_in_words};
+use crate::report::{ImprovedJoint, change_in_words, telling_parameters};
 use crate::wording::certainty;
-use crate::wording::{number, parameter_units};
+use crate::wording::parameter_value;
 
 /// The page of the revision at `place`.
 pub(super) fn page(improved: &ImprovedJoint<'_>, place: usize) -> String {
@@ -19,21 +19,24 @@ fn written(improved: &ImprovedJoint<'_>, place: usize) -> Result<String, std::fm
     let mut page = String::new();
     let Some((revision, step)) = improved.numbered().nth(place) else { return Ok(page) };
     let last = improved.numbered().last().map_or(revision, |(number, _)| number);
+    // What an earlier revision lacks is in the next one: the answer is that of the last.
+    let is_last = place + 1 == improved.revisions.len();
+    let conclusion = improved.conclusion_at(place);
+    writeln!(page, "**{}**\n", plain(&improved.finding.conclusion().headline))?;
     writeln!(page, "## Revision {revision} of {last}: {}\n", plain(&change_in_words(step)))?;
     writeln!(page, "**{}**\n", plain(&fall(improved, place)))?;
-    let conclusion = improved.conclusion_at(place);
-    writeln!(page, "### {}\n\n{}\n", plain(&conclusion.headline), plain(&conclusion.paragraph))?;
-    // What an earlier revision lacks is in the next one.
-    let is_last = place + 1 == improved.revisions.len();
+    if !is_last {
+        writeln!(page, "**{}**\n", plain(&conclusion.headline))?;
+    }
+    writeln!(page, "{}\n", plain(&conclusion.paragraph))?;
     for command in conclusion.commands.iter().filter(|_| is_last) {
         writeln!(page, "    {command}\n")?;
     }
     writeln!(page, "| parameter | value | standard error |\n|---|---|---|")?;
     let fit = &step.comparison.fit;
-    let units = parameter_units(improved.finding.compared.joint, &fit.model);
-    for (parameter, unit) in fit.parameters.iter().zip(units) {
-        let (name, value) = (plain(&parameter.name), number(parameter.value));
-        writeln!(page, "| {name} | {value} {} | {} |", plain(&unit), certainty(parameter))?;
+    for (parameter, unit) in telling_parameters(improved.finding.compared.joint, fit) {
+        let (name, value) = (plain(&parameter.name), parameter_value(parameter, &unit));
+        writeln!(page, "| {name} | {} | {} |", plain(&value), certainty(parameter))?;
     }
     writeln!(page, "\n{HOW}")?;
     Ok(page)

@@ -14,6 +14,7 @@ use crate::recording::blueprint::{Builder, Node, View, bounds, clickable};
 use crate::recording::canvas::SHEET;
 use crate::recording::error::RecordError;
 use crate::recording::overview::{MAP_HEIGHT, MAP_WIDTH};
+use crate::recording::palette;
 use crate::recording::paths::revision::{record, share, sheet};
 use crate::recording::paths::{
     self, against, at, child, correlation, differing, drawing, joint_root, map, of_model,
@@ -21,7 +22,7 @@ use crate::recording::paths::{
 use crate::recording::{
     correlogram, delay_state, difference, error_share, revision, scatter, segment_view,
 };
-use crate::report::{ComparedJoint, EstimatedJoint};
+use crate::report::{ComparedJoint, EstimatedJoint, by_doubt};
 
 /// What the lanes of the model that is judged are called.
 const LANES: &str =
@@ -39,7 +40,10 @@ pub(super) fn tab(
     let is_continuous = estimate.dead_time.is_some();
     let mut decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
     let fine = decisions.any(|decision| decision.fine.is_some());
-    let mut views = Views { builder, joint, fine, others, revisions };
+    let doubts = by_doubt(EstimatedJoint { joint, estimate });
+    let doubtful = doubts.iter().filter(|found| found.doubt.is_doubtful()).count();
+    let doubtful = format!("{doubtful} of {} doubtful: click a number", doubts.len());
+    let mut views = Views { builder, joint, fine, doubtful, others, revisions };
     let mut pages = Vec::new();
     if revisions > 0 {
         pages.push(views.revisions()?);
@@ -98,6 +102,8 @@ struct Views<'b, 'i> {
     joint: &'b Joint,
     /// Whether some delay is known between samples.
     fine: bool,
+    /// How many decisions are doubtful, over their list.
+    doubtful: String,
     /// Results beside this one.
     others: usize,
     /// Revisions of its model.
@@ -175,17 +181,25 @@ impl Views<'_, '_> {
 
     /// The decisions by doubt, in their order, and by doubt with the reasons.
     fn lists(&mut self) -> Result<Node, RecordError> {
-        let list = |name, path, timeline| {
-            View::new("TextLog", name, &[path]).with("TextLogColumns", clickable(timeline))
-        };
-        let doubtful = self.path(paths::DOUBT_LOG);
-        let doubtful = self.view(list("Most doubtful first: click a number", doubtful, "doubt"))?;
-        let all = self.path(paths::VERDICT_LOG);
-        let all = self.view(list("All: click a number", all, "decision"))?;
+        let (title, path) = (self.doubtful.clone(), self.path(paths::DOUBT_LOG));
+        let doubtful = self.list(&title, path, "doubt")?;
+        let path = self.path(paths::VERDICT_LOG);
+        let all = self.list("All: click a number", path, "decision")?;
         let why = [self.path(paths::DOUBT)];
         let why = self.view(View::new("TextDocument", "Doubts", &why))?;
         let tabs = [doubtful, all, why];
         self.builder.container(ContainerKind::Tabs, "Lists", &tabs, &[])
+    }
+
+    /// Lines with numbers on `timeline` that lead there.
+    fn list(
+        &mut self,
+        name: &str,
+        path: String,
+        timeline: &'static str,
+    ) -> Result<Node, RecordError> {
+        let view = View::new("TextLog", name, &[path]);
+        self.view(view.with("TextLogColumns", clickable(timeline)))
     }
 
     /// Where the decisions differ from those of other results, the most different first.
@@ -301,8 +315,12 @@ impl Views<'_, '_> {
         let residuals: Vec<_> = of_each(paths::RESIDUAL);
         let outputs = [vec![self.at(paths::OUTPUT_RAW)], simulated].concat();
         let (legend, colors) = match names.as_slice() {
-            [_] => (Legend::InTitle, ": grey and orange"),
-            _ => (Legend::Apart, ""),
+            names if names.len() <= palette::NAMES.len() => {
+                let own = names.iter().zip(palette::NAMES);
+                let own: Vec<_> = own.map(|(name, color)| format!("{name} {color}")).collect();
+                (Legend::InTitle, format!(": measured grey, {}", own.join(", ")))
+            }
+            _ => (Legend::Apart, String::new()),
         };
         let noise = [paths::NOISE_UPPER, paths::NOISE_LOWER].map(|path| self.at(path));
         let residuals = [noise.to_vec(), residuals].concat();
@@ -405,7 +423,8 @@ impl Views<'_, '_> {
     ) -> Result<Node, RecordError> {
         let paths: Vec<_> = entities.iter().map(ToString::to_string).collect();
         let shown = Visible::from(legend == Legend::Apart);
-        let legend = PlotLegend::new().with_corner(Corner2D::RightTop).with_visible(shown);
+        // What a model was not fitted to lies at the right.
+        let legend = PlotLegend::new().with_corner(Corner2D::LeftTop).with_visible(shown);
         let view = View::new("TimeSeries", name, &paths)
             .with("TimeAxis", TimeAxis::new().with_link(LinkAxis::LinkToGlobal))
             .with("PlotLegend", legend);

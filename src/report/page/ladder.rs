@@ -7,6 +7,7 @@ use crate::figure::Role;
 use crate::figure::Span;
 use crate::figure::ladder::{self, Rung};
 use crate::figure::{Axis, Mark, Panel, Shape};
+use crate::report::consequence::noise_of;
 use crate::report::{ImprovedJoint, change_in_words};
 use crate::wording::{bracketed, number};
 
@@ -23,14 +24,14 @@ pub(super) fn figure(improved: &ImprovedJoint<'_>, file: String) -> Result<Figur
     };
     let words = |(row, rung): (u32, &Rung<'_>)| ((rung.error, -f64::from(row)), number(rung.error));
     let largest = ladder::largest(&rungs).max(f64::MIN_POSITIVE);
-    let noise = improved.finding.compared.comparison.noise_floor;
+    let noise = noise_of(joint);
     let rows = || (0..).zip(&rungs);
     let mut marks = vec![
         Mark::new(Role::Model, Shape::Bars(rows().map(bar).collect())).named(judged_on(improved)),
         Mark::new(Role::Ink, Shape::Words(rows().map(words).collect())),
     ];
     marks.extend(noise.map(|noise| {
-        Mark::new(Role::Noise, Shape::Verticals(vec![noise], 1.2)).named("noise of the measurement")
+        Mark::new(Role::Noise, Shape::Verticals(vec![noise], 1.2)).named("noise of the sensor")
     }));
     let name = bracketed("root-mean-square error", joint.output_unit.as_deref());
     let panel = Panel {

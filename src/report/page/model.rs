@@ -10,6 +10,7 @@ use crate::explain::{Candidate, Revision, Verdict};
 use crate::fit::{Parameter, Split};
 use crate::model::Component;
 use crate::report::add::gained;
+use crate::report::consequence::noise_of;
 use crate::report::equation::filled_in;
 use crate::report::finding::ranking_table;
 use crate::report::text_table::TextTable;
@@ -102,7 +103,7 @@ fn judged_error(improved: &ImprovedJoint<'_>, comparison: &Comparison) -> String
 fn error_of(improved: &ImprovedJoint<'_>, comparison: &Comparison) -> String {
     let rmse = judged_error(improved, comparison);
     let Some(error) = comparison.judged() else { return rmse };
-    let noise = comparison.noise_floor.filter(|noise| *noise > 0.0);
+    let noise = noise_of(improved.finding.compared.joint);
     let times = noise
         .map_or_else(String::new, |noise| format!(", {:.2} times the noise", error.rmse / noise));
     format!("{rmse}{times} (fit {:.1} %)", error.fit_percent)
