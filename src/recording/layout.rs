@@ -6,8 +6,7 @@
 //! - `decision`: per segment an opening tick, one tick per recorded candidate and a
 //!   verdict tick, counted from 1 without a gap; each joint counts for itself.
 //! - `segment`: the number of the step, counted on over the trials.
-//! - `doubt`: the rank of the decision, the most doubtful being the first: those with a flag come
-//!   before all that are not doubtful.
+//! - `doubt`: the rank of the decision, the most doubtful being the first.
 //! - `difference`: likewise by its difference to other results, where there are any.
 //!
 //! What is drawn of a decision carries the first four and `doubt`, so that one cursor moves all
@@ -202,15 +201,10 @@ impl<'a> JointLayout<'a> {
         layout
     }
 
-    /// Counts all decisions by doubt: those that are doubtful first, the most doubtful of them at
-    /// the head, then the others.
+    /// Counts all decisions by doubt, the most doubtful first.
     fn rank(&mut self) {
         let mut segments: Vec<_> = self.trials.iter_mut().flat_map(|t| &mut t.segments).collect();
-        let is_doubtful = |segment: &SegmentLayout<'_>| segment.doubt.is_doubtful();
-        segments.sort_by(|a, b| {
-            let by_value = b.doubt.value().total_cmp(&a.doubt.value());
-            is_doubtful(b).cmp(&is_doubtful(a)).then(by_value)
-        });
+        segments.sort_by(|a, b| b.doubt.value().total_cmp(&a.doubt.value()));
         for (segment, rank) in segments.into_iter().zip(1..) {
             segment.rank = rank;
         }

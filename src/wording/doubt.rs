@@ -57,10 +57,7 @@ pub(crate) fn doubtful_sentence<'d>(all: impl Iterator<Item = &'d Doubt>) -> Str
     });
     let (decisions, are) = (counted(all, "decision"), if doubtful == 1 { "is" } else { "are" });
     let from = number(Doubt::DOUBTFUL_PERCENT);
-    format!(
-        "{doubtful} of {decisions} {are} doubtful (doubt of {from} % or more, or accepted with \
-         something odd)"
-    )
+    format!("{doubtful} of {decisions} {are} doubtful (doubt of {from} % or more)")
 }
 
 /// The doubt in percent.
