@@ -5,6 +5,7 @@
 //! endings of its files, its first bytes, its feature and `open`.
 
 mod csv;
+mod fence;
 mod first_bytes;
 #[cfg(feature = "mat")]
 mod mat;

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::csv;
+use super::fence;
 use super::first_bytes::{is_gzip, is_matlab, start_of};
 #[cfg(feature = "mat")]
 use super::mat;
@@ -153,8 +154,10 @@ pub(in crate::experiment) fn open(path: &Path, budget: Budget) -> Result<OpenTab
     let named = FORMATS.iter().find(|format| format.ends(&name));
     match FORMATS.iter().find(|format| (format.starts)(&start)) {
         Some(found) => match named.filter(|named| !(named.starts)(&start)) {
-            Some(named) if (found.starts)(b"") => Err(named.refuse(path)),
-            _ => (found.open)(path, budget),
+            Some(named) if found.is_text() => Err(named.refuse(path)),
+            // Text is read by code that does not panic: if it did, that would be a fault to see.
+            _ if found.is_text() => (found.open)(path, budget),
+            _ => fence::open(found.name, path, budget, found.open),
         },
         None => csv::open(path, budget),
     }
@@ -163,12 +166,16 @@ pub(in crate::experiment) fn open(path: &Path, budget: Budget) -> Result<OpenTab
 /// Whether a log that begins like this, or will be called so, is text.
 pub(in crate::experiment) fn is_text(path: &Path, start: &[u8]) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    let is_text = |format: &Format| (format.starts)(b"");
     let other = |format: &&Format| format.ends(&name) || (format.starts)(start);
-    !is_gzip(start) && FORMATS.iter().filter(other).all(is_text)
+    !is_gzip(start) && FORMATS.iter().filter(other).all(Format::is_text)
 }
 
 impl Format {
+    /// Whether any bytes may be of this format, even none.
+    fn is_text(&self) -> bool {
+        (self.starts)(b"")
+    }
+
     fn ends(&self, name: &str) -> bool {
         self.endings.iter().any(|ending| name.ends_with(ending))
     }

@@ -1,0 +1,105 @@
+//! A fence around the libraries that read formats: where one of them panics over a damaged file,
+//! the file is refused like any other that cannot be read.
+//!
+//! Of the parquet crate (60.1.0, the newest) three such places are known: a page of dictionary indices
+//! without a dictionary, numbers that are cut short, and a byte stream split of an uneven length.
+//! Where overflows are checked, there is a fourth, and three in calamine (0.38.0). A file for each of
+//! them is in `fuzz/found`.
+
+use std::any::Any;
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::Once;
+
+use crate::experiment::error::ReadError;
+use crate::experiment::memory::Budget;
+use crate::experiment::table::{OpenTable, Rows, Table, Wanted};
+
+/// Opens a log by `open`, the reader of `format`, and fences what reads its rows, too.
+pub(super) fn open(
+    format: &'static str,
+    path: &Path,
+    budget: Budget,
+    open: fn(&Path, Budget) -> Result<OpenTable, ReadError>,
+) -> Result<OpenTable, ReadError> {
+    let OpenTable { head, rows } = fenced(format, path, || open(path, budget))?;
+    Ok(OpenTable { head, rows: Box::new(Fenced { format, rows }) })
+}
+
+/// Rows that a library reads.
+struct Fenced {
+    format: &'static str,
+    rows: Box<dyn Rows>,
+}
+
+impl Rows for Fenced {
+    fn read(self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
+        let Self { format, rows } = *self;
+        fenced(format, wanted.path(), || rows.read(wanted))
+    }
+}
+
+/// Does `work`, of which nothing is left where it panics.
+fn fenced<T>(
+    format: &'static str,
+    path: &Path,
+    work: impl FnOnce() -> Result<T, ReadError>,
+) -> Result<T, ReadError> {
+    keep_quiet();
+    let before = IS_FENCED.replace(true);
+    let done = catch_unwind(AssertUnwindSafe(work));
+    IS_FENCED.set(before);
+    done.unwrap_or_else(|panic| {
+        Err(ReadError::Format {
+            path: path.to_owned(),
+            format,
+            reason: format!("its reader broke off: {}", message(panic.as_ref())),
+            remedy: "write it again: it is damaged, or of a kind that is not read",
+        })
+    })
+}
+
+thread_local! {
+    static IS_FENCED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// What panics within the fence is said once, as an error.
+fn keep_quiet() {
+    static HOOK: Once = Once::new();
+    HOOK.call_once(|| {
+        let usual = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            if !IS_FENCED.get() {
+                usual(panic);
+            }
+        }));
+    });
+}
+
+/// What a panic said.
+fn message(panic: &dyn Any) -> &str {
+    let literal = panic.downcast_ref::<&str>().copied();
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    literal.or(text).unwrap_or("no reason is given")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reader_that_panics_refuses_its_file() {
+        let broken = fenced("Parquet", Path::new("log.parquet"), || -> Result<(), ReadError> {
+            panic!("no dictionary for {}", 3)
+        });
+        let message = broken.unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "log.parquet: cannot be read as Parquet: its reader broke off: no dictionary for 3; \
+             write it again: it is damaged, or of a kind that is not read"
+        );
+        assert!(!IS_FENCED.get());
+        assert!(fenced("Parquet", Path::new("log.parquet"), || Ok(1)).is_ok_and(|one| one == 1));
+    }
+}
