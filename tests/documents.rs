@@ -106,7 +106,7 @@ fn every_example_is_in_the_readme() {
 fn figures_of_the_tutorial_are_those_that_were_printed() {
     let text = fs::read_to_string("docs/tutorial.md").unwrap();
     let (before, end) = text.split_once("## What it was").unwrap();
-    let printed: Vec<&str> = before.lines().filter(|line| line.contains("kappa ")).collect();
+    let printed: Vec<&str> = before.lines().filter(|line| line.starts_with("  ")).collect();
     let number = |text: &str| -> f64 { text.split([' ', ',']).next().unwrap().parse().unwrap() };
     for row in end.lines().filter(|line| line.contains(" ± ")) {
         let cells: Vec<&str> = row.split('|').map(str::trim).collect();
@@ -124,7 +124,7 @@ fn figures_of_the_tutorial_are_those_that_were_printed() {
     }
     // The guess, and what is left of it.
     let of_guess = |count: usize| {
-        let after = before.match_indices("direction_gain.negative_factor ").nth(count).unwrap();
+        let after = before.match_indices("direction_gain: negative_factor ").nth(count).unwrap();
         number(&before[after.0 + after.1.len()..])
     };
     let said = format!("was {:.2} and is {:.3} ±", of_guess(0), of_guess(1));

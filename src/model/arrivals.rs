@@ -1,7 +1,7 @@
 //! When each level of the input begins to act.
 
 use super::JointModel;
-use crate::effect::{InputChange, Stage};
+use crate::effect::InputChange;
 
 /// A level of the input and the time from which it acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,22 +61,29 @@ impl Commands {
         per_step: Option<&[Option<f64>]>,
     ) -> Arrivals {
         let mut arrivals = Arrivals { initial: self.initial, changes: Vec::new() };
-        let (mut before, mut since) = (self.initial, 0.0);
-        for (number, &(time_s, level)) in self.changes.iter().enumerate() {
-            let held_s = time_s - since;
-            let change = InputChange { before, after: level, held_s, time_s: start_s + time_s };
+        for (number, change) in self.changes(start_s).enumerate() {
             let known = per_step.and_then(|delays| delays.get(number).copied().flatten());
-            let delay = known.unwrap_or_else(|| delay_of(model, &change));
-            arrivals.insert(Arrival { time_s: time_s + delay.max(0.0), level });
-            (before, since) = (level, time_s);
+            let delay_s = known.map_or_else(|| model.delay_s(&change), |delay_s| delay_s.max(0.0));
+            let time_s = change.time_s - start_s + delay_s;
+            arrivals.insert(Arrival { time_s, level: change.after });
         }
         arrivals
     }
-}
 
-fn delay_of(model: &JointModel, change: &InputChange) -> f64 {
-    let extra = model.stage(Stage::Transport).map(|component| component.extra_delay_s(change));
-    model.delay.value + extra.sum::<f64>()
+    /// The changes as a delay may depend on them, in a record whose first sample is at `start_s`.
+    pub(crate) fn changes(&self, start_s: f64) -> impl Iterator<Item = InputChange> + '_ {
+        let before = self.changes.iter().map(|&(_, level)| level);
+        let before = [self.initial].into_iter().chain(before);
+        let since = [0.0].into_iter().chain(self.changes.iter().map(|&(time_s, _)| time_s));
+        self.changes.iter().zip(before).zip(since).map(
+            move |((&(time_s, after), before), since)| InputChange {
+                before,
+                after,
+                held_s: time_s - since,
+                time_s: start_s + time_s,
+            },
+        )
+    }
 }
 
 impl Arrivals {

@@ -166,8 +166,7 @@ mod tests {
     fn delay_s(model: &JointModel, rise: f64) -> f64 {
         let change =
             crate::effect::InputChange { before: 0.0, after: rise, held_s: 3.0, time_s: 9.0 };
-        let extra = model.components().iter().map(|part| part.extra_delay_s(&change));
-        model.delay.value + extra.sum::<f64>()
+        model.delay_s(&change)
     }
 
     #[test]

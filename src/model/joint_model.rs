@@ -84,7 +84,7 @@ impl Component {
     }
 
     /// What the effect adds to the delay of a change; see [`Effect::extra_delay_s`].
-    pub(crate) fn extra_delay_s(&self, change: &InputChange) -> f64 {
+    fn extra_delay_s(&self, change: &InputChange) -> f64 {
         self.effect.extra_delay_s(&self.plain(), change)
     }
 }
@@ -193,6 +193,13 @@ impl JointModel {
             spec.parameters.iter().map(|p| format!("{}.{}", spec.id, p.name)).collect::<Vec<_>>()
         };
         own.chain(self.components.iter().flat_map(named)).collect()
+    }
+
+    /// The delay of a change of the input, seconds: `delay` and what the effects of the transport
+    /// stage add to it, never below zero.
+    pub fn delay_s(&self, change: &InputChange) -> f64 {
+        let extra = self.stage(Stage::Transport).map(|component| component.extra_delay_s(change));
+        (self.delay.value + extra.sum::<f64>()).max(0.0)
     }
 
     /// The effects of one stage.

@@ -18,9 +18,7 @@ use crate::diagnosis::{Comparison, ErrorFigures, SIGNIFICANCE, sensor_noise};
 use crate::experiment::Joint;
 use crate::fit::Horizon;
 use crate::report::{ComparedJoint, model_differences, telling_parameters};
-use crate::wording::{
-    certainty, correlation_sentences, failure_sentences, number, parameter_value,
-};
+use crate::wording::{correlation_sentences, failure_sentences, number, parameter_value};
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
@@ -272,13 +270,13 @@ fn parameters(page: &mut String, joint: &Joint, models: &[&ComparedJoint<'_>]) -
     for compared in models {
         writeln!(
             page,
-            "\n**{}**\n\n| parameter | value | standard error |\n|---|---|---|",
+            "\n**{}**\n\n| parameter | value ± standard error |\n|---|---|",
             compared.model
         )?;
         let fit = &compared.comparison.fit;
         for (parameter, unit) in telling_parameters(joint, fit) {
             let (name, value) = (plain(&parameter.name), parameter_value(parameter, &unit));
-            writeln!(page, "| {name} | {} | {} |", plain(&value), certainty(parameter))?;
+            writeln!(page, "| {name} | {} |", plain(&value))?;
         }
     }
     Ok(())

@@ -1,14 +1,12 @@
 //! `compare` as text.
 
 use super::consequence::noise_of;
+use super::parameters::model_text;
 use super::text_table::TextTable;
 use crate::diagnosis::{Comparison, ErrorFigures, ModelDifference};
 use crate::experiment::Joint;
-use crate::fit::{Assessment, Parameter, Status};
-use crate::model::JointModel;
 use crate::wording::{
-    self, correlation_sentences, effects_text, model_difference_sentences, number, parameter_units,
-    with_remark, with_unit,
+    self, correlation_sentences, effects_text, model_difference_sentences, with_unit,
 };
 
 /// A joint, its model, and how the two compare.
@@ -42,7 +40,8 @@ pub(crate) fn compare_table(joints: &[ComparedJoint<'_>]) -> String {
     for compared in joints {
         table.row(row(compared));
     }
-    let parameters: Vec<_> = joints.iter().map(parameters).collect();
+    let model = |of: &ComparedJoint<'_>| model_text(of.joint, of.comparison, Some(of.model));
+    let models: Vec<_> = joints.iter().map(model).collect();
     let failures: Vec<_> = joints.iter().flat_map(failure_sentences).collect();
     let failures = if failures.is_empty() {
         String::new()
@@ -55,9 +54,9 @@ pub(crate) fn compare_table(joints: &[ComparedJoint<'_>]) -> String {
     } else {
         format!("\nresidual of the training part:\n{}\n", residuals.join("\n"))
     };
-    let parameters = parameters.join("\n");
+    let models = models.join("\n");
     let horizon = horizons(joints.iter().copied());
-    format!("{table}\nroot-mean-square errors, {horizon}\n\n{parameters}\n{residuals}{failures}")
+    format!("{table}\nroot-mean-square errors, {horizon}\n\n{models}\n{residuals}{failures}")
 }
 
 /// The first model of a joint beside another one.
@@ -149,41 +148,4 @@ pub(super) fn figures(joint: &Joint, comparison: &Comparison) -> [String; 5] {
     let verdict = lack_of_fit.map_or_else(dash, wording::lack_of_fit);
     let noise = noise_of(joint).map_or_else(dash, output);
     [rmse(training), rmse(validation), percent, noise, verdict]
-}
-
-/// The parameters of a model in one line.
-pub(super) fn parameters(compared: &ComparedJoint<'_>) -> String {
-    let fit = &compared.comparison.fit;
-    let parameter = |(parameter, unit): (&Parameter, String)| {
-        let Parameter { name, value, std_error, status } = parameter;
-        let error = std_error.map_or_else(String::new, |error| format!(" ± {}", number(error)));
-        with_remark(&format!("{name} {}{error} {unit}", number(*value)), *status)
-    };
-    let parameters: Vec<_> = telling_parameters(compared.joint, fit).map(parameter).collect();
-    format!(
-        "{}: {}; {}",
-        compared.joint.name,
-        parameters.join(", "),
-        compared.comparison.termination
-    )
-}
-
-/// The parameters of a model with their units, without those that say nothing: held where they do
-/// nothing.
-pub(crate) fn telling_parameters<'a>(
-    joint: &Joint,
-    fit: &'a Assessment,
-) -> impl Iterator<Item = (&'a Parameter, String)> + use<'a> {
-    let units = parameter_units(joint, &fit.model);
-    let known = fit.parameters.iter().zip(units).zip(neutrals(&fit.model));
-    let says = |((parameter, _), neutral): &((&Parameter, String), Option<f64>)| {
-        parameter.status != Status::Fixed || *neutral != Some(parameter.value)
-    };
-    known.filter(says).map(|(known, _)| known)
-}
-
-/// The value of each parameter of `model` at which it does nothing; gain and delay have none.
-fn neutrals(model: &JointModel) -> impl Iterator<Item = Option<f64>> + '_ {
-    let parameters = model.components().iter().flat_map(|part| part.effect().spec().parameters);
-    [None, None].into_iter().chain(parameters.map(|parameter| Some(parameter.neutral)))
 }

@@ -12,12 +12,10 @@ use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ShownBy};
 use crate::experiment::{Joint, Trial};
 use crate::explain::{Candidate, Verdict};
-use crate::fit::{Fit, Parameter, Status};
-use crate::model::Component;
+use crate::fit::{Fit, Status};
 use crate::wording::{
-    certainty, effects_text, failure_sentences, measure, misfit_units, number, p_text,
-    parameter_units, percent, region_text, remark, rounded, unit_suffix, with_error,
-    worst_segment_text, wrapped,
+    effects_text, failure_sentences, measure, misfit_units, p_text, parameter_units,
+    parameter_value, percent, region_text, rounded, unit_suffix, worst_segment_text, wrapped,
 };
 
 /// What is concluded of a joint.
@@ -233,7 +231,6 @@ impl Finding<'_> {
         let mut sentences = vec![self.test(), self.size()];
         sentences.extend(self.consequence().sentences());
         sentences.extend(self.misses_validation());
-        sentences.extend(self.laws());
         sentences.push(self.limits());
         sentences.extend(self.undetermined());
         sentences
@@ -263,16 +260,6 @@ impl Finding<'_> {
             }
             None => "There are too few samples to test it.".to_owned(),
         }
-    }
-
-    /// The laws of the effects that the model has.
-    fn laws(&self) -> Option<String> {
-        let components = self.comparison().fit.model.components().iter();
-        let law = |component: &Component| {
-            format!("{}: {}", component.effect().spec().id, filled_in(component))
-        };
-        let laws: Vec<String> = components.map(law).collect();
-        (!laws.is_empty()).then(|| format!("The model has {}.", laws.join("; ")))
     }
 
     /// A warning where the part that was not fitted is worse than noise.
@@ -406,18 +393,9 @@ impl Finding<'_> {
         let own = own.filter(|(parameter, _)| parameter.status != Status::Fixed);
         let own = own.filter_map(|(parameter, unit)| {
             let name = parameter.name.strip_prefix(prefix)?;
-            Some(measured(name, parameter, &unit))
+            Some(format!("{name} = {}", parameter_value(parameter, &unit)))
         });
         own.collect::<Vec<_>>().join(", ")
-    }
-}
-
-fn measured(name: &str, parameter: &Parameter, unit: &str) -> String {
-    let Parameter { value, std_error, status, .. } = parameter;
-    let unit = unit_suffix(Some(unit).filter(|unit| !unit.is_empty()));
-    match (remark(*status), std_error) {
-        (None, Some(error)) => format!("{name} = {}{unit}", with_error(*value, *error)),
-        _ => format!("{name} = {}{unit} ({})", number(*value), certainty(parameter)),
     }
 }
 

@@ -1,19 +1,21 @@
 //! `explain` as text.
 
-use super::compare::{horizons, parameters};
+use super::compare::{ComparedJoint, horizons};
 use super::conclusion::printed;
 use super::finding::{Finding, ranking_table};
+use super::parameters::model_text;
 
 /// For each joint the verdict, the ranking and what they mean.
 pub(crate) fn explain_text(findings: &[Finding<'_>]) -> String {
     let joint = |finding: &Finding<'_>| {
+        let ComparedJoint { joint, comparison, .. } = finding.compared;
         let conclusion = finding.conclusion();
         let ranking = match finding.ranking {
             [] => String::new(),
-            ranking => format!("{}\n", ranking_table(finding.compared.joint, ranking)),
+            ranking => format!("{}\n", ranking_table(joint, ranking)),
         };
-        let (text, model) = (printed(&conclusion), parameters(&finding.compared));
-        format!("{}\n{ranking}\n{text}\nmodel of {model}\n", conclusion.headline)
+        let (text, model) = (printed(&conclusion), model_text(joint, comparison, None));
+        format!("{}\n{ranking}\n{text}\n{model}\n", conclusion.headline)
     };
     let joints: Vec<String> = findings.iter().map(joint).collect();
     let horizon = horizons(findings.iter().map(|finding| finding.compared));

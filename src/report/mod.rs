@@ -27,6 +27,7 @@ mod json;
 mod lookup;
 mod model_delay;
 mod page;
+mod parameters;
 mod review;
 mod separation;
 mod settings;
@@ -45,7 +46,7 @@ pub(crate) use columns::columns_table;
 pub use compare::ComparedJoint;
 pub(crate) use compare::compare_text;
 #[cfg(feature = "rrd")]
-pub(crate) use compare::{model_differences, telling_parameters};
+pub(crate) use compare::model_differences;
 pub(crate) use dead_time::{dead_time_sentences, input_note};
 pub use decisions::DecisionRow;
 pub use decisions::decision_rows;
@@ -80,6 +81,8 @@ pub(crate) use json::{
 };
 pub(crate) use lookup::{Language, Lookup};
 pub(crate) use page::{Document, Heading, RecordingFile, Report, report_text};
+#[cfg(feature = "rrd")]
+pub(crate) use parameters::telling_parameters;
 pub(crate) use review::{Words, write_review_sheet};
 pub(crate) use settings::settings_in_short;
 #[cfg(feature = "rrd")]

@@ -42,13 +42,9 @@ fn held_law(of: &Assessment, laws: &[&Component], measured: EstimatedJoint<'_>) 
     if !of.model.delay.fixed || parameters.into_iter().any(|parameter| !parameter.fixed) {
         return None;
     }
-    let law_s = |change: &InputChange| {
-        let extra_s = laws.iter().map(|law| law.extra_delay_s(change)).sum::<f64>();
-        (of.model.delay.value + extra_s).max(0.0)
-    };
     let accepted = accepted(measured);
     let (law_s, measured_s): (Vec<f64>, Vec<f64>) =
-        accepted.iter().map(|(change, delay_s)| (law_s(change), delay_s)).unzip();
+        accepted.iter().map(|(change, delay_s)| (of.model.delay_s(change), delay_s)).unzip();
     let off_s: Vec<f64> = law_s.iter().zip(&measured_s).map(|(law, is)| (law - is).abs()).collect();
     let ends = |values: &[f64]| {
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);

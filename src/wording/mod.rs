@@ -17,16 +17,14 @@ pub(crate) use difference::{
     difference_in_short, difference_sentences, missing_sentences, result_in_short, step_name,
 };
 #[cfg(feature = "rrd")]
-pub(crate) use doubt::doubtful_sentence;
+pub(crate) use doubt::{DOUBT_MEANS, doubtful_sentence};
 pub(crate) use doubt::{doubt_percent, doubt_sentence};
 pub(crate) use effects::{effect_ids, effects_text};
 pub(crate) use misfit::{correlation_sentences, lack_of_fit};
 pub(crate) use model_difference::model_difference_sentences;
 pub use number::number;
 pub(crate) use number::{bracketed, measure, rounded, unit_suffix, with_error, with_unit};
-#[cfg(feature = "rrd")]
-pub(crate) use parameter::parameter_value;
-pub(crate) use parameter::{certainty, parameter_units, remark, with_remark};
+pub(crate) use parameter::{known_value, parameter_units, parameter_value, remark};
 pub(crate) use probability::{p_cell, p_text, percent};
 pub(crate) use prose::{counted, listed, wrapped};
 #[cfg(feature = "rrd")]

@@ -1,9 +1,7 @@
 //! Fitted parameters: status, certainty and units.
 
-use super::number;
-use crate::effect::Dimension;
-#[cfg(feature = "rrd")]
-use crate::effect::UNLIMITED;
+use super::{number, with_error};
+use crate::effect::{Dimension, UNLIMITED};
 use crate::experiment::Joint;
 use crate::fit::{Parameter, Status};
 use crate::model::JointModel;
@@ -18,28 +16,21 @@ pub(crate) fn remark(status: Status) -> Option<&'static str> {
     }
 }
 
-/// `text` with the remark in brackets behind it, where there is one.
-pub(crate) fn with_remark(text: &str, status: Status) -> String {
-    let remark = remark(status).map_or_else(String::new, |remark| format!(" ({remark})"));
-    format!("{}{remark}", text.trim_end())
-}
-
-/// The standard error of a parameter, or why it has none.
-pub(crate) fn certainty(parameter: &Parameter) -> String {
-    match (remark(parameter.status), parameter.std_error) {
-        (Some(remark), _) => remark.to_owned(),
-        (None, Some(error)) => number(error),
-        (None, None) => "not determined by this record".to_owned(),
-    }
-}
-
-/// The value of a parameter with its unit; `none` for a limit that there is not.
-#[cfg(feature = "rrd")]
+/// A parameter to the digits that its standard error leaves, with its unit and what is remarkable
+/// about it: `0.612 ± 0.021 V`, `2.3 s (fixed)`, `none` for a limit that there is not.
 pub(crate) fn parameter_value(parameter: &Parameter, unit: &str) -> String {
-    if parameter.value.abs() >= UNLIMITED {
+    let Parameter { value, std_error, status, .. } = parameter;
+    if value.abs() >= UNLIMITED {
         return "none".to_owned();
     }
-    format!("{} {unit}", number(parameter.value))
+    let known = known_value(*value, *std_error);
+    let remark = remark(*status).map_or_else(String::new, |remark| format!(" ({remark})"));
+    format!("{}{remark}", format!("{known} {unit}").trim_end())
+}
+
+/// `0.612 ± 0.021`; to five digits where there is no standard error.
+pub(crate) fn known_value(value: f64, std_error: Option<f64>) -> String {
+    std_error.map_or_else(|| number(value), |error| with_error(value, error))
 }
 
 /// Units of a model's parameters, in the order of [`JointModel::values`].

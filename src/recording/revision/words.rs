@@ -7,7 +7,6 @@ use crate::figure::ladder::judged;
 use crate::recording::error_share::short;
 use crate::recording::markdown::plain;
 use crate::report::{ImprovedJoint, change_in_words, telling_parameters};
-use crate::wording::certainty;
 use crate::wording::parameter_value;
 
 /// The page of the revision at `place`.
@@ -32,11 +31,11 @@ fn written(improved: &ImprovedJoint<'_>, place: usize) -> Result<String, std::fm
     for command in conclusion.commands.iter().filter(|_| is_last) {
         writeln!(page, "    {command}\n")?;
     }
-    writeln!(page, "| parameter | value | standard error |\n|---|---|---|")?;
+    writeln!(page, "| parameter | value ± standard error |\n|---|---|")?;
     let fit = &step.comparison.fit;
     for (parameter, unit) in telling_parameters(improved.finding.compared.joint, fit) {
         let (name, value) = (plain(&parameter.name), parameter_value(parameter, &unit));
-        writeln!(page, "| {name} | {} | {} |", plain(&value), certainty(parameter))?;
+        writeln!(page, "| {name} | {} |", plain(&value))?;
     }
     writeln!(page, "\n{HOW}")?;
     Ok(page)

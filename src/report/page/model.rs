@@ -7,7 +7,7 @@ use super::{ladder, share, simulated};
 use crate::diagnosis::Comparison;
 use crate::effect::Stage;
 use crate::explain::{Candidate, Revision, Verdict};
-use crate::fit::{Parameter, Split};
+use crate::fit::Split;
 use crate::model::Component;
 use crate::report::add::gained;
 use crate::report::consequence::noise_of;
@@ -16,8 +16,8 @@ use crate::report::finding::ranking_table;
 use crate::report::text_table::TextTable;
 use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::wording::{
-    correlation_sentences, effect_ids, failure_sentences, listed, measure, number, parameter_units,
-    remark, with_error, with_remark, with_unit,
+    correlation_sentences, effect_ids, failure_sentences, known_value, listed, measure,
+    parameter_units, parameter_value, remark, with_unit,
 };
 
 /// All that is said of the model of a joint.
@@ -115,7 +115,7 @@ fn equations(compared: &ComparedJoint<'_>) -> String {
     let units = parameter_units(compared.joint, &fit.model);
     let own = |index: usize| {
         let known = fit.parameters.get(index).zip(units.get(index));
-        known.map_or_else(String::new, |(parameter, unit)| value(parameter, unit))
+        known.map_or_else(String::new, |(parameter, unit)| parameter_value(parameter, unit))
     };
     let laws = |from: Stage, to: Stage| {
         let components = fit.model.components().iter();
@@ -151,17 +151,6 @@ fn law(component: &Component) -> String {
     format!("    {}, {acts}: {}", spec.id, filled_in(component))
 }
 
-/// `11.900 ± 0.020 deg/s/V`.
-fn value(parameter: &Parameter, unit: &str) -> String {
-    with_remark(&format!("{} {unit}", known(parameter)), parameter.status)
-}
-
-/// `11.900 ± 0.020`.
-fn known(parameter: &Parameter) -> String {
-    let Parameter { value, std_error, .. } = parameter;
-    std_error.map_or_else(|| number(*value), |error| with_error(*value, error))
-}
-
 /// A row per parameter.
 fn parameters(compared: &ComparedJoint<'_>) -> TextTable {
     let fit = &compared.comparison.fit;
@@ -170,7 +159,12 @@ fn parameters(compared: &ComparedJoint<'_>) -> TextTable {
     let mut table = TextTable::new(header, &[1]);
     for (parameter, unit) in fit.parameters.iter().zip(units) {
         let remark = remark(parameter.status).unwrap_or_default().to_owned();
-        table.row([parameter.name.clone(), known(parameter), unit, remark]);
+        table.row([
+            parameter.name.clone(),
+            known_value(parameter.value, parameter.std_error),
+            unit,
+            remark,
+        ]);
     }
     table
 }

@@ -1,0 +1,81 @@
+//! The parameters of a model, for people.
+
+use crate::diagnosis::Comparison;
+use crate::effect::Stage;
+use crate::experiment::{Joint, Trial};
+use crate::fit::{Assessment, Parameter, Status};
+use crate::model::{Commands, JointModel};
+use crate::wording::{parameter_units, parameter_value, rounded};
+
+/// A model as lines of a terminal: gain and delay, then a line for each effect. `called` is its name
+/// where there are others of the joint.
+///
+/// ```text
+/// model of boom (converged):
+///   gain 7.4989 ± 0.0017 deg/s/V, delay 0.12969 ± 0.00017 s
+///   dead_band: lower -0.41 ± 0.012 V, upper 0.38 ± 0.011 V
+/// ```
+pub(super) fn model_text(joint: &Joint, comparison: &Comparison, called: Option<&str>) -> String {
+    let Comparison { fit, termination, .. } = comparison;
+    let called = called.map_or_else(String::new, |called| format!("{called}; "));
+    let mut lines = vec![format!("model of {} ({called}{termination}):", joint.name)];
+    let said = |(parameter, unit): (&Parameter, String)| {
+        let own = |name: &str| format!("{name} {}", parameter_value(parameter, &unit));
+        match parameter.name.rsplit_once('.') {
+            Some((effect, name)) => (format!("{effect}: "), own(name)),
+            None => (String::new(), own(&parameter.name)),
+        }
+    };
+    let said: Vec<_> = telling_parameters(joint, fit).map(said).collect();
+    for of_effect in said.chunk_by(|(one, _), (other, _)| one == other) {
+        let effect = of_effect.first().map_or("", |(effect, _)| effect);
+        let values: Vec<_> = of_effect.iter().map(|(_, value)| value.as_str()).collect();
+        lines.push(format!("  {effect}{}", values.join(", ")));
+    }
+    lines.extend(delay_of_steps(joint, &fit.model));
+    lines.join("\n")
+}
+
+/// Which delays a law gives to the steps of the record: those of its parameters are of a step of
+/// no size.
+fn delay_of_steps(joint: &Joint, model: &JointModel) -> Option<String> {
+    /// An input that changes more often is not made of steps: its changes have no size of their own.
+    const SAMPLES_PER_STEP: usize = 5;
+    let is_law = |stage: Stage| stage == Stage::Transport;
+    if !model.components().iter().any(|component| is_law(component.effect().spec().stage)) {
+        return None;
+    }
+    let mut delays_s = Vec::new();
+    for trial in &joint.trials {
+        let model = model.in_trial(trial.label());
+        let commands = Commands::new(trial.input(), trial.period().seconds());
+        delays_s.extend(commands.changes(trial.time_s(1)).map(|change| model.delay_s(&change)));
+    }
+    let samples: usize = joint.trials.iter().map(Trial::len).sum();
+    if delays_s.is_empty() || delays_s.len() * SAMPLES_PER_STEP > samples {
+        return None;
+    }
+    let least = delays_s.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = delays_s.iter().copied().fold(0.0, f64::max);
+    Some(format!("  delay of the steps in the record: {} to {} s", rounded(least), rounded(most)))
+}
+
+/// The parameters of a model with their units, without those that say nothing: held where they do
+/// nothing.
+pub(crate) fn telling_parameters<'a>(
+    joint: &Joint,
+    fit: &'a Assessment,
+) -> impl Iterator<Item = (&'a Parameter, String)> + use<'a> {
+    let units = parameter_units(joint, &fit.model);
+    let known = fit.parameters.iter().zip(units).zip(neutrals(&fit.model));
+    let says = |((parameter, _), neutral): &((&Parameter, String), Option<f64>)| {
+        parameter.status != Status::Fixed || *neutral != Some(parameter.value)
+    };
+    known.filter(says).map(|(known, _)| known)
+}
+
+/// The value of each parameter of `model` at which it does nothing; gain and delay have none.
+fn neutrals(model: &JointModel) -> impl Iterator<Item = Option<f64>> + '_ {
+    let parameters = model.components().iter().flat_map(|part| part.effect().spec().parameters);
+    [None, None].into_iter().chain(parameters.map(|parameter| Some(parameter.neutral)))
+}
