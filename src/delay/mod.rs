@@ -99,6 +99,7 @@ pub use profile::DelayProfile;
 pub use scan::delay_scan;
 pub use search::{Candidate, Candidates};
 pub use segment::Segment;
+pub(crate) use settings::CONFIDENCE;
 pub use settings::{CandidateLines, FirstLast, Interpolation, Settings, SettingsError};
 pub use settling::Settling;
 pub(crate) use settling::{FirstOrder, followed};

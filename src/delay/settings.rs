@@ -118,7 +118,7 @@ pub struct Settings {
 
 /// How sure a reaction must be, for methods that test it unasked; chosen: noise then passes
 /// for a reaction in one step of a hundred.
-pub(super) const CONFIDENCE: f64 = 0.99;
+pub(crate) const CONFIDENCE: f64 = 0.99;
 
 impl Settings {
     /// The settings that suit `method`: its own low-pass and confidence, and else those of

@@ -62,9 +62,10 @@ impl Effect for Leakage {
     }
 }
 
-/// `within`, as much wider as the input has been farther from zero than from its middle.
+/// The bounds of `y0`, wider where the input stays far from zero: the rest at an input of zero then
+/// lies as many times the output's range beyond the record as zero lies beyond the input's.
 fn at_zero((low, high): (f64, f64), record: &RecordRange<'_>) -> (f64, f64) {
-    /// Farthest, in ways of the output: chosen, beyond it an offset is the simpler model.
+    /// Farthest, in ranges of the output: chosen, beyond it an offset is the simpler model.
     const FARTHEST: f64 = 20.0;
     let half_span = 0.5 * record.input_span;
     let times = if half_span > 0.0 { record.input_abs_max / half_span } else { 1.0 };

@@ -16,7 +16,7 @@ use crate::report::{
     EstimatedJoint, JointSummary, LEVEL_HEADER, SUMMARY_HEADER, Words, change_in_words,
     chosen_line, dead_time_sentences, kind_sentence, level_cells, settings_rows, summary_cells,
 };
-use crate::wording::{counted, doubtful_sentence, measure};
+use crate::wording::{DOUBT_MEANS, counted, doubtful_sentence, measure};
 
 /// Adds the page at `/about`.
 pub(super) fn add(
@@ -35,7 +35,7 @@ fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String
     writeln!(page, "# Delays of {}\n", counted(recording.joints.len(), "joint"))?;
     let doubts = || layouts.iter().flat_map(JointLayout::segments).map(|(_, s)| &s.doubt);
     if doubts().next().is_some() {
-        writeln!(page, "{}.\n", doubtful_sentence(doubts()))?;
+        writeln!(page, "{}. {DOUBT_MEANS}\n", doubtful_sentence(doubts()))?;
     }
     writeln!(page, "| {} |", SUMMARY_HEADER.join(" | "))?;
     writeln!(page, "|---|---|---|---|---|---|---|")?;
@@ -132,9 +132,7 @@ accepted segment, red that of a rejected one.
 - The timeline `segment` goes from step to step; `sample` and `time` run through the record.
 - Sample numbers count from 1 within the trial, as in the paper: p is the input step, r the \
 first sample of the segment, q the breakpoint, δ = q − p the delay.
-- **Doubt** is what speaks against a decision, from its own numbers: 0 % is nothing, at 100 % the \
-least change would turn it. It is no probability. The timeline `doubt` goes through the decisions, \
-the doubtful ones first.
+- The timeline `doubt` goes through the decisions, the doubtful ones first.
 - **fit** is the part of the motion that a model follows: 100 % less its error over the standard \
 deviation of what was measured.";
 

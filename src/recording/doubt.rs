@@ -9,7 +9,7 @@ use super::markdown::plain;
 use super::paths::{self, at};
 use super::verdict::in_short;
 use crate::experiment::Joint;
-use crate::wording::{doubt_percent, doubtful_sentence};
+use crate::wording::{DOUBT_MEANS, doubt_percent, doubtful_sentence};
 
 /// Adds `/doubt` and `/doubt/log`.
 pub(super) fn add(
@@ -59,7 +59,7 @@ fn page(joint: &Joint, ranked: &[(&TrialLayout<'_>, &SegmentLayout<'_>)]) -> Str
     const MOST: usize = 25;
     let row = |(trial, segment): &(&TrialLayout<'_>, &SegmentLayout<'_>)| {
         let (doubt, reason) = (doubt_percent(&segment.doubt), trial.reason(segment));
-        let is = if segment.doubt.is_doubtful() { "**doubtful**" } else { "no" };
+        let is = if segment.doubt.is_doubtful() { "**doubtful**" } else { "" };
         let step = plain(&in_short(joint, trial, segment));
         format!("| {} | {doubt} | {is} | {step} | {reason} |", segment.rank)
     };
@@ -68,15 +68,10 @@ fn page(joint: &Joint, ranked: &[(&TrialLayout<'_>, &SegmentLayout<'_>)]) -> Str
     let count = doubtful_sentence(ranked.iter().map(|(_, segment)| &segment.doubt));
     format!(
         "## {name}: {count}\n\n{DOUBT_MEANS} The first {shown}:\n\n\
-         | `doubt` | doubt | is it | step | what speaks against it |\n|---|---|---|---|---|\n{}\n\n{HOW}",
+         | `doubt` | doubt | | step | what speaks against it |\n|---|---|---|---|---|\n{}\n\n{HOW}",
         rows.join("\n")
     )
 }
-
-/// What the number says.
-pub(super) const DOUBT_MEANS: &str = "\
-A doubt of 0 % says that nothing speaks against the decision, one of 100 % that the least change \
-would turn it; it is no probability.";
 
 const HOW: &str = "\
 On the timeline `doubt` (bottom left) the right arrow goes through the decisions in this order; \

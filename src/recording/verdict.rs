@@ -229,10 +229,6 @@ impl Facts<'_, '_> {
         format!("{in_trial} of the trial; {} = {joined:.3} s in a row", self.trial.sample(sample))
     }
 
-    fn output(&self, value: f64) -> String {
-        with_unit(value, self.joint.output_unit.as_deref(), "")
-    }
-
     /// How doubtful the decision is, and why.
     fn doubt(&self, of: usize) -> String {
         let (percent, rank) = (doubt_percent(&self.segment.doubt), self.segment.rank);
@@ -280,8 +276,9 @@ impl Facts<'_, '_> {
 
     /// A failed condition as a sentence with its numbers.
     fn why(&self, check: &Check) -> String {
-        let (value, limit) = self.compared(check);
-        format!("**{}**: {value}, but needs {limit}", check.condition)
+        let (value, needed) = self.compared(check);
+        let needed = needed.unwrap_or_else(|| "a step on each side".to_owned());
+        format!("**{}**: {value}, but needs {needed}", check.condition)
     }
 
     fn quantities(&self) -> String {
@@ -384,99 +381,48 @@ impl Facts<'_, '_> {
         format!("| | condition | value (limit) |\n|---|---|---|\n{}", rows.join("\n"))
     }
 
-    /// The same in a narrow cell: `q 11070 (≥ p 11069)`; without a limit where none is set.
+    /// Value and what it must be, as narrow as a cell is: `q = 11070 (≥ p = 11069)`.
     fn in_short(&self, check: &Check) -> String {
-        let (value, limit) = match check.condition {
-            Condition::FirstOrLast => (self.compared(check).0, None),
-            Condition::NothingHappened => {
-                (check.value.map_or_else(none, |p| format!("p {}", number(p))), check.limit)
-            }
-            Condition::BeforeInput => {
-                let q = check.value.map_or_else(none, |q| format!("q {}", number(q)));
-                let p = check.limit.map_or_else(none, number);
-                return format!("{q} (≥ p {p})");
-            }
-            Condition::OutputLimit => {
-                let limits = self.settings.output_limits;
-                let value = self.compared(check).0;
-                return limits.map_or_else(
-                    || value.clone(),
-                    |(low, high)| format!("{value} ({} to {})", number(low), number(high)),
-                );
-            }
-            _ => (self.compared(check).0, check.limit),
-        };
-        let relation = match check.condition {
-            Condition::Sse => "<",
-            Condition::AtRest => ">",
-            Condition::NothingHappened => "≤",
-            _ => "≥",
-        };
-        limit.map_or_else(
-            || value.clone(),
-            |limit| format!("{value} ({relation} {})", number(limit)),
-        )
+        let (value, needed) = self.compared(check);
+        needed.map_or_else(|| value.clone(), |needed| format!("{value} ({needed})"))
     }
 
-    /// Value and limit of a condition, as a person reads them.
-    fn compared(&self, check: &Check) -> (String, String) {
-        let missing = none;
-        let value = check.value.map(number);
-        let limit = check.limit.map(number);
-        let not_set = limit.clone().unwrap_or_else(|| "not set".to_owned());
-        let unit = |text: &str| match &self.joint.output_unit {
-            Some(unit) => format!(" {unit}{text}"),
-            None => String::new(),
+    /// Value of a condition, and what it must be, if a limit is set.
+    fn compared(&self, check: &Check) -> (String, Option<String>) {
+        let said = |text: &dyn Fn(String) -> String| {
+            check.value.map_or_else(|| "none".to_owned(), |value| text(number(value)))
         };
+        let output = |words: &str, per: &str| {
+            let unit = self.joint.output_unit.as_deref();
+            let unit = unit.map(|unit| format!(" {unit}{per}")).unwrap_or_default();
+            said(&|value| format!("{words}{value}{unit}"))
+        };
+        let needed = |relation: &str| check.limit.map(|it| format!("{relation} {}", number(it)));
         match check.condition {
             Condition::FirstOrLast => {
-                let value =
-                    format!("step {} of {}", value.unwrap_or_default(), limit.unwrap_or_default());
+                let last = check.limit.unwrap_or_default();
+                let between = format!("2 to {}", number(last - 1.0));
                 let is_judged = check.outcome == Outcome::NotChecked;
-                (value, if is_judged { "any" } else { "a step on each side" }.to_owned())
+                let step = said(&|step| format!("step {step} of {}", number(last)));
+                (step, (!is_judged && last > 2.0).then_some(between))
             }
             Condition::OutputLimit => {
-                let limits = self.settings.output_limits;
-                let between = limits.map_or(not_set, |(low, high)| {
-                    format!("{} < y < {}", self.output(low), self.output(high))
-                });
-                (value.map_or_else(missing, |y| format!("y = {y}{}", unit(""))), between)
+                let between = |(low, high)| format!("{} to {}", number(low), number(high));
+                (output("y = ", ""), self.settings.output_limits.map(between))
             }
-            Condition::BeforeInput => {
-                let p = limit.unwrap_or_default();
-                (value.map_or_else(missing, |q| format!("q = {q}")), format!("q ≥ p = {p}"))
+            Condition::BeforeInput => (said(&|q| format!("q = {q}")), needed("≥ p =")),
+            Condition::SlopeChange => (output("", "/sample"), needed("≥")),
+            Condition::ShortHold => (said(&|hold| format!("{hold} samples")), needed("≥")),
+            Condition::Sse => (output("", "²"), needed("<")),
+            Condition::TooShort => {
+                let beta = self.settings.beta;
+                (said(&|rows| format!("{rows} rows of β = {beta}")), needed("≥"))
             }
-            Condition::SlopeChange => (
-                value.map_or_else(missing, |change| format!("{change}{}", unit("/sample"))),
-                format!("≥ {not_set}"),
-            ),
-            Condition::ShortHold => {
-                (format!("{} samples", value.unwrap_or_default()), format!("≥ {not_set}"))
-            }
-            Condition::Sse => {
-                let below = limit.map_or(not_set, |limit| format!("< {limit}"));
-                (value.map_or_else(missing, |sse| format!("{sse}{}", unit("²"))), below)
-            }
-            Condition::TooShort => (
-                format!("{} rows of β = {}", value.unwrap_or_default(), self.settings.beta),
-                format!("≥ {not_set} rows"),
-            ),
-            Condition::AtRest => {
-                let moved =
-                    value.map_or_else(missing, |moved| format!("moves by {moved}{}", unit("")));
-                (moved, limit.map_or(not_set, |limit| format!("> {limit}{}", unit(""))))
-            }
-            Condition::NothingHappened => {
-                let chance = |p: &str| format!("chance that noise does it: {p}");
-                (value.map_or_else(missing, |p| chance(&p)), format!("≤ {not_set}"))
-            }
-            Condition::Reviewer => (missing(), missing()),
+            Condition::AtRest => (output("moves by ", ""), needed(">")),
+            Condition::NothingHappened => (said(&|p| format!("p-value {p}")), needed("≤")),
+            Condition::Reviewer => ("none".to_owned(), None),
         }
     }
-}
-
-fn none() -> String {
-    "none".to_owned()
 }
 
 /// A number with half of its 95 % interval.

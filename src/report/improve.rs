@@ -2,11 +2,12 @@
 
 #[cfg(feature = "rrd")]
 use super::compare::ComparedJoint;
-use super::compare::{figures, horizons, parameters};
+use super::compare::{figures, horizons};
 #[cfg(feature = "rrd")]
 use super::conclusion::Conclusion;
 use super::conclusion::printed;
 use super::finding::Finding;
+use super::parameters::model_text;
 use super::text_table::TextTable;
 #[cfg(feature = "rrd")]
 use crate::diagnosis::Comparison;
@@ -74,28 +75,31 @@ impl<'a> ImprovedJoint<'a> {
         let ranking = self.ranking_behind(index);
         let (before, attribution) = (None, None);
         let finding = Finding { compared, verdict, ranking, before, attribution, ..self.finding };
-        match made_useless(next) {
-            Some(why) => Conclusion {
-                headline: format!("{}: {why}", compared.joint.name),
-                paragraph: "The effects that came after it do its part, so that it no longer \
-                            earns its parameters."
-                    .to_owned(),
-                commands: Vec::new(),
-            },
-            None if ranking.is_empty() => self.added_unranked(index, &finding),
-            None => finding.conclusion(),
+        let made_useless = |why: String| Conclusion {
+            headline: format!("{}: {why}", compared.joint.name),
+            paragraph: "The effects that came after it do its part, so that it no longer earns \
+                        its parameters."
+                .to_owned(),
+            commands: Vec::new(),
+        };
+        match next {
+            Change::Removed(id) => made_useless(format!("{id} has become useless")),
+            Change::Replaced { old, new } => made_useless(format!("{old} gives way to {new}")),
+            Change::Added(id) if ranking.is_empty() => self.added_unranked(index, id, &finding),
+            Change::Added(_) | Change::Start => finding.conclusion(),
         }
     }
 
-    /// What is to be said of the revision of `finding` at `index`, whose next effect was added
-    /// without others beside it.
+    /// What is to be said of the revision of `finding` at `index`, to which the effect `id` was
+    /// added without others beside it.
     #[cfg(feature = "rrd")]
-    fn added_unranked(&self, index: usize, finding: &Finding<'_>) -> Conclusion {
+    fn added_unranked(&self, index: usize, id: &str, finding: &Finding<'_>) -> Conclusion {
         let joint = finding.compared.joint;
         let next = self.revisions.get(index + 1).map(|next| &next.comparison);
-        let added = next.and_then(|next| next.fit.model.components().last());
-        let spec = added.map(|component| component.effect().spec());
-        let (id, summary) = spec.map_or(("an effect", ""), |spec| (spec.id, spec.summary));
+        let components = next.map(|next| next.fit.model.components()).unwrap_or_default();
+        let specs = components.iter().map(|component| component.effect().spec());
+        let summary = specs.filter(|spec| spec.id == id).map(|spec| spec.summary).next();
+        let summary = summary.unwrap_or_default();
         let error = |comparison: Option<&Comparison>| {
             let error = comparison.and_then(Comparison::judged).map(|error| error.rmse);
             error.map_or_else(|| "-".to_owned(), |e| measure(e, joint.output_unit.as_deref()))
@@ -120,9 +124,10 @@ impl<'a> ImprovedJoint<'a> {
         let conclusion = self.finding.conclusion();
         let stopped = if self.interrupted { " (stopped before the end)" } else { "" };
         let ladder = self.ladder();
-        let model = parameters(&self.finding.compared);
+        let compared = &self.finding.compared;
+        let model = model_text(compared.joint, compared.comparison, None);
         let headline = &conclusion.headline;
-        format!("{headline}{stopped}\n{ladder}\n\n{}\nmodel of {model}\n", printed(&conclusion))
+        format!("{headline}{stopped}\n{ladder}\n\n{}\n{model}\n", printed(&conclusion))
     }
 
     /// The ladder of errors: a row per revision.
@@ -137,16 +142,6 @@ impl<'a> ImprovedJoint<'a> {
             table.row([number.to_string(), change, training, validation, fit, noise, lack]);
         }
         table
-    }
-}
-
-/// Which effect goes with a change, and why.
-#[cfg(feature = "rrd")]
-fn made_useless(change: Change) -> Option<String> {
-    match change {
-        Change::Removed(id) => Some(format!("{id} has become useless")),
-        Change::Replaced { old, new } => Some(format!("{old} gives way to {new}")),
-        Change::Start | Change::Added(_) => None,
     }
 }
 

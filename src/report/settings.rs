@@ -1,7 +1,7 @@
 //! The settings in words.
 
 use super::EstimatedJoint;
-use crate::delay::{FirstLast, Method, Settings};
+use crate::delay::{CONFIDENCE, FirstLast, Method, Settings};
 use crate::study::JointEstimate;
 use crate::units::Length;
 use crate::wording::number;
@@ -69,10 +69,13 @@ pub(crate) fn settings_rows(settings: &Settings) -> Vec<(&'static str, String)> 
 
 /// Whether it is tested that a step shows more than noise.
 fn reaction(settings: &Settings) -> String {
+    let tested = |confidence: f64| format!("tested at p ≤ {}", number(1.0 - confidence));
     match settings.confidence {
-        Some(confidence) => format!("tested at p ≤ {}", number(1.0 - confidence)),
+        Some(confidence) => tested(confidence),
         None if settings.paper => "not tested".to_owned(),
-        None => "tested at p ≤ 0.01 in trials of few steps and until a step has reacted".to_owned(),
+        None => {
+            format!("{} in trials of few steps and until a step has reacted", tested(CONFIDENCE))
+        }
     }
 }
 

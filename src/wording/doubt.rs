@@ -60,6 +60,12 @@ pub(crate) fn doubtful_sentence<'d>(all: impl Iterator<Item = &'d Doubt>) -> Str
     format!("{doubtful} of {decisions} {are} doubtful (doubt of {from} % or more)")
 }
 
+/// What the number says.
+#[cfg(feature = "rrd")]
+pub(crate) const DOUBT_MEANS: &str = "\
+A doubt of 0 % says that nothing speaks against the decision, one of 100 % that the least change \
+would turn it; it is no probability.";
+
 /// The doubt in percent.
 pub(crate) fn doubt_percent(doubt: &Doubt) -> String {
     format!("{:.0} %", 100.0 * doubt.value())

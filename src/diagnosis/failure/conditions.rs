@@ -260,7 +260,7 @@ fn report(
         condition: texts.join(" and "),
         share_of_time: samples.len() as f64 / record.len() as f64,
         share_of_squared_error: search.share(&samples),
-        rmse: record.rmse_of(&samples),
+        rmse: record.rmse_of(samples.iter().copied()),
         p_value,
         clauses,
         samples,

@@ -169,9 +169,10 @@ impl ResidualRecord {
     }
 
     /// Root mean square of the residuals of the samples `rows`, output units.
-    pub(super) fn rmse_of(&self, rows: &[usize]) -> f64 {
-        let residuals = rows.iter().filter_map(|row| self.samples.residual.get(*row));
-        (residuals.map(|r| r * r).sum::<f64>() / rows.len().max(1) as f64).sqrt()
+    pub(super) fn rmse_of(&self, rows: impl IntoIterator<Item = usize>) -> f64 {
+        let residuals = rows.into_iter().filter_map(|row| self.samples.residual.get(row));
+        let (sum, count) = residuals.fold((0.0, 0_usize), |(sum, n), r| (sum + r * r, n + 1));
+        (sum / count.max(1) as f64).sqrt()
     }
 }
 

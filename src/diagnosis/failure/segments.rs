@@ -46,7 +46,7 @@ fn segment(record: &ResidualRecord, span: &Range<usize>, shares: &[f64]) -> Opti
         trial: record.trials().get(trial)?.clone(),
         start_s: *times.first()?,
         end_s: *times.last()?,
-        rmse: record.rmse_of(&span.clone().collect::<Vec<_>>()),
+        rmse: record.rmse_of(span.clone()),
         share_of_squared_error: share,
         samples: span.clone(),
     })

@@ -18,7 +18,7 @@ use crate::recording::palette::{self, Rgb, color};
 use crate::recording::paths::{self, against, at};
 use crate::recording::rows::HIDDEN;
 use crate::recording::sheet::put_texts;
-use crate::report::EstimatedJoint;
+use crate::report::{EstimatedJoint, variable_text};
 use crate::units::SamplePeriod;
 use crate::wording::number;
 
@@ -226,7 +226,18 @@ impl<'f> Page<'f> {
             more => format!(" and {more} more"),
         };
         let named = names.into_iter().take(NAMED).collect::<Vec<_>>().join(", ");
-        format!("{name}: the delay depends on {named}{more} ({basis})")
+        let apart = self.not_told_apart();
+        format!("{name}: the delay depends on {named}{more}{apart} ({basis})")
+    }
+
+    /// Two variables that go together, if any do.
+    fn not_told_apart(&self) -> String {
+        let pairs = self.found.kinds.iter().flat_map(|kind| &kind.confounded);
+        let words = |[one, other]: &[String; 2]| {
+            let (one, other) = (variable_text(one, None), variable_text(other, None));
+            format!("; {one} and {other} go together and are not told apart")
+        };
+        pairs.map(words).next().unwrap_or_default()
     }
 
     /// The step of each segment, in words and as a bright point in every plot.

@@ -134,20 +134,15 @@ impl Views<'_, '_> {
         let drawing = self.view(self.drawing())?;
         let map = self.view(self.map())?;
         let (.., lanes) = Steps::Some.titles();
-        let lanes = self.view(self.lanes(lanes))?;
+        // The verdict names the trial: a lane for it would hide that of the verdicts in a small window.
+        let lanes = self.view(self.lanes(lanes, &[paths::VERDICT, paths::SEGMENT]))?;
         let verdict = [self.path(paths::VERDICT)];
         let verdict = self.view(View::new("TextDocument", "Verdict", &verdict))?;
         let lists = self.lists()?;
         let left = [drawing, map, lanes];
-        // A lane more needs a little more room.
-        let lanes_share = if self.joint.trials.len() > 1 { 2.3 } else { 1.7 };
         let builder = &mut *self.builder;
-        let left = builder.container(
-            ContainerKind::Vertical,
-            "Segment",
-            &left,
-            &[6.3, 2.1, lanes_share],
-        )?;
+        let left =
+            builder.container(ContainerKind::Vertical, "Segment", &left, &[6.3, 2.1, 2.3])?;
         let right = [verdict, lists];
         let right = builder.container(ContainerKind::Vertical, "Verdicts", &right, &[7.2, 2.8])?;
         let columns = [left, right];
@@ -171,11 +166,8 @@ impl Views<'_, '_> {
         View::drawing(name, &self.at(map::ROOT), &map::PARTS, (MAP_WIDTH, MAP_HEIGHT))
     }
 
-    fn lanes(&self, name: &'static str) -> View<'static> {
-        let mut paths = vec![self.path(paths::VERDICT), self.path(paths::SEGMENT)];
-        if self.joint.trials.len() > 1 {
-            paths.push(self.path(paths::TRIAL));
-        }
+    fn lanes(&self, name: &'static str, lanes: &[&str]) -> View<'static> {
+        let paths: Vec<_> = lanes.iter().map(|lane| self.path(lane)).collect();
         View::new("StateTimeline", name, &paths)
     }
 
@@ -261,7 +253,11 @@ impl Views<'_, '_> {
             rows.push(self.plot("Covariates", &all.collect::<Vec<_>>(), Legend::Apart)?);
             shares.push(1.5);
         }
-        rows.push(self.view(self.lanes(lanes))?);
+        let mut shown = vec![paths::VERDICT, paths::SEGMENT];
+        if self.joint.trials.len() > 1 {
+            shown.push(paths::TRIAL);
+        }
+        rows.push(self.view(self.lanes(lanes, &shown))?);
         shares.push(if self.joint.trials.len() > 1 { 2.2 } else { 1.6 });
         self.builder.container(ContainerKind::Vertical, "Record", &rows, &shares)
     }

@@ -180,6 +180,8 @@ struct AgainstKindJson {
     steps: usize,
     correlations: Vec<CorrelationJson>,
     direction: DirectionJson,
+    /// Pairs of variables of which the record does not tell on which one the delay depends.
+    confounded: Vec<[String; 2]>,
 }
 
 /// All accepted steps, each made as it is written.
@@ -409,6 +411,7 @@ impl From<AgainstOfKind> for AgainstKindJson {
             steps: found.steps,
             correlations: found.correlations.into_iter().map(Into::into).collect(),
             direction: found.direction.into(),
+            confounded: found.confounded,
         }
     }
 }
