@@ -10,6 +10,7 @@ use super::number::threads;
 use crate::batch::with_prepared_threads;
 use crate::cli::console::{self, Host, Verbosity};
 use crate::cli::viewer::StreamArgs;
+use crate::delay::{CandidateLines, Settings};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
@@ -88,5 +89,12 @@ impl ResultArgs {
     /// Whether anything is made for a viewer.
     pub(crate) fn is_recorded(&self) -> bool {
         self.recording.is_some() || self.stream.is_asked()
+    }
+
+    /// How the delays are estimated that a model is held against: with the lines of every candidate
+    /// only where somebody looks at them.
+    pub(crate) fn delay_settings(&self) -> Settings {
+        let lines = if self.is_recorded() { CandidateLines::All } else { CandidateLines::Best };
+        Settings { lines, ..Settings::default() }
     }
 }

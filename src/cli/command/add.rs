@@ -1,7 +1,6 @@
 //! `tauscope add`: one effect more in a model.
 
 use crate::batch::Threads;
-use crate::delay::Settings;
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::explain::{Addition, Change, Revision as Step, Verdict};
@@ -52,7 +51,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let session = Session::with_others("add", &args.data, &args.output.run, stream)?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
     let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
-    let study = Study::of(session, &Settings::default(), |begun| {
+    let study = Study::of(session, &args.output.delay_settings(), |begun| {
         let bar = begun.bar("fitting");
         add_to_joints(
             begun.joints,

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use crate::batch::Threads;
-use crate::delay::Settings;
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::fit::{FitError, Horizon};
@@ -65,7 +64,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     }
     let stream = args.output.stream.open(args.output.run.verbosity())?;
     let session = Session::with_others("compare", &args.data, &args.output.run, stream)?;
-    let study = Study::of(session, &Settings::default(), |begun| {
+    let study = Study::of(session, &args.output.delay_settings(), |begun| {
         let (joints, estimates, bar) = (begun.joints, begun.estimates, begun.bar("comparing"));
         let one = |named: &Named| {
             let starts = |joint: &Joint| named.starts(joint);

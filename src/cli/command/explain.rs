@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use crate::batch::Threads;
-use crate::delay::Settings;
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
 use crate::explain::{Change, Explanation, Revision};
@@ -56,7 +55,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let session = Session::with_others("explain", &args.data, &args.output.run, stream)?;
     let starts = |joint: &Joint| file.joint(&joint.name).cloned();
     let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
-    let study = Study::of(session, &Settings::default(), |begun| {
+    let study = Study::of(session, &args.output.delay_settings(), |begun| {
         let (joints, estimates, bar) = (begun.joints, begun.estimates, begun.bar("explaining"));
         let watched = protocol.watched(&bar).beside(begun.others);
         let explained = explain_joints(joints, estimates, starts, watched, &options, &Threads);

@@ -3,7 +3,6 @@
 use std::sync::Mutex;
 
 use crate::batch::Threads;
-use crate::delay::Settings;
 use crate::experiment::Joint;
 use crate::explain::{Attribution, Improvement, MAX_EFFECTS, Options, Revision as Step, Verdict};
 use crate::fit::Horizon;
@@ -90,7 +89,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let session = Session::with_others("improve", &args.data, &args.output.run, stream)?;
     let name = name_of(Some(target));
     let protocol = args.protocol.with(Mode::FitOrIntegrator, Horizon::Auto);
-    let study = Study::of(session, &Settings::default(), |begun| {
+    let study = Study::of(session, &args.output.delay_settings(), |begun| {
         let (joints, estimates, bar) = (begun.joints, begun.estimates, begun.bar("improving"));
         let progress = Progress::new(&file, joints, begun.verbosity(), Some(interrupt));
         let arguments = args.add_arguments(joints);

@@ -21,7 +21,7 @@ impl Axis {
     ///
     /// Trials beyond what a byte counts are not cut.
     pub(super) fn new(record: &ResidualRecord, feature: Feature, parts: usize) -> Option<Self> {
-        let values = feature.values(record.samples());
+        let values: Vec<f64> = feature.values(record.samples()).collect();
         let most = if feature.has_kinds() { usize::from(u8::MAX) } else { parts };
         let levels = levels(&values, most);
         if feature.has_kinds() && levels.is_none() {

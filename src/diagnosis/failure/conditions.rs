@@ -176,17 +176,16 @@ pub fn fails_where(record: &ResidualRecord) -> Vec<FailsWhere> {
     let Some(shares) = record.shares_of_what_arises() else { return Vec::new() };
     let search = Search::new(record, shares);
     let mut rows: Vec<usize> = (0..record.len()).collect();
-    let all = rows.clone();
     let mut found: Vec<FailsWhere> = Vec::new();
     for _ in 0..MOST {
         let Some((choice, p_value)) = search.best(&rows) else { break };
         let sharp = search.sharpened(record, &choice, &rows);
         let (grid, choice) = sharp.as_ref().map_or((search.grid(), &choice), |(g, c)| (g, c));
-        let new = grid.members(&choice.selections, &rows);
+        let new = grid.members(&choice.selections, rows.iter().copied());
         if search.gain(&new) < MIN_GAIN {
             break;
         }
-        let exact = grid.members(&choice.selections, &all);
+        let exact = grid.members(&choice.selections, 0..record.len());
         rows.retain(|row| new.binary_search(row).is_err());
         let (clauses, samples) = in_few_digits(record, &search, grid, choice, &exact);
         if found.iter().all(|other| overlap(&other.samples, &samples) <= SAME) {
@@ -208,12 +207,11 @@ fn beside_motion(
 ) -> Option<FailsWhere> {
     let relative = search.relative(record, &moving.samples)?;
     let (choice, p_value) = relative.best_on_one_feature(&moving.samples)?;
-    let inside = relative.grid().members(&choice.selections, &moving.samples);
+    let inside = relative.grid().members(&choice.selections, moving.samples.iter().copied());
     if relative.gain_among(&moving.samples, &inside) < MIN_GAIN {
         return None;
     }
-    let all: Vec<usize> = (0..record.len()).collect();
-    let exact = relative.grid().members(&choice.selections, &all);
+    let exact = relative.grid().members(&choice.selections, 0..record.len());
     let (clauses, samples) = in_few_digits(record, search, relative.grid(), &choice, &exact);
     let is_new = overlap(&moving.samples, &samples) <= SAME;
     is_new.then(|| report(record, search, clauses, samples, p_value))
@@ -233,19 +231,22 @@ fn in_few_digits(
         let selections = choice.selections.iter();
         selections.flat_map(|one| clauses(record, &grid.axes[one.axis], *one, digits)).collect()
     };
-    let rounded: Vec<_> = (3..=6)
-        .map(|digits| {
-            let clauses = said(&|cut| to_digits(cut, digits));
-            let samples = holding(record, &clauses);
-            let gain = search.gain(&samples);
-            (clauses, samples, gain)
-        })
-        .collect();
     let wanted = search.gain(exact);
-    let near = rounded.iter().find(|(_, _, gain)| (gain - wanted).abs() < DIGITS_COST);
-    let most = || rounded.iter().max_by(|a, b| a.2.total_cmp(&b.2));
-    let (clauses, samples, _) = near.or_else(most).cloned().unwrap_or_default();
-    (clauses, samples)
+    // One set of samples at a time: each may be as long as the log.
+    let mut most: Option<(Vec<Clause>, Vec<usize>, f64)> = None;
+    for digits in 3..=6 {
+        let clauses = said(&|cut| to_digits(cut, digits));
+        let samples = holding(record, &clauses);
+        let gain = search.gain(&samples);
+        let is_near = (gain - wanted).abs() < DIGITS_COST;
+        if is_near || most.as_ref().is_none_or(|(.., most)| gain >= *most) {
+            most = Some((clauses, samples, gain));
+        }
+        if is_near {
+            break;
+        }
+    }
+    most.map_or_else(Default::default, |(clauses, samples, _)| (clauses, samples))
 }
 
 fn report(
@@ -275,14 +276,11 @@ fn overlap(a: &[usize], b: &[usize]) -> f64 {
 
 /// The samples for which all of `clauses` hold.
 fn holding(record: &ResidualRecord, clauses: &[Clause]) -> Vec<usize> {
-    let known: Vec<_> = clauses.iter().map(|c| (c, c.feature.values(record.samples()))).collect();
-    let holds = |row: &usize| {
-        let mut all = known.iter();
-        all.all(|(clause, values)| {
-            values.get(*row).is_some_and(|value| clause.holds(record, *value))
-        })
+    let holds = |row: usize, clause: &Clause| {
+        let value = clause.feature.value(record.samples(), row);
+        value.is_some_and(|value| clause.holds(record, value))
     };
-    (0..record.len()).filter(holds).collect()
+    (0..record.len()).filter(|row| clauses.iter().all(|clause| holds(*row, clause))).collect()
 }
 
 /// A selection in words, its bounds as `digits` makes them.
@@ -298,10 +296,10 @@ fn clauses(
         let level = axis.levels.as_ref().and_then(|levels| levels.get(from)).copied();
         return level.map(|level| kind(record, feature, level)).into_iter().collect();
     }
-    let values = feature.values(record.samples());
     let lower = from.checked_sub(1).and_then(|cut| axis.cuts.get(cut)).map(|&cut| {
         let cut = digits(cut);
-        let touched = values.iter().any(|value| value.partial_cmp(&cut) == Some(EQUAL));
+        let touched =
+            feature.values(record.samples()).any(|value| value.partial_cmp(&cut) == Some(EQUAL));
         let relation = if touched { Relation::AtLeast } else { Relation::Above };
         Clause { feature, relation, bound: Bound::Number(cut) }
     });
@@ -395,7 +393,7 @@ mod tests {
         let search = Search::new(&record, record.shares_of_what_arises().unwrap());
         // The grid's own thresholds have all digits.
         let choice = search.best_on_one_feature(&(0..4000).collect::<Vec<_>>()).unwrap().0;
-        let exact = search.grid().members(&choice.selections, &(0..4000).collect::<Vec<_>>());
+        let exact = search.grid().members(&choice.selections, 0..4000);
         let (clauses, samples) = in_few_digits(&record, &search, search.grid(), &choice, &exact);
         assert_eq!(samples, holding(&record, &clauses));
         assert!(clauses[0].to_string().len() <= "output < 12.3".len(), "{}", clauses[0]);

@@ -86,21 +86,26 @@ impl Feature {
         }
     }
 
-    /// Its value at every sample; NaN where it is not known.
-    pub(super) fn values(self, samples: &Samples) -> Vec<f64> {
-        let magnitudes = |values: &[f64]| values.iter().map(|value| value.abs()).collect();
+    /// Its value at a sample; NaN where it is not known.
+    pub(super) fn value(self, samples: &Samples, row: usize) -> Option<f64> {
+        let of = |values: &[f64]| values.get(row).copied();
         match self {
-            Self::Direction => samples.input.iter().map(|input| sign(*input)).collect(),
-            Self::Input => samples.input.clone(),
-            Self::AbsInput => magnitudes(&samples.input),
-            Self::Output => samples.output.clone(),
-            Self::AbsSpeed => magnitudes(&samples.speed),
-            Self::Speed => samples.speed.clone(),
-            Self::SinceStep => samples.since_step_s.clone(),
-            Self::Hold => samples.hold_s.clone(),
-            Self::Time => samples.time_s.clone(),
-            Self::Trial => samples.trial.iter().map(|trial| *trial as f64).collect(),
+            Self::Direction => of(&samples.input).map(sign),
+            Self::Input => of(&samples.input),
+            Self::AbsInput => of(&samples.input).map(f64::abs),
+            Self::Output => of(&samples.output),
+            Self::AbsSpeed => of(&samples.speed).map(f64::abs),
+            Self::Speed => of(&samples.speed),
+            Self::SinceStep => of(&samples.since_step_s),
+            Self::Hold => of(&samples.hold_s),
+            Self::Time => of(&samples.time_s),
+            Self::Trial => samples.trial.get(row).map(|trial| *trial as f64),
         }
+    }
+
+    /// Its value at every sample, likewise.
+    pub(super) fn values(self, samples: &Samples) -> impl Iterator<Item = f64> + '_ {
+        (0..samples.residual.len()).filter_map(move |row| self.value(samples, row))
     }
 
     /// Whether its values are kinds, without more or less.

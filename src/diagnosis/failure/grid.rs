@@ -252,12 +252,16 @@ impl Grid {
     }
 
     /// Those of `rows` for which all selections hold.
-    pub(super) fn members(&self, selections: &[Selection], rows: &[usize]) -> Vec<usize> {
-        selections.iter().fold(rows.to_vec(), |mut rows, selection| {
-            let part_of = &self.axes[selection.axis].part_of;
-            rows.retain(|row| selection.span.contains(part_of[*row]));
-            rows
-        })
+    pub(super) fn members(
+        &self,
+        selections: &[Selection],
+        rows: impl IntoIterator<Item = usize>,
+    ) -> Vec<usize> {
+        let holds = |row: usize, selection: &Selection| {
+            selection.span.contains(self.axes[selection.axis].part_of[row])
+        };
+        let all_hold = |row: &usize| selections.iter().all(|one| holds(*row, one));
+        rows.into_iter().filter(all_hold).collect()
     }
 }
 

@@ -79,10 +79,10 @@ impl Sums {
 fn of_axis(record: &ResidualRecord, axis: &Axis) -> Vec<Region> {
     let mut parts = vec![Sums::NONE; axis.parts()];
     let values = axis.feature.values(record.samples());
-    let samples = record.samples().residual.iter().zip(&values).zip(&axis.part_of);
+    let samples = record.samples().residual.iter().zip(values).zip(&axis.part_of);
     for ((residual, value), part) in samples {
         if let Some(sums) = parts.get_mut(usize::from(*part)) {
-            sums.add(*residual, *value);
+            sums.add(*residual, value);
         }
     }
     let squares: f64 = record.samples().residual.iter().map(|r| r * r).sum();

@@ -14,7 +14,7 @@ pub(super) const DIGITS_COST: f64 = 0.01;
 #[derive(Debug)]
 pub(super) struct Search {
     grid: Grid,
-    block_of: Vec<usize>,
+    block_of: Vec<u32>,
     shares: Vec<f64>,
 }
 
@@ -64,9 +64,10 @@ impl Search {
         let [a, b] = pair.selections.as_slice() else { return None };
         let orders = [(*a, *b), (*b, *a)];
         let p_value = |(first, second)| {
-            let inside = self.grid.members(&[first], rows);
+            let inside = self.grid.members(&[first], rows.iter().copied());
             let alone = chance.p_value(Family::OneClause, self.gain_among(rows, &inside))?;
-            let gain = self.gain_among(&inside, &self.grid.members(&[second], &inside));
+            let gain =
+                self.gain_among(&inside, &self.grid.members(&[second], inside.iter().copied()));
             let excess = self.excess(&inside)?;
             let shuffler = Shuffler::new(&self.grid, &inside, &excess, &self.block_of);
             let chance = shuffler.stands_out(Family::OneClause, gain)?;

@@ -52,7 +52,7 @@ const SEED: u64 = 0x7A05_C09E;
 ///
 /// Blocks are the segments. Where those are short against the residual's correlation time
 /// neighbours are merged; where they are long against the record they are parted.
-pub(super) fn blocks(record: &ResidualRecord) -> Vec<usize> {
+pub(super) fn blocks(record: &ResidualRecord) -> Vec<u32> {
     let samples = record.len();
     let enough = (samples / MERGED).max(1);
     let shortest = correlation_time(&record.samples().residual, enough);
@@ -60,10 +60,12 @@ pub(super) fn blocks(record: &ResidualRecord) -> Vec<usize> {
     let longest = (samples / PARTED).max(1);
     let mut block_of = Vec::with_capacity(samples);
     let mut block = 0;
+    // Four bytes for each sample, of which there may be tens of millions.
+    let numbered = |block: usize| u32::try_from(block).unwrap_or(u32::MAX);
     for span in merged(record, shortest) {
         let parts = span.len().div_ceil(longest).max(1);
         let length = span.len().div_ceil(parts).max(1);
-        block_of.extend((0..span.len()).map(|offset| block + offset / length));
+        block_of.extend((0..span.len()).map(|offset| numbered(block + offset / length)));
         block += parts;
     }
     block_of
@@ -141,12 +143,7 @@ pub(super) struct Shuffler<'a> {
 
 impl<'a> Shuffler<'a> {
     /// `excess` of the samples `rows`; `block_of` every sample.
-    pub(super) fn new(
-        grid: &'a Grid,
-        rows: &[usize],
-        excess: &'a [f64],
-        block_of: &[usize],
-    ) -> Self {
+    pub(super) fn new(grid: &'a Grid, rows: &[usize], excess: &'a [f64], block_of: &[u32]) -> Self {
         let mut blocks = Vec::new();
         let mut start = 0;
         for block in rows.chunk_by(|a, b| block_of[*a] == block_of[*b]) {
