@@ -452,6 +452,9 @@ fn a_suspect_that_contains_the_other_is_said() {
 fn what_cannot_be_designed_is_refused_in_one_message_and_leaves_no_file() {
     let desk = desk();
     desk.write("plain.toml", MODEL.split("[[joint.boom.effect]]").next().unwrap());
+    let late = "schema = \"tauscope/model/1\"\n[joint.boom]\nstructure = \"integrator\"\n\
+                parameters = { gain = 10.0, delay = 1e308 }\n";
+    desk.write("late.toml", late);
     let cases = [
         ("--levels 1", "expected two levels or more"),
         ("--trials 0", "expected a whole number from 1 on"),
@@ -469,6 +472,18 @@ fn what_cannot_be_designed_is_refused_in_one_message_and_leaves_no_file() {
         ("--separate dead_band,stiction --model plain.toml", "has neither dead_band nor stiction"),
         ("--separate leakage,stiction --model boom.toml", "has neither leakage nor stiction"),
         ("missing.csv", "missing.csv"),
+        ("--start NaN --model boom.toml", "expected a number"),
+        ("--start inf --model boom.toml", "expected a number"),
+        ("--largest 1e-320 --model boom.toml", "expected a number above zero"),
+        ("--levels=1e308,-1e308 --model boom.toml", "expected two levels or more"),
+        ("--rate 1e9 --model boom.toml --duration 60", "longer than the 1e6 that are searched"),
+        ("--duration 1e9 --model boom.toml", "longer than the 1e6 that are searched"),
+        (
+            "--duration 1e9 --separate dead_band,stiction --noise 0.05 --model boom.toml",
+            "longer than the 1e6 that are searched",
+        ),
+        ("--model late.toml --output-range=-50,50", "has a delay of 1.0e308 s"),
+        ("--model late.toml", "has a delay of 1.0e308 s"),
     ];
     for (options, expected) in cases {
         let output = desk.run(&format!("design {options} -o none.csv"));

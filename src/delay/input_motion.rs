@@ -17,6 +17,9 @@
 //! more, at 10 Hz to 1 kHz, with noise, dither and interpolated edges; joysticks, sines, ramps,
 //! feedback and levels drawn anew every 0.1 s have 0.32 or less.
 
+use std::collections::VecDeque;
+use std::ops::Range;
+
 use crate::experiment::Trial;
 use crate::units::ceil_to_index;
 
@@ -201,26 +204,54 @@ struct Hold {
 }
 
 /// Samples that stay within `tolerance` of their middle, `shortest` or more of them.
+///
+/// Every sample enters and leaves the window once: its extremes stand in front of two queues.
 fn holds(input: &[f64], tolerance: f64, shortest: usize) -> Vec<Hold> {
     let (mut holds, mut start) = (Vec::new(), 0);
-    while let Some(rest) = input.get(start..).filter(|rest| !rest.is_empty()) {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        let stays = rest.iter().take_while(|value| {
-            (low, high) = (low.min(**value), high.max(**value));
-            high - low <= 2.0 * tolerance
-        });
-        let samples = stays.count().max(1);
-        if samples >= shortest {
-            let level = rest.iter().take(samples).sum::<f64>() / samples as f64;
-            let level =
-                if tolerance > 0.0 { level } else { rest.first().copied().unwrap_or(level) };
-            holds.push(Hold { start, end: start + samples, level });
-            start += samples;
-        } else {
-            start += 1;
+    let (mut lowest, mut highest) = (VecDeque::new(), VecDeque::new());
+    for end in 0..=input.len() {
+        while start < end && !fits(input, end, (&lowest, &highest), tolerance) {
+            if end - start >= shortest {
+                holds.push(hold(input, start..end, tolerance));
+                lowest.clear();
+                highest.clear();
+                start = end;
+            } else {
+                start += 1;
+                lowest.pop_front_if(|front: &mut usize| *front < start);
+                highest.pop_front_if(|front: &mut usize| *front < start);
+            }
         }
+        let Some(value) = input.get(end) else { break };
+        while lowest.pop_back_if(|back| input[*back] >= *value).is_some() {}
+        while highest.pop_back_if(|back| input[*back] <= *value).is_some() {}
+        lowest.push_back(end);
+        highest.push_back(end);
     }
     holds
+}
+
+/// Whether the sample `next` is within `tolerance` of the middle of those of a window with the
+/// extremes in front of two queues; nothing is behind the last sample.
+fn fits(
+    input: &[f64],
+    next: usize,
+    (lowest, highest): (&VecDeque<usize>, &VecDeque<usize>),
+    tolerance: f64,
+) -> bool {
+    let ends = lowest.front().zip(highest.front()).zip(input.get(next));
+    ends.is_some_and(|((low, high), next)| {
+        input[*high].max(*next) - input[*low].min(*next) <= 2.0 * tolerance
+    })
+}
+
+fn hold(input: &[f64], span: Range<usize>, tolerance: f64) -> Hold {
+    let samples = input.get(span.clone()).unwrap_or_default();
+    let level = match samples.first() {
+        Some(first) if tolerance <= 0.0 => *first,
+        _ => samples.iter().sum::<f64>() / samples.len() as f64,
+    };
+    Hold { start: span.start, end: span.end, level }
 }
 
 /// How far the input goes in all, what is within its noise left out.
@@ -264,6 +295,39 @@ mod tests {
     fn joystick(time_s: f64) -> f64 {
         let sum: f64 = [0.13, 0.31, 0.47, 0.7, 1.1].iter().map(|f| (TAU * f * time_s).sin()).sum();
         sum.signum() * (sum.abs() - 1.0).clamp(0.0, 2.0)
+    }
+
+    /// The longest run from each start, looked for anew.
+    fn holds_one_by_one(input: &[f64], tolerance: f64, shortest: usize) -> Vec<Range<usize>> {
+        let (mut found, mut start) = (Vec::new(), 0);
+        while start < input.len() {
+            let within = |end: &usize| {
+                let window = &input[start..*end];
+                let low = window.iter().copied().fold(f64::INFINITY, f64::min);
+                let high = window.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                high - low <= 2.0 * tolerance
+            };
+            let end = (start + 1..=input.len()).take_while(within).last().unwrap();
+            let is_held = end - start >= shortest;
+            found.extend(is_held.then_some(start..end));
+            start = if is_held { end } else { start + 1 };
+        }
+        found
+    }
+
+    #[test]
+    fn holds_are_those_that_are_found_one_by_one() {
+        for (tolerance, kinds) in [(0.0, 2.0), (0.5, 4.0), (1.0, 5.0)] {
+            for seed in 0..40 {
+                let at = |k: i32| (kinds * (noise(f64::from(7 * seed + k)) + 0.5)).floor();
+                let input: Vec<f64> = (0..120).map(|k| at(k / (1 + seed % 4))).collect();
+                for shortest in [1, 3, 8] {
+                    let found = holds(&input, tolerance, shortest);
+                    let found: Vec<_> = found.iter().map(|hold| hold.start..hold.end).collect();
+                    assert_eq!(found, holds_one_by_one(&input, tolerance, shortest));
+                }
+            }
+        }
     }
 
     #[test]

@@ -39,6 +39,7 @@ pub use handed::{HandedColumn, HandedLog, HandedValues};
 pub use joint::{Joint, Signal, Trial, TrialError};
 pub use memory::MemoryLimit;
 pub(crate) use names::nearest_name;
+pub(crate) use read::is_period;
 pub use read::{Experiment, Failure, ReadOptions, expand_folders};
 pub use sampling::Repair;
 pub use source::Source;

@@ -324,5 +324,12 @@ fn sample_period(path: &Path, map: &ColumnMap) -> Result<Option<SamplePeriod>, R
         return Ok(None);
     };
     let bad = || ReadError::BadPeriod { path: path.to_owned(), seconds };
-    SamplePeriod::from_seconds(seconds).map(Some).ok_or_else(bad)
+    let period = Some(seconds).filter(|seconds| is_period(*seconds));
+    period.and_then(SamplePeriod::from_seconds).map(Some).ok_or_else(bad)
+}
+
+/// Whether samples may be so many seconds apart: from a nanosecond to three years, beyond which the
+/// times of a record leave what a clock counts.
+pub(crate) fn is_period(seconds: f64) -> bool {
+    (1e-9..=1e8).contains(&seconds)
 }

@@ -56,9 +56,10 @@ pub(super) fn sources(export: &Export, name: &str) -> (String, String) {
     (all(SOURCE), all(HEADER))
 }
 
-/// A text that ends no comment.
+/// A text that ends no comment, nor joins what stands before the end of a line to what follows it.
 pub(super) fn commentable(text: &str) -> String {
-    text.replace("*/", "* /").replace("/*", "/ *")
+    let unspliced = text.replace("??/", "?? /").replace('\\', "|");
+    unspliced.replace("*/", "* /").replace("/*", "/ *")
 }
 
 /// The notation of C.

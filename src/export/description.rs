@@ -46,8 +46,8 @@ pub(super) struct Parameter {
 pub(super) struct Exported {
     /// Its id; where the model has it before, with something behind it.
     pub(super) id: String,
-    pub(super) summary: &'static str,
-    pub(super) equation: &'static str,
+    pub(super) summary: String,
+    pub(super) equation: String,
     pub(super) stage: Stage,
     pub(super) acts_on_state: bool,
     /// Of its parameters, as in [`Export::parameters`].
@@ -89,6 +89,9 @@ impl Export {
         units: Units,
         origin: &[String],
     ) -> Result<Self, ExportError> {
+        let Units { input, output } = units;
+        let units =
+            Units { input: input.map(|it| one_line(&it)), output: output.map(|it| one_line(&it)) };
         let mut taken = Taken::reserved();
         let mut parameters = own_parameters(model, &units, &mut taken);
         let mut effects = Vec::new();
@@ -97,10 +100,8 @@ impl Export {
             effects.push(effect);
             parameters.extend(its);
         }
-        let printable = |line: &String| line.replace(|c: char| c.is_control(), " ");
-        let origin = origin.iter().map(printable).collect();
-        let joint = joint.replace(|c: char| c.is_control(), " ");
-        Ok(Self { joint, origin, units, parameters, effects })
+        let origin = origin.iter().map(|line| one_line(line)).collect();
+        Ok(Self { joint: one_line(joint), origin, units, parameters, effects })
     }
 
     /// The effects of a stage, in their order.
@@ -135,6 +136,12 @@ impl Export {
             .map(|line| format!("{prefix}{line}").trim_end().to_owned() + "\n")
             .collect()
     }
+}
+
+/// A text that ends no line, and so no comment of a line, in any language: a model file says what it
+/// likes of its effects, and what is exported is run.
+fn one_line(text: &str) -> String {
+    text.replace(|c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}'), " ")
 }
 
 /// Names that are taken; another of the same is made another.
@@ -210,7 +217,7 @@ fn exported(
     let parameters: Vec<_> = own
         .map(|(parameter, value)| Parameter {
             name: give(parameter.name),
-            meaning: parameter.meaning.to_owned(),
+            meaning: one_line(parameter.meaning),
             unit: parameter.dimension.unit(units.input.as_deref(), units.output.as_deref()),
             value: value.value,
         })
@@ -218,8 +225,8 @@ fn exported(
     let memory = equations.memory.iter().map(|name| give(name)).collect();
     let exported = Exported {
         id,
-        summary: spec.summary,
-        equation: spec.equation,
+        summary: one_line(spec.summary),
+        equation: one_line(spec.equation),
         stage: spec.stage,
         acts_on_state: spec.acts_on_state,
         parameters: parameters.iter().map(|parameter| parameter.name.clone()).collect(),

@@ -30,7 +30,7 @@ use crate::model::JointModel;
 /// Standard errors allow for correlated residuals (Newey and West, 1987).
 ///
 /// # Errors
-/// [`FitError`] when there are too few samples.
+/// [`FitError`] when there are too few samples, or the model gives no finite numbers.
 ///
 /// # References
 /// D. W. Marquardt, "An algorithm for least-squares estimation of nonlinear parameters", 1963.
@@ -39,7 +39,15 @@ pub fn fit(
     model: &JointModel,
     range: &RecordRange<'_>,
 ) -> Result<Fit, FitError> {
-    fit_to(record, (model, model), range, whole(record.training_samples()))
+    let fit = fit_to(record, (model, model), range, whole(record.training_samples()))?;
+    check_numbers(&fit.assessment)?;
+    Ok(fit)
+}
+
+/// Whether a model gives numbers on the whole record.
+fn check_numbers(assessment: &Assessment) -> Result<(), FitError> {
+    let mut residuals = assessment.evaluation.residuals.iter().flatten();
+    if residuals.all(|residual| residual.is_finite()) { Ok(()) } else { Err(FitError::NotFinite) }
 }
 
 /// Fits as [`fit`] does, but stops when the cost can fall by too little to change a comparison
@@ -151,7 +159,9 @@ pub fn assess(
     let space = Space::of(model, range);
     check_size(record, &space)?;
     let training = record.for_training();
-    Ok(Search::new(&training, model, &space, plain(model)).assessment(record))
+    let assessment = Search::new(&training, model, &space, plain(model)).assessment(record);
+    check_numbers(&assessment)?;
+    Ok(assessment)
 }
 
 fn check_size(record: &FitRecord<'_>, space: &Space) -> Result<(), FitError> {

@@ -107,6 +107,12 @@ pub enum FitError {
         /// Parameters to fit.
         parameters: usize,
     },
+    /// What the model says is no number, or beyond what a number can be.
+    #[error(
+        "its model gives outputs that are no finite numbers; check its parameters and the unit of \
+         the log"
+    )]
+    NotFinite,
 }
 
 /// A model surveyed: where a rough descent in short windows leads, and its sum of

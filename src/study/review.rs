@@ -159,6 +159,9 @@ impl Review {
     }
 }
 
+/// No delay is longer: a day, in seconds.
+const LONGEST_S: f64 = 86_400.0;
+
 impl Row {
     fn parsed(self, path: &Path, line: u64) -> Result<Option<Reviewed>, ReviewError> {
         let wrong = |column, got: &str, expected| ReviewError::Cell {
@@ -171,7 +174,7 @@ impl Row {
         let number = |column, text: &str| match text {
             "" => Ok(None),
             _ => match text.parse::<f64>() {
-                Ok(value) if value.is_finite() => Ok(Some(value)),
+                Ok(value) if value.abs() <= LONGEST_S => Ok(Some(value)),
                 _ => Err(wrong(column, text, "seconds, as in 0.15, or nothing")),
             },
         };

@@ -1,11 +1,13 @@
 //! Numbers on the command line, and what is said of those that cannot be used.
 
+use crate::experiment::is_period;
 use crate::units::{Length, SamplePeriod};
 
 /// A period in seconds.
 pub(crate) fn period(text: &str) -> Result<SamplePeriod, String> {
-    let period = text.parse().ok().and_then(SamplePeriod::from_seconds);
-    period.ok_or_else(|| "expected a number of seconds above zero".to_owned())
+    let period = text.parse().ok().filter(|seconds| is_period(*seconds));
+    let period = period.and_then(SamplePeriod::from_seconds);
+    period.ok_or_else(|| "expected a number of seconds above zero, as in 0.01".to_owned())
 }
 
 /// A length of time in seconds.

@@ -247,6 +247,16 @@ impl Target {
         if self.kind == Kind::Markdown && folder.exists() && !folder.is_dir() {
             bail!("{}: the drawings need a folder of this name", folder.display());
         }
+        let folder = folder.canonicalize().unwrap_or(folder);
+        let inside =
+            |input: &&PathBuf| input.canonicalize().is_ok_and(|input| input.starts_with(&folder));
+        if let Some(input) = inputs.iter().find(inside) {
+            bail!(
+                "{}: a file that is read lies in the folder of the drawings; give the report another \
+                 name",
+                input.display()
+            );
+        }
         Ok(())
     }
 

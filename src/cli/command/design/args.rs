@@ -94,7 +94,10 @@ pub(crate) struct Args {
     pub(super) output_range: Option<(f64, f64)>,
 
     /// The output at which it starts [default: the middle of the range; without one, of the log, or 0]
-    #[arg(long, value_name = "X", allow_negative_numbers = true, help_heading = "Input")]
+    #[arg(
+        long, value_name = "X", value_parser = values::number, allow_negative_numbers = true,
+        help_heading = "Input"
+    )]
     pub(super) start: Option<f64>,
 
     /// `cross`: a level lies in the model's dead band; `avoid`: none does; or the ends of a

@@ -51,8 +51,16 @@ fn range(first: &str, rest: &str, most: usize) -> Option<Vec<f64>> {
     Some((0..=most).map(level).take_while(|level| *level <= end).collect())
 }
 
+/// A number that inputs, outputs and seconds can have: squares of larger ones leave double precision,
+/// and so do the inverses of smaller ones.
 fn finite(text: &str) -> Option<f64> {
-    text.trim().parse().ok().filter(|number: &f64| number.is_finite())
+    const RANGE: std::ops::RangeInclusive<f64> = 1e-12..=1e12;
+    let number = text.trim().parse().ok();
+    number.filter(|number: &f64| *number == 0.0 || RANGE.contains(&number.abs()))
+}
+
+pub(crate) fn number(text: &str) -> Result<f64, String> {
+    finite(text).ok_or_else(|| "expected a number, as in 12.5".to_owned())
 }
 
 pub(crate) fn ascending(text: &str) -> Result<(f64, f64), String> {
