@@ -9,7 +9,7 @@ use super::columns::{ColumnMap, JointColumns};
 use super::error::ReadError;
 use super::format::{self, is_named_like_a_log};
 use super::joint::Joint;
-use super::layout::Layout;
+use super::layout::{Layout, find_time_column};
 use super::log::Log;
 use super::memory::{Budget, MemoryLimit};
 use super::sampling::Repair;
@@ -234,6 +234,14 @@ pub(super) fn laid_out(
     let incomplete = std::mem::take(&mut layout.incomplete);
     let mut found = Experiment::default();
     found.failures.extend(incomplete.into_iter().chain(unknown).map(failed));
+    let unused = period.filter(|_| options.columns.time.is_none()).and(find_time_column(head));
+    if let Some(time) = unused.and_then(|column| head.headers.get(column)) {
+        found.notes.push(format!(
+            "{}: the times in `{}` are not used: a sample period was given",
+            head.path.display(),
+            time.name
+        ));
+    }
     Ok((layout, found))
 }
 

@@ -47,6 +47,7 @@ pub(super) fn around(
     let bars = bars_of(revision, &all);
     let unit = improved.finding.compared.joint.output_unit.as_deref().unwrap_or("");
     let title = match (all.as_slice(), revision.ranking.as_slice()) {
+        ([], _) if is_adequate(revision) => "no effect is missing",
         ([], _) => "nothing more was looked for",
         (_, []) => "error at the next revision",
         _ => "error with one effect more",
@@ -61,6 +62,11 @@ pub(super) fn around(
     let Some(noise) = noise(improved) else { return Vec::new() };
     bars.below(floor, noise, format!("noise {} {unit}", short(noise)));
     vec![bars.line(noise)]
+}
+
+/// Whether no lack of fit is shown.
+fn is_adequate(revision: &Revision) -> bool {
+    revision.comparison.lack_of_fit.is_some_and(|test| test.adequate)
 }
 
 /// What may come next, and the error with it.

@@ -15,7 +15,8 @@ use crate::recording::rows::Rows;
 use crate::recording::shaded::{Spans, areas, condition, validation, where_it_fails};
 use crate::recording::sheet::Sheet;
 use crate::report::ImprovedJoint;
-use crate::wording::{bracketed, misfit_units};
+use crate::units::floor_to_index;
+use crate::wording::{bracketed, misfit_units, rounded};
 
 use super::figure::noise;
 
@@ -95,8 +96,6 @@ impl Window {
     /// Where the squares of `residuals`, one list per trial, are largest: about a
     /// [`PARTS`]th of all samples, within one trial.
     fn worst(residuals: &[&[f64]]) -> Self {
-        /// Parts of the record: a few steps of the input are in one of them.
-        const PARTS: usize = 15;
         let all: usize = residuals.iter().map(|trial| trial.len()).sum();
         let longest = (all / PARTS).max(1);
         let windows = residuals.iter().enumerate().flat_map(|(place, trial)| {
@@ -111,7 +110,23 @@ impl Window {
         let worst = windows.max_by(|a, b| square(a).total_cmp(&square(b)));
         worst.map_or(Self { place: 0, samples: 0..0 }, |(place, samples)| Self { place, samples })
     }
+
+    /// As much of the trial about a segment that is named, so that what is named is seen.
+    fn about(layout: &JointLayout<'_>, worst: &WorstSegment) -> Option<Self> {
+        let all: usize = layout.trials.iter().map(|trial| trial.trial.len()).sum();
+        let mut trials = layout.trials.iter().enumerate();
+        let (place, trial) = trials.find(|(_, trial)| trial.trial.label() == worst.trial)?;
+        let (first_s, period_s) = (trial.trial.time_s(1), trial.trial.period().seconds());
+        let index = |time_s: f64| floor_to_index(((time_s - first_s) / period_s).round());
+        let (start, end) = (index(worst.start_s), index(worst.end_s) + 1);
+        let beside = (all / PARTS).saturating_sub(end - start) / 2;
+        let samples = start.saturating_sub(beside)..(end + beside).min(trial.trial.len());
+        Some(Self { place, samples })
+    }
 }
+
+/// Parts of the record of which one is looked at closely: a few steps of the input are in it.
+const PARTS: usize = 15;
 
 impl<'l, 'a> Drawing<'l, 'a> {
     fn of(layout: &'l JointLayout<'a>, improved: &ImprovedJoint<'_>) -> Self {
@@ -119,7 +134,10 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let ends = trials.iter().flat_map(|t| [seconds(t, 1), seconds(t, t.trial.len())]);
         let x = Span::around(ends, 0.005);
         let outputs = trials.iter().flat_map(|trial| trial.trial.output().iter().copied());
-        let window = Window::worst(&first_residuals(layout, improved));
+        let first = improved.revisions.first().and_then(|first| first.comparison.failure.as_ref());
+        let named = first.and_then(|failure| failure.worst_segments.first());
+        let named = named.and_then(|worst| Window::about(layout, worst));
+        let window = named.unwrap_or_else(|| Window::worst(&first_residuals(layout, improved)));
         Self {
             layout,
             output: Plot::within((120.0, 900.0), 40.0..=290.0, x, Span::around(outputs, 0.08)),
@@ -150,14 +168,15 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let output = format!("measured (white) and simulated (orange){unit}, {horizon}");
         sheet.frame(&self.output, &self.output.x_span().ticks(8.0), &ticks(&self.output), &output);
         let first = improved.first_revision;
-        let close = format!("close up: where revision {first} was worst");
+        let close = format!("close up: the worst of revision {first}");
         sheet.frame(&self.close, &[], &ticks(&self.close), &close);
         let close = self.close.x_span();
         for end in [close.low, close.high] {
             sheet.put(self.close.below(end, 2.0), format!("{} s", short(end)));
         }
         let floor = noise(improved).filter(|noise| *noise > 0.0);
-        let times = floor.map(|noise| format!(" ({} × noise)", short(judged(comparison) / noise)));
+        let times =
+            floor.map(|noise| format!(" ({} × noise)", rounded(judged(comparison) / noise)));
         let units = misfit_units(improved.finding.compared.joint);
         let fails = condition(comparison).map_or_else(String::new, |condition| {
             let clauses: Vec<_> = condition.clauses.iter().map(|it| it.with_unit(&units)).collect();

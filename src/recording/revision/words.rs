@@ -7,7 +7,7 @@ use crate::figure::ladder::judged;
 use crate::recording::error_share::short;
 use crate::recording::markdown::plain;
 use crate::report::{ImprovedJoint, change_in_words, telling_parameters};
-use crate::wording::parameter_value;
+use crate::wording::{parameter_value, rounded};
 
 /// The page of the revision at `place`.
 pub(super) fn page(improved: &ImprovedJoint<'_>, place: usize) -> String {
@@ -25,7 +25,7 @@ fn written(improved: &ImprovedJoint<'_>, place: usize) -> Result<String, std::fm
     writeln!(page, "## Revision {revision} of {last}: {}\n", plain(&change_in_words(step)))?;
     writeln!(page, "**{}**\n", plain(&fall(improved, place)))?;
     if !is_last {
-        writeln!(page, "**{}**\n", plain(&conclusion.headline))?;
+        writeln!(page, "**At revision {revision}:** {}\n", plain(&conclusion.headline))?;
     }
     writeln!(page, "{}\n", plain(&conclusion.paragraph))?;
     for command in conclusion.commands.iter().filter(|_| is_last) {
@@ -51,7 +51,8 @@ fn fall(improved: &ImprovedJoint<'_>, place: usize) -> String {
     let error = |place: usize| Some(judged(&improved.revisions.get(place)?.comparison));
     let Some(now) = error(place) else { return String::new() };
     let floor = noise(improved).filter(|noise| *noise > 0.0);
-    let times = floor.map_or_else(String::new, |n| format!(", {} times the noise", short(now / n)));
+    let times =
+        floor.map_or_else(String::new, |n| format!(", {} times the noise", rounded(now / n)));
     match place.checked_sub(1).and_then(error) {
         Some(before) => {
             format!("Error: {} → {} {unit}{times}", short(before), short(now))

@@ -158,6 +158,10 @@ impl<'a> Followed<'a> {
     /// What was appended since the last look; nothing else is read.
     fn news(&mut self) -> anyhow::Result<Option<Vec<u8>>> {
         let name = self.path.display();
+        // To open a pipe would wait for who writes into it.
+        if self.read > 0 && self.path.metadata().is_ok_and(|found| !found.is_file()) {
+            bail!("{name}: it is no file any more; run the command again");
+        }
         let mut file = match File::open(&self.path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound && self.read == 0 => {
                 return Ok(None);
