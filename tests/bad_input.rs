@@ -476,14 +476,14 @@ fn a_negative_number_is_refused_with_the_name_of_its_option() {
 
 #[test]
 fn a_grid_of_more_samples_than_can_be_counted_is_refused() {
-    let outcome = Workspace::new().with_log(&boom()).estimate("log.csv --resample 1e-300");
+    let outcome = Workspace::new().with_log(&boom()).estimate("log.csv --resample 1e-9");
     outcome.is_refused().says(&["log.csv", "resample"]);
 }
 
 #[test]
 fn a_smoothing_that_cannot_be_designed_is_refused() {
     let workspace = Workspace::new().with_log(&boom());
-    for setting in ["--passband 1e-320", "--passband 1e-9", "--sample-period 1e-320"] {
+    for setting in ["--passband 1e-320", "--passband 1e-9"] {
         workspace.estimate(&format!("log.csv {setting}")).is_refused().says(&["passband"]);
     }
 }

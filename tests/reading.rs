@@ -187,6 +187,17 @@ fn a_comment_behind_the_byte_order_mark_does_not_hide_the_delimiter() {
     is_plain(&Reading::of(text).the_joint());
 }
 
+/// As spreadsheet programs write it.
+#[test]
+fn a_name_may_have_its_unit_on_the_next_line_of_its_cell() {
+    let (names, rows) = PLAIN.split_once('\n').unwrap();
+    let quoted = names.replace("boom.input", "\"boom.input\n[V]\"");
+    let quoted = quoted.replace("boom.output", "\"boom.output\n[deg]\"");
+    let joint = Reading::of(format!("{quoted}\n{rows}")).the_joint();
+    assert_eq!(joint.input_unit.as_deref(), Some("V"));
+    is_plain(&joint);
+}
+
 #[test]
 fn units_in_brackets_are_kept_beside_the_name() {
     let text = "time_s [s],boom.input [V],boom.output [deg/s]\n0,0,1\n1,0,1\n";

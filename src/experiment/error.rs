@@ -236,8 +236,8 @@ pub enum ReadError {
         /// Line of the header.
         row: u64,
     },
-    /// The sample period is not a positive number.
-    #[error("{}: a sample period of {seconds} s is not above zero", path.display())]
+    /// The sample period is none that a log can have.
+    #[error("{}: a sample period of {seconds} s is not one from 1e-9 to 1e8 s", path.display())]
     BadPeriod {
         /// The log.
         path: PathBuf,

@@ -7,7 +7,7 @@ use crate::units::{Length, SamplePeriod};
 pub(crate) fn period(text: &str) -> Result<SamplePeriod, String> {
     let period = text.parse().ok().filter(|seconds| is_period(*seconds));
     let period = period.and_then(SamplePeriod::from_seconds);
-    period.ok_or_else(|| "expected a number of seconds above zero, as in 0.01".to_owned())
+    period.ok_or_else(|| "expected a number of seconds from 1e-9 to 1e8, as in 0.01".to_owned())
 }
 
 /// A length of time in seconds.

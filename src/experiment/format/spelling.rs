@@ -27,8 +27,7 @@ impl Spelling {
         let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
         // The last line may be cut off.
         let whole = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
-        let lines = text.get(..whole).unwrap_or_default().split_inclusive(|byte| *byte == b'\n');
-        let lines: Vec<&[u8]> = lines.take(LINES).collect();
+        let lines: Vec<&[u8]> = rows(text.get(..whole).unwrap_or_default()).take(LINES).collect();
         let counts = |delimiter: u8| -> Vec<usize> {
             lines.iter().map(|line| cells(line, delimiter)).collect()
         };
@@ -54,9 +53,10 @@ impl Spelling {
         let header = counts.windows(2).position(|pair| pair == [width, width]);
         match header.filter(|_| agree > 2) {
             Some(header) => {
-                let skipped = lines.iter().take(header).map(|line| line.len()).sum::<usize>();
+                let before = lines.get(..header).unwrap_or_default();
                 let mark = start.len() - text.len();
-                Self { delimiter, preamble: (mark + skipped, header as u64) }
+                let skipped = before.iter().map(|line| line.len()).sum::<usize>();
+                Self { delimiter, preamble: (mark + skipped, line_ends(before)) }
             }
             None => plain,
         }
@@ -66,10 +66,9 @@ impl Spelling {
     /// write them: the row above the first one of numbers, and above its units.
     fn past_padding(self, start: &[u8]) -> Self {
         let (bytes, before) = self.preamble;
-        let lines = start.get(bytes..).unwrap_or_default().split_inclusive(|byte| *byte == b'\n');
+        let lines: Vec<&[u8]> = rows(start.get(bytes..).unwrap_or_default()).take(LINES).collect();
         let mut above: Vec<(usize, csv::ByteRecord)> = Vec::new();
-        for (index, line) in lines.clone().take(LINES).enumerate().filter(|(_, line)| is_row(line))
-        {
+        for (index, line) in lines.iter().enumerate().filter(|(_, line)| is_row(line)) {
             let record = split(line, self.delimiter);
             if !holds_numbers(&record, self.delimiter) {
                 above.push((index, record));
@@ -86,11 +85,38 @@ impl Spelling {
             if filled(header) < header.len() {
                 return self;
             }
-            let skipped: usize = lines.take(*index).map(<[u8]>::len).sum();
-            return Self { preamble: (bytes + skipped, before + *index as u64), ..self };
+            let above = lines.get(..*index).unwrap_or_default();
+            let skipped: usize = above.iter().map(|line| line.len()).sum();
+            return Self { preamble: (bytes + skipped, before + line_ends(above)), ..self };
         }
         self
     }
+}
+
+/// The lines of a text; those that one quoted cell goes over are one. A quotation mark that nothing
+/// answers soon is a mark like any other.
+fn rows(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+    /// Lines of a cell, at most.
+    const LINES_OF_CELL: usize = 5;
+    let mut rest = text;
+    std::iter::from_fn(move || {
+        let ends =
+            rest.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1);
+        let mut ends = ends.take(LINES_OF_CELL);
+        let first = ends.next().unwrap_or(rest.len());
+        let is_whole = |end: &usize| {
+            rest.get(..*end)
+                .is_some_and(|line| line.iter().filter(|b| **b == b'"').count() % 2 == 0)
+        };
+        let end = std::iter::once(first).chain(ends).find(is_whole).unwrap_or(first);
+        let (row, behind) = rest.split_at_checked(end).filter(|(row, _)| !row.is_empty())?;
+        rest = behind;
+        Some(row)
+    })
+}
+
+fn line_ends(rows: &[&[u8]]) -> u64 {
+    rows.iter().flat_map(|row| row.iter()).filter(|byte| **byte == b'\n').count() as u64
 }
 
 /// The cells of a line.
