@@ -61,11 +61,11 @@ impl Commands {
         per_step: Option<&[Option<f64>]>,
     ) -> Arrivals {
         let mut arrivals = Arrivals { initial: self.initial, changes: Vec::new() };
-        for (number, change) in self.changes(start_s).enumerate() {
+        let commanded_s = self.changes.iter().map(|&(time_s, _)| time_s);
+        for (number, (change, time_s)) in self.changes(start_s).zip(commanded_s).enumerate() {
             let known = per_step.and_then(|delays| delays.get(number).copied().flatten());
             let delay_s = known.map_or_else(|| model.delay_s(&change), |delay_s| delay_s.max(0.0));
-            let time_s = change.time_s - start_s + delay_s;
-            arrivals.insert(Arrival { time_s, level: change.after });
+            arrivals.insert(Arrival { time_s: time_s + delay_s, level: change.after });
         }
         arrivals
     }

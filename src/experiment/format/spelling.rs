@@ -104,10 +104,8 @@ fn rows(text: &[u8]) -> impl Iterator<Item = &[u8]> {
             rest.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1);
         let mut ends = ends.take(LINES_OF_CELL);
         let first = ends.next().unwrap_or(rest.len());
-        let is_whole = |end: &usize| {
-            rest.get(..*end)
-                .is_some_and(|line| line.iter().filter(|b| **b == b'"').count() % 2 == 0)
-        };
+        let is_open = |line: &[u8]| line.iter().fold(false, |open, byte| open ^ (*byte == b'"'));
+        let is_whole = |end: &usize| rest.get(..*end).is_some_and(|line| !is_open(line));
         let end = std::iter::once(first).chain(ends).find(is_whole).unwrap_or(first);
         let (row, behind) = rest.split_at_checked(end).filter(|(row, _)| !row.is_empty())?;
         rest = behind;
@@ -116,7 +114,7 @@ fn rows(text: &[u8]) -> impl Iterator<Item = &[u8]> {
 }
 
 fn line_ends(rows: &[&[u8]]) -> u64 {
-    rows.iter().flat_map(|row| row.iter()).filter(|byte| **byte == b'\n').count() as u64
+    rows.iter().flat_map(|row| row.iter()).fold(0, |ends, byte| ends + u64::from(*byte == b'\n'))
 }
 
 /// The cells of a line.
