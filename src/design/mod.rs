@@ -45,6 +45,7 @@ pub use free_run::{FreeRunError, RESERVE};
 pub use levels::{Band, default_hold_s, default_largest, default_levels};
 pub use limits::Limits;
 pub use logged::{Logged, Settling};
+pub(crate) use plan::DURATION_S;
 pub use plan::plan;
 pub use planned::{Plan, Wishes};
 pub use power::{Distance, Expected};

@@ -11,7 +11,7 @@ use super::trend::Travel;
 use super::within_range::{Keeper, reach};
 
 /// Length of an input where none is asked for, seconds.
-const DURATION_S: f64 = 120.0;
+pub(crate) const DURATION_S: f64 = 120.0;
 
 /// Random steps for the joint number `index` of an experiment, of which `known` and `logged` are
 /// known.

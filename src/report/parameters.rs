@@ -4,7 +4,7 @@ use crate::diagnosis::Comparison;
 use crate::effect::Stage;
 use crate::experiment::{Joint, Trial};
 use crate::fit::{Assessment, Parameter, Status};
-use crate::model::{Commands, JointModel};
+use crate::model::{Commands, Component, JointModel};
 use crate::wording::{parameter_units, parameter_value, rounded};
 
 /// A model as lines of a terminal: gain and delay, then a line for each effect. `called` is its name
@@ -41,8 +41,8 @@ pub(super) fn model_text(joint: &Joint, comparison: &Comparison, called: Option<
 fn delay_of_steps(joint: &Joint, model: &JointModel) -> Option<String> {
     /// An input that changes more often is not made of steps: its changes have no size of their own.
     const SAMPLES_PER_STEP: usize = 5;
-    let is_law = |stage: Stage| stage == Stage::Transport;
-    if !model.components().iter().any(|component| is_law(component.effect().spec().stage)) {
+    let is_law = |component: &Component| component.effect().spec().stage == Stage::Transport;
+    if !model.components().iter().any(is_law) {
         return None;
     }
     let mut delays_s = Vec::new();

@@ -1,7 +1,7 @@
 //! A fence around the libraries that read formats: where one of them panics over a damaged file,
 //! the file is refused like any other that cannot be read.
 //!
-//! Of the parquet crate (60.1.0, the newest) three such places are known: a page of dictionary indices
+//! Of the parquet crate (60.1.0) three such places are known: a page of dictionary indices
 //! without a dictionary, numbers that are cut short, and a byte stream split of an uneven length.
 //! Where overflows are checked, there is a fourth, and three in calamine (0.38.0). A file for each of
 //! them is in `fuzz/found`.

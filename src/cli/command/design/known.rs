@@ -2,7 +2,7 @@
 
 use crate::batch::Threads;
 use crate::delay::Settings;
-use crate::design::{Logged, TestRig, reach};
+use crate::design::{DURATION_S, Logged, TestRig, reach};
 use crate::experiment::{Experiment, Joint, Trial};
 use crate::fit::{Horizon, Split};
 use crate::model::{JointModel, ModelFile};
@@ -52,7 +52,7 @@ impl Known {
             logged.map(|logged| if args.separate.is_empty() { at_most(logged) } else { logged });
         let period = given.transpose()?.or(logged).unwrap_or(usual);
         let names = names(args, &file, experiment.as_ref())?;
-        check_length(args, &file, period)?;
+        check_length(args, (&file, &names), period)?;
         let read = experiment.iter().flat_map(|experiment| &experiment.joints);
         let centred = |joint: &Joint| {
             let logged = Logged::of(joint);
@@ -123,20 +123,22 @@ impl Known {
 }
 
 /// Refuses an input that is too long to be searched, and a delay that none would outlast.
-fn check_length(args: &Args, file: &ModelFile, period: SamplePeriod) -> anyhow::Result<()> {
-    /// Seconds of an input of which no length is given.
-    const USUAL_S: f64 = 120.0;
+fn check_length(
+    args: &Args,
+    (file, names): (&ModelFile, &[String]),
+    period: SamplePeriod,
+) -> anyhow::Result<()> {
     /// Samples of an input, at most: a search holds several inputs of this length at a time.
     const MOST: f64 = 1e6;
     let samples = |seconds: f64| seconds / period.seconds();
-    let length = samples(args.duration.unwrap_or(USUAL_S));
+    let length = samples(args.duration.unwrap_or(DURATION_S));
     if length > MOST {
         bail!(
             "--duration and --rate: an input of {length:.1e} samples is longer than the {MOST:.0e} \
              that are searched; choose a shorter one, or a lower rate"
         );
     }
-    for name in file.names() {
+    for name in names {
         let delay_s = file.joint(name).map_or(0.0, |model| model.delay.value);
         if samples(delay_s) > MOST {
             bail!(
