@@ -7,7 +7,7 @@ use rerun::{EntityPath, TextDocument};
 use super::chunk::Chunks;
 use super::error::RecordError;
 use super::layout::{Detail, JointLayout};
-use super::markdown::plain;
+use super::markdown::{plain, prose};
 use super::origin::made_from;
 use super::paths::ABOUT;
 use super::recorded::Recording;
@@ -88,7 +88,7 @@ fn answers(page: &mut String, recording: &Recording<'_>) -> std::fmt::Result {
     }
     for improved in recording.revisions.iter().filter(|improved| !improved.revisions.is_empty()) {
         let unit = improved.finding.compared.joint.output_unit.as_deref();
-        writeln!(page, "# {}\n", plain(&improved.finding.conclusion().headline))?;
+        writeln!(page, "# {}\n", prose(&improved.finding.conclusion().headline))?;
         writeln!(page, "| revision | change | error |\n|---|---|---|")?;
         for (number, revision) in improved.numbered() {
             let error = measure(judged(&revision.comparison), unit);

@@ -18,6 +18,19 @@ pub(super) fn plain(name: &str) -> String {
     text
 }
 
+/// Sentences of ours, with names from a log, in which backticks hold what is typed.
+pub(super) fn prose(sentences: &str) -> String {
+    let parts: Vec<&str> = sentences.split('`').collect();
+    let is_paired = parts.len() % 2 == 1 && parts.iter().skip(1).step_by(2).all(|p| !p.is_empty());
+    if !is_paired {
+        return plain(sentences);
+    }
+    let part = |(place, part): (usize, &&str)| {
+        if place % 2 == 1 { format!("`{part}`") } else { plain(part) }
+    };
+    parts.iter().enumerate().map(part).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -27,5 +40,13 @@ mod tests {
         assert_eq!(plain("a|b *c* _d_"), "a\\|b \\*c\\* \\_d\\_");
         assert_eq!(plain("boom"), "boom");
         assert_eq!(plain("input_saturation"), "input_saturation");
+    }
+
+    #[test]
+    fn what_is_typed_stays_as_it_is() {
+        assert_eq!(prose("`gain[H]` of a_ *b*"), "`gain[H]` of a\\_ \\*b\\*");
+        for unpaired in ["a ` *b*", "`` *b*"] {
+            assert_eq!(prose(unpaired), plain(unpaired));
+        }
     }
 }

@@ -44,6 +44,7 @@ mod model_signal;
 mod origin;
 mod overview;
 mod palette;
+mod parameter_table;
 mod paths;
 mod place;
 mod preview;

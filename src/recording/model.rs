@@ -11,14 +11,15 @@ use super::markdown::plain;
 use super::model_lanes::samples_of;
 use super::model_signal::signal;
 use super::palette::{self, Rgb, color};
+use super::parameter_table::parameter_table;
 use super::paths::{self, at, child};
 use super::{correlogram, error_share, model_difference, model_lanes, scatter};
 use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures, SIGNIFICANCE, sensor_noise};
 use crate::experiment::Joint;
 use crate::fit::Horizon;
-use crate::report::{ComparedJoint, model_differences, telling_parameters};
-use crate::wording::{correlation_sentences, failure_sentences, number, parameter_value};
+use crate::report::{ComparedJoint, model_differences};
+use crate::wording::{correlation_sentences, failure_sentences, number};
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
@@ -268,16 +269,8 @@ fn against(page: &mut String, models: &[&ComparedJoint<'_>]) -> std::fmt::Result
 /// The parameters of each model.
 fn parameters(page: &mut String, joint: &Joint, models: &[&ComparedJoint<'_>]) -> std::fmt::Result {
     for compared in models {
-        writeln!(
-            page,
-            "\n**{}**\n\n| parameter | value ± standard error |\n|---|---|",
-            compared.model
-        )?;
-        let fit = &compared.comparison.fit;
-        for (parameter, unit) in telling_parameters(joint, fit) {
-            let (name, value) = (plain(&parameter.name), parameter_value(parameter, &unit));
-            writeln!(page, "| {name} | {} |", plain(&value))?;
-        }
+        writeln!(page, "\n**{}**\n", compared.model)?;
+        parameter_table(page, joint, &compared.comparison.fit)?;
     }
     Ok(())
 }

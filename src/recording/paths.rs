@@ -232,6 +232,7 @@ pub(crate) mod revision {
         pub(crate) const RANKING: &str = "ranking";
         pub(crate) const UNCERTAIN: &str = "uncertain";
         pub(crate) const POINTS: &str = "points";
+        pub(crate) const SIMULATED: &str = "simulated";
         pub(crate) const BEFORE: &str = "before";
         pub(crate) const PROPOSED: &str = "proposed";
         pub(crate) const LAW: &str = "law";
@@ -241,11 +242,12 @@ pub(crate) mod revision {
         pub(crate) use crate::recording::paths::{GRID, TEXTS};
         pub(crate) const NOISE: &str = "noise";
         pub(crate) const NOISE_NAME: &str = "noise_name";
-        pub(crate) const PARTS: [&str; 15] = [
+        pub(crate) const PARTS: [&str; 16] = [
             LADDER,
             TRAINING,
             RANKING,
             UNCERTAIN,
+            SIMULATED,
             POINTS,
             BEFORE,
             PROPOSED,

@@ -68,8 +68,8 @@ impl Consequence<'_> {
             let share = |one: &Contribution| format!("{} {}", one.effect, percent(one.error_share));
             let shares: Vec<String> = found.iter().map(share).collect();
             sentences.push(format!(
-                "Each left out in turn, and the rest fitted again, the error would grow by this \
-                 part of what it was at first: {}.",
+                "The part of the first error that comes back when one is left out and the rest is \
+                 fitted again: {}.",
                 shares.join(", ")
             ));
         }

@@ -1,6 +1,7 @@
 //! The catalogue as text for people.
 
 use crate::effect::{Effect, Parameter, REGISTRY, Spec, UNLIMITED};
+use crate::wording::{Margins, lines};
 
 /// Narrowest text, in columns: below it lines would hold a word or two.
 const NARROWEST: usize = 40;
@@ -23,7 +24,7 @@ pub(crate) fn sheet(effect: &dyn Effect, width: usize) -> String {
         lines.extend(drawing.lines().map(|line| format!("{:INDENT$}{line}", "")));
         lines.push(String::new());
     }
-    lines.extend(wrapped(&format!("source: {}", spec.source), width));
+    lines.extend(below(&format!("source: {}", spec.source), width));
     lines.join("\n") + "\n"
 }
 
@@ -37,7 +38,7 @@ fn lines_of(spec: &Spec, width: usize) -> Vec<String> {
         texts.push(format!("a finer form of {coarser}: looked for where that was found"));
     }
     let head = format!("{} ({})", spec.id, spec.stage.id());
-    let below = texts.iter().flat_map(|text| wrapped(text, width));
+    let below = texts.iter().flat_map(|text| below(text, width));
     std::iter::once(head).chain(below).collect()
 }
 
@@ -73,21 +74,9 @@ fn range(parameter: &Parameter) -> Option<String> {
     }
 }
 
-/// `text` in lines of at most `width` columns, moved in; those that go on twice as far.
-fn wrapped(text: &str, width: usize) -> Vec<String> {
-    let width = width.max(NARROWEST);
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            None => lines.push(format!("{:INDENT$}{word}", "")),
-            Some(_) => lines.push(format!("{:1$}{word}", "", 2 * INDENT)),
-        }
-    }
-    lines
+/// `text` below the head of a sheet.
+fn below(text: &str, width: usize) -> Vec<String> {
+    lines(text, Margins { width: width.max(NARROWEST), first: INDENT, others: 2 * INDENT })
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! `explain` as text.
 
 use super::compare::{ComparedJoint, horizons};
-use super::conclusion::printed;
 use super::finding::{Finding, ranking_table};
 use super::parameters::model_text;
 
@@ -14,7 +13,7 @@ pub(crate) fn explain_text(findings: &[Finding<'_>]) -> String {
             [] => String::new(),
             ranking => format!("{}\n", ranking_table(joint, ranking)),
         };
-        let (text, model) = (printed(&conclusion), model_text(joint, comparison, None));
+        let (text, model) = (conclusion.printed(), model_text(joint, comparison, None));
         format!("{}\n{ranking}\n{text}\n{model}\n", conclusion.headline)
     };
     let joints: Vec<String> = findings.iter().map(joint).collect();

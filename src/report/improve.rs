@@ -3,9 +3,7 @@
 #[cfg(feature = "rrd")]
 use super::compare::ComparedJoint;
 use super::compare::{figures, horizons};
-#[cfg(feature = "rrd")]
-use super::conclusion::Conclusion;
-use super::conclusion::printed;
+use super::conclusion::{Conclusion, Passage, Topic};
 use super::finding::Finding;
 use super::parameters::model_text;
 use super::text_table::TextTable;
@@ -63,12 +61,23 @@ impl<'a> ImprovedJoint<'a> {
         }
     }
 
+    /// What is to be said of the last revision, and why it is the last.
+    pub(crate) fn conclusion(&self) -> Conclusion {
+        let mut conclusion = self.finding.conclusion();
+        if self.finding.proposed().is_some() && !self.interrupted {
+            let why =
+                "As many effects were added as `--max-effects` allows; a larger number goes on.";
+            conclusion.passages.extend(Passage::of(Topic::Next, [why.to_owned()]));
+        }
+        conclusion
+    }
+
     /// What is to be said of the revision at `index`.
     #[cfg(feature = "rrd")]
     pub(crate) fn conclusion_at(&self, index: usize) -> Conclusion {
         let next = self.revisions.get(index + 1).map(|next| next.change);
         let known = self.numbered().nth(index).zip(next);
-        let Some(((revision, step), next)) = known else { return self.finding.conclusion() };
+        let Some(((revision, step), next)) = known else { return self.conclusion() };
         let verdict = Verdict::MissingEffect;
         let compared =
             ComparedJoint { revision, comparison: &step.comparison, ..self.finding.compared };
@@ -77,9 +86,12 @@ impl<'a> ImprovedJoint<'a> {
         let finding = Finding { compared, verdict, ranking, before, attribution, ..self.finding };
         let made_useless = |why: String| Conclusion {
             headline: format!("{}: {why}", compared.joint.name),
-            paragraph: "The effects that came after it do its part, so that it no longer earns \
-                        its parameters."
-                .to_owned(),
+            passages: Vec::from_iter(Passage::of(
+                Topic::Next,
+                ["The effects that came after it do its part, so that it no longer earns its \
+                  parameters."
+                    .to_owned()],
+            )),
             commands: Vec::new(),
         };
         match next {
@@ -112,22 +124,23 @@ impl<'a> ImprovedJoint<'a> {
             "It is one of the usual effects of a joint that makes strokes: these are added in their \
              order before all others are compared, and go at the end where they explain nothing."
         };
-        let sentences = [format!("Next comes {id} ({summary}). {why}")].into_iter();
+        let mut passages = finding.fails();
+        passages.extend(Passage::of(Topic::Next, [format!("{id} ({summary}). {why}")]));
         Conclusion {
             headline: format!("{}: {id} is added next: {now} → {then}", joint.name),
-            paragraph: sentences.chain(finding.fails()).collect::<Vec<_>>().join(" "),
+            passages,
             commands: Vec::new(),
         }
     }
 
     fn text(&self) -> String {
-        let conclusion = self.finding.conclusion();
+        let conclusion = self.conclusion();
         let stopped = if self.interrupted { " (stopped before the end)" } else { "" };
         let ladder = self.ladder();
         let compared = &self.finding.compared;
         let model = model_text(compared.joint, compared.comparison, None);
         let headline = &conclusion.headline;
-        format!("{headline}{stopped}\n{ladder}\n\n{}\n{model}\n", printed(&conclusion))
+        format!("{headline}{stopped}\n{ladder}\n\n{}\n{model}\n", conclusion.printed())
     }
 
     /// The ladder of errors: a row per revision.

@@ -32,13 +32,17 @@ pub(super) fn model_text(joint: &Joint, comparison: &Comparison, called: Option<
         let values: Vec<_> = of_effect.iter().map(|(_, value)| value.as_str()).collect();
         lines.push(format!("  {effect}{}", values.join(", ")));
     }
-    lines.extend(delay_of_steps(joint, &fit.model));
+    let delays = delay_of_steps(joint, &fit.model);
+    lines.extend(delays.map(|delays| format!("  {DELAY_OF_STEPS}: {delays}")));
     lines.join("\n")
 }
 
+/// What [`delay_of_steps`] is.
+pub(crate) const DELAY_OF_STEPS: &str = "delay of the steps in the record";
+
 /// Which delays a law gives to the steps of the record: those of its parameters are of a step of
 /// no size.
-fn delay_of_steps(joint: &Joint, model: &JointModel) -> Option<String> {
+pub(crate) fn delay_of_steps(joint: &Joint, model: &JointModel) -> Option<String> {
     /// An input that changes more often is not made of steps: its changes have no size of their own.
     const SAMPLES_PER_STEP: usize = 5;
     let is_law = |component: &Component| component.effect().spec().stage == Stage::Transport;
@@ -57,7 +61,7 @@ fn delay_of_steps(joint: &Joint, model: &JointModel) -> Option<String> {
     }
     let least = delays_s.iter().copied().fold(f64::INFINITY, f64::min);
     let most = delays_s.iter().copied().fold(0.0, f64::max);
-    Some(format!("  delay of the steps in the record: {} to {} s", rounded(least), rounded(most)))
+    Some(format!("{} to {} s", rounded(least), rounded(most)))
 }
 
 /// The parameters of a model with their units, without those that say nothing: held where they do

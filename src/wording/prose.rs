@@ -3,20 +3,44 @@
 /// Columns of a line of prose.
 const WIDTH: usize = 92;
 
+/// Columns of lines and of what stands before them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Margins {
+    /// Columns of a line, at most, where words allow.
+    pub(crate) width: usize,
+    /// Columns before the first line.
+    pub(crate) first: usize,
+    /// Columns before the others.
+    pub(crate) others: usize,
+}
+
 /// `text` in lines of at most [`WIDTH`] columns where words allow.
 pub(crate) fn wrapped(text: &str) -> String {
+    lines(text, Margins { width: WIDTH, first: 0, others: 0 }).join("\n")
+}
+
+/// `text` in such lines, of which the first stands out by two columns.
+pub(crate) fn hanging(text: &str) -> String {
+    lines(text, Margins { width: WIDTH, first: 0, others: 2 }).join("\n")
+}
+
+/// `text` in lines between `margins`.
+pub(crate) fn lines(text: &str, margins: Margins) -> Vec<String> {
+    let Margins { width, first, others } = margins;
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         let length = |line: &str| line.chars().count();
         match lines.last_mut() {
-            Some(line) if length(line) + 1 + length(word) <= WIDTH => {
+            // Its number would be on another line.
+            Some(line) if word.starts_with('%') || length(line) + 1 + length(word) <= width => {
                 line.push(' ');
                 line.push_str(word);
             }
-            _ => lines.push(word.to_owned()),
+            None => lines.push(" ".repeat(first) + word),
+            Some(_) => lines.push(" ".repeat(others) + word),
         }
     }
-    lines.join("\n")
+    lines
 }
 
 /// `1, 2 and 3`, with `and` or another word before the last.
@@ -51,7 +75,10 @@ mod tests {
     #[test]
     fn lines_break_between_words() {
         let text = "word ".repeat(40);
-        assert!(wrapped(&text).lines().all(|line| line.len() <= WIDTH));
-        assert_eq!(wrapped(&text).split_whitespace().count(), 40);
+        assert!(wrapped(&text).lines().all(|line| line.starts_with("word")));
+        let lines = hanging(&text);
+        assert!(lines.lines().all(|line| line.len() <= WIDTH));
+        assert!(lines.lines().skip(1).all(|line| line.starts_with("  word")));
+        assert_eq!(lines.split_whitespace().count(), 40);
     }
 }

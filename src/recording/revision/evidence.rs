@@ -10,7 +10,7 @@ use super::residual;
 use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, Trial};
 use crate::fit::{FitRecord, Horizon, Split};
-use crate::model::{Arrivals, JointModel, Restart, Surroundings, simulate};
+use crate::model::{Arrivals, JointModel, Restart, Simulated, Surroundings, simulate};
 use crate::recording::canvas::Span;
 use crate::recording::error::RecordError;
 use crate::recording::error_share::short;
@@ -19,6 +19,7 @@ use crate::recording::paths::revision::sheet;
 use crate::recording::rows::Rows;
 use crate::recording::sheet::Sheet;
 use crate::report::ImprovedJoint;
+use crate::wording::measure;
 
 /// Fewest samples of a level whose speed is known.
 const SHORTEST: usize = 12;
@@ -40,7 +41,8 @@ pub(super) fn evidence(improved: &ImprovedJoint<'_>) -> Evidence {
     let of_each = || improved.revisions.iter().map(|revision| &revision.comparison);
     let held: Vec<Vec<Held>> = of_each().map(|comparison| speeds(joint, comparison)).collect();
     let laws: Vec<Law> = of_each().map(|comparison| still.law(&comparison.fit.model)).collect();
-    let drawn = held.iter().flatten().map(|held| held.speed);
+    let drawn =
+        held.iter().flatten().flat_map(|held| [held.speed].into_iter().chain(held.simulated));
     let y = Span::around(drawn.chain(laws.iter().flatten().map(|point| point.1)), 0.05);
     let x = Span::around(still.levels().into_iter(), 0.03);
     let mut figures = Vec::new();
@@ -59,7 +61,7 @@ pub(super) fn evidence(improved: &ImprovedJoint<'_>) -> Evidence {
             y,
             points: held.clone(),
             names: [
-                Some(format!("revision {number}")),
+                Some(still.legend(number, &step.comparison.fit.model, joint)),
                 before.map(|_| format!("revision {}", number - 1)),
                 proposed.map(|candidate| format!("with {}", candidate.name())),
             ],
@@ -82,7 +84,7 @@ fn title(joint: &Joint) -> String {
         unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}{per}]"))
     };
     let (speed, input) = (unit(&joint.output_unit, "/s"), unit(&joint.input_unit, ""));
-    format!("speed{speed} while an input{input} is held")
+    format!("speed{speed} at held input{input}: measured, model")
 }
 
 /// Adds the points, and the laws drawn through them.
@@ -96,7 +98,8 @@ pub(super) fn add(rows: &mut Rows<'_>, evidence: &Evidence) -> Result<(), Record
         rows.strips(name, rgb, radius, figures().map(|figure| figure.curve(which)))?;
     }
     rows.strips(sheet::UNCERTAIN, palette::MEASURED, 0.8, figures().map(Figure::uncertain))?;
-    rows.points(sheet::POINTS, palette::MEASURED, 4.0, figures().map(Figure::places))?;
+    rows.points(sheet::SIMULATED, palette::REVISION, 3.5, figures().map(Figure::simulated))?;
+    rows.points(sheet::POINTS, palette::MEASURED, 4.0, figures().map(Figure::measured))?;
     for (name, which, rgb) in [
         ("law_name", 0, palette::REVISION),
         ("before_name", 1, palette::BEFORE),
@@ -129,10 +132,11 @@ impl Evidence {
 fn speeds(joint: &Joint, comparison: &Comparison) -> Vec<Held> {
     let noise = comparison.noise_floor.unwrap_or(0.0);
     let trials = joint.trials.iter().zip(&comparison.fit.evaluation.simulated);
-    trials.flat_map(|(trial, simulated)| of_trial(trial, &simulated.acting, noise)).collect()
+    trials.flat_map(|(trial, simulated)| of_trial(trial, simulated, noise)).collect()
 }
 
-fn of_trial(trial: &Trial, acting: &[f64], noise: f64) -> Vec<Held> {
+fn of_trial(trial: &Trial, simulated: &Simulated, noise: f64) -> Vec<Held> {
+    let acting = simulated.acting.as_slice();
     #[expect(clippy::float_cmp, reason = "a step is any change")]
     let levels: Vec<&[f64]> = acting.chunk_by(|a, b| a == b).collect();
     let known = levels.iter().map(|part| part.len()).filter(|samples| *samples >= SHORTEST);
@@ -144,11 +148,14 @@ fn of_trial(trial: &Trial, acting: &[f64], noise: f64) -> Vec<Held> {
         let end = start + part.len();
         // The joint may need the first third to come up to speed.
         let first = start + part.len() / 3;
-        let output = trial.output().get(first..end).filter(|_| part.len() >= SHORTEST);
-        if let Some(output) = output {
+        // Of the simulation, which is set back to the measurement now and then, the speed.
+        let later = trial.output().get(first..end).zip(simulated.velocity.get(first..end));
+        if let Some((measured, velocity)) = later.filter(|_| part.len() >= SHORTEST) {
             let level = part.iter().sum::<f64>() / part.len() as f64;
-            let (speed, std_error) = slope(output, trial.period().seconds(), noise);
-            all.push(Held { level, speed, std_error });
+            let period_s = trial.period().seconds();
+            let (speed, std_error) = slope(measured, period_s, noise);
+            let simulated = Some(velocity.iter().sum::<f64>() / velocity.len() as f64);
+            all.push(Held { level, speed, std_error, simulated });
         }
         start = end;
     }
@@ -167,6 +174,8 @@ fn slope(values: &[f64], period_s: f64, noise: f64) -> (f64, f64) {
 /// A joint that is kept in the middle of its record while its speed settles.
 struct Still {
     angle: f64,
+    /// The largest output of the record.
+    highest: f64,
     time_s: f64,
     period_s: f64,
     radians_per_output_unit: f64,
@@ -179,6 +188,7 @@ impl Still {
         let input = joint.trials.iter().flat_map(Trial::input).copied();
         Self {
             angle: f64::midpoint(range.output_min, range.output_max),
+            highest: range.output_max,
             time_s: 0.5 * range.duration_s,
             period_s: range.sample_period_s,
             radians_per_output_unit: range.radians_per_output_unit,
@@ -194,6 +204,17 @@ impl Still {
     /// What `model` makes of levels that have long been held.
     fn law(&self, model: &JointModel) -> Law {
         self.levels().into_iter().map(|level| (level, self.speed(model, level))).collect()
+    }
+
+    /// `revision 9`; where the speed of `model` depends on where the joint is, with the output of
+    /// the law: `revision 9, at -45 deg`.
+    fn legend(&self, number: u32, model: &JointModel, joint: &Joint) -> String {
+        let aside = Self { angle: self.angle + 0.5 * (self.highest - self.angle), ..*self };
+        if are_alike(&self.law(model), &aside.law(model)) {
+            return format!("revision {number}");
+        }
+        let output = measure(self.angle, joint.output_unit.as_deref());
+        format!("revision {number}, at {output}")
     }
 
     fn speed(&self, model: &JointModel, level: f64) -> f64 {
@@ -226,6 +247,10 @@ mod tests {
         Trial::new("", 0.0, SamplePeriod::from_seconds(0.1).unwrap(), input, output).unwrap()
     }
 
+    fn of(acting: Vec<f64>) -> Simulated {
+        Simulated { output: acting.clone(), velocity: vec![0.25; acting.len()], acting }
+    }
+
     #[test]
     fn the_slope_of_a_line_is_exact_and_its_error_is_that_of_the_noise() {
         let values: Vec<f64> = (0..20).map(|k| 3.0 + 0.4 * f64::from(k)).collect();
@@ -244,7 +269,7 @@ mod tests {
             y
         });
         let trial = trial(acting.clone(), outputs.collect());
-        let held = of_trial(&trial, &acting, 0.0);
+        let held = of_trial(&trial, &of(acting), 0.0);
         let found: Vec<_> = held.iter().map(|held| (held.level, held.speed)).collect();
         assert_eq!(found.len(), 2);
         assert!((found[0].1 - 3.0).abs() < 1e-9 && (found[1].1 - 1.5).abs() < 1e-9);
@@ -254,8 +279,9 @@ mod tests {
     fn an_input_that_is_never_held_is_cut_into_parts() {
         let acting: Vec<f64> = (0..240).map(|k| f64::from(k) / 240.0).collect();
         let trial = trial(acting.clone(), acting.clone());
-        let held = of_trial(&trial, &acting, 0.0);
+        let held = of_trial(&trial, &of(acting), 0.0);
         assert_eq!(held.len(), 10);
+        assert!(held.iter().all(|held| held.simulated == Some(0.25)));
         assert!(held.iter().all(|held| (held.speed - 10.0 / 240.0).abs() < 1e-9));
     }
 

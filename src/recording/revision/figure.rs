@@ -21,6 +21,8 @@ pub(super) struct Held {
     pub(super) level: f64,
     pub(super) speed: f64,
     pub(super) std_error: f64,
+    /// What the revision makes of the speed, where that is a point of its own.
+    pub(super) simulated: Option<f64>,
 }
 
 /// The noise of the sensor, from the record alone: one for all revisions.
@@ -60,9 +62,17 @@ impl Figure {
         self.points.iter().step_by(self.points.len().div_ceil(POINTS).max(1))
     }
 
-    pub(super) fn places(&self) -> Vec<Vec2D> {
+    pub(super) fn measured(&self) -> Vec<Vec2D> {
+        self.places(|held| Some(held.speed))
+    }
+
+    pub(super) fn simulated(&self) -> Vec<Vec2D> {
+        self.places(|held| held.simulated)
+    }
+
+    fn places(&self, speed: fn(&Held) -> Option<f64>) -> Vec<Vec2D> {
         let plot = self.plot();
-        self.drawn().map(|held| plot.at(held.level, held.speed)).collect()
+        self.drawn().filter_map(|held| Some(plot.at(held.level, speed(held)?))).collect()
     }
 
     pub(super) fn uncertain(&self) -> Strips {

@@ -126,6 +126,7 @@ impl Steps<'_> {
             lists("input", &points(|held| held.level)),
             lists("speed", &points(|held| held.speed)),
             lists("speed_std_error", &points(|held| held.std_error)),
+            lists("simulated_speed", &points(|held| held.simulated.unwrap_or(f64::NAN))),
             lists("law_input", &law(|point| point.0)),
             lists("law_speed", &law(|point| point.1)),
         ];

@@ -39,6 +39,7 @@ pub(super) fn figure(
         level: mean.x,
         speed: mean.residual,
         std_error: noise / count.sqrt(),
+        simulated: None,
     };
     let explained: Law = bins.iter().map(|(mean, _)| (mean.x, mean.explained)).collect();
     let unit = bracketed("", joint.output_unit.as_deref());

@@ -5,9 +5,10 @@ use std::fmt::Write as _;
 use super::figure::noise;
 use crate::figure::ladder::judged;
 use crate::recording::error_share::short;
-use crate::recording::markdown::plain;
-use crate::report::{ImprovedJoint, change_in_words, telling_parameters};
-use crate::wording::{parameter_value, rounded};
+use crate::recording::markdown::{plain, prose};
+use crate::recording::parameter_table::parameter_table;
+use crate::report::{ImprovedJoint, change_in_words};
+use crate::wording::rounded;
 
 /// The page of the revision at `place`.
 pub(super) fn page(improved: &ImprovedJoint<'_>, place: usize) -> String {
@@ -21,22 +22,19 @@ fn written(improved: &ImprovedJoint<'_>, place: usize) -> Result<String, std::fm
     // What an earlier revision lacks is in the next one: the answer is that of the last.
     let is_last = place + 1 == improved.revisions.len();
     let conclusion = improved.conclusion_at(place);
-    writeln!(page, "**{}**\n", plain(&improved.finding.conclusion().headline))?;
+    writeln!(page, "**{}**\n", prose(&improved.finding.conclusion().headline))?;
     writeln!(page, "## Revision {revision} of {last}: {}\n", plain(&change_in_words(step)))?;
     writeln!(page, "**{}**\n", plain(&fall(improved, place)))?;
     if !is_last {
         writeln!(page, "**At revision {revision}:** {}\n", plain(&conclusion.headline))?;
     }
-    writeln!(page, "{}\n", plain(&conclusion.paragraph))?;
+    for passage in &conclusion.passages {
+        writeln!(page, "**{}:** {}\n", passage.topic.label(), prose(&passage.text))?;
+    }
     for command in conclusion.commands.iter().filter(|_| is_last) {
         writeln!(page, "    {command}\n")?;
     }
-    writeln!(page, "| parameter | value ± standard error |\n|---|---|")?;
-    let fit = &step.comparison.fit;
-    for (parameter, unit) in telling_parameters(improved.finding.compared.joint, fit) {
-        let (name, value) = (plain(&parameter.name), parameter_value(parameter, &unit));
-        writeln!(page, "| {name} | {} |", plain(&value))?;
-    }
+    parameter_table(&mut page, improved.finding.compared.joint, &step.comparison.fit)?;
     writeln!(page, "\n{HOW}")?;
     Ok(page)
 }

@@ -58,8 +58,8 @@ impl<'a> FindingJson<'a> {
             verdict: verdict_id(finding.verdict),
             ranking: ranking.map(|candidate| CandidateJson::new(joint, candidate)).collect(),
             conclusion: ConclusionJson::new(conclusion.headline.clone(), &finding.consequence()),
+            in_words: conclusion.sentences(),
             headline: conclusion.headline,
-            in_words: conclusion.paragraph,
             commands: conclusion.commands,
         }
     }

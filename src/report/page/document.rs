@@ -16,6 +16,8 @@ pub(super) enum Block {
     Heading { depth: u8, text: String, anchor: Option<String> },
     /// A paragraph.
     Text(String),
+    /// A paragraph that answers a question, after the question.
+    Passage { question: &'static str, text: String },
     /// The paragraph that sums up its section.
     Lead(String),
     /// A line for each entry.

@@ -44,6 +44,7 @@ fn written(block: &Block) -> Markup {
     match block {
         Block::Heading { depth, text, anchor } => heading(*depth, text, anchor.as_deref()),
         Block::Text(text) => html! { p { (text) } },
+        Block::Passage { question, text } => html! { p { b { (question) ":" } " " (text) } },
         Block::Lead(text) => html! { p.lead { (text) } },
         Block::List(entries) => html! { ul { @for entry in entries { li { (entry) } } } },
         Block::Contents(entries) => contents(entries),

@@ -46,6 +46,9 @@ impl Markdown {
                 self.line(&format!("{marks} {}", escaped(text)));
             }
             Block::Text(text) => self.line(&escaped(text)),
+            Block::Passage { question, text } => {
+                self.line(&format!("**{question}:** {}", escaped(text)));
+            }
             Block::Lead(text) => self.line(&format!("**{}**", escaped(text))),
             Block::List(entries) => {
                 let lines = entries.iter().map(|entry| format!("- {}", escaped(entry)));

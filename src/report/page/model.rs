@@ -10,6 +10,7 @@ use crate::explain::{Candidate, Revision, Verdict};
 use crate::fit::Split;
 use crate::model::Component;
 use crate::report::add::gained;
+use crate::report::conclusion::Passage;
 use crate::report::consequence::noise_of;
 use crate::report::equation::filled_in;
 use crate::report::finding::ranking_table;
@@ -27,13 +28,16 @@ pub(super) fn blocks(
     file: &str,
 ) -> Result<Vec<Block>, PlotError> {
     let compared = &improved.finding.compared;
-    let conclusion = improved.finding.conclusion();
+    let conclusion = improved.conclusion();
     let stopped = if improved.interrupted { " (stopped before the end)" } else { "" };
     let mut blocks = vec![
         Block::part("Model"),
         Block::Lead(format!("{}{stopped}", lead(improved, &conclusion.headline))),
-        Block::text(conclusion.paragraph),
     ];
+    let passages = conclusion.passages.into_iter();
+    blocks.extend(
+        passages.map(|Passage { topic, text }| Block::Passage { question: topic.label(), text }),
+    );
     blocks.extend(conclusion.commands.into_iter().map(Block::Code));
     blocks.push(Block::Code(equations(compared)));
     blocks.push(Block::Table(parameters(compared)));

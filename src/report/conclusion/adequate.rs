@@ -1,0 +1,74 @@
+//! What is said where no effect is missing.
+
+use super::{ABOVE_NOISE, Passage, Topic};
+use crate::diagnosis::SIGNIFICANCE;
+use crate::experiment::Trial;
+use crate::fit::Status;
+use crate::report::finding::Finding;
+use crate::wording::{measure, p_text, rounded};
+
+impl Finding<'_> {
+    pub(super) fn adequate_headline(&self) -> String {
+        let explained =
+            self.explained().map_or_else(String::new, |explained| format!("{explained}; "));
+        format!("{}: {explained}no missing effect found", self.joint().name)
+    }
+
+    pub(super) fn adequate(&self) -> Vec<Passage> {
+        let error = [self.test(), self.size()].into_iter().chain(self.misses_validation());
+        let limits = std::iter::once(self.limits()).chain(self.undetermined());
+        let passages = [
+            Passage::of(Topic::Error, error),
+            Passage::of(Topic::Shares, self.consequence().sentences()),
+            Passage::of(Topic::Limits, limits),
+        ];
+        passages.into_iter().flatten().collect()
+    }
+
+    /// What the test of the lack of fit says of an adequate model.
+    fn test(&self) -> String {
+        match self.comparison().lack_of_fit {
+            Some(test) if test.p_value >= SIGNIFICANCE => {
+                format!("No lack of fit is shown ({}).", p_text(test.p_value))
+            }
+            Some(test) => {
+                let share = rounded(100.0 * test.misfit_share);
+                format!("What it lacks is {share} % of the squared error: negligible.")
+            }
+            None => "There are too few samples to test it.".to_owned(),
+        }
+    }
+
+    /// A warning where the part that was not fitted is worse than noise.
+    fn misses_validation(&self) -> Option<String> {
+        let times = self.comparison().validation?.rmse / self.noise()?;
+        let warning = "The test covers the part that was fitted; on the other part the error exceeds \
+                       the noise, so the model does not generalise yet.";
+        (times > ABOVE_NOISE).then(|| warning.to_owned())
+    }
+
+    /// What the record covers: beyond it nothing was shown.
+    fn limits(&self) -> String {
+        let input = self.joint().trials.iter().flat_map(Trial::input);
+        let output = self.joint().trials.iter().flat_map(Trial::output);
+        let input = span(input.copied(), self.joint().input_unit.as_deref());
+        let output = span(output.copied(), self.joint().output_unit.as_deref());
+        format!("This holds where the record has been: input {input}, output {output}.")
+    }
+
+    fn undetermined(&self) -> Option<String> {
+        let all = self.comparison().fit.parameters.iter();
+        let open = all.filter(|parameter| {
+            matches!(parameter.status, Status::Undetermined | Status::BeyondReach)
+        });
+        let names: Vec<&str> = open.map(|parameter| parameter.name.as_str()).collect();
+        (!names.is_empty()).then(|| format!("It does not determine {}.", names.join(", ")))
+    }
+}
+
+/// `-2 to 2 V`.
+fn span(values: impl Iterator<Item = f64>, unit: Option<&str>) -> String {
+    let ends = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), ends);
+    format!("{} to {}", rounded(low), measure(high, unit))
+}

@@ -1,0 +1,66 @@
+//! How large an error is, and where in the record it arises.
+
+use super::{Passage, Topic};
+use crate::diagnosis::ShownBy;
+use crate::diagnosis::failure::WorstSegment;
+use crate::report::finding::Finding;
+use crate::wording::{failure_sentences, rounded, worst_segment_text};
+
+impl Finding<'_> {
+    /// How large the error is.
+    pub(super) fn size(&self) -> String {
+        let error = self.output(self.error());
+        match self.noise() {
+            Some(noise) => {
+                let times = rounded(self.error() / noise);
+                format!("The error is {error}, {times} times the noise.")
+            }
+            None => format!("The error is {error}."),
+        }
+    }
+
+    /// How large the error is, and where.
+    pub(in crate::report) fn fails(&self) -> Vec<Passage> {
+        let size = std::iter::once(self.size()).chain(self.shown_beside_size());
+        [Passage::of(Topic::Error, size), self.where_it_fails()].into_iter().flatten().collect()
+    }
+
+    /// What shows the lack of fit of an error that may be no larger than noise.
+    fn shown_beside_size(&self) -> Option<String> {
+        let test = self.comparison().lack_of_fit?;
+        match test.shown_by? {
+            ShownBy::UnseenPart => {
+                let times = rounded(test.times_training?);
+                Some(format!("On the part that was not fitted it is {times} times as large."))
+            }
+            ShownBy::FewWindows => {
+                let times = rounded(test.local?.times_noise?);
+                Some(format!(
+                    "It is not spread as noise would be: in one window the motion that is \
+                     missed is {times} times the noise."
+                ))
+            }
+            ShownBy::Shapes | ShownBy::Size => None,
+        }
+    }
+
+    /// What in the record shows it, with times to look at.
+    pub(super) fn where_it_fails(&self) -> Option<Passage> {
+        let conditions = failure_sentences(self.joint(), self.comparison());
+        let worst = self.comparison().failure.iter().flat_map(|failure| &failure.worst_segments);
+        let several = self.joint().trials.len() > 1;
+        let time = |worst: &WorstSegment| {
+            let trial = if several { format!("trial {}, ", worst.trial) } else { String::new() };
+            trial + &worst_segment_text(worst)
+        };
+        let times: Vec<String> = worst.take(3).map(time).collect();
+        let look = format!("look at {}", times.join(", "));
+        let sentence = match (conditions.first(), times.is_empty()) {
+            (Some(condition), false) => format!("{condition}; {look}."),
+            (Some(condition), true) => format!("{condition}."),
+            (None, false) => format!("Most of the error is at no one condition; {look}."),
+            (None, true) => return None,
+        };
+        Passage::of(Topic::WhereItFails, Some(sentence))
+    }
+}

@@ -1,0 +1,91 @@
+//! What is said where no effect that was tried accounts for the error.
+
+use super::{ABOVE_NOISE, Passage, Topic};
+use crate::diagnosis::failure::Region;
+use crate::report::finding::Finding;
+use crate::wording::{misfit_units, percent, region_text, unit_suffix};
+
+impl Finding<'_> {
+    pub(super) fn unexplained_headline(&self) -> String {
+        let explained = self.explained().unwrap_or_else(|| self.follows());
+        let rest = if self.is_down_to_noise() {
+            "what remains is no more than the sensor's noise".to_owned()
+        } else {
+            let remains = self.consequence().remains();
+            format!("{remains}, which no effect that was tried accounts for")
+        };
+        format!("{}: {explained}; {rest}", self.joint().name)
+    }
+
+    fn is_down_to_noise(&self) -> bool {
+        self.noise().is_some_and(|noise| self.error() <= ABOVE_NOISE * noise)
+    }
+
+    pub(super) fn unexplained(&self) -> Vec<Passage> {
+        let mut passages = self.fails();
+        passages
+            .extend(Passage::of(Topic::Residual, self.shape().into_iter().chain(self.nearest())));
+        passages.extend(Passage::of(Topic::Shares, self.consequence().sentences()));
+        passages
+    }
+
+    pub(super) fn open_headline(&self) -> String {
+        let explained = self.explained().unwrap_or_else(|| self.follows());
+        format!(
+            "{}: {explained}; {}: `tauscope explain` looks for what is still missing",
+            self.joint().name,
+            self.consequence().remains()
+        )
+    }
+
+    /// How the residual runs with what it follows most.
+    fn shape(&self) -> Option<String> {
+        /// Share of the squared residual from which it is worth a look.
+        const WORTH: f64 = 0.1;
+        let (parts, share) = most_followed(&self.comparison().regions)?;
+        let by_mean = |a: &&Region, b: &&Region| a.mean_residual.total_cmp(&b.mean_residual);
+        let (low, high) = (parts.iter().min_by(by_mean)?, parts.iter().max_by(by_mean)?);
+        let (feature, share_said) = (low.feature, percent(share));
+        let head = "Restarted at every step, measured − simulated follows";
+        if share < WORTH {
+            return Some(format!(
+                "{head} none of its features much; `{feature}` most, with {share_said} of its \
+                 square."
+            ));
+        }
+        let (low, high) = (self.mean_at(low), self.mean_at(high));
+        Some(format!(
+            "{head} `{feature}` most, with {share_said} of its square: on average {low}, {high}."
+        ))
+    }
+
+    /// `0.2 deg where it is 20 to 30 deg`.
+    fn mean_at(&self, region: &Region) -> String {
+        let unit = unit_suffix(region.feature.unit(&misfit_units(self.joint())).as_deref());
+        let part = region_text(region);
+        format!("{} where it is {part}{unit}", self.output(region.mean_residual))
+    }
+
+    /// The effect that comes nearest, and that it is not to be trusted.
+    fn nearest(&self) -> Option<String> {
+        let nearest = self.ranking.first()?;
+        let (name, share) = (nearest.name(), percent(nearest.share_of_misfit.clamp(0.0, 1.0)));
+        Some(format!(
+            "The nearest effect, {name}, would explain {share} of the misfit and is not to be \
+             trusted."
+        ))
+    }
+}
+
+/// The parts of the feature whose means hold most of the squared residual, and their share.
+fn most_followed(regions: &[Region]) -> Option<(&[Region], f64)> {
+    let square = |part: &Region, value: f64| part.share_of_time * value * value;
+    let share = |parts: &[Region]| {
+        let of_means: f64 = parts.iter().map(|part| square(part, part.mean_residual)).sum();
+        let all: f64 = parts.iter().map(|part| square(part, part.rmse)).sum();
+        if all > 0.0 { of_means / all } else { 0.0 }
+    };
+    let by_feature = regions.chunk_by(|a, b| a.feature == b.feature);
+    let shares = by_feature.map(|parts| (parts, share(parts)));
+    shares.max_by(|a, b| a.1.total_cmp(&b.1))
+}
