@@ -147,7 +147,7 @@ fn every_drawing_changes_with_the_revision_and_is_on_every_timeline() {
     for ((_, titles), revision) in titles.iter().zip(improvements[0].revisions.windows(2)) {
         let title = match revision[1].change {
             Change::Added("actuator_lag") => "against the time since a step",
-            _ => "while an input",
+            _ => "at held input",
         };
         assert!(titles.contains(title), "{titles}");
     }
@@ -181,7 +181,13 @@ fn the_law_runs_through_the_speeds_once_nothing_is_missing() {
         let squares = levels[at].iter().zip(&speeds[at]).map(|(u, v)| (v - law(*u)).powi(2));
         (squares.sum::<f64>() / levels[at].len() as f64).sqrt()
     };
+    let simulated = lists("simulated_speed");
+    let simulation_missed = |at: usize| {
+        let squares = simulated[at].iter().zip(&speeds[at]).map(|(s, v)| (s - v).powi(2));
+        squares.sum::<f64>().sqrt()
+    };
     let last = levels.len() - 1;
     assert!(levels[0].len() > 30);
+    assert!(simulation_missed(last) < 0.1 * simulation_missed(0));
     assert!(missed(last) < 0.1 * missed(0), "{} of {}", missed(last), missed(0));
 }
