@@ -183,6 +183,7 @@ fn restarted(record: &FitRecord<'_>, evaluation: Evaluation) -> Option<failure::
     let mut segments = Vec::new();
     let simulated = evaluation.simulated.into_iter().zip(evaluation.residuals);
     for (index, (trial, (simulated, residual))) in trials.iter().zip(simulated).enumerate() {
+        let number = u32::try_from(index).ok()?;
         let Simulated { output, velocity, acting } = simulated;
         drop(output);
         let first = samples.residual.len();
@@ -190,8 +191,8 @@ fn restarted(record: &FitRecord<'_>, evaluation: Evaluation) -> Option<failure::
         let levels = levels(&acting);
         for level in &levels {
             let held = level.len() as f64 * period;
-            samples.since_step_s.extend((0..level.len()).map(|k| k as f64 * period));
-            samples.hold_s.extend(std::iter::repeat_n(held, level.len()));
+            samples.since_step_s.push_even(0.0, period, level.len());
+            samples.hold_s.push_even(held, 0.0, level.len());
         }
         // An input that is never held has no levels to look at.
         let windows = record.windows().iter().filter(|window| window.trial == index);
@@ -203,8 +204,8 @@ fn restarted(record: &FitRecord<'_>, evaluation: Evaluation) -> Option<failure::
         append(&mut samples.input, acting, all);
         append(&mut samples.speed, velocity, all);
         samples.output.extend(trial.output());
-        samples.time_s.extend((1..=trial.len()).map(|k| trial.time_s(k)));
-        samples.trial.extend(std::iter::repeat_n(index, trial.len()));
+        samples.time_s.push_even(trial.time_s(1), period, trial.len());
+        samples.trial.extend(std::iter::repeat_n(number, trial.len()));
     }
     let labels = trials.iter().map(|trial| trial.label().to_owned()).collect();
     failure::ResidualRecord::new(samples, labels, segments).ok()

@@ -96,10 +96,10 @@ impl Feature {
             Self::Output => of(&samples.output),
             Self::AbsSpeed => of(&samples.speed).map(f64::abs),
             Self::Speed => of(&samples.speed),
-            Self::SinceStep => of(&samples.since_step_s),
-            Self::Hold => of(&samples.hold_s),
-            Self::Time => of(&samples.time_s),
-            Self::Trial => samples.trial.get(row).map(|trial| *trial as f64),
+            Self::SinceStep => samples.since_step_s.get(row),
+            Self::Hold => samples.hold_s.get(row),
+            Self::Time => samples.time_s.get(row),
+            Self::Trial => samples.trial.get(row).copied().map(f64::from),
         }
     }
 

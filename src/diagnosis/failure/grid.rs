@@ -310,10 +310,10 @@ mod tests {
             input: column(6),
             output: column(90),
             speed: column(8),
-            time_s: column(1000),
-            since_step_s: column(4),
-            hold_s: column(2),
-            trial: column(3).into_iter().map(|value| usize::from(value > -2.0)).collect(),
+            time_s: column(1000).into(),
+            since_step_s: column(4).into(),
+            hold_s: column(2).into(),
+            trial: column(3).into_iter().map(|value| u32::from(value > -2.0)).collect(),
             speed_error: Vec::new(),
         };
         ResidualRecord::new(samples, vec!["a".into(), "b".into()], Vec::new()).unwrap()

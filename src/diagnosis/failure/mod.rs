@@ -10,6 +10,7 @@
 //! call the model wrong, is decided elsewhere.
 
 mod axis;
+mod column;
 mod conditions;
 mod feature;
 mod grid;
@@ -20,6 +21,7 @@ mod segments;
 mod significance;
 mod threshold;
 
+pub use column::EvenColumn;
 pub use conditions::{Bound, Clause, FailsWhere, Relation, fails_where};
 pub use feature::Feature;
 pub use record::{RecordError, ResidualRecord, Samples, Units};

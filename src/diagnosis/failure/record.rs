@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use super::column::EvenColumn;
+
 /// What happened at each sample of one joint, over all its trials one after the other.
 ///
 /// All columns have the same length. NaN stands where a value is not known, as the time
@@ -17,13 +19,13 @@ pub struct Samples {
     /// Speed of the output with its sign, output units per second.
     pub speed: Vec<f64>,
     /// Seconds in the record.
-    pub time_s: Vec<f64>,
+    pub time_s: EvenColumn,
     /// Seconds since the step that acts.
-    pub since_step_s: Vec<f64>,
+    pub since_step_s: EvenColumn,
     /// How long its level is held, seconds.
-    pub hold_s: Vec<f64>,
+    pub hold_s: EvenColumn,
     /// Index of the trial in [`ResidualRecord::trials`].
-    pub trial: Vec<usize>,
+    pub trial: Vec<u32>,
     /// Measured minus simulated speed, output units per second: where an error arises. Empty
     /// where it is not known.
     pub speed_error: Vec<f64>,
@@ -38,9 +40,9 @@ impl Samples {
             input: room(),
             output: room(),
             speed: room(),
-            time_s: room(),
-            since_step_s: room(),
-            hold_s: room(),
+            time_s: EvenColumn::default(),
+            since_step_s: EvenColumn::default(),
+            hold_s: EvenColumn::default(),
             trial: Vec::with_capacity(samples),
             speed_error: room(),
         }
@@ -126,8 +128,10 @@ impl ResidualRecord {
         if let Some(index) = residuals.position(|value| !value.is_finite()) {
             return Err(RecordError::NotFinite { index: index % expected });
         }
-        let unknown = samples.trial.iter().position(|trial| *trial >= trials.len());
-        if let Some((index, &trial)) = unknown.and_then(|at| Some((at, samples.trial.get(at)?))) {
+        let is_unknown = |trial: &u32| *trial as usize >= trials.len();
+        let unknown = samples.trial.iter().position(is_unknown);
+        if let Some((index, trial)) = unknown.and_then(|at| Some((at, *samples.trial.get(at)?))) {
+            let trial = trial as usize;
             return Err(RecordError::UnknownTrial { index, trial, trials: trials.len() });
         }
         if let Some(number) = misplaced(&segments, expected) {
@@ -229,9 +233,9 @@ mod tests {
             input: zeros.clone(),
             output: zeros.clone(),
             speed: zeros.clone(),
-            time_s: zeros.clone(),
-            since_step_s: zeros.clone(),
-            hold_s: zeros,
+            time_s: zeros.clone().into(),
+            since_step_s: zeros.clone().into(),
+            hold_s: zeros.into(),
             trial: vec![0; count],
             speed_error: Vec::new(),
         }

@@ -40,12 +40,12 @@ fn segment(record: &ResidualRecord, span: &Range<usize>, shares: &[f64]) -> Opti
     if share <= share_of_time {
         return None;
     }
-    let times = record.samples().time_s.get(span.clone())?;
-    let trial = *record.samples().trial.get(span.start)?;
+    let time_s = |sample: usize| record.samples().time_s.get(sample);
+    let trial = *record.samples().trial.get(span.start)? as usize;
     Some(WorstSegment {
         trial: record.trials().get(trial)?.clone(),
-        start_s: *times.first()?,
-        end_s: *times.last()?,
+        start_s: time_s(span.start)?,
+        end_s: time_s(span.end - 1)?,
         rmse: record.rmse_of(span.clone()),
         share_of_squared_error: share,
         samples: span.clone(),
