@@ -39,7 +39,10 @@ fn record(fails: fn(f64, f64) -> bool) -> Result<ResidualRecord, RecordError> {
 fn benches(criterion: &mut Criterion) {
     let mut bench = |name: &str, fails| {
         if let Ok(record) = record(fails) {
-            criterion.bench_function(name, |run| run.iter(|| diagnose(black_box(&record))));
+            let residual = || record.samples().residual.iter().copied();
+            criterion.bench_function(name, |run| {
+                run.iter(|| diagnose(black_box(&record), residual()));
+            });
         }
     };
     bench("diagnose/two clauses", |level, output| level.abs() < 2.5 && output > 0.0);

@@ -236,7 +236,7 @@ fn steps_that_fail_by_chance_give_no_report() {
 #[test]
 fn a_perfect_model_fails_nowhere() {
     let record = Made::usual(1).with_noise(0.0, |_, _| 0.0);
-    let diagnosis = diagnose(&record);
+    let diagnosis = diagnose(&record, record.samples().residual.iter().copied());
     assert_eq!((diagnosis.fails_where.len(), diagnosis.worst_segments.len()), (0, 0));
     assert!(regions(&record).iter().all(|region| region.rmse < 1e-300));
     let nothing = ResidualRecord::new(Samples::default(), Vec::new(), Vec::new()).unwrap();
@@ -262,7 +262,8 @@ fn what_is_not_known_is_in_no_region() {
 #[test]
 fn the_same_record_gives_the_same_answer() {
     let make = || failing(11, |s, k| s.output[k] > 20.0).0;
-    assert_eq!(diagnose(&make()), diagnose(&make()));
+    let diagnosed = |of: ResidualRecord| diagnose(&of, of.samples().residual.iter().copied());
+    assert_eq!(diagnosed(make()), diagnosed(make()));
 }
 
 /// A condition's shares by going through all samples.
@@ -314,16 +315,14 @@ fn conditions_and_segments_share_one_error() {
     made.samples.speed_error = error.collect();
     let segments = made.segments.clone();
     let record = ResidualRecord::new(made.samples, vec!["a".to_owned()], segments).unwrap();
-    let diagnosis = diagnose(&record);
+    let diagnosis = diagnose(&record, record.samples().residual.iter().copied());
     let condition = diagnosis.fails_where.first().unwrap();
     assert!(condition.share_of_squared_error > 0.9, "{condition:?}");
-    let outside = diagnosis
-        .worst_segments
-        .iter()
-        .filter(|segment| !condition.samples.iter().any(|sample| segment.samples.contains(sample)));
-    let outside: f64 = outside.map(|segment| segment.share_of_squared_error).sum();
-    assert!(outside + condition.share_of_squared_error <= 1.0 + 1e-9, "{diagnosis:?}");
+    // The error of the output is seen elsewhere than it arises.
     assert!(!diagnosis.worst_segments.is_empty());
+    for worst in &diagnosis.worst_segments {
+        assert!(worst.samples.clone().any(|sample| !drives[sample]), "{worst:?}");
+    }
 }
 
 proptest! {
@@ -371,7 +370,7 @@ proptest! {
     fn worst_segments_have_more_than_their_share(seed in 0_u64..1000, count in 0_usize..9) {
         let made = Made::new(seed, 2000, 3, [0.3, 1.0]);
         let record = made.with_noise(0.5, |s, k| s.input[k].abs());
-        let worst = worst_segments(&record, count);
+        let worst = worst_segments(&record, record.samples().residual.iter().copied(), count);
         prop_assert!(worst.len() <= count);
         for (index, segment) in worst.iter().enumerate() {
             let (time, error, rmse) = brute_shares(&record, |k| segment.samples.contains(&k));

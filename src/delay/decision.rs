@@ -7,6 +7,7 @@ use super::condition::{Condition, nothing_happened};
 use super::interval::FineDelay;
 use super::search::{Candidate, Candidates};
 use super::segment::Segment;
+use super::settling::Response;
 use super::steps::InputStep;
 use super::word::Word;
 use crate::units::signed;
@@ -29,6 +30,8 @@ pub struct Decision {
     pub checks: Checks,
     /// The delay between samples, where the method gives it.
     pub fine: Option<FineDelay>,
+    /// What was fitted to an output that settles; the lines of its candidates are chords of it.
+    pub response: Option<Box<Response>>,
     /// What a reviewer said of it.
     pub word: Option<Box<Word>>,
 }

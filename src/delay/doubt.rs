@@ -67,7 +67,8 @@ impl fmt::Display for Flag {
 /// and 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Doubt {
-    /// Part of the squared error of one line that the break removes: `1 − SSE₂ / SSE₁`.
+    /// Part of the squared error of one line that the break removes: `1 − SSE₂ / SSE₁`. Where the
+    /// output settles, of that without a reaction.
     pub explained: f64,
     /// How far from the best breakpoint those lie that fit nearly as well, samples: the root
     /// mean square distance of all candidates, weighted by `(SSE_best / SSE)⁴`; of a delay
@@ -81,6 +82,8 @@ pub struct Doubt {
     pub flags: Vec<Flag>,
     /// Samples that the input is held, which `spread` and `crossing` are compared with.
     pub hold: f64,
+    /// Whether the output settles, so that no lines were fitted.
+    pub settles: bool,
     is_accepted: bool,
 }
 
@@ -138,9 +141,13 @@ impl Decision {
         let best = self.candidates.best();
         let fine = self.fine.map(|fine| (fine.high - fine.low) / 2.0);
         Doubt {
-            explained: best.map_or(1.0, |best| self.explained(&best)),
+            explained: match (&self.response, &best) {
+                (Some(response), _) => response.explained(),
+                (None, best) => best.as_ref().map_or(1.0, |best| self.explained(best)),
+            },
             spread: fine.unwrap_or_else(|| self.candidates.spread()),
             crossing: best.map_or(0.0, |best| self.crossing(&best)),
+            settles: self.response.is_some(),
             nearest: self.nearest(range.1 - range.0),
             flags: self.flags(output, range),
             hold: self.hold as f64,
@@ -172,6 +179,9 @@ impl Decision {
     }
 
     fn crossing(&self, best: &Candidate) -> f64 {
+        if self.response.is_some() {
+            return 0.0;
+        }
         // Lines that meet between two samples cross where they break.
         let q = self
             .fine
@@ -223,7 +233,8 @@ impl Decision {
         let is_edge = self.candidates.len() > 2 && (best.f == 1 || best.f == self.candidates.len());
         let is_jump = self.crossing(&best) > 2.0 * self.candidates.spacing() as f64;
         // Where the input is let go, a joint that stands is at rest, wherever that is.
-        let is_driven = self.input_step.after.abs() > 0.0;
+        // One that settles stands where the input holds it.
+        let is_driven = self.input_step.after.abs() > 0.0 && self.response.is_none();
         // The joint may still be on its way at first.
         let behind = usize::midpoint(best.breakpoint, self.segment.last);
         let found = [

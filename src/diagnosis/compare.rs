@@ -12,7 +12,9 @@ use super::step_error::{StepError, step_errors};
 use super::{ErrorFigures, InputCorrelation, LackOfFit, TestColumns, TrialSignals, Whiteness};
 use super::{input_correlation, lack_of_fit, noise_floor, whiteness};
 use crate::experiment::Trial;
-use crate::fit::{Assessment, Evaluation, Excerpt, Fit, FitRecord, Horizon, Part, Termination};
+use crate::fit::{
+    Assessment, Evaluation, Excerpt, Fit, FitRecord, Horizon, Part, Termination, follows_input,
+};
 use crate::model::{JointModel, Simulated};
 
 /// A model beside the measurement.
@@ -37,11 +39,14 @@ pub struct Comparison {
     /// How its changes are correlated with those of the input; `None` likewise, and where
     /// the input never changes.
     pub input_correlation: Option<InputCorrelation>,
-    /// Where the error is, where a lack of fit is shown: of the model restarted at every
-    /// step of the input, so that an error counts where it is made.
+    /// Where the error is, where a lack of fit is shown: its conditions of the model restarted as
+    /// [`arising`](Self::arising) says, its segments of that of the fit.
     pub failure: Option<Diagnosis>,
-    /// The error in each part of each feature, of the restarted model, whether or not a
-    /// lack of fit is shown.
+    /// How the model is restarted whose error is looked at: at every step of the input, so that an
+    /// error counts where it is made; as in the fit where the output follows the input itself, so
+    /// that no error stays.
+    pub arising: Horizon,
+    /// The error in each part of each feature, of that model, whether or not a lack of fit is shown.
     pub regions: Vec<Region>,
     /// The error from step to step, of the restarted model.
     pub per_step: Vec<StepError>,
@@ -87,7 +92,14 @@ fn figures(
     let by_step = record.with_horizon(Horizon::Steps);
     let evaluation = by_step.evaluate(&fit.model);
     let per_step = step_errors(&by_step, &evaluation);
-    let restarted = restarted(&by_step, evaluation);
+    let (arising, restarted) = if follows_input(record.joint()).is_some() {
+        drop(evaluation);
+        let evaluation = record.evaluate(&fit.model);
+        (fit.evaluation.horizon, happened(&by_step, evaluation, Error::OfOutput))
+    } else {
+        (Horizon::Steps, happened(&by_step, evaluation, Error::OfSpeed))
+    };
+    let shown = || fit.evaluation.residuals.iter().flatten().copied();
     Comparison {
         training: error(Part::Training),
         validation: error(Part::Validation),
@@ -95,7 +107,8 @@ fn figures(
         lack_of_fit,
         whiteness,
         input_correlation,
-        failure: restarted.as_ref().filter(|_| fails).map(diagnose),
+        failure: restarted.as_ref().filter(|_| fails).map(|record| diagnose(record, shown())),
+        arising,
         regions: restarted.as_ref().map(regions).unwrap_or_default(),
         per_step,
         fit,
@@ -172,11 +185,24 @@ fn common_period_s(record: &FitRecord<'_>) -> Option<f64> {
     periods.all(|period| (period / first - 1.0).abs() < 0.01).then_some(first)
 }
 
-/// The residual of a model that `record` restarts at every step of the input, with what happened.
+/// What is taken for the error of a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Error {
+    /// That of the speed: of an integrator an error of the output stays where it was not made.
+    OfSpeed,
+    OfOutput,
+}
+
+/// The residual of a model, with what happened; `record` restarts at every step of the input, whether
+/// or not the simulation of `evaluation` does.
 ///
 /// The columns of `evaluation` become those of the record: of a long one each is as long as the
 /// log.
-fn restarted(record: &FitRecord<'_>, evaluation: Evaluation) -> Option<failure::ResidualRecord> {
+fn happened(
+    record: &FitRecord<'_>,
+    evaluation: Evaluation,
+    error: Error,
+) -> Option<failure::ResidualRecord> {
     let trials = &record.joint().trials;
     let all = trials.iter().map(Trial::len).sum();
     let mut samples = Samples::with_capacity(all);
@@ -197,7 +223,9 @@ fn restarted(record: &FitRecord<'_>, evaluation: Evaluation) -> Option<failure::
         // An input that is never held has no levels to look at.
         let windows = record.windows().iter().filter(|window| window.trial == index);
         let windows: Vec<_> = windows.map(|window| window.start..window.end).collect();
-        samples.speed_error.extend(speed_error(&residual, &windows, period));
+        if error == Error::OfSpeed {
+            samples.speed_error.extend(speed_error(&residual, &windows, period));
+        }
         let own = if levels.len() > windows.len().saturating_mul(20) { windows } else { levels };
         segments.extend(own.into_iter().map(|span| first + span.start..first + span.end));
         append(&mut samples.residual, residual, all);

@@ -59,10 +59,23 @@ impl<'a> SegmentFigure<'a> {
         Some(self.decision.input_step.sample as f64 + self.decision.delay()?)
     }
 
-    /// Both lines of a candidate, which break at `q`.
-    pub(crate) fn lines(&self, candidate: &Candidate, q: f64) -> [[Place; 2]; 2] {
+    /// Both lines of a candidate, which break at `q`; of an output that settles, what was fitted to
+    /// it before and behind.
+    pub(crate) fn lines(&self, candidate: &Candidate, q: f64) -> [Vec<Place>; 2] {
+        /// Points of a response on each side.
+        const POINTS: usize = 200;
         let segment = self.decision.segment;
-        let ends = |line: &Line, from: f64, to: f64| [from, to].map(|k| (k, line.at(k)));
+        if let Some(response) = &self.decision.response {
+            let places: Vec<Place> =
+                (segment.first..).map(|k| k as f64).zip(response.values()).collect();
+            let (before, after) = places.split_at(places.partition_point(|(k, _)| *k <= q));
+            return [before, after].map(|part| {
+                let heights: Vec<f64> = part.iter().map(|(_, y)| *y).collect();
+                let kept = thinned_to(&heights, POINTS).into_iter();
+                kept.filter_map(|index| part.get(index).copied()).collect()
+            });
+        }
+        let ends = |line: &Line, from: f64, to: f64| [from, to].map(|k| (k, line.at(k))).to_vec();
         let before = ends(&candidate.before, segment.first as f64, q);
         [before, ends(&candidate.after, q, segment.last as f64)]
     }
@@ -73,6 +86,10 @@ impl<'a> SegmentFigure<'a> {
         let Some(best) = self.decision.candidates.best() else { return Vec::new() };
         let segment = self.decision.segment;
         let values = output.get(segment.indices()).unwrap_or_default();
+        if let Some(response) = &self.decision.response {
+            let left = values.iter().zip(response.values()).map(|(y, fitted)| y - fitted);
+            return (segment.first..).map(|k| k as f64).zip(left).collect();
+        }
         let left = |(k, y): (usize, &f64)| {
             let line = if k < best.breakpoint { best.before } else { best.after };
             (k as f64, y - line.at(k as f64))

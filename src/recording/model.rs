@@ -17,7 +17,6 @@ use super::{correlogram, error_share, model_difference, model_lanes, scatter};
 use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures, SIGNIFICANCE, sensor_noise};
 use crate::experiment::Joint;
-use crate::fit::Horizon;
 use crate::report::{ComparedJoint, model_differences};
 use crate::wording::{correlation_sentences, failure_sentences, number};
 
@@ -228,22 +227,18 @@ fn worst_segments(
 ) -> std::fmt::Result {
     let Some(failure) = &judged.comparison.failure else { return Ok(()) };
     let horizon = judged.comparison.fit.evaluation.horizon;
-    writeln!(page, "\nWhere the error of {} arises most, {}:", judged.model, Horizon::Steps)?;
-    // What is listed restarts at every step; what is plotted may not.
-    let plotted = format!("of the residual that is plotted ({horizon})");
+    writeln!(page, "\nWhere the residual of {} is largest, {horizon}:", judged.model)?;
     // A narrow page has no room for what is the same in each row.
     let several = judged.joint.trials.len() > 1;
     let (head, rule) = if several { ("trial |", "---|") } else { ("", "") };
-    writeln!(page, "\n| rank |{head} time | `sample` | arises | {plotted} |")?;
-    writeln!(page, "|---|{rule}---|---|---|---|")?;
+    writeln!(page, "\n| rank |{head} time | `sample` | part of its square |")?;
+    writeln!(page, "|---|{rule}---|---|---|")?;
     for (rank, worst) in (1..).zip(&failure.worst_segments) {
         let (from, to) = (number(worst.start_s), number(worst.end_s));
         let share = 100.0 * worst.share_of_squared_error;
         let samples = on_timeline(layout, worst);
         let trial = if several { format!("{} |", plain(&worst.trial)) } else { String::new() };
-        let plotted = plotted_share(layout, judged.comparison, worst);
-        let shares = format!("{share:.0} % | {plotted:.1} %");
-        writeln!(page, "| {rank} |{trial} {from} … {to} s | {samples} | {shares} |")?;
+        writeln!(page, "| {rank} |{trial} {from} … {to} s | {samples} | {share:.0} % |")?;
     }
     Ok(())
 }
@@ -273,19 +268,6 @@ fn parameters(page: &mut String, joint: &Joint, models: &[&ComparedJoint<'_>]) -
         parameter_table(page, joint, &compared.comparison.fit)?;
     }
     Ok(())
-}
-
-/// The part of the plotted residual's squares that lies in `worst`, in percent.
-fn plotted_share(layout: &JointLayout<'_>, comparison: &Comparison, worst: &WorstSegment) -> f64 {
-    let residuals = &comparison.fit.evaluation.residuals;
-    let squares = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
-    let all: f64 = residuals.iter().map(|trial| squares(trial)).sum();
-    let of_label = layout.trials.iter().find(|trial| trial.trial.label() == worst.trial);
-    let inside = of_label.and_then(|trial| {
-        let samples = samples_of(worst, trial);
-        residuals.get(trial.index)?.get(samples.start() - 1..*samples.end())
-    });
-    100.0 * inside.map_or(0.0, squares) / all.max(f64::MIN_POSITIVE)
 }
 
 /// Where `worst` is on the timeline `sample`.

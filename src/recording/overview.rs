@@ -130,7 +130,9 @@ fn add_lines(
         let mut index = Index::default();
         let (mut values, mut lengths) = (Vec::new(), Vec::new());
         for (trial, segment) in layout.segments() {
-            let Some(best) = segment.decision.candidates.best() else {
+            // Of an output that settles the lines are but chords of what was fitted.
+            let best = segment.decision.candidates.best();
+            let Some(best) = best.filter(|_| segment.decision.response.is_none()) else {
                 continue;
             };
             let (line, ends) = side(&best, segment);

@@ -15,12 +15,16 @@ pub(super) fn parameter_table(
     fit: &Assessment,
 ) -> std::fmt::Result {
     writeln!(page, "| parameter | value ± standard error |\n|---|---|")?;
+    let delays = delay_of_steps(joint, &fit.model);
     for (parameter, unit) in telling_parameters(joint, fit) {
         let (name, value) = (plain(&parameter.name), parameter_value(parameter, &unit));
-        writeln!(page, "| {name} | {} |", plain(&value))?;
-    }
-    if let Some(delays) = delay_of_steps(joint, &fit.model) {
-        writeln!(page, "| {DELAY_OF_STEPS} | {delays} |")?;
+        // Beside a law it is that of a step of no size, which may be none of the record.
+        let delays = delays.as_ref().filter(|_| name == "delay");
+        let of = if delays.is_some() { ", of a step of no size" } else { "" };
+        if let Some(delays) = delays {
+            writeln!(page, "| {DELAY_OF_STEPS} | {delays} |")?;
+        }
+        writeln!(page, "| {name}{of} | {} |", plain(&value))?;
     }
     Ok(())
 }

@@ -60,6 +60,9 @@ begins with the first step.";
 const HINT: &str = "**These plots run along the record: choose `sample`, `time` or `decision` at \
 the bottom left** (now there is the name of another timeline).";
 
+/// A timeline of candidates stretches the record.
+const AXIS: &str = "*`decision` counts candidates: choose `time` for an axis in seconds*";
+
 /// The step, with its place in the trial and, where that is another one, in the recording.
 fn words(layout: &JointLayout<'_>, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     let decision = segment.decision;
@@ -72,11 +75,12 @@ fn words(layout: &JointLayout<'_>, trial: &TrialLayout<'_>, segment: &SegmentLay
         seconds(trial.trial.time_s(p))
     );
     if layout.trials.len() < 2 {
-        return in_trial;
+        return format!("{in_trial} · {AXIS}");
     }
     let joined = trial.time_ns(p) as f64 * 1e-9;
     format!(
-        "{}, {in_trial} **of the trial** · {} at {} s **of all trials in a row**, as in the plots",
+        "{}, {in_trial} **of the trial** · {} at {} s **of all trials in a row**, as in the plots · \
+         {AXIS}",
         plain(trial.trial.label()),
         trial.sample(p),
         seconds(joined)

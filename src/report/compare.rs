@@ -5,6 +5,7 @@ use super::parameters::model_text;
 use super::text_table::TextTable;
 use crate::diagnosis::{Comparison, ErrorFigures, ModelDifference};
 use crate::experiment::Joint;
+use crate::fit::Horizon;
 use crate::wording::{
     self, correlation_sentences, effects_text, model_difference_sentences, with_unit,
 };
@@ -46,7 +47,8 @@ pub(crate) fn compare_table(joints: &[ComparedJoint<'_>]) -> String {
     let failures = if failures.is_empty() {
         String::new()
     } else {
-        format!("\nwhere it fails (restarted at every step):\n{}\n", failures.join("\n"))
+        let horizon = horizons_of(joints.iter().copied(), |comparison| comparison.arising);
+        format!("\nwhere it fails ({horizon}):\n{}\n", failures.join("\n"))
     };
     let residuals: Vec<_> = joints.iter().filter_map(residual_line).collect();
     let residuals = if residuals.is_empty() {
@@ -101,9 +103,16 @@ pub(crate) fn model_differences<'a>(joints: &[ComparedJoint<'a>]) -> Vec<Compare
 /// Where the simulations of `joints` were restarted: `restarted at every step of the input`, or,
 /// where they differ, `free run (motor); restarted at every step of the input (boom, arm)`.
 pub(crate) fn horizons<'a>(joints: impl IntoIterator<Item = ComparedJoint<'a>>) -> String {
+    horizons_of(joints, |comparison| comparison.fit.evaluation.horizon)
+}
+
+fn horizons_of<'a>(
+    joints: impl IntoIterator<Item = ComparedJoint<'a>>,
+    which: fn(&Comparison) -> Horizon,
+) -> String {
     let mut of_joints: Vec<(String, Vec<&str>)> = Vec::new();
     for ComparedJoint { joint, comparison, .. } in joints {
-        let horizon = comparison.fit.evaluation.horizon.to_string();
+        let horizon = which(comparison).to_string();
         match of_joints.iter_mut().find(|(known, _)| *known == horizon) {
             Some((_, names)) if names.contains(&joint.name.as_str()) => {}
             Some((_, names)) => names.push(&joint.name),

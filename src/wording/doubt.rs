@@ -20,7 +20,9 @@ pub(crate) fn doubt_sentence(doubt: &Doubt, verdict: Verdict, period_s: f64) -> 
     let mut reasons = vec![
         (explained, {
             let percent = number((100.0 * (1.0 - explained)).round());
-            format!("the break leaves {percent} % of the squared error of one line")
+            let of = if doubt.settles { "no reaction" } else { "one line" };
+            let what = if doubt.settles { "reaction" } else { "break" };
+            format!("the {what} leaves {percent} % of the squared error of {of}")
         }),
         (placed, format!("breakpoints {} s apart fit about as well", seconds(doubt.spread))),
         (meeting, format!("the lines cross {} s from the breakpoint", seconds(doubt.crossing))),

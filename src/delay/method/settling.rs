@@ -27,9 +27,10 @@ fn decide(context: &StepContext<'_>, onset: Option<SettlingOnset>) -> Decision {
     let whole = Segment::clipped(step, context.next_sample() - 1, samples);
     let segment = onset
         .as_ref()
-        .map_or(whole, |it| Segment::clipped(it.start + 1, it.start + it.curve.len(), samples));
-    let candidates = onset.map_or_else(Candidates::default, |it| candidates(&it));
+        .map_or(whole, |it| Segment::clipped(it.start + 1, it.start + it.response.len(), samples));
+    let candidates = onset.as_ref().map_or_else(Candidates::default, candidates);
     let mut decision = context.settling_decision(segment, candidates, fine);
+    decision.response = onset.map(|it| Box::new(it.response));
     decision.test_reaction(p_value, context.settings.confidence.unwrap_or(CONFIDENCE));
     decision
 }
@@ -38,10 +39,11 @@ fn decide(context: &StepContext<'_>, onset: Option<SettlingOnset>) -> Decision {
 /// before and behind it.
 fn candidates(found: &SettlingOnset) -> Candidates {
     let number = |at: f64| found.start as f64 + 1.0 + at;
-    let last = found.curve.len() - 1;
+    let curve = found.response.values();
+    let last = curve.len() - 1;
     let value = |at: f64| {
         let index = floor_to_index(at).min(last);
-        let (here, next) = (found.curve[index], found.curve[(index + 1).min(last)]);
+        let (here, next) = (curve[index], curve[(index + 1).min(last)]);
         here + (next - here) * (at - index as f64)
     };
     let chord = |from: f64, to: f64| {

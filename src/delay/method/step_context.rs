@@ -111,6 +111,7 @@ impl StepContext<'_> {
             fine,
         };
         let checks = Checks::of(&facts.check(self.settings));
-        Decision { number, input_step, hold, segment, candidates, checks, fine, word: None }
+        let (response, word) = (None, None);
+        Decision { number, input_step, hold, segment, candidates, checks, fine, response, word }
     }
 }

@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 use super::constants::TimeConstants;
 use super::curvature::{is_curved, mean_hold};
 use super::following::FirstOrder;
+use super::response::Response;
 use super::search::Search;
 use super::trial::{Found, SettlingTrial};
 use crate::delay::broken_line;
@@ -197,7 +198,7 @@ impl Law {
             start: range.start,
             onset: *onset,
             sse: [-1.0, 0.0, 1.0].map(|by| window.sse(constants, onset + by)),
-            curve: window.curve(constants, *onset),
+            response: window.response(constants, *onset, found.explained().max(0.0)),
         }
     }
 
@@ -247,7 +248,7 @@ pub(in crate::delay) struct SettlingOnset {
     /// Squared errors with the onset a sample earlier, here, and a sample later.
     pub(in crate::delay) sse: [f64; 3],
     /// The response at the samples that were looked at.
-    pub(in crate::delay) curve: Vec<f64>,
+    pub(in crate::delay) response: Response,
 }
 
 /// The onsets of all trials, in white noise.

@@ -13,3 +13,4 @@ mod window;
 pub(crate) use following::{FirstOrder, followed};
 pub use law::Settling;
 pub(super) use law::SettlingOnset;
+pub use response::Response;

@@ -11,6 +11,44 @@
 //!
 //! `A₀`, `B`, `A₁`, and what is left of the further lag at the start, are linear: a column each.
 
+/// The output about one step as it was fitted, in closed form: a record may have many steps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Response {
+    pub(super) constants: Constants,
+    /// What was solved for, a number for each column.
+    pub(super) parts: Vec<f64>,
+    /// Added to all of them.
+    pub(super) origin: f64,
+    /// The sample of the onset, counted from the first one that was looked at.
+    pub(super) onset: f64,
+    /// Samples that were looked at.
+    pub(super) samples: usize,
+    /// Part of the squared error without a reaction that it removes: `1 − SSE / SSE₀`.
+    pub(super) explained: f64,
+}
+
+impl Response {
+    /// Samples that were looked at.
+    pub(in crate::delay) fn len(&self) -> usize {
+        self.samples
+    }
+
+    /// The output at each sample of the segment, without noise, output units.
+    pub fn values(&self) -> Vec<f64> {
+        let columns = self.constants.responses(self.onset, self.samples);
+        let value = |k: usize| {
+            let row = columns.iter().skip(k).step_by(self.samples);
+            self.origin + row.zip(&self.parts).map(|(value, part)| value * part).sum::<f64>()
+        };
+        (0..self.samples).map(value).collect()
+    }
+
+    /// Part of the squared error without a reaction that it removes, 0 to 1.
+    pub fn explained(&self) -> f64 {
+        self.explained
+    }
+}
+
 /// Time constants about one step, in samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Constants {

@@ -39,10 +39,15 @@ pub(super) struct Found<'a> {
 }
 
 impl Found<'_> {
+    /// Part of the squared error without a reaction that it removes.
+    pub(super) fn explained(&self) -> f64 {
+        let without = self.window.sse_without(&self.constants);
+        1.0 - self.sse / without.max(f64::MIN_POSITIVE)
+    }
+
     /// How often noise alone looks as much like a reaction.
     pub(super) fn p_value(&self) -> f64 {
-        let without = self.window.sse_without(&self.constants);
-        let share = 1.0 - self.sse / without.max(f64::MIN_POSITIVE);
+        let share = self.explained();
         let others = self.constants.columns() - 1;
         let samples = self.window.len() as f64;
         let dimensions = self.window.rows() - others as f64;

@@ -3,7 +3,7 @@
 //! For every onset what is linear is solved for; the onset itself is searched over the window and
 //! then narrowed by golden sections.
 
-use super::response::Constants;
+use super::response::{Constants, Response};
 use crate::numerics::{NoiseModel, NormalEquations, Projection, dot};
 use crate::units::ceil_to_index;
 
@@ -108,11 +108,16 @@ impl<'a> StepWindow<'a> {
         (0..self.len()).map(value).collect()
     }
 
-    /// The output with an onset, without noise.
-    pub(super) fn curve(&self, constants: &Constants, onset: f64) -> Vec<f64> {
-        let columns = constants.responses(onset, self.len());
-        let curve = self.combined(&columns, &self.parts(constants, onset));
-        curve.into_iter().map(|y| self.origin + y).collect()
+    /// The output with an onset, without noise; `explained` is what it removes of the error.
+    pub(super) fn response(&self, constants: &Constants, onset: f64, explained: f64) -> Response {
+        Response {
+            constants: *constants,
+            parts: self.parts(constants, onset),
+            origin: self.origin,
+            onset,
+            samples: self.len(),
+            explained,
+        }
     }
 
     /// The best onset from `low` to `high`, and its squared error; none where there is no room.

@@ -40,7 +40,9 @@ pub struct Diagnosis {
 /// Segments that are named.
 const WORST: usize = 5;
 
-/// Both [`fails_where`] and [`worst_segments`] (five of them).
-pub fn diagnose(record: &ResidualRecord) -> Diagnosis {
-    Diagnosis { fails_where: fails_where(record), worst_segments: worst_segments(record, WORST) }
+/// Both [`fails_where`] and [`worst_segments`] (five of them), these of `residual`: what is shown
+/// beside them, one value for each sample.
+pub fn diagnose(record: &ResidualRecord, residual: impl IntoIterator<Item = f64>) -> Diagnosis {
+    let worst_segments = worst_segments(record, residual, WORST);
+    Diagnosis { fails_where: fails_where(record), worst_segments }
 }

@@ -1,15 +1,17 @@
-//! The speed that each level of the input made, and the laws that models draw through it.
+//! What each level of the input made of the joint, and the laws that models draw through it.
 //!
 //! Where a level is held, the measured output runs along a line: its slope is a speed that
 //! owes nothing to a model, but for when the level began to act. Against the level it shows
-//! a dead band, a saturation or a curve. What does not show there is in
-//! [`residual`].
+//! a dead band, a saturation or a curve. An output that follows the input itself runs to a level of
+//! its own, which is looked at instead. What does not show there is in [`residual`].
+
+use std::ops::Range;
 
 use super::figure::{Figure, Held, Law};
 use super::residual;
 use crate::diagnosis::Comparison;
 use crate::experiment::{Joint, Trial};
-use crate::fit::{FitRecord, Horizon, Split};
+use crate::fit::{FitRecord, Horizon, Split, follows_input};
 use crate::model::{Arrivals, JointModel, Restart, Simulated, Surroundings, simulate};
 use crate::recording::canvas::Span;
 use crate::recording::error::RecordError;
@@ -37,26 +39,31 @@ pub(super) struct Evidence {
 /// What is measured, and what the models of `improved` make of it.
 pub(super) fn evidence(improved: &ImprovedJoint<'_>) -> Evidence {
     let joint = improved.finding.compared.joint;
-    let still = Still::of(joint);
+    let shown = if follows_input(joint).is_some() { Shown::Output } else { Shown::Speed };
+    let still = Still::of(joint, shown);
     let of_each = || improved.revisions.iter().map(|revision| &revision.comparison);
-    let held: Vec<Vec<Held>> = of_each().map(|comparison| speeds(joint, comparison)).collect();
-    let laws: Vec<Law> = of_each().map(|comparison| still.law(&comparison.fit.model)).collect();
-    let drawn =
-        held.iter().flatten().flat_map(|held| [held.speed].into_iter().chain(held.simulated));
-    let y = Span::around(drawn.chain(laws.iter().flatten().map(|point| point.1)), 0.05);
+    let held: Vec<Vec<Held>> = of_each().map(|c| all_held(joint, c, shown)).collect();
+    let measured = held.iter().flatten().map(|held| held.speed);
+    let simulated = held.iter().flatten().filter_map(|held| held.simulated);
+    let y = Span::around(measured.chain(simulated), 0.05);
+    let law = |model: &JointModel| -> Law {
+        let points = still.law(model).into_iter();
+        points.filter(|point| (0.0..=1.0).contains(&y.part(point.1))).collect()
+    };
+    let laws: Vec<Law> = of_each().map(|comparison| law(&comparison.fit.model)).collect();
     let x = Span::around(still.levels().into_iter(), 0.03);
     let mut figures = Vec::new();
     for (at, ((number, step), held)) in improved.numbered().zip(&held).enumerate() {
         let own = laws.get(at).cloned().unwrap_or_default();
         let proposed = improved.proposed(at);
-        let next = proposed.map_or_else(Vec::new, |candidate| still.law(&candidate.fit.model));
+        let next = proposed.map_or_else(Vec::new, |candidate| law(&candidate.fit.model));
         if let Some(candidate) = proposed.filter(|_| are_alike(&own, &next)) {
             figures.push(residual::figure(joint, &step.comparison, number, candidate));
             continue;
         }
         let before = at.checked_sub(1).and_then(|before| laws.get(before));
         figures.push(Figure {
-            title: title(joint),
+            title: title(joint, shown),
             x,
             y,
             points: held.clone(),
@@ -79,12 +86,24 @@ fn are_alike(law: &Law, other: &Law) -> bool {
     law.iter().zip(other).all(|(a, b)| (a.1 - b.1).abs() <= SEEN * largest)
 }
 
-fn title(joint: &Joint) -> String {
+/// What is looked at while a level is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shown {
+    /// The speed over the middle half of the way.
+    Speed,
+    /// The output to which it runs, over the last third of the hold.
+    Output,
+}
+
+fn title(joint: &Joint, shown: Shown) -> String {
     let unit = |unit: &Option<String>, per: &str| {
         unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}{per}]"))
     };
-    let (speed, input) = (unit(&joint.output_unit, "/s"), unit(&joint.input_unit, ""));
-    format!("speed{speed} at held input{input}: measured, model")
+    let input = unit(&joint.input_unit, "");
+    match shown {
+        Shown::Speed => format!("speed{} at held input{input}", unit(&joint.output_unit, "/s")),
+        Shown::Output => format!("output{} at held input{input}", unit(&joint.output_unit, "")),
+    }
 }
 
 /// Adds the points, and the laws drawn through them.
@@ -128,38 +147,64 @@ impl Evidence {
     }
 }
 
-/// The speed while each level acts; of parts of the record where no level is held.
-fn speeds(joint: &Joint, comparison: &Comparison) -> Vec<Held> {
+/// What is shown of each level that acts; of parts of the record where no level is held.
+fn all_held(joint: &Joint, comparison: &Comparison, shown: Shown) -> Vec<Held> {
     let noise = comparison.noise_floor.unwrap_or(0.0);
     let trials = joint.trials.iter().zip(&comparison.fit.evaluation.simulated);
-    trials.flat_map(|(trial, simulated)| of_trial(trial, simulated, noise)).collect()
+    trials.flat_map(|(trial, simulated)| of_trial(trial, simulated, (noise, shown))).collect()
 }
 
-fn of_trial(trial: &Trial, simulated: &Simulated, noise: f64) -> Vec<Held> {
+fn of_trial(trial: &Trial, simulated: &Simulated, (noise, shown): (f64, Shown)) -> Vec<Held> {
     let acting = simulated.acting.as_slice();
     #[expect(clippy::float_cmp, reason = "a step is any change")]
     let levels: Vec<&[f64]> = acting.chunk_by(|a, b| a == b).collect();
     let known = levels.iter().map(|part| part.len()).filter(|samples| *samples >= SHORTEST);
     let is_held = 2 * known.sum::<usize>() > acting.len();
     let parts = if is_held { levels } else { acting.chunks(2 * SHORTEST).collect() };
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let mut start = 0;
     let mut all = Vec::new();
     for part in parts {
-        let end = start + part.len();
-        // The joint may need the first third to come up to speed.
-        let first = start + part.len() / 3;
-        // Of the simulation, which is set back to the measurement now and then, the speed.
-        let later = trial.output().get(first..end).zip(simulated.velocity.get(first..end));
-        if let Some((measured, velocity)) = later.filter(|_| part.len() >= SHORTEST) {
-            let level = part.iter().sum::<f64>() / part.len() as f64;
-            let period_s = trial.period().seconds();
-            let (speed, std_error) = slope(measured, period_s, noise);
-            let simulated = Some(velocity.iter().sum::<f64>() / velocity.len() as f64);
-            all.push(Held { level, speed, std_error, simulated });
-        }
-        start = end;
+        let output = trial.output().get(start..start + part.len()).unwrap_or_default();
+        let within = match shown {
+            Shown::Speed => middle_of_the_way(output),
+            Shown::Output => output.len() - output.len() / 3..output.len(),
+        };
+        let rows = start + within.start..start + within.end;
+        start += part.len();
+        let Some(measured) = output.get(within).filter(|_| part.len() >= SHORTEST) else {
+            continue;
+        };
+        let period_s = trial.period().seconds();
+        let (speed, std_error) = match shown {
+            Shown::Speed => slope(measured, period_s, noise),
+            Shown::Output => (mean(measured), noise / (measured.len() as f64).sqrt()),
+        };
+        // Of a simulation that is set back to the measurement now and then, the speed.
+        let simulated = match shown {
+            Shown::Speed => simulated.velocity.get(rows).map(mean),
+            Shown::Output => simulated.output.get(rows).map(mean),
+        };
+        all.push(Held { level: mean(part), speed, std_error, simulated });
     }
     all
+}
+
+/// The samples between a quarter and three quarters of the way from the first to the last value: a
+/// joint comes up to speed before, and may stand at an end stop behind. Where these are too few,
+/// the later two thirds.
+fn middle_of_the_way(output: &[f64]) -> Range<usize> {
+    const FEWEST: usize = 5;
+    let later = output.len() / 3..output.len();
+    let Some((first, last)) = output.first().zip(output.last()) else { return later };
+    let way = last - first;
+    let part = |y: &f64| (y - first) / way;
+    let begin = output.iter().position(|y| part(y) >= 0.25);
+    let end = output.iter().rposition(|y| part(y) <= 0.75);
+    match begin.zip(end) {
+        Some((begin, end)) if end >= begin + FEWEST => begin..end + 1,
+        _ => later,
+    }
 }
 
 /// The slope of the regression line per second, and its standard error.
@@ -180,10 +225,13 @@ struct Still {
     period_s: f64,
     radians_per_output_unit: f64,
     input: Span,
+    shown: Shown,
+    /// Samples of a hold, on average.
+    hold: usize,
 }
 
 impl Still {
-    fn of(joint: &Joint) -> Self {
+    fn of(joint: &Joint, shown: Shown) -> Self {
         let range = FitRecord::new(joint, Split::Time(1.0), Horizon::FreeRun).range(&[], 1.0);
         let input = joint.trials.iter().flat_map(Trial::input).copied();
         Self {
@@ -193,6 +241,8 @@ impl Still {
             period_s: range.sample_period_s,
             radians_per_output_unit: range.radians_per_output_unit,
             input: Span::around(input, 0.0),
+            shown,
+            hold: joint.trials.iter().map(Trial::len).sum::<usize>() / holds(joint).max(1),
         }
     }
 
@@ -201,7 +251,7 @@ impl Still {
         (0..=LEVELS).map(|k| low + (high - low) * f64::from(k) / f64::from(LEVELS)).collect()
     }
 
-    /// What `model` makes of levels that have long been held.
+    /// What `model` makes of levels that have long been held, or of a hold where an output is shown.
     fn law(&self, model: &JointModel) -> Law {
         self.levels().into_iter().map(|level| (level, self.speed(model, level))).collect()
     }
@@ -211,20 +261,28 @@ impl Still {
     fn legend(&self, number: u32, model: &JointModel, joint: &Joint) -> String {
         let aside = Self { angle: self.angle + 0.5 * (self.highest - self.angle), ..*self };
         if are_alike(&self.law(model), &aside.law(model)) {
-            return format!("revision {number}");
+            return format!("revision {number} (orange)");
         }
         let output = measure(self.angle, joint.output_unit.as_deref());
-        format!("revision {number}, at {output}")
+        format!("revision {number} (line: at {output})")
     }
 
     fn speed(&self, model: &JointModel, level: f64) -> f64 {
         /// Seconds after which the memories of effects no longer change.
         const SETTLED_S: f64 = 2.0;
+        /// Samples of a hold that is simulated.
+        const LONGEST: usize = 2000;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in bounds")]
-        let samples = (SETTLED_S / self.period_s).clamp(2.0, 400.0) as usize;
+        let samples = match self.shown {
+            Shown::Speed => (SETTLED_S / self.period_s).clamp(2.0, 400.0) as usize,
+            Shown::Output => self.hold.clamp(2, LONGEST),
+        };
         let arrivals = Arrivals { initial: level, changes: Vec::new() };
         let back = |sample| Restart { sample, output: self.angle, speed: None };
-        let restarts: Vec<Restart> = (0..samples).map(back).collect();
+        let restarts: Vec<Restart> = match self.shown {
+            Shown::Speed => (0..samples).map(back).collect(),
+            Shown::Output => vec![back(0)],
+        };
         let surroundings = Surroundings {
             others: &[],
             radians_per_output_unit: self.radians_per_output_unit,
@@ -232,8 +290,18 @@ impl Still {
         };
         let simulated =
             simulate(model, &arrivals, samples, self.period_s, &restarts, &surroundings);
-        simulated.velocity.last().copied().unwrap_or_default()
+        let last = match self.shown {
+            Shown::Speed => simulated.velocity.last(),
+            Shown::Output => simulated.output.last(),
+        };
+        last.copied().unwrap_or_default()
     }
+}
+
+/// How often the input is held.
+#[expect(clippy::float_cmp, reason = "a step is any change")]
+fn holds(joint: &Joint) -> usize {
+    joint.trials.iter().map(|trial| trial.input().chunk_by(|a, b| a == b).count()).sum()
 }
 
 #[cfg(test)]
@@ -269,17 +337,38 @@ mod tests {
             y
         });
         let trial = trial(acting.clone(), outputs.collect());
-        let held = of_trial(&trial, &of(acting), 0.0);
+        let held = of_trial(&trial, &of(acting), (0.0, Shown::Speed));
         let found: Vec<_> = held.iter().map(|held| (held.level, held.speed)).collect();
         assert_eq!(found.len(), 2);
         assert!((found[0].1 - 3.0).abs() < 1e-9 && (found[1].1 - 1.5).abs() < 1e-9);
     }
 
     #[test]
+    fn the_speed_of_a_stroke_is_that_of_its_middle() {
+        let output: Vec<f64> =
+            (0..100).map(|k| (f64::from(k - 20) * 0.5).clamp(0.0, 10.0)).collect();
+        let acting = vec![1.0; 100];
+        let held = of_trial(&trial(acting.clone(), output), &of(acting), (0.0, Shown::Speed));
+        assert_eq!(held.len(), 1);
+        // Half a unit each 0.1 s; it begins late, and stands at its stop for more than half.
+        assert!((held[0].speed - 5.0).abs() < 1e-9, "{held:?}");
+    }
+
+    #[test]
+    fn an_output_that_settles_is_shown_where_it_settles() {
+        let acting = [vec![1.0; 30], vec![2.0; 30]].concat();
+        let settled = |k: usize| if k % 30 < 10 { 0.0 } else { acting[k] };
+        let output: Vec<f64> = (0..60).map(settled).collect();
+        let held = of_trial(&trial(acting.clone(), output), &of(acting), (0.0, Shown::Output));
+        let found: Vec<_> = held.iter().map(|held| (held.level, held.speed)).collect();
+        assert_eq!(found, [(1.0, 1.0), (2.0, 2.0)]);
+    }
+
+    #[test]
     fn an_input_that_is_never_held_is_cut_into_parts() {
         let acting: Vec<f64> = (0..240).map(|k| f64::from(k) / 240.0).collect();
         let trial = trial(acting.clone(), acting.clone());
-        let held = of_trial(&trial, &of(acting), 0.0);
+        let held = of_trial(&trial, &of(acting), (0.0, Shown::Speed));
         assert_eq!(held.len(), 10);
         assert!(held.iter().all(|held| held.simulated == Some(0.25)));
         assert!(held.iter().all(|held| (held.speed - 10.0 / 240.0).abs() < 1e-9));
@@ -295,7 +384,8 @@ mod tests {
             trials: vec![trial(vec![-2.0, 2.0, 1.0], vec![0.0, 5.0, 3.0])],
         };
         let band = Component::new(&DeadBand, vec![(-0.5).into(), 0.6.into()]).unwrap();
-        let law = Still::of(&joint).law(&JointModel::integrator(10.0, 0.2).with(band));
+        let law =
+            Still::of(&joint, Shown::Speed).law(&JointModel::integrator(10.0, 0.2).with(band));
         for (level, speed) in law {
             let expected = 10.0 * ((level - 0.6).max(0.0) + (level + 0.5).min(0.0));
             assert!((speed - expected).abs() < 1e-9, "{level}: {speed}");

@@ -35,12 +35,13 @@ pub(super) fn add(
     layout: &JointLayout<'_>,
     improved: &ImprovedJoint<'_>,
 ) -> Result<(), RecordError> {
-    let drawing = Drawing::of(layout, improved);
+    let drawing = Drawing::of(layout);
     let of_each = || improved.revisions.iter().map(|revision| &revision.comparison);
     let residuals: Vec<Plot> = of_each().map(|c| drawing.residual_plot(c)).collect();
-    let count = improved.revisions.len();
-    let sheet = |(comparison, plot)| drawing.sheet(improved, comparison, plot).into_parts();
-    let sheets = of_each().zip(&residuals).map(sheet);
+    let close_ups: Vec<CloseUp> = of_each().map(|c| CloseUp::of(layout, c)).collect();
+    let sheet =
+        |((comparison, plot), close)| drawing.sheet(improved, comparison, plot, close).into_parts();
+    let sheets = of_each().zip(&residuals).zip(&close_ups).map(sheet);
     let (grids, texts): (Vec<_>, Vec<_>) = sheets.unzip();
     for (path, rgb, spans) in [
         (record::VALIDATION, palette::UNSEEN_GROUND, validation as fn(&Comparison) -> Spans),
@@ -52,16 +53,13 @@ pub(super) fn add(
     }
     rows.strips(record::GRID, palette::GRID, 0.7, grids.into_iter())?;
     rows.texts(record::TEXTS, palette::BORDER, texts.into_iter())?;
-    let window = std::iter::repeat_n(drawing.window_in_record(), count);
-    rows.strips(record::WINDOW, palette::BORDER, 0.9, window)?;
-    let measured = drawing.outputs(|trial| trial.trial.output());
-    rows.strips(record::MEASURED, palette::MEASURED, 3.0, std::iter::repeat_n(measured, count))?;
-    rows.strips(
-        record::SIMULATED,
-        palette::REVISION,
-        1.2,
-        of_each().map(|c| drawing.simulated(c)),
-    )?;
+    let windows = close_ups.iter().map(|close| drawing.window_in_record(close));
+    rows.strips(record::WINDOW, palette::BORDER, 0.9, windows)?;
+    let measured =
+        close_ups.iter().map(|close| drawing.outputs(close, |trial| trial.trial.output()));
+    rows.strips(record::MEASURED, palette::MEASURED, 3.0, measured)?;
+    let simulated = of_each().zip(&close_ups).map(|(c, close)| drawing.simulated(c, close));
+    rows.strips(record::SIMULATED, palette::REVISION, 1.2, simulated)?;
     let of_plots = || of_each().zip(&residuals);
     let curves = of_plots().map(|(comparison, plot)| drawing.residual(comparison, plot));
     rows.strips(record::RESIDUAL, palette::REVISION, 1.0, curves)?;
@@ -76,12 +74,30 @@ pub(super) fn add(
 struct Drawing<'l, 'a> {
     layout: &'l JointLayout<'a>,
     output: Plot,
-    /// The part of the record in which the first revision is worst.
-    window: Window,
-    close: Plot,
     /// Seconds of the whole record.
     x: Span,
     samples: usize,
+}
+
+/// The part of the record in which the residual of a revision is largest.
+struct CloseUp {
+    window: Window,
+    plot: Plot,
+    title: String,
+}
+
+impl CloseUp {
+    fn of(layout: &JointLayout<'_>, comparison: &Comparison) -> Self {
+        let worst = comparison.failure.as_ref().and_then(|failure| failure.worst_segments.first());
+        let named = worst.and_then(|worst| Window::about(layout, worst));
+        let window = named.unwrap_or_else(|| Window::worst(&residuals(layout, comparison)));
+        let trial = layout.trials.get(window.place).filter(|_| layout.trials.len() > 1);
+        let title = trial.map_or_else(
+            || "close up: the largest residual".to_owned(),
+            |trial| format!("largest residual: trial {}", trial.trial.label()),
+        );
+        Self { plot: close_up(layout, &window), window, title }
+    }
 }
 
 /// Samples of a trial, counted from 0.
@@ -129,20 +145,14 @@ impl Window {
 const PARTS: usize = 15;
 
 impl<'l, 'a> Drawing<'l, 'a> {
-    fn of(layout: &'l JointLayout<'a>, improved: &ImprovedJoint<'_>) -> Self {
+    fn of(layout: &'l JointLayout<'a>) -> Self {
         let trials = &layout.trials;
         let ends = trials.iter().flat_map(|t| [seconds(t, 1), seconds(t, t.trial.len())]);
         let x = Span::around(ends, 0.005);
         let outputs = trials.iter().flat_map(|trial| trial.trial.output().iter().copied());
-        let first = improved.revisions.first().and_then(|first| first.comparison.failure.as_ref());
-        let named = first.and_then(|failure| failure.worst_segments.first());
-        let named = named.and_then(|worst| Window::about(layout, worst));
-        let window = named.unwrap_or_else(|| Window::worst(&first_residuals(layout, improved)));
         Self {
             layout,
             output: Plot::within((120.0, 900.0), 40.0..=290.0, x, Span::around(outputs, 0.08)),
-            close: close_up(layout, &window),
-            window,
             x,
             samples: trials.iter().map(|trial| trial.trial.len()).sum(),
         }
@@ -160,6 +170,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         improved: &ImprovedJoint<'_>,
         comparison: &Comparison,
         residual_plot: &Plot,
+        close: &CloseUp,
     ) -> Sheet {
         let unit = &improved.finding.compared.joint.output_unit;
         let unit = bracketed("", unit.as_deref());
@@ -167,12 +178,10 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let horizon = improved.finding.compared.comparison.fit.evaluation.horizon;
         let output = format!("measured (white) and simulated (orange){unit}, {horizon}");
         sheet.frame(&self.output, &self.output.x_span().ticks(8.0), &ticks(&self.output), &output);
-        let first = improved.first_revision;
-        let close = format!("close up: the worst of revision {first}");
-        sheet.frame(&self.close, &[], &ticks(&self.close), &close);
-        let close = self.close.x_span();
-        for end in [close.low, close.high] {
-            sheet.put(self.close.below(end, 2.0), format!("{} s", short(end)));
+        sheet.frame(&close.plot, &[], &ticks(&close.plot), &close.title);
+        let ends = close.plot.x_span();
+        for end in [ends.low, ends.high] {
+            sheet.put(close.plot.below(end, 2.0), format!("{} s", short(end)));
         }
         let floor = noise(improved).filter(|noise| *noise > 0.0);
         let times =
@@ -200,20 +209,24 @@ impl<'l, 'a> Drawing<'l, 'a> {
     }
 
     /// The ends of the window in the plot of the whole record.
-    fn window_in_record(&self) -> Strips {
-        let Span { low, high } = self.close.x_span();
+    fn window_in_record(&self, close: &CloseUp) -> Strips {
+        let Span { low, high } = close.plot.x_span();
         [low, high].map(|x| self.output.vertical(x).to_vec()).to_vec()
     }
 
     /// Curves of the output: a trial each, and the close-up.
-    fn outputs<'v>(&self, values: impl Fn(&TrialLayout<'a>) -> &'v [f64]) -> Strips {
+    fn outputs<'v>(
+        &self,
+        close: &CloseUp,
+        values: impl Fn(&TrialLayout<'a>) -> &'v [f64],
+    ) -> Strips {
         let mut curves = self.curves(&self.output, &values);
-        let trial = self.layout.trials.get(self.window.place);
+        let trial = self.layout.trials.get(close.window.place);
         let close = trial.map(|trial| {
-            let part = values(trial).get(self.window.samples.clone()).unwrap_or_default();
-            let first = self.window.samples.start + 1;
+            let part = values(trial).get(close.window.samples.clone()).unwrap_or_default();
+            let first = close.window.samples.start + 1;
             let kept = thinned_to(part, POINTS).into_iter();
-            let place = |k: usize| Some(self.close.at(seconds(trial, first + k), *part.get(k)?));
+            let place = |k: usize| Some(close.plot.at(seconds(trial, first + k), *part.get(k)?));
             simplified(kept.filter_map(place).collect())
         });
         curves.extend(close);
@@ -232,9 +245,9 @@ impl<'l, 'a> Drawing<'l, 'a> {
         self.layout.trials.iter().map(curve).collect()
     }
 
-    fn simulated(&self, comparison: &Comparison) -> Strips {
+    fn simulated(&self, comparison: &Comparison, close: &CloseUp) -> Strips {
         let all = &comparison.fit.evaluation.simulated;
-        self.outputs(|trial| {
+        self.outputs(close, |trial| {
             all.get(trial.index).map_or(&[], |simulated| simulated.output.as_slice())
         })
     }
@@ -265,10 +278,9 @@ fn band(plot: &Plot, noise: Option<f64>) -> Strips {
     levels.into_iter().flatten().filter(inside).map(|y| plot.level(y).to_vec()).collect()
 }
 
-/// What the first revision leaves of each trial.
-fn first_residuals<'v>(layout: &JointLayout<'_>, improved: &ImprovedJoint<'v>) -> Vec<&'v [f64]> {
-    let first = improved.revisions.first();
-    let all = first.map_or(&[][..], |first| &first.comparison.fit.evaluation.residuals);
+/// What a revision leaves of each trial.
+fn residuals<'v>(layout: &JointLayout<'_>, comparison: &'v Comparison) -> Vec<&'v [f64]> {
+    let all = &comparison.fit.evaluation.residuals;
     let of_trial = |trial: &TrialLayout<'_>| all.get(trial.index).map_or(&[][..], Vec::as_slice);
     layout.trials.iter().map(of_trial).collect()
 }

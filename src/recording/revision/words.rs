@@ -8,7 +8,7 @@ use crate::recording::error_share::short;
 use crate::recording::markdown::{plain, prose};
 use crate::recording::parameter_table::parameter_table;
 use crate::report::{ImprovedJoint, change_in_words};
-use crate::wording::rounded;
+use crate::wording::{rounded, unit_suffix};
 
 /// The page of the revision at `place`.
 pub(super) fn page(improved: &ImprovedJoint<'_>, place: usize) -> String {
@@ -45,7 +45,7 @@ one follow `decision`, `sample` or `time`: choose it at the bottom.*";
 
 /// What the error is, and what it was before.
 fn fall(improved: &ImprovedJoint<'_>, place: usize) -> String {
-    let unit = improved.finding.compared.joint.output_unit.as_deref().unwrap_or("");
+    let unit = unit_suffix(improved.finding.compared.joint.output_unit.as_deref());
     let error = |place: usize| Some(judged(&improved.revisions.get(place)?.comparison));
     let Some(now) = error(place) else { return String::new() };
     let floor = noise(improved).filter(|noise| *noise > 0.0);
@@ -53,8 +53,8 @@ fn fall(improved: &ImprovedJoint<'_>, place: usize) -> String {
         floor.map_or_else(String::new, |n| format!(", {} times the noise", rounded(now / n)));
     match place.checked_sub(1).and_then(error) {
         Some(before) => {
-            format!("Error: {} → {} {unit}{times}", short(before), short(now))
+            format!("Error: {} → {}{unit}{times}", short(before), short(now))
         }
-        None => format!("Error: {} {unit}{times}", short(now)),
+        None => format!("Error: {}{unit}{times}", short(now)),
     }
 }

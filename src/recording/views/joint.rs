@@ -1,14 +1,17 @@
 //! The views of one joint: its decisions, its record, its table.
 
 use rerun::EntityPath;
-use rerun::components::Visible;
+use rerun::components::{Range1D, Visible};
 use rerun::datatypes::Utf8;
-use rerun::external::re_sdk_types::blueprint::archetypes::{DataframeQuery, PlotLegend, TimeAxis};
+use rerun::external::re_sdk_types::blueprint::archetypes::{
+    DataframeQuery, PlotLegend, ScalarAxis, TimeAxis,
+};
 use rerun::external::re_sdk_types::blueprint::components::{ContainerKind, Corner2D, LinkAxis};
 use rerun::external::re_sdk_types::blueprint::datatypes::{
     ComponentColumnSelector, SelectedColumns,
 };
 
+use crate::delay::Decision;
 use crate::experiment::Joint;
 use crate::recording::blueprint::{Builder, Node, View, bounds, clickable};
 use crate::recording::canvas::SHEET;
@@ -25,8 +28,7 @@ use crate::recording::{
 use crate::report::{ComparedJoint, EstimatedJoint, by_doubt};
 
 /// What the lanes of the model that is judged are called.
-const LANES: &str =
-    "Worst segments, restarted at every step (1 is the worst); what was not fitted; where it fails";
+const LANES: &str = "Worst segments (1 is the worst); what was not fitted; where it fails";
 
 /// The tab of `joint`: its decisions, its record, its table; and before them the revisions
 /// of its model, and its models, where there are any.
@@ -43,7 +45,9 @@ pub(super) fn tab(
     let doubts = by_doubt(EstimatedJoint { joint, estimate });
     let doubtful = doubts.iter().filter(|found| found.doubt.is_doubtful()).count();
     let doubtful = format!("{doubtful} of {} doubtful: click a number", doubts.len());
-    let mut views = Views { builder, joint, fine, doubtful, others, revisions };
+    let decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
+    let longest = decisions.filter_map(Decision::accepted_delay).reduce(f64::max);
+    let mut views = Views { builder, joint, fine, longest, doubtful, others, revisions };
     let mut pages = Vec::new();
     if revisions > 0 {
         pages.push(views.revisions()?);
@@ -85,7 +89,7 @@ impl Steps {
             Self::Some => (
                 "Output: measured grey, smoothed blue; chosen lines orange and green; breakpoints: \
                  dot accepted, cross rejected",
-                "Delay [samples]: τ, dot accepted, cross rejected",
+                "Delay [samples], up to the longest accepted: dot accepted, cross rejected",
                 "Steps and verdicts",
             ),
             Self::None => (
@@ -97,11 +101,24 @@ impl Steps {
     }
 }
 
+/// Scalars over the timeline.
+fn plotted<'n>(name: &'n str, entities: &[EntityPath], legend: Legend) -> View<'n> {
+    let paths: Vec<_> = entities.iter().map(ToString::to_string).collect();
+    let shown = Visible::from(legend == Legend::Apart);
+    // What a model was not fitted to lies at the right.
+    let legend = PlotLegend::new().with_corner(Corner2D::LeftTop).with_visible(shown);
+    View::new("TimeSeries", name, &paths)
+        .with("TimeAxis", TimeAxis::new().with_link(LinkAxis::LinkToGlobal))
+        .with("PlotLegend", legend)
+}
+
 struct Views<'b, 'i> {
     builder: &'b mut Builder<'i>,
     joint: &'b Joint,
     /// Whether some delay is known between samples.
     fine: bool,
+    /// The longest delay that was accepted, samples.
+    longest: Option<f64>,
     /// How many decisions are doubtful, over their list.
     doubtful: String,
     /// Results beside this one.
@@ -240,11 +257,16 @@ impl Views<'_, '_> {
             .map(|path| self.at(path)),
             Legend::InTitle,
         )?;
-        let delay = self.plot(
-            delay,
-            &[paths::TAU, paths::DELAY_ACCEPTED, paths::DELAY_REJECTED].map(|path| self.at(path)),
-            Legend::InTitle,
-        )?;
+        let delays = [paths::TAU, paths::DELAY_ACCEPTED, paths::DELAY_REJECTED];
+        let delay = plotted(delay, &delays.map(|path| self.at(path)), Legend::InTitle);
+        // One rejected at the end of a long hold would press the others to the axis.
+        let delay = self.view(match self.longest.filter(|longest| *longest > 0.0) {
+            Some(longest) => {
+                let range = Range1D::new(-0.1 * longest, 1.2 * longest);
+                delay.with("ScalarAxis", ScalarAxis::new().with_range(range))
+            }
+            None => delay,
+        })?;
         let mut rows = vec![self.place()?, input, output, delay];
         let mut shares = vec![0.9, 1.2, 3.5, 1.8];
         if !self.joint.covariates.is_empty() {
@@ -417,14 +439,7 @@ impl Views<'_, '_> {
         entities: &[EntityPath],
         legend: Legend,
     ) -> Result<Node, RecordError> {
-        let paths: Vec<_> = entities.iter().map(ToString::to_string).collect();
-        let shown = Visible::from(legend == Legend::Apart);
-        // What a model was not fitted to lies at the right.
-        let legend = PlotLegend::new().with_corner(Corner2D::LeftTop).with_visible(shown);
-        let view = View::new("TimeSeries", name, &paths)
-            .with("TimeAxis", TimeAxis::new().with_link(LinkAxis::LinkToGlobal))
-            .with("PlotLegend", legend);
-        self.view(view)
+        self.view(plotted(name, entities, legend))
     }
 
     /// Every number: a row per decision, and a row per candidate.

@@ -54,11 +54,11 @@ impl Finding<'_> {
             trial + &worst_segment_text(worst)
         };
         let times: Vec<String> = worst.take(3).map(time).collect();
-        let look = format!("look at {}", times.join(", "));
+        let look = format!("the residual is largest in {}", times.join(", "));
         let sentence = match (conditions.first(), times.is_empty()) {
             (Some(condition), false) => format!("{condition}; {look}."),
             (Some(condition), true) => format!("{condition}."),
-            (None, false) => format!("Most of the error is at no one condition; {look}."),
+            (None, false) => format!("No condition holds most of the error; {look}."),
             (None, true) => return None,
         };
         Passage::of(Topic::WhereItFails, Some(sentence))

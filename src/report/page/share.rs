@@ -28,8 +28,9 @@ pub(super) fn figure(
     let name = bracketed(feature.name(), feature.unit(&units).as_deref());
     let svg = draw(&[panel(shares)], HALF, &format!("Share of the error of {}", joint.name))?;
     let caption = format!(
-        "Where the error is, by {name}: the squared error of the model restarted at every step \
-         of the input. A bar beyond its mark is a part with too much of it."
+        "Where the error is, by {name}: the squared error, {}. A bar beyond its mark is a part with \
+         too much of it.",
+        compared.comparison.arising
     );
     Ok(Some(Figure { file, svg, caption }))
 }
