@@ -179,3 +179,23 @@ fn a_step_in_a_dead_band_is_no_reaction() {
     let of_it = found.decisions.iter().find(|it| it.input_step.sample == middle + 1).unwrap();
     assert_eq!(of_it.verdict(), Verdict::Rejected(Condition::NothingHappened));
 }
+
+#[test]
+fn a_plain_reaction_is_no_doubt_and_its_response_is_what_was_measured() {
+    let (trial, _) = record(PLAIN, 5);
+    for method in [Method::TWO_LINE, Method::HINGE] {
+        let found = estimate(&trial, &settings(method)).unwrap();
+        let accepted = found.decisions.iter().filter(|it| it.verdict() == Verdict::Accepted);
+        for decision in accepted.clone() {
+            let doubt = decision.doubt(trial.output());
+            assert!(doubt.settles && !doubt.is_doubtful(), "{}: {doubt:?}", decision.number);
+            let response = decision.response.as_ref().unwrap().values();
+            let measured = &trial.output()[decision.segment.indices()];
+            assert_eq!(response.len(), measured.len());
+            let squares = response.iter().zip(measured).map(|(a, b)| (a - b).powi(2));
+            let rms = (squares.sum::<f64>() / measured.len() as f64).sqrt();
+            assert!((rms / PLAIN.noise - 1.0).abs() < 0.2, "{}: {rms}", decision.number);
+        }
+        assert!(accepted.count() >= 18);
+    }
+}

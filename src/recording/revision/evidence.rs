@@ -89,7 +89,7 @@ fn are_alike(law: &Law, other: &Law) -> bool {
 /// What is looked at while a level is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Shown {
-    /// The speed over the middle half of the way.
+    /// Its speed.
     Speed,
     /// The output to which it runs, over the last third of the hold.
     Output,
@@ -162,12 +162,13 @@ fn of_trial(trial: &Trial, simulated: &Simulated, (noise, shown): (f64, Shown)) 
     let is_held = 2 * known.sum::<usize>() > acting.len();
     let parts = if is_held { levels } else { acting.chunks(2 * SHORTEST).collect() };
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let range = Span::around(trial.output().iter().copied(), 0.0);
     let mut start = 0;
     let mut all = Vec::new();
     for part in parts {
         let output = trial.output().get(start..start + part.len()).unwrap_or_default();
         let within = match shown {
-            Shown::Speed => middle_of_the_way(output),
+            Shown::Speed => moving(output, range),
             Shown::Output => output.len() - output.len() / 3..output.len(),
         };
         let rows = start + within.start..start + within.end;
@@ -190,19 +191,26 @@ fn of_trial(trial: &Trial, simulated: &Simulated, (noise, shown): (f64, Shown)) 
     all
 }
 
-/// The samples between a quarter and three quarters of the way from the first to the last value: a
-/// joint comes up to speed before, and may stand at an end stop behind. Where these are too few,
-/// the later two thirds.
-fn middle_of_the_way(output: &[f64]) -> Range<usize> {
+/// The samples over which a hold shows its speed: the later two thirds, since the joint must come up
+/// to speed; of a stroke into an end of `range` those between a quarter and three quarters of its
+/// way, since it stands behind.
+fn moving(output: &[f64], range: Span) -> Range<usize> {
     const FEWEST: usize = 5;
+    /// Part of the range that is its end.
+    const END: f64 = 0.02;
+    /// Part of its way by which a joint that stands may seem to move.
+    const STILL: f64 = 0.02;
     let later = output.len() / 3..output.len();
     let Some((first, last)) = output.first().zip(output.last()) else { return later };
-    let way = last - first;
-    let part = |y: &f64| (y - first) / way;
+    let end = if last > first { range.high } else { range.low };
+    let stands = |y: &f64| (y - end).abs() <= END * (range.high - range.low);
+    let is_still = |y: &f64| (y - last).abs() <= STILL * (last - first).abs();
+    let is_stroke = output.iter().rev().take(output.len() / 4).all(|y| stands(y) && is_still(y));
+    let part = |y: &f64| (y - first) / (last - first);
     let begin = output.iter().position(|y| part(y) >= 0.25);
     let end = output.iter().rposition(|y| part(y) <= 0.75);
     match begin.zip(end) {
-        Some((begin, end)) if end >= begin + FEWEST => begin..end + 1,
+        Some((begin, end)) if is_stroke && end >= begin + FEWEST => begin..end + 1,
         _ => later,
     }
 }
