@@ -268,7 +268,7 @@ impl Views<'_, '_> {
             None => delay,
         })?;
         let mut rows = vec![self.place()?, input, output, delay];
-        let mut shares = vec![0.9, 1.2, 3.5, 1.8];
+        let mut shares = vec![0.9, 1.1, 3.1, 1.6];
         if !self.joint.covariates.is_empty() {
             let root = self.at(paths::COVARIATE);
             let all = self.joint.covariates.iter().map(|signal| child(&root, &signal.name));
@@ -280,7 +280,7 @@ impl Views<'_, '_> {
             shown.push(paths::TRIAL);
         }
         rows.push(self.view(self.lanes(lanes, &shown))?);
-        shares.push(if self.joint.trials.len() > 1 { 2.2 } else { 1.6 });
+        shares.push(if self.joint.trials.len() > 1 { 2.6 } else { 2.1 });
         self.builder.container(ContainerKind::Vertical, "Record", &rows, &shares)
     }
 
