@@ -38,7 +38,9 @@ impl std::fmt::Display for Horizon {
         match self {
             Self::Auto => f.write_str("restarted as the record asks for"),
             Self::FreeRun => f.write_str("free run"),
-            Self::Steps => f.write_str("restarted at every step of the input"),
+            Self::Steps => {
+                f.write_str("restarted at every step of the input and every 200 samples")
+            }
             Self::Seconds(seconds) => write!(f, "restarted every {seconds} s"),
         }
     }

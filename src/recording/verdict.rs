@@ -410,7 +410,11 @@ impl Facts<'_, '_> {
                 let between = |(low, high)| format!("{} to {}", number(low), number(high));
                 (output("y = ", ""), self.settings.output_limits.map(between))
             }
-            Condition::BeforeInput => (said(&|q| format!("q = {q}")), needed("≥ p =")),
+            // Of a delay between samples the end of its interval counts.
+            Condition::BeforeInput => {
+                let of = if self.segment.decision.fine.is_some() { "at most " } else { "" };
+                (said(&|q| format!("q = {of}{q}")), needed("≥ p ="))
+            }
             Condition::SlopeChange => (output("", "/sample"), needed("≥")),
             Condition::ShortHold => (said(&|hold| format!("{hold} samples")), needed("≥")),
             Condition::Sse => (output("", "²"), needed("<")),

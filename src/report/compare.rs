@@ -100,8 +100,8 @@ pub(crate) fn model_differences<'a>(joints: &[ComparedJoint<'a>]) -> Vec<Compare
     found
 }
 
-/// Where the simulations of `joints` were restarted: `restarted at every step of the input`, or,
-/// where they differ, `free run (motor); restarted at every step of the input (boom, arm)`.
+/// Where the simulations of `joints` were restarted: `restarted every 2 s`, or, where they differ,
+/// `free run (motor); restarted every 2 s (boom, arm)`.
 pub(crate) fn horizons<'a>(joints: impl IntoIterator<Item = ComparedJoint<'a>>) -> String {
     horizons_of(joints, |comparison| comparison.fit.evaluation.horizon)
 }

@@ -101,6 +101,8 @@ pub struct FailsWhere {
     /// Share of the squared error that arises in them: of the error of the speed, where that
     /// is known, else of the residual.
     pub share_of_squared_error: f64,
+    /// Whether it is of the error of the speed.
+    pub of_speed: bool,
     /// Root mean square of their residuals, output units.
     pub rmse: f64,
     /// How often chance gives a condition as good, at most 0.01; see [`fails_where`].
@@ -112,13 +114,14 @@ pub struct FailsWhere {
 }
 
 impl FailsWhere {
-    /// A sentence for people: `88 % of the squared error arises in the 31 % of the time
-    /// when |input| < 1.2 V`.
+    /// A sentence for people: `88 % of the squared error of the speed arises in the 31 % of the
+    /// time when |input| < 1.2 V`.
     pub fn sentence(&self, units: &Units) -> String {
         let clauses: Vec<_> = self.clauses.iter().map(|clause| clause.with_unit(units)).collect();
         format!(
-            "{} of the squared error arises in the {} of the time when {}",
+            "{} of the squared error{} arises in the {} of the time when {}",
             percent(self.share_of_squared_error),
+            if self.of_speed { " of the speed" } else { "" },
             percent(self.share_of_time),
             clauses.join(" and ")
         )
@@ -261,6 +264,7 @@ fn report(
         condition: texts.join(" and "),
         share_of_time: samples.len() as f64 / record.len() as f64,
         share_of_squared_error: search.share(&samples),
+        of_speed: !record.samples().speed_error.is_empty(),
         rmse: record.rmse_of(samples.iter().copied()),
         p_value,
         clauses,
@@ -339,6 +343,7 @@ mod tests {
             condition: String::new(),
             share_of_time: 0.314,
             share_of_squared_error: 0.879,
+            of_speed: true,
             rmse: 1.3,
             p_value: 0.005,
             clauses: vec![
@@ -348,7 +353,7 @@ mod tests {
             samples: Vec::new(),
         };
         let units = Units { input: Some("V".into()), output: Some("deg".into()) };
-        let expected = "88 % of the squared error arises in the 31 % of the time \
+        let expected = "88 % of the squared error of the speed arises in the 31 % of the time \
                         when |input| < 1.2 V and speed >= -3 deg/s";
         assert_eq!(found.sentence(&units), expected);
         assert_eq!([0.004, 0.996, 0.0, 1.0].map(percent), ["0.4 %", "99.6 %", "0 %", "100 %"]);

@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::diagnosis::Comparison;
 use crate::diagnosis::failure::WorstSegment;
 use crate::figure::ladder::judged;
+use crate::fit::Horizon;
 use crate::recording::canvas::{Plot, SHEET, Span, Strips, simplified, thinned_to};
 use crate::recording::error::RecordError;
 use crate::recording::error_share::{HATCH, short};
@@ -176,7 +177,11 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let unit = bracketed("", unit.as_deref());
         let mut sheet = Sheet::default();
         let horizon = improved.finding.compared.comparison.fit.evaluation.horizon;
-        let output = format!("measured (white) and simulated (orange){unit}, {horizon}");
+        let restarts = match horizon {
+            Horizon::Steps => "restarted every 200 samples at most".to_owned(),
+            other => other.to_string(),
+        };
+        let output = format!("measured (white) and simulated (orange){unit}, {restarts}");
         sheet.frame(&self.output, &self.output.x_span().ticks(8.0), &ticks(&self.output), &output);
         sheet.frame(&close.plot, &[], &ticks(&close.plot), &close.title);
         let ends = close.plot.x_span();

@@ -71,7 +71,8 @@ impl Finding<'_> {
         }
         match self.ranking.get(1) {
             Some(next) => {
-                format!("Second best is {}, error {}.", next.name(), self.output(next.rmse()))
+                let (name, error) = (next.name(), self.output(next.rmse()));
+                format!("Second in the ranking, which goes by the fitted part, is {name}: {error}.")
             }
             None => "No other effect was tried.".to_owned(),
         }

@@ -205,6 +205,7 @@ mod tests {
             condition: "|input| < 1.2".to_owned(),
             share_of_time: 0.31,
             share_of_squared_error: 0.88,
+            of_speed: true,
             rmse: 1.3,
             p_value: 0.001,
             clauses: Vec::new(),
