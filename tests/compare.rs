@@ -270,3 +270,30 @@ fn any_number_of_threads_gives_the_same_bytes() {
     let run = |threads: &str| desk.run(&format!("--format json --threads {threads}")).stdout;
     assert_eq!(run("1"), run("2"));
 }
+
+#[test]
+fn where_the_output_follows_the_input_no_error_is_one_of_the_speed() {
+    // A first order of 0.3 s behind 0.1 s, which saturates at the highest of its levels.
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let mut log = "time_s,boom.input,boom.output\n".to_owned();
+    let (mut y, mut level, mut late) = (0.0, 0.0, vec![0.0; 10]);
+    for k in 0..12_000 {
+        if k % 400 == 0 {
+            level = f64::from(random.random_range(0..8)) - 2.0;
+        }
+        late.push(level);
+        y += 0.01 / 0.3 * (late.remove(0).min(4.0) - y);
+        let noise: f64 = StandardNormal.sample(&mut random);
+        writeln!(log, "{},{level},{}", f64::from(k) * 0.01, y + 0.01 * noise).unwrap();
+    }
+    let desk = Desk::with(|spec| spec);
+    std::fs::write(desk.folder.path().join("log.csv"), log).unwrap();
+    let model = "schema = \"tauscope/model/1\"\n[joint.boom]\nstructure = \"integrator\"\n\
+                 parameters = { gain = 3.0, delay = 0.1 }\n[[joint.boom.effect]]\nkind = \"leakage\"\n\
+                 parameters = { rate = 3.0, y0 = 0.0 }\n";
+    std::fs::write(desk.folder.path().join("leaky.toml"), model).unwrap();
+    let text = String::from_utf8(desk.run("--model leaky.toml --quiet").stdout).unwrap();
+    assert!(text.contains("where it fails (free run):"), "{text}");
+    assert!(text.contains("of the squared error arises"), "{text}");
+    assert!(!text.contains("of the speed"), "{text}");
+}

@@ -305,7 +305,7 @@ fn near(a: f64, b: f64) -> bool {
 }
 
 #[test]
-fn conditions_and_segments_share_one_error() {
+fn a_condition_says_where_an_error_arises_and_a_segment_where_it_is_seen() {
     // The speed errs where the input is large; the residual that stays is large elsewhere.
     let mut made = Made::new(5, 6000, 1, [0.5, 1.0]);
     let drives: Vec<bool> = made.samples.input.iter().map(|input| *input > 1.5).collect();
@@ -323,6 +323,18 @@ fn conditions_and_segments_share_one_error() {
     for worst in &diagnosis.worst_segments {
         assert!(worst.samples.clone().any(|sample| !drives[sample]), "{worst:?}");
     }
+}
+
+#[test]
+fn the_worst_segment_is_that_of_the_residual_that_is_shown() {
+    let record = Made::usual(12).with_noise(0.5, |_, _| 1.0);
+    let shown = record.segments()[7].clone();
+    let residual = (0..record.len()).map(|sample| f64::from(u8::from(shown.contains(&sample))));
+    let worst = worst_segments(&record, residual, 5);
+    assert_eq!(worst.len(), 1);
+    assert_eq!((worst[0].samples.clone(), worst[0].share_of_squared_error), (shown, 1.0));
+    // Squares beyond double precision have no shares.
+    assert!(worst_segments(&record, vec![1e200; record.len()], 5).is_empty());
 }
 
 proptest! {

@@ -94,12 +94,12 @@ fn figures(
     let per_step = step_errors(&by_step, &evaluation);
     let (arising, restarted) = if follows_input(record.joint()).is_some() {
         drop(evaluation);
-        let evaluation = record.evaluate(&fit.model);
-        (fit.evaluation.horizon, happened(&by_step, evaluation, Error::OfOutput))
+        let evaluation = fit.evaluation.clone();
+        (fit.evaluation.horizon, residual_record(&by_step, evaluation, ErrorOf::Output))
     } else {
-        (Horizon::Steps, happened(&by_step, evaluation, Error::OfSpeed))
+        (Horizon::Steps, residual_record(&by_step, evaluation, ErrorOf::Speed))
     };
-    let shown = || fit.evaluation.residuals.iter().flatten().copied();
+    let fitted = || fit.evaluation.residuals.iter().flatten().copied();
     Comparison {
         training: error(Part::Training),
         validation: error(Part::Validation),
@@ -107,7 +107,7 @@ fn figures(
         lack_of_fit,
         whiteness,
         input_correlation,
-        failure: restarted.as_ref().filter(|_| fails).map(|record| diagnose(record, shown())),
+        failure: restarted.as_ref().filter(|_| fails).map(|record| diagnose(record, fitted())),
         arising,
         regions: restarted.as_ref().map(regions).unwrap_or_default(),
         per_step,
@@ -187,10 +187,10 @@ fn common_period_s(record: &FitRecord<'_>) -> Option<f64> {
 
 /// What is taken for the error of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Error {
+enum ErrorOf {
     /// That of the speed: of an integrator an error of the output stays where it was not made.
-    OfSpeed,
-    OfOutput,
+    Speed,
+    Output,
 }
 
 /// The residual of a model, with what happened; `record` restarts at every step of the input, whether
@@ -198,10 +198,10 @@ enum Error {
 ///
 /// The columns of `evaluation` become those of the record: of a long one each is as long as the
 /// log.
-fn happened(
+fn residual_record(
     record: &FitRecord<'_>,
     evaluation: Evaluation,
-    error: Error,
+    error: ErrorOf,
 ) -> Option<failure::ResidualRecord> {
     let trials = &record.joint().trials;
     let all = trials.iter().map(Trial::len).sum();
@@ -223,7 +223,7 @@ fn happened(
         // An input that is never held has no levels to look at.
         let windows = record.windows().iter().filter(|window| window.trial == index);
         let windows: Vec<_> = windows.map(|window| window.start..window.end).collect();
-        if error == Error::OfSpeed {
+        if error == ErrorOf::Speed {
             samples.speed_error.extend(speed_error(&residual, &windows, period));
         }
         let own = if levels.len() > windows.len().saturating_mul(20) { windows } else { levels };

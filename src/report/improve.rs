@@ -26,6 +26,8 @@ pub struct ImprovedJoint<'a> {
     pub first_revision: u32,
     /// Whether it was stopped before it came to an end.
     pub interrupted: bool,
+    /// Whether more is missing, and as many effects were added as are allowed.
+    pub reached_limit: bool,
 }
 
 impl<'a> ImprovedJoint<'a> {
@@ -33,7 +35,8 @@ impl<'a> ImprovedJoint<'a> {
     pub fn of(finding: Finding<'a>, revisions: &'a [Revision]) -> Self {
         let later = u32::try_from(revisions.len().saturating_sub(1)).unwrap_or(u32::MAX);
         let first_revision = finding.compared.revision.saturating_sub(later);
-        Self { finding, revisions, first_revision, interrupted: false }
+        let (interrupted, reached_limit) = (false, false);
+        Self { finding, revisions, first_revision, interrupted, reached_limit }
     }
 
     /// The revisions with their numbers.
@@ -64,7 +67,7 @@ impl<'a> ImprovedJoint<'a> {
     /// What is to be said of the last revision, and why it is the last.
     pub(crate) fn conclusion(&self) -> Conclusion {
         let mut conclusion = self.finding.conclusion();
-        if self.finding.proposed().is_some() && !self.interrupted {
+        if self.reached_limit {
             let why =
                 "As many effects were added as `--max-effects` allows; a larger number goes on.";
             conclusion.passages.extend(Passage::of(Topic::Next, [why.to_owned()]));

@@ -24,10 +24,7 @@ pub(crate) fn parameter_value(parameter: &Parameter, unit: &str) -> String {
         return "none".to_owned();
     }
     let known = known_value(*value, *std_error);
-    // A value that was fitted and has no standard error is not known, whatever its digits.
-    let unknown = std_error.is_none().then_some("not determined by this record");
-    let remark = remark(*status).or(unknown);
-    let remark = remark.map_or_else(String::new, |remark| format!(" ({remark})"));
+    let remark = remark(*status).map_or_else(String::new, |remark| format!(" ({remark})"));
     format!("{}{remark}", format!("{known} {unit}").trim_end())
 }
 

@@ -80,5 +80,7 @@ mod tests {
         assert!(lines.lines().all(|line| line.len() <= WIDTH));
         assert!(lines.lines().skip(1).all(|line| line.starts_with("  word")));
         assert_eq!(lines.split_whitespace().count(), 40);
+        let shares = wrapped(&"12 % ".repeat(40));
+        assert!(shares.lines().all(|line| line.starts_with("12 %") && line.ends_with('%')));
     }
 }

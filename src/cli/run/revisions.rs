@@ -70,7 +70,7 @@ pub(crate) fn improved<'a>(
     let attribution = Some(attribution);
     let finding =
         Finding { compared, verdict, ranking, add_arguments, before, attribution, delays };
-    Some(ImprovedJoint { finding, revisions, first_revision, interrupted: false })
+    Some(ImprovedJoint { first_revision, ..ImprovedJoint::of(finding, revisions) })
 }
 
 /// `file` with all revisions of all joints. A joint that has no new one stays as it is.

@@ -36,17 +36,23 @@ impl Response {
     /// The output at each sample of the segment, without noise, output units.
     pub fn values(&self) -> Vec<f64> {
         let columns = self.constants.responses(self.onset, self.samples);
-        let value = |k: usize| {
-            let row = columns.iter().skip(k).step_by(self.samples);
-            self.origin + row.zip(&self.parts).map(|(value, part)| value * part).sum::<f64>()
-        };
-        (0..self.samples).map(value).collect()
+        let combined = combined(&columns, self.samples, &self.parts);
+        combined.into_iter().map(|y| self.origin + y).collect()
     }
 
     /// Part of the squared error without a reaction that it removes, 0 to 1.
     pub fn explained(&self) -> f64 {
         self.explained
     }
+}
+
+/// The sum of columns of `length` samples, each times its part.
+pub(super) fn combined(columns: &[f64], length: usize, parts: &[f64]) -> Vec<f64> {
+    let value = |k: usize| {
+        let row = columns.iter().skip(k).step_by(length);
+        row.zip(parts).map(|(value, part)| value * part).sum()
+    };
+    (0..length).map(value).collect()
 }
 
 /// Time constants about one step, in samples.

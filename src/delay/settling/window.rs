@@ -3,7 +3,7 @@
 //! For every onset what is linear is solved for; the onset itself is searched over the window and
 //! then narrowed by golden sections.
 
-use super::response::{Constants, Response};
+use super::response::{Constants, Response, combined};
 use crate::numerics::{NoiseModel, NormalEquations, Projection, dot};
 use crate::units::ceil_to_index;
 
@@ -84,7 +84,7 @@ impl<'a> StepWindow<'a> {
         const STEP: f64 = 0.1;
         let mut columns = self.columns(constants, onset);
         let parts = self.parts(constants, onset);
-        let moved = |by: f64| self.combined(&self.columns(constants, onset + by), &parts);
+        let moved = |by: f64| combined(&self.columns(constants, onset + by), self.len(), &parts);
         let [before, behind] = [-STEP, STEP].map(moved);
         columns.extend(before.iter().zip(behind).map(|(a, b)| b - a));
         Projection::of(&columns, &self.values)
@@ -98,14 +98,6 @@ impl<'a> StepWindow<'a> {
         let mut equations = NormalEquations::of(&all, self.len(), &[]);
         (0..count).for_each(|column| equations.eliminate(column));
         equations.coefficients(count, &[])
-    }
-
-    fn combined(&self, columns: &[f64], parts: &[f64]) -> Vec<f64> {
-        let value = |k: usize| {
-            let row = columns.iter().skip(k).step_by(self.len());
-            row.zip(parts).map(|(value, part)| value * part).sum()
-        };
-        (0..self.len()).map(value).collect()
     }
 
     /// The output with an onset, without noise; `explained` is what it removes of the error.

@@ -3,7 +3,8 @@
 /// A value for each sample, held as the parts over which it runs evenly.
 ///
 /// Part `j` begins at sample `b_j` and is `v_j + (k − b_j) s_j` at sample `k`, so that a column of
-/// times is no longer than the trials are many, and one of holds than the steps.
+/// times is no longer than the trials are many, and one of holds than the steps. Two are equal that
+/// have the same parts.
 ///
 /// ```
 /// use tauscope::diagnosis::failure::EvenColumn;

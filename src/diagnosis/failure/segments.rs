@@ -64,7 +64,9 @@ fn segment(
     (square, all): (f64, f64),
 ) -> Option<WorstSegment> {
     let share_of_squared_error = if all > 0.0 { square / all } else { 0.0 };
-    if share_of_squared_error <= span.len() as f64 / record.len() as f64 {
+    let share_of_time = span.len() as f64 / record.len() as f64;
+    // Squares that overflow have no shares.
+    if share_of_squared_error.is_nan() || share_of_squared_error <= share_of_time {
         return None;
     }
     let time_s = |sample: usize| record.samples().time_s.get(sample);

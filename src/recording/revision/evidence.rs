@@ -21,6 +21,7 @@ use crate::recording::paths::revision::sheet;
 use crate::recording::rows::Rows;
 use crate::recording::sheet::Sheet;
 use crate::report::ImprovedJoint;
+use crate::units::floor_to_index;
 use crate::wording::measure;
 
 /// Fewest samples of a level whose speed is known.
@@ -46,17 +47,13 @@ pub(super) fn evidence(improved: &ImprovedJoint<'_>) -> Evidence {
     let measured = held.iter().flatten().map(|held| held.speed);
     let simulated = held.iter().flatten().filter_map(|held| held.simulated);
     let y = Span::around(measured.chain(simulated), 0.05);
-    let law = |model: &JointModel| -> Law {
-        let points = still.law(model).into_iter();
-        points.filter(|point| (0.0..=1.0).contains(&y.part(point.1))).collect()
-    };
-    let laws: Vec<Law> = of_each().map(|comparison| law(&comparison.fit.model)).collect();
+    let laws: Vec<Law> = of_each().map(|comparison| still.law(&comparison.fit.model)).collect();
     let x = Span::around(still.levels().into_iter(), 0.03);
     let mut figures = Vec::new();
     for (at, ((number, step), held)) in improved.numbered().zip(&held).enumerate() {
         let own = laws.get(at).cloned().unwrap_or_default();
         let proposed = improved.proposed(at);
-        let next = proposed.map_or_else(Vec::new, |candidate| law(&candidate.fit.model));
+        let next = proposed.map_or_else(Vec::new, |candidate| still.law(&candidate.fit.model));
         if let Some(candidate) = proposed.filter(|_| are_alike(&own, &next)) {
             figures.push(residual::figure(joint, &step.comparison, number, candidate));
             continue;
@@ -80,10 +77,11 @@ pub(super) fn evidence(improved: &ImprovedJoint<'_>) -> Evidence {
 
 /// Whether two laws are so near that the difference is not seen.
 fn are_alike(law: &Law, other: &Law) -> bool {
-    /// In parts of the largest speed.
+    /// In parts of the range of both.
     const SEEN: f64 = 0.04;
-    let largest = law.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
-    law.iter().zip(other).all(|(a, b)| (a.1 - b.1).abs() <= SEEN * largest)
+    let range = Span::around(law.iter().chain(other).map(|point| point.1), 0.0);
+    let seen = SEEN * (range.high - range.low);
+    law.len() == other.len() && law.iter().zip(other).all(|(a, b)| (a.1 - b.1).abs() <= seen)
 }
 
 /// What is looked at while a level is held.
@@ -155,6 +153,8 @@ fn all_held(joint: &Joint, comparison: &Comparison, shown: Shown) -> Vec<Held> {
 }
 
 fn of_trial(trial: &Trial, simulated: &Simulated, (noise, shown): (f64, Shown)) -> Vec<Held> {
+    /// Part of the largest input of its trial that drives a joint into a stop.
+    const DRIVEN: f64 = 0.1;
     let acting = simulated.acting.as_slice();
     #[expect(clippy::float_cmp, reason = "a step is any change")]
     let levels: Vec<&[f64]> = acting.chunk_by(|a, b| a == b).collect();
@@ -163,12 +163,14 @@ fn of_trial(trial: &Trial, simulated: &Simulated, (noise, shown): (f64, Shown)) 
     let parts = if is_held { levels } else { acting.chunks(2 * SHORTEST).collect() };
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let range = Span::around(trial.output().iter().copied(), 0.0);
+    let largest = trial.input().iter().fold(0.0, |most: f64, level| most.max(level.abs()));
     let mut start = 0;
     let mut all = Vec::new();
     for part in parts {
         let output = trial.output().get(start..start + part.len()).unwrap_or_default();
         let within = match shown {
-            Shown::Speed => moving(output, range),
+            Shown::Speed if mean(part).abs() > DRIVEN * largest => moving(output, range),
+            Shown::Speed => output.len() / 3..output.len(),
             Shown::Output => output.len() - output.len() / 3..output.len(),
         };
         let rows = start + within.start..start + within.end;
@@ -234,8 +236,8 @@ struct Still {
     radians_per_output_unit: f64,
     input: Span,
     shown: Shown,
-    /// Samples of a hold, on average.
-    hold: usize,
+    /// How long a level is held, on average, seconds; none where none is.
+    hold_s: Option<f64>,
 }
 
 impl Still {
@@ -250,7 +252,7 @@ impl Still {
             radians_per_output_unit: range.radians_per_output_unit,
             input: Span::around(input, 0.0),
             shown,
-            hold: joint.trials.iter().map(Trial::len).sum::<usize>() / holds(joint).max(1),
+            hold_s: mean_hold_s(joint),
         }
     }
 
@@ -264,8 +266,8 @@ impl Still {
         self.levels().into_iter().map(|level| (level, self.speed(model, level))).collect()
     }
 
-    /// `revision 9`; where the speed of `model` depends on where the joint is, with the output of
-    /// the law: `revision 9, at -45 deg`.
+    /// `revision 9 (orange)`; where what `model` makes of a level depends on where the joint is, with
+    /// the output of the law: `revision 9 (line: at -45 deg)`.
     fn legend(&self, number: u32, model: &JointModel, joint: &Joint) -> String {
         let aside = Self { angle: self.angle + 0.5 * (self.highest - self.angle), ..*self };
         if are_alike(&self.law(model), &aside.law(model)) {
@@ -279,11 +281,14 @@ impl Still {
         /// Seconds after which the memories of effects no longer change.
         const SETTLED_S: f64 = 2.0;
         /// Samples of a hold that is simulated.
-        const LONGEST: usize = 2000;
+        const LONGEST: f64 = 2000.0;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in bounds")]
         let samples = match self.shown {
             Shown::Speed => (SETTLED_S / self.period_s).clamp(2.0, 400.0) as usize,
-            Shown::Output => self.hold.clamp(2, LONGEST),
+            Shown::Output => {
+                let samples = self.hold_s.map_or(f64::INFINITY, |hold_s| hold_s / self.period_s);
+                floor_to_index(samples.min(LONGEST)).max(2)
+            }
         };
         let arrivals = Arrivals { initial: level, changes: Vec::new() };
         let back = |sample| Restart { sample, output: self.angle, speed: None };
@@ -306,10 +311,19 @@ impl Still {
     }
 }
 
-/// How often the input is held.
-#[expect(clippy::float_cmp, reason = "a step is any change")]
-fn holds(joint: &Joint) -> usize {
-    joint.trials.iter().map(|trial| trial.input().chunk_by(|a, b| a == b).count()).sum()
+/// How long a level is held on average, where the input is held at all.
+fn mean_hold_s(joint: &Joint) -> Option<f64> {
+    #[expect(clippy::float_cmp, reason = "a step is any change")]
+    let of_trial = |trial: &Trial| {
+        let held = trial.input().chunk_by(|a, b| a == b).filter(|part| part.len() >= SHORTEST);
+        let (holds, samples) =
+            held.fold((0, 0), |(holds, all), part| (holds + 1, all + part.len()));
+        (holds, samples as f64 * trial.period().seconds())
+    };
+    let of_trials = joint.trials.iter().map(of_trial);
+    let (holds, held_s) =
+        of_trials.fold((0, 0.0), |(n, s), (holds, held_s)| (n + holds, s + held_s));
+    (holds > 0).then(|| held_s / f64::from(holds))
 }
 
 #[cfg(test)]

@@ -15,7 +15,7 @@ const POINTS: usize = 1500;
 /// Width of an uncertainty in standard errors on each side: 95 %.
 const BAND: f64 = 1.96;
 
-/// The measured speed while one level of the input acted.
+/// The measured speed while one level of the input acted, or the output to which it ran.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Held {
     pub(super) level: f64,
@@ -52,9 +52,12 @@ impl Figure {
 
     pub(super) fn curve(&self, which: usize) -> Strips {
         let plot = self.plot();
-        let law = self.laws.get(which).filter(|law| !law.is_empty());
-        let curve = |law: &Law| law.iter().map(|(x, y)| plot.at(*x, *y)).collect();
-        law.into_iter().map(curve).collect()
+        let law = self.laws.get(which).map_or(&[][..], Vec::as_slice);
+        // What leaves the plot comes back as another piece.
+        let is_within = |point: &(f64, f64)| (0.0..=1.0).contains(&self.y.part(point.1));
+        let pieces = law.chunk_by(|a, b| is_within(a) == is_within(b));
+        let pieces = pieces.filter(|piece| piece.first().is_some_and(is_within));
+        pieces.map(|piece| piece.iter().map(|(x, y)| plot.at(*x, *y)).collect()).collect()
     }
 
     /// The points that are drawn.

@@ -58,7 +58,9 @@ impl Finding<'_> {
         let sentence = match (conditions.first(), times.is_empty()) {
             (Some(condition), false) => format!("{condition}; {look}."),
             (Some(condition), true) => format!("{condition}."),
-            (None, false) => format!("No condition holds most of the error; {look}."),
+            (None, false) => {
+                format!("No condition was found that holds most of the error; {look}.")
+            }
             (None, true) => return None,
         };
         Passage::of(Topic::WhereItFails, Some(sentence))

@@ -2,7 +2,6 @@
 
 use super::{ABOVE_NOISE, Passage, Topic};
 use crate::diagnosis::failure::Region;
-use crate::fit::Horizon;
 use crate::report::finding::Finding;
 use crate::wording::{misfit_units, percent, region_text, unit_suffix};
 
@@ -47,11 +46,7 @@ impl Finding<'_> {
         let by_mean = |a: &&Region, b: &&Region| a.mean_residual.total_cmp(&b.mean_residual);
         let (low, high) = (parts.iter().min_by(by_mean)?, parts.iter().max_by(by_mean)?);
         let (feature, share_said) = (low.feature, percent(share));
-        let horizon = match self.comparison().arising {
-            Horizon::Steps => "Restarted at every step of the input",
-            _ => "In free run",
-        };
-        let head = format!("{horizon}, measured − simulated follows");
+        let head = format!("Measured − simulated ({}) follows", self.comparison().arising);
         if share < WORTH {
             return Some(format!(
                 "{head} none of its features much; `{feature}` most, with {share_said} of its \
