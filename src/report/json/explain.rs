@@ -7,6 +7,7 @@ use super::conclusion::ConclusionJson;
 use super::header::Header;
 use super::joint::JointJson;
 use crate::explain::Verdict;
+use crate::report::conclusion::Conclusion;
 use crate::report::finding::Finding;
 
 /// The document of `explain --format json`.
@@ -42,7 +43,7 @@ impl<'a> ExplainJson<'a> {
     pub(crate) fn new(findings: &[Finding<'a>], failures: &'a [String]) -> Self {
         let joint = |finding: &Finding<'a>| ExplainedJson {
             joint: JointJson::new(&finding.compared),
-            finding: FindingJson::new(finding),
+            finding: FindingJson::new(finding, finding.conclusion()),
         };
         let joints = findings.iter().map(joint).collect();
         Self { header: Header::of("tauscope/explain/1"), joints, failures }
@@ -50,9 +51,9 @@ impl<'a> ExplainJson<'a> {
 }
 
 impl<'a> FindingJson<'a> {
-    pub(super) fn new(finding: &Finding<'a>) -> Self {
+    /// What was found, and what is concluded of it.
+    pub(super) fn new(finding: &Finding<'a>, conclusion: Conclusion) -> Self {
         let joint = finding.compared.joint;
-        let conclusion = finding.conclusion();
         let ranking = finding.ranking.iter();
         Self {
             verdict: verdict_id(finding.verdict),

@@ -52,7 +52,7 @@ impl<'a> ImproveJson<'a> {
                 joint: JointJson::new(compared),
                 revisions: improved.numbered().map(revision).collect(),
                 interrupted: improved.interrupted,
-                finding: FindingJson::new(&improved.finding),
+                finding: FindingJson::new(&improved.finding, improved.conclusion()),
             }
         };
         let joints = joints.iter().map(joint).collect();
