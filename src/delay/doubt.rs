@@ -141,10 +141,7 @@ impl Decision {
         let best = self.candidates.best();
         let fine = self.fine.map(|fine| (fine.high - fine.low) / 2.0);
         Doubt {
-            explained: match (&self.response, &best) {
-                (Some(response), _) => response.explained(),
-                (None, best) => best.as_ref().map_or(1.0, |best| self.explained(best)),
-            },
+            explained: best.map_or(1.0, |best| self.explained(&best)),
             spread: fine.unwrap_or_else(|| self.candidates.spread()),
             crossing: best.map_or(0.0, |best| self.crossing(&best)),
             settles: self.response.is_some(),
@@ -158,6 +155,9 @@ impl Decision {
     /// `1 − SSE₂ / SSE₁`. The residuals of both lines are orthogonal to every line through
     /// either part, so that one line leaves SSE₂ and what it leaves of the two lines.
     fn explained(&self, best: &Candidate) -> f64 {
+        if let Some(response) = &self.response {
+            return response.explained();
+        }
         let last = self.segment.first + (self.candidates.len() + 1) * self.candidates.spacing();
         let fitted = |k: usize| {
             let line = if k < best.breakpoint { best.before } else { best.after };

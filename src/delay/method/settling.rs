@@ -50,8 +50,9 @@ fn candidates(found: &SettlingOnset) -> Candidates {
         let slope = (value(to) - value(from)) / (to - from).max(1.0);
         Line { slope, intercept: value(from) - slope * number(from) }
     };
-    let at = |by: f64| (found.onset + by).clamp(0.0, last as f64);
+    let onset = found.response.onset;
+    let at = |by: f64| (onset + by).clamp(0.0, last as f64);
     let lines = [-1.0, 0.0, 1.0].map(|by| (chord(0.0, at(by)), chord(at(by), last as f64)));
-    let first = ceil_to_index(found.start as f64 + found.onset).saturating_sub(1);
+    let first = ceil_to_index(found.start as f64 + onset).saturating_sub(1);
     Candidates::fitted(first, found.sse.to_vec(), lines.into_iter().unzip(), 1)
 }

@@ -192,13 +192,13 @@ impl Law {
         let delay = range.start as f64 + onset - origin;
         let ends = (delay + low, delay + high);
         let median = broken_line::median(delay, ends, t);
+        let explained = found.explained();
         SettlingOnset {
             fine: FineDelay::causal(median, ends.0, ends.1, confidence),
-            p_value: found.p_value(),
+            p_value: found.p_value(explained),
             start: range.start,
-            onset: *onset,
             sse: [-1.0, 0.0, 1.0].map(|by| window.sse(constants, onset + by)),
-            response: window.response(constants, *onset, found.explained().max(0.0)),
+            response: window.response(constants, *onset, explained.max(0.0)),
         }
     }
 
@@ -243,8 +243,6 @@ pub(in crate::delay) struct SettlingOnset {
     pub(in crate::delay) p_value: f64,
     /// Index of the first sample that was looked at.
     pub(in crate::delay) start: usize,
-    /// Samples from there to the onset.
-    pub(in crate::delay) onset: f64,
     /// Squared errors with the onset a sample earlier, here, and a sample later.
     pub(in crate::delay) sse: [f64; 3],
     /// The response at the samples that were looked at.

@@ -19,8 +19,8 @@ pub struct Response {
     pub(super) parts: Vec<f64>,
     /// Added to all of them.
     pub(super) origin: f64,
-    /// The sample of the onset, counted from the first one that was looked at.
-    pub(super) onset: f64,
+    /// Samples from the first one that was looked at to the onset.
+    pub(in crate::delay) onset: f64,
     /// Samples that were looked at.
     pub(super) samples: usize,
     /// Part of the squared error without a reaction that it removes: `1 − SSE / SSE₀`.

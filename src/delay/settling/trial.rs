@@ -45,13 +45,12 @@ impl Found<'_> {
         1.0 - self.sse / without.max(f64::MIN_POSITIVE)
     }
 
-    /// How often noise alone looks as much like a reaction.
-    pub(super) fn p_value(&self) -> f64 {
-        let share = self.explained();
+    /// How often noise alone looks as much like a reaction as one that removes the part `explained`.
+    pub(super) fn p_value(&self, explained: f64) -> f64 {
         let others = self.constants.columns() - 1;
         let samples = self.window.len() as f64;
         let dimensions = self.window.rows() - others as f64;
-        broken_line::p_value(share, dimensions, samples, self.limits)
+        broken_line::p_value(explained, dimensions, samples, self.limits)
     }
 }
 
@@ -87,7 +86,7 @@ impl<'a> SettlingTrial<'a> {
             let range = window(&self.path, index);
             let Some(found) = self.find(index, range, constants, noise) else { continue };
             let start = found.range.start as f64;
-            let counts = found.p_value() <= DOUBTFUL;
+            let counts = found.p_value(found.explained()) <= DOUBTFUL;
             let error = found.window.standard_error(&found.constants, (found.onset, found.sse));
             let onset = &mut self.path.onsets[index];
             onset.position = start + found.onset;
