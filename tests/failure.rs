@@ -86,16 +86,17 @@ impl Made {
 fn failing(
     seed: u64,
     inside: impl Fn(&Samples, usize) -> bool + Copy,
-) -> (ResidualRecord, impl Fn(&ResidualRecord) -> Vec<usize>) {
+) -> (ResidualRecord, impl Fn(&ResidualRecord) -> Vec<u32>) {
     let deviation = move |s: &Samples, k| if inside(s, k) { 1.0 } else { 0.2 };
     let truth = move |record: &ResidualRecord| {
-        (0..record.len()).filter(|index| inside(record.samples(), *index)).collect()
+        let rows = 0..u32::try_from(record.len()).unwrap();
+        rows.filter(|index| inside(record.samples(), *index as usize)).collect()
     };
     (Made::usual(seed).with_noise(0.8, deviation), truth)
 }
 
 /// Common samples as a share of those of either.
-fn overlap(a: &[usize], b: &[usize]) -> f64 {
+fn overlap(a: &[u32], b: &[u32]) -> f64 {
     let common = a.iter().filter(|index| b.binary_search(index).is_ok()).count();
     common as f64 / (a.len() + b.len() - common) as f64
 }

@@ -28,19 +28,17 @@ pub(super) fn condition(comparison: &Comparison) -> Option<&FailsWhere> {
 
 /// Where that condition holds.
 pub(super) fn where_it_fails(comparison: &Comparison) -> Spans {
-    let mut trials = Vec::new();
-    let mut behind = 0;
-    for residual in &comparison.fit.evaluation.residuals {
-        trials.push(behind..behind + residual.len());
-        behind += residual.len();
-    }
     let samples = condition(comparison).map_or(&[][..], |condition| &condition.samples);
-    let place = |sample: &usize| {
-        let index = trials.iter().position(|trial| trial.contains(sample))?;
-        let first = sample - trials.get(index)?.start;
-        Some((index, first..first + 1))
-    };
-    joined(samples.iter().filter_map(place))
+    let mut holding = samples.iter().map(|sample| *sample as usize).peekable();
+    let mut spans = Spans::new();
+    let mut start = 0;
+    for (index, residual) in comparison.fit.evaluation.residuals.iter().enumerate() {
+        let end = start + residual.len();
+        let own = std::iter::from_fn(|| holding.next_if(|sample| *sample < end));
+        spans.extend(joined(own.map(|sample| (index, sample - start..sample - start + 1))));
+        start = end;
+    }
+    spans
 }
 
 /// Neighbours as one.

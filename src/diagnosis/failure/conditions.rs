@@ -5,7 +5,7 @@ use std::fmt;
 use super::axis::Axis;
 use super::feature::Feature;
 use super::grid::{Choice, Grid, Selection};
-use super::record::{ResidualRecord, Units};
+use super::record::{ResidualRecord, Row, Units};
 use super::regions::trial_label;
 use super::search::{DIGITS_COST, MIN_GAIN, Search};
 use super::threshold::to_digits;
@@ -110,7 +110,7 @@ pub struct FailsWhere {
     /// The condition's clauses.
     pub clauses: Vec<Clause>,
     /// The samples for which it holds, counted from 0.
-    pub samples: Vec<usize>,
+    pub samples: Vec<u32>,
 }
 
 impl FailsWhere {
@@ -178,7 +178,7 @@ fn percent(share: f64) -> String {
 pub fn fails_where(record: &ResidualRecord) -> Vec<FailsWhere> {
     let Some(shares) = record.shares_of_what_arises() else { return Vec::new() };
     let search = Search::new(record, shares);
-    let mut rows: Vec<usize> = (0..record.len()).collect();
+    let mut rows: Vec<Row> = record.rows().collect();
     let mut found: Vec<FailsWhere> = Vec::new();
     for _ in 0..MOST {
         let Some((choice, p_value)) = search.best(&rows) else { break };
@@ -188,7 +188,7 @@ pub fn fails_where(record: &ResidualRecord) -> Vec<FailsWhere> {
         if search.gain(&new) < MIN_GAIN {
             break;
         }
-        let exact = grid.members(&choice.selections, 0..record.len());
+        let exact = grid.members(&choice.selections, record.rows());
         rows.retain(|row| new.binary_search(row).is_err());
         let (clauses, samples) = in_few_digits(record, &search, grid, choice, &exact);
         if found.iter().all(|other| overlap(&other.samples, &samples) <= SAME) {
@@ -214,7 +214,7 @@ fn beside_motion(
     if relative.gain_among(&moving.samples, &inside) < MIN_GAIN {
         return None;
     }
-    let exact = relative.grid().members(&choice.selections, 0..record.len());
+    let exact = relative.grid().members(&choice.selections, record.rows());
     let (clauses, samples) = in_few_digits(record, search, relative.grid(), &choice, &exact);
     let is_new = overlap(&moving.samples, &samples) <= SAME;
     is_new.then(|| report(record, search, clauses, samples, p_value))
@@ -228,15 +228,15 @@ fn in_few_digits(
     search: &Search,
     grid: &Grid,
     choice: &Choice,
-    exact: &[usize],
-) -> (Vec<Clause>, Vec<usize>) {
+    exact: &[Row],
+) -> (Vec<Clause>, Vec<Row>) {
     let said = |digits: &dyn Fn(f64) -> f64| -> Vec<Clause> {
         let selections = choice.selections.iter();
         selections.flat_map(|one| clauses(record, &grid.axes[one.axis], *one, digits)).collect()
     };
     let wanted = search.gain(exact);
     // One set of samples at a time: each may be as long as the log.
-    let mut most: Option<(Vec<Clause>, Vec<usize>, f64)> = None;
+    let mut most: Option<(Vec<Clause>, Vec<Row>, f64)> = None;
     for digits in 3..=6 {
         let clauses = said(&|cut| to_digits(cut, digits));
         let samples = holding(record, &clauses);
@@ -256,7 +256,7 @@ fn report(
     record: &ResidualRecord,
     search: &Search,
     clauses: Vec<Clause>,
-    samples: Vec<usize>,
+    samples: Vec<Row>,
     p_value: f64,
 ) -> FailsWhere {
     let texts: Vec<_> = clauses.iter().map(Clause::to_string).collect();
@@ -273,18 +273,18 @@ fn report(
 }
 
 /// Common samples, as a share of those of either (Jaccard); both ascending.
-fn overlap(a: &[usize], b: &[usize]) -> f64 {
+fn overlap(a: &[Row], b: &[Row]) -> f64 {
     let common = a.iter().filter(|row| b.binary_search(row).is_ok()).count();
     common as f64 / (a.len() + b.len() - common).max(1) as f64
 }
 
 /// The samples for which all of `clauses` hold.
-fn holding(record: &ResidualRecord, clauses: &[Clause]) -> Vec<usize> {
-    let holds = |row: usize, clause: &Clause| {
-        let value = clause.feature.value(record.samples(), row);
+fn holding(record: &ResidualRecord, clauses: &[Clause]) -> Vec<Row> {
+    let holds = |row: Row, clause: &Clause| {
+        let value = clause.feature.value(record.samples(), row as usize);
         value.is_some_and(|value| clause.holds(record, value))
     };
-    (0..record.len()).filter(|row| clauses.iter().all(|clause| holds(*row, clause))).collect()
+    record.rows().filter(|row| clauses.iter().all(|clause| holds(*row, clause))).collect()
 }
 
 /// A selection in words, its bounds as `digits` makes them.
@@ -397,8 +397,8 @@ mod tests {
         let record = failing((0..4000).map(|k| f64::from(k) / 100.0).collect(), 1230);
         let search = Search::new(&record, record.shares_of_what_arises().unwrap());
         // The grid's own thresholds have all digits.
-        let choice = search.best_on_one_feature(&(0..4000).collect::<Vec<_>>()).unwrap().0;
-        let exact = search.grid().members(&choice.selections, 0..4000);
+        let choice = search.best_on_one_feature(&record.rows().collect::<Vec<_>>()).unwrap().0;
+        let exact = search.grid().members(&choice.selections, record.rows());
         let (clauses, samples) = in_few_digits(&record, &search, search.grid(), &choice, &exact);
         assert_eq!(samples, holding(&record, &clauses));
         assert!(clauses[0].to_string().len() <= "output < 12.3".len(), "{}", clauses[0]);

@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::feature::Feature;
-use super::record::ResidualRecord;
+use super::record::{ResidualRecord, Row, of_row};
 
 /// Parts that a feature is cut into, so that a threshold is right to 3 % of the time.
 const PARTS: usize = 32;
@@ -145,11 +145,11 @@ impl Grid {
     }
 
     /// The sum of `excess` in each part of each axis, at the samples `rows`.
-    pub(super) fn part_sums(&self, rows: &[usize], excess: &[f64]) -> Vec<Vec<f64>> {
+    pub(super) fn part_sums(&self, rows: &[Row], excess: impl Fn(Row) -> f64) -> Vec<Vec<f64>> {
         let sum = |axis: &Axis| {
             let mut sums = vec![0.0; axis.parts() + 1];
-            for (&row, excess) in rows.iter().zip(excess) {
-                sums[usize::from(axis.part_of[row])] += excess;
+            for &row in rows {
+                sums[usize::from(of_row(&axis.part_of, row))] += excess(row);
             }
             sums
         };
@@ -187,26 +187,19 @@ impl Grid {
     }
 
     /// The best condition of one clause each on two features.
-    pub(super) fn best_pair(&self, rows: &[usize], excess: &[f64]) -> Choice {
+    pub(super) fn best_pair(&self, rows: &[Row], excess: impl Fn(Row) -> f64) -> Choice {
         let mut best = Choice::NONE;
         for first in 0..self.axes.len() {
             for second in first + 1..self.axes.len() {
-                self.pairs(first, second, rows, excess, &mut best);
+                let table = self.table(first, second, rows, &excess);
+                self.pairs(first, second, &table, &mut best);
             }
         }
         best
     }
 
     /// Offers every pair of clauses on two axes, from a table of sums over their parts.
-    fn pairs(
-        &self,
-        first: usize,
-        second: usize,
-        rows: &[usize],
-        excess: &[f64],
-        best: &mut Choice,
-    ) {
-        let table = self.table(first, second, rows, excess);
+    fn pairs(&self, first: usize, second: usize, table: &[f64], best: &mut Choice) {
         let width = self.axes[second].parts() + 2;
         let mut inside = vec![0.0; width];
         let cost = self.cost(&[first, second], 2);
@@ -235,13 +228,19 @@ impl Grid {
     }
 
     /// Sums over all parts below `(j, k)` of two axes, row by row.
-    fn table(&self, first: usize, second: usize, rows: &[usize], excess: &[f64]) -> Vec<f64> {
+    fn table(
+        &self,
+        first: usize,
+        second: usize,
+        rows: &[Row],
+        excess: impl Fn(Row) -> f64,
+    ) -> Vec<f64> {
         let (first, second) = (&self.axes[first], &self.axes[second]);
         let width = second.parts() + 2;
         let mut table = vec![0.0; (first.parts() + 2) * width];
-        for (&row, excess) in rows.iter().zip(excess) {
-            let (j, k) = (usize::from(first.part_of[row]), usize::from(second.part_of[row]));
-            table[(j + 1) * width + k + 1] += excess;
+        for &row in rows {
+            let (j, k) = (of_row(&first.part_of, row), of_row(&second.part_of, row));
+            table[(usize::from(j) + 1) * width + usize::from(k) + 1] += excess(row);
         }
         for index in width..table.len() {
             if index % width > 0 {
@@ -255,12 +254,12 @@ impl Grid {
     pub(super) fn members(
         &self,
         selections: &[Selection],
-        rows: impl IntoIterator<Item = usize>,
-    ) -> Vec<usize> {
-        let holds = |row: usize, selection: &Selection| {
-            selection.span.contains(self.axes[selection.axis].part_of[row])
+        rows: impl IntoIterator<Item = Row>,
+    ) -> Vec<Row> {
+        let holds = |row: Row, selection: &Selection| {
+            selection.span.contains(of_row(&self.axes[selection.axis].part_of, row))
         };
-        let all_hold = |row: &usize| selections.iter().all(|one| holds(*row, one));
+        let all_hold = |row: &Row| selections.iter().all(|one| holds(*row, one));
         rows.into_iter().filter(all_hold).collect()
     }
 }
@@ -335,29 +334,29 @@ mod tests {
         for seed in 0..8 {
             let record = record(seed);
             let grid = Grid::new(&record);
-            let rows: Vec<usize> = (0..120).filter(|row| row % 7 > 0).collect();
-            let excess: Vec<f64> = rows.iter().map(|row| record.samples().residual[*row]).collect();
+            let rows: Vec<Row> = (0..120).filter(|row| row % 7 > 0).collect();
+            let excess = |row: Row| of_row(&record.samples().residual, row);
             let sum = |selections: &[Selection]| {
-                let inside = |row: usize| {
-                    let holds = |s: &Selection| s.span.contains(grid.axes[s.axis].part_of[row]);
+                let inside = |row: Row| {
+                    let holds =
+                        |s: &Selection| s.span.contains(of_row(&grid.axes[s.axis].part_of, row));
                     selections.iter().all(holds)
                 };
-                let pairs = rows.iter().zip(&excess).filter(|(row, _)| inside(**row));
-                pairs.map(|(_, excess)| excess).sum::<f64>()
+                rows.iter().filter(|row| inside(**row)).map(|row| excess(*row)).sum::<f64>()
             };
             let value = |selections: &[Selection], clauses| {
                 let axes: Vec<usize> = selections.iter().map(|one| one.axis).collect();
                 sum(selections) - grid.cost(&axes, clauses)
             };
             let best = all_pairs(&grid).iter().map(|pair| value(pair, 2)).fold(0.0, f64::max);
-            assert!((grid.best_pair(&rows, &excess).score - best).abs() < 1e-9);
+            assert!((grid.best_pair(&rows, excess).score - best).abs() < 1e-9);
 
             let spans = grid.spans.iter().enumerate();
             let one = spans.flat_map(|(axis, spans)| {
                 spans.iter().map(move |span| Selection { axis, span: *span })
             });
             let best = one.map(|one| value(&[one], one.span.clauses)).fold(0.0, f64::max);
-            let sums = grid.part_sums(&rows, &excess);
+            let sums = grid.part_sums(&rows, excess);
             assert!((grid.best_of(&sums, Family::OneFeature).score - best).abs() < 1e-9);
             assert!((grid.best_scores(&sums).of(Family::OneFeature) - best).abs() < 1e-9);
         }

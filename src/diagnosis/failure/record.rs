@@ -4,6 +4,14 @@ use std::ops::Range;
 
 use super::column::EvenColumn;
 
+/// The index of a sample, from 0: half as long as a `usize`, and there are columns of them.
+pub(super) type Row = u32;
+
+/// The value of a row.
+pub(super) fn of_row<T: Copy>(column: &[T], row: Row) -> T {
+    column[row as usize]
+}
+
 /// What happened at each sample of one joint, over all its trials one after the other.
 ///
 /// All columns have the same length. NaN stands where a value is not known, as the time
@@ -78,6 +86,12 @@ pub enum RecordError {
         /// Its index, from 0.
         index: usize,
     },
+    /// There are more samples than are counted.
+    #[error("there are {samples} samples, which is more than {}", u32::MAX)]
+    TooMany {
+        /// Number of samples.
+        samples: usize,
+    },
     /// A sample belongs to a trial that has no label.
     #[error("sample {index} is of trial {trial}, but there are {trials} trials")]
     UnknownTrial {
@@ -120,6 +134,9 @@ impl ResidualRecord {
         segments: Vec<Range<usize>>,
     ) -> Result<Self, RecordError> {
         let expected = samples.residual.len();
+        if Row::try_from(expected).is_err() {
+            return Err(RecordError::TooMany { samples: expected });
+        }
         let odd = samples.lengths().find(|(_, found)| *found != expected);
         if let Some((column, found)) = odd {
             return Err(RecordError::UnequalLengths { column, found, expected });
@@ -155,6 +172,11 @@ impl ResidualRecord {
         &self.segments
     }
 
+    /// The indices of all samples.
+    pub(super) fn rows(&self) -> Range<Row> {
+        0..Row::try_from(self.len()).unwrap_or(Row::MAX)
+    }
+
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.samples.residual.len()
@@ -173,8 +195,8 @@ impl ResidualRecord {
     }
 
     /// Root mean square of the residuals of the samples `rows`, output units.
-    pub(super) fn rmse_of(&self, rows: impl IntoIterator<Item = usize>) -> f64 {
-        let residuals = rows.into_iter().filter_map(|row| self.samples.residual.get(row));
+    pub(super) fn rmse_of(&self, rows: impl IntoIterator<Item = Row>) -> f64 {
+        let residuals = rows.into_iter().map(|row| of_row(&self.samples.residual, row));
         let (sum, count) = residuals.fold((0.0, 0_usize), |(sum, n), r| (sum + r * r, n + 1));
         (sum / count.max(1) as f64).sqrt()
     }

@@ -1,8 +1,8 @@
 //! The search for the conditions that hold most of an error.
 
 use super::grid::{Choice, Family, Grid};
-use super::record::ResidualRecord;
-use super::significance::{Chance, Shuffler, blocks};
+use super::record::{ResidualRecord, Row, of_row};
+use super::significance::{Chance, Excess, Shuffler, blocks};
 
 /// The gain below which a condition is not worth acting on.
 pub(super) const MIN_GAIN: f64 = 0.1;
@@ -30,10 +30,10 @@ impl Search {
     }
 
     /// The best condition for the samples `rows` that chance does not explain.
-    pub(super) fn best(&self, rows: &[usize]) -> Option<(Choice, f64)> {
-        let excess = self.excess(rows)?;
+    pub(super) fn best(&self, rows: &[Row]) -> Option<(Choice, f64)> {
+        let excess = Excess::new(&self.shares, rows)?;
         let (one, one_p, chance) = self.best_of_one(rows, &excess)?;
-        let pair = self.grid.best_pair(rows, &excess);
+        let pair = self.grid.best_pair(rows, |row| excess.of(row));
         if pair.score <= one.score {
             return Some((one, one_p));
         }
@@ -42,13 +42,13 @@ impl Search {
     }
 
     /// The best condition on one feature for the samples `rows`, likewise.
-    pub(super) fn best_on_one_feature(&self, rows: &[usize]) -> Option<(Choice, f64)> {
-        let (choice, p_value, _) = self.best_of_one(rows, &self.excess(rows)?)?;
+    pub(super) fn best_on_one_feature(&self, rows: &[Row]) -> Option<(Choice, f64)> {
+        let (choice, p_value, _) = self.best_of_one(rows, &Excess::new(&self.shares, rows)?)?;
         Some((choice, p_value))
     }
 
-    fn best_of_one(&self, rows: &[usize], excess: &[f64]) -> Option<(Choice, f64, Chance)> {
-        let sums = self.grid.part_sums(rows, excess);
+    fn best_of_one(&self, rows: &[Row], excess: &Excess<'_>) -> Option<(Choice, f64, Chance)> {
+        let sums = self.grid.part_sums(rows, |row| excess.of(row));
         let one = self.grid.best_of(&sums, Family::OneFeature);
         if one.selections.is_empty() {
             return None;
@@ -60,7 +60,7 @@ impl Search {
     }
 
     /// The p-value of two clauses: of either alone, and of the other among its samples.
-    fn pair_p_value(&self, pair: &Choice, rows: &[usize], chance: &Chance) -> Option<f64> {
+    fn pair_p_value(&self, pair: &Choice, rows: &[Row], chance: &Chance) -> Option<f64> {
         let [a, b] = pair.selections.as_slice() else { return None };
         let orders = [(*a, *b), (*b, *a)];
         let p_value = |(first, second)| {
@@ -68,7 +68,7 @@ impl Search {
             let alone = chance.p_value(Family::OneClause, self.gain_among(rows, &inside))?;
             let gain =
                 self.gain_among(&inside, &self.grid.members(&[second], inside.iter().copied()));
-            let excess = self.excess(&inside)?;
+            let excess = Excess::new(&self.shares, &inside)?;
             let shuffler = Shuffler::new(&self.grid, &inside, &excess, &self.block_of);
             let chance = shuffler.stands_out(Family::OneClause, gain)?;
             Some(alone.max(chance.p_value(Family::OneClause, gain)?))
@@ -82,39 +82,33 @@ impl Search {
         &self,
         record: &ResidualRecord,
         choice: &Choice,
-        rows: &[usize],
+        rows: &[Row],
     ) -> Option<(Grid, Choice)> {
-        let excess = self.excess(rows)?;
+        let excess = Excess::new(&self.shares, rows)?;
+        let excess = |row| excess.of(row);
         let grid = self.grid.about(record, choice)?;
         let sharp = match choice.selections.len() {
-            1 => grid.best_of(&grid.part_sums(rows, &excess), Family::OneFeature),
-            _ => grid.best_pair(rows, &excess),
+            1 => grid.best_of(&grid.part_sums(rows, excess), Family::OneFeature),
+            _ => grid.best_pair(rows, excess),
         };
         (sharp.score > choice.score + DIGITS_COST).then_some((grid, sharp))
     }
 
-    /// The squared error of each sample beyond an even spread, as shares of that of `rows`.
-    fn excess(&self, rows: &[usize]) -> Option<Vec<f64>> {
-        let total: f64 = rows.iter().map(|row| self.shares[*row]).sum();
-        let even = 1.0 / rows.len() as f64;
-        (total > 0.0).then(|| rows.iter().map(|row| self.shares[*row] / total - even).collect())
-    }
-
     /// Share of the squared error in the samples `rows`.
-    pub(super) fn share(&self, rows: &[usize]) -> f64 {
-        rows.iter().map(|row| self.shares[*row]).sum()
+    pub(super) fn share(&self, rows: &[Row]) -> f64 {
+        rows.iter().map(|row| of_row(&self.shares, *row)).sum()
     }
 
     /// Share of the squared error minus share of the time, of the whole record.
-    pub(super) fn gain(&self, rows: &[usize]) -> f64 {
+    pub(super) fn gain(&self, rows: &[Row]) -> f64 {
         self.share(rows) - rows.len() as f64 / self.shares.len() as f64
     }
 
     /// Whether the error in the samples `rows` is hardly more than their share of the squared
     /// speed: what is wrong there is the gain.
-    pub(super) fn only_moves(&self, record: &ResidualRecord, rows: &[usize]) -> bool {
-        let square = |row: &usize| record.samples().speed.get(*row).map_or(0.0, |v| v * v);
-        let all: f64 = (0..record.len()).map(|row| square(&row)).sum();
+    pub(super) fn only_moves(&self, record: &ResidualRecord, rows: &[Row]) -> bool {
+        let square = |row: &Row| of_row(&record.samples().speed, *row).powi(2);
+        let all: f64 = record.samples().speed.iter().map(|v| v * v).sum();
         let here: f64 = rows.iter().map(square).sum();
         self.share(rows) - here / all.max(f64::MIN_POSITIVE) < MIN_GAIN
     }
@@ -124,13 +118,13 @@ impl Search {
     ///
     /// The squared error is over `v² + 0.2 mean v²`: what noise adds does not depend on the
     /// speed, and over that of the slowest samples it would be most of all.
-    pub(super) fn relative(&self, record: &ResidualRecord, rows: &[usize]) -> Option<Self> {
+    pub(super) fn relative(&self, record: &ResidualRecord, rows: &[Row]) -> Option<Self> {
         const FLOOR: f64 = 0.2;
-        let square = |row: &usize| record.samples().speed.get(*row).map(|v| v * v);
-        let floor = FLOOR * rows.iter().filter_map(square).sum::<f64>() / rows.len().max(1) as f64;
+        let square = |row: &Row| of_row(&record.samples().speed, *row).powi(2);
+        let floor = FLOOR * rows.iter().map(square).sum::<f64>() / rows.len().max(1) as f64;
         let mut shares = vec![0.0; self.shares.len()];
         for row in rows {
-            shares[*row] = self.shares[*row] / (square(row)? + floor);
+            shares[*row as usize] = of_row(&self.shares, *row) / (square(row) + floor);
         }
         let sum: f64 = shares.iter().sum();
         let is_known = sum > 0.0 && sum.is_finite();
@@ -144,8 +138,8 @@ impl Search {
     }
 
     /// The gain of `rows` among the rows of a part of the record.
-    pub(super) fn gain_among(&self, part: &[usize], rows: &[usize]) -> f64 {
-        let sum = |rows: &[usize]| rows.iter().map(|row| self.shares[*row]).sum::<f64>();
+    pub(super) fn gain_among(&self, part: &[Row], rows: &[Row]) -> f64 {
+        let sum = |rows: &[Row]| rows.iter().map(|row| of_row(&self.shares, *row)).sum::<f64>();
         sum(rows) / sum(part) - rows.len() as f64 / part.len() as f64
     }
 }

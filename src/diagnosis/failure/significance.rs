@@ -19,7 +19,7 @@ use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
 use super::grid::{BestScores, Family, Grid};
-use super::record::ResidualRecord;
+use super::record::{ResidualRecord, Row, of_row};
 
 /// Shuffled records that a condition is held against.
 const SHUFFLES: u32 = 199;
@@ -116,8 +116,9 @@ fn correlation_time(residual: &[f64], most: usize) -> usize {
     samples.min(most).max(1)
 }
 
-/// Part of the rows in which an axis stays in one part: the row behind, and the part.
-type Run = (usize, u8);
+/// Part of the rows in which an axis stays in one part: how many rows there are up to its end, and
+/// the part. Of a feature that is noise there are as many as rows.
+type Run = (Row, u8);
 
 /// The best scores that chance gives.
 pub(super) struct Chance {
@@ -133,25 +134,51 @@ impl Chance {
     }
 }
 
+/// The squared error of each row beyond an even spread, as shares of that of all rows.
+pub(super) struct Excess<'a> {
+    shares: &'a [f64],
+    /// One over the sum of the shares of the rows.
+    scale: f64,
+    even: f64,
+}
+
+impl<'a> Excess<'a> {
+    /// From the `shares` of all samples of a record; none where those of `rows` are 0.
+    pub(super) fn new(shares: &'a [f64], rows: &[Row]) -> Option<Self> {
+        let total: f64 = rows.iter().map(|row| of_row(shares, *row)).sum();
+        (total > 0.0).then(|| Self { shares, scale: total.recip(), even: 1.0 / rows.len() as f64 })
+    }
+
+    pub(super) fn of(&self, row: Row) -> f64 {
+        of_row(self.shares, row) * self.scale - self.even
+    }
+}
+
 /// Rows of a record, ready to be shuffled.
 pub(super) struct Shuffler<'a> {
     grid: &'a Grid,
-    excess: &'a [f64],
+    excess: &'a Excess<'a>,
+    rows: &'a [Row],
     blocks: Vec<Range<usize>>,
     runs: Vec<Vec<Run>>,
 }
 
 impl<'a> Shuffler<'a> {
     /// `excess` of the samples `rows`; `block_of` every sample.
-    pub(super) fn new(grid: &'a Grid, rows: &[usize], excess: &'a [f64], block_of: &[u32]) -> Self {
+    pub(super) fn new(
+        grid: &'a Grid,
+        rows: &'a [Row],
+        excess: &'a Excess<'_>,
+        block_of: &[u32],
+    ) -> Self {
         let mut blocks = Vec::new();
         let mut start = 0;
-        for block in rows.chunk_by(|a, b| block_of[*a] == block_of[*b]) {
+        for block in rows.chunk_by(|a, b| of_row(block_of, *a) == of_row(block_of, *b)) {
             blocks.push(start..start + block.len());
             start += block.len();
         }
         let runs = grid.axes.iter().map(|axis| runs(rows, &axis.part_of)).collect();
-        Self { grid, excess, blocks, runs }
+        Self { grid, excess, rows, blocks, runs }
     }
 
     /// The best scores of all shuffled records, if a condition of `family` that scores
@@ -162,7 +189,7 @@ impl<'a> Shuffler<'a> {
         }
         let mut random = ChaCha8Rng::seed_from_u64(SEED);
         let mut order: Vec<usize> = (0..self.blocks.len()).collect();
-        let mut cumulative = Vec::with_capacity(self.excess.len() + 1);
+        let mut cumulative = Vec::with_capacity(self.rows.len() + 1);
         let mut best = Vec::new();
         let mut as_good = 0;
         for _ in 0..SHUFFLES {
@@ -186,11 +213,11 @@ impl<'a> Shuffler<'a> {
         cumulative.clear();
         cumulative.push(sum);
         for &block in order.iter() {
-            let block = &self.excess[self.blocks[block].clone()];
+            let block = &self.rows[self.blocks[block].clone()];
             let (front, back) = block.split_at(below(random, block.len()));
             for part in [back, front] {
-                cumulative.extend(part.iter().map(|excess| {
-                    sum += excess;
+                cumulative.extend(part.iter().map(|row| {
+                    sum += self.excess.of(*row);
                     sum
                 }));
             }
@@ -202,8 +229,9 @@ impl<'a> Shuffler<'a> {
             let mut sums = vec![0.0; parts + 1];
             let mut before = 0.0;
             for &(end, part) in runs {
-                sums[usize::from(part)] += cumulative[end] - before;
-                before = cumulative[end];
+                let here = of_row(cumulative, end);
+                sums[usize::from(part)] += here - before;
+                before = here;
             }
             sums
         };
@@ -212,12 +240,12 @@ impl<'a> Shuffler<'a> {
     }
 }
 
-fn runs(rows: &[usize], part_of: &[u8]) -> Vec<Run> {
-    let mut end = 0;
-    let same = rows.chunk_by(|a, b| part_of[*a] == part_of[*b]);
+fn runs(rows: &[Row], part_of: &[u8]) -> Vec<Run> {
+    let mut end: Row = 0;
+    let same = rows.chunk_by(|a, b| of_row(part_of, *a) == of_row(part_of, *b));
     let run = same.map(|rows| {
-        end += rows.len();
-        (end, rows.first().map_or(0, |row| part_of[*row]))
+        end += Row::try_from(rows.len()).unwrap_or(Row::MAX);
+        (end, rows.first().map_or(0, |row| of_row(part_of, *row)))
     });
     run.collect()
 }
