@@ -9,7 +9,8 @@
 //! share = Σ |L_(j+1) − L_j| / Σ |u_k − u_(k−1)|      over edges of at most 0.1 s
 //! ```
 //!
-//! A level is held when the input stays within its noise for 0.15 s and five samples. Noise and
+//! A level is held when the input stays within its noise for 0.15 s and five samples; that with
+//! which a trial begins was held before, however short the rest of it is. Noise and
 //! dither are what the input takes back at once: changes that the next change undoes. They are
 //! ignored, as far as they are small beside the range.
 //!
@@ -203,7 +204,8 @@ struct Hold {
     level: f64,
 }
 
-/// Samples that stay within `tolerance` of their middle, `shortest` or more of them.
+/// Samples that stay within `tolerance` of their middle, `shortest` or more of them, or the first
+/// of all.
 ///
 /// Every sample enters and leaves the window once: its extremes stand in front of two queues.
 fn holds(input: &[f64], tolerance: f64, shortest: usize) -> Vec<Hold> {
@@ -211,7 +213,7 @@ fn holds(input: &[f64], tolerance: f64, shortest: usize) -> Vec<Hold> {
     let (mut lowest, mut highest) = (VecDeque::new(), VecDeque::new());
     for end in 0..=input.len() {
         while start < end && !fits(input, end, (&lowest, &highest), tolerance) {
-            if end - start >= shortest {
+            if end - start >= shortest || start == 0 {
                 holds.push(hold(input, start..end, tolerance));
                 lowest.clear();
                 highest.clear();
@@ -308,7 +310,7 @@ mod tests {
                 high - low <= 2.0 * tolerance
             };
             let end = (start + 1..=input.len()).take_while(within).last().unwrap();
-            let is_held = end - start >= shortest;
+            let is_held = end - start >= shortest || start == 0;
             found.extend(is_held.then_some(start..end));
             start = if is_held { end } else { start + 1 };
         }
@@ -367,6 +369,19 @@ mod tests {
                 assert!(found.is_continuous(), "{period_s} {number} {found:?}");
                 assert!(found.travel_in_steps.unwrap() < 0.4, "{period_s} {number} {found:?}");
             }
+        }
+    }
+
+    #[test]
+    fn single_steps_of_many_trials_are_steps_however_early_they_come() {
+        for before in [1, 3, 10] {
+            let trial = |number: usize| {
+                let input: Vec<f64> = (0..200).map(|k| f64::from(u8::from(k >= before))).collect();
+                let period = SamplePeriod::from_seconds(0.01).unwrap();
+                Trial::new(number.to_string(), 0.0, period, input.clone(), input).unwrap()
+            };
+            let found = InputMotion::of(&(0..30).map(trial).collect::<Vec<_>>());
+            assert_eq!(found.travel_in_steps, Some(1.0), "{before}");
         }
     }
 
