@@ -45,29 +45,29 @@ impl<'p, 'r> Beginning<'p, 'r> {
         #[expect(clippy::float_cmp, reason = "a start has its own value or that of the model")]
         let moves = |index: &usize| starts.iter().any(|start| start[*index] != given[*index]);
         let own: Vec<bool> = space.free.iter().map(moves).collect();
-        let column = |(index, own): (usize, &bool)| match own {
-            true => DVector::zeros(residuals.len()),
-            false => search.problem.slope(index, &residuals),
-        };
-        let columns: Vec<_> = own.iter().enumerate().map(column).collect();
-        let slopes = if columns.is_empty() {
-            DMatrix::zeros(residuals.len(), 0)
-        } else {
-            DMatrix::from_columns(&columns)
-        };
+        let mut slopes = DMatrix::zeros(residuals.len(), own.len());
+        let given: Vec<usize> = (0..own.len()).filter(|index| !own[*index]).collect();
+        search.problem.put_slopes(&mut slopes, &given, &residuals);
         let others = Basis::of(slopes.as_slice(), slopes.nrows(), rank::DIFFERENCED);
         let rest = DVector::from_vec(others.residual(residuals.as_slice()));
         Self { search, residuals, own, slopes, others, rest }
     }
 
-    /// The sum of squares that a fit from `start` would leave, to first order.
-    pub(super) fn expected(&self, start: &[f64]) -> f64 {
+    /// The sums of squares that fits from `starts` would leave, to first order.
+    pub(super) fn expected(&self, starts: &[Vec<f64>]) -> Vec<f64> {
         let problem = &self.search.problem;
-        let there = problem.space.within(start);
-        // What starts move and no fit does is in the start alone.
-        let model = problem.model.with_values(&problem.space.values(start, &there));
-        let residuals = problem.record.residuals_near(&model, problem.here());
-        let change = problem.record.training(&residuals) - &self.residuals;
+        let model = |start: &Vec<f64>| {
+            let there = problem.space.within(start);
+            // What starts move and no fit does is in the start alone.
+            problem.model.with_values(&problem.space.values(start, &there))
+        };
+        let models: Vec<JointModel> = starts.iter().map(model).collect();
+        let found = problem.record.training_near(&models, problem.here());
+        found.into_iter().map(|residuals| self.left(&(residuals - &self.residuals))).collect()
+    }
+
+    /// The sum of squares that is left where a start makes `change` of the residuals.
+    fn left(&self, change: &DVector<f64>) -> f64 {
         let change = DVector::from_vec(self.others.residual(change.as_slice()));
         let (forwards, square) = (-self.rest.dot(&change), change.norm_squared());
         let gain = if square > 0.0 { forwards.max(0.0).powi(2) / square } else { 0.0 };
@@ -81,9 +81,11 @@ impl<'p, 'r> Beginning<'p, 'r> {
         let mut search = Search::new(problem.record, problem.model, problem.space, start);
         let residuals = search.problem.residuals();
         let mut slopes = self.slopes.clone();
-        for index in (0..self.own.len()).filter(|index| self.own[*index]) {
-            slopes.set_column(index, &search.problem.slope(index, &residuals));
+        let own: Vec<usize> = (0..self.own.len()).filter(|index| self.own[*index]).collect();
+        for index in &own {
+            slopes.column_mut(*index).fill(0.0);
         }
+        search.problem.put_slopes(&mut slopes, &own, &residuals);
         search.slopes = Some(slopes);
         search
     }

@@ -17,7 +17,7 @@ use super::bounds::Bounds;
 use super::evaluation::Evaluation;
 use super::record::FitRecord;
 use crate::model::JointModel;
-use crate::numerics::{PseudoInverse, rank};
+use crate::numerics::{PseudoInverse, column_products, rank};
 
 /// The covariance of fitted parameters.
 #[derive(Clone, Debug)]
@@ -43,10 +43,16 @@ impl Covariance {
             let at = |there: f64| {
                 let mut values = values.clone();
                 values[*index] = there;
-                record.training(&record.residuals_near(&model.with_values(&values), here))
+                model.with_values(&values)
             };
-            let held = high <= low;
-            if held { DVector::zeros(residuals.len()) } else { (at(low) - at(high)) / (high - low) }
+            let held = || DVector::zeros(residuals.len());
+            if high <= low {
+                return held();
+            }
+            match record.training_near(&[at(low), at(high)], here).as_slice() {
+                [low_residuals, high_residuals] => (low_residuals - high_residuals) / (high - low),
+                _ => held(),
+            }
         };
         let columns: Vec<DVector<f64>> = free.iter().zip(bounds).map(column).collect();
         let noise = residuals.norm() / (residuals.len() as f64).sqrt();
@@ -98,7 +104,7 @@ fn std_errors(columns: &[&DVector<f64>], residuals: &DVector<f64>) -> Vec<Option
     let jacobian = DMatrix::from_fn(residuals.len(), columns.len(), |row, column| {
         columns[column][row] / scale(lengths[column])
     });
-    let pseudo_inverse = PseudoInverse::of(jacobian.tr_mul(&jacobian), rank::SENSITIVITIES);
+    let pseudo_inverse = PseudoInverse::of(column_products(&jacobian), rank::SENSITIVITIES);
     // (JᵀJ)⁻¹ S (JᵀJ)⁻¹.
     let inverse = pseudo_inverse.matrix();
     let covariance = &inverse * long_run(&jacobian, residuals) * &inverse;
@@ -113,32 +119,33 @@ fn std_errors(columns: &[&DVector<f64>], residuals: &DVector<f64>) -> Vec<Option
     lengths.iter().enumerate().map(error).collect()
 }
 
-/// The long-run covariance of `J_k r_k`.
+/// The long-run covariance of `g_k = J_k r_k`, by sums over all spans of `L + 1` samples, of which
+/// those beyond the record are 0:
+///
+/// ```text
+/// S = Σ_l w_l Γ_l = 1/(L + 1) Σ_t B_t B_tᵀ,   w_l = 1 − |l|/(L + 1),   B_t = g_(t−L) + … + g_t
+/// ```
+///
+/// which takes as long for any number of lags.
 fn long_run(jacobian: &DMatrix<f64>, residuals: &DVector<f64>) -> DMatrix<f64> {
-    let lags = bandwidth(residuals.as_slice());
-    // Many lags are as well counted in blocks of samples.
-    let block = (lags / MOST_LAGS).max(1);
-    let (scores, lags) = (block_scores(jacobian, residuals, block), lags / block);
-    let mut sum = scores.tr_mul(&scores);
-    for lag in 1..=lags {
-        let rows = scores.nrows() - lag;
-        let product = scores.rows(0, rows).tr_mul(&scores.rows(lag, rows));
-        let weight = 1.0 - lag as f64 / (lags + 1) as f64;
-        sum += (&product + product.transpose()) * weight;
+    let (samples, parameters) = jacobian.shape();
+    let span = bandwidth(residuals.as_slice()) + 1;
+    let add = |sum: &mut DVector<f64>, index: usize, sign: f64| {
+        let by = sign * residuals[index];
+        sum.iter_mut().enumerate().for_each(|(k, sum)| *sum += by * jacobian[(index, k)]);
+    };
+    let mut sum = DVector::zeros(parameters);
+    let mut products = DMatrix::zeros(parameters, parameters);
+    for last in 0..samples + span - 1 {
+        if last < samples {
+            add(&mut sum, last, 1.0);
+        }
+        if let Some(gone) = last.checked_sub(span) {
+            add(&mut sum, gone, -1.0);
+        }
+        products.ger(1.0, &sum, &sum, 1.0);
     }
-    sum
-}
-
-/// Lags that are counted one by one; the weights change little from one to the next.
-const MOST_LAGS: usize = 40;
-
-/// The sums of `J_k r_k` over `block` samples each.
-fn block_scores(jacobian: &DMatrix<f64>, residuals: &DVector<f64>, block: usize) -> DMatrix<f64> {
-    let samples = residuals.len();
-    DMatrix::from_fn(samples.div_ceil(block), jacobian.ncols(), |index, column| {
-        let (from, count) = (index * block, block.min(samples - index * block));
-        jacobian.column(column).rows(from, count).dot(&residuals.rows(from, count))
-    })
+    products / span as f64
 }
 
 /// Andrews' number of lags for Bartlett's weights: `1.1447 (α n)^(1/3)` with
@@ -159,17 +166,10 @@ fn bandwidth(residuals: &[f64]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::testing;
 
-    /// A reproducible stand-in for noise, uniform with variance 1.
     fn noise(count: usize) -> Vec<f64> {
-        let mut state = 88_172_645_463_325_252_u64;
-        let mut next = || {
-            state ^= state << 13;
-            state ^= state >> 7;
-            state ^= state << 17;
-            ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5) * 12f64.sqrt()
-        };
-        (0..count).map(|_| next()).collect()
+        testing::noise(3, 0.0, count)
     }
 
     #[test]
@@ -195,6 +195,27 @@ mod tests {
         let error = std_errors(&[&DVector::from_element(n, 1.0)], &residuals)[0].unwrap();
         let expected = (19.0 / n as f64).sqrt();
         assert!((error / expected - 1.0).abs() < 0.2, "{error} {expected}");
+    }
+
+    #[test]
+    fn it_is_the_weighted_sum_of_the_covariances_at_each_lag() {
+        let (n, p) = (200, 2);
+        let residuals = DVector::from_vec(testing::noise(5, 0.8, n));
+        let jacobian = DMatrix::from_vec(n, p, testing::noise(6, 0.5, n * p));
+        let lags = bandwidth(residuals.as_slice());
+        assert!(lags > 3);
+        let score = |k: usize, i: usize| jacobian[(k, i)] * residuals[k];
+        let covariance = |lag: usize, i, j| (lag..n).map(|k| score(k - lag, i) * score(k, j)).sum();
+        let found = long_run(&jacobian, &residuals);
+        for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let mut expected: f64 = covariance(0, i, j);
+            for lag in 1..=lags {
+                let weight = 1.0 - lag as f64 / (lags + 1) as f64;
+                let both: [f64; 2] = [covariance(lag, i, j), covariance(lag, j, i)];
+                expected += weight * (both[0] + both[1]);
+            }
+            assert!((found[(i, j)] - expected).abs() < 1e-10 * expected.abs().max(1.0));
+        }
     }
 
     #[test]

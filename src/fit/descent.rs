@@ -31,6 +31,7 @@ use nalgebra::{DMatrix, DVector};
 use super::bounds::Bounds;
 use super::problem::{Problem, cost_of};
 use super::result::Termination;
+use crate::numerics::column_products;
 
 /// How far a descent goes.
 #[derive(Clone, Copy, Debug)]
@@ -242,7 +243,7 @@ impl<'d, 'p, 'r> Descent<'d, 'p, 'r> {
         let mut there = &self.at + &step;
         let bounds = self.problem.space.bounds.iter();
         there.iter_mut().zip(bounds).for_each(|(value, bounds)| *value = bounds.clamped(*value));
-        let residuals = self.problem.residuals_near(&there, self.problem.here());
+        let residuals = self.problem.residuals_near(&there);
         let part = (self.normal.cost - cost_of(&residuals)) / predicted.max(f64::MIN_POSITIVE);
         if part <= 0.0 {
             return self.step_failed();
@@ -298,7 +299,7 @@ struct Normal {
 
 impl Normal {
     fn of(slopes: &DMatrix<f64>, residuals: &DVector<f64>) -> Self {
-        let mut products = slopes.tr_mul(slopes);
+        let mut products = column_products(slopes);
         let scales = products.diagonal().map(f64::sqrt);
         let inverse = scales.map(|scale| if scale > 0.0 { scale.recip() } else { 0.0 });
         for (index, mut column) in products.column_iter_mut().enumerate() {

@@ -13,8 +13,15 @@ pub struct Evaluation {
     /// Measured minus simulated, per trial and sample, output units. Each window is
     /// simulated from the output that makes its own error least.
     pub residuals: Vec<Vec<f64>>,
-    /// Per trial, the output at the start of each window.
-    pub(super) starts: Vec<Vec<f64>>,
-    /// Per trial and sample, the slope of the output to it; `None` where it is 1.
-    pub(super) slopes: Vec<Option<Vec<f64>>>,
+    /// Where each trial began, for models near to this one; none where none will be asked for.
+    pub(super) starts: Vec<Starts>,
+}
+
+/// Where the windows of a trial begin.
+#[derive(Clone, Debug)]
+pub(super) struct Starts {
+    /// The output at the start of each window.
+    pub(super) outputs: Vec<f64>,
+    /// Per sample, the slope of the output to it; `None` where it is 1.
+    pub(super) slope: Option<Vec<f64>>,
 }

@@ -115,8 +115,7 @@ fn rough<'p, 'r>(
     } else {
         let beginning = Beginning::of(short, model, space, (plain(model), &starts));
         if starts.len() > FOLLOWED {
-            let expected = |start: Vec<f64>| (beginning.expected(&start), start);
-            let mut ranked: Vec<_> = starts.into_iter().map(expected).collect();
+            let mut ranked: Vec<_> = beginning.expected(&starts).into_iter().zip(starts).collect();
             ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
             starts = ranked.into_iter().take(FOLLOWED).map(|(_, start)| start).collect();
         }

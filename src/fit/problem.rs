@@ -40,29 +40,45 @@ impl Problem<'_, '_> {
         self.record.training(&self.here().residuals)
     }
 
-    /// The residuals at free values near to those of `near`, windows starting where they do there.
-    pub(super) fn residuals_near(&self, free: &DVector<f64>, near: &Evaluation) -> DVector<f64> {
-        self.record.training(&self.record.residuals_near(&self.model_at(free), near))
+    /// The residuals at free values near to those here, windows starting where they do here.
+    pub(super) fn residuals_near(&self, free: &DVector<f64>) -> DVector<f64> {
+        let mut found = self.record.training_near(&[self.model_at(free)], self.here());
+        found.pop().unwrap_or_default()
     }
 
     /// The slopes of the residuals, which are `residuals` here, by differences.
     pub(super) fn jacobian(&self, residuals: &DVector<f64>) -> DMatrix<f64> {
         let mut slopes = DMatrix::zeros(residuals.len(), self.free.len());
-        for index in 0..self.free.len() {
-            slopes.set_column(index, &self.slope(index, residuals));
-        }
+        let all: Vec<usize> = (0..self.free.len()).collect();
+        self.put_slopes(&mut slopes, &all, residuals);
         slopes
     }
 
-    /// The slope of the residuals, which are `here` now, to one free value.
-    pub(super) fn slope(&self, index: usize, here: &DVector<f64>) -> DVector<f64> {
-        let step = self.space.bounds[index].step(self.free[index]);
-        if step == 0.0 {
-            return DVector::zeros(here.len());
+    /// Puts the slopes of the residuals, which are `here` now, to the free values `indices` into
+    /// these columns of `slopes`.
+    pub(super) fn put_slopes(
+        &self,
+        slopes: &mut DMatrix<f64>,
+        indices: &[usize],
+        here: &DVector<f64>,
+    ) {
+        let step = |index: &usize| {
+            let step = self.space.bounds[*index].step(self.free[*index]);
+            (step != 0.0).then_some((*index, step))
+        };
+        let steps: Vec<(usize, f64)> = indices.iter().filter_map(step).collect();
+        for some in steps.chunks(TOGETHER) {
+            let there = |(index, step): &(usize, f64)| {
+                let mut there = self.free.clone();
+                there[*index] += step;
+                self.model_at(&there)
+            };
+            let models: Vec<JointModel> = some.iter().map(there).collect();
+            let residuals = self.record.training_near(&models, self.here());
+            for ((index, step), there) in some.iter().zip(residuals) {
+                slopes.set_column(*index, &((there - here) / *step));
+            }
         }
-        let mut there = self.free.clone();
-        there[index] += step;
-        (self.residuals_near(&there, self.here()) - here) / step
     }
 
     /// The sum of squares of the training windows, which a fit makes least; infinite where the
@@ -157,6 +173,10 @@ impl Problem<'_, '_> {
         self.here.take();
     }
 }
+
+/// Slopes for which models are simulated at a time: each takes a column of residuals beside the
+/// matrix.
+const TOGETHER: usize = 4;
 
 /// The sum of squares; infinite where one is not a number.
 pub(super) fn cost_of(residuals: &DVector<f64>) -> f64 {

@@ -7,14 +7,16 @@ use nalgebra::DVector;
 use super::evaluation::Evaluation;
 use super::excerpt::Excerpt;
 use super::first_order::Follower;
-use super::run::Run;
+use super::run::{Run, best_starts, simulated_from};
 use super::speed;
 use super::thin::thinned;
 use super::window::{Horizon, Part, Split, Window, changes, cut, shorter};
 use crate::delay::{StepDelay, step_delays};
 use crate::effect::RecordRange;
 use crate::experiment::{Joint, Trial, has_word, spike_weights};
-use crate::model::{Arrivals, Commands, JointModel, Surroundings};
+use crate::model::{
+    Arrivals, Commands, JointModel, Surroundings, outputs_together, simulate_together,
+};
 use crate::units::radians_in;
 
 /// A joint's trials, cut into windows.
@@ -154,50 +156,40 @@ impl<'a> FitRecord<'a> {
 
     /// Simulates `model` on all trials, each to the end of its last window.
     pub fn evaluate(&self, model: &JointModel) -> Evaluation {
-        let mut simulated = Vec::new();
-        let all = self.evaluated(model, |run, starts, slope| {
-            let (own, residuals) = run.from(starts, slope);
-            simulated.push(own);
-            residuals
-        });
-        Evaluation { simulated, ..all }
+        let runs = self.runs(model);
+        let starts = best_starts(&runs);
+        let (simulated, residuals) =
+            simulated_from(runs.iter().zip(&starts), simulate_together).into_iter().unzip();
+        Evaluation { horizon: self.horizon, simulated, residuals, starts: Vec::new() }
     }
 
     /// The same without what was simulated: a quarter of the memory.
     pub(crate) fn evaluate_residuals(&self, model: &JointModel) -> Evaluation {
-        self.evaluated(model, Run::residuals_from)
+        let runs = self.runs(model);
+        let starts = best_starts(&runs);
+        let residuals = simulated_from(runs.iter().zip(&starts), outputs_together);
+        let residuals = residuals.into_iter().map(|(_, residuals)| residuals).collect();
+        Evaluation { horizon: self.horizon, simulated: Vec::new(), residuals, starts }
     }
 
-    fn evaluated<'m>(
-        &'m self,
-        model: &'m JointModel,
-        mut residuals: impl FnMut(&Run<'m>, &[f64], Option<&[f64]>) -> Vec<f64>,
-    ) -> Evaluation {
-        let mut all = Evaluation {
-            horizon: self.horizon,
-            simulated: Vec::new(),
-            residuals: Vec::new(),
-            starts: Vec::new(),
-            slopes: Vec::new(),
-        };
-        let indices = 0..self.joint.trials.len();
-        for run in indices.filter_map(|index| self.run(model, index)) {
-            let (starts, slope) = run.best();
-            all.residuals.push(residuals(&run, &starts, slope.as_deref()));
-            all.starts.push(starts);
-            all.slopes.push(slope);
-        }
-        all
-    }
-
-    /// Residuals of a model that is near to the one of `near`, whose starts are taken.
-    pub(super) fn residuals_near(&self, model: &JointModel, near: &Evaluation) -> Vec<Vec<f64>> {
-        let known = near.starts.iter().zip(&near.slopes).enumerate();
-        let residuals = known.filter_map(|(index, (starts, slope))| {
-            let run = self.run(model, index)?;
-            Some(run.residuals_from(starts, slope.as_deref()))
+    /// The residuals of the training windows, as [`training`](Self::training) has them, of each of
+    /// `models`, which are near to the one of `near`, whose starts are taken.
+    pub(super) fn training_near(
+        &self,
+        models: &[JointModel],
+        near: &Evaluation,
+    ) -> Vec<DVector<f64>> {
+        let runs: Vec<Vec<Run<'_>>> = models.iter().map(|model| self.runs(model)).collect();
+        // Runs of one trial take as long as one another.
+        let all = near.starts.iter().enumerate().flat_map(|(trial, starts)| {
+            runs.iter().filter_map(move |runs| Some((runs.get(trial)?, starts)))
         });
-        residuals.collect()
+        let mut residuals = vec![Vec::new(); models.len()];
+        let found = simulated_from(all, outputs_together).into_iter();
+        for (index, (_, own)) in found.enumerate() {
+            residuals[index % models.len()].push(own);
+        }
+        residuals.iter().map(|residuals| self.training(residuals)).collect()
     }
 
     /// This record with a part of the training windows, where they are many: enough to see which
@@ -251,6 +243,11 @@ impl<'a> FitRecord<'a> {
     /// error counts, and 1 for all others; `None` where there is no spike in the record.
     pub fn weights_of(&self, trial: usize) -> Option<&[f64]> {
         self.weights.as_ref()?.get(trial).map(Vec::as_slice)
+    }
+
+    /// The model on each trial.
+    fn runs<'m>(&'m self, model: &'m JointModel) -> Vec<Run<'m>> {
+        (0..self.joint.trials.len()).filter_map(|index| self.run(model, index)).collect()
     }
 
     /// The model on one trial.

@@ -3,15 +3,16 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
+use super::evaluation::Starts;
 use super::speed;
 use super::window::Window;
 use crate::experiment::Trial;
 use crate::model::{
-    Arrivals, JointModel, Restart, Simulated, Surroundings, simulate, simulate_output,
+    Arrivals, Driven, JointModel, Restart, Simulated, Surroundings, outputs_together,
 };
 
-/// How a stretch is simulated: as a whole, or the output alone.
-type Simulate = fn(&JointModel, &Arrivals, usize, f64, &[Restart], &Surroundings<'_>) -> Simulated;
+/// How stretches are simulated: as a whole, or the output alone.
+type Simulate = fn(&[Driven<'_>]) -> Vec<Simulated>;
 
 /// A model on one trial, and what the two need of the record.
 pub(super) struct Run<'a> {
@@ -28,46 +29,15 @@ pub(super) struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// The outputs at the start of the windows that make their squared error least, and
-    /// the slope of the simulated output to them, where it is not 1.
-    ///
-    /// Without a slope the measured outputs will do: what they are wrong by is the same at
-    /// all samples of a window.
-    pub(super) fn best(&self) -> (Vec<f64>, Option<Vec<f64>>) {
+    /// The outputs that were measured where the windows start.
+    fn measured_starts(&self) -> Vec<f64> {
         let measured = self.trial.output();
         let start = |w: &Window| measured.get(w.start).copied().unwrap_or_default();
-        let starts: Vec<f64> = self.windows.iter().map(start).collect();
-        if !self.model.depends_on_angle() {
-            return (starts, None);
-        }
-        let simulated = self.simulate(&starts, simulate_output).output;
-        let nudge = self.nudge();
-        let ahead: Vec<f64> = starts.iter().map(|start| start + nudge).collect();
-        let ahead = self.simulate(&ahead, simulate_output).output;
-        let pairs = ahead.iter().zip(&simulated);
-        let slope: Vec<f64> = pairs.map(|(a, b)| (a - b) / nudge).collect();
-        let wrong = self.shifts(&simulated, Some(&slope));
-        (starts.iter().zip(wrong).map(|(start, by)| start + by).collect(), Some(slope))
+        self.windows.iter().map(start).collect()
     }
 
-    /// The simulation from `starts` and its residuals; what the starts are still wrong by
-    /// is taken off as far as it is linear.
-    pub(super) fn from(&self, starts: &[f64], slope: Option<&[f64]>) -> (Simulated, Vec<f64>) {
-        self.by(starts, slope, simulate)
-    }
-
-    /// The residuals of the simulation from `starts`, as [`from`](Self::from) has them.
-    pub(super) fn residuals_from(&self, starts: &[f64], slope: Option<&[f64]>) -> Vec<f64> {
-        self.by(starts, slope, simulate_output).1
-    }
-
-    fn by(
-        &self,
-        starts: &[f64],
-        slope: Option<&[f64]>,
-        simulate: Simulate,
-    ) -> (Simulated, Vec<f64>) {
-        let mut simulated = self.simulate(starts, simulate);
+    /// What is `simulated`, less what its starts are wrong by, and its residuals.
+    fn shifted(&self, mut simulated: Simulated, slope: Option<&[f64]>) -> (Simulated, Vec<f64>) {
         let shifts = self.shifts(&simulated.output, slope);
         for (window, shift) in self.windows.iter().zip(shifts) {
             let values = simulated.output.get_mut(window.start..window.end).unwrap_or_default();
@@ -87,8 +57,8 @@ impl Run<'_> {
         PART * self.span.max(f64::MIN_POSITIVE.sqrt())
     }
 
-    /// The simulation of all windows; not a number where there is none.
-    fn simulate(&self, starts: &[f64], simulate: Simulate) -> Simulated {
+    /// Where the simulation is set to `starts`.
+    fn restarts(&self, starts: &[f64]) -> Vec<Restart> {
         let restart = |(window, output): (&Window, &f64)| Restart {
             sample: window.start,
             output: *output,
@@ -97,43 +67,50 @@ impl Run<'_> {
                 .then(|| speed::measured(self.trial, window.start))
                 .flatten(),
         };
-        let restarts: Vec<_> = self.windows.iter().zip(starts).map(restart).collect();
+        self.windows.iter().zip(starts).map(restart).collect()
+    }
+
+    /// The stretches of this run, which is that at `index`, from the `starts` of its windows.
+    fn pieces(&self, index: usize, starts: &[f64]) -> Vec<Piece> {
+        let restarts = self.restarts(starts);
         let stretches = stretches(&self.windows);
         if let [only] = stretches.as_slice()
             && only.start == 0
         {
-            return self.simulate_stretch(only, &restarts, simulate);
+            return vec![Piece { of: index, stretch: only.clone(), arrivals: None, restarts }];
         }
-        let mut whole = Simulated::default();
-        for stretch in stretches {
+        let piece = |stretch: Range<usize>| {
             let own = restarts.iter().filter(|restart| stretch.contains(&restart.sample));
             let shifted = own.map(|r| Restart { sample: r.sample - stretch.start, ..*r });
+            // It begins as it was measured.
             let output = self.trial.output().get(stretch.start).copied().unwrap_or_default();
             let begin = Restart { sample: 0, output, speed: None };
-            let restarts: Vec<_> = std::iter::once(begin).chain(shifted).collect();
-            whole.resume_at(stretch.start);
-            whole.append(self.simulate_stretch(&stretch, &restarts, simulate));
-        }
-        whole
+            let restarts = std::iter::once(begin).chain(shifted).collect();
+            let from_s = self.seconds(stretch.start);
+            let arrivals = (stretch.start > 0).then(|| self.arrivals.after(from_s));
+            Piece { of: index, stretch, arrivals, restarts }
+        };
+        stretches.into_iter().map(piece).collect()
     }
 
-    /// The simulation of one stretch, whose restarts count from its start.
-    fn simulate_stretch(
-        &self,
-        stretch: &Range<usize>,
-        restarts: &[Restart],
-        simulate: Simulate,
-    ) -> Simulated {
-        let period_s = self.trial.period().seconds();
-        let from_s = stretch.start as f64 * period_s;
-        let surroundings = Surroundings {
-            others: self.surroundings.others.get(stretch.start..).unwrap_or_default(),
-            start_s: self.surroundings.start_s + from_s,
-            ..self.surroundings
-        };
-        let later = (stretch.start > 0).then(|| self.arrivals.after(from_s));
-        let arrivals = later.as_ref().unwrap_or(&self.arrivals);
-        simulate(&self.model, arrivals, stretch.len(), period_s, restarts, &surroundings)
+    fn driven<'p>(&'p self, piece: &'p Piece) -> Driven<'p> {
+        let start = piece.stretch.start;
+        Driven {
+            model: &self.model,
+            arrivals: piece.arrivals.as_ref().unwrap_or(&self.arrivals),
+            restarts: &piece.restarts,
+            samples: piece.stretch.len(),
+            period_s: self.trial.period().seconds(),
+            surroundings: Surroundings {
+                others: self.surroundings.others.get(start..).unwrap_or_default(),
+                start_s: self.surroundings.start_s + self.seconds(start),
+                ..self.surroundings
+            },
+        }
+    }
+
+    fn seconds(&self, sample: usize) -> f64 {
+        sample as f64 * self.trial.period().seconds()
     }
 
     /// By how much the start of each window is wrong: `Σ w g r / Σ w g²`, with the slope
@@ -151,6 +128,76 @@ impl Run<'_> {
         };
         self.windows.iter().map(shift).collect()
     }
+}
+
+/// For each run the outputs at the start of the windows that make their squared error least, and the
+/// slope of the simulated output to them, where it is not 1.
+///
+/// Without a slope the measured outputs will do: what they are wrong by is the same at all samples
+/// of a window.
+pub(super) fn best_starts(runs: &[Run<'_>]) -> Vec<Starts> {
+    let measured: Vec<Vec<f64>> = runs.iter().map(Run::measured_starts).collect();
+    let ahead = |(run, starts): (&Run<'_>, &Vec<f64>)| -> Vec<f64> {
+        let nudge = run.nudge();
+        starts.iter().map(|start| start + nudge).collect()
+    };
+    let ahead: Vec<Vec<f64>> = runs.iter().zip(&measured).map(ahead).collect();
+    let all = runs.iter().zip(measured.iter().zip(&ahead));
+    let curved = all.filter(|(run, _)| run.model.depends_on_angle());
+    let begun = curved.flat_map(|(run, (here, ahead))| [(run, here.as_slice()), (run, ahead)]);
+    let mut found = simulated(&begun.collect::<Vec<_>>(), outputs_together).into_iter();
+    let best = |(run, outputs): (&Run<'_>, Vec<f64>)| {
+        if !run.model.depends_on_angle() {
+            return Starts { outputs, slope: None };
+        }
+        let here = found.next().unwrap_or_default().output;
+        let ahead = found.next().unwrap_or_default().output;
+        let nudge = run.nudge();
+        let slope: Vec<f64> = ahead.iter().zip(&here).map(|(a, b)| (a - b) / nudge).collect();
+        let wrong = run.shifts(&here, Some(&slope));
+        let outputs = outputs.iter().zip(wrong).map(|(start, by)| start + by).collect();
+        Starts { outputs, slope: Some(slope) }
+    };
+    runs.iter().zip(measured).map(best).collect()
+}
+
+/// The simulation of each run from its starts, and its residuals; what the starts are still wrong by
+/// is taken off as far as it is linear.
+pub(super) fn simulated_from<'r>(
+    begun: impl Iterator<Item = (&'r Run<'r>, &'r Starts)>,
+    simulate: Simulate,
+) -> Vec<(Simulated, Vec<f64>)> {
+    let begun: Vec<_> = begun.collect();
+    let outputs: Vec<_> = begun.iter().map(|(run, from)| (*run, from.outputs.as_slice())).collect();
+    let all = simulated(&outputs, simulate).into_iter().zip(begun);
+    all.map(|(simulated, (run, starts))| run.shifted(simulated, starts.slope.as_deref())).collect()
+}
+
+/// The simulations of the windows of each run, from their starts; not a number where there is none.
+fn simulated(begun: &[(&Run<'_>, &[f64])], simulate: Simulate) -> Vec<Simulated> {
+    let pieces = begun.iter().enumerate();
+    let pieces = pieces.flat_map(|(index, (run, starts))| run.pieces(index, starts));
+    let pieces: Vec<Piece> = pieces.collect();
+    let driven = pieces.iter().filter_map(|piece| Some(begun.get(piece.of)?.0.driven(piece)));
+    let parts = simulate(&driven.collect::<Vec<_>>());
+    let mut whole = vec![Simulated::default(); begun.len()];
+    for (piece, part) in pieces.iter().zip(parts) {
+        if let Some(whole) = whole.get_mut(piece.of) {
+            whole.resume_at(piece.stretch.start);
+            whole.append(part);
+        }
+    }
+    whole
+}
+
+/// A stretch of the run at the index `of`, to be simulated.
+struct Piece {
+    of: usize,
+    stretch: Range<usize>,
+    /// What arrives from its start on, where that is not that of the trial.
+    arrivals: Option<Arrivals>,
+    /// Counted from its start.
+    restarts: Vec<Restart>,
 }
 
 /// Samples before a stretch that are simulated, so that it does not begin at rest.

@@ -85,7 +85,10 @@ impl<'p, 'r> Search<'p, 'r> {
     /// The variables on which the error depends only in jumps.
     fn flat_variables(&self) -> Vec<usize> {
         let residuals = self.problem.residuals();
-        let levels = (0..self.problem.free.len()).filter(|i| self.problem.space.is_level(*i));
-        levels.filter(|index| self.problem.slope(*index, &residuals).amax() <= 0.0).collect()
+        let free = self.problem.free.len();
+        let levels: Vec<usize> = (0..free).filter(|i| self.problem.space.is_level(*i)).collect();
+        let mut slopes = DMatrix::zeros(residuals.len(), free);
+        self.problem.put_slopes(&mut slopes, &levels, &residuals);
+        levels.into_iter().filter(|index| slopes.column(*index).amax() <= 0.0).collect()
     }
 }

@@ -14,12 +14,14 @@ mod arrivals;
 mod delay_law;
 mod file;
 mod joint_model;
+mod motion;
 mod simulate;
 mod start;
 
 pub use arrivals::{Arrival, Arrivals, Commands};
 pub use file::{ModelError, ModelFile, Revision};
 pub use joint_model::{Component, JointModel, Value};
-pub(crate) use simulate::simulate_output;
-pub use simulate::{Restart, Simulated, Surroundings, simulate, simulate_input};
+pub use motion::{Restart, Surroundings};
+pub(crate) use simulate::{Driven, outputs_together, simulate_together};
+pub use simulate::{Simulated, simulate, simulate_input};
 pub use start::integrators;

@@ -1,5 +1,20 @@
 //! Sums of products over samples, in lanes that a processor adds at the same time.
 
+use nalgebra::DMatrix;
+
+/// The products of all columns with each other, `AᵀA`.
+pub(crate) fn column_products(columns: &DMatrix<f64>) -> DMatrix<f64> {
+    let size = columns.ncols();
+    let mut products = DMatrix::zeros(size, size);
+    for (i, column) in columns.column_iter().enumerate() {
+        for j in 0..=i {
+            let product = columns.column(j).dot(&column);
+            (products[(i, j)], products[(j, i)]) = (product, product);
+        }
+    }
+    products
+}
+
 /// The sum of products, in lanes that a processor adds at the same time.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     const LANES: usize = 8;
