@@ -400,18 +400,14 @@ fn power_at(values: &[f64], omega: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::testing::uniform;
     use crate::units::SamplePeriod;
 
     const ALL: Automatic = Automatic { alpha: true, beta: true, passband: true };
 
     /// White values of variance 1/12.
     fn white(count: usize) -> Vec<f64> {
-        let mut state = 7_u32;
-        let next = |_| {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(state >> 8) / f64::from(1_u32 << 24) - 0.5
-        };
-        (0..count).map(next).collect()
+        std::iter::repeat_with(uniform(7)).take(count).collect()
     }
 
     /// A joint of 20 deg/s that turns every second, 14 samples late, with noise.

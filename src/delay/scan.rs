@@ -76,24 +76,16 @@ fn at(values: &[f64], k: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::testing::uniform;
 
     /// The place of the least value.
     fn least(errors: &[f64]) -> usize {
         (0..errors.len()).min_by(|a, b| errors[*a].total_cmp(&errors[*b])).unwrap()
     }
 
-    /// Noise between −½ and ½.
-    fn noise(seed: u32) -> impl FnMut() -> f64 {
-        let mut state = seed;
-        move || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(state >> 8) / f64::from(1_u32 << 24) - 0.5
-        }
-    }
-
     /// Twice the input 7 samples before, with as much noise.
     fn follows(input: &[f64], level: f64) -> Vec<f64> {
-        let mut noise = noise(77);
+        let mut noise = uniform(77);
         let value = |k: usize| if k < 7 { 0.0 } else { 2.0 * input[k - 7] };
         (0..input.len()).map(|k| value(k) + level * noise()).collect()
     }
@@ -110,7 +102,7 @@ mod tests {
 
     #[test]
     fn a_delay_is_found_behind_a_gain_a_lag_and_an_integrator() {
-        let mut white = noise(9);
+        let mut white = uniform(9);
         let input: Vec<f64> = (0..300).map(|_| white()).collect();
         // An input that remembers itself shows less well where the output comes from.
         for input in [behind(&input, 0.9), input] {

@@ -160,29 +160,17 @@ fn rank(count: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Normal numbers, by the sum of twelve uniform ones.
-    struct Normals(u64);
-
-    impl Normals {
-        fn next(&mut self) -> f64 {
-            let mut uniform = || {
-                self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                (self.0 >> 33) as f64 / (1_u64 << 31) as f64
-            };
-            (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-        }
-    }
+    use crate::numerics::testing::normals;
 
     /// How often the interval of `count` delays holds the true median: delays that scatter by
     /// `scatter`, skewed by `skew`, known to `error` each, in one of `groups` that are alike.
     fn coverage(count: usize, groups: usize, (scatter, skew): (f64, f64), error: f64) -> f64 {
-        let mut normals = Normals(count as u64 + 99);
+        let mut normal = normals(count as u64 + 99);
         let runs = 4000;
         let mut group = || {
             let sample = |_| {
-                let z = normals.next();
-                let own = error * normals.next();
+                let z = normal();
+                let own = error * normal();
                 let delay_s = 5.0 + scatter * (skew * z).exp_m1() / skew + own;
                 let reach = 1.96 * error;
                 let own_s = (error > 0.0).then_some((delay_s - reach, delay_s + reach));

@@ -54,23 +54,12 @@ impl Autoregression {
 #[cfg(test)]
 mod tests {
     use super::super::moments::autocovariances;
+    use super::super::testing::noise;
     use super::*;
 
     #[test]
     fn the_memory_of_a_signal_is_found() {
-        // A linear congruence stands in for noise.
-        let mut state = 1_u32;
-        let mut white = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(state) / f64::from(u32::MAX) - 0.5
-        };
-        let mut value = 0.0;
-        let signal: Vec<f64> = (0..20_000)
-            .map(|_| {
-                value = 0.7 * value + white();
-                value
-            })
-            .collect();
+        let signal = noise(1, 0.7, 20_000);
         let found = Autoregression::of(&autocovariances(&[signal], 8), 20_000);
         assert!((found.coefficients[0] - 0.7).abs() < 0.02, "{found:?}");
         assert!((found.explained - 0.49).abs() < 0.02, "{found:?}");

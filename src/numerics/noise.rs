@@ -355,12 +355,7 @@ mod tests {
 
     #[test]
     fn little_memory_is_none() {
-        let mut state = 3_u32;
-        let white = |_| {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(state >> 8) / f64::from(1_u32 << 24) - 0.5
-        };
-        let signal: Vec<f64> = (0..400).map(white).collect();
+        let signal = noise(3, 0.0, 400);
         assert_eq!(NoiseModel::of(&[signal], 2).order(), 0);
     }
 

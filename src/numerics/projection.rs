@@ -223,6 +223,7 @@ fn products_of_shifts(columns: &[&[f64]], lags: usize) -> DMatrix<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::testing::uniform;
     use super::*;
 
     /// Line, parabola and cubic over `n` samples, which take much of slow noise.
@@ -270,11 +271,7 @@ mod tests {
 
     #[test]
     fn short_windows_tell_the_memory_of_noise() {
-        let mut state = 5_u32;
-        let mut white = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(state >> 8) / f64::from(1_u32 << 24) - 0.5
-        };
+        let mut white = uniform(5);
         for memory in [0.0, 0.4] {
             let mut value = 0.0;
             let columns = columns(24);

@@ -268,13 +268,10 @@ pub(crate) fn p_value(share: f64, dimensions: f64, samples: f64, (low, high): (f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::testing::uniform;
 
     fn noisy(samples: i32, position: f64, change: f64, noise: f64) -> Vec<f64> {
-        let mut state = 7_u32;
-        let mut white = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(state >> 8) / f64::from(1_u32 << 24) - 0.5
-        };
+        let mut white = uniform(7);
         let y = |k: f64| 3.0 - 0.2 * k + change * (k - position).max(0.0);
         (0..samples).map(|k| y(f64::from(k)) + noise * white()).collect()
     }

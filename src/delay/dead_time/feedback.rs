@@ -55,18 +55,11 @@ fn innovations(inputs: &[Vec<f64>]) -> Vec<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn noise(seed: u32) -> impl FnMut() -> f64 {
-        let mut state = seed;
-        move || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(state >> 8) / f64::from(1_u32 << 24) - 0.5
-        }
-    }
+    use crate::numerics::testing::uniform;
 
     #[test]
     fn an_input_that_follows_the_output_is_told_from_one_that_does_not() {
-        let (mut one, mut other) = (noise(5), noise(11));
+        let (mut one, mut other) = (uniform(5), uniform(11));
         let errors: Vec<f64> = (0..2000).map(|_| one()).collect();
         let mut at = 0.0;
         let free: Vec<f64> = (0..2000)
