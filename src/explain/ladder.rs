@@ -16,18 +16,14 @@ use super::misfit::Misfit;
 use super::options::Options;
 use super::revision::Change;
 use super::stepwise::Step;
-use crate::effect::Effect;
+use crate::effect::{
+    AsymmetricSaturation, DeadBand, DirectionGain, Effect, EndStop, InputSaturation, PositionGain,
+};
 use crate::fit::{FitRecord, fit_to_compare};
 use crate::model::Component;
 
-const LADDER: [&str; 6] = [
-    "dead_band",
-    "input_saturation",
-    "direction_gain",
-    "end_stop",
-    "position_gain",
-    "asymmetric_saturation",
-];
+static LADDER: [&dyn Effect; 6] =
+    [&DeadBand, &InputSaturation, &DirectionGain, &EndStop, &PositionGain, &AsymmetricSaturation];
 
 /// Effects that a search adds at least where the usual ones come first: of a few the best are
 /// wanted, not the usual ones.
@@ -68,11 +64,11 @@ pub(super) fn climbed(
 
 /// Whether an engineer tries it first.
 pub(super) fn is_usual(id: &&'static str) -> bool {
-    LADDER.contains(id)
+    LADDER.iter().any(|effect| effect.spec().id == *id)
 }
 
 /// The usual effects among those that may be added.
 fn usual(options: &Options) -> impl Iterator<Item = &'static dyn Effect> {
-    let allowed = |id: &&str| options.effects.iter().find(|effect| effect.spec().id == *id);
-    LADDER.iter().filter_map(allowed).copied()
+    let is_allowed = |id: &str| options.effects.iter().any(|effect| effect.spec().id == id);
+    LADDER.into_iter().filter(move |effect| is_allowed(effect.spec().id))
 }

@@ -11,7 +11,7 @@
 //! self-regulation).
 
 use crate::delay::{FirstOrder, followed, tracking};
-use crate::effect::by_id;
+use crate::effect::{Effect as _, Leakage, RateLimit};
 use crate::experiment::{Joint, Trial};
 use crate::model::{Component, JointModel};
 use crate::numerics::quantile;
@@ -62,10 +62,9 @@ impl Follower {
     pub(crate) fn started_at(self, model: &JointModel) -> Option<(Vec<&'static str>, JointModel)> {
         let (id, model) = self.first_order.started_at(model)?;
         let Some(rate) = self.rate else { return Some((vec![id], model)) };
-        let effect = by_id("rate_limit")?;
         let seconds_per_input = self.first_order.static_gain.abs() / rate;
-        let component = Component::new(effect, vec![seconds_per_input.into()])?;
-        Some((vec![id, effect.spec().id], model.with(component)))
+        let component = Component::new(&RateLimit, vec![seconds_per_input.into()])?;
+        Some((vec![id, RateLimit.spec().id], model.with(component)))
     }
 }
 
@@ -88,9 +87,8 @@ fn usual_rate(trials: &[Trial]) -> Option<f64> {
 impl FirstOrder {
     /// `model` as this first order, and the id of the effect that makes it one.
     fn started_at(self, model: &JointModel) -> Option<(&'static str, JointModel)> {
-        let leakage = by_id("leakage")?;
         let rate = self.time_constant_s.recip();
-        let component = Component::new(leakage, vec![rate.into(), self.at_zero.into()])?;
+        let component = Component::new(&Leakage, vec![rate.into(), self.at_zero.into()])?;
         let mut model = model.with(component);
         if !model.gain.fixed {
             model.gain.value = self.static_gain * rate;
@@ -98,8 +96,21 @@ impl FirstOrder {
         if !model.delay.fixed {
             model.delay.value = self.dead_time_s;
         }
-        Some((leakage.spec().id, model))
+        Some((Leakage.spec().id, model))
     }
+}
+
+/// Whether an effect is the one that makes a first order of an integrator.
+pub(crate) fn makes_first_order(id: &str) -> bool {
+    id == Leakage.spec().id
+}
+
+/// The time constant `T` of the first order that `model` is, seconds; none where it is none.
+pub(crate) fn time_constant_s(model: &JointModel) -> Option<f64> {
+    let of_first_order = |component: &&Component| makes_first_order(component.effect().spec().id);
+    let leakage = model.components().iter().find(of_first_order)?;
+    let rate = leakage.parameters().first()?.value;
+    (rate > 0.0).then(|| rate.recip())
 }
 
 #[cfg(test)]

@@ -28,7 +28,7 @@ mod window;
 
 pub use evaluation::Evaluation;
 pub(crate) use excerpt::Excerpt;
-pub(crate) use first_order::follows_input;
+pub(crate) use first_order::{follows_input, makes_first_order, time_constant_s};
 pub use least_squares::{assess, fit, fit_to_compare, fit_to_compare_beside, survey};
 pub use record::FitRecord;
 pub use result::{Assessment, Fit, FitError, Parameter, Status, Survey, Termination};

@@ -5,6 +5,7 @@ use super::text_table::TextTable;
 use crate::design::{
     Expected, FreeRunError, OpenThreshold, Prediction, Rehearsal, Schedule, transitions,
 };
+use crate::fit::makes_first_order;
 use crate::wording::{listed, measure, rounded, unit_suffix, wrapped};
 
 /// What is to be played on each joint, and what is expected of it.
@@ -232,7 +233,7 @@ fn margin_text(
 ) -> String {
     let unit = joint.rig.output_unit.as_deref();
     let is_bounded = free_run.as_ref().is_some_and(FreeRunError::is_bounded);
-    let effects = effects.iter().filter(|id| !is_bounded || **id != "leakage");
+    let effects = effects.iter().filter(|id| !is_bounded || !makes_first_order(id));
     let effects: Vec<String> = effects.map(|id| (*id).to_owned()).collect();
     let kind = if is_bounded { "a first order with dead time" } else { "an integrator" };
     let model = match effects.as_slice() {
