@@ -27,7 +27,9 @@ pub enum RecordError {
         why: String,
     },
     /// Viewers cannot be served.
-    #[error("{address}: viewers cannot be served there; choose another port")]
+    #[error(
+        "{address}: viewers cannot be served there; choose another port, or an address of this machine"
+    )]
     Listen {
         /// Where.
         address: std::net::SocketAddr,

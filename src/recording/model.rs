@@ -159,20 +159,24 @@ fn page(
     if is_first(models, judged) {
         against(&mut page, models)?;
     }
-    for compared in models {
+    // Of the revisions of one model, what is wrong with the last; of models side by side, with each.
+    let judged_alone = std::slice::from_ref(judged);
+    let told: Vec<&ComparedJoint<'_>> =
+        if is_first(models, judged) { models.to_vec() } else { judged_alone.iter().collect() };
+    for compared in &told {
         for sentence in failure_sentences(compared.joint, compared.comparison) {
             writeln!(page, "\n**Fails** ({}): {}", compared.model, plain(&sentence))?;
         }
     }
-    for compared in models {
+    for compared in &told {
         let residual = correlation_sentences(compared.comparison).join("; ");
         if !residual.is_empty() {
             writeln!(page, "\n**Residual** ({}): {}", compared.model, plain(&residual))?;
         }
     }
-    reconciled(&mut page, models)?;
+    reconciled(&mut page, &told)?;
     worst_segments(&mut page, layout, judged)?;
-    parameters(&mut page, joint, models)?;
+    parameters(&mut page, joint, &told)?;
     Ok(page)
 }
 
@@ -198,8 +202,7 @@ fn reconciled(page: &mut String, models: &[&ComparedJoint<'_>]) -> std::fmt::Res
 
 /// The error figures of each model, and whether a lack of fit is shown.
 fn errors(page: &mut String, unit: &str, models: &[&ComparedJoint<'_>]) -> std::fmt::Result {
-    writeln!(page, "| model | training | validation | fit |\n|---|---|---|---|")?;
-    let mut shown = Vec::new();
+    writeln!(page, "| model | training | validation | fit | lack of fit |\n|---|---|---|---|---|")?;
     for compared in models {
         let Comparison { training, validation, lack_of_fit, .. } = compared.comparison;
         let rmse = |error: &Option<ErrorFigures>| {
@@ -208,15 +211,10 @@ fn errors(page: &mut String, unit: &str, models: &[&ComparedJoint<'_>]) -> std::
         let percent =
             validation.map_or_else(|| "–".to_owned(), |e| format!("{:.1} %", e.fit_percent));
         let is = lack_of_fit.map_or("unknown", |t| if t.adequate { "not shown" } else { "shown" });
-        shown.push(if models.len() > 1 {
-            format!("{is} ({})", compared.model)
-        } else {
-            is.to_owned()
-        });
         let (train, valid) = (rmse(training), rmse(validation));
-        writeln!(page, "| {} | {train} | {valid} | {percent} |", compared.model)?;
+        writeln!(page, "| {} | {train} | {valid} | {percent} | {is} |", compared.model)?;
     }
-    writeln!(page, "\nA lack of fit is {}.", shown.join(", "))
+    Ok(())
 }
 
 /// Where the judged model is worst.
@@ -284,13 +282,16 @@ fn on_timeline(layout: &JointLayout<'_>, worst: &WorstSegment) -> String {
 fn headline(judged: &ComparedJoint<'_>) -> String {
     let comparison = judged.comparison;
     let times = comparison.validation.zip(sensor_noise(&judged.joint.trials));
+    let followed = comparison.validation.map(|error| error.fit_percent).filter(|part| *part > 0.0);
+    let followed = followed
+        .map_or_else(String::new, |part| format!("the model follows {part:.0} % of the motion; "));
     let times = times.map(|(error, noise)| error.rmse / noise.max(f64::MIN_POSITIVE));
     match (comparison.lack_of_fit, times) {
         (Some(test), _) if test.adequate => {
             "the model is adequate: no lack of fit is shown".to_owned()
         }
         (_, Some(times)) => {
-            format!("the error is {} times the noise", number(times.max(0.0).round()))
+            format!("{followed}the error is {} times the noise", number(times.max(0.0).round()))
         }
         _ => "there is an error that is no noise".to_owned(),
     }

@@ -47,6 +47,8 @@ pub use compare::ComparedJoint;
 pub(crate) use compare::compare_text;
 #[cfg(feature = "rrd")]
 pub(crate) use compare::model_differences;
+#[cfg(feature = "rrd")]
+pub(crate) use conclusion::Topic;
 pub(crate) use dead_time::{dead_time_sentences, input_note};
 pub use decisions::DecisionRow;
 pub use decisions::decision_rows;

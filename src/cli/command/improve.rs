@@ -119,7 +119,7 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
         let found = (improvement, estimate_at(&study.estimates, index));
         let mut improved = improved(&file, &name, joint, found, add_arguments)?;
         improved.interrupted = stopped && improved.finding.verdict != Verdict::Adequate;
-        improved.reached_limit = !stopped && improved.finding.verdict == Verdict::MissingEffect;
+        improved.reached_limit &= !stopped;
         Some(improved)
     };
     let (improved, failures) = outcomes(study.experiment(), results, improved)?;

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use crate::cli::console::{Interrupt, Verbosity, message};
 use crate::experiment::Joint;
-use crate::explain::{Change, Improvement, Revision as Step};
+use crate::explain::{Change, Improvement, Revision as Step, Verdict};
 use crate::model::{ModelFile, Revision};
 use crate::report::{ComparedJoint, Finding, ImprovedJoint, gone, revision_line};
 use crate::study::JointEstimate;
@@ -70,7 +70,10 @@ pub(crate) fn improved<'a>(
     let attribution = Some(attribution);
     let finding =
         Finding { compared, verdict, ranking, add_arguments, before, attribution, delays };
-    Some(ImprovedJoint { first_revision, ..ImprovedJoint::of(finding, revisions) })
+    // Where more is missing at the end, nothing but the limit has ended it, or whoever stopped it.
+    let reached_limit = verdict == Verdict::MissingEffect;
+    let improved = ImprovedJoint::of(finding, revisions);
+    Some(ImprovedJoint { first_revision, reached_limit, ..improved })
 }
 
 /// `file` with all revisions of all joints. A joint that has no new one stays as it is.

@@ -7,7 +7,9 @@
 mod bars;
 mod evidence;
 mod figure;
+mod holds;
 mod ladder;
+mod law;
 mod pages;
 mod ranking;
 mod record;

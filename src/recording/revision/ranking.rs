@@ -50,7 +50,7 @@ pub(super) fn around(
         ([], _) if is_adequate(revision) => "no effect is missing",
         ([], _) => "nothing more was looked for",
         (_, []) => "error at the next revision",
-        _ => "error with one effect more",
+        _ => "error with one effect more, likeliest first",
     };
     bars.title(labels, title);
     let own = (format!("revision {number}"), judged(&revision.comparison));

@@ -7,7 +7,7 @@ use crate::figure::ladder::judged;
 use crate::recording::error_share::short;
 use crate::recording::markdown::{plain, prose};
 use crate::recording::parameter_table::parameter_table;
-use crate::report::{ImprovedJoint, change_in_words};
+use crate::report::{ImprovedJoint, Topic, change_in_words};
 use crate::wording::{rounded, unit_suffix};
 
 /// The page of the revision at `place`.
@@ -24,7 +24,11 @@ fn written(improved: &ImprovedJoint<'_>, place: usize) -> Result<String, std::fm
     let conclusion = improved.conclusion_at(place);
     writeln!(page, "**{}**\n", prose(&improved.finding.conclusion().headline))?;
     writeln!(page, "## Revision {revision} of {last}: {}\n", plain(&change_in_words(step)))?;
-    writeln!(page, "**{}**\n", plain(&fall(improved, place)))?;
+    // The first has nothing to fall from, and may say its error itself.
+    let says_error = conclusion.passages.iter().any(|passage| passage.topic == Topic::Error);
+    if place > 0 || !says_error {
+        writeln!(page, "**{}**\n", plain(&fall(improved, place)))?;
+    }
     if !is_last {
         writeln!(page, "**At revision {revision}:** {}\n", plain(&conclusion.headline))?;
     }

@@ -51,7 +51,7 @@ pub(in crate::recording) fn messages(
     let has_steps = recording.joints.iter().any(|joint| joint.estimate.dead_time.is_none());
     let opening = match growth {
         Growth::Growing => ("revision", PlayState::Following),
-        Growth::Finished if is_ladder => ("revision", PlayState::Paused),
+        Growth::Finished if is_ladder => ("revision", PlayState::Following),
         Growth::Finished if !recording.also.is_empty() => ("difference", PlayState::Paused),
         Growth::Finished if !has_steps => ("time", PlayState::Paused),
         Growth::Finished => ("decision", PlayState::Paused),

@@ -25,6 +25,8 @@ pub(super) struct JointJson<'a> {
     lack_of_fit: Option<LackOfFitJson>,
     whiteness: Option<WhitenessJson<'a>>,
     input_correlation: Option<CorrelationJson<'a>>,
+    /// Where the simulation restarts of which `fails_where` and `regions` are.
+    fails_horizon: String,
     fails_where: Vec<FailsWhereJson<'a>>,
     worst_segments: Vec<WorstSegmentJson<'a>>,
     regions: Vec<RegionJson<'a>>,
@@ -53,6 +55,7 @@ impl<'a> JointJson<'a> {
             lack_of_fit: comparison.lack_of_fit.as_ref().map(Into::into),
             whiteness: comparison.whiteness.as_ref().map(Into::into),
             input_correlation: comparison.input_correlation.as_ref().map(Into::into),
+            fails_horizon: comparison.arising.to_string(),
             fails_where: failure().flat_map(|f| &f.fails_where).map(Into::into).collect(),
             worst_segments: failure().flat_map(|f| &f.worst_segments).map(Into::into).collect(),
             regions: comparison.regions.iter().map(Into::into).collect(),

@@ -135,6 +135,8 @@ pub(super) struct FailsWhereJson<'a> {
     condition: &'a str,
     share_of_time: f64,
     share_of_squared_error: f64,
+    /// Of what the squared error is.
+    error_of: &'static str,
     rmse: f64,
     p_value: f64,
 }
@@ -143,7 +145,8 @@ impl<'a> From<&'a FailsWhere> for FailsWhereJson<'a> {
     fn from(found: &'a FailsWhere) -> Self {
         let &FailsWhere { share_of_time, share_of_squared_error, rmse, p_value, .. } = found;
         let condition = &found.condition;
-        Self { condition, share_of_time, share_of_squared_error, rmse, p_value }
+        let error_of = if found.of_speed { "speed" } else { "output" };
+        Self { condition, share_of_time, share_of_squared_error, error_of, rmse, p_value }
     }
 }
 
@@ -211,7 +214,7 @@ mod tests {
             clauses: Vec::new(),
             samples: Vec::new(),
         };
-        let expected = "condition share_of_time share_of_squared_error rmse p_value";
+        let expected = "condition share_of_time share_of_squared_error error_of rmse p_value";
         assert_eq!(keys(FailsWhereJson::from(&found)), expected);
         let worst = WorstSegment {
             trial: "1".to_owned(),
