@@ -32,6 +32,16 @@ pub fn with_threads<T: Send>(
     with_prepared_threads(threads, |thread| thread(), work)
 }
 
+/// Threads at most: more take longer to start than they could save.
+pub(crate) const MOST_THREADS: usize = 1024;
+
+/// The threads that `RAYON_NUM_THREADS` asks for, as far as that makes sense; 0, which is one for
+/// each processor, where it asks for none.
+fn threads_of_environment() -> usize {
+    let asked = std::env::var("RAYON_NUM_THREADS").ok();
+    asked.and_then(|text| text.parse().ok()).unwrap_or(0).min(MOST_THREADS)
+}
+
 /// Runs `work` as [`with_threads`] does; `run` runs each thread, and all have ended behind it.
 ///
 /// # Errors
@@ -43,7 +53,7 @@ pub fn with_prepared_threads<T: Send>(
 ) -> Result<T, rayon::ThreadPoolBuildError> {
     let (run, mut started) = (Arc::new(run), Vec::new());
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.unwrap_or(0))
+        .num_threads(threads.unwrap_or_else(threads_of_environment))
         .spawn_handler(|thread| {
             let (run, mut thread) = (Arc::clone(&run), Some(thread));
             let mut once = move || thread.take().into_iter().for_each(rayon::ThreadBuilder::run);

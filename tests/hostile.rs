@@ -136,6 +136,37 @@ fn what_is_packed_is_refused_when_it_grows_past_the_limit() {
 }
 
 #[test]
+#[cfg(feature = "mat")]
+fn more_variables_than_can_be_told_apart_are_refused_and_not_waited_for() {
+    let folder = TempDir::new().unwrap();
+    let mut file_builder = hdf5_pure::FileBuilder::new();
+    let head = [b"MATLAB 7.3 MAT-file".as_slice(), &[b' '; 105], b"\x00\x02IM"].concat();
+    file_builder.with_userblock(512).with_userblock_content(&head);
+    for number in 0..3001 {
+        file_builder.create_dataset(&format!("v{number}")).with_f64_data(&[1.0]);
+    }
+    let many = file(&folder, "many.mat", &file_builder.finish().unwrap());
+    assert_says(&many, &[], "3001 variables lie beside one another");
+}
+
+#[test]
+#[cfg(feature = "xlsx")]
+fn what_is_blank_in_a_workbook_counts_as_well() {
+    let folder = TempDir::new().unwrap();
+    let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    let options = zip::write::SimpleFileOptions::default();
+    archive.start_file("xl/worksheets/sheet1.xml", options).unwrap();
+    let blanks = vec![b' '; 1 << 20];
+    for _ in 0..60 {
+        archive.write_all(&blanks).unwrap();
+    }
+    let bytes = archive.finish().unwrap().into_inner();
+    assert!(bytes.len() < 100_000);
+    let path = file(&folder, "blank.xlsx", &bytes);
+    assert_says(&path, &["--max-memory", "50MB"], "--max-memory");
+}
+
+#[test]
 fn gaps_are_filled_within_the_limit_only() {
     let folder = TempDir::new().unwrap();
     let text =

@@ -256,7 +256,7 @@ fn each_library_is_named_in_its_own_place_only() {
         ("jiff", "src/experiment/format/spelling.rs"),
         ("calamine", "src/experiment/format/xlsx.rs"),
         ("hdf5_pure", "src/experiment/format/mat"),
-        ("zip", "src/export/fmu"),
+        ("zip", "src/export/fmu src/experiment/format/xlsx.rs"),
         ("mcap", "src/experiment/format"),
         ("re_cdr", "src/experiment/format/mcap"),
         ("re_ros_msg", "src/experiment/format/mcap"),
@@ -265,7 +265,8 @@ fn each_library_is_named_in_its_own_place_only() {
             let text = fs::read_to_string(&path).unwrap();
             let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
             let named = code.clone().any(|line| line.contains(&format!("{library}::")));
-            assert!(!named || path.starts_with(place), "{} names {library}", path.display());
+            let is_its_own = place.split(' ').any(|place| path.starts_with(place));
+            assert!(!named || is_its_own, "{} names {library}", path.display());
         }
     }
 }

@@ -125,6 +125,37 @@ fn a_pipe_is_written_to_and_neither_probed_nor_replaced() {
 }
 
 #[test]
+fn results_that_find_no_room_are_no_success() {
+    let folder = folder();
+    for format in ["text", "json"] {
+        let mut command = tauscope(folder.path());
+        command.args(["estimate", "log.csv", "--format", format]);
+        let Ok(full) = File::options().write(true).open("/dev/full") else { return };
+        let ended = command.stdout(full).output().unwrap();
+        assert_eq!(ended.status.code(), Some(2), "{format}");
+        let said = String::from_utf8_lossy(&ended.stderr);
+        assert!(said.contains("standard output cannot be written"), "{said}");
+    }
+}
+
+#[test]
+fn what_stands_in_a_file_before_a_shell_appends_to_it_stays() {
+    let folder = folder();
+    let path = folder.path().join("all.csv");
+    for (output, decisions) in [("before\n", "/dev/stdout"), ("more\n", "/dev/fd/1")] {
+        let mut file = File::options().append(true).create(true).open(&path).unwrap();
+        std::io::Write::write_all(&mut file, output.as_bytes()).unwrap();
+        let mut command = tauscope(folder.path());
+        command.args(["estimate", "log.csv", "--quiet", "--decisions", decisions]);
+        assert!(command.stdout(file).status().unwrap().code().is_some_and(|code| code < 2));
+    }
+    let all = fs::read_to_string(path).unwrap();
+    let heads: Vec<_> = all.match_indices("joint,").map(|(at, _)| at).collect();
+    assert!(all.starts_with("before\njoint,"), "{all}");
+    assert!(heads.len() == 2 && all[..heads[1]].ends_with("\nmore\n"), "{all}");
+}
+
+#[test]
 fn parts_that_nobody_writes_are_removed_and_others_stay() {
     let folder = folder();
     let part = |name: &str, age: u64| -> PathBuf {
@@ -133,13 +164,20 @@ fn parts_that_nobody_writes_are_removed_and_others_stay() {
         File::create(&path).unwrap().set_modified(time).unwrap();
         path
     };
-    let (left, young, held) = (part("left", 3600), part("young", 0), part("held", 3600));
+    let (left, young, held) = (part("left00", 3600), part("young0", 0), part("held00", 3600));
+    let own = part("notes", 3600);
+    // A pipe that nobody reads.
+    let pipe = folder.path().join(".tauscope-pipe00.part");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let made = Command::new("touch").args(["-d", "1 hour ago"]).arg(&pipe).status();
+    assert!(made.unwrap().success());
     let lock = File::options().write(true).open(&held).unwrap();
     lock.lock().unwrap();
     let ended =
         tauscope(folder.path()).args(["estimate", "log.csv", "--decisions", "d.csv"]).output();
     assert!(ended.unwrap().status.success());
     assert_eq!((left.exists(), young.exists(), held.exists()), (false, true, true));
+    assert!(own.exists() && pipe.exists());
 }
 
 #[test]
@@ -187,7 +225,7 @@ fn names_that_control_a_terminal_or_compute_are_shown() {
     for stream in [&ended.stdout, &ended.stderr] {
         assert!(!String::from_utf8_lossy(stream).contains("\u{1b}]"));
     }
-    assert!(String::from_utf8_lossy(&ended.stdout).contains(r"\u{1b}]0;mine\u{7}"));
+    assert!(String::from_utf8_lossy(&ended.stdout).contains("=a\u{fffd}]0;mine\u{fffd}"));
     let decisions = fs::read_to_string(folder.path().join("d.csv")).unwrap();
     assert!(decisions.lines().skip(1).all(|line| line.contains("'=a")), "{decisions}");
 }

@@ -585,9 +585,21 @@ fn several_files_add_trials_named_after_them() {
 
 #[test]
 fn files_of_one_name_are_told_apart() {
-    let mut reading = Reading::of(PLAIN);
-    reading.paths.extend([reading.paths[0].clone(), reading.paths[0].clone()]);
+    let (mut reading, others) = (Reading::of(PLAIN), [Reading::of(PLAIN), Reading::of(PLAIN)]);
+    reading.paths.extend(others.iter().map(|other| other.paths[0].clone()));
     assert_eq!(labels(&reading.the_joint()), ["log", "log~2", "log~3"]);
+}
+
+#[test]
+fn a_file_that_is_given_twice_counts_once() {
+    let mut reading = Reading::of(PLAIN);
+    let path = reading.paths[0].clone();
+    // Through the folder and back.
+    let folder = path.parent().unwrap();
+    reading.paths.push(folder.join("..").join(folder.file_name().unwrap()).join("log.csv"));
+    assert_eq!(labels(&reading.the_joint()), ["log"]);
+    let notes = reading.read().notes;
+    assert!(notes.len() == 1 && notes[0].ends_with("read once"), "{notes:?}");
 }
 
 #[test]

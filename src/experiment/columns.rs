@@ -6,6 +6,8 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use super::names::on_one_line;
+
 /// The columns of a log that do not bear the native names.
 ///
 /// An empty map reads the native names: `time_s`, `trial`, `<joint>.input`,
@@ -84,9 +86,9 @@ impl FromStr for JointColumns {
         let parts = text
             .split_once('=')
             .and_then(|(name, columns)| Some((name, columns.split_once(':')?)))
-            .map(|(name, (input, output))| [name.trim(), input.trim(), output.trim()]);
-        match parts {
-            Some([name, input, output]) if ![name, input, output].contains(&"") => {
+            .map(|(name, (input, output))| [name, input, output].map(on_one_line));
+        match &parts {
+            Some([name, input, output]) if parts.iter().flatten().all(|part| !part.is_empty()) => {
                 Ok(Self::new(name, input, output))
             }
             _ => Err(ColumnMapError::Joint { text: text.to_owned() }),

@@ -38,7 +38,7 @@ pub use growing::GrowingLog;
 pub use handed::{HandedColumn, HandedLog, HandedValues};
 pub use joint::{Joint, Signal, Trial, TrialError};
 pub use memory::MemoryLimit;
-pub(crate) use names::nearest_name;
+pub(crate) use names::{is_control, nearest_name};
 pub(crate) use read::is_period;
 pub use read::{Experiment, Failure, ReadOptions, expand_folders};
 pub use sampling::Repair;

@@ -1,4 +1,27 @@
-//! Names in messages: cut to a length, listed, and the one that was probably meant.
+//! Names as a log has them, and in messages: on one line, cut to a length, listed, and the one that
+//! was probably meant.
+
+use std::borrow::Cow;
+
+/// Whether a character moves a cursor, ends a line where none ends, or turns the direction of
+/// writing: names in a log, in a model or of a file may hold it.
+pub(crate) fn is_control(letter: char) -> bool {
+    let is_turn = matches!(letter, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let is_break = matches!(letter, '\u{2028}' | '\u{2029}');
+    letter.is_control() || is_turn || is_break
+}
+
+/// A name without blanks around it and without what would break the lines of a table, move a
+/// terminal's cursor or turn the direction of writing: breaks of lines become blanks, as in a
+/// heading `angle (deg)` of a spreadsheet on two lines, and other control characters `U+FFFD`.
+pub(super) fn on_one_line(text: &str) -> Cow<'_, str> {
+    let text = text.trim();
+    if !text.contains(is_control) {
+        return Cow::Borrowed(text);
+    }
+    let text = text.replace(|c: char| is_control(c) && !c.is_whitespace(), "\u{fffd}");
+    Cow::Owned(text.split_whitespace().collect::<Vec<_>>().join(" "))
+}
 
 /// The start of a cell, without characters that a terminal obeys.
 pub(super) fn shown(text: &str) -> String {
@@ -30,4 +53,16 @@ pub(crate) fn nearest_name<'a>(
     let score = |name: &'a str| (strsim::jaro_winkler(wanted, name), name);
     let best = names.into_iter().map(score).max_by(|a, b| a.0.total_cmp(&b.0));
     best.filter(|(similarity, _)| *similarity > SIMILAR).map(|(_, name)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_is_one_line_that_no_terminal_obeys() {
+        assert_eq!(on_one_line(" boom  angle "), "boom  angle");
+        assert_eq!(on_one_line("angle\r\n\t(deg)"), "angle (deg)");
+        assert_eq!(on_one_line("a\u{1b}[31mb\u{202e}c\u{2028}d"), "a\u{fffd}[31mb\u{fffd}c d");
+    }
 }

@@ -12,6 +12,7 @@ use super::joint::Joint;
 use super::layout::{Layout, find_time_column};
 use super::log::Log;
 use super::memory::{Budget, MemoryLimit};
+use super::names::on_one_line;
 use super::sampling::Repair;
 use super::source::{Source, source_of};
 use super::survey::Survey;
@@ -66,12 +67,20 @@ impl Experiment {
     /// Reads `paths` in order. Never fails as a whole: see [`Experiment::failures`].
     ///
     /// With several files a trial is named after its file: `stem`, or `stem/trial`
-    /// where the file names its trials itself.
+    /// where the file names its trials itself. A file that is given twice, also by a link, is read
+    /// once.
     pub fn read(paths: &[PathBuf], options: &ReadOptions) -> Self {
         let mut experiment = Self { options: options.clone(), ..Self::default() };
         let budget = Budget::new(options.memory);
         let mut stems: Vec<String> = Vec::new();
+        let mut known: HashMap<PathBuf, &Path> = HashMap::new();
         for path in paths {
+            if let Some(first) = path.canonicalize().ok().and_then(|file| known.insert(file, path))
+            {
+                let (twice, first) = (path.display(), first.display());
+                experiment.notes.push(format!("{twice}: is the same file as {first}; read once"));
+                continue;
+            }
             let stem = (paths.len() > 1).then(|| unique_stem(path, &stems));
             match read_log(path, stem.as_deref(), options, &budget) {
                 Ok(log) => experiment.add(log, path),
@@ -134,7 +143,8 @@ fn merge(known: &mut Joint, joint: Joint, path: &Path) -> Result<(), ReadError> 
 }
 
 fn unique_stem(path: &Path, taken: &[String]) -> String {
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let stem = on_one_line(&stem).into_owned();
     if !taken.contains(&stem) {
         return stem;
     }

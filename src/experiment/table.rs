@@ -7,7 +7,7 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use super::error::ReadError;
-use super::names::listed;
+use super::names::{listed, on_one_line};
 use super::source::Source;
 #[cfg(any(feature = "mat", feature = "parquet"))]
 use super::source::source_of;
@@ -18,16 +18,23 @@ use super::unit;
 pub(super) struct Header {
     pub(super) name: String,
     pub(super) unit: Option<String>,
-    /// The cell as it stands in the file.
+    /// The cell as it stands in the file, on one line.
     pub(super) text: String,
     /// Columns of one clock are sampled together; each clock has rows of its own.
     pub(super) clock: usize,
 }
 
 impl Header {
+    /// A name that has no unit in it.
+    #[cfg(any(feature = "mat", feature = "mcap"))]
+    pub(super) fn plain(name: &str, clock: usize) -> Self {
+        let name = on_one_line(name).into_owned();
+        Self { text: name.clone(), name, unit: None, clock }
+    }
+
     /// Splits `boom.output [deg]` and `angle (deg)` into a name and a unit.
     pub(super) fn parse(cell: &str) -> Self {
-        let text = cell.trim();
+        let text = &*on_one_line(cell);
         let (name, unit) = unit::parted(text);
         let ended = unit::of_native(name).filter(|_| unit.is_none());
         let (name, unit) = ended.map_or((name, unit), |(name, unit)| (name, Some(unit)));
@@ -287,6 +294,7 @@ impl Labels {
     pub(super) fn push(&mut self, label: &str, row: u64, path: &Path) -> Result<(), ReadError> {
         let index = self.rows;
         self.rows += 1;
+        let label = &*on_one_line(label);
         if let Some(run) = self.runs.last_mut().filter(|run| run.label == label) {
             run.end = self.rows;
             return Ok(());

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use super::ExportError;
 use crate::effect::expression::Program;
 use crate::effect::{Dimension, Stage};
+use crate::experiment::is_control;
 use crate::model::{Component, JointModel};
 use crate::units::radians_in;
 
@@ -141,7 +142,7 @@ impl Export {
 /// A text that ends no line, and so no comment of a line, in any language: a model file says what it
 /// likes of its effects, and what is exported is run.
 fn one_line(text: &str) -> String {
-    text.replace(|c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}'), " ")
+    text.replace(is_control, " ")
 }
 
 /// Names that are taken; another of the same is made another.

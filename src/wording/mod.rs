@@ -4,6 +4,7 @@
 mod difference;
 mod doubt;
 mod effects;
+mod legible;
 mod misfit;
 mod model_difference;
 mod number;
@@ -20,6 +21,7 @@ pub(crate) use difference::{
 pub(crate) use doubt::{DOUBT_MEANS, doubtful_sentence};
 pub(crate) use doubt::{doubt_percent, doubt_sentence};
 pub(crate) use effects::{effect_ids, effects_text};
+pub(crate) use legible::legible;
 pub(crate) use misfit::{correlation_sentences, lack_of_fit};
 pub(crate) use model_difference::model_difference_sentences;
 pub use number::number;

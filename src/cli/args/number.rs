@@ -1,5 +1,6 @@
 //! Numbers on the command line, and what is said of those that cannot be used.
 
+use crate::batch::MOST_THREADS;
 use crate::experiment::is_period;
 use crate::units::{Length, SamplePeriod};
 
@@ -31,10 +32,8 @@ pub(crate) fn bytes(text: &str) -> Result<u64, String> {
 
 /// A number of threads.
 pub(crate) fn threads(text: &str) -> Result<usize, String> {
-    /// More than any machine has processors for.
-    const MOST: usize = 1024;
-    let number = text.parse().ok().filter(|number| (1..=MOST).contains(number));
-    number.ok_or_else(|| format!("expected a whole number from 1 to {MOST}"))
+    let number = text.parse().ok().filter(|number| (1..=MOST_THREADS).contains(number));
+    number.ok_or_else(|| format!("expected a whole number from 1 to {MOST_THREADS}"))
 }
 
 /// A count.

@@ -12,14 +12,12 @@ use serde::Serialize;
 
 use super::host::Host;
 use super::progress;
+use crate::experiment::is_control;
 
 /// `text` with its control characters shown, not sent: names in a log may hold what moves a
 /// terminal's cursor, renames its window or turns the direction of writing.
 pub(super) fn shown(text: &str) -> String {
-    let is_sent = |letter: char| {
-        let is_turn = matches!(letter, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-        letter == '\n' || letter == '\t' || !(letter.is_control() || is_turn)
-    };
+    let is_sent = |letter: char| matches!(letter, '\n' | '\t') || !is_control(letter);
     if text.chars().all(is_sent) {
         return text.to_owned();
     }
@@ -128,7 +126,12 @@ pub(crate) fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
     if let Some(host) = Host::current() {
         return write_json(value, host).and_then(|mut out| out.flush()).context(NOT_KEPT);
     }
-    print_with(|out| write_json(value, out)?.write_all(b"\n"))
+    print_with(|out| {
+        let mut json = write_json(value, out)?;
+        json.write_all(b"\n")?;
+        // Dropped, it would write the rest and say nothing of what went wrong.
+        json.flush()
+    })
 }
 
 /// Writes JSON as it is made: all decisions of a long log are many times as long as a buffer.

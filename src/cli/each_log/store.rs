@@ -59,6 +59,10 @@ impl Kept {
     }
 
     pub(crate) fn write(&self, path: &Path) -> anyhow::Result<()> {
+        // It may lead to a log.
+        if path.is_symlink() {
+            bail!("{}: a link, and results are files of their own; remove it", path.display());
+        }
         write_file(path, |file| Ok(serde_json::to_writer(file, self)?))
     }
 

@@ -1,6 +1,7 @@
 //! Files that bear their final name only when they are whole.
 
 use std::collections::BTreeSet;
+use std::ffi::OsStr;
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -29,7 +30,7 @@ enum Target {
 /// The file that `path` leads to: a link is written through, not replaced.
 pub(crate) fn target_of(path: &Path) -> PathBuf {
     // A pipe that a shell names, as `/dev/fd/63`, has no other name.
-    if is_pipe_or_device(path) {
+    if !is_file(path) {
         return path.to_owned();
     }
     // The target of a link may not be there yet.
@@ -39,14 +40,48 @@ pub(crate) fn target_of(path: &Path) -> PathBuf {
     path.canonicalize().ok().or(place).unwrap_or(path)
 }
 
-/// Whether something is there that can be written to, and not replaced.
-fn is_pipe_or_device(path: &Path) -> bool {
-    path.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir())
+/// Whether `path` is, or would be, a file that can be replaced: not a pipe, a device, or a file that
+/// whoever called the program has opened.
+pub(super) fn is_file(path: &Path) -> bool {
+    let is_known = path.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir());
+    !is_known && OpenedFile::named(path).is_none()
 }
 
-/// Whether `path` is, or would be, a file that can be replaced.
-pub(super) fn is_file(path: &Path) -> bool {
-    !is_pipe_or_device(path)
+/// A file that was opened before the program began, by what a shell calls it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum OpenedFile {
+    Output,
+    Error,
+    /// Of another number.
+    Other,
+}
+
+impl OpenedFile {
+    fn named(path: &Path) -> Option<Self> {
+        let folders = ["/dev/fd", "/proc/self/fd"];
+        let number = folders.iter().find_map(|folder| path.strip_prefix(folder).ok());
+        match (path.to_str()?, number.and_then(Path::to_str)) {
+            ("/dev/stdout", _) | (_, Some("1")) => Some(Self::Output),
+            ("/dev/stderr", _) | (_, Some("2")) => Some(Self::Error),
+            (_, number) => number.map(|_| Self::Other),
+        }
+    }
+
+    /// It, at the place where it is written to: what stands in it before stays.
+    fn open(self, path: &Path) -> io::Result<File> {
+        let behind_the_end = || OpenOptions::new().append(true).open(path);
+        #[cfg(unix)]
+        {
+            use std::os::fd::AsFd as _;
+            match self {
+                Self::Output => io::stdout().as_fd().try_clone_to_owned().map(File::from),
+                Self::Error => io::stderr().as_fd().try_clone_to_owned().map(File::from),
+                Self::Other => behind_the_end(),
+            }
+        }
+        #[cfg(not(unix))]
+        behind_the_end()
+    }
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -60,7 +95,7 @@ impl OutputFile {
     ///
     /// A pipe is left alone: to open and close it would tell who reads it that this was all.
     pub(crate) fn probe(path: &Path) -> anyhow::Result<()> {
-        if is_pipe_or_device(path) {
+        if !is_file(path) {
             return Ok(());
         }
         Self::create(path).map(drop)
@@ -78,7 +113,10 @@ impl OutputFile {
         if path.is_dir() {
             return Err(io::Error::from(io::ErrorKind::IsADirectory));
         }
-        if is_pipe_or_device(path) {
+        if let Some(opened) = OpenedFile::named(path) {
+            return Ok(Target::Direct(BufWriter::new(opened.open(path)?)));
+        }
+        if !is_file(path) {
             let device = OpenOptions::new().write(true).open(path)?;
             return Ok(Target::Direct(BufWriter::new(device)));
         }
@@ -121,6 +159,12 @@ impl OutputFile {
 /// How the name of a file begins and ends that is not whole yet.
 const PART: (&str, &str) = (".tauscope-", ".part");
 
+/// Whether it is the name of a part: between beginning and end there are six letters or digits.
+fn is_part(name: &OsStr) -> bool {
+    let random = name.to_str().and_then(|name| name.strip_prefix(PART.0)?.strip_suffix(PART.1));
+    random.is_some_and(|all| all.len() == 6 && all.bytes().all(|byte| byte.is_ascii_alphanumeric()))
+}
+
 /// Removes parts that were left in a folder by a program that was killed: nobody has a lock on
 /// them. Looked for once in each folder.
 fn remove_left_parts(folder: &Path) {
@@ -130,11 +174,11 @@ fn remove_left_parts(folder: &Path) {
     let is_new = SEEN.lock().is_ok_and(|mut seen| seen.insert(folder.to_owned()));
     for entry in folder.read_dir().into_iter().filter(|_| is_new).flatten().flatten() {
         let name = entry.file_name();
-        let name = name.to_string_lossy();
-        let is_part = name.starts_with(PART.0) && name.ends_with(PART.1);
-        let modified = entry.metadata().and_then(|found| found.modified());
-        let is_old = modified.is_ok_and(|time| time.elapsed().is_ok_and(|age| age > YOUNG));
-        if !(is_part && is_old) {
+        // Not that of a link: to open a pipe would wait for who reads it.
+        let found = entry.metadata().ok().filter(|found| found.is_file() && is_part(&name));
+        let modified = found.and_then(|found| found.modified().ok());
+        let is_old = modified.and_then(|time| time.elapsed().ok()).is_some_and(|age| age > YOUNG);
+        if !is_old {
             continue;
         }
         let is_left = OpenOptions::new().write(true).open(entry.path());

@@ -7,5 +7,7 @@ mod table;
 pub(crate) use file::{OutputFile, check_outputs, filled_file, target_of, write_file};
 #[cfg(not(feature = "rrd"))]
 pub(crate) use recording::left_out;
-pub(crate) use recording::{Contents, Detail, PreviewContents, SweepContents, check_recordings};
+pub(crate) use recording::{
+    Contents, Detail, PreviewContents, SweepContents, check_beside_parts, check_recordings,
+};
 pub(crate) use table::{CsvText, FileKind, check_tables, write_csv, write_parquet, write_table};

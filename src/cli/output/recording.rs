@@ -4,6 +4,8 @@ use std::path::Path;
 #[cfg(feature = "rrd")]
 use std::path::PathBuf;
 
+use anyhow::bail;
+
 use crate::delay::Settings;
 use crate::delay::sweep::Grid;
 use crate::experiment::{ReadOptions, Source};
@@ -149,6 +151,26 @@ impl Contents<'_> {
     fn write(&self, _: &mut OutputFile) -> anyhow::Result<()> {
         Err(left_out())
     }
+}
+
+/// Refuses `others` that have the name of one of the files to which a recording of many joints at
+/// `path` goes.
+pub(crate) fn check_beside_parts(path: &Path, others: &[&Path]) -> anyhow::Result<()> {
+    let (stem, ending) = (path.file_stem(), path.extension());
+    let is_part = |other: &&&Path| {
+        let number = other.file_stem().and_then(|name| {
+            name.to_str()?.strip_prefix(stem?.to_str()?)?.strip_prefix('_')?.parse::<usize>().ok()
+        });
+        number.is_some() && other.extension() == ending && other.parent() == path.parent()
+    };
+    if let Some(other) = others.iter().find(is_part) {
+        bail!(
+            "{}: a recording of many joints has files of this name beside {}; give it another",
+            other.display(),
+            path.display()
+        );
+    }
+    Ok(())
 }
 
 /// The name of the file `number` beside `path`: `x_1.rrd` beside `x.rrd`.

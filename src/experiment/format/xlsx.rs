@@ -1,10 +1,11 @@
 //! Sheets of a spreadsheet program: the first one with rows, as text.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Read as _};
 use std::path::Path;
 
 use calamine::{Data, Range, Reader as _, Xlsx, XlsxError, open_workbook};
+use zip::ZipArchive;
 
 use super::csv::table;
 use super::text::Bytes;
@@ -20,6 +21,7 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
         reason,
         remedy: "save it again as .xlsx, or as CSV",
     };
+    check_unpacked(path, &budget).map_err(|error| error.refuse(path))?;
     let mut workbook: Xlsx<_> =
         open_workbook(path).map_err(|error: XlsxError| damaged(error.to_string()))?;
     for name in workbook.sheet_names() {
@@ -35,6 +37,28 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
     }
     Err(damaged("no sheet has a header and a row".to_owned()))
 }
+
+/// Asks for as much memory as all of the workbook takes unpacked: a text, or what is blank, is read
+/// into memory whole. What each part says of its size is not trusted.
+fn check_unpacked(path: &Path, budget: &Budget) -> Result<(), TooLarge> {
+    // What cannot be unpacked is refused by whoever reads it.
+    let Some(mut archive) = File::open(path).ok().and_then(|file| ZipArchive::new(file).ok())
+    else {
+        return Ok(());
+    };
+    let (mut unpacked, mut piece) = (0, vec![0; PIECE]);
+    for index in 0..archive.len() {
+        let Ok(mut part) = archive.by_index(index) else { continue };
+        while let Ok(bytes @ 1..) = part.read(&mut piece) {
+            unpacked += bytes as u64;
+            budget.check(unpacked)?;
+        }
+    }
+    Ok(())
+}
+
+/// Bytes that are unpacked at a time.
+const PIECE: usize = 1 << 16;
 
 /// Asks for the memory of a sheet, between whose first and last cell the crate calamine 0.38
 /// keeps all others, those that are not there as well.

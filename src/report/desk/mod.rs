@@ -7,6 +7,7 @@ use data::DeskJson;
 
 use super::{EstimatedJoint, Report};
 use crate::experiment::Source;
+use crate::wording::legible;
 
 /// Decisions that a page holds at most: some 5 kB each.
 const MOST: usize = 4000;
@@ -33,7 +34,8 @@ fn page(name: &str, joints: &[EstimatedJoint<'_>]) -> serde_json::Result<String>
         ("{data}", data.as_str()),
     ];
     let page = include_str!("desk.html").to_owned();
-    Ok(parts.into_iter().fold(page, |page, (place, text)| page.replacen(place, text, 1)))
+    let page = parts.into_iter().fold(page, |page, (place, text)| page.replacen(place, text, 1));
+    Ok(legible(&page))
 }
 
 /// The log, without its folder.

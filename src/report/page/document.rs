@@ -75,10 +75,12 @@ impl Block {
     }
 }
 
-/// `name` as a part of a link or of a file's name: small letters, digits and `-`.
+/// `name` as a part of a link or of a file's name: small letters, digits and `-`, and no more of
+/// them than a file's name has room for beside a number and an ending.
 pub(super) fn slug(name: &str) -> String {
+    const LONGEST: usize = 120;
     let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
-    name.chars().map(plain).collect()
+    name.chars().map(plain).take(LONGEST).collect()
 }
 
 #[cfg(test)]
@@ -88,5 +90,6 @@ mod tests {
     #[test]
     fn a_slug_is_safe_in_links_and_file_names() {
         assert_eq!(slug("Boom_<1>/é"), "boom--1---");
+        assert_eq!(slug(&"é".repeat(255)).len(), 120);
     }
 }

@@ -7,6 +7,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::document::{Attachment, Block, Document, Entry, Figure};
 use super::palette::figure_style;
 use crate::report::text_table::TextTable;
+use crate::wording::legible;
 
 /// How the page looks, but for the shades of figures.
 const STYLE: &str = include_str!("style.css");
@@ -36,7 +37,7 @@ impl Document {
                 }
             }
         };
-        page.into_string() + "\n"
+        legible(&page.into_string()) + "\n"
     }
 }
 

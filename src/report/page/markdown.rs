@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::document::{Block, Document, Entry, Figure};
 use super::palette::figure_style;
 use crate::report::text_table::TextTable;
+use crate::wording::legible;
 
 /// A report as Markdown.
 #[derive(Clone, Debug)]
@@ -25,6 +26,7 @@ impl Document {
         for block in &self.blocks {
             markdown.block(block, &folder);
         }
+        markdown.text = legible(&markdown.text);
         markdown
     }
 }

@@ -12,7 +12,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape};
-use crate::wording::rounded;
+use crate::wording::{legible, rounded};
 
 /// Parts of a pixel that a coordinate resolves.
 const FINE: u32 = 4;
@@ -159,11 +159,12 @@ fn framed(text: &str, (width, height): (u32, u32), (name, described): (&str, &st
     let inside = inside.replace(" opacity=\"1\"", "");
     let (wide, high) = (width * FINE, height * FINE);
     let [name, described] = [name, described].map(|text| maud::html! { (text) }.into_string());
-    format!(
+    let svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
          viewBox=\"0 0 {wide} {high}\" role=\"img\"><title>{name}</title>\n\
          <desc>{described}</desc>\n{inside}"
-    )
+    );
+    legible(&svg)
 }
 
 impl Panel {

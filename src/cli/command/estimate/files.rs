@@ -15,7 +15,8 @@ use super::args::OutputArgs;
 use super::estimated::Estimated;
 use crate::cli::console::Verbosity;
 use crate::cli::output::{
-    Contents, CsvText, FileKind, check_outputs, check_tables, write_csv, write_file, write_parquet,
+    Contents, CsvText, FileKind, check_beside_parts, check_outputs, check_tables, write_csv,
+    write_file, write_parquet,
 };
 use crate::cli::viewer::Stream;
 
@@ -34,8 +35,11 @@ impl<'a> Files<'a> {
     ) -> anyhow::Result<Self> {
         let tables = [&args.decisions, &args.delays, &args.table, &args.review_sheet];
         let outputs = [&args.recording, &args.export].into_iter().chain(tables);
-        let outputs = outputs.flatten();
-        check_outputs(&outputs.map(PathBuf::as_path).collect::<Vec<_>>(), inputs)?;
+        let outputs: Vec<&Path> = outputs.flatten().map(PathBuf::as_path).collect();
+        check_outputs(&outputs, inputs)?;
+        if let Some(recording) = &args.recording {
+            check_beside_parts(recording, &outputs)?;
+        }
         check_tables(args.decisions.iter().chain(&args.delays).chain(&args.table))?;
         args.export.as_deref().map(named_lookup).transpose()?;
         Ok(Self { args, text })

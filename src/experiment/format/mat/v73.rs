@@ -17,6 +17,10 @@ const DEEPEST: usize = 32;
 /// Letters of a name at most; MATLAB allows 63. Names are repeated with each part of a structure.
 const LONGEST_NAME: usize = 255;
 
+/// Numbers that a structure, or the file itself, may hold beside one another: each is looked up among
+/// all of them, and no log has so many signals.
+const MOST_BESIDE: usize = 3000;
+
 /// Bytes of a file for each object in it, at the least: where there are more, links lead in
 /// circles.
 const OBJECT_SIZE: u64 = 16;
@@ -127,17 +131,23 @@ impl Listing<'_> {
     fn group(&mut self, group: &Group, prefix: &str, depth: usize) -> Result<(), Fault> {
         let mut datasets = group.datasets()?;
         datasets.sort();
-        let mut groups = group.groups()?;
-        groups.sort();
-        self.count(prefix, datasets.iter().chain(&groups))?;
+        if datasets.len() > MOST_BESIDE {
+            return Err(Fault::Damaged(format!(
+                "{} variables lie beside one another, of which {MOST_BESIDE} can be told apart",
+                datasets.len()
+            )));
+        }
+        let mut groups: Vec<(String, Group)> = group.iter_groups()?.collect();
+        groups.sort_by(|a, b| a.0.cmp(&b.0));
+        self.count(prefix, datasets.iter().chain(groups.iter().map(|(name, _)| name)))?;
         for name in datasets {
             let found = self.variable(format!("{prefix}{name}"), group.dataset(&name)?)?;
             self.found.push(found);
         }
         // A name with a number sign is MATLAB's own: what cells refer to.
-        groups.retain(|name| !name.starts_with('#'));
-        for name in groups.iter().filter(|_| depth < DEEPEST) {
-            self.group(&group.group(name)?, &format!("{prefix}{name}."), depth + 1)?;
+        groups.retain(|(name, _)| !name.starts_with('#'));
+        for (name, group) in groups.iter().filter(|_| depth < DEEPEST) {
+            self.group(group, &format!("{prefix}{name}."), depth + 1)?;
         }
         Ok(())
     }

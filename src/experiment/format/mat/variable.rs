@@ -47,7 +47,7 @@ impl Variable {
             1 => self.name.clone(),
             _ => format!("{}({})", self.name, column + 1),
         };
-        Header { text: name.clone(), name, unit: None, clock: 0 }
+        Header::plain(&name, 0)
     }
 }
 

@@ -51,6 +51,8 @@ pub(super) struct Contents {
     pub(super) zero: [Option<i64>; 3],
     /// Messages that were looked at, by channel.
     pub(super) seen: HashMap<u16, u64>,
+    /// Channels of which enough was seen, where the file says how many messages it has.
+    pub(super) known: usize,
 }
 
 impl Contents {
@@ -65,15 +67,14 @@ impl Contents {
         /// Messages of a topic that show what it holds. Nodes that take turns on one topic
         /// name their own joints.
         const ENOUGH: u64 = 20;
-        let known = |(channel, count): (&u16, &u64)| {
-            self.seen.get(channel).copied().unwrap_or_default() >= ENOUGH.min(*count)
-        };
-        if summary.is_some_and(|summary| summary.counts.iter().all(known)) {
+        if summary.is_some_and(|summary| self.known >= summary.counts.len()) {
             return Ok(ControlFlow::Break(()));
         }
         if let Record::Message { header, data } = record {
             let seen = self.seen.entry(header.channel_id).or_default();
             *seen += 1;
+            let count = summary.and_then(|summary| summary.counts.get(&header.channel_id));
+            self.known += usize::from(count.is_some_and(|count| *seen == ENOUGH.min(*count)));
             if *seen <= ENOUGH {
                 self.learn(&header, &data, budget)?;
             }
@@ -171,13 +172,13 @@ impl Contents {
 
     /// The recorded time is `time`, so that it is found where none is named.
     pub(super) fn header(&self, place: &Place) -> Header {
-        let header = |name: String, text: String, clock| Header { name, text, unit: None, clock };
         match place {
-            Place::Time(Clock::Log) => header("time".to_owned(), "log_time".to_owned(), 0),
-            Place::Time(clock) => header(clock.name().to_owned(), clock.name().to_owned(), 0),
+            Place::Time(Clock::Log) => {
+                Header { text: "log_time".to_owned(), ..Header::plain("time", 0) }
+            }
+            Place::Time(clock) => Header::plain(clock.name(), 0),
             Place::Field { topic, field } => {
-                let name = format!("{}.{}", self.name(*topic), field.text);
-                header(name.clone(), name, *topic)
+                Header::plain(&format!("{}.{}", self.name(*topic), field.text), *topic)
             }
         }
     }

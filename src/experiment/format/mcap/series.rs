@@ -6,6 +6,7 @@ use super::clock::Clock;
 use super::fault::Fault;
 use super::message::Field;
 use crate::experiment::memory::{Budget, TooLarge};
+use crate::experiment::names::listed;
 use crate::experiment::table::Column;
 
 /// Memory of a number: itself, a copy, and what its vector has to spare.
@@ -112,8 +113,8 @@ pub(super) fn align<'a>(
     }
     let mut times = clock.times;
     if start == times.len() && start > 0 {
-        let (topic, others) = (name(topic), others.join("`, `"));
-        let reason = format!("no message of `{topic}` comes after the first ones of `{others}`");
+        let (topic, others) = (name(topic), listed(others.into_iter()));
+        let reason = format!("no message of {topic} comes after the first ones of {others}");
         return Err(Fault::new(reason, "choose topics that were recorded together"));
     }
     times.drain(..start);
