@@ -7,7 +7,8 @@ use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::markdown::plain;
 use super::paths::{self, at};
-use super::verdict::in_short;
+use super::verdict::{in_short, step_of};
+use crate::delay::Verdict;
 use crate::experiment::Joint;
 use crate::wording::{DOUBT_MEANS, doubt_percent, doubtful_sentence};
 
@@ -51,7 +52,9 @@ const LIKELY: f64 = 0.6;
 fn line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     let doubt = doubt_percent(&segment.doubt);
     let not = if segment.doubt.is_doubtful() { "" } else { "not doubtful: " };
-    format!("{doubt:>5}  {not}{}: {}", in_short(joint, trial, segment), trial.reason(segment))
+    // A line is cut where its list ends: the delay is in the verdict, the reason is not.
+    let mark = if segment.decision.verdict() == Verdict::Accepted { '✓' } else { '✗' };
+    format!("{doubt:>5}  {not}{mark} {}: {}", step_of(joint, trial, segment), trial.reason(segment))
 }
 
 fn page(joint: &Joint, ranked: &[(&TrialLayout<'_>, &SegmentLayout<'_>)]) -> String {

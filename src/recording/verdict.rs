@@ -98,18 +98,26 @@ fn log_line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>)
     format!("{step}  {verdict}   ({at}{found}; doubt {doubt})")
 }
 
+/// Which step of which trial it is.
+pub(super) fn step_of(
+    joint: &Joint,
+    trial: &TrialLayout<'_>,
+    segment: &SegmentLayout<'_>,
+) -> String {
+    let number = segment.decision.number;
+    match joint.trials.len() {
+        1 => format!("step {number}"),
+        _ => format!("{}, step {number}", trial.trial.label()),
+    }
+}
+
 /// A step and its verdict.
 pub(super) fn in_short(
     joint: &Joint,
     trial: &TrialLayout<'_>,
     segment: &SegmentLayout<'_>,
 ) -> String {
-    let decision = segment.decision;
-    let in_trial = match joint.trials.len() {
-        1 => String::new(),
-        _ => format!("{}, ", trial.trial.label()),
-    };
-    format!("{in_trial}step {} {}", decision.number, verdict(trial, decision))
+    format!("{} {}", step_of(joint, trial, segment), verdict(trial, segment.decision))
 }
 
 fn verdict(trial: &TrialLayout<'_>, decision: &Decision) -> String {

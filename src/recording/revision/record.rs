@@ -97,7 +97,11 @@ impl CloseUp {
             || "close up: the largest residual".to_owned(),
             |trial| format!("largest residual: trial {}", trial.trial.label()),
         );
-        Self { plot: close_up(layout, &window), window, title }
+        let all = trial_values(layout, &window, |trial| {
+            let simulated = comparison.fit.evaluation.simulated.get(trial.index);
+            simulated.map_or(&[], |simulated| simulated.output.as_slice())
+        });
+        Self { plot: close_up(layout, &window, all), window, title }
     }
 }
 
@@ -178,7 +182,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let mut sheet = Sheet::default();
         let horizon = improved.finding.compared.comparison.fit.evaluation.horizon;
         let restarts = match horizon {
-            Horizon::Steps => "restarted every 200 samples at most".to_owned(),
+            Horizon::Steps => "restarted every 200 samples".to_owned(),
             other => other.to_string(),
         };
         let output = format!("measured (white) and simulated (orange){unit}, {restarts}");
@@ -290,17 +294,30 @@ fn residuals<'v>(layout: &JointLayout<'_>, comparison: &'v Comparison) -> Vec<&'
     layout.trials.iter().map(of_trial).collect()
 }
 
-/// The plot of a window.
-fn close_up(layout: &JointLayout<'_>, window: &Window) -> Plot {
+/// The values of the window's trial within it.
+fn trial_values<'v>(
+    layout: &JointLayout<'v>,
+    window: &Window,
+    values: impl Fn(&TrialLayout<'v>) -> &'v [f64],
+) -> &'v [f64] {
+    let all = layout.trials.get(window.place).map_or(&[][..], values);
+    all.get(window.samples.clone()).unwrap_or_default()
+}
+
+/// The plot of a window, with room for what is `simulated` there as far as it is no farther from the
+/// measured output than that goes.
+fn close_up(layout: &JointLayout<'_>, window: &Window, simulated: &[f64]) -> Plot {
     let trial = layout.trials.get(window.place);
     let ends = trial.map(|trial| {
         let Range { start, end } = window.samples;
         [seconds(trial, start + 1), seconds(trial, end)]
     });
-    let output = trial.and_then(|trial| trial.trial.output().get(window.samples.clone()));
-    let output = output.unwrap_or_default().iter().copied();
+    let output = trial_values(layout, window, |trial| trial.trial.output()).iter().copied();
+    let Span { low, high } = Span::around(output.clone(), 0.0);
+    let (lowest, highest) = (2.0 * low - high, 2.0 * high - low);
+    let shown = simulated.iter().filter(|y| y.is_finite()).map(|y| y.clamp(lowest, highest));
     let x = Span::around(ends.into_iter().flatten(), 0.0);
-    Plot::within((1010.0, SHEET.0 - 15.0), 40.0..=290.0, x, Span::around(output, 0.08))
+    Plot::within((1010.0, SHEET.0 - 15.0), 40.0..=290.0, x, Span::around(output.chain(shown), 0.08))
 }
 
 fn ticks(plot: &Plot) -> Vec<(f64, String)> {

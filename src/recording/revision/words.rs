@@ -24,9 +24,8 @@ fn written(improved: &ImprovedJoint<'_>, place: usize) -> Result<String, std::fm
     let conclusion = improved.conclusion_at(place);
     writeln!(page, "**{}**\n", prose(&improved.finding.conclusion().headline))?;
     writeln!(page, "## Revision {revision} of {last}: {}\n", plain(&change_in_words(step)))?;
-    // The first has nothing to fall from, and may say its error itself.
-    let says_error = conclusion.passages.iter().any(|passage| passage.topic == Topic::Error);
-    if place > 0 || !says_error {
+    // Where nothing is missing that is said in the conclusion.
+    if conclusion.passages.iter().all(|passage| passage.topic != Topic::Error) {
         writeln!(page, "**{}**\n", plain(&fall(improved, place)))?;
     }
     if !is_last {
