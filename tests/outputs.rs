@@ -125,6 +125,31 @@ fn a_pipe_is_written_to_and_neither_probed_nor_replaced() {
 }
 
 #[test]
+#[cfg(feature = "rrd")]
+fn an_output_has_no_name_of_a_part_of_a_recording() {
+    let folder = folder();
+    let command = "estimate log.csv -o many.rrd --decisions many_3.rrd";
+    let ended = tauscope(folder.path()).args(command.split(' ')).output().unwrap();
+    assert_eq!(ended.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&ended.stderr).contains("has files of this name"));
+}
+
+#[test]
+fn a_link_in_the_place_of_a_result_is_not_written_through() {
+    let folder = folder();
+    let run = || tauscope(folder.path()).args(["estimate", "log.csv", "--results", "r"]).output();
+    assert!(run().unwrap().status.success());
+    let results = folder.path().join("r");
+    let result = fs::read_dir(&results).unwrap().flatten().map(|entry| entry.path());
+    let result = result.filter(|path| path.is_file()).collect::<Vec<_>>().remove(0);
+    fs::remove_file(&result).unwrap();
+    std::os::unix::fs::symlink(folder.path().join("log.csv"), &result).unwrap();
+    let ended = run().unwrap();
+    assert_ne!(ended.status.code(), Some(0), "{}", String::from_utf8_lossy(&ended.stderr));
+    assert_eq!(fs::read_to_string(folder.path().join("log.csv")).unwrap(), bytes::log_text());
+}
+
+#[test]
 fn results_that_find_no_room_are_no_success() {
     let folder = folder();
     for format in ["text", "json"] {

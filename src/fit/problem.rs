@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use super::evaluation::Evaluation;
 use super::record::FitRecord;
 use super::space::Space;
-use crate::model::JointModel;
+use crate::model::{BESIDE, JointModel};
 
 /// A model on a record, and the free values at which it is.
 pub(super) struct Problem<'p, 'r> {
@@ -67,7 +67,8 @@ impl Problem<'_, '_> {
             (step != 0.0).then_some((*index, step))
         };
         let steps: Vec<(usize, f64)> = indices.iter().filter_map(step).collect();
-        for some in steps.chunks(TOGETHER) {
+        // All at once would take a second matrix.
+        for some in steps.chunks(BESIDE) {
             let there = |(index, step): &(usize, f64)| {
                 let mut there = self.free.clone();
                 there[*index] += step;
@@ -173,10 +174,6 @@ impl Problem<'_, '_> {
         self.here.take();
     }
 }
-
-/// Slopes for which models are simulated at a time: each takes a column of residuals beside the
-/// matrix.
-const TOGETHER: usize = 4;
 
 /// The sum of squares; infinite where one is not a number.
 pub(super) fn cost_of(residuals: &DVector<f64>) -> f64 {

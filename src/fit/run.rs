@@ -86,8 +86,8 @@ impl Run<'_> {
             let output = self.trial.output().get(stretch.start).copied().unwrap_or_default();
             let begin = Restart { sample: 0, output, speed: None };
             let restarts = std::iter::once(begin).chain(shifted).collect();
-            let from_s = self.seconds(stretch.start);
-            let arrivals = (stretch.start > 0).then(|| self.arrivals.after(from_s));
+            let ends = (self.seconds(stretch.start), self.seconds(stretch.end));
+            let arrivals = (stretch.start > 0).then(|| self.arrivals.between(ends.0, ends.1));
             Piece { of: index, stretch, arrivals, restarts }
         };
         stretches.into_iter().map(piece).collect()

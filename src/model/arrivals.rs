@@ -60,11 +60,13 @@ impl Commands {
         start_s: f64,
         per_step: Option<&[Option<f64>]>,
     ) -> Arrivals {
-        let mut arrivals = Arrivals { initial: self.initial, changes: Vec::new() };
+        let changes = Vec::with_capacity(self.changes.len());
+        let mut arrivals = Arrivals { initial: self.initial, changes };
+        let delay_of = model.delay_of();
         let commanded_s = self.changes.iter().map(|&(time_s, _)| time_s);
         for (number, (change, time_s)) in self.changes(start_s).zip(commanded_s).enumerate() {
             let known = per_step.and_then(|delays| delays.get(number).copied().flatten());
-            let delay_s = known.map_or_else(|| model.delay_s(&change), |delay_s| delay_s.max(0.0));
+            let delay_s = known.map_or_else(|| delay_of(&change), |delay_s| delay_s.max(0.0));
             arrivals.insert(Arrival { time_s: time_s + delay_s, level: change.after });
         }
         arrivals
@@ -87,11 +89,12 @@ impl Commands {
 }
 
 impl Arrivals {
-    /// What arrives from `time_s` on, which is then time zero.
-    pub(crate) fn after(&self, time_s: f64) -> Self {
-        let over = self.changes.partition_point(|change| change.time_s <= time_s);
-        let (before, after) = self.changes.split_at(over);
-        let shifted = after.iter().map(|a| Arrival { time_s: a.time_s - time_s, ..*a });
+    /// What arrives from `from_s` on, which is then time zero, up to `to_s`.
+    pub(crate) fn between(&self, from_s: f64, to_s: f64) -> Self {
+        let until = |time_s: f64| self.changes.partition_point(|change| change.time_s <= time_s);
+        let (before, after) = self.changes.split_at(until(from_s));
+        let within = after.iter().take(until(to_s).saturating_sub(before.len()));
+        let shifted = within.map(|a| Arrival { time_s: a.time_s - from_s, ..*a });
         Self {
             initial: before.last().map_or(self.initial, |change| change.level),
             changes: shifted.collect(),
@@ -104,5 +107,22 @@ impl Arrivals {
             self.changes.pop();
         }
         self.changes.push(arrival);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stretch_has_the_level_before_it_and_the_changes_within() {
+        let changes = [(0.5, 1.0), (1.0, 2.0), (1.5, 3.0), (2.5, 4.0)];
+        let changes = changes.map(|(time_s, level)| Arrival { time_s, level }).to_vec();
+        let all = Arrivals { initial: -1.0, changes };
+        let found = all.between(1.0, 2.0);
+        assert!((found.initial - 2.0).abs() < 1e-15);
+        assert_eq!(found.changes, [Arrival { time_s: 0.5, level: 3.0 }]);
+        assert_eq!(all.between(0.0, 9.0), all);
+        assert_eq!(all.between(3.0, 9.0), Arrivals { initial: 4.0, changes: Vec::new() });
     }
 }

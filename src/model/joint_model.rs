@@ -82,11 +82,6 @@ impl Component {
     pub(super) fn plain(&self) -> Vec<f64> {
         self.parameters.iter().map(|parameter| parameter.value).collect()
     }
-
-    /// What the effect adds to the delay of a change; see [`Effect::extra_delay_s`].
-    fn extra_delay_s(&self, change: &InputChange) -> f64 {
-        self.effect.extra_delay_s(&self.plain(), change)
-    }
 }
 
 /// The model of one joint: an integrator with effects on it.
@@ -198,8 +193,18 @@ impl JointModel {
     /// The delay of a change of the input, seconds: `delay` and what the effects of the transport
     /// stage add to it, never below zero.
     pub fn delay_s(&self, change: &InputChange) -> f64 {
-        let extra = self.stage(Stage::Transport).map(|component| component.extra_delay_s(change));
-        (self.delay.value + extra.sum::<f64>()).max(0.0)
+        self.delay_of()(change)
+    }
+
+    /// The [delay](Self::delay_s) of any change.
+    pub(super) fn delay_of(&self) -> impl Fn(&InputChange) -> f64 {
+        let transport = self.stage(Stage::Transport);
+        let transport: Vec<_> = transport.map(|one| (one.effect, one.plain())).collect();
+        let delay_s = self.delay.value;
+        move |change| {
+            let extra = transport.iter().map(|(effect, plain)| effect.extra_delay_s(plain, change));
+            (delay_s + extra.sum::<f64>()).max(0.0)
+        }
     }
 
     /// The effects of one stage.

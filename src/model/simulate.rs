@@ -80,7 +80,7 @@ pub(crate) fn outputs_together(driven: &[Driven<'_>]) -> Vec<Simulated> {
 
 /// Models that are simulated beside one another. With 4 of them the slopes of a model with an oil
 /// column take two thirds of the time that they take one by one, and with 8 no less.
-const BESIDE: usize = 4;
+pub(crate) const BESIDE: usize = 4;
 
 /// With velocity and input where `WHOLE`, else with the output alone.
 fn run<const WHOLE: bool>(driven: &[Driven<'_>]) -> Vec<Simulated> {
@@ -183,6 +183,56 @@ impl Simulated {
             output: Vec::with_capacity(samples),
             velocity: Vec::with_capacity(others),
             acting: Vec::with_capacity(others),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::{ActuatorLag, DeadBand, Effect, GravityLoad, Resonance};
+    use crate::model::Component;
+
+    #[test]
+    fn beside_one_another_models_do_what_each_does_by_itself() {
+        let with = |effect: &'static dyn Effect, values: &[f64]| {
+            let values = values.iter().map(|value| (*value).into()).collect();
+            JointModel::integrator(8.0, 0.23).with(Component::new(effect, values).unwrap())
+        };
+        let models = [
+            with(&DeadBand, &[-0.3, 0.4]),
+            with(&ActuatorLag, &[0.1]),
+            with(&GravityLoad, &[0.4, 20.0, 1.0]),
+            with(&Resonance, &[0.3, 0.1]),
+            JointModel::integrator(5.0, 0.1),
+            with(&DeadBand, &[-0.1, 0.2]),
+        ];
+        let input: Vec<f64> = (0..400).map(|k| f64::from((k / 70) % 3) - 1.0).collect();
+        let surroundings = Surroundings { radians_per_output_unit: 0.017, ..Default::default() };
+        let commands = Commands::new(&input, 0.01);
+        let arrivals: Vec<_> =
+            models.iter().map(|model| commands.arriving(model, 0.0, None)).collect();
+        let restarts = [0, 90, 250].map(|sample| Restart { sample, output: 3.0, speed: None });
+        let driven: Vec<_> = models
+            .iter()
+            .zip(&arrivals)
+            .zip([400, 13, 350, 400, 1, 260])
+            .map(|((model, arrivals), samples)| Driven {
+                model,
+                arrivals,
+                restarts: &restarts,
+                samples,
+                period_s: 0.01,
+                surroundings,
+            })
+            .collect();
+        let together = simulate_together(&driven);
+        let outputs = outputs_together(&driven);
+        for ((one, all), output) in driven.iter().zip(together).zip(outputs) {
+            let Driven { model, arrivals, samples, .. } = *one;
+            let alone = simulate(model, arrivals, samples, 0.01, &restarts, &surroundings);
+            assert_eq!(all, alone);
+            assert_eq!(output.output, alone.output);
         }
     }
 }

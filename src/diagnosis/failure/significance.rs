@@ -157,20 +157,15 @@ impl<'a> Excess<'a> {
 /// Rows of a record, ready to be shuffled.
 pub(super) struct Shuffler<'a> {
     grid: &'a Grid,
-    excess: &'a Excess<'a>,
-    rows: &'a [Row],
+    /// Of each row: it is read in each shuffle.
+    excess: Vec<f64>,
     blocks: Vec<Range<usize>>,
     runs: Vec<Vec<Run>>,
 }
 
 impl<'a> Shuffler<'a> {
     /// `excess` of the samples `rows`; `block_of` every sample.
-    pub(super) fn new(
-        grid: &'a Grid,
-        rows: &'a [Row],
-        excess: &'a Excess<'_>,
-        block_of: &[u32],
-    ) -> Self {
+    pub(super) fn new(grid: &'a Grid, rows: &[Row], excess: &Excess<'_>, block_of: &[u32]) -> Self {
         let mut blocks = Vec::new();
         let mut start = 0;
         for block in rows.chunk_by(|a, b| of_row(block_of, *a) == of_row(block_of, *b)) {
@@ -178,7 +173,8 @@ impl<'a> Shuffler<'a> {
             start += block.len();
         }
         let runs = grid.axes.iter().map(|axis| runs(rows, &axis.part_of)).collect();
-        Self { grid, excess, rows, blocks, runs }
+        let excess = rows.iter().map(|row| excess.of(*row)).collect();
+        Self { grid, excess, blocks, runs }
     }
 
     /// The best scores of all shuffled records, if a condition of `family` that scores
@@ -189,7 +185,7 @@ impl<'a> Shuffler<'a> {
         }
         let mut random = ChaCha8Rng::seed_from_u64(SEED);
         let mut order: Vec<usize> = (0..self.blocks.len()).collect();
-        let mut cumulative = Vec::with_capacity(self.rows.len() + 1);
+        let mut cumulative = Vec::with_capacity(self.excess.len() + 1);
         let mut best = Vec::new();
         let mut as_good = 0;
         for _ in 0..SHUFFLES {
@@ -213,11 +209,11 @@ impl<'a> Shuffler<'a> {
         cumulative.clear();
         cumulative.push(sum);
         for &block in order.iter() {
-            let block = &self.rows[self.blocks[block].clone()];
+            let block = &self.excess[self.blocks[block].clone()];
             let (front, back) = block.split_at(below(random, block.len()));
             for part in [back, front] {
-                cumulative.extend(part.iter().map(|row| {
-                    sum += self.excess.of(*row);
+                cumulative.extend(part.iter().map(|excess| {
+                    sum += excess;
                     sum
                 }));
             }
