@@ -59,8 +59,10 @@ enum OpenedFile {
 impl OpenedFile {
     fn named(path: &Path) -> Option<Self> {
         let folders = ["/dev/fd", "/proc/self/fd"];
-        let number = folders.iter().find_map(|folder| path.strip_prefix(folder).ok());
-        match (path.to_str()?, number.and_then(Path::to_str)) {
+        let within = folders.iter().find_map(|folder| path.strip_prefix(folder).ok());
+        // A way on from there, as `/dev/fd/../x`, is that of a file.
+        let is_number = |name: &&str| name.parse::<u32>().is_ok();
+        match (path.to_str()?, within.and_then(Path::to_str).filter(is_number)) {
             ("/dev/stdout", _) | (_, Some("1")) => Some(Self::Output),
             ("/dev/stderr", _) | (_, Some("2")) => Some(Self::Error),
             (_, number) => number.map(|_| Self::Other),
@@ -240,5 +242,19 @@ impl Write for OutputFile {
             Target::Temporary(file) => file.flush(),
             Target::Direct(file) => file.flush(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_number_names_a_file_that_is_open() {
+        let named = |path: &str| OpenedFile::named(Path::new(path));
+        assert_eq!(named("/dev/stdout"), Some(OpenedFile::Output));
+        assert_eq!(named("/proc/self/fd/2"), Some(OpenedFile::Error));
+        assert_eq!(named("/dev/fd/63"), Some(OpenedFile::Other));
+        assert_eq!(["/dev/fd", "/dev/fd/../x.csv", "/dev/fd/x", "fd/1"].map(named), [None; 4]);
     }
 }

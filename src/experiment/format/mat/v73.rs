@@ -133,7 +133,7 @@ impl Listing<'_> {
         datasets.sort();
         if datasets.len() > MOST_BESIDE {
             return Err(Fault::Damaged(format!(
-                "{} variables lie beside one another, of which {MOST_BESIDE} can be told apart",
+                "{} variables lie beside one another, and {MOST_BESIDE} of such a file are read at most",
                 datasets.len()
             )));
         }
