@@ -37,7 +37,7 @@ fn truth(id: &str) -> &'static [f64] {
         "dead_band" => &[-0.5, 0.7],
         "stiction" => &[1.2, 0.5],
         "input_saturation" => &[3.0, 0.3],
-        "asymmetric_saturation" => &[3.0, 0.3, 0.8],
+        "asymmetric_saturation" => &[3.0, 0.3, 2.4],
         "flow_curve" => &[1.3],
         "direction_gain" => &[0.75],
         "rate_limit" => &[0.06],

@@ -23,7 +23,7 @@ const EFFECTS: [(&str, &str); 23] = [
     ("dead_band", "lower = -0.3, upper = 0.4"),
     ("stiction", "start = 0.8, stop = 0.45"),
     ("input_saturation", "limit = 1.2, softness = 0.4"),
-    ("asymmetric_saturation", "limit = 1.2, softness = 0.4, negative_ratio = 0.7"),
+    ("asymmetric_saturation", "limit = 1.2, softness = 0.4, negative_limit = 0.84"),
     ("flow_curve", "exponent = 1.4"),
     ("direction_gain", "negative_factor = 0.7"),
     ("rate_limit", "seconds_per_input = 0.23"),

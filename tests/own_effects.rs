@@ -253,7 +253,7 @@ fn what_is_wrong_with_a_definition_is_said() {
         ),
         (
             joint_text(&own("mine", "input", "signal + k", "k = { value = 2, max = 1 }")),
-            "= 2 is not between",
+            "`mine.k` = 2 is not 1 or less",
         ),
         (
             joint_text(&own("mine", "input", "signal + k", "k = { min = 2, max = 1 }")),
@@ -261,7 +261,7 @@ fn what_is_wrong_with_a_definition_is_said() {
         ),
         (
             joint_text(&own("mine", "input", "signal + k", "k = nan")),
-            "`mine.k` = NaN is not between",
+            "`mine.k` = NaN is not a finite number",
         ),
         (
             joint_text(&own("mine", "input", "signal + k", "k = { value = 1, neutral = 1 }")),

@@ -236,7 +236,7 @@ impl<'a> Fine<'a> {
                     self.moving
                 }
                 "input_saturation" => u.signum() * knee(u.abs(), p[0], p[1]),
-                "asymmetric_saturation" if u < 0.0 => -knee(-u, p[2] * p[0], p[1]),
+                "asymmetric_saturation" if u < 0.0 => -knee(-u, p[2], p[1]),
                 "asymmetric_saturation" => knee(u, p[0], p[1]),
                 "flow_curve" if u == 0.0 => 0.0,
                 "flow_curve" => u.signum() * (p[0] * u.abs().ln()).exp(),
@@ -326,7 +326,7 @@ fn effects_of_the_input_and_of_transport_are_exact() {
     assert_within(&[("stiction", &[2.0, 0.7])], 1e-10);
     assert_within(&[("input_saturation", &[2.5, 0.0])], 1e-10);
     assert_within(&[("input_saturation", &[2.5, 0.6])], 1e-10);
-    assert_within(&[("asymmetric_saturation", &[2.5, 0.6, 0.7])], 1e-10);
+    assert_within(&[("asymmetric_saturation", &[2.5, 0.6, 1.75])], 1e-10);
     assert_within(&[("flow_curve", &[1.6])], 1e-10);
     assert_within(&[("direction_gain", &[0.7])], 1e-10);
     assert_within(&[("variable_delay", &[-0.013, 0.021, 0.017, 0.003, 1.7, 0.9, 6.0, 0.0])], 1e-10);

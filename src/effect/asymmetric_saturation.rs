@@ -1,15 +1,15 @@
 //! Asymmetric saturation: the flow ends at a limit of its own in each direction.
 //!
 //! ```text
-//! limit(in) = limit                    where in ≥ 0
-//!             negative_ratio · limit   where in < 0
+//! limit(in) = limit            where in ≥ 0
+//!             negative_limit   where in < 0
 //! ```
 //!
 //! and below and about it as [`InputSaturation`](super::InputSaturation), which it contains as the
-//! case `negative_ratio = 1`; it is looked for only where that is found. The two sides of a cylinder
-//! have other areas and loads, and a valve other notches for each: the pump's flow or the valve's
-//! area ends the speed of each direction by itself, and a
-//! [gain by direction](super::DirectionGain) alone would tie the limits to the gains.
+//! case of equal limits. The two sides of a cylinder have other areas and loads, and a valve other
+//! notches for each: the pump's flow or the valve's area ends the speed of each direction by itself,
+//! and a [gain by direction](super::DirectionGain) alone would tie the limits to the gains. Of a
+//! limit that only one direction reaches, the other one is not determined.
 //!
 //! # References
 //! Jelali, M., and Kroll, A., 2003, Hydraulic Servo-systems: Modelling, Identification and Control
@@ -28,8 +28,8 @@ static SPEC: Spec = Spec::new(
     "flow limits that differ by direction",
 )
 .equation(
-    "abs(out) = min(abs(in), limit) where in >= 0, min(abs(in), negative_ratio limit) where in < \
-               0, each rounded within its limit (1 -+ softness)",
+    "abs(out) = min(abs(in), limit) where in >= 0, min(abs(in), negative_limit) where in < 0, \
+               each rounded within its limit (1 -+ softness)",
 )
 .source("Jelali and Kroll, 2003, Hydraulic Servo-systems")
 .parameters(&[
@@ -38,12 +38,12 @@ static SPEC: Spec = Spec::new(
         .neutral(UNLIMITED),
     SOFTNESS,
     Parameter::new(
-        "negative_ratio",
-        "limit of the negative direction over that of the positive one",
-        Dimension::One,
+        "negative_limit",
+        "size of the largest negative input that passes",
+        Dimension::Input,
     )
-    .between(0.05, 20.0)
-    .neutral(1.0),
+    .between(0.0, UNLIMITED)
+    .neutral(UNLIMITED),
 ])
 .confused_with(&["input_saturation", "direction_gain"])
 .absorbing(&["input_saturation"])
@@ -60,7 +60,7 @@ impl Effect for AsymmetricSaturation {
 
     fn equations(&self) -> Option<Equations> {
         Some(Equations::new(
-            "here = limit * if(signal < 0, negative_ratio, 1)
+            "here = if(signal < 0, negative_limit, limit)
              size = abs(signal)
              into_knee = size - here * (1 - softness)
              width = 2 * softness * here
@@ -70,20 +70,24 @@ impl Effect for AsymmetricSaturation {
     }
 
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
-        let &[limit, softness, negative_ratio] = parameters else { return at.signal };
-        let ratio = if at.signal < 0.0 { negative_ratio } else { 1.0 };
-        limited(at.signal, ratio * limit, softness)
+        let &[limit, softness, negative_limit] = parameters else { return at.signal };
+        let limit = if at.signal < 0.0 { negative_limit } else { limit };
+        limited(at.signal, limit, softness)
     }
 
     fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
         let (low, high) = FITTED_LIMIT;
         let largest = record.size(Dimension::Input);
-        vec![(low * largest, high * largest), (0.0, 1.0), (0.05, 20.0)]
+        let limits = (low * largest, high * largest);
+        vec![limits, (0.0, 1.0), limits]
     }
 
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
         let largest = record.size(Dimension::Input);
-        let guess = |part: f64| [0.7, 1.0, 1.4].map(|ratio| vec![part * largest, 0.1, ratio]);
+        let guess = |part: f64| {
+            let limit = part * largest;
+            [0.7, 1.0, 1.4].map(|ratio| vec![limit, 0.1, ratio * limit])
+        };
         [0.4, 0.65, 0.9].into_iter().flat_map(guess).collect()
     }
 }
@@ -97,7 +101,7 @@ mod tests {
     #[test]
     fn each_direction_has_its_limit() {
         let inputs = [-3.0, -1.1, -1.0, 2.0, 9.0];
-        let outputs = run(&AsymmetricSaturation, &[2.0, 0.0, 0.5], &inputs);
+        let outputs = run(&AsymmetricSaturation, &[2.0, 0.0, 1.0], &inputs);
         assert_close(&outputs, &[-1.0, -1.0, -1.0, 2.0, 2.0]);
     }
 
@@ -105,6 +109,6 @@ mod tests {
     fn with_the_same_limit_both_ways_it_is_a_saturation() {
         let inputs = [-4.0, -1.9, -1.0, 1.9, 3.0];
         let plain = run(&InputSaturation, &[2.0, 0.5], &inputs);
-        assert_close(&run(&AsymmetricSaturation, &[2.0, 0.5, 1.0], &inputs), &plain);
+        assert_close(&run(&AsymmetricSaturation, &[2.0, 0.5, 2.0], &inputs), &plain);
     }
 }

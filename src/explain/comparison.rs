@@ -8,7 +8,8 @@ use crate::diagnosis::{ErrorFigures, floor_of};
 use crate::fit::{Fit, FitRecord, Part};
 
 /// What the error with measured delays must be, in parts of the error with a law of the delay,
-/// for them to take its place.
+/// for them to take its place; and that with a finer form of an effect, in parts of the error with
+/// any other, for it to be offered at once.
 pub(super) const MUCH_LESS: f64 = 0.8;
 
 /// The candidates that `extensions` of the model of `base` are, best first.

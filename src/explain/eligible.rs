@@ -19,6 +19,19 @@ pub(super) fn eligible(
     options.effects.iter().filter(is_eligible).copied().collect()
 }
 
+/// The effects of `options` that could be missing from `model` and [refine](Spec::refines) one that
+/// is not in it.
+pub(super) fn refinements(
+    record: &FitRecord<'_>,
+    model: &JointModel,
+    options: &Options,
+) -> Vec<&'static dyn Effect> {
+    let refines = |effect: &&&'static dyn Effect| {
+        could_be_missing(record, model, **effect) && !is_due(model, effect.spec(), options)
+    };
+    options.effects.iter().filter(refines).copied().collect()
+}
+
 /// Whether `effect` could be missing: it is not there already, nor contained in one that is,
 /// and the record could show it.
 pub(super) fn could_be_missing(

@@ -1,8 +1,8 @@
 //! Every effect added to a model in turn, and fitted: which of them explains the misfit best.
 
 use super::candidate::Candidate;
-use super::comparison::compared;
-use super::eligible::{eligible, signal_range};
+use super::comparison::{MUCH_LESS, compared};
+use super::eligible::{eligible, refinements, signal_range};
 use super::extension::Extension;
 use super::options::Options;
 use super::pairs::pairs;
@@ -50,7 +50,15 @@ pub(super) fn rank(
     let levels = record.input_levels();
     let range = signal_range(record, &base.model, &levels);
     let effects = eligible(record, &base.model, options);
-    let search = Search { record, base, noise_floor, effects: &effects, range: &range };
+    let refinements = refinements(record, &base.model, options);
+    let search = Search {
+        record,
+        base,
+        noise_floor,
+        effects: &effects,
+        refinements: &refinements,
+        range: &range,
+    };
     let [thinned, training] = [record.thinned(), record.for_training()];
     let ranking = search.singles(&thinned, scope, workers);
     let is_whole = thinned.windows().len() == training.windows().len();
@@ -74,6 +82,8 @@ struct Search<'a, 'r> {
     /// Standard deviation of the measurement noise, output units.
     noise_floor: f64,
     effects: &'a [&'static dyn Effect],
+    /// Finer forms of some of the effects.
+    refinements: &'a [&'static dyn Effect],
     range: &'a RecordRange<'a>,
 }
 
@@ -102,8 +112,12 @@ impl Search<'_, '_> {
             let is_known = extensions.iter().any(|one| one.effects == other.effects);
             extensions.extend(Some(other).filter(|_| !is_known));
         }
-        if scope == Scope::Everything {
-            extensions.extend(self.with_measured_delays(&extensions));
+        if !self.is_explained(&extensions) {
+            let refined = self.refined(&extensions, workers);
+            extensions.extend(refined);
+        }
+        if scope == Scope::Everything && !self.is_explained(&extensions) {
+            extensions.extend(self.with_measured_delays());
         }
         self.compared(extensions)
     }
@@ -131,16 +145,45 @@ impl Search<'_, '_> {
         Some(Extension { effects, fit })
     }
 
-    /// The base with each step's own delay as it was measured, where none of `extensions` comes
-    /// near the noise: delays may follow any law, or none.
-    fn with_measured_delays(&self, extensions: &[Extension]) -> Option<Extension> {
+    /// Whether one of `extensions` comes near the noise.
+    fn is_explained(&self, extensions: &[Extension]) -> bool {
+        self.least_error(extensions) <= NEAR_NOISE * self.noise_floor
+    }
+
+    /// The least root mean square error of `extensions` on what they were fitted to.
+    fn least_error(&self, extensions: &[Extension]) -> f64 {
+        let errors = extensions.iter().filter_map(|one| self.error(one));
+        errors.fold(f64::INFINITY, f64::min)
+    }
+
+    fn error(&self, extension: &Extension) -> Option<f64> {
+        let evaluation = &extension.fit.evaluation;
+        Some(ErrorFigures::of(self.record, evaluation, Part::Training)?.rmse)
+    }
+
+    /// The finer forms of what is among `extensions` that leave much less than all of these: a limit
+    /// that only one direction reaches is hardly seen as one of both.
+    fn refined(&self, extensions: &[Extension], workers: &impl Workers) -> Vec<Extension> {
+        let is_among = |id| extensions.iter().any(|one| one.effects == [id]);
+        let finer: Vec<&'static dyn Effect> = self
+            .refinements
+            .iter()
+            .filter(|effect| effect.spec().refines.is_some_and(is_among))
+            .copied()
+            .collect();
+        let with = |effect: &&'static dyn Effect| {
+            let model = self.base.model.with(Component::neutral(*effect));
+            let fit = fit_to_compare(self.record, &model, self.range).ok()?;
+            Some(Extension { effects: vec![effect.spec().id], fit })
+        };
+        let limit = MUCH_LESS * self.least_error(extensions);
+        let fitted = workers.map(&finer, with).into_iter().flatten();
+        fitted.filter(|one| self.error(one).is_some_and(|error| error < limit)).collect()
+    }
+
+    /// The base with each step's own delay as it was measured: delays may follow any law, or none.
+    fn with_measured_delays(&self) -> Option<Extension> {
         let Self { record, base, .. } = self;
-        let error = |one: &Extension| ErrorFigures::of(record, &one.fit.evaluation, Part::Training);
-        let errors = extensions.iter().filter_map(error).map(|error| error.rmse);
-        let least = errors.fold(f64::INFINITY, f64::min);
-        if least <= NEAR_NOISE * self.noise_floor {
-            return None;
-        }
         let component = self.effects.iter().find_map(|effect| Component::measured(*effect))?;
         let id = component.effect().spec().id;
         let model = base.model.with(component);

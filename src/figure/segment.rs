@@ -115,3 +115,75 @@ impl<'a> SegmentFigure<'a> {
         Span::around(sse.map(|sse| sse.max(self.least_error).log10()), 0.12)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delay::{Settings, estimate};
+    use crate::numerics::testing::normals;
+    use crate::units::SamplePeriod;
+
+    /// What settles at the level of its input, 20 samples late and with a time constant of 30
+    /// samples, and the trial of it.
+    fn settling() -> (Vec<f64>, Trial) {
+        let levels = [0.0, 1.0, -0.5, 2.0, 0.5, 1.5, -1.0, 0.0];
+        let input: Vec<f64> = levels.iter().flat_map(|level| [*level; 300]).collect();
+        let mut y = 0.0;
+        let mut ideal = Vec::new();
+        for k in 0_usize..input.len() {
+            ideal.push(y);
+            let late = k.checked_sub(20).map_or(0.0, |k| input[k]);
+            y += (late - y) / 30.0;
+        }
+        let mut noise = normals(31);
+        let output = ideal.iter().map(|y| y + 0.004 * noise()).collect();
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        (ideal, Trial::new("1", 0.0, period, input, output).unwrap())
+    }
+
+    #[test]
+    fn of_an_output_that_settles_the_response_is_drawn_and_meets_what_was_simulated() {
+        let (ideal, trial) = settling();
+        let decisions = estimate(&trial, &Settings::default()).unwrap().decisions;
+        let accepted = decisions.iter().filter(|d| d.verdict() == Verdict::Accepted);
+        let mut drawn = 0;
+        for decision in accepted {
+            assert!(decision.response.is_some());
+            let figure = SegmentFigure::new(&trial, decision);
+            let broken = figure.breakpoint().unwrap();
+            let best = decision.candidates.best().unwrap();
+            let [before, after] = figure.lines(&best, broken);
+            assert!(before.iter().all(|(k, _)| *k <= broken));
+            assert!(after.iter().all(|(k, _)| *k > broken));
+            for (k, y) in before.iter().chain(&after) {
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "a sample"
+                )]
+                let expected = ideal[*k as usize - 1];
+                assert!((y - expected).abs() < 0.02, "{y} at {k}, simulated {expected}");
+            }
+            drawn += 1;
+        }
+        assert!(drawn >= 5, "only {drawn} steps are accepted");
+    }
+
+    #[test]
+    fn lines_run_from_end_to_end_of_the_segment_and_break_where_they_are_told() {
+        let ramp = |k: u32| 0.2 * (f64::from(k) - 111.0).max(0.0);
+        let mut noise = normals(5);
+        let output: Vec<f64> = (0..240).map(|k| ramp(k) + 0.01 * noise()).collect();
+        let input = (0..240).map(|k| f64::from(u8::from(k >= 100))).collect();
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let trial = Trial::new("1", 0.0, period, input, output).unwrap();
+        let decisions = estimate(&trial, &Settings::default()).unwrap().decisions;
+        let decision = decisions.first().unwrap();
+        let figure = SegmentFigure::new(&trial, decision);
+        let best = decision.candidates.best().unwrap();
+        let [before, after] = figure.lines(&best, 112.0);
+        let ends: Vec<f64> = before.iter().chain(&after).map(|(k, _)| *k).collect();
+        let segment = decision.segment;
+        assert_eq!(ends, [segment.first as f64, 112.0, 112.0, segment.last as f64]);
+    }
+}

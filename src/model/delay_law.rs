@@ -94,7 +94,7 @@ fn fixed(value: f64) -> Value {
     Value { fixed: true, ..Value::from(value) }
 }
 
-/// The law with the least criterion, which gives no start a negative delay.
+/// The law with the least criterion, which gives no start a negative delay, nor a step of no size.
 fn best(starts: &[Start]) -> Option<Law> {
     if starts.len() < FEWEST {
         return None;
@@ -113,7 +113,8 @@ fn best(starts: &[Start]) -> Option<Law> {
         sizes.map(move |size_scale| Form { size_scale, by_direction })
     });
     let fitted = forms.map(|form| fitted(starts, form));
-    let is_possible = |law: &Law| starts.iter().all(|start| law.delay_s(start.rise) >= 0.0);
+    let is_possible =
+        |law: &Law| law.delay_s >= 0.0 && starts.iter().all(|start| law.delay_s(start.rise) >= 0.0);
     fitted.filter(is_possible).min_by(|a, b| a.criterion.total_cmp(&b.criterion))
 }
 
@@ -186,6 +187,14 @@ mod tests {
         }
         let component = &model.components()[0];
         assert!(component.parameters().iter().all(|parameter| parameter.fixed));
+    }
+
+    #[test]
+    fn a_law_that_ends_below_zero_is_none() {
+        // As measured of a slow logger: the smallest steps seem to act at once.
+        let law = |rise: f64| if rise.abs() < 4.5 { 0.004 } else { 0.2 };
+        let best = best(&starts(law)).unwrap();
+        assert!(best.delay_s >= 0.0, "{best:?}");
     }
 
     #[test]

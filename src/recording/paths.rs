@@ -232,6 +232,7 @@ pub(crate) mod revision {
         pub(crate) const RANKING: &str = "ranking";
         pub(crate) const UNCERTAIN: &str = "uncertain";
         pub(crate) const POINTS: &str = "points";
+        pub(crate) const FALLEN: &str = "fallen";
         pub(crate) const SIMULATED: &str = "simulated";
         pub(crate) const BEFORE: &str = "before";
         pub(crate) const PROPOSED: &str = "proposed";
@@ -239,22 +240,25 @@ pub(crate) mod revision {
         pub(crate) const BEFORE_NAME: &str = "before_name";
         pub(crate) const PROPOSED_NAME: &str = "proposed_name";
         pub(crate) const LAW_NAME: &str = "law_name";
+        pub(crate) const FALLEN_NAME: &str = "fallen_name";
         pub(crate) use crate::recording::paths::{GRID, TEXTS};
         pub(crate) const NOISE: &str = "noise";
         pub(crate) const NOISE_NAME: &str = "noise_name";
-        pub(crate) const PARTS: [&str; 16] = [
+        pub(crate) const PARTS: [&str; 18] = [
             LADDER,
             TRAINING,
             RANKING,
             UNCERTAIN,
             SIMULATED,
             POINTS,
+            FALLEN,
             BEFORE,
             PROPOSED,
             LAW,
             BEFORE_NAME,
             PROPOSED_NAME,
             LAW_NAME,
+            FALLEN_NAME,
             GRID,
             NOISE,
             TEXTS,

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use super::schema::SCHEMA;
-use crate::effect::UnknownEffect;
 use crate::effect::expression::DefinitionError;
+use crate::effect::{UNLIMITED, UnknownEffect};
 
 /// Why a model file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -85,8 +85,8 @@ pub enum ModelError {
     },
     /// A value is not finite, or lies outside its bounds.
     #[error(
-        "{}, joint `{joint}`: `{owner}.{name}` = {value} is not between {min} and {max}",
-        path.display()
+        "{}, joint `{joint}`: `{owner}.{name}` = {} is not {}",
+        path.display(), plain(*value), allowed(*min, *max)
     )]
     OutOfBounds {
         /// The file.
@@ -147,4 +147,19 @@ pub enum ModelError {
         /// The joint.
         joint: String,
     },
+}
+
+/// What a value may be.
+fn allowed(min: f64, max: f64) -> String {
+    match (min > -UNLIMITED, max < UNLIMITED) {
+        (true, true) => format!("between {} and {}", plain(min), plain(max)),
+        (true, false) => format!("{} or more", plain(min)),
+        (false, true) => format!("{} or less", plain(max)),
+        (false, false) => "a finite number".to_owned(),
+    }
+}
+
+/// A number without rows of zeros.
+fn plain(value: f64) -> String {
+    if value.abs() < UNLIMITED { value.to_string() } else { format!("{value:e}") }
 }

@@ -55,6 +55,7 @@ pub(super) fn evidence(improved: &ImprovedJoint<'_>) -> Evidence {
                 Some(still.legend(number, &step.comparison.fit.model, joint)),
                 before.map(|_| format!("revision {}", number - 1)),
                 proposed.map(|candidate| format!("with {}", candidate.name())),
+                held.iter().any(|held| held.fell).then(|| "after a step down".to_owned()),
             ],
             laws: [own, before.cloned().unwrap_or_default(), next],
         });
@@ -86,10 +87,12 @@ pub(super) fn add(rows: &mut Rows<'_>, evidence: &Evidence) -> Result<(), Record
     rows.strips(sheet::UNCERTAIN, palette::MEASURED, 0.8, figures().map(Figure::uncertain))?;
     rows.points(sheet::SIMULATED, palette::REVISION, 3.5, figures().map(Figure::simulated))?;
     rows.points(sheet::POINTS, palette::MEASURED, 4.0, figures().map(Figure::measured))?;
+    rows.points(sheet::FALLEN, palette::DOWN, 4.0, figures().map(Figure::fallen))?;
     for (name, which, rgb) in [
         ("law_name", 0, palette::REVISION),
         ("before_name", 1, palette::BEFORE),
         ("proposed_name", 2, palette::PROPOSED),
+        (sheet::FALLEN_NAME, 3, palette::DOWN),
     ] {
         rows.texts(name, rgb, figures().map(|figure| figure.legend(which)))?;
     }

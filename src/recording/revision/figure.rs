@@ -21,6 +21,9 @@ pub(super) struct Held {
     pub(super) level: f64,
     pub(super) speed: f64,
     pub(super) std_error: f64,
+    /// Whether an output came down to it, which backlash and friction leave higher than one that
+    /// came up; not asked of a speed.
+    pub(super) fell: bool,
     /// What the revision makes of the speed, where that is a point of its own.
     pub(super) simulated: Option<f64>,
 }
@@ -41,7 +44,8 @@ pub(super) struct Figure {
     pub(super) points: Vec<Held>,
     /// What the revision makes of it, the one before, and the candidate that comes next.
     pub(super) laws: [Law; 3],
-    pub(super) names: [Option<String>; 3],
+    /// The names of these, and of the points that came down.
+    pub(super) names: [Option<String>; 4],
 }
 
 impl Figure {
@@ -66,7 +70,11 @@ impl Figure {
     }
 
     pub(super) fn measured(&self) -> Vec<Vec2D> {
-        self.places(|held| Some(held.speed))
+        self.places(|held| (!held.fell).then_some(held.speed))
+    }
+
+    pub(super) fn fallen(&self) -> Vec<Vec2D> {
+        self.places(|held| held.fell.then_some(held.speed))
     }
 
     pub(super) fn simulated(&self) -> Vec<Vec2D> {

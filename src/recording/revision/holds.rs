@@ -50,7 +50,7 @@ fn of_trial(trial: &Trial, simulated: &Simulated, (noise, shown): (f64, Shown)) 
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let range = Span::around(trial.output().iter().copied(), 0.0);
     let largest = trial.input().iter().fold(0.0, |most: f64, level| most.max(level.abs()));
-    let mut start = 0;
+    let (mut start, mut before) = (0, f64::NEG_INFINITY);
     let mut all = Vec::new();
     for part in parts {
         let output = trial.output().get(start..start + part.len()).unwrap_or_default();
@@ -60,7 +60,9 @@ fn of_trial(trial: &Trial, simulated: &Simulated, (noise, shown): (f64, Shown)) 
             Shown::Output => output.len() - output.len() / 3..output.len(),
         };
         let rows = start + within.start..start + within.end;
-        start += part.len();
+        let level = mean(part);
+        let fell = is_held && shown == Shown::Output && level < before;
+        (start, before) = (start + part.len(), level);
         let Some(measured) = output.get(within).filter(|_| part.len() >= SHORTEST) else {
             continue;
         };
@@ -74,7 +76,7 @@ fn of_trial(trial: &Trial, simulated: &Simulated, (noise, shown): (f64, Shown)) 
             Shown::Speed => simulated.velocity.get(rows).map(mean),
             Shown::Output => simulated.output.get(rows).map(mean),
         };
-        all.push(Held { level: mean(part), speed, std_error, simulated });
+        all.push(Held { level, speed, std_error, fell, simulated });
     }
     all
 }
@@ -177,12 +179,12 @@ mod tests {
 
     #[test]
     fn an_output_that_settles_is_shown_where_it_settles() {
-        let acting = [vec![1.0; 30], vec![2.0; 30]].concat();
+        let acting = [vec![1.0; 30], vec![2.0; 30], vec![-1.0; 30]].concat();
         let settled = |k: usize| if k % 30 < 10 { 0.0 } else { acting[k] };
-        let output: Vec<f64> = (0..60).map(settled).collect();
+        let output: Vec<f64> = (0..90).map(settled).collect();
         let held = of_trial(&trial(acting.clone(), output), &of(acting), (0.0, Shown::Output));
-        let found: Vec<_> = held.iter().map(|held| (held.level, held.speed)).collect();
-        assert_eq!(found, [(1.0, 1.0), (2.0, 2.0)]);
+        let found: Vec<_> = held.iter().map(|held| (held.level, held.speed, held.fell)).collect();
+        assert_eq!(found, [(1.0, 1.0, false), (2.0, 2.0, false), (-1.0, -1.0, true)]);
     }
 
     #[test]

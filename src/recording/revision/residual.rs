@@ -39,6 +39,7 @@ pub(super) fn figure(
         level: mean.x,
         speed: mean.residual,
         std_error: noise / count.sqrt(),
+        fell: false,
         simulated: None,
     };
     let explained: Law = bins.iter().map(|(mean, _)| (mean.x, mean.explained)).collect();
@@ -54,6 +55,7 @@ pub(super) fn figure(
             Some(format!("residual of revision {number}: points")),
             None,
             Some(format!("explained by {}", candidate.name())),
+            None,
         ],
     }
 }
