@@ -109,6 +109,24 @@ fn several_joints_each_have_their_own_command_and_a_broken_one_costs_no_other() 
 }
 
 #[test]
+fn a_limit_that_only_one_direction_reaches_is_named_at_once() {
+    for (limit, negative_ratio) in [(0.9, 3.0), (3.0, 0.3)] {
+        let mut limited = joint("boom");
+        let numbers = [("limit", limit), ("negative_ratio", negative_ratio)];
+        let numbers = numbers.map(|(key, value)| (key.to_owned(), value));
+        limited.hide("asymmetric_saturation", &numbers).unwrap();
+        let desk = Desk::with(vec![limited]);
+        let boom = &desk.json("explain log.csv", 0)["joints"][0];
+        assert_eq!(boom["verdict"], "missing_effect", "{boom}");
+        let first = &boom["ranking"][0];
+        assert_eq!(first["effect"], "asymmetric_saturation");
+        let reached = if negative_ratio > 1.0 { "limit" } else { "negative_limit" };
+        let found = &first["parameters"][reached];
+        assert!((number(&found["value"]) - 0.9).abs() < 0.02, "{found}");
+    }
+}
+
+#[test]
 fn an_effect_of_the_model_file_takes_part() {
     let desk = Desk::with(vec![JointSpec { saturation: Some(0.9), ..joint("boom") }]);
     desk.write(

@@ -253,8 +253,30 @@ fn what_makes_no_sense_is_refused_with_the_remedy() {
     workspace.run("estimate logs --results one").is_whole();
     workspace.run("estimate logs --results two --beta 2").is_whole();
     workspace.run("merge one two").is_refused_with("merge results of one kind only");
+    let result = fs::read_dir(workspace.path("one")).unwrap().next().unwrap().unwrap().path();
+    let copy = workspace.path("one/copy.json");
+    fs::copy(result, &copy).unwrap();
+    workspace.run("merge one").is_refused_with("copy.json: a copy of the result of logs/run_0");
+    fs::remove_file(copy).unwrap();
     fs::write(workspace.path("one/other.json"), "{}").unwrap();
     workspace.run("merge one").is_refused_with("other.json: not a result of tauscope; remove it");
+}
+
+#[test]
+#[cfg(unix)]
+fn a_pipe_under_the_name_of_a_result_is_not_waited_for() {
+    let workspace = Workspace::with_logs(2);
+    workspace.run("estimate logs --results kept").is_whole();
+    let result = fs::read_dir(workspace.path("kept")).unwrap().next().unwrap().unwrap().path();
+    fs::remove_file(&result).unwrap();
+    let make = || Command::new("mkfifo").arg(&result).status().unwrap().success();
+    assert!(make());
+    let again = workspace.run("estimate logs --results kept");
+    assert_eq!(again.status, Some(1));
+    again.says("not a file, and results are files of their own; remove it");
+    // It was no result, and is gone.
+    assert!(make());
+    workspace.run("merge kept").says("not a file, and a result is one; remove it");
 }
 
 /// The interpreter for the example, where it has what the example needs.

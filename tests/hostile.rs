@@ -7,6 +7,7 @@ mod bytes;
 #[path = "hostile/run.rs"]
 mod run;
 
+use std::fmt::Write as _;
 use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -164,6 +165,167 @@ fn what_is_blank_in_a_workbook_counts_as_well() {
     assert!(bytes.len() < 100_000);
     let path = file(&folder, "blank.xlsx", &bytes);
     assert_says(&path, &["--max-memory", "50MB"], "--max-memory");
+}
+
+/// A workbook whose only sheet has 26 cells with one shared text in each of its rows.
+#[cfg(feature = "xlsx")]
+fn workbook_of_one_text(rows: u32, text: &str) -> Vec<u8> {
+    const MAIN: &str = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
+    const OF: &str = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
+    const PACKAGE: &str = "http://schemas.openxmlformats.org/package/2006/relationships";
+    let mut sheet = format!("<worksheet xmlns=\"{MAIN}\"><sheetData>");
+    for row in 1..=rows {
+        write!(sheet, "<row r=\"{row}\">").unwrap();
+        for column in 'A'..='Z' {
+            write!(sheet, "<c r=\"{column}{row}\" t=\"s\"><v>0</v></c>").unwrap();
+        }
+        sheet += "</row>";
+    }
+    sheet += "</sheetData></worksheet>";
+    let parts = [
+        (
+            "_rels/.rels",
+            format!(
+                "<Relationships xmlns=\"{PACKAGE}\"><Relationship Id=\"r1\" \
+                 Type=\"{OF}/officeDocument\" Target=\"xl/workbook.xml\"/></Relationships>"
+            ),
+        ),
+        (
+            "xl/workbook.xml",
+            format!(
+                "<workbook xmlns=\"{MAIN}\" xmlns:r=\"{OF}\"><sheets><sheet name=\"a\" \
+                 sheetId=\"1\" r:id=\"r1\"/></sheets></workbook>"
+            ),
+        ),
+        (
+            "xl/_rels/workbook.xml.rels",
+            format!(
+                "<Relationships xmlns=\"{PACKAGE}\"><Relationship Id=\"r1\" \
+                 Type=\"{OF}/worksheet\" Target=\"worksheets/sheet1.xml\"/><Relationship \
+                 Id=\"r2\" Type=\"{OF}/sharedStrings\" Target=\"sharedStrings.xml\"/>\
+                 </Relationships>"
+            ),
+        ),
+        ("xl/sharedStrings.xml", format!("<sst xmlns=\"{MAIN}\"><si><t>{text}</t></si></sst>")),
+        ("xl/worksheets/sheet1.xml", sheet),
+    ];
+    let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    for (name, part) in parts {
+        archive.start_file(name, zip::write::SimpleFileOptions::default()).unwrap();
+        archive.write_all(part.as_bytes()).unwrap();
+    }
+    archive.finish().unwrap().into_inner()
+}
+
+#[test]
+#[cfg(feature = "xlsx")]
+fn a_text_that_many_cells_share_counts_in_each() {
+    let folder = TempDir::new().unwrap();
+    let bytes = workbook_of_one_text(2000, &"x".repeat(32_000));
+    assert!(bytes.len() < 300_000);
+    let path = file(&folder, "shared.xlsx", &bytes);
+    assert_says(&path, &["--max-memory", "100MB"], "--max-memory");
+    let few = file(&folder, "few.xlsx", &workbook_of_one_text(2, "x"));
+    assert_says(&few, &["--max-memory", "100MB"], "no time column");
+}
+
+#[test]
+#[cfg(feature = "parquet")]
+fn a_text_that_many_rows_share_is_held_once_and_no_longer_than_a_name() {
+    use parquet::data_type::{ByteArray, ByteArrayType, DoubleType};
+    use parquet::file::properties::WriterProperties;
+    use parquet::file::writer::SerializedFileWriter;
+
+    let folder = TempDir::new().unwrap();
+    let schema = "message log { required double time_s; required double a.input; required double \
+                  a.output; required binary trial (UTF8); }";
+    let schema = schema.replace("a.input", "a_input").replace("a.output", "a_output");
+    let schema = parquet::schema::parser::parse_message_type(&schema).unwrap();
+    let compression = parquet::basic::Compression::SNAPPY;
+    let properties = WriterProperties::builder().set_compression(compression).build();
+    let path = folder.path().join("long.parquet");
+    let file = fs::File::create(&path).unwrap();
+    let mut writer = SerializedFileWriter::new(file, schema.into(), properties.into()).unwrap();
+    let mut group = writer.next_row_group().unwrap();
+    let columns: [fn(u32) -> f64; 3] =
+        [|k| 0.01 * f64::from(k), |k| f64::from(k / 50 % 2), f64::from];
+    for of in columns {
+        let mut column = group.next_column().unwrap().unwrap();
+        let values: Vec<f64> = (0..300).map(of).collect();
+        column.typed::<DoubleType>().write_batch(&values, None, None).unwrap();
+        column.close().unwrap();
+    }
+    let mut column = group.next_column().unwrap().unwrap();
+    let names = vec![ByteArray::from(vec![b'x'; 500_000]); 300];
+    column.typed::<ByteArrayType>().write_batch(&names, None, None).unwrap();
+    column.close().unwrap();
+    group.close().unwrap();
+    writer.close().unwrap();
+    let joint = ["--joint", "a=a_input:a_output", "--trial", "trial"];
+    assert_says(&path, &joint, "longer than 1000 bytes");
+    let limited = [&joint[..], &["--max-memory", "400kB"]].concat();
+    assert_says(&path, &limited, "--max-memory");
+}
+
+#[test]
+fn a_name_that_is_none_is_refused() {
+    let folder = TempDir::new().unwrap();
+    let name = "b".repeat(100_000);
+    let text = format!("time_s,{name}.input,{name}.output\n0,0,0\n0.01,1,1\n0.02,1,2\n");
+    let path = file(&folder, "long.csv", text.as_bytes());
+    assert_says(
+        &path,
+        &[],
+        "row 1: the name `bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb…` is longer",
+    );
+    let text = format!("time_s,trial,b.input,b.output\n0,a,0,0\n0,{name},1,1\n");
+    let path = file(&folder, "trial.csv", text.as_bytes());
+    assert_says(&path, &[], "row 3: the name");
+}
+
+#[test]
+fn what_columns_are_taken_for_takes_time_with_their_number() {
+    let folder = TempDir::new().unwrap();
+    for [input, output] in [[".input", ".output"], ["_cmd", "_angle"]] {
+        let mut text = "time_s".to_owned();
+        for joint in 0..20_000 {
+            write!(text, ",j{joint}{input},j{joint}{output}").unwrap();
+        }
+        for row in 0..6 {
+            let cells = format!(",{},{row}", row / 3).repeat(20_000);
+            write!(text, "\n{row}{cells}").unwrap();
+        }
+        let path = file(&folder, "wide.csv", text.as_bytes());
+        let ended = tauscope(&["columns", path.to_str().unwrap()]);
+        assert_eq!(ended.status, Some(0), "{ended:?}");
+    }
+}
+
+#[test]
+fn a_model_with_more_effects_than_any_is_refused_and_one_without_end() {
+    let folder = TempDir::new().unwrap();
+    let log = file(&folder, "log.csv", bytes::log_text().as_bytes());
+    let mut model = "schema = \"tauscope/model/1\"\n[joint.a]\nstructure = \"integrator\"\n\
+                     parameters = { gain = 1.0, delay = 0.1 }\n"
+        .to_owned();
+    for k in 0..300 {
+        write!(
+            model,
+            "[[joint.a.effect]]\nkind = \"expression\"\nid = \"z{k}\"\nstage = \"input\"\n\
+             expression = \"signal * a\"\nparameters = {{ a = 1.0 }}\n"
+        )
+        .unwrap();
+    }
+    let model = file(&folder, "model.toml", model.as_bytes());
+    let endless = if cfg!(unix) { "/dev/zero" } else { model.to_str().unwrap() };
+    for (model, expected) in [
+        (model.to_str().unwrap(), "300 effects"),
+        (endless, if cfg!(unix) { "64 MB" } else { "300" }),
+    ] {
+        let ended = tauscope(&["compare", log.to_str().unwrap(), "--model", model]);
+        assert_eq!(ended.status, Some(2), "{ended:?}");
+        assert!(ended.said.contains(expected), "{ended:?}");
+    }
 }
 
 #[test]

@@ -250,6 +250,7 @@ fn each_library_is_named_in_its_own_place_only() {
         ("winnow", "src/effect/expression"),
         ("toml_edit", "src/model/file"),
         ("ctrlc", "src/cli/console/interrupt.rs"),
+        ("signal_hook", "src/cli/output/limit.rs"),
         ("plotters", "src/report/page/plot.rs"),
         ("flate2", "src/experiment/format"),
         ("encoding_rs", "src/experiment/format/text.rs"),

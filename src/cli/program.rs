@@ -17,6 +17,7 @@ use crate::cli::console::{Ended, Host, Hosting, message};
 use crate::cli::each_log::end_with_parent;
 use crate::cli::exit::Completion;
 use crate::cli::failure::said;
+use crate::cli::output::meet_file_limits;
 use crate::experiment::{Experiment, ReadError};
 
 /// Estimate the variable delay of hydraulic joints, and record every decision.
@@ -52,6 +53,7 @@ enum Command {
 /// Exit status: 0 all done; 1 some joints or files failed; 2 nothing usable.
 pub fn run() -> ExitCode {
     end_with_parent();
+    meet_file_limits();
     let outcome = perform(Cli::parse().command);
     match outcome {
         Ok(Completion::Whole) => ExitCode::SUCCESS,

@@ -167,7 +167,8 @@ fn training_signals<'a>(
     let trials = record.joint().trials.iter().zip(&evaluation.simulated);
     let residuals = evaluation.residuals.iter().enumerate();
     let signals = trials.zip(residuals).map(|((trial, simulated), (index, residual))| {
-        let windows = record.part(Part::Training).filter(|window| window.trial == index);
+        let windows = record.windows_of(index).iter();
+        let windows = windows.filter(|window| window.part == Part::Training);
         TrialSignals {
             residual,
             windows: windows.map(|window| window.start..window.end).collect(),
@@ -221,7 +222,7 @@ fn residual_record(
             samples.hold_s.push_even(held, 0.0, level.len());
         }
         // An input that is never held has no levels to look at.
-        let windows = record.windows().iter().filter(|window| window.trial == index);
+        let windows = record.windows_of(index).iter();
         let windows: Vec<_> = windows.map(|window| window.start..window.end).collect();
         if error == ErrorOf::Speed {
             samples.speed_error.extend(speed_error(&residual, &windows, period));

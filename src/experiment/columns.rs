@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use super::bounded::read_text;
 use super::names::on_one_line;
 
 /// The columns of a log that do not bear the native names.
@@ -132,7 +133,7 @@ impl ColumnMap {
     /// # Errors
     /// [`ColumnMapError::Read`] and [`ColumnMapError::Parse`], with the file's name.
     pub fn read(path: &Path) -> Result<Self, ColumnMapError> {
-        let text = std::fs::read_to_string(path)
+        let text = read_text(path)
             .map_err(|source| ColumnMapError::Read { path: path.to_owned(), source })?;
         let file: MapFile = toml::from_str(&text).map_err(|source| ColumnMapError::Parse {
             path: path.to_owned(),

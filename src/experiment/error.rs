@@ -158,6 +158,21 @@ pub enum ReadError {
         /// Number of the column, from 1.
         column: usize,
     },
+    /// The name of a column or of a trial is longer than any name.
+    #[error(
+        "{}{}: the name `{start}` is longer than {most} bytes, the most of a name; shorten it",
+        path.display(), header(*row)
+    )]
+    LongName {
+        /// The log.
+        path: PathBuf,
+        /// Line of the name; 0 where the file has no lines.
+        row: u64,
+        /// How it begins.
+        start: String,
+        /// The most bytes of a name.
+        most: usize,
+    },
     /// Time is in a unit that is not known.
     #[error(
         "{}{}, column `{column}`: time in [{unit}] is not known; expected [s], [ms], \

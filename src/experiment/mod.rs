@@ -5,6 +5,7 @@
 //! knows how a delay is estimated.
 
 mod activity;
+mod bounded;
 mod clock;
 mod columns;
 mod conditions;
@@ -29,6 +30,7 @@ mod unit;
 mod wrap;
 
 pub use activity::{Other, activity};
+pub(crate) use bounded::read_text;
 pub use columns::{ColumnMap, ColumnMapError, JointColumns};
 pub(crate) use conditions::are_opposites;
 pub use conditions::{conditions, has_word};

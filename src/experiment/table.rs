@@ -7,7 +7,7 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use super::error::ReadError;
-use super::names::{listed, on_one_line};
+use super::names::{listed, on_one_line, shown};
 use super::source::Source;
 #[cfg(any(feature = "mat", feature = "parquet"))]
 use super::source::source_of;
@@ -58,10 +58,29 @@ impl Head {
         self.headers.len() > 1 && self.headers.iter().all(is_number)
     }
 
+    /// Refuses names that are none: each page, table and path of an output would bear them.
+    pub(super) fn check_names(&self) -> Result<(), ReadError> {
+        let mut names = self.headers.iter().map(|header| header.text.as_str());
+        names.try_for_each(|name| check_name(name, self.header_row, &self.path))
+    }
+
     /// The names of all columns, for messages.
     pub(super) fn names(&self) -> String {
         listed(self.headers.iter().map(|header| header.text.as_str()))
     }
+}
+
+/// The longest name of a column or a trial, in bytes: recordings and reports repeat it hundreds of
+/// times.
+pub(super) const LONGEST_NAME: usize = 1000;
+
+/// Refuses a name that is longer than any.
+fn check_name(name: &str, row: u64, path: &Path) -> Result<(), ReadError> {
+    if name.len() <= LONGEST_NAME {
+        return Ok(());
+    }
+    let (path, start) = (path.to_owned(), shown(name));
+    Err(ReadError::LongName { path, row, start, most: LONGEST_NAME })
 }
 
 /// The columns of a log, and what is in them still unread.
@@ -299,6 +318,7 @@ impl Labels {
             run.end = self.rows;
             return Ok(());
         }
+        check_name(label, row, path)?;
         let label = label.to_owned();
         if !self.seen.insert(label.clone()) {
             return Err(ReadError::TrialNotContiguous { path: path.to_owned(), row, trial: label });

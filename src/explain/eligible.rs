@@ -19,15 +19,18 @@ pub(super) fn eligible(
     options.effects.iter().filter(is_eligible).copied().collect()
 }
 
-/// The effects of `options` that could be missing from `model` and [refine](Spec::refines) one that
-/// is not in it.
-pub(super) fn refinements(
+/// The effects of `options` that could be missing from `model`, are a steady law, and
+/// [refine](Spec::refines) one that is not in it. One with a memory is not at once worth its name: a
+/// friction by direction is a dead band and a gain by direction, too.
+pub(super) fn steady_refinements(
     record: &FitRecord<'_>,
     model: &JointModel,
     options: &Options,
 ) -> Vec<&'static dyn Effect> {
     let refines = |effect: &&&'static dyn Effect| {
-        could_be_missing(record, model, **effect) && !is_due(model, effect.spec(), options)
+        effect.is_steady()
+            && could_be_missing(record, model, **effect)
+            && !is_due(model, effect.spec(), options)
     };
     options.effects.iter().filter(refines).copied().collect()
 }

@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::comparison::{MUCH_LESS, compared};
-use super::eligible::{eligible, refinements, signal_range};
+use super::eligible::{eligible, signal_range, steady_refinements};
 use super::extension::Extension;
 use super::options::Options;
 use super::pairs::pairs;
@@ -50,7 +50,7 @@ pub(super) fn rank(
     let levels = record.input_levels();
     let range = signal_range(record, &base.model, &levels);
     let effects = eligible(record, &base.model, options);
-    let refinements = refinements(record, &base.model, options);
+    let refinements = steady_refinements(record, &base.model, options);
     let search = Search {
         record,
         base,
@@ -161,33 +161,27 @@ impl Search<'_, '_> {
         Some(ErrorFigures::of(self.record, evaluation, Part::Training)?.rmse)
     }
 
-    /// The finer forms of what is among `extensions` that leave much less than all of these: a limit
-    /// that only one direction reaches is hardly seen as one of both.
+    /// The finer forms that leave much less than all of `extensions`: a limit that only one direction
+    /// reaches is hardly seen as one of both.
     fn refined(&self, extensions: &[Extension], workers: &impl Workers) -> Vec<Extension> {
-        let is_among = |id| extensions.iter().any(|one| one.effects == [id]);
-        let finer: Vec<&'static dyn Effect> = self
-            .refinements
-            .iter()
-            .filter(|effect| effect.spec().refines.is_some_and(is_among))
-            .copied()
-            .collect();
         let with = |effect: &&'static dyn Effect| {
             let model = self.base.model.with(Component::neutral(*effect));
             let fit = fit_to_compare(self.record, &model, self.range).ok()?;
             Some(Extension { effects: vec![effect.spec().id], fit })
         };
         let limit = MUCH_LESS * self.least_error(extensions);
-        let fitted = workers.map(&finer, with).into_iter().flatten();
+        let fitted = workers.map(self.refinements, with).into_iter().flatten();
         fitted.filter(|one| self.error(one).is_some_and(|error| error < limit)).collect()
     }
 
-    /// The base with each step's own delay as it was measured: delays may follow any law, or none.
+    /// The base with each step's own delay as it was measured, where these differ: delays may follow any
+    /// law, or none.
     fn with_measured_delays(&self) -> Option<Extension> {
         let Self { record, base, .. } = self;
         let component = self.effects.iter().find_map(|effect| Component::measured(*effect))?;
         let id = component.effect().spec().id;
         let model = base.model.with(component);
-        if record.measured_delays(&model) == 0 {
+        if record.measured_delays(&model) == 0 || !record.delays_differ() {
             return None;
         }
         let fit = fit_to_compare(record, &model, self.range).ok()?;

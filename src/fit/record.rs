@@ -17,7 +17,7 @@ use crate::experiment::{Joint, Trial, has_word, spike_weights};
 use crate::model::{
     Arrivals, Commands, JointModel, Surroundings, outputs_together, simulate_together,
 };
-use crate::units::radians_in;
+use crate::units::{floor_to_index, radians_in};
 
 /// A joint's trials, cut into windows.
 #[derive(Clone, Debug)]
@@ -106,6 +106,19 @@ impl<'a> FitRecord<'a> {
     pub(crate) fn measured_delays(&self, model: &JointModel) -> usize {
         let known = |delays: &Delays| delays.iter().flatten().flatten().count();
         if model.takes_measured_delays() { known(self.delays()) } else { 0 }
+    }
+
+    /// Whether the measured delays differ by more than a sample period: a step of the input falls
+    /// between two samples, and is logged with the second.
+    pub(crate) fn delays_differ(&self) -> bool {
+        /// Delays on each side that may be off.
+        const OUTSIDE: f64 = 0.1;
+        let mut delays: Vec<f64> = self.delays().iter().flatten().flatten().copied().collect();
+        delays.sort_by(f64::total_cmp);
+        let at = |part: f64| delays.get(floor_to_index(part * delays.len() as f64)).copied();
+        let spread = at(OUTSIDE).zip(at(1.0 - OUTSIDE)).map_or(0.0, |(low, high)| high - low);
+        let periods = self.joint.trials.iter().map(|trial| trial.period().seconds());
+        spread > periods.fold(0.0, f64::max)
     }
 
     /// The trials and surroundings with another horizon.
@@ -258,19 +271,28 @@ impl<'a> FitRecord<'a> {
             radians_per_output_unit: self.radians_per_output_unit,
             start_s: self.start_s(index),
         };
-        let windows = self.windows.iter().filter(|window| window.trial == index).copied();
         let model = model.in_trial(trial.label());
-        let arrivals = self.arrivals(&model, index);
+        let windows = self.windows_of(index).to_vec();
+        // Nothing of a trial without windows is simulated.
+        let arrivals =
+            if windows.is_empty() { Arrivals::default() } else { self.arrivals(&model, index) };
         Some(Run {
             trial,
             arrivals,
             surroundings,
-            windows: windows.collect(),
+            windows,
             weights: self.weights_of(index),
             span: self.spans[index],
             speeds_measured: self.speeds_measured && model.has_dynamics(),
             model,
         })
+    }
+
+    /// The windows of a trial, which are in the order of the record.
+    pub(crate) fn windows_of(&self, trial: usize) -> &[Window] {
+        let first = self.windows.partition_point(|window| window.trial < trial);
+        let end = self.windows.partition_point(|window| window.trial <= trial);
+        &self.windows[first..end]
     }
 
     /// When each level of the input of a trial begins to act.

@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::estimate::JointEstimate;
 use crate::delay::{Decision, EstimateError, Word};
-use crate::experiment::{Joint, Trial};
+use crate::experiment::{Joint, Trial, read_text};
 
 /// Why a review cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -105,7 +105,7 @@ impl Review {
     /// [`ReviewError::Column`] and [`ReviewError::Cell`] for what is missing or makes no sense.
     pub fn read(path: &Path) -> Result<Self, ReviewError> {
         let table = |source| ReviewError::Table { path: path.to_owned(), source };
-        let text = std::fs::read_to_string(path).map_err(|error| table(error.into()))?;
+        let text = read_text(path).map_err(|error| table(error.into()))?;
         Self::parse(text.trim_start_matches('\u{feff}'), path)
     }
 

@@ -8,7 +8,7 @@ use clap::Args;
 
 use crate::cli::console::{Host, Verbosity, message};
 use crate::cli::output::{target_of, write_file};
-use crate::experiment::{Joint, has_word, nearest_name};
+use crate::experiment::{Joint, has_word, nearest_name, read_text};
 
 /// The name of a model file where none is given.
 const DEFAULT: &str = "model.toml";
@@ -94,7 +94,7 @@ pub(crate) fn read_model(path: &Path) -> Result<ModelFile, ModelError> {
 /// Refuses to replace a file that somebody has edited since it was read.
 fn check_unchanged(path: &Path, read: &str) -> anyhow::Result<()> {
     let name = path.display();
-    let now = match std::fs::read_to_string(path) {
+    let now = match read_text(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
         now => now.with_context(|| format!("{name}: cannot be read"))?,
     };

@@ -11,6 +11,7 @@ use clap::{Args as ClapArgs, ValueEnum};
 use crate::cli::console::{Bar, Verbosity, message};
 use crate::cli::exit::Completion;
 use crate::cli::output::{OutputFile, check_outputs, filled_file};
+use crate::experiment::read_text;
 
 /// Make a log of joints whose truth is known
 ///
@@ -164,7 +165,7 @@ fn spec(args: &Args) -> anyhow::Result<PlantSpec> {
 
 fn read(path: &Path) -> anyhow::Result<PlantSpec> {
     let name = path.display();
-    let text = std::fs::read_to_string(path).with_context(|| format!("{name}: cannot be read"))?;
+    let text = read_text(path).with_context(|| format!("{name}: cannot be read"))?;
     PlantSpec::from_toml(&text).with_context(|| format!("{name}"))
 }
 

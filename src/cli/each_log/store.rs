@@ -49,6 +49,10 @@ impl Kept {
     /// The result of a log, where there is one.
     pub(crate) fn read(path: &Path) -> anyhow::Result<Self> {
         let name = path.display();
+        // A pipe would be waited for, and a device has no end.
+        if path.metadata().is_ok_and(|found| !found.is_file()) {
+            bail!("{name}: not a file, and a result is one; remove it");
+        }
         let text = std::fs::read(path).with_context(|| format!("{name}: cannot be read"))?;
         let kept: Self = serde_json::from_slice(&text)
             .with_context(|| format!("{name}: not a result of tauscope; remove it"))?;
@@ -59,9 +63,9 @@ impl Kept {
     }
 
     pub(crate) fn write(&self, path: &Path) -> anyhow::Result<()> {
-        // It may lead to a log.
-        if path.is_symlink() {
-            bail!("{}: a link, and results are files of their own; remove it", path.display());
+        // It may lead to a log, or be a pipe that nobody reads.
+        if path.symlink_metadata().is_ok_and(|found| !found.is_file()) {
+            bail!("{}: not a file, and results are files of their own; remove it", path.display());
         }
         write_file(path, |file| Ok(serde_json::to_writer(file, self)?))
     }
@@ -98,6 +102,9 @@ pub(crate) fn read_folders(
     let mut found: BTreeMap<(String, OsString), (PathBuf, Kept)> = BTreeMap::new();
     for path in results_in(folders)? {
         let kept = Kept::read(&path)?;
+        if kept.is_copied_to(&path) {
+            bail!("{}: a copy of the result of {}; remove it", path.display(), kept.file);
+        }
         let different = found.values().next().filter(|(_, first)| !first.is_like(&kept));
         if let Some((other, _)) = different {
             bail!(
@@ -132,6 +139,13 @@ pub(crate) fn read_folders(
 }
 
 impl Kept {
+    /// Whether a file is not called as the result of this log is.
+    fn is_copied_to(&self, path: &Path) -> bool {
+        // Of a log whose name is no text only the text is known.
+        let is_text = !self.file.contains('\\');
+        is_text && path.file_stem() != Some(OsStr::new(&name_of(Path::new(&self.file))))
+    }
+
     fn is_like(&self, other: &Self) -> bool {
         self.command == other.command
             && self.settings == other.settings

@@ -1,10 +1,12 @@
 //! What is written to files: whole or not at all, tables by the name's ending, recordings.
 
 mod file;
+mod limit;
 mod recording;
 mod table;
 
 pub(crate) use file::{OutputFile, check_outputs, filled_file, target_of, write_file};
+pub(crate) use limit::meet_file_limits;
 #[cfg(not(feature = "rrd"))]
 pub(crate) use recording::left_out;
 pub(crate) use recording::{

@@ -3,6 +3,7 @@
 //! A column in a structure is called by its path, `boom.input`, as is a flat one of that name.
 
 use std::fs::File;
+use std::iter::repeat_n;
 use std::path::Path;
 
 use parquet::basic::{LogicalType, TimeUnit, Type};
@@ -15,13 +16,18 @@ use parquet::schema::types::ColumnDescriptor;
 
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::{Budget, TooLarge};
-use crate::experiment::table::{Column, Head, Header, Labels, OpenTable, Rows, Table, Wanted};
+use crate::experiment::table::{
+    Column, Head, Header, LONGEST_NAME, Labels, OpenTable, Rows, Table, Wanted,
+};
 
 /// Memory of a number: itself, and what its vector has to spare.
 const NUMBER_SIZE: usize = 2 * size_of::<f64>();
 
-/// Memory of a short text.
+/// Memory of a text beside its bytes.
 const LABEL_SIZE: usize = 64;
+
+/// More bytes than a name may have, by more than what is left of a letter.
+const TOO_LONG: usize = LONGEST_NAME + 8;
 
 /// A file whose footer was read.
 struct Unread {
@@ -100,7 +106,11 @@ impl Rows for Unread {
         let all = counts.iter().fold(0, |all: usize, count| all.saturating_add(*count));
         self.budget.take_values(all, wanted.numeric.len() * NUMBER_SIZE).map_err(refuse)?;
         for (group, count) in counts.into_iter().enumerate() {
+            let of_group = self.reader.metadata().row_group(group);
             let read = |index, cells: &mut dyn FnMut(Cell)| {
+                // A page is unpacked whole.
+                let unpacked = of_group.column(index).uncompressed_size();
+                self.budget.check(u64::try_from(unpacked).unwrap_or_default()).map_err(refuse)?;
                 self.group(group, index, cells).map_err(|error| damaged(wanted.path(), &error))
             };
             for ((column, index), kind) in columns.iter_mut().zip(wanted.numeric).zip(&kinds) {
@@ -110,10 +120,12 @@ impl Rows for Unread {
                 }
             }
             if let Some(index) = wanted.label {
-                let mut texts = Vec::new();
-                self.budget.take_values(count, LABEL_SIZE).map_err(refuse)?;
+                let mut texts = Runs { all: Vec::new(), refused: Ok(()), budget: &self.budget };
                 read(index, &mut |cell| texts.push(cell.label()))?;
-                for (text, row) in texts.iter().zip(rows + 1..) {
+                texts.refused.map_err(refuse)?;
+                let rows = rows + 1..;
+                let each = texts.all.iter().flat_map(|(text, count)| repeat_n(text, *count));
+                for (text, row) in each.zip(rows) {
                     labels.push(text, row as u64, wanted.path())?;
                 }
             }
@@ -182,6 +194,26 @@ impl Unread {
     }
 }
 
+/// Texts as runs of equal ones.
+struct Runs<'a> {
+    all: Vec<(String, usize)>,
+    refused: Result<(), TooLarge>,
+    budget: &'a Budget,
+}
+
+impl Runs<'_> {
+    fn push(&mut self, text: String) {
+        match self.all.last_mut().filter(|(last, _)| *last == text) {
+            Some((_, count)) => *count += 1,
+            None if self.refused.is_ok() => {
+                self.refused = self.budget.take_values(1, LABEL_SIZE + text.len());
+                self.all.push((text, 1));
+            }
+            None => {}
+        }
+    }
+}
+
 /// A value of a column.
 enum Cell {
     Missing,
@@ -205,7 +237,9 @@ impl Cell {
 
 #[expect(clippy::needless_pass_by_value, reason = "the reader hands its values over")]
 fn text(value: ByteArray) -> Cell {
-    Cell::Text(String::from_utf8_lossy(value.data()).trim().to_owned())
+    // What is longer than a name may be is refused by its length, not by its end.
+    let bytes = value.data().get(..TOO_LONG).unwrap_or(value.data());
+    Cell::Text(String::from_utf8_lossy(bytes).trim().to_owned())
 }
 
 /// Hands on the values of the `rows` of a column as cells; where the level is not `full` there

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufReader, Read as _};
 use std::path::Path;
 
-use calamine::{Data, Range, Reader as _, Xlsx, XlsxError, open_workbook};
+use calamine::{Data, DataRef, Range, Reader as _, Xlsx, XlsxError, open_workbook};
 use zip::ZipArchive;
 
 use super::csv::table;
@@ -67,21 +67,26 @@ fn check_size(
     name: &str,
     budget: &Budget,
 ) -> Result<Result<(), TooLarge>, XlsxError> {
-    /// Memory of a cell: itself, its place and its text.
+    /// Memory of a cell: itself, its place and a short text.
     const CELL_SIZE: u64 = 96;
     let mut cells = workbook.worksheet_cells_reader(name)?;
-    let mut count = 0;
+    let (mut count, mut texts) = (0, 0);
     let (mut rows, mut columns) = (Span::default(), Span::default());
     while let Some(cell) = cells.next_cell()? {
         let (row, column) = cell.get_position();
         rows.add(row);
         columns.add(column);
         count += 1;
-        if let Err(error) = budget.check(count * CELL_SIZE) {
+        // Each cell has a copy of a text that many share, and stands in the table once more.
+        if let DataRef::SharedString(text) = cell.get_value() {
+            texts += 2 * text.len() as u64;
+        }
+        if let Err(error) = budget.check(count * CELL_SIZE + texts) {
             return Ok(Err(error));
         }
     }
-    Ok(budget.check(rows.length().saturating_mul(columns.length()).saturating_mul(CELL_SIZE)))
+    let cells = rows.length().saturating_mul(columns.length()).saturating_mul(CELL_SIZE);
+    Ok(budget.check(cells.saturating_add(texts)))
 }
 
 /// The least and the greatest of some numbers.

@@ -1,5 +1,7 @@
 //! Which columns drive and measure which joint.
 
+use std::collections::{BTreeSet, HashMap, HashSet};
+
 use super::signal::Signal;
 use super::words::{INPUT_WORDS, OTHER_WORDS, OUTPUT_WORDS, rank, words};
 use crate::experiment::table::{Head, Header};
@@ -50,7 +52,11 @@ impl Columns<'_> {
 
     /// Joints whose columns have native names.
     fn native(&self) -> Vec<FoundJoint> {
-        let place = |name: &str| self.head.headers.iter().position(|header| header.name == name);
+        let headers = self.head.headers.iter().enumerate();
+        // Of two with one name the first.
+        let places: HashMap<&str, usize> =
+            headers.rev().map(|(index, header)| (header.name.as_str(), index)).collect();
+        let place = |name: &str| places.get(name).copied();
         let joint = |(input, header): (usize, &Header)| {
             let name = header.name.strip_suffix(".input")?.to_owned();
             let output = place(&format!("{name}.output"))?;
@@ -63,28 +69,56 @@ impl Columns<'_> {
     /// Pairs whose names share the words that say which joint: those that share most first, and
     /// of these the likeliest. In the order of the file.
     fn by_names(&self, inputs: &[usize], outputs: &[usize]) -> Vec<FoundJoint> {
-        let pairs =
-            inputs.iter().flat_map(|input| outputs.iter().map(move |output| (input, output)));
-        let shared = |(input, output): (&usize, &usize)| {
-            let others = self.own_words(*output);
-            let mut shared = self.own_words(*input);
-            shared.retain(|word| others.contains(word));
-            (!shared.is_empty()).then_some((shared, *input, *output))
-        };
-        let mut pairs: Vec<_> = pairs.filter_map(shared).collect();
+        let Some(mut pairs) = self.sharing(inputs, outputs) else { return Vec::new() };
         pairs.sort_by_key(|(shared, ..)| std::cmp::Reverse(shared.len()));
-        let mut joints: Vec<FoundJoint> = Vec::new();
+        let (mut joints, mut columns, mut names) = (Vec::new(), HashSet::new(), HashSet::new());
         for (shared, input, output) in pairs {
             let name = shared.join("_");
-            let is_taken = |joint: &FoundJoint| {
-                joint.input == input || joint.output == output || joint.name == name
-            };
-            if !joints.iter().any(is_taken) {
+            let is_taken =
+                columns.contains(&input) || columns.contains(&output) || names.contains(&name);
+            if !is_taken {
+                columns.extend([input, output]);
+                names.insert(name.clone());
                 joints.push(self.joint(Some(name), input, output));
             }
         }
         joints.sort_by_key(|joint| joint.input);
         joints
+    }
+
+    /// The pairs of an input and an output that share words, with these; none where there are so many
+    /// that their names tell nothing.
+    fn sharing(
+        &self,
+        inputs: &[usize],
+        outputs: &[usize],
+    ) -> Option<Vec<(Vec<String>, usize, usize)>> {
+        /// Pairs that are compared: those of a thousand inputs with as many outputs.
+        const MOST: usize = 1_000_000;
+        let words_of: Vec<BTreeSet<String>> =
+            outputs.iter().map(|output| self.own_words(*output).into_iter().collect()).collect();
+        let mut with: HashMap<&str, Vec<usize>> = HashMap::new();
+        for (place, words) in words_of.iter().enumerate() {
+            for word in words {
+                with.entry(word).or_default().push(place);
+            }
+        }
+        let (mut pairs, mut compared) = (Vec::new(), 0);
+        for input in inputs {
+            let words = self.own_words(*input);
+            let near = words.iter().filter_map(|word| with.get(word.as_str()));
+            compared += near.clone().map(Vec::len).sum::<usize>();
+            if compared > MOST {
+                return None;
+            }
+            let places: BTreeSet<usize> = near.flatten().copied().collect();
+            for (others, output) in places.iter().map(|place| (&words_of[*place], outputs[*place]))
+            {
+                let shared = words.iter().filter(|word| others.contains(*word)).cloned().collect();
+                pairs.push((shared, *input, output));
+            }
+        }
+        Some(pairs)
     }
 
     /// Where names say nothing: what holds levels drives, what follows it best is driven.

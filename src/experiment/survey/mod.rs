@@ -5,6 +5,7 @@ mod joints;
 mod signal;
 mod words;
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::columns::{ColumnMap, JointColumns};
@@ -116,7 +117,13 @@ impl Columns<'_> {
             );
         }
         let columns = 0..self.head.headers.len();
-        let columns = columns.map(|column| self.column(column, time, trial, joints)).collect();
+        let mut of_joints: HashMap<usize, (Role, &str)> = HashMap::new();
+        for joint in joints {
+            let [input, output] = &joint.why;
+            of_joints.entry(joint.input).or_insert((Role::Input(joint.name.clone()), input));
+            of_joints.entry(joint.output).or_insert((Role::Output(joint.name.clone()), output));
+        }
+        let columns = columns.map(|column| self.column(column, time, trial, &of_joints)).collect();
         let joint = |joint: &FoundJoint| {
             JointColumns::new(&joint.name, &name(joint.input), &name(joint.output))
         };
@@ -136,21 +143,13 @@ impl Columns<'_> {
         column: usize,
         time: Option<usize>,
         trial: Option<usize>,
-        joints: &[FoundJoint],
+        of_joints: &HashMap<usize, (Role, &str)>,
     ) -> SurveyedColumn {
         let header = self.head.headers.get(column);
         let (name, stated) = header
             .map_or_else(Default::default, |header| (header.text.clone(), header.unit.clone()));
         let bare = header.map_or("", |header| header.name.as_str());
         let mut unit = stated.or_else(|| unit::of_signal(bare));
-        let of = |joint: &FoundJoint| {
-            let [input, output] = joint.why.clone();
-            match column {
-                place if place == joint.input => Some((Role::Input(joint.name.clone()), input)),
-                place if place == joint.output => Some((Role::Output(joint.name.clone()), output)),
-                _ => None,
-            }
-        };
         let (role, why) = if Some(column) == time {
             unit = unit.or_else(|| unit::of_time(bare).map(str::to_owned));
             let taken =
@@ -158,8 +157,8 @@ impl Columns<'_> {
             (Role::Time, format!("its name{taken}"))
         } else if Some(column) == trial {
             (Role::Trial, "its name".to_owned())
-        } else if let Some(found) = joints.iter().find_map(of) {
-            found
+        } else if let Some((role, why)) = of_joints.get(&column) {
+            (role.clone(), (*why).to_owned())
         } else {
             let says = self.signals.get(column).and_then(Option::as_ref).map(Signal::says);
             (Role::Other, says.unwrap_or_else(|| "it does not hold numbers".to_owned()))

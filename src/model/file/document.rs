@@ -7,6 +7,7 @@ use super::read::{self, JointReader};
 use super::schema::{FileToml, SCHEMA};
 use super::{ModelError, Revision};
 use crate::effect::Effect;
+use crate::experiment::read_text;
 use crate::model::JointModel;
 
 /// The models of several joints, read from a file.
@@ -54,8 +55,8 @@ impl ModelFile {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn read_with(path: &Path, others: &[&'static dyn Effect]) -> Result<Self, ModelError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| ModelError::Read { path: path.to_owned(), source })?;
+        let text =
+            read_text(path).map_err(|source| ModelError::Read { path: path.to_owned(), source })?;
         Self::parse_with(&text, path, others)
     }
 

@@ -73,6 +73,18 @@ pub enum ModelError {
         /// The parameters there are.
         known: String,
     },
+    /// A joint has more effects than any model.
+    #[error("{}, {place}: {count} effects; {most} are the most", path.display())]
+    TooManyEffects {
+        /// The file.
+        path: PathBuf,
+        /// The joint, or the candidates.
+        place: String,
+        /// How many there are.
+        count: usize,
+        /// The most.
+        most: usize,
+    },
     /// A parameter of the structure is missing.
     #[error("{}, joint `{joint}`: parameter `{name}` is missing", path.display())]
     MissingParameter {

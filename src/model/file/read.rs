@@ -8,12 +8,17 @@ use crate::effect::expression;
 use crate::effect::{self, Definition, Effect, OwnParameter};
 use crate::model::{Component, JointModel, Value};
 
+/// The most effects of a joint, and the most candidates of a file: twice the catalogue. Reading them
+/// takes time with their square, and a fit with the cube of their parameters.
+const MOST_EFFECTS: usize = 2 * effect::REGISTRY.len();
+
 /// The effects of whoever reads a file, and those that it offers, in its order.
 pub(super) fn candidates(
     path: &Path,
     others: &[&'static dyn Effect],
     given: Vec<EffectToml>,
 ) -> Result<Vec<&'static dyn Effect>, ModelError> {
+    check_count(path, || "candidates".to_owned(), given.len())?;
     let mut candidates = others.to_vec();
     for given in given {
         let own = Own { path, place: "candidate".to_owned() };
@@ -22,6 +27,18 @@ pub(super) fn candidates(
         candidates.push(effect);
     }
     Ok(candidates)
+}
+
+fn check_count(
+    path: &Path,
+    place: impl FnOnce() -> String,
+    count: usize,
+) -> Result<(), ModelError> {
+    if count <= MOST_EFFECTS {
+        return Ok(());
+    }
+    let most = MOST_EFFECTS;
+    Err(ModelError::TooManyEffects { path: path.to_owned(), place: place(), count, most })
 }
 
 /// Where the start values of a definition come from.
@@ -125,6 +142,7 @@ impl JointReader<'_> {
         };
         let mut model = JointModel::integrator(0.0, 0.0);
         (model.gain, model.delay) = (needed(0, "gain")?, needed(1, "delay")?);
+        check_count(self.path, || format!("joint `{}`", self.joint), joint.effect.len())?;
         for given in &joint.effect {
             let before: Vec<_> = model.components().iter().map(Component::effect).collect();
             model = model.with(self.component(given, &before)?);

@@ -55,7 +55,7 @@ pub(super) fn evidence(improved: &ImprovedJoint<'_>) -> Evidence {
                 Some(still.legend(number, &step.comparison.fit.model, joint)),
                 before.map(|_| format!("revision {}", number - 1)),
                 proposed.map(|candidate| format!("with {}", candidate.name())),
-                held.iter().any(|held| held.fell).then(|| "after a step down".to_owned()),
+                held.iter().any(|held| held.fell).then(|| "input fell".to_owned()),
             ],
             laws: [own, before.cloned().unwrap_or_default(), next],
         });

@@ -61,7 +61,7 @@ fn of_trial(trial: &Trial, simulated: &Simulated, (noise, shown): (f64, Shown)) 
         };
         let rows = start + within.start..start + within.end;
         let level = mean(part);
-        let fell = is_held && shown == Shown::Output && level < before;
+        let fell = shown == Shown::Output && level < before;
         (start, before) = (start + part.len(), level);
         let Some(measured) = output.get(within).filter(|_| part.len() >= SHORTEST) else {
             continue;

@@ -1,7 +1,7 @@
 //! What is said where no effect is missing.
 
 use super::{ABOVE_NOISE, Passage, Topic};
-use crate::diagnosis::SIGNIFICANCE;
+use crate::diagnosis::{NEGLIGIBLE, SIGNIFICANCE};
 use crate::experiment::Trial;
 use crate::fit::Status;
 use crate::report::finding::Finding;
@@ -33,7 +33,14 @@ impl Finding<'_> {
             }
             Some(test) => {
                 let share = rounded(100.0 * test.misfit_share);
-                format!("What it lacks is {share} % of the squared error: negligible.")
+                if test.misfit_share < NEGLIGIBLE {
+                    return format!("What it lacks is {share} % of the squared error: negligible.");
+                }
+                format!(
+                    "A pattern is left in {share} % of the squared residual ({}), which as a whole is \
+                     close to the noise.",
+                    p_text(test.p_value)
+                )
             }
             None => "There are too few samples to test it.".to_owned(),
         }
