@@ -37,8 +37,13 @@ impl Span {
     pub(crate) fn ticks(self, count: f64) -> Vec<f64> {
         let rough = (self.high - self.low) / count;
         let power = 10f64.powf(rough.log10().floor());
-        let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|s| *s >= rough);
-        let step = step.unwrap_or(rough);
+        let coarse = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|s| *s >= rough);
+        let ticks = self.multiples(coarse.unwrap_or(rough));
+        // One alone says nothing of the scale.
+        if ticks.len() > 1 { ticks } else { self.multiples(0.5 * coarse.unwrap_or(rough)) }
+    }
+
+    fn multiples(self, step: f64) -> Vec<f64> {
         let first = (self.low / step).ceil();
         let ticks = (0..100).map(|n| (first + f64::from(n)) * step);
         ticks.take_while(|tick| *tick <= self.high).collect()
@@ -73,6 +78,7 @@ mod tests {
     fn ticks_are_round_and_inside() {
         assert_eq!(Span::new(0.3, 4.2).ticks(5.0), [1.0, 2.0, 3.0, 4.0]);
         assert_eq!(Span::new(-3.0, 12.0).ticks(4.0), [0.0, 5.0, 10.0]);
+        assert_eq!(Span::new(-9.0, 9.0).ticks(2.0), [-5.0, 0.0, 5.0]);
         assert_eq!(Span::new(7.0, 7.0).ticks(3.0), [6.5, 7.0, 7.5]);
     }
 }

@@ -15,6 +15,13 @@ use crate::report::ComparedJoint;
 /// Width and height of the sheet.
 pub(super) const SIZE: (f32, f32) = (1900.0, 480.0);
 
+/// Top and bottom of the plots.
+const TOP: f32 = 36.0;
+const BOTTOM: f32 = 430.0;
+
+/// Why there is no correlation.
+const NOT_KNOWN: &str = "not computed,\nsince sample periods differ\nor samples are too few";
+
 /// Draws the correlations of `models` below `root`: a curve and a band per model.
 pub(super) fn add(
     chunks: &mut Chunks,
@@ -30,6 +37,9 @@ pub(super) fn add(
         let here: Vec<_> = of_each.iter().map(|all| all[place]).collect();
         let known: Vec<_> = here.iter().copied().flatten().collect();
         if known.is_empty() {
+            let (left, right) = columns(place);
+            let middle = Vec2D::new(f32::midpoint(left, right), f32::midpoint(TOP, BOTTOM));
+            sheet.put(middle, format!("{title}: {NOT_KNOWN}"));
             continue;
         }
         let plot = plot(place, &known);
@@ -65,9 +75,14 @@ pub(super) fn add(
 
 /// One of three places on the sheet, with room for all of `correlograms`.
 fn plot(place: usize, correlograms: &[Correlogram<'_>]) -> Plot {
-    let left = 110.0 + 635.0 * place as f32;
     let (x, y) = Correlogram::spans(correlograms);
-    Plot::within((left, left + 510.0), 36.0..=430.0, x, y)
+    Plot::within(columns(place), TOP..=BOTTOM, x, y)
+}
+
+/// The left and the right of a place.
+fn columns(place: usize) -> (f32, f32) {
+    let left = 110.0 + 635.0 * place as f32;
+    (left, left + 510.0)
 }
 
 /// The two lines between which correlations of noise stay.

@@ -18,7 +18,7 @@ use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures, SIGNIFICANCE, sensor_noise};
 use crate::experiment::Joint;
 use crate::report::{ComparedJoint, model_differences};
-use crate::wording::{correlation_sentences, failure_sentences, number};
+use crate::wording::{correlation_sentences, failure_sentences, measure, number};
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
@@ -150,8 +150,9 @@ fn page(
     let horizon = judged.comparison.fit.evaluation.horizon;
     writeln!(
         page,
-        "\nErrors are root mean squares of simulations, {horizon}; *fit* is the part of the motion \
-         that is followed, 100 % less the validation error over the standard deviation of the output."
+        "\nErrors are root mean squares of simulations, {horizon}, each run of which starts where its \
+         error is least; *fit* is the part of the motion that is followed, 100 % less the validation \
+         error over the standard deviation of the output."
     )?;
     if let Some(noise) = sensor_noise(&joint.trials) {
         writeln!(page, "Noise of the sensor: {} {unit}.", number(noise))?;
@@ -278,6 +279,9 @@ fn on_timeline(layout: &JointLayout<'_>, worst: &WorstSegment) -> String {
     place.unwrap_or_default()
 }
 
+/// Times the noise up to which they are worth a count: ten parts in a hundred at most are noise then.
+const COUNTED: f64 = 100.0;
+
 /// What a reviewer should know first.
 fn headline(judged: &ComparedJoint<'_>) -> String {
     let comparison = judged.comparison;
@@ -286,13 +290,20 @@ fn headline(judged: &ComparedJoint<'_>) -> String {
     let followed = followed
         .map_or_else(String::new, |part| format!("the model follows {part:.0} % of the motion; "));
     let times = times.map(|(error, noise)| error.rmse / noise.max(f64::MIN_POSITIVE));
+    let unit = judged.joint.output_unit.as_deref();
+    let error = comparison.validation.map(|error| measure(error.rmse, unit)).unwrap_or_default();
     match (comparison.lack_of_fit, times) {
         (Some(test), _) if test.adequate => {
             "the model is adequate: no lack of fit is shown".to_owned()
         }
-        (_, Some(times)) => {
-            format!("{followed}the error is {} times the noise", number(times.max(0.0).round()))
+        // Many times the noise say no more than the error itself.
+        (_, Some(times)) if times < COUNTED => {
+            format!("{followed}the error is {error}, {} times the noise", number(times.round()))
         }
+        (_, Some(_)) if followed.is_empty() => {
+            format!("the model follows nothing of the motion; the error is {error}")
+        }
+        (_, Some(_)) => format!("{followed}the error is {error}"),
         _ => "there is an error that is no noise".to_owned(),
     }
 }

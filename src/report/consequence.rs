@@ -67,9 +67,11 @@ impl Consequence<'_> {
         if found.len() > 1 {
             let share = |one: &Contribution| format!("{} {}", one.effect, percent(one.error_share));
             let shares: Vec<String> = found.iter().map(share).collect();
+            let sum: f64 = found.iter().map(|one| one.error_share).sum();
+            let overlap = if sum > 1.0 { " (shares overlap and do not add up)" } else { "" };
             sentences.push(format!(
                 "The part of the first error that comes back when one is left out and the rest is \
-                 fitted again: {}.",
+                 fitted again: {}{overlap}.",
                 shares.join(", ")
             ));
         }

@@ -359,7 +359,7 @@ impl Views<'_, '_> {
             ContainerKind::Vertical,
             "Plots",
             &rows,
-            &[1.1, 2.8, 2.2, 1.0, 2.3, 3.8],
+            &[1.0, 2.6, 2.0, 1.8, 2.6, 3.4],
         )?;
         let page = [self.path(paths::MODEL_PAGE)];
         let page = self.view(View::new("TextDocument", "Models", &page))?;

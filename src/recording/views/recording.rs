@@ -53,7 +53,10 @@ pub(in crate::recording) fn messages(
         Growth::Growing => ("revision", PlayState::Following),
         Growth::Finished if is_ladder => ("revision", PlayState::Following),
         Growth::Finished if !recording.also.is_empty() => ("difference", PlayState::Paused),
-        Growth::Finished if !has_steps => ("time", PlayState::Paused),
+        // A model is seen along its record.
+        Growth::Finished if !has_steps || !recording.models.is_empty() => {
+            ("time", PlayState::Paused)
+        }
         Growth::Finished => ("decision", PlayState::Paused),
     };
     builder.tabbed(tabs, opening, application)
