@@ -23,7 +23,7 @@ static SPEC: Spec =
         .parameters(&[
             Parameter::new("offset", "what is added to the input", Dimension::Input).typical(0.02)
         ])
-        .confused_with(&["direction_gain", "leakage", "coulomb_friction"]);
+        .confused_with(&["direction_gain", "leakage", "coulomb_friction", "gravity_load"]);
 
 impl Effect for InputOffset {
     fn spec(&self) -> &'static Spec {

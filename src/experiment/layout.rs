@@ -85,6 +85,13 @@ pub(super) struct JointLayout {
     pub(super) covariates: Vec<SignalColumn>,
 }
 
+impl JointLayout {
+    /// All columns of the joint.
+    pub(super) fn columns(&self) -> impl Iterator<Item = usize> {
+        [&self.input, &self.output].into_iter().chain(&self.covariates).map(|signal| signal.column)
+    }
+}
+
 /// What every column of a log means.
 pub(super) struct Layout {
     pub(super) time: TimeSource,

@@ -9,7 +9,7 @@ use super::columns::{ColumnMap, JointColumns};
 use super::error::ReadError;
 use super::format::{self, is_named_like_a_log};
 use super::joint::Joint;
-use super::layout::{Layout, find_time_column};
+use super::layout::{JointLayout, Layout, find_time_column};
 use super::log::Log;
 use super::memory::{Budget, MemoryLimit};
 use super::names::on_one_line;
@@ -238,6 +238,7 @@ pub(super) fn laid_out(
     let period = sample_period(&head.path, &options.columns)?;
     let mut layout = Layout::find(head, &options.columns, period)?;
     let unknown = layout.keep(&head.path, &options.joints);
+    head.check_names(layout.joints.iter().flat_map(JointLayout::columns))?;
     if !options.others {
         layout.others.clear();
     }

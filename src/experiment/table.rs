@@ -58,10 +58,15 @@ impl Head {
         self.headers.len() > 1 && self.headers.iter().all(is_number)
     }
 
-    /// Refuses names that are none: each page, table and path of an output would bear them.
-    pub(super) fn check_names(&self) -> Result<(), ReadError> {
-        let mut names = self.headers.iter().map(|header| header.text.as_str());
-        names.try_for_each(|name| check_name(name, self.header_row, &self.path))
+    /// Refuses columns whose names are none: each page, table and path of an output would bear them.
+    pub(super) fn check_names(
+        &self,
+        mut columns: impl Iterator<Item = usize>,
+    ) -> Result<(), ReadError> {
+        columns.try_for_each(|column| {
+            let name = self.headers.get(column).map_or("", |header| header.text.as_str());
+            check_name(name, self.header_row, &self.path)
+        })
     }
 
     /// The names of all columns, for messages.

@@ -142,12 +142,6 @@ fn left_out(
 /// Opens a log. Its first bytes identify the format, so that a name may be anything; but a name
 /// that promises a format is kept to it.
 pub(in crate::experiment) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
-    let table = open_as_it_is(path, budget)?;
-    table.head.check_names()?;
-    Ok(table)
-}
-
-fn open_as_it_is(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
     // A pipe gives its bytes once: it is taken for text.
     if path.metadata().is_ok_and(|metadata| !metadata.is_file()) {
         return csv::open(path, budget);

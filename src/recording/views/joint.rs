@@ -359,7 +359,7 @@ impl Views<'_, '_> {
             ContainerKind::Vertical,
             "Plots",
             &rows,
-            &[1.0, 2.6, 2.0, 1.8, 2.6, 3.4],
+            &[1.15, 2.5, 2.0, 1.75, 2.6, 3.4],
         )?;
         let page = [self.path(paths::MODEL_PAGE)];
         let page = self.view(View::new("TextDocument", "Models", &page))?;
