@@ -230,6 +230,39 @@ fn a_text_that_many_cells_share_counts_in_each() {
 }
 
 #[test]
+#[cfg(feature = "xlsx")]
+fn what_a_workbook_says_of_texts_and_styles_counts_before_they_are_read() {
+    let folder = TempDir::new().unwrap();
+    let bytes = workbook_of_one_text(2, "x");
+    let with = |name: &str, content: &str| {
+        let mut whole = zip::ZipArchive::new(std::io::Cursor::new(&bytes)).unwrap();
+        let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+        for index in 0..whole.len() {
+            let part = whole.by_index_raw(index).unwrap();
+            if part.name().unwrap() != name {
+                archive.raw_copy_file(part).unwrap();
+            }
+        }
+        archive.start_file(name, zip::write::SimpleFileOptions::default()).unwrap();
+        archive.write_all(content.as_bytes()).unwrap();
+        archive.finish().unwrap().into_inner()
+    };
+    for count in ["144115188075855872", "1099511627776"] {
+        let texts = format!("<?xml version=\"1.0\"?><sst uniqueCount=\"{count}\"><si/></sst>");
+        let path = file(&folder, "texts.xlsx", &with("xl/sharedStrings.xml", &texts));
+        assert_says(&path, &[], "--max-memory");
+    }
+    let format = "y".repeat(2000);
+    let styles = format!(
+        "<styleSheet><numFmts><numFmt numFmtId=\"3\" formatCode=\"{format}\"/></numFmts><cellXfs>{}\
+         </cellXfs></styleSheet>",
+        "<xf numFmtId=\"3\"/>".repeat(200_000)
+    );
+    let path = file(&folder, "styles.xlsx", &with("xl/styles.xml", &styles));
+    assert_says(&path, &["--max-memory", "100MB"], "--max-memory");
+}
+
+#[test]
 #[cfg(feature = "parquet")]
 fn a_text_that_many_rows_share_is_held_once_and_no_longer_than_a_name() {
     use parquet::data_type::{ByteArray, ByteArrayType, DoubleType};
@@ -372,6 +405,11 @@ fn a_packed_text_and_a_row_without_end_are_refused() {
     }
     let path = file(&folder, "bomb.csv.gz", &packed.finish().unwrap());
     assert_says(&path, &["--max-memory", "20MB"], "--max-memory");
+    let commas = |count| format!("time_s,a.input,a.output{}\n0,1,1\n", ",".repeat(count));
+    let wide = file(&folder, "wide.csv", commas(3_000_000).as_bytes());
+    assert_says(&wide, &[], "3000003 cells");
+    let wide = file(&folder, "limited.csv", commas(300_000).as_bytes());
+    assert_says(&wide, &["--max-memory", "20MB"], "--max-memory");
     let endless = format!("time_s,a.input,a.output\n0,1,1\n1,\"{}", "\n".repeat(18 << 20));
     assert_says(&file(&folder, "quoted.csv", endless.as_bytes()), &[], "quotation mark");
 }

@@ -181,6 +181,33 @@ fn what_stands_in_a_file_before_a_shell_appends_to_it_stays() {
 }
 
 #[test]
+fn a_log_is_replaced_neither_where_a_shell_has_it_open_nor_through_a_link_among_drawings() {
+    let folder = folder();
+    let log = folder.path().join("log.csv");
+    let before = fs::read_to_string(&log).unwrap();
+    let refused = |command: &mut Command, reason: &str| {
+        let ended = command.output().unwrap();
+        let said = String::from_utf8_lossy(&ended.stderr);
+        assert!(ended.status.code() == Some(2) && said.contains(reason), "{said}");
+        assert!(fs::read_to_string(&log).unwrap() == before);
+    };
+    let line = "exec \"$0\" estimate log.csv --quiet --decisions /dev/fd/5 5<>log.csv";
+    let mut shell = Command::new("sh");
+    shell.args(["-c", line, env!("CARGO_BIN_EXE_tauscope")]).current_dir(folder.path());
+    refused(&mut shell, "a file that is read");
+    let report = || {
+        let mut command = tauscope(folder.path());
+        command.args(["report", "log.csv", "--quiet", "--no-recording", "-o", "r.md"]);
+        command
+    };
+    assert!(report().status().unwrap().code().is_some_and(|status| status < 2));
+    let drawing = fs::read_dir(folder.path().join("r_files")).unwrap().next().unwrap().unwrap();
+    fs::remove_file(drawing.path()).unwrap();
+    std::os::unix::fs::symlink("../log.csv", drawing.path()).unwrap();
+    refused(&mut report(), "a link, and drawings are files of their own");
+}
+
+#[test]
 fn parts_that_nobody_writes_are_removed_and_others_stay() {
     let folder = folder();
     let part = |name: &str, age: u64| -> PathBuf {

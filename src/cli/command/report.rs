@@ -274,7 +274,13 @@ impl Target {
                 fs::create_dir_all(&folder)
                     .with_context(|| format!("{}: cannot be made", folder.display()))?;
                 for (name, drawing) in &markdown.files {
-                    write_text(&folder.join(name), drawing)?;
+                    let place = folder.join(name);
+                    // It may lead to a log.
+                    if place.is_symlink() {
+                        let place = place.display();
+                        bail!("{place}: a link, and drawings are files of their own; remove it");
+                    }
+                    write_text(&place, drawing)?;
                 }
                 markdown.text
             }

@@ -190,12 +190,18 @@ fn remove_left_parts(folder: &Path) {
     }
 }
 
+/// Where an output ends up, also one that is written to a file that is open.
+fn place_of(path: &Path) -> PathBuf {
+    let opened = OpenedFile::named(path).and_then(|_| path.canonicalize().ok());
+    opened.unwrap_or_else(|| target_of(path))
+}
+
 /// Refuses outputs that cannot be written, or would replace an input or one another.
 pub(crate) fn check_outputs(outputs: &[&Path], inputs: &[PathBuf]) -> anyhow::Result<()> {
     let inputs: Vec<PathBuf> = inputs.iter().map(|path| target_of(path)).collect();
     let mut taken: Vec<PathBuf> = Vec::new();
     for path in outputs {
-        let target = target_of(path);
+        let target = place_of(path);
         let name = path.display();
         // A device, such as /dev/null, may take any number of outputs.
         let is_file = !target.exists() || target.is_file();

@@ -64,6 +64,7 @@ pub(super) fn table(
     if !next(&mut reader, &mut record, path)? {
         return Err(ReadError::Empty { path: path.to_owned() });
     }
+    check_header_size(path, record.len(), &budget)?;
     let mut head = head(path, &record, place_just_read(&mut reader, &record).row)?;
     let mut first = None;
     if next(&mut reader, &mut record, path)? {
@@ -76,6 +77,23 @@ pub(super) fn table(
         }
     }
     Ok(OpenTable { head, rows: Box::new(Unread { reader, delimiter, first, budget }) })
+}
+
+/// Refuses a header of more cells than a log has columns, which a row of commas is, too.
+fn check_header_size(path: &Path, cells: usize, budget: &Budget) -> Result<(), ReadError> {
+    /// Ten times as many as a large plant has signals (chosen).
+    const MOST: usize = 1_000_000;
+    /// Memory of a name, and of what is looked for in its column (measured: 180 to 250 bytes).
+    const HEADER_SIZE: usize = 256;
+    if cells > MOST {
+        return Err(ReadError::Format {
+            path: path.to_owned(),
+            format: "a table of text",
+            reason: format!("its header has {cells} cells, and {MOST} are the most"),
+            remedy: "leave out columns",
+        });
+    }
+    budget.take_values(cells, HEADER_SIZE).map_err(|error| error.refuse(path))
 }
 
 /// Refuses a table whose cells are parted by blanks, which would be one column.
