@@ -282,5 +282,9 @@ mod recorded {
         let refused = desk.refusal("estimate x_2.rrd -o x.rrd");
         assert!(refused.contains("x_2.rrd: this is a file that is read"), "{refused}");
         assert!(!desk.has("x_1.rrd") && !desk.has("x.rrd"));
+        desk.write("y_2.rrd", "notes");
+        let refused = desk.refusal("estimate log.csv -o y.rrd");
+        assert!(refused.contains("y_2.rrd: is there already"), "{refused}");
+        assert_eq!(desk.read("y_2.rrd"), "notes");
     }
 }

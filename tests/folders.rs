@@ -233,6 +233,9 @@ fn improve_keeps_a_model_of_each_log() {
     let models: Vec<_> = models.filter(|path| path.extension().unwrap() == "toml").collect();
     assert_eq!(models.len(), 2);
     assert!(fs::read_to_string(&models[0]).unwrap().contains("[joint.boom]"));
+    fs::remove_file(&models[0]).unwrap();
+    workspace.run(command).is_whole().says("1 of 2 logs are done already");
+    assert!(fs::read_to_string(&models[0]).unwrap().contains("[joint.boom]"));
     assert!(!workspace.path("model.toml").exists());
     workspace.run("merge kept --decisions all.csv").is_refused_with("makes no decisions");
 }
@@ -258,6 +261,14 @@ fn what_makes_no_sense_is_refused_with_the_remedy() {
     fs::copy(result, &copy).unwrap();
     workspace.run("merge one").is_refused_with("copy.json: a copy of the result of logs/run_0");
     fs::remove_file(copy).unwrap();
+    let result = fs::read_dir(workspace.path("one")).unwrap().next().unwrap().unwrap();
+    let result = result.file_name().into_string().unwrap();
+    for table in [result.replace(".json", ".toml"), result] {
+        workspace
+            .run(&format!("estimate logs --results one --summary one/{table}"))
+            .is_refused_with("the result of a log has this name");
+    }
+    workspace.run("estimate logs --results new --summary new/all.csv").is_whole();
     fs::write(workspace.path("one/other.json"), "{}").unwrap();
     workspace.run("merge one").is_refused_with("other.json: not a result of tauscope; remove it");
 }

@@ -334,28 +334,84 @@ fn what_columns_are_taken_for_takes_time_with_their_number() {
     }
 }
 
-#[test]
-fn a_model_with_more_effects_than_any_is_refused_and_one_without_end() {
-    let folder = TempDir::new().unwrap();
-    let log = file(&folder, "log.csv", bytes::log_text().as_bytes());
+/// A model of joint `a` with so many expressions.
+fn model_of(count: usize, expression: &str) -> Vec<u8> {
     let mut model = "schema = \"tauscope/model/1\"\n[joint.a]\nstructure = \"integrator\"\n\
                      parameters = { gain = 1.0, delay = 0.1 }\n"
         .to_owned();
-    for k in 0..300 {
+    for k in 0..count {
         write!(
             model,
             "[[joint.a.effect]]\nkind = \"expression\"\nid = \"z{k}\"\nstage = \"input\"\n\
-             expression = \"signal * a\"\nparameters = {{ a = 1.0 }}\n"
+             expression = \"{expression}\"\nparameters = {{ a = 1.0 }}\n"
         )
         .unwrap();
     }
-    let model = file(&folder, "model.toml", model.as_bytes());
-    let endless = if cfg!(unix) { "/dev/zero" } else { model.to_str().unwrap() };
+    model.into_bytes()
+}
+
+#[test]
+fn a_model_larger_than_any_is_refused_and_one_without_end() {
+    let folder = TempDir::new().unwrap();
+    let log = file(&folder, "log.csv", bytes::log_text().as_bytes());
+    let effects = file(&folder, "effects.toml", &model_of(300, "signal * a"));
+    let long = format!("signal{}", " * a".repeat(200));
+    let long = file(&folder, "long.toml", &model_of(5, &long));
+    let endless = if cfg!(unix) { Path::new("/dev/zero") } else { &effects };
     for (model, expected) in [
-        (model.to_str().unwrap(), "300 effects"),
+        (effects.as_path(), "300 effects; 42 are the most"),
+        (&long, "4030 characters of expressions; 4000 are the most"),
         (endless, if cfg!(unix) { "64 MB" } else { "300" }),
     ] {
+        let model = model.to_str().unwrap();
         let ended = tauscope(&["compare", log.to_str().unwrap(), "--model", model]);
+        assert_eq!(ended.status, Some(2), "{ended:?}");
+        assert!(ended.said.contains(expected), "{ended:?}");
+    }
+}
+
+#[test]
+fn a_plan_is_for_a_machine_of_so_many_joints() {
+    let folder = TempDir::new().unwrap();
+    let mut model = "schema = \"tauscope/model/1\"\n".to_owned();
+    for k in 0..1001 {
+        writeln!(model, "[joint.j{k}]\nstructure = \"integrator\"").unwrap();
+        writeln!(model, "parameters = {{ gain = 1.0, delay = 0.1 }}").unwrap();
+    }
+    let model = file(&folder, "model.toml", model.as_bytes());
+    let ended = tauscope(&["design", "--model", model.to_str().unwrap()]);
+    assert_eq!(ended.status, Some(2), "{ended:?}");
+    assert!(ended.said.contains("1001 joints; a plan is for 1000 at most"), "{ended:?}");
+}
+
+#[test]
+#[cfg(unix)]
+fn an_earlier_result_without_end_is_refused() {
+    let folder = TempDir::new().unwrap();
+    let log = file(&folder, "log.csv", bytes::log_text().as_bytes());
+    let ended = tauscope(&["estimate", log.to_str().unwrap(), "--against", "/dev/zero"]);
+    assert_eq!(ended.status, Some(2), "{ended:?}");
+    assert!(ended.said.contains("/dev/zero: `--against` takes"), "{ended:?}");
+}
+
+#[test]
+fn a_plant_of_a_few_bytes_asks_for_so_much_work_only() {
+    let folder = TempDir::new().unwrap();
+    let output = folder.path().join("log.csv");
+    let plant = |top: &str, hold: &str| {
+        format!(
+            "schema = \"tauscope/plant/1\"\nseed = 1\n{top}\n[[joint]]\nname = \"boom\"\n\
+             input = {{ levels = [-2.0, 0.0, 2.0], hold_s = [{hold}, {hold}] }}\n\
+             delay = {{ law = \"constant\", seconds = 0.15 }}\n"
+        )
+    };
+    for (top, hold, expected) in [
+        ("duration_s = 490000.0", "1e-3", "five million steps"),
+        ("duration_s = 490000.0\nsubsteps = 100", "1.0", "two thousand million time steps"),
+    ] {
+        let plant = file(&folder, "p.toml", plant(top, hold).as_bytes());
+        let (plant, output) = (plant.to_str().unwrap(), output.to_str().unwrap());
+        let ended = run::run(&["simulate", plant, "-o", output]);
         assert_eq!(ended.status, Some(2), "{ended:?}");
         assert!(ended.said.contains(expected), "{ended:?}");
     }

@@ -7,6 +7,9 @@ use std::path::Path;
 /// Bytes that nobody writes by hand.
 const MOST: u64 = 64 << 20;
 
+/// Bytes that no program writes about the steps of an experiment.
+const MOST_OF_RESULTS: u64 = 256 << 20;
+
 /// The text of a file that somebody wrote, as `std::fs::read_to_string` gives it, which reads a
 /// device without end for ever.
 ///
@@ -14,6 +17,14 @@ const MOST: u64 = 64 << 20;
 /// What the system says; [`ErrorKind::InvalidData`] for what is longer than 64 MB, or is not UTF-8.
 pub(crate) fn read_text(path: &Path) -> std::io::Result<String> {
     read_text_to(path, MOST)
+}
+
+/// The text of a file that this program wrote, or another one in its form, as [`read_text`] gives it.
+///
+/// # Errors
+/// What the system says; [`ErrorKind::InvalidData`] for what is longer than 256 MB, or is not UTF-8.
+pub(crate) fn read_result(path: &Path) -> std::io::Result<String> {
+    read_text_to(path, MOST_OF_RESULTS)
 }
 
 fn read_text_to(path: &Path, most: u64) -> std::io::Result<String> {

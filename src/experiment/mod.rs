@@ -30,7 +30,7 @@ mod unit;
 mod wrap;
 
 pub use activity::{Other, activity};
-pub(crate) use bounded::read_text;
+pub(crate) use bounded::{read_result, read_text};
 pub use columns::{ColumnMap, ColumnMapError, JointColumns};
 pub(crate) use conditions::are_opposites;
 pub use conditions::{conditions, has_word};

@@ -1,10 +1,12 @@
 //! Decisions of an earlier run, read from its JSON or from its table of decisions.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
 use super::difference::{JointResult, OtherResult, StepResult, verdict_of};
+use crate::experiment::read_result;
 use crate::numerics::Line;
 
 /// Why the result of an earlier run cannot be read.
@@ -120,7 +122,8 @@ struct Row {
 
 impl OtherResult {
     /// Reads what an earlier `estimate` found: its JSON, or its table of decisions as CSV. Of
-    /// several methods the first one is read. None where the file is neither.
+    /// several methods the first one is read. None where the file is neither, or is longer than
+    /// any result.
     ///
     /// # Errors
     /// [`EarlierError::File`] for what cannot be opened, [`EarlierError::Schema`],
@@ -128,9 +131,12 @@ impl OtherResult {
     /// is one of both and cannot be understood.
     pub fn read(path: &Path) -> Result<Option<Self>, EarlierError> {
         let file = |source| EarlierError::File { path: path.to_owned(), source };
-        let bytes = std::fs::read(path).map_err(file)?;
-        let Ok(text) = String::from_utf8(bytes) else { return Ok(None) };
-        Self::parse(text.trim_start_matches('\u{feff}'), path)
+        match read_result(path) {
+            Ok(text) => Self::parse(text.trim_start_matches('\u{feff}'), path),
+            // A log may be long, and may be no text.
+            Err(error) if error.kind() == ErrorKind::InvalidData => Ok(None),
+            Err(error) => Err(file(error)),
+        }
     }
 
     fn parse(text: &str, path: &Path) -> Result<Option<Self>, EarlierError> {

@@ -90,6 +90,21 @@ impl InputSpec {
         }
     }
 
+    /// Seconds from one step to the next, on average.
+    pub(super) fn mean_hold_s(&self, clock: &Clock) -> f64 {
+        match self {
+            Self::Levels { hold_s: [shortest, longest], .. } => f64::midpoint(*shortest, *longest),
+            Self::Steps { steps, .. } => clock.time_s(clock.samples()) / steps.len() as f64,
+        }
+    }
+
+    /// Steps in the record, on average.
+    pub(super) fn steps_in(&self, clock: &Clock) -> f64 {
+        // A hold is a sample at least.
+        let samples = clock.samples_in(self.mean_hold_s(clock)).max(1);
+        clock.samples() as f64 / samples as f64
+    }
+
     /// Refuses what cannot be drawn or does not fit the record.
     pub(super) fn check(&self, clock: &Clock, place: &Place) -> Result<(), PlantError> {
         match self {

@@ -24,6 +24,13 @@ const MIN_SAMPLE_PERIOD_S: f64 = 1e-6;
 /// Most time steps per sample.
 const MAX_SUBSTEPS: u32 = 1000;
 
+/// Time steps of all joints together: minutes of work, not days of it.
+const MAX_TIME_STEPS: f64 = 2e9;
+
+/// Steps of the inputs of all joints together, each of which has a row of the truth: a
+/// gigabyte of them.
+const MAX_INPUT_STEPS: f64 = 5e6;
+
 /// Joints to simulate, as a plant file holds them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -226,11 +233,16 @@ impl PlantSpec {
         }
         let clock = self.clock()?;
         let mut names = HashSet::new();
+        let mut input_steps = 0.0;
         for joint in &self.joints {
             let place = Place::joint(&joint.name);
             let allowed = "a name that no other joint has";
             place.require("name", joint.name.as_str(), allowed, |name| names.insert(*name))?;
             joint.check(&clock, &place)?;
+            input_steps += joint.input.steps_in(&clock);
+            let allowed = "so long that there are five million steps of all joints or fewer";
+            let holds = joint.input.mean_hold_s(&clock);
+            place.require("input.hold_s", holds, allowed, |_| input_steps <= MAX_INPUT_STEPS)?;
         }
         Ok(())
     }
@@ -252,8 +264,10 @@ impl PlantSpec {
         plant.require("duration_s", self.duration_s, allowed, |_| {
             samples >= 2.0 && samples * count as f64 <= MAX_SAMPLES
         })?;
-        plant.require("substeps", self.substeps, "1 to 1000", |substeps| {
-            (1..=MAX_SUBSTEPS).contains(substeps)
+        let allowed = "1 to 1000; two thousand million time steps of all joints or fewer";
+        plant.require("substeps", self.substeps, allowed, |substeps| {
+            let steps = samples * count as f64 * f64::from(*substeps);
+            (1..=MAX_SUBSTEPS).contains(substeps) && steps <= MAX_TIME_STEPS
         })?;
         Ok(Clock::new(period, whole(samples), self.substeps))
     }

@@ -18,11 +18,16 @@ const LONGEST: Duration = Duration::from_secs(20);
 /// Kilobytes of address space, of which threads and libraries take a part.
 const MEMORY: u32 = 800_000;
 
-/// Runs the program.
+/// Runs the program with two threads.
 pub(crate) fn tauscope(arguments: &[&str]) -> Ended {
+    run(&[arguments, &["--threads", "2"]].concat())
+}
+
+/// Runs the program.
+pub(crate) fn run(arguments: &[&str]) -> Ended {
     let mut command = Command::new("sh");
     command.args(["-c", &format!("ulimit -v {MEMORY}; exec \"$0\" \"$@\"")]);
-    command.arg(env!("CARGO_BIN_EXE_tauscope")).args(arguments).args(["--threads", "2"]);
+    command.arg(env!("CARGO_BIN_EXE_tauscope")).args(arguments);
     let mut child =
         command.stdout(Stdio::null()).stderr(Stdio::piped()).stdin(Stdio::null()).spawn().unwrap();
     let start = Instant::now();

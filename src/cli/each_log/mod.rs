@@ -9,6 +9,8 @@ mod typed;
 mod with_parent;
 mod work;
 
+use std::collections::BTreeSet;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use crate::report::{FolderJson, FolderReport};
@@ -18,9 +20,10 @@ use clap::Args;
 use crate::cli::args::Format;
 use crate::cli::console::{self, Verbosity, message, warn};
 use crate::cli::exit::Completion;
-use crate::cli::output::{CsvText, check_outputs, check_tables, write_table};
+use crate::cli::output::{CsvText, check_outputs, check_tables, target_of, write_table};
 
 pub(crate) use each::Each;
+use store::name_of;
 pub(crate) use store::{read_folders, results_in};
 pub(crate) use with_parent::end_with_parent;
 
@@ -107,10 +110,12 @@ impl FolderArgs {
             );
         }
         let typed = typed::options(each.program, each.command)?;
-        tables.check(&[each.data.files(), typed.files.clone()].concat())?;
+        // A table may be in the folder.
         std::fs::create_dir_all(results)
             .with_context(|| format!("{}: cannot be made", results.display()))?;
         let (all, mut failures) = each.data.logs();
+        tables.check(&[each.data.files(), typed.files.clone()].concat())?;
+        tables.check_beside(results, &all)?;
         if all.is_empty() {
             bail!(failures.into_iter().next().unwrap_or_else(|| "no log is given".to_owned()));
         }
@@ -141,6 +146,24 @@ fn finish_part(failures: &[String], part: &str, results: &Path, each: &Each<'_>)
 impl Tables<'_> {
     fn files(&self) -> impl Iterator<Item = PathBuf> {
         [self.decisions, self.summary].into_iter().flatten().map(Path::to_owned)
+    }
+
+    /// Refuses what would replace the result or the model of one of `logs`.
+    fn check_beside(&self, results: &Path, logs: &[PathBuf]) -> anyhow::Result<()> {
+        let folder = results.canonicalize().unwrap_or_else(|_| results.to_owned());
+        let named: BTreeSet<PathBuf> = logs.iter().map(|log| folder.join(name_of(log))).collect();
+        let is_taken = |table: &PathBuf| {
+            let target = target_of(table);
+            let ending = target.extension().and_then(OsStr::to_str).unwrap_or_default();
+            ["json", "toml"].contains(&ending) && named.contains(&target.with_extension(""))
+        };
+        match self.files().find(is_taken) {
+            Some(table) => bail!(
+                "{}: the result of a log has this name; give the table another",
+                table.display()
+            ),
+            None => Ok(()),
+        }
     }
 
     /// Refuses what cannot be written, or would replace an input or another table.

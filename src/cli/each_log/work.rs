@@ -87,7 +87,14 @@ impl Work<'_> {
     fn is_done(&self, logs: &[&PathBuf], keys: &[anyhow::Result<String>], index: usize) -> bool {
         let (Some(log), Some(Ok(key))) = (logs.get(index), keys.get(index)) else { return false };
         let kept = Kept::read(&self.place(log));
-        kept.is_ok_and(|kept| kept.key == *key && kept.file == text_of(log.as_os_str()))
+        let has_model = self.model_of(log).is_none_or(|model| model.is_file());
+        has_model
+            && kept.is_ok_and(|kept| kept.key == *key && kept.file == text_of(log.as_os_str()))
+    }
+
+    /// Where the model of a log is written, where the command makes one.
+    fn model_of(&self, log: &Path) -> Option<PathBuf> {
+        (self.each.command == "improve").then(|| self.place(log).with_extension("toml"))
     }
 
     fn settings(&self) -> String {
@@ -120,9 +127,9 @@ impl Work<'_> {
         let mut command = Command::new(program);
         command.arg(self.each.command).args(&self.typed.words);
         command.args(["--format=json", "--quiet"]).arg(format!("--threads={threads}"));
-        if self.each.command == "improve" {
+        if let Some(model) = self.model_of(log) {
             let mut write = OsString::from("--write=");
-            write.push(self.place(log).with_extension("toml"));
+            write.push(model);
             command.arg(write);
         }
         let output = with_parent::output(command.arg("--").arg(log));

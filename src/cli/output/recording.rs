@@ -85,6 +85,7 @@ impl Contents<'_> {
         let inputs: Vec<PathBuf> = self.sources.iter().map(|source| source.path.clone()).collect();
         let outputs: Vec<&Path> = paths.iter().map(PathBuf::as_path).collect();
         check_outputs(&outputs, &inputs)?;
+        check_own(path, &outputs)?;
         let mut files = Vec::new();
         for (joints, path) in groups.iter().zip(&paths) {
             // A viewer lists recordings by name.
@@ -171,6 +172,21 @@ pub(crate) fn check_beside_parts(path: &Path, others: &[&Path]) -> anyhow::Resul
         );
     }
     Ok(())
+}
+
+/// Refuses to replace a file that lies where a part of the recording at `path` goes, and cannot be
+/// of an earlier one: no recording is at `path`.
+#[cfg(feature = "rrd")]
+fn check_own(path: &Path, parts: &[&Path]) -> anyhow::Result<()> {
+    match parts.iter().find(|part| part.exists()) {
+        Some(part) if !path.exists() => bail!(
+            "{}: is there already, and a recording of many joints has files of this name beside \
+             {}; give the recording another name",
+            part.display(),
+            path.display()
+        ),
+        _ => Ok(()),
+    }
 }
 
 /// The name of the file `number` beside `path`: `x_1.rrd` beside `x.rrd`.

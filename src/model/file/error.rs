@@ -73,17 +73,15 @@ pub enum ModelError {
         /// The parameters there are.
         known: String,
     },
-    /// A joint has more effects than any model.
-    #[error("{}, {place}: {count} effects; {most} are the most", path.display())]
-    TooManyEffects {
+    /// A joint has more effects, or longer expressions, than any model.
+    #[error("{}, {place}: {problem}", path.display())]
+    TooLarge {
         /// The file.
         path: PathBuf,
         /// The joint, or the candidates.
         place: String,
-        /// How many there are.
-        count: usize,
-        /// The most.
-        most: usize,
+        /// What there is too much of, and the most.
+        problem: String,
     },
     /// A parameter of the structure is missing.
     #[error("{}, joint `{joint}`: parameter `{name}` is missing", path.display())]

@@ -12,13 +12,17 @@ use crate::model::{Component, JointModel, Value};
 /// takes time with their square, and a fit with the cube of their parameters.
 const MOST_EFFECTS: usize = 2 * effect::REGISTRY.len();
 
+/// The most characters of all expressions of a joint, and of the candidates of a file: each of them
+/// is computed at each step of time of each simulation of a fit.
+const MOST_CHARACTERS: usize = 4000;
+
 /// The effects of whoever reads a file, and those that it offers, in its order.
 pub(super) fn candidates(
     path: &Path,
     others: &[&'static dyn Effect],
     given: Vec<EffectToml>,
 ) -> Result<Vec<&'static dyn Effect>, ModelError> {
-    check_count(path, || "candidates".to_owned(), given.len())?;
+    check_size(path, || "candidates".to_owned(), &given)?;
     let mut candidates = others.to_vec();
     for given in given {
         let own = Own { path, place: "candidate".to_owned() };
@@ -29,16 +33,22 @@ pub(super) fn candidates(
     Ok(candidates)
 }
 
-fn check_count(
+fn check_size(
     path: &Path,
     place: impl FnOnce() -> String,
-    count: usize,
+    effects: &[EffectToml],
 ) -> Result<(), ModelError> {
-    if count <= MOST_EFFECTS {
-        return Ok(());
-    }
-    let most = MOST_EFFECTS;
-    Err(ModelError::TooManyEffects { path: path.to_owned(), place: place(), count, most })
+    let count = effects.len();
+    let characters: usize =
+        effects.iter().filter_map(|it| it.expression.as_ref()).map(String::len).sum();
+    let problem = match (count > MOST_EFFECTS, characters > MOST_CHARACTERS) {
+        (false, false) => return Ok(()),
+        (true, _) => format!("{count} effects; {MOST_EFFECTS} are the most"),
+        (false, true) => {
+            format!("{characters} characters of expressions; {MOST_CHARACTERS} are the most")
+        }
+    };
+    Err(ModelError::TooLarge { path: path.to_owned(), place: place(), problem })
 }
 
 /// Where the start values of a definition come from.
@@ -142,7 +152,7 @@ impl JointReader<'_> {
         };
         let mut model = JointModel::integrator(0.0, 0.0);
         (model.gain, model.delay) = (needed(0, "gain")?, needed(1, "delay")?);
-        check_count(self.path, || format!("joint `{}`", self.joint), joint.effect.len())?;
+        check_size(self.path, || format!("joint `{}`", self.joint), &joint.effect)?;
         for given in &joint.effect {
             let before: Vec<_> = model.components().iter().map(Component::effect).collect();
             model = model.with(self.component(given, &before)?);

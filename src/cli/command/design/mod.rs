@@ -8,6 +8,8 @@ mod values;
 
 use std::path::{Path, PathBuf};
 
+use anyhow::bail;
+
 use crate::experiment::ReadOptions;
 use crate::report::{DesignJson, DesignedJoint, design_text, write_input, write_preview};
 
@@ -83,6 +85,12 @@ fn is_recording(path: &Path) -> bool {
 
 /// The inputs of all joints, and messages on those that have none.
 fn designed(args: &Args, known: &Known) -> anyhow::Result<(Vec<DesignedJoint>, Vec<String>)> {
+    /// Joints of one plan: its rows have a cell for each, and each is simulated.
+    const MOST_JOINTS: usize = 1000;
+    let count = known.names.len();
+    if count > MOST_JOINTS {
+        bail!("{count} joints; a plan is for {MOST_JOINTS} at most: choose some with --joint");
+    }
     let bar = Bar::spinner(args.run.verbosity(), "designing");
     let results = if args.separate.is_empty() {
         random::designed(args, known, &bar)
