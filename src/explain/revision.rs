@@ -2,9 +2,11 @@
 
 use super::candidate::Candidate;
 use super::contribution::Attribution;
+use super::extension::ids;
 use super::verdict::Verdict;
 use crate::diagnosis::Comparison;
 use crate::fit::FitError;
+use crate::model::JointModel;
 
 /// What a revision changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,13 +17,26 @@ pub enum Change {
     Added(&'static str),
     /// An effect that others made useless was removed.
     Removed(&'static str),
-    /// An effect gave way to one that does the same better, now that others are there.
+    /// An effect gave way to one that does the same better: to its finer form, or now that others
+    /// are there.
     Replaced {
         /// What was removed.
         old: &'static str,
         /// What was added.
         new: &'static str,
     },
+}
+
+impl Change {
+    /// `new` was added to `before`, which has given `after`: of an effect whose finer form it is, it
+    /// takes the place.
+    pub(super) fn to_with(before: &JointModel, after: &JointModel, new: &'static str) -> Self {
+        let kept = ids(after);
+        match ids(before).into_iter().find(|id| !kept.contains(id)) {
+            Some(old) => Self::Replaced { old, new },
+            None => Self::Added(new),
+        }
+    }
 }
 
 /// A model and its error.

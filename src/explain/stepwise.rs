@@ -144,7 +144,8 @@ pub(super) fn add_stepwise(
                 return ended(Verdict::MissingEffect, step.fit, true);
             }
         }
-        step = Step::new(record, Change::Added(found.newest()), found.fit);
+        let change = Change::to_with(&step.fit.model, &found.fit.model, found.newest());
+        step = Step::new(record, change, found.fit);
         let mut removal = Removal { given, kept: found.effects, options };
         while let Some((change, fit)) = removal.better(record, &step.fit, workers) {
             if !visit(&step) {

@@ -14,7 +14,8 @@ use super::recorded::Recording;
 use crate::figure::ladder::judged;
 use crate::report::{
     EstimatedJoint, JointSummary, LEVEL_HEADER, SUMMARY_HEADER, Words, change_in_words,
-    chosen_line, dead_time_sentences, kind_sentence, level_cells, settings_rows, summary_cells,
+    chosen_line, dead_time_sentences, doubtful_lines, kind_sentence, level_cells, settings_rows,
+    summary_cells,
 };
 use crate::wording::{DOUBT_MEANS, counted, doubtful_sentence, measure};
 
@@ -36,6 +37,7 @@ fn page(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> Result<String
     let doubts = || layouts.iter().flat_map(JointLayout::segments).map(|(_, s)| &s.doubt);
     if doubts().next().is_some() {
         writeln!(page, "{}. {DOUBT_MEANS}\n", doubtful_sentence(doubts()))?;
+        doubtful(&mut page, recording.joints)?;
     }
     writeln!(page, "| {} |", SUMMARY_HEADER.join(" | "))?;
     writeln!(page, "|---|---|---|---|---|---|---|")?;
@@ -98,6 +100,19 @@ fn answers(page: &mut String, recording: &Recording<'_>) -> std::fmt::Result {
         writeln!(page)?;
     }
     Ok(())
+}
+
+/// The most doubtful decisions of all joints. Those of one joint are in a list beside them.
+fn doubtful(page: &mut String, joints: &[EstimatedJoint<'_>]) -> std::fmt::Result {
+    /// Decisions that are named.
+    const MOST: usize = 10;
+    if joints.len() < 2 {
+        return Ok(());
+    }
+    for line in doubtful_lines(joints).iter().take(MOST) {
+        writeln!(page, "1. {}", plain(line))?;
+    }
+    writeln!(page)
 }
 
 /// The delays by kind of step and levels.

@@ -146,18 +146,19 @@ impl<'i> Builder<'i> {
         Ok(node)
     }
 
-    /// The messages of a blueprint of `tabs`, a page about it all being the last one, which
+    /// The messages of a blueprint of `tabs`, a page `about` it all being the last one, which
     /// opens on a timeline.
     pub(super) fn tabbed(
         mut self,
         mut tabs: Vec<Node>,
+        name: &str,
         opening: (&str, PlayState),
         application: &ApplicationId,
     ) -> Result<Vec<LogMsg>, RecordError> {
         /// Tabs that a screen has room for: behind more of them nobody finds the page on all.
         const SEEN: usize = 10;
         let about = EntityPath::from(ABOUT).to_string();
-        let about = self.view(View::new("TextDocument", "About", &[about]))?;
+        let about = self.view(View::new("TextDocument", name, &[about]))?;
         let place = if tabs.len() > SEEN { 0 } else { tabs.len() };
         let opening_tab = tabs.first().unwrap_or(&about).clone();
         tabs.insert(place, about);

@@ -18,7 +18,7 @@ use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures, SIGNIFICANCE, sensor_noise};
 use crate::experiment::Joint;
 use crate::report::{ComparedJoint, model_differences};
-use crate::wording::{correlation_sentences, failure_sentences, measure, number};
+use crate::wording::{correlation_sentences, measure, misfit_units, number};
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
@@ -165,8 +165,11 @@ fn page(
     let told: Vec<&ComparedJoint<'_>> =
         if is_first(models, judged) { models.to_vec() } else { judged_alone.iter().collect() };
     for compared in &told {
-        for sentence in failure_sentences(compared.joint, compared.comparison) {
-            writeln!(page, "\n**Fails** ({}): {}", compared.model, plain(&sentence))?;
+        let units = misfit_units(compared.joint);
+        let found = compared.comparison.failure.iter().flat_map(|failure| &failure.fails_where);
+        for found in found {
+            let (when, weight) = (plain(&found.condition(&units)), found.weight());
+            writeln!(page, "\n**Fails when {when}** ({}): {weight}", compared.model)?;
         }
     }
     for compared in &told {
@@ -226,18 +229,22 @@ fn worst_segments(
 ) -> std::fmt::Result {
     let Some(failure) = &judged.comparison.failure else { return Ok(()) };
     let horizon = judged.comparison.fit.evaluation.horizon;
-    writeln!(page, "\nWhere the residual of {} is largest, {horizon}:", judged.model)?;
+    writeln!(
+        page,
+        "\nWhere the residual of {} is largest, {horizon}, and its share of the squares:",
+        judged.model
+    )?;
     // A narrow page has no room for what is the same in each row.
     let several = judged.joint.trials.len() > 1;
     let (head, rule) = if several { ("trial |", "---|") } else { ("", "") };
-    writeln!(page, "\n| rank |{head} time | `sample` | part of its square |")?;
+    writeln!(page, "\n| rank |{head} time | share | `sample` |")?;
     writeln!(page, "|---|{rule}---|---|---|")?;
     for (rank, worst) in (1..).zip(&failure.worst_segments) {
         let (from, to) = (number(worst.start_s), number(worst.end_s));
         let share = 100.0 * worst.share_of_squared_error;
         let samples = on_timeline(layout, worst);
         let trial = if several { format!("{} |", plain(&worst.trial)) } else { String::new() };
-        writeln!(page, "| {rank} |{trial} {from} … {to} s | {samples} | {share:.0} % |")?;
+        writeln!(page, "| {rank} |{trial} {from} … {to} s | {share:.0} % | {samples} |")?;
     }
     Ok(())
 }

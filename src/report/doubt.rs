@@ -33,24 +33,29 @@ pub(crate) fn by_doubt(joint: EstimatedJoint<'_>) -> Vec<Doubted<'_>> {
     all
 }
 
+/// The doubtful decisions of all joints in lines, the most doubtful first.
+pub(crate) fn doubtful_lines(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
+    let mut all: Vec<_> =
+        joints.iter().flat_map(|joint| doubted(*joint).map(move |found| (*joint, found))).collect();
+    all.retain(|(_, found)| found.doubt.is_doubtful());
+    all.sort_by(|(_, a), (_, b)| b.doubt.value().total_cmp(&a.doubt.value()));
+    all.iter().map(|(joint, found)| line(*joint, found)).collect()
+}
+
 /// How many decisions are doubtful, and the most doubtful ones, a line each; nothing where none is.
 pub(super) fn doubtful_text(joints: &[EstimatedJoint<'_>]) -> String {
     /// Decisions that are named.
     const MOST: usize = 3;
-    let mut all: Vec<_> =
-        joints.iter().flat_map(|joint| doubted(*joint).map(move |found| (*joint, found))).collect();
-    let steps = all.len();
-    all.retain(|(_, found)| found.doubt.is_doubtful());
-    all.sort_by(|(_, a), (_, b)| b.doubt.value().total_cmp(&a.doubt.value()));
+    let steps = joints.iter().map(|joint| doubted(*joint).count()).sum();
+    let all = doubtful_lines(joints);
     let are = match all.len() {
         0 => return String::new(),
         1 => "is",
         _ => "are",
     };
-    let lines = all.iter().take(MOST).map(|(joint, found)| format!("  {}\n", line(*joint, found)));
-    let (count, lines) = (all.len(), lines.collect::<String>());
-    let first = if count > MOST { "look first at" } else { "look at" };
-    format!("{count} of {} {are} doubtful; {first}\n{lines}", counted(steps, "decision"))
+    let lines: String = all.iter().take(MOST).flat_map(|line| ["  ", line, "\n"]).collect();
+    let first = if all.len() > MOST { "look first at" } else { "look at" };
+    format!("{} of {} {are} doubtful; {first}\n{lines}", all.len(), counted(steps, "decision"))
 }
 
 /// Where a decision is, and what speaks against it.

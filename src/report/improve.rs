@@ -9,6 +9,8 @@ use super::parameters::model_text;
 use super::text_table::TextTable;
 #[cfg(feature = "rrd")]
 use crate::diagnosis::Comparison;
+#[cfg(feature = "rrd")]
+use crate::effect::by_id;
 use crate::experiment::Joint;
 use crate::explain::{Candidate, Change, Revision, Verdict};
 use crate::wording::effects_text;
@@ -58,7 +60,9 @@ impl<'a> ImprovedJoint<'a> {
 
     fn is_taken(&self, index: usize, candidate: &Candidate) -> bool {
         match self.revisions.get(index + 1).map(|next| next.change) {
-            Some(Change::Added(id)) => candidate.effects.first() == Some(&id),
+            Some(Change::Added(id) | Change::Replaced { new: id, .. }) => {
+                candidate.effects.first() == Some(&id)
+            }
             Some(_) => false,
             None => self.finding.verdict == Verdict::MissingEffect,
         }
@@ -99,9 +103,13 @@ impl<'a> ImprovedJoint<'a> {
         };
         match next {
             Change::Removed(id) => made_useless(format!("{id} has become useless")),
-            Change::Replaced { old, new } => made_useless(format!("{old} gives way to {new}")),
-            Change::Added(id) if ranking.is_empty() => self.added_unranked(index, id, &finding),
-            Change::Added(_) | Change::Start => finding.conclusion(),
+            Change::Replaced { old, new } if ranking.is_empty() && !is_finer(new, old) => {
+                made_useless(format!("{old} gives way to {new}"))
+            }
+            Change::Added(id) | Change::Replaced { new: id, .. } if ranking.is_empty() => {
+                self.added_unranked(index, id, &finding)
+            }
+            Change::Added(_) | Change::Replaced { .. } | Change::Start => finding.conclusion(),
         }
     }
 
@@ -159,6 +167,12 @@ impl<'a> ImprovedJoint<'a> {
         }
         table
     }
+}
+
+/// Whether `new` is a finer form of `old`.
+#[cfg(feature = "rrd")]
+fn is_finer(new: &str, old: &str) -> bool {
+    by_id(new).is_some_and(|effect| effect.spec().refines == Some(old))
 }
 
 /// `+ dead_band`; the first revision by what it has.

@@ -117,14 +117,29 @@ impl FailsWhere {
     /// A sentence for people: `88 % of the squared error of the speed arises in the 31 % of the
     /// time when |input| < 1.2 V`.
     pub fn sentence(&self, units: &Units) -> String {
-        let clauses: Vec<_> = self.clauses.iter().map(|clause| clause.with_unit(units)).collect();
         format!(
-            "{} of the squared error{} arises in the {} of the time when {}",
-            percent(self.share_of_squared_error),
-            if self.of_speed { " of the speed" } else { "" },
+            "{} arises in the {} of the time when {}",
+            self.part(),
             percent(self.share_of_time),
-            clauses.join(" and ")
+            self.condition(units)
         )
+    }
+
+    /// The condition alone: `|input| < 1.2 V`.
+    pub(crate) fn condition(&self, units: &Units) -> String {
+        let clauses: Vec<_> = self.clauses.iter().map(|clause| clause.with_unit(units)).collect();
+        clauses.join(" and ")
+    }
+
+    /// What it holds, where the condition was named before.
+    pub(crate) fn weight(&self) -> String {
+        format!("{} arises in this {} of the time", self.part(), percent(self.share_of_time))
+    }
+
+    /// The part of the squared error.
+    fn part(&self) -> String {
+        let of = if self.of_speed { " of the speed" } else { "" };
+        format!("{} of the squared error{of}", percent(self.share_of_squared_error))
     }
 }
 

@@ -38,5 +38,5 @@ pub(super) fn messages(
     let columns = [left, right];
     let name = "Joints and doubtful decisions";
     let page = builder.container(ContainerKind::Horizontal, name, &columns, &[6.2, 3.8])?;
-    builder.tabbed(vec![page], ("doubt", PlayState::Paused), application)
+    builder.tabbed(vec![page], "About", ("doubt", PlayState::Paused), application)
 }

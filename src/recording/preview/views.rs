@@ -23,7 +23,7 @@ pub(super) fn messages(
     for joint in preview.joints {
         tabs.push(tab(&mut builder, joint)?);
     }
-    builder.tabbed(tabs, ("time", PlayState::Paused), application)
+    builder.tabbed(tabs, "About", ("time", PlayState::Paused), application)
 }
 
 /// The page of a joint and its signals; beside them what they distinguish, and the holds.

@@ -21,7 +21,7 @@ pub(super) fn messages(
     for joint in sweep.joints {
         tabs.push(tab(&mut builder, &joint.joint.name)?);
     }
-    builder.tabbed(tabs, ("setting", PlayState::Paused), application)
+    builder.tabbed(tabs, "About", ("setting", PlayState::Paused), application)
 }
 
 /// All steps and one step; beside them what is found, what is under the cursor, and the

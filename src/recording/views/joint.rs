@@ -28,7 +28,7 @@ use crate::recording::{
 use crate::report::{ComparedJoint, EstimatedJoint, by_doubt};
 
 /// What the lanes of the model that is judged are called.
-const LANES: &str = "Worst segments (1 is the worst); what was not fitted; where it fails";
+const LANES: &str = "Where it fails (its speed); what was not fitted; worst segments (1 first)";
 
 /// The tab of `joint`: its decisions, its record, its table; and before them the revisions
 /// of its model, and its models, where there are any.

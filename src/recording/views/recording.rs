@@ -9,7 +9,7 @@ use crate::recording::blueprint::Builder;
 use crate::recording::content::Growth;
 use crate::recording::error::RecordError;
 use crate::recording::recorded::Recording;
-use crate::report::EstimatedJoint;
+use crate::report::{EstimatedJoint, doubtful_lines};
 
 /// What decides which views there are.
 pub(in crate::recording) fn in_words(recording: &Recording<'_>, growth: Growth) -> String {
@@ -59,5 +59,19 @@ pub(in crate::recording) fn messages(
         }
         Growth::Finished => ("decision", PlayState::Paused),
     };
-    builder.tabbed(tabs, opening, application)
+    builder.tabbed(tabs, &about(recording, growth), opening, application)
+}
+
+/// The name of the page on it all: of several joints how many decisions are doubtful, which no page
+/// of a joint says.
+fn about(recording: &Recording<'_>, growth: Growth) -> String {
+    let doubtful = match growth {
+        Growth::Finished => doubtful_lines(recording.joints).len(),
+        Growth::Growing => 0,
+    };
+    match (recording.joints.len(), doubtful) {
+        (0 | 1, _) => "About".to_owned(),
+        (_, 0) => "All joints".to_owned(),
+        (_, doubtful) => format!("All joints: {doubtful} doubtful"),
+    }
 }
