@@ -25,6 +25,9 @@ const HIGHEST: f32 = 90.0;
 /// Top and bottom of the bars on the sheet.
 const ROWS: (f32, f32) = (44.0, 450.0);
 
+/// Half of the height of a line of text, on the sheet.
+const HALF_LINE: f32 = 14.0;
+
 impl Bars {
     /// `rows` bars up to the length `most`, between two columns of the sheet; `names` is
     /// where the names end.
@@ -63,9 +66,15 @@ impl Bars {
     }
 
     pub(super) fn name(&self, labels: &mut Labels, row: usize, name: &str) {
-        // Two lines where it is two changes.
-        let name = name.replace(", ", "\n");
-        let drop = if name.contains('\n') { 28.0 } else { 14.0 };
+        // Two lines where it is two changes; what came stands for both where rows are narrow.
+        let height = self.plot.y(self.middle(row + 1)) - self.plot.y(self.middle(row));
+        let (name, drop) = match name.split_once(", ") {
+            Some((came, gone)) if height >= 4.0 * HALF_LINE => {
+                (format!("{came}\n{gone}"), 2.0 * HALF_LINE)
+            }
+            Some((came, _)) => (came.to_owned(), HALF_LINE),
+            None => (name.to_owned(), HALF_LINE),
+        };
         labels.put(Vec2D::new(self.names, self.plot.y(self.middle(row)) - drop), name);
     }
 
@@ -73,7 +82,7 @@ impl Bars {
     pub(super) fn value(&self, labels: &mut Labels, row: usize, end: f64, text: String) {
         let half = 7.0 * (text.chars().count() + 2) as f32;
         let (x, y) = (self.plot.x(end) + half, self.plot.y(self.middle(row)));
-        labels.put(Vec2D::new(x, y - 14.0), text);
+        labels.put(Vec2D::new(x, y - HALF_LINE), text);
     }
 
     /// A text above all, in the middle.
