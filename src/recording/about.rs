@@ -102,13 +102,10 @@ fn answers(page: &mut String, recording: &Recording<'_>) -> std::fmt::Result {
     Ok(())
 }
 
-/// The most doubtful decisions of all joints. Those of one joint are in a list beside them.
+/// The most doubtful decisions of all joints.
 fn doubtful(page: &mut String, joints: &[EstimatedJoint<'_>]) -> std::fmt::Result {
     /// Decisions that are named.
     const MOST: usize = 10;
-    if joints.len() < 2 {
-        return Ok(());
-    }
     for line in doubtful_lines(joints).iter().take(MOST) {
         writeln!(page, "1. {}", plain(line))?;
     }

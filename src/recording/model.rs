@@ -236,15 +236,17 @@ fn worst_segments(
     )?;
     // A narrow page has no room for what is the same in each row.
     let several = judged.joint.trials.len() > 1;
-    let (head, rule) = if several { ("trial |", "---|") } else { ("", "") };
-    writeln!(page, "\n| rank |{head} time | share | `sample` |")?;
-    writeln!(page, "|---|{rule}---|---|---|")?;
+    let columns = ["time | share | `sample`", "trial | share | `time`"][usize::from(several)];
+    writeln!(page, "\n| rank | {columns} |\n|---|---|---|---|")?;
     for (rank, worst) in (1..).zip(&failure.worst_segments) {
-        let (from, to) = (number(worst.start_s), number(worst.end_s));
+        let place = if several {
+            plain(&worst.trial)
+        } else {
+            format!("{} … {} s", number(worst.start_s), number(worst.end_s))
+        };
         let share = 100.0 * worst.share_of_squared_error;
-        let samples = on_timeline(layout, worst);
-        let trial = if several { format!("{} |", plain(&worst.trial)) } else { String::new() };
-        writeln!(page, "| {rank} |{trial} {from} … {to} s | {share:.0} % | {samples} |")?;
+        let on_timeline = on_timeline(layout, worst);
+        writeln!(page, "| {rank} | {place} | {share:.0} % | {on_timeline} |")?;
     }
     Ok(())
 }
@@ -276,14 +278,29 @@ fn parameters(page: &mut String, joint: &Joint, models: &[&ComparedJoint<'_>]) -
     Ok(())
 }
 
-/// Where `worst` is on the timeline `sample`.
+/// Where `worst` is on the timeline `sample`; of several trials, which have one clock each, on that
+/// of the record.
 fn on_timeline(layout: &JointLayout<'_>, worst: &WorstSegment) -> String {
     let of_label = layout.trials.iter().find(|trial| trial.trial.label() == worst.trial);
     let place = of_label.map(|trial| {
         let samples = samples_of(worst, trial);
-        format!("{} … {}", trial.sample(*samples.start()), trial.sample(*samples.end()))
+        let (first, last) = (*samples.start(), *samples.end());
+        if layout.trials.len() > 1 {
+            let clock = |k| clock(trial.time_ns(k) / 1_000_000_000);
+            format!("{} … {}", clock(first), clock(last))
+        } else {
+            format!("{} … {}", trial.sample(first), trial.sample(last))
+        }
     });
     place.unwrap_or_default()
+}
+
+/// Seconds as the viewer writes them on an axis: `1m20s`.
+fn clock(seconds: i64) -> String {
+    match (seconds / 60, seconds % 60) {
+        (0, seconds) => format!("{seconds}s"),
+        (minutes, seconds) => format!("{minutes}m{seconds:02}s"),
+    }
 }
 
 /// Times the noise up to which they are worth a count: ten parts in a hundred at most are noise then.

@@ -42,7 +42,7 @@ fn input_sentence(correlation: &InputCorrelation) -> String {
     let acting = &correlation.acting;
     let p = p_text(acting.p_value);
     if acting.p_value >= 1.0 - CONFIDENCE {
-        return format!("not correlated with the input ({p})");
+        return format!("not shown to be correlated with the input ({p})");
     }
     let lag = number(acting.peak_lag_s.abs());
     let at = match acting.peak_lag_s {

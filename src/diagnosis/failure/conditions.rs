@@ -60,14 +60,19 @@ impl fmt::Display for Relation {
     }
 }
 
+impl fmt::Display for Bound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Label(label) => f.write_str(label),
+        }
+    }
+}
+
 impl fmt::Display for Clause {
     /// Without unit, as in files.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {} ", self.feature, self.relation)?;
-        match &self.bound {
-            Bound::Number(number) => write!(f, "{number}"),
-            Bound::Label(label) => write!(f, "{label}"),
-        }
+        write!(f, "{} {} {}", self.feature, self.relation, self.bound)
     }
 }
 
@@ -87,7 +92,8 @@ impl Clause {
     /// With the unit, as people read it.
     pub fn with_unit(&self, units: &Units) -> String {
         let unit = self.feature.unit(units).map_or_else(String::new, |unit| format!(" {unit}"));
-        format!("{self}{unit}")
+        let Self { feature, relation, bound } = self;
+        format!("{} {relation} {bound}{unit}", feature.in_words())
     }
 }
 

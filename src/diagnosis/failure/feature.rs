@@ -75,6 +75,14 @@ impl Feature {
         }
     }
 
+    /// Its name for people, who see the record on clocks of other beginnings.
+    pub(super) fn in_words(self) -> &'static str {
+        match self {
+            Self::Time => "time in the trial",
+            _ => self.name(),
+        }
+    }
+
     /// Its unit, where there is one.
     pub fn unit(self, units: &Units) -> Option<String> {
         match self {

@@ -28,7 +28,9 @@ fn written(improved: &ImprovedJoint<'_>, place: usize) -> Result<String, std::fm
     if conclusion.passages.iter().all(|passage| passage.topic != Topic::Error) {
         writeln!(page, "**{}**\n", plain(&fall(improved, place)))?;
     }
-    if !is_last {
+    if is_last {
+        what_was_found(&mut page, improved)?;
+    } else {
         writeln!(page, "**At revision {revision}:** {}\n", plain(&conclusion.headline))?;
     }
     for passage in &conclusion.passages {
@@ -40,6 +42,16 @@ fn written(improved: &ImprovedJoint<'_>, place: usize) -> Result<String, std::fm
     parameter_table(&mut page, improved.finding.compared.joint, &step.comparison.fit)?;
     writeln!(page, "\n{HOW}")?;
     Ok(page)
+}
+
+/// What each effect that was found is.
+fn what_was_found(page: &mut String, improved: &ImprovedJoint<'_>) -> std::fmt::Result {
+    // Not as a table, the widest row of which would push the text out of its panel.
+    let components = improved.finding.compared.comparison.fit.model.components();
+    for spec in components.iter().map(|component| component.effect().spec()) {
+        writeln!(page, "- **{}:** {}", plain(spec.id), plain(spec.summary))?;
+    }
+    writeln!(page)
 }
 
 const HOW: &str = "\

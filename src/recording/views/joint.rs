@@ -324,7 +324,12 @@ impl Views<'_, '_> {
 
     /// Models beside the measurement, and their residuals.
     fn models(&mut self, models: &[&ComparedJoint<'_>]) -> Result<Node, RecordError> {
-        let names: Vec<&str> = models.iter().map(|model| model.model).collect();
+        // What came between first and last is on the page of the revisions.
+        let ends = match models {
+            [first, .., last] if self.revisions > palette::NAMES.len() => &[*first, *last][..],
+            all => all,
+        };
+        let names: Vec<&str> = ends.iter().map(|model| model.model).collect();
         let root = self.at(paths::MODEL);
         let of_each = |part| names.iter().map(|name| at(&child(&root, name), part)).collect();
         let horizon = models.first().map(|model| model.comparison.fit.evaluation.horizon);

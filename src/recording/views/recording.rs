@@ -71,7 +71,8 @@ fn about(recording: &Recording<'_>, growth: Growth) -> String {
     };
     match (recording.joints.len(), doubtful) {
         (0 | 1, _) => "About".to_owned(),
-        (_, 0) => "All joints".to_owned(),
+        (_, 0) if growth == Growth::Growing => "All joints".to_owned(),
+        (_, 0) => "All joints: none doubtful".to_owned(),
         (_, doubtful) => format!("All joints: {doubtful} doubtful"),
     }
 }

@@ -54,15 +54,11 @@ impl Finding<'_> {
             trial + &worst_segment_text(worst)
         };
         let times: Vec<String> = worst.take(3).map(time).collect();
-        let look = format!("the residual is largest in {}", times.join(", "));
-        let sentence = match (conditions.first(), times.is_empty()) {
-            (Some(condition), false) => format!("{condition}; {look}."),
-            (Some(condition), true) => format!("{condition}."),
-            (None, false) => {
-                format!("No condition was found that holds most of the error; {look}.")
-            }
-            (None, true) => return None,
-        };
-        Passage::of(Topic::WhereItFails, Some(sentence))
+        let look = format!("The simulated output is farthest off in {}.", times.join(", "));
+        let look = Some(look).filter(|_| !times.is_empty());
+        let none = "No condition was found that holds most of the error.".to_owned();
+        let none = Some(none).filter(|_| conditions.is_empty() && look.is_some());
+        let conditions = conditions.into_iter().map(|condition| format!("{condition}."));
+        Passage::of(Topic::WhereItFails, conditions.chain(none).chain(look))
     }
 }
