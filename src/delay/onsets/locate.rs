@@ -21,6 +21,8 @@ pub(crate) fn located(
 ) -> (OnsetPath, NoiseModel) {
     /// Samples that are enough to know the noise.
     const ENOUGH: usize = 50_000;
+    /// Those of all windows, which are in some three of them where every neighbour counts.
+    const MOST: usize = 8 * ENOUGH;
     let output = trial.output();
     let mut path = OnsetPath::of(trial, settings);
     let every = output.len().div_ceil(ENOUGH).max(1);
@@ -29,7 +31,7 @@ pub(crate) fn located(
         if pass > 0 && path.in_time() && path.is_fine() {
             break;
         }
-        let mut residuals = Vec::new();
+        let (mut residuals, mut known) = (Vec::new(), 0);
         for index in 0..path.onsets.len() {
             let range = if pass == 0 { path.cautious_window(index) } else { path.window(index) };
             let start = range.start;
@@ -38,7 +40,8 @@ pub(crate) fn located(
             let Some(line) = found.and_then(|(window, positions)| window.best(positions)) else {
                 continue;
             };
-            if index % every == 0 {
+            if index % every == 0 && known < MOST {
+                known += values.len();
                 residuals.push(line.residuals(values));
             }
             let onset = &mut path.onsets[index];

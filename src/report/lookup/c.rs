@@ -82,7 +82,7 @@ double tauscope_delay_s(const char *joint, double level_from, double level_to)
 
 /// The whole file.
 pub(super) fn source(lookup: &Lookup<'_>) -> String {
-    let origin = lookup.commented(" * ").replace("*/", "* /");
+    let origin = lookup.commented(" * ").replace("??/", "?? /").replace("*/", "* /");
     let tables: String = lookup.joints.iter().enumerate().map(tables).collect();
     let joints: String = lookup.joints.iter().enumerate().map(joint).collect();
     let joints = format!("static const tauscope_joint tauscope_joints[] = {{\n{joints}}};\n");
@@ -90,7 +90,8 @@ pub(super) fn source(lookup: &Lookup<'_>) -> String {
 }
 
 fn joint((number, joint): (usize, &JointLookup<'_>)) -> String {
-    let (name, count) = (quoted(joint.name), joint.curves.len());
+    // A trigraph may stand for the backslash before the mark that ends the text.
+    let (name, count) = (quoted(joint.name).replace('?', "\\?"), joint.curves.len());
     let curves = if count > 0 { format!("curves_{number}") } else { "NULL".to_owned() };
     let (low, high) = joint.neutral.map_or_else(
         || ("-INFINITY".to_owned(), "INFINITY".to_owned()),
