@@ -216,6 +216,29 @@ fn a_lookup_without_a_delay_is_not_written() {
     assert!(text.contains("j: no delay table: the input never changes"), "{text}");
 }
 
+/// `??/` is a backslash in C99, and would free the quotation mark behind it.
+#[test]
+fn a_trigraph_in_a_name_ends_no_text() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = "time_s,\"x??/\"\".input\",\"x??/\"\".output\"\n".to_owned();
+    let (mut angle, mut acting) = (0.0, vec![0.0; 12]);
+    for k in 0..2000 {
+        let level = f64::from([1, 0, -1, 2, -2][(k / 100) % 5]);
+        acting.push(level);
+        angle += 0.1 * acting[k];
+        writeln!(text, "{:.2},{level},{angle:.5}", k as f64 * 0.01).unwrap();
+    }
+    fs::write(folder.path().join("log.csv"), text).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_tauscope"))
+        .current_dir(folder.path())
+        .args(["estimate", "log.csv", "-q", "--export", "lookup.c"])
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let source = fs::read_to_string(folder.path().join("lookup.c")).unwrap();
+    assert!(source.contains(r#"{"x\?\?/\"", "#) && !source.contains("??/"), "{source}");
+}
+
 #[test]
 fn the_one_dead_time_of_an_input_that_moves_is_exported() {
     let folder = tempfile::tempdir().unwrap();

@@ -6,6 +6,9 @@
 mod bytes;
 #[path = "hostile/run.rs"]
 mod run;
+#[cfg(feature = "xlsx")]
+#[path = "hostile/workbook.rs"]
+mod workbook;
 
 use std::fmt::Write as _;
 use std::fs;
@@ -167,65 +170,15 @@ fn what_is_blank_in_a_workbook_counts_as_well() {
     assert_says(&path, &["--max-memory", "50MB"], "--max-memory");
 }
 
-/// A workbook whose only sheet has 26 cells with one shared text in each of its rows.
-#[cfg(feature = "xlsx")]
-fn workbook_of_one_text(rows: u32, text: &str) -> Vec<u8> {
-    const MAIN: &str = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
-    const OF: &str = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
-    const PACKAGE: &str = "http://schemas.openxmlformats.org/package/2006/relationships";
-    let mut sheet = format!("<worksheet xmlns=\"{MAIN}\"><sheetData>");
-    for row in 1..=rows {
-        write!(sheet, "<row r=\"{row}\">").unwrap();
-        for column in 'A'..='Z' {
-            write!(sheet, "<c r=\"{column}{row}\" t=\"s\"><v>0</v></c>").unwrap();
-        }
-        sheet += "</row>";
-    }
-    sheet += "</sheetData></worksheet>";
-    let parts = [
-        (
-            "_rels/.rels",
-            format!(
-                "<Relationships xmlns=\"{PACKAGE}\"><Relationship Id=\"r1\" \
-                 Type=\"{OF}/officeDocument\" Target=\"xl/workbook.xml\"/></Relationships>"
-            ),
-        ),
-        (
-            "xl/workbook.xml",
-            format!(
-                "<workbook xmlns=\"{MAIN}\" xmlns:r=\"{OF}\"><sheets><sheet name=\"a\" \
-                 sheetId=\"1\" r:id=\"r1\"/></sheets></workbook>"
-            ),
-        ),
-        (
-            "xl/_rels/workbook.xml.rels",
-            format!(
-                "<Relationships xmlns=\"{PACKAGE}\"><Relationship Id=\"r1\" \
-                 Type=\"{OF}/worksheet\" Target=\"worksheets/sheet1.xml\"/><Relationship \
-                 Id=\"r2\" Type=\"{OF}/sharedStrings\" Target=\"sharedStrings.xml\"/>\
-                 </Relationships>"
-            ),
-        ),
-        ("xl/sharedStrings.xml", format!("<sst xmlns=\"{MAIN}\"><si><t>{text}</t></si></sst>")),
-        ("xl/worksheets/sheet1.xml", sheet),
-    ];
-    let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
-    for (name, part) in parts {
-        archive.start_file(name, zip::write::SimpleFileOptions::default()).unwrap();
-        archive.write_all(part.as_bytes()).unwrap();
-    }
-    archive.finish().unwrap().into_inner()
-}
-
 #[test]
 #[cfg(feature = "xlsx")]
 fn a_text_that_many_cells_share_counts_in_each() {
     let folder = TempDir::new().unwrap();
-    let bytes = workbook_of_one_text(2000, &"x".repeat(32_000));
+    let bytes = workbook::of_one_text(2000, &"x".repeat(32_000));
     assert!(bytes.len() < 300_000);
     let path = file(&folder, "shared.xlsx", &bytes);
     assert_says(&path, &["--max-memory", "100MB"], "--max-memory");
-    let few = file(&folder, "few.xlsx", &workbook_of_one_text(2, "x"));
+    let few = file(&folder, "few.xlsx", &workbook::of_one_text(2, "x"));
     assert_says(&few, &["--max-memory", "100MB"], "no time column");
 }
 
@@ -233,7 +186,7 @@ fn a_text_that_many_cells_share_counts_in_each() {
 #[cfg(feature = "xlsx")]
 fn what_a_workbook_says_of_texts_and_styles_counts_before_they_are_read() {
     let folder = TempDir::new().unwrap();
-    let bytes = workbook_of_one_text(2, "x");
+    let bytes = workbook::of_one_text(2, "x");
     let with = |name: &str, content: &str| {
         let mut whole = zip::ZipArchive::new(std::io::Cursor::new(&bytes)).unwrap();
         let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
@@ -382,6 +335,73 @@ fn a_plan_is_for_a_machine_of_so_many_joints() {
     let ended = tauscope(&["design", "--model", model.to_str().unwrap()]);
     assert_eq!(ended.status, Some(2), "{ended:?}");
     assert!(ended.said.contains("1001 joints; a plan is for 1000 at most"), "{ended:?}");
+}
+
+#[test]
+#[cfg(feature = "rrd")]
+fn a_recording_of_a_sweep_is_for_so_many_joints() {
+    let folder = TempDir::new().unwrap();
+    let mut log = "time_s".to_owned();
+    (0..201).for_each(|k| write!(log, ",j{k}.input,j{k}.output").unwrap());
+    for k in 0..30 {
+        write!(log, "\n{}", f64::from(k) * 0.01).unwrap();
+        (0..201).for_each(|_| write!(log, ",{},{}", k / 10, k).unwrap());
+    }
+    let log = file(&folder, "log.csv", log.as_bytes());
+    let recording = folder.path().join("x.rrd");
+    let ended = tauscope(&["sweep", log.to_str().unwrap(), "-o", recording.to_str().unwrap()]);
+    assert_eq!(ended.status, Some(2), "{ended:?}");
+    assert!(ended.said.contains("201 joints; a recording of a sweep is for 200"), "{ended:?}");
+}
+
+/// Steps every 20 samples, none of which the output answers.
+#[test]
+fn steps_that_nothing_answers_take_time_with_their_number() {
+    let folder = TempDir::new().unwrap();
+    let mut log = "time_s,a.input,a.output\n".to_owned();
+    for k in 0..40_000_u32 {
+        let level = (k / 20).wrapping_mul(2_654_435_761) >> 30;
+        writeln!(log, "{},{level},{}", f64::from(k) * 0.01, k % 7).unwrap();
+    }
+    let log = file(&folder, "log.csv", log.as_bytes());
+    let ended = tauscope(&["estimate", log.to_str().unwrap(), "--method", "hinge"]);
+    assert_eq!(ended.status, Some(0), "{ended:?}");
+}
+
+#[test]
+#[cfg(feature = "xlsx")]
+fn sheets_that_share_a_part_or_are_too_many_are_refused() {
+    let folder = TempDir::new().unwrap();
+    for (sheets, expected) in [(2, "one part of the file"), (101, "101 sheets")] {
+        let path = file(&folder, "shared.xlsx", &workbook::with_empty_sheets(sheets));
+        assert_says(&path, &[], expected);
+    }
+}
+
+#[test]
+fn a_quotation_that_swallows_rows_is_no_remark() {
+    let folder = TempDir::new().unwrap();
+    for end in ["", "\n"] {
+        let mut log = "time_s,a.input,a.output\n".to_owned();
+        for k in 0..600 {
+            let mark = if k == 99 { "\"" } else { "" };
+            writeln!(log, "{mark}{},{},{k}", f64::from(k) * 0.01, k / 50).unwrap();
+        }
+        let log = file(&folder, "log.csv", format!("{}{end}", log.trim_end()).as_bytes());
+        assert_says(&log, &[], "row 101");
+    }
+}
+
+#[test]
+fn a_comma_between_thousands_is_not_taken_for_that_of_decimals() {
+    let folder = TempDir::new().unwrap();
+    for (rows, expected) in [
+        ("0.00;0;900\n0.01;0;1,100\n0.02;0;1,200\n", "row 4, column `t`: `0.02` beside"),
+        ("0,00;0;900\n0,01;0;1.100\n0,02;0;1.200\n", "row 4, column `t`: `0,02` beside"),
+    ] {
+        let log = file(&folder, "log.csv", format!("t;a.input;a.output\n{rows}").as_bytes());
+        assert_says(&log, &[], expected);
+    }
 }
 
 #[test]

@@ -271,6 +271,21 @@ pub enum ReadError {
         /// What the cell holds.
         text: String,
     },
+    /// Some cells have a decimal point, and others a comma.
+    #[error(
+        "{}, row {row}, column `{column}`: `{}` beside cells with the other decimal mark; write all \
+         decimals with a point, and nothing between thousands", path.display(), shown(text)
+    )]
+    DecimalMarks {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file.
+        row: u64,
+        /// The column.
+        column: String,
+        /// What the cell holds.
+        text: String,
+    },
     /// A cell holds text where a time belongs.
     #[error(
         "{}, row {row}, column `{column}`: `{}` is neither a number nor a date and time of ISO \
@@ -487,6 +502,7 @@ impl ReadError {
             | Self::NoTime { row, .. }
             | Self::NotANumber { row, .. }
             | Self::NotATime { row, .. }
+            | Self::DecimalMarks { row, .. }
             | Self::NoHeader { row, .. }
             | Self::Infinite { row, .. }
             | Self::BeyondPrecision { row, .. }
@@ -510,6 +526,7 @@ impl ReadError {
             | Self::MissingColumn { column, .. }
             | Self::NotANumber { column, .. }
             | Self::NotATime { column, .. }
+            | Self::DecimalMarks { column, .. }
             | Self::Infinite { column, .. }
             | Self::BeyondPrecision { column, .. }
             | Self::Missing { column, .. }

@@ -480,6 +480,7 @@ impl Log<'_> {
         Some(match bad {
             BadCell::Kind(found) => ReadError::NotNumbers { path, column, found },
             BadCell::Text(text) => ReadError::NotANumber { path, row, column, text },
+            BadCell::DecimalMark(text) => ReadError::DecimalMarks { path, row, column, text },
             BadCell::Infinite => ReadError::Infinite { path, row, column },
             BadCell::TooLarge(value) => ReadError::BeyondPrecision { path, row, column, value },
         })

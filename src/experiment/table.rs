@@ -294,6 +294,8 @@ pub(super) enum BadCell {
     /// The whole column holds something else.
     Kind(String),
     Text(String),
+    /// A number with another decimal mark than cells before it.
+    DecimalMark(String),
     Infinite,
     /// Its squares, and sums of products of them, are beyond double precision.
     TooLarge(f64),

@@ -57,8 +57,11 @@ impl Work<'_> {
                     .map_err(|error| anyhow!("{error:#}"))
                     .and_then(|key| self.work_on(log, key, (threads / workers.max(1)).max(1)));
                 if let Err(error) = done {
-                    // What an earlier version of the log gave is no result of this one.
-                    std::fs::remove_file(self.place(log)).unwrap_or_default();
+                    // What an earlier version of the log gave is no result of this one; of one that
+                    // cannot be read it may be.
+                    if key.is_ok() {
+                        std::fs::remove_file(self.place(log)).unwrap_or_default();
+                    }
                     let failure = (index, format!("left out: {error:#}"));
                     failures.lock().unwrap_or_else(PoisonError::into_inner).push(failure);
                 }

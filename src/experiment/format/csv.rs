@@ -6,7 +6,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use super::spelling::{
-    Spelling, are_units, bare_unit, is_remark, parse_cell, parse_time, sniff_delimiter,
+    DecimalMarks, Spelling, are_units, bare_unit, is_over_lines, is_remark, parse_cell, parse_time,
+    sniff_delimiter,
 };
 use super::text::{Bytes, SNIFFED_BYTES};
 use crate::experiment::error::ReadError;
@@ -193,7 +194,7 @@ impl Unread {
         record: &csv::ByteRecord,
         wanted: &Wanted<'_>,
     ) -> Result<bool, ReadError> {
-        let is_short = record.len() < wanted.head.headers.len();
+        let is_short = record.len() < wanted.head.headers.len() && !is_over_lines(record);
         let is_last =
             is_short && !next(&mut self.reader, &mut csv::ByteRecord::new(), wanted.path())?;
         Ok(is_last && self.reader.get_mut().get_mut().0.last != b'\n')
@@ -203,6 +204,7 @@ impl Unread {
 /// Rows as they come.
 struct Gathered {
     delimiter: u8,
+    marks: DecimalMarks,
     table: Table,
     labels: Option<Labels>,
     budget: Budget,
@@ -219,7 +221,7 @@ impl Gathered {
             notes: Vec::new(),
         };
         let labels = wanted.label.map(|_| Labels::default());
-        Self { delimiter, table, labels, budget }
+        Self { delimiter, marks: DecimalMarks::default(), table, labels, budget }
     }
 
     fn take(
@@ -241,7 +243,8 @@ impl Gathered {
         for (column, index) in self.table.columns.iter_mut().zip(wanted.numeric) {
             let is_time = wanted.time == Some(*index);
             let parse = if is_time { parse_time } else { parse_cell };
-            column.push(parse(cell(*index), self.delimiter), row);
+            let parsed = parse(cell(*index), self.delimiter);
+            column.push(self.marks.agreed(cell(*index), self.delimiter, parsed), row);
         }
         if let Some(labels) = &mut self.labels {
             labels.push(&String::from_utf8_lossy(label), row, wanted.path())?;

@@ -146,7 +146,44 @@ fn holds_numbers(record: &csv::ByteRecord, delimiter: u8) -> bool {
 pub(super) fn is_remark(record: &csv::ByteRecord, delimiter: u8) -> bool {
     let cells = record.iter().map(<[u8]>::trim_ascii).filter(|cell| !cell.is_empty());
     let mut cells = cells.peekable();
-    cells.peek().is_some() && cells.all(|cell| parse_time(cell, delimiter).is_err())
+    cells.peek().is_some()
+        && !is_over_lines(record)
+        && cells.all(|cell| parse_time(cell, delimiter).is_err())
+}
+
+/// Whether a cell goes over several lines: behind a quotation mark that is never closed lies the
+/// rest of the table.
+pub(super) fn is_over_lines(record: &csv::ByteRecord) -> bool {
+    record.iter().any(|cell| cell.trim_ascii().contains(&b'\n'))
+}
+
+/// Which marks stand between whole and decimal digits in the cells so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct DecimalMarks {
+    point: bool,
+    comma: bool,
+}
+
+impl DecimalMarks {
+    /// What was `parsed` of a cell, where its mark is that of the other cells: beside `3.98`, the
+    /// comma of `1,100` may as well be between thousands.
+    pub(super) fn agreed(
+        &mut self,
+        cell: &[u8],
+        delimiter: u8,
+        parsed: Result<f64, BadCell>,
+    ) -> Result<f64, BadCell> {
+        // A time of day has a mark of its own, and a comma between cells is none.
+        if delimiter == b',' || parsed.is_err() || cell.contains(&b':') {
+            return parsed;
+        }
+        self.point |= cell.contains(&b'.');
+        self.comma |= cell.contains(&b',');
+        if self.point && self.comma && cell.iter().any(|byte| b".,".contains(byte)) {
+            return Err(BadCell::DecimalMark(String::from_utf8_lossy(cell).into_owned()));
+        }
+        parsed
+    }
 }
 
 fn is_row(line: &[u8]) -> bool {

@@ -1,5 +1,6 @@
 //! Sheets of a spreadsheet program: the first one with rows, as text.
 
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{BufReader, Read as _};
 use std::path::Path;
@@ -24,7 +25,12 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
     check_unpacked(path, &budget).map_err(|error| error.refuse(path))?;
     let mut workbook: Xlsx<_> =
         open_workbook(path).map_err(|error: XlsxError| damaged(error.to_string()))?;
-    for name in workbook.sheet_names() {
+    let names = workbook.sheet_names();
+    if names.len() > MOST_SHEETS {
+        return Err(damaged(format!("{} sheets; {MOST_SHEETS} are the most", names.len())));
+    }
+    check_unshared(path).map_err(damaged)?;
+    for name in names {
         check_size(&mut workbook, &name, &budget)
             .map_err(|error| damaged(error.to_string()))?
             .map_err(|error| error.refuse(path))?;
@@ -36,6 +42,39 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
         }
     }
     Err(damaged("no sheet has a header and a row".to_owned()))
+}
+
+/// Sheets of a workbook, at most: those before that of the log are read in vain.
+const MOST_SHEETS: usize = 100;
+
+/// Refuses sheets that share a part, which no program writes: each would be unpacked again.
+fn check_unshared(path: &Path) -> Result<(), String> {
+    let Some(mut archive) = File::open(path).ok().and_then(|file| ZipArchive::new(file).ok())
+    else {
+        return Ok(());
+    };
+    let mut sheets = Vec::new();
+    if let Ok(part) = archive.by_name("xl/workbook.xml") {
+        // What is longer was refused with its sheets.
+        part.take(MOST_SHEETS as u64 * 10_000).read_to_end(&mut sheets).unwrap_or_default();
+    }
+    let mut seen = BTreeSet::new();
+    for id in ids_of_parts(&sheets) {
+        if !seen.insert(id) {
+            return Err("two of its sheets are one part of the file".to_owned());
+        }
+    }
+    Ok(())
+}
+
+/// The ids of parts that `sheets` names, as `r:id="rId3"`.
+fn ids_of_parts(sheets: &[u8]) -> impl Iterator<Item = &[u8]> {
+    const NAMED: &[u8] = b":id=";
+    let named = sheets.windows(NAMED.len()).enumerate().filter(|(_, text)| *text == NAMED);
+    named.filter_map(|(at, _)| {
+        let (mark, behind) = sheets.get(at + NAMED.len()..)?.split_first()?;
+        behind.split(|byte| byte == mark).next()
+    })
 }
 
 /// Asks for as much memory as all of the workbook takes unpacked: a text, or what is blank, is read

@@ -77,6 +77,9 @@ struct OutputArgs {
     run: RunArgs,
 }
 
+/// Joints in a recording: the viewer cannot read one with the views of eight hundred.
+const MOST_RECORDED: usize = 200;
+
 type JointResult = Result<SweptJoint, EstimateError>;
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
@@ -88,6 +91,13 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let session = Session::begin("sweep", &args.data, &args.output.run, stream)?;
     let experiment = &session.experiment;
     let joints = &experiment.joints;
+    if recording.is_some() && joints.len() > MOST_RECORDED {
+        bail!(
+            "{} joints; a recording of a sweep is for {MOST_RECORDED} at most: choose some with \
+             --joint, or leave out --output",
+            joints.len()
+        );
+    }
     let trials = || joints.iter().flat_map(|joint| &joint.trials);
     let grid = grid.in_samples(trials());
     let (grid, notes) =
