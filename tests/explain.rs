@@ -37,9 +37,14 @@ fn a_missing_dead_band_is_named_with_its_numbers_and_its_command_works() {
     assert!(ranked.len() > 1, "{ranked:?}");
 
     let words = boom["in_words"].as_str().unwrap();
-    for part in
-        ["out = max(in - 0.", "lower = -0.", " ± ", " V", "the residual is largest in ", "stiction"]
-    {
+    for part in [
+        "out = max(in - 0.",
+        "lower = -0.",
+        " ± ",
+        " V",
+        "The simulated output is farthest off in ",
+        "stiction",
+    ] {
         assert!(words.contains(part), "no `{part}` in: {words}");
     }
     assert_eq!(boom["commands"], json!(["tauscope add dead_band log.csv --model model.toml"]));
@@ -78,9 +83,11 @@ fn what_no_effect_explains_is_not_given_the_nearest_name() {
     assert_eq!(boom["commands"], json!([]));
     let nearest = boom["ranking"][0]["effect"].as_str().unwrap();
     let words = boom["in_words"].as_str().unwrap();
-    for part in
-        ["the residual is largest in ", &format!("nearest effect, {nearest}"), "not to be trusted"]
-    {
+    for part in [
+        "The simulated output is farthest off in ",
+        &format!("nearest effect, {nearest}"),
+        "not to be trusted",
+    ] {
         assert!(words.contains(part), "no `{part}` in: {words}");
     }
 }

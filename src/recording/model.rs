@@ -231,7 +231,9 @@ fn worst_segments(
     let horizon = judged.comparison.fit.evaluation.horizon;
     writeln!(
         page,
-        "\nWhere the residual of {} is largest, {horizon}, and its share of the squares:",
+        "\nWhere the output of {} is farthest off, {horizon}, and the share of the squares. The output \
+         keeps each error of the speed until the next restart, so that this need not be where it \
+         fails:",
         judged.model
     )?;
     // A narrow page has no room for what is the same in each row.

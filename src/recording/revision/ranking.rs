@@ -5,7 +5,7 @@ use rerun::datatypes::Vec2D;
 
 use super::bars::Bars;
 use super::figure::noise;
-use crate::explain::{Candidate, Revision};
+use crate::explain::{Candidate, Revision, Verdict};
 use crate::figure::ladder::judged;
 use crate::recording::canvas::{Labels, Strips};
 use crate::recording::error::RecordError;
@@ -46,10 +46,14 @@ pub(super) fn around(
     let all = tried(improved, at);
     let bars = bars_of(revision, &all);
     let unit = improved.finding.compared.joint.output_unit.as_deref().unwrap_or("");
+    let is_last = at + 1 == improved.revisions.len();
     let title = match (all.as_slice(), revision.ranking.as_slice()) {
         ([], _) if is_adequate(revision) => "no effect is missing",
         ([], _) => "nothing more was looked for",
         (_, []) => "error at the next revision",
+        _ if is_last && improved.finding.verdict == Verdict::Unexplained => {
+            "with one effect more: none explains what remains"
+        }
         _ => "error with one effect more, likeliest first",
     };
     bars.title(labels, title);

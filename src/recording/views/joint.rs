@@ -364,7 +364,7 @@ impl Views<'_, '_> {
             ContainerKind::Vertical,
             "Plots",
             &rows,
-            &[1.15, 2.5, 2.0, 1.75, 2.6, 3.4],
+            &[1.1, 2.3, 1.8, 1.5, 3.5, 3.2],
         )?;
         let page = [self.path(paths::MODEL_PAGE)];
         let page = self.view(View::new("TextDocument", "Models", &page))?;
