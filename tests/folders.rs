@@ -237,6 +237,7 @@ fn improve_keeps_a_model_of_each_log() {
     workspace.run(command).is_whole().says("1 of 2 logs are done already");
     assert!(fs::read_to_string(&models[0]).unwrap().contains("[joint.boom]"));
     assert!(!workspace.path("model.toml").exists());
+    workspace.run("estimate logs --results kept").is_refused_with("kept: has results of `improve`");
     workspace.run("merge kept --decisions all.csv").is_refused_with("makes no decisions");
 }
 

@@ -68,6 +68,11 @@ impl<'a> ImprovedJoint<'a> {
         }
     }
 
+    /// The name of the joint.
+    pub fn name(&self) -> &'a str {
+        &self.finding.compared.joint.name
+    }
+
     /// What is to be said of the last revision, and why it is the last.
     pub(crate) fn conclusion(&self) -> Conclusion {
         let mut conclusion = self.finding.conclusion();

@@ -68,7 +68,9 @@ pub(crate) use design_words::{
 };
 pub(crate) use desk::review_page;
 pub(crate) use difference::{Against, against_text};
-pub(crate) use doubt::{Doubted, by_doubt, doubtful_lines};
+#[cfg(feature = "rrd")]
+pub(crate) use doubt::doubtful_lines;
+pub(crate) use doubt::{Doubted, by_doubt};
 pub(crate) use effects::{listing, sheet};
 pub use estimated::EstimatedJoint;
 pub(crate) use explain::explain_text;

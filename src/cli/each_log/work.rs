@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use crate::report::LogResult;
-use anyhow::{Context as _, anyhow};
+use anyhow::{Context as _, anyhow, bail};
 use sha2::{Digest as _, Sha256};
 
 use super::each::Each;
@@ -36,6 +36,7 @@ pub(crate) struct Done {
 impl Work<'_> {
     /// Works on each log that has no result yet.
     pub(crate) fn run(&self, logs: &[&PathBuf]) -> anyhow::Result<Done> {
+        self.check_command(logs)?;
         let keys = logs.iter().map(|log| self.key(log)).collect::<Vec<_>>();
         let open: Vec<usize> =
             (0..logs.len()).filter(|index| !self.is_done(logs, &keys, *index)).collect();
@@ -80,6 +81,20 @@ impl Work<'_> {
         let results = kept.map(|(_, log)| Ok(Kept::read(&self.place(log))?.result()));
         let results = results.collect::<anyhow::Result<_>>()?;
         Ok(Done { results, failures: failures.into_iter().map(|(_, text)| text).collect() })
+    }
+
+    /// Refuses a folder with results of another command, which would be replaced.
+    fn check_command(&self, logs: &[&PathBuf]) -> anyhow::Result<()> {
+        let kept = logs.iter().filter_map(|log| Kept::read(&self.place(log)).ok());
+        match { kept }.find(|kept| kept.command != self.each.command) {
+            Some(kept) => bail!(
+                "{}: has results of `{}`; give the results of `{}` another folder",
+                self.results.display(),
+                kept.command,
+                self.each.command
+            ),
+            None => Ok(()),
+        }
     }
 
     /// Where the result of a log is kept.

@@ -81,18 +81,25 @@ pub(crate) fn revised(
     file: &ModelFile,
     improved: &[ImprovedJoint<'_>],
 ) -> anyhow::Result<ModelFile> {
-    let mut file = file.clone();
-    for joint in improved {
-        let name = &joint.finding.compared.joint.name;
-        let pairs = (joint.first_revision + 1..).zip(joint.revisions.windows(2));
-        for (number, pair) in pairs {
-            let [before, after] = pair else { continue };
-            let model = &after.comparison.fit.model;
-            file = file.revised(name, model, &entry(number, before, after))?;
-        }
-        if file.joint(name).is_none() {
-            file = file.refitted(name, &joint.finding.compared.comparison.fit.model)?;
-        }
+    let is_known = |joint: &&ImprovedJoint<'_>| file.joint(joint.name()).is_some();
+    let known = improved.iter().filter(is_known);
+    let file = known.clone().try_fold(file.clone(), |file, joint| revised_for(file, joint))?;
+    let new = improved.iter().filter(|joint| !is_known(joint));
+    let new: Vec<ModelFile> =
+        new.map(|joint| revised_for(file.emptied(), joint)).collect::<anyhow::Result<_>>()?;
+    Ok(file.joined(&new)?)
+}
+
+/// `file` with all revisions of a joint.
+fn revised_for(mut file: ModelFile, joint: &ImprovedJoint<'_>) -> anyhow::Result<ModelFile> {
+    let pairs = (joint.first_revision + 1..).zip(joint.revisions.windows(2));
+    for (number, pair) in pairs {
+        let [before, after] = pair else { continue };
+        let model = &after.comparison.fit.model;
+        file = file.revised(joint.name(), model, &entry(number, before, after))?;
+    }
+    if file.joint(joint.name()).is_none() {
+        file = file.refitted(joint.name(), &joint.finding.compared.comparison.fit.model)?;
     }
     Ok(file)
 }

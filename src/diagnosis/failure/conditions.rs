@@ -138,6 +138,7 @@ impl FailsWhere {
     }
 
     /// What it holds, where the condition was named before.
+    #[cfg(feature = "rrd")]
     pub(crate) fn weight(&self) -> String {
         format!("{} arises in this {} of the time", self.part(), percent(self.share_of_time))
     }

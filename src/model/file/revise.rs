@@ -72,6 +72,33 @@ impl ModelFile {
         self.rewritten(joint, model, None)
     }
 
+    /// A file that knows the effects of this one, and has no joint yet.
+    pub(crate) fn emptied(&self) -> Self {
+        let candidates = self.candidates.clone();
+        let mut empty = Self::new(&self.path);
+        (empty.others, empty.candidates) = (candidates.clone(), candidates);
+        empty
+    }
+
+    /// This file with the joints of `files`, which were [empty](Self::emptied) and have one each that
+    /// is not in this one: to revise this one for each of them would read it again each time.
+    ///
+    /// # Errors
+    /// As [`revised`](Self::revised).
+    pub(crate) fn joined(&self, files: &[Self]) -> Result<Self, ModelError> {
+        let mut text = self.text.clone();
+        for file in files {
+            match file.text.split_once('\n') {
+                Some((_, joint)) if !text.is_empty() => {
+                    text.extend(Some('\n').filter(|_| !text.ends_with('\n')));
+                    text += joint;
+                }
+                _ => text += &file.text,
+            }
+        }
+        Self::parse_with(&text, &self.path, &self.others)
+    }
+
     fn rewritten(
         &self,
         joint: &str,
