@@ -57,7 +57,7 @@ pub(super) fn climbed(
         if !visit(&step) {
             return None;
         }
-        step = Step::new(record, Change::to_with(model, &fit.model, spec.id), fit);
+        step = Step::new(record, Change::between(model, &fit.model, spec.id), fit);
     }
     Some(step)
 }

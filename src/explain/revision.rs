@@ -28,9 +28,8 @@ pub enum Change {
 }
 
 impl Change {
-    /// `new` was added to `before`, which has given `after`: of an effect whose finer form it is, it
-    /// takes the place.
-    pub(super) fn to_with(before: &JointModel, after: &JointModel, new: &'static str) -> Self {
+    /// What adding `new` has made of the model `before`: an effect whose finer form it is has gone.
+    pub(super) fn between(before: &JointModel, after: &JointModel, new: &'static str) -> Self {
         let kept = ids(after);
         match ids(before).into_iter().find(|id| !kept.contains(id)) {
             Some(old) => Self::Replaced { old, new },

@@ -144,7 +144,7 @@ pub(super) fn add_stepwise(
                 return ended(Verdict::MissingEffect, step.fit, true);
             }
         }
-        let change = Change::to_with(&step.fit.model, &found.fit.model, found.newest());
+        let change = Change::between(&step.fit.model, &found.fit.model, found.newest());
         step = Step::new(record, change, found.fit);
         let mut removal = Removal { given, kept: found.effects, options };
         while let Some((change, fit)) = removal.better(record, &step.fit, workers) {

@@ -146,8 +146,8 @@ impl<'i> Builder<'i> {
         Ok(node)
     }
 
-    /// The messages of a blueprint of `tabs`, a page `about` it all being the last one, which
-    /// opens on a timeline.
+    /// The messages of a blueprint of `tabs`, a page on all of it, called `name`, being the last
+    /// one, which opens on a timeline.
     pub(super) fn tabbed(
         mut self,
         mut tabs: Vec<Node>,

@@ -33,29 +33,45 @@ pub(crate) fn by_doubt(joint: EstimatedJoint<'_>) -> Vec<Doubted<'_>> {
     all
 }
 
+/// The decisions of all joints by doubt, the most doubtful first, each with its joint.
+pub(crate) fn all_by_doubt<'a>(
+    joints: &'a [EstimatedJoint<'a>],
+) -> Vec<(EstimatedJoint<'a>, Doubted<'a>)> {
+    let of_each = |joint: &EstimatedJoint<'a>| {
+        let joint = *joint;
+        by_doubt(joint).into_iter().map(move |doubted| (joint, doubted))
+    };
+    let mut all: Vec<_> = joints.iter().flat_map(of_each).collect();
+    all.sort_by(|a, b| b.1.doubt.value().total_cmp(&a.1.doubt.value()));
+    all
+}
+
 /// The doubtful decisions of all joints in lines, the most doubtful first.
+#[cfg(feature = "rrd")]
 pub(crate) fn doubtful_lines(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
-    let mut all: Vec<_> =
-        joints.iter().flat_map(|joint| doubted(*joint).map(move |found| (*joint, found))).collect();
-    all.retain(|(_, found)| found.doubt.is_doubtful());
-    all.sort_by(|(_, a), (_, b)| b.doubt.value().total_cmp(&a.doubt.value()));
-    all.iter().map(|(joint, found)| line(*joint, found)).collect()
+    lines(&all_by_doubt(joints))
+}
+
+/// A line for each decision that is doubtful, of all by doubt.
+fn lines(all: &[(EstimatedJoint<'_>, Doubted<'_>)]) -> Vec<String> {
+    let doubtful = all.iter().take_while(|(_, found)| found.doubt.is_doubtful());
+    doubtful.map(|(joint, found)| line(*joint, found)).collect()
 }
 
 /// How many decisions are doubtful, and the most doubtful ones, a line each; nothing where none is.
 pub(super) fn doubtful_text(joints: &[EstimatedJoint<'_>]) -> String {
     /// Decisions that are named.
     const MOST: usize = 3;
-    let steps = joints.iter().map(|joint| doubted(*joint).count()).sum();
-    let all = doubtful_lines(joints);
-    let are = match all.len() {
+    let all = all_by_doubt(joints);
+    let (steps, doubtful) = (all.len(), lines(&all));
+    let are = match doubtful.len() {
         0 => return String::new(),
         1 => "is",
         _ => "are",
     };
-    let lines: String = all.iter().take(MOST).flat_map(|line| ["  ", line, "\n"]).collect();
-    let first = if all.len() > MOST { "look first at" } else { "look at" };
-    format!("{} of {} {are} doubtful; {first}\n{lines}", all.len(), counted(steps, "decision"))
+    let said: String = doubtful.iter().take(MOST).flat_map(|line| ["  ", line, "\n"]).collect();
+    let first = if doubtful.len() > MOST { "look first at" } else { "look at" };
+    format!("{} of {} {are} doubtful; {first}\n{said}", doubtful.len(), counted(steps, "decision"))
 }
 
 /// Where a decision is, and what speaks against it.

@@ -5,7 +5,8 @@ use std::io::Write;
 use serde::Serialize;
 
 use super::decisions::tidy_seconds;
-use super::{Doubted, EstimatedJoint, by_doubt};
+use super::doubt::all_by_doubt;
+use super::{Doubted, EstimatedJoint};
 use crate::delay::Verdict;
 use crate::wording::{counted, doubt_sentence};
 
@@ -51,19 +52,6 @@ impl<'a> SheetRow<'a> {
             why: doubt_sentence(doubt, program, period_s),
         }
     }
-}
-
-/// The decisions of all joints by doubt, the most doubtful first, each with its joint.
-pub(crate) fn all_by_doubt<'a>(
-    joints: &'a [EstimatedJoint<'a>],
-) -> Vec<(EstimatedJoint<'a>, Doubted<'a>)> {
-    let of_each = |joint: &EstimatedJoint<'a>| {
-        let joint = *joint;
-        by_doubt(joint).into_iter().map(move |doubted| (joint, doubted))
-    };
-    let mut all: Vec<_> = joints.iter().flat_map(of_each).collect();
-    all.sort_by(|a, b| b.1.doubt.value().total_cmp(&a.1.doubt.value()));
-    all
 }
 
 /// Writes a review sheet of all decisions: a table for `--review` to fill in, the most doubtful

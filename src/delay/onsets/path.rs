@@ -22,8 +22,8 @@ pub(crate) struct OnsetPath {
     samples: usize,
 }
 
-/// Steps to either side, at most, whose samples a step is seen among; chosen: of real logs and of
-/// simulated ones, hardly any step has so many neighbours in a row that do not count.
+/// Steps to either side, at most, whose samples a step is seen among; chosen: on eleven logs, ten of
+/// them measured, each decision stays the same.
 const REACH: usize = 10;
 
 impl OnsetPath {

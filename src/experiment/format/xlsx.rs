@@ -47,24 +47,25 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
 /// Sheets of a workbook, at most: those before that of the log are read in vain.
 const MOST_SHEETS: usize = 100;
 
+/// The file unpacked; what cannot be is refused by whoever reads it.
+fn archive(path: &Path) -> Option<ZipArchive<File>> {
+    File::open(path).ok().and_then(|file| ZipArchive::new(file).ok())
+}
+
 /// Refuses sheets that share a part, which no program writes: each would be unpacked again.
 fn check_unshared(path: &Path) -> Result<(), String> {
-    let Some(mut archive) = File::open(path).ok().and_then(|file| ZipArchive::new(file).ok())
-    else {
-        return Ok(());
-    };
+    let Some(mut archive) = archive(path) else { return Ok(()) };
     let mut sheets = Vec::new();
     if let Ok(part) = archive.by_name("xl/workbook.xml") {
         // What is longer was refused with its sheets.
         part.take(MOST_SHEETS as u64 * 10_000).read_to_end(&mut sheets).unwrap_or_default();
     }
     let mut seen = BTreeSet::new();
-    for id in ids_of_parts(&sheets) {
-        if !seen.insert(id) {
-            return Err("two of its sheets are one part of the file".to_owned());
-        }
+    if ids_of_parts(&sheets).all(|id| seen.insert(id)) {
+        Ok(())
+    } else {
+        Err("two of its sheets are one part of the file".to_owned())
     }
-    Ok(())
 }
 
 /// The ids of parts that `sheets` names, as `r:id="rId3"`.
@@ -80,11 +81,7 @@ fn ids_of_parts(sheets: &[u8]) -> impl Iterator<Item = &[u8]> {
 /// Asks for as much memory as all of the workbook takes unpacked: a text, or what is blank, is read
 /// into memory whole. What each part says of its size is not trusted.
 fn check_unpacked(path: &Path, budget: &Budget) -> Result<(), TooLarge> {
-    // What cannot be unpacked is refused by whoever reads it.
-    let Some(mut archive) = File::open(path).ok().and_then(|file| ZipArchive::new(file).ok())
-    else {
-        return Ok(());
-    };
+    let Some(mut archive) = archive(path) else { return Ok(()) };
     let (mut unpacked, mut piece) = (0, vec![0; PIECE]);
     for index in 0..archive.len() {
         let Ok(mut part) = archive.by_index(index) else { continue };

@@ -30,6 +30,16 @@ use crate::report::{ComparedJoint, EstimatedJoint, by_doubt};
 /// What the lanes of the model that is judged are called.
 const LANES: &str = "Where it fails (its speed); what was not fitted; worst segments (1 first)";
 
+/// Numbers of the models that are drawn beside the measurement: of many revisions of one model the
+/// first and the last, since what came between is on the page of the revisions.
+fn drawn(models: usize, revisions: usize) -> Vec<usize> {
+    if revisions > 0 && models > palette::NAMES.len() {
+        vec![0, models - 1]
+    } else {
+        (0..models).collect()
+    }
+}
+
 /// The tab of `joint`: its decisions, its record, its table; and before them the revisions
 /// of its model, and its models, where there are any.
 pub(super) fn tab(
@@ -324,12 +334,9 @@ impl Views<'_, '_> {
 
     /// Models beside the measurement, and their residuals.
     fn models(&mut self, models: &[&ComparedJoint<'_>]) -> Result<Node, RecordError> {
-        // What came between first and last is on the page of the revisions.
-        let ends = match models {
-            [first, .., last] if self.revisions > palette::NAMES.len() => &[*first, *last][..],
-            all => all,
-        };
-        let names: Vec<&str> = ends.iter().map(|model| model.model).collect();
+        let shown = drawn(models.len(), self.revisions);
+        let names: Vec<&str> =
+            shown.iter().filter_map(|number| Some(models.get(*number)?.model)).collect();
         let root = self.at(paths::MODEL);
         let of_each = |part| names.iter().map(|name| at(&child(&root, name), part)).collect();
         let horizon = models.first().map(|model| model.comparison.fit.evaluation.horizon);
@@ -337,13 +344,16 @@ impl Views<'_, '_> {
         let simulated: Vec<_> = of_each(paths::SIMULATED);
         let residuals: Vec<_> = of_each(paths::RESIDUAL);
         let outputs = [vec![self.at(paths::OUTPUT_RAW)], simulated].concat();
-        let (legend, colors) = match names.as_slice() {
-            names if names.len() <= palette::NAMES.len() => {
-                let own = names.iter().zip(palette::NAMES);
+        // A model keeps its colour where others are not drawn.
+        let color = |number: &usize| palette::NAMES.get(*number).copied();
+        let colors: Option<Vec<&str>> = shown.iter().map(color).collect();
+        let (legend, colors) = match colors {
+            Some(colors) => {
+                let own = names.iter().zip(colors);
                 let own: Vec<_> = own.map(|(name, color)| format!("{name} {color}")).collect();
                 (Legend::InTitle, format!(": measured grey, {}", own.join(", ")))
             }
-            _ => (Legend::Apart, String::new()),
+            None => (Legend::Apart, String::new()),
         };
         let noise = [paths::NOISE_UPPER, paths::NOISE_LOWER].map(|path| self.at(path));
         let residuals = [noise.to_vec(), residuals].concat();
@@ -357,7 +367,7 @@ impl Views<'_, '_> {
             )?,
             self.plot("Input", &[self.at(paths::INPUT)], Legend::InTitle)?,
             self.lanes_of_models(models)?,
-            self.residuals(&names)?,
+            self.residuals(&names, &shown)?,
         ];
         let builder = &mut *self.builder;
         let plots = builder.container(
@@ -396,43 +406,42 @@ impl Views<'_, '_> {
     }
 
     /// What the residual depends on, in three drawings.
-    fn residuals(&mut self, names: &[&str]) -> Result<Node, RecordError> {
-        let models = names.len();
+    fn residuals(&mut self, names: &[&str], shown: &[usize]) -> Result<Node, RecordError> {
         let scatter = self.sheet(
             ("Residual against four quantities: points, and their mean", scatter::SIZE),
             (paths::scatter::ROOT, &paths::scatter::PARTS),
-            (&[paths::scatter::CURVE], models),
+            (&[paths::scatter::CURVE], shown),
         );
         let shares = self.sheet(
             ("Share of the error: bars; of the time: white", error_share::SIZE),
             (paths::error_share::ROOT, &paths::error_share::PARTS),
-            (&[paths::error_share::BARS], models),
+            (&[paths::error_share::BARS], shown),
         );
         let correlation = self.sheet(
             ("Correlation: that of noise stays between the lines (99 %)", correlogram::SIZE),
             (correlation::ROOT, &correlation::PARTS),
-            (&[correlation::BAND, correlation::CURVE], models),
+            (&[correlation::BAND, correlation::CURVE], shown),
         );
         let mut tabs = Vec::new();
-        if models > 1 && self.revisions == 0 {
+        if names.len() > 1 && self.revisions == 0 {
             tabs.push(self.model_difference(names)?);
         }
         tabs.extend([self.view(scatter)?, self.view(shares)?, self.view(correlation)?]);
         self.builder.container(ContainerKind::Tabs, "Residual", &tabs, &[])
     }
 
-    /// A drawing of `parts`, and of `of_models` for each model.
+    /// A drawing of `parts`, and of `of_models` for each of the models of these numbers.
     fn sheet(
         &self,
         (name, (width, height)): (&'static str, (f32, f32)),
         (root, parts): (&str, &[&str]),
-        (of_models, models): (&[&str], usize),
+        (of_models, models): (&[&str], &[usize]),
     ) -> View<'static> {
         let root = self.at(root);
         let mut paths: Vec<_> = parts.iter().map(|part| at(&root, part).to_string()).collect();
         for part in of_models {
-            let of_model = |number| of_model(&root, part, number).to_string();
-            paths.extend((0..models).map(of_model));
+            let of_model = |number: &usize| of_model(&root, part, *number).to_string();
+            paths.extend(models.iter().map(of_model));
         }
         View::new("2D", name, &paths).with("VisualBounds2D", bounds(width, height))
     }
@@ -469,5 +478,18 @@ impl Views<'_, '_> {
         let candidates = self.view(candidates)?;
         let rows = [decisions, candidates];
         self.builder.container(ContainerKind::Horizontal, "Table", &rows, &[1.2, 0.8])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_many_revisions_the_first_and_the_last_are_drawn() {
+        assert_eq!(drawn(9, 9), [0, 8]);
+        assert_eq!(drawn(3, 3), [0, 1, 2]);
+        // Models side by side are all looked at.
+        assert_eq!(drawn(5, 0), [0, 1, 2, 3, 4]);
     }
 }

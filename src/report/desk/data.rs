@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use crate::delay::{Check, Outcome};
-use crate::report::review::{SheetRow, all_by_doubt};
+use crate::report::doubt::all_by_doubt;
+use crate::report::review::SheetRow;
 use crate::report::{Doubted, EstimatedJoint};
 
 /// All that the page is made from.
