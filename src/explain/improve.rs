@@ -76,7 +76,10 @@ fn attributed(
     loop {
         let grown = Grown { whole: &whole, ..*all };
         let mut left_out = grown.left_out(workers);
-        let may_go = |least: &_| !all.options.keeps_refinements && !LeftOut::has_consequence(least);
+        let may_go = |least: &LeftOut| {
+            let is_refinement = !all.options.keeps_refinements && !least.has_consequence();
+            is_refinement && all.misfit.generalizes(all.record, &whole, &least.fit)
+        };
         let Some(least) = left_out.pop_if(|least| may_go(least)) else {
             return grown.attribution_of(&left_out, refinements, workers);
         };

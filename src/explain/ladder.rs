@@ -50,6 +50,9 @@ pub(super) fn climbed(
         let Ok(fit) = fit_to_compare(record, &with, &signal_range(record, &with, &levels)) else {
             continue;
         };
+        if !misfit.generalizes(record, &step.fit, &fit) {
+            continue;
+        }
         // A finer form is worth its parameters or not; whether an effect is, is seen at the end.
         if spec.refines.is_some() && !misfit.has_consequence(record, &step.fit, &fit) {
             continue;

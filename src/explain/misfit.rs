@@ -9,6 +9,10 @@ pub(super) const CONSEQUENCE: f64 = 0.01;
 /// The part of the misfit below which what a model leaves is explained.
 const HARDLY: f64 = 0.05;
 
+/// What the error on the unseen part may be larger in the end than in the first model, in parts of
+/// it: what does not act there changes it a little, too.
+const UNCHANGED: f64 = 0.01;
+
 /// How far the model was off to which effects are added: what shares are parts of.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Misfit {
@@ -47,6 +51,15 @@ impl Misfit {
         self.share(record, worse, better) >= CONSEQUENCE
     }
 
+    /// Whether `after` predicts the part that was not fitted as well as `before` or as the first model.
+    ///
+    /// Where each model of a search does, the last is off there no more than the first. A model that
+    /// fits what it has seen and nothing else explains nothing.
+    pub(super) fn generalizes(self, record: &FitRecord<'_>, before: &Fit, after: &Fit) -> bool {
+        let errors = unseen_error(record, before).zip(unseen_error(record, after)).zip(self.unseen);
+        errors.is_none_or(|((before, after), first)| after <= before.max((1.0 + UNCHANGED) * first))
+    }
+
     /// Whether what `fit` leaves beside the noise is hardly a part of the misfit.
     pub(super) fn is_explained(self, record: &FitRecord<'_>, fit: &Fit) -> bool {
         self.part_of(self.first, error(record, fit) - self.noise) < HARDLY
@@ -66,4 +79,52 @@ fn error(record: &FitRecord<'_>, fit: &Fit) -> f64 {
 /// The error on the part that was not fitted.
 fn unseen_error(record: &FitRecord<'_>, fit: &Fit) -> Option<f64> {
     Some(ErrorFigures::of(record, &fit.evaluation, Part::Validation)?.rmse)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::{Joint, Trial};
+    use crate::fit::{Horizon, Split, fit};
+    use crate::model::JointModel;
+    use crate::units::SamplePeriod;
+
+    /// An integrator that was driven up and down.
+    fn joint() -> Joint {
+        let input: Vec<f64> = (0..400).map(|k| if k / 40 % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let mut angle = 0.0;
+        let mut turn = |u: &f64| {
+            angle += 0.02 * u;
+            angle
+        };
+        let output = input.iter().map(&mut turn).collect();
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let trials = vec![Trial::new("1", 0.0, period, input, output).unwrap()];
+        let name = "boom".to_owned();
+        Joint { name, input_unit: None, output_unit: None, covariates: Vec::new(), trials }
+    }
+
+    #[test]
+    fn what_is_off_on_the_unseen_part_by_more_than_the_first_model_does_not_generalize() {
+        let joint = joint();
+        let record = FitRecord::new(&joint, Split::Time(0.6), Horizon::Auto);
+        let levels = record.input_levels();
+        let exact =
+            fit(&record, &JointModel::integrator(1.0, 0.0), &record.range(&levels, 1.0)).unwrap();
+        // The unseen part is off by so much everywhere.
+        let off_by = |error: f64| {
+            let mut fit = exact.clone();
+            let residuals = fit.assessment.evaluation.residuals.iter_mut().flatten();
+            residuals.enumerate().for_each(|(k, e)| *e = if k < 240 { 0.1 } else { error });
+            fit
+        };
+        let misfit = Misfit::of(&record, &off_by(0.5));
+        let holds = |before, after| misfit.generalizes(&record, &off_by(before), &off_by(after));
+        assert!(holds(0.5, 0.2) && holds(0.2, 0.504), "what is no worse than at first");
+        assert!(!holds(0.2, 0.51) && !holds(0.5, 0.51), "what is worse than at first");
+        assert!(holds(0.7, 0.6), "a start that was worse may be mended");
+        let whole = FitRecord::new(&joint, Split::Time(1.0), Horizon::Auto);
+        let misfit = Misfit::of(&whole, &exact);
+        assert!(misfit.generalizes(&whole, &off_by(0.1), &off_by(9.0)), "nothing is unseen");
+    }
 }

@@ -3,6 +3,7 @@
 use super::eligible::{could_be_missing, is_due, signal_range};
 use super::evidence::NoiseMemory;
 use super::extension::ids;
+use super::misfit::Misfit;
 use super::options::Options;
 use super::revision::Change;
 use super::screening::fit_best;
@@ -29,6 +30,7 @@ pub(super) struct Removal<'a> {
     /// Effects that stay: they were chosen with all others in the model.
     pub(super) kept: Vec<&'static str>,
     pub(super) options: &'a Options,
+    pub(super) misfit: Misfit,
 }
 
 impl Removal<'_> {
@@ -47,6 +49,7 @@ impl Removal<'_> {
             let evidence = noise.evidence(record, &fit);
             let does_harm = of_whole.p_value_over_windows(&evidence) < HARM;
             let behind = evidence.criterion() - of_whole.criterion();
+            let does_harm = does_harm || !self.misfit.generalizes(record, whole, &fit);
             (behind < 0.0 && !does_harm).then_some((behind, (change, fit)))
         });
         let (_, better) = judged.min_by(|a, b| a.0.total_cmp(&b.0))?;

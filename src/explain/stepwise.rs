@@ -115,7 +115,8 @@ pub(super) fn add_stepwise(
         let is_sound = |candidate: &&Candidate| {
             let is_known = !makes_strokes
                 || candidate.determines_as_much_as(&step.fit) && candidate.is_distinct();
-            candidate.is_significant() && is_known
+            let generalizes = misfit.generalizes(record, &step.fit, &candidate.fit);
+            candidate.is_significant() && is_known && generalizes
         };
         let counts = |candidate: &Candidate| is_sound(&candidate) && has_consequence(candidate);
         let found = step.ranking.iter().position(counts);
@@ -146,7 +147,7 @@ pub(super) fn add_stepwise(
         }
         let change = Change::between(&step.fit.model, &found.fit.model, found.newest());
         step = Step::new(record, change, found.fit);
-        let mut removal = Removal { given, kept: found.effects, options };
+        let mut removal = Removal { given, kept: found.effects, options, misfit };
         while let Some((change, fit)) = removal.better(record, &step.fit, workers) {
             if !visit(&step) {
                 let is_adequate = step.is_adequate();
