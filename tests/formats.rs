@@ -119,6 +119,12 @@ mod parquet {
     }
 
     #[test]
+    fn durations_decimals_and_half_precision_are_read() {
+        let found = read_whole("narrow.parquet", &ReadOptions::default());
+        assert_eq!(found.joints, read_whole("narrow.csv", &ReadOptions::default()).joints);
+    }
+
+    #[test]
     fn text_in_place_of_numbers_is_named_with_its_column() {
         let options = mapped(&[("boom", "boom.input", "note")]);
         let message = refusal(golden("typed.parquet"), &options);

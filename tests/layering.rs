@@ -254,7 +254,7 @@ fn each_library_is_named_in_its_own_place_only() {
         ("plotters", "src/report/page/plot.rs"),
         ("flate2", "src/experiment/format"),
         ("encoding_rs", "src/experiment/format/text.rs"),
-        ("jiff", "src/experiment/format/spelling.rs"),
+        ("jiff", "src/experiment/format/date.rs"),
         ("calamine", "src/experiment/format/xlsx.rs"),
         ("hdf5_pure", "src/experiment/format/mat"),
         ("zip", "src/export/fmu src/experiment/format/xlsx.rs"),

@@ -696,3 +696,58 @@ proptest! {
         prop_assert_eq!(round(&made), made.joints);
     }
 }
+
+/// Where a clock counts from 1970 or from when a machine was switched on, and the same log at zero.
+#[test]
+fn a_clock_that_counts_from_1970_is_counted_from_the_first_second_of_the_log() {
+    let log = |first: f64| {
+        let rows = (0..300).map(|k| {
+            let (time, level) = (first + 0.25 + f64::from(k) * 0.02, f64::from(k / 60 % 2));
+            format!("{time:.2},{level},{}\n", f64::from(k) * 0.1)
+        });
+        format!("time_s,boom.input,boom.output\n{}", rows.collect::<String>())
+    };
+    let plain = Reading::of(log(0.0)).the_joint();
+    for (first, date) in [(1.7e9, "2023-11-14T22:13:20Z (1700000000 s"), (54_321.0, "54321 s")] {
+        let read = Reading::of(log(first)).read();
+        let trial = &read.joints[0].trials[0];
+        assert!((trial.time_s(1) - plain.trials[0].time_s(1)).abs() < 1e-6);
+        assert!((trial.logged_time_s(2) - first - 0.27).abs() < 1e-6);
+        assert_eq!(trial.origin_s().to_string(), first.to_string());
+        assert_eq!(outputs(&read.joints[0]), outputs(&plain));
+        let said = format!("times count from {date} of its clock)");
+        let said = said.trim_end_matches(')');
+        assert!(read.notes.iter().any(|note| note.contains(said)), "{:?}", read.notes);
+    }
+    // Two logs of one clock keep the time between them.
+    let both = Reading::of(log(1.7e9)).and("later.csv", log(1.7e9 + 60.0)).the_joint();
+    assert!((both.trials[1].time_s(1) - 60.25).abs() < 1e-6);
+    let mut table = Vec::new();
+    let joints = [both];
+    let estimate =
+        estimate_joints(&joints, &Settings::default(), || (), &Threads).remove(0).unwrap();
+    let estimated = EstimatedJoint { joint: &joints[0], estimate: &estimate };
+    write_delays(&[estimated], &mut table).unwrap();
+    let table = String::from_utf8(table).unwrap();
+    assert!(table.lines().nth(2).unwrap().contains(",2,1700000000.27,"), "{}", &table[..200]);
+}
+
+#[test]
+fn times_that_cannot_be_seconds_are_refused_and_so_are_too_few() {
+    let log = |name: &str, step: f64| {
+        let rows = (0..50).map(|k| format!("{},{},{k}\n", f64::from(k) * step, k / 10 % 2));
+        format!("{name},boom.input,boom.output\n{}", rows.collect::<String>())
+    };
+    for (name, step) in [("t", 1e4), ("t", 1e7), ("time_s", 1e7)] {
+        let error = Reading::of(log(name, step)).error();
+        assert!(matches!(error, ReadError::WrongTimeUnit { .. }), "{name} {step}: {error}");
+    }
+    assert_eq!(periods(&Reading::of(log("t [us]", 1e4)).the_joint()), ["0.01 s"]);
+    assert_eq!(periods(&Reading::of(log("time_s", 1e4)).the_joint()), ["10000 s"]);
+    // Seconds since 1970 as a 32-bit number.
+    let rows =
+        (0..4000).map(|k| format!("{},{},{k}\n", 1_699_999_872 + k / 2500 * 128, k / 500 % 2));
+    let coarse = format!("time_s,boom.input,boom.output\n{}", rows.collect::<String>());
+    let error = Reading::of(coarse).error();
+    assert!(matches!(error, ReadError::FewTimes { stamps: 2, rows: 4000, .. }), "{error}");
+}

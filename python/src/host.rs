@@ -251,7 +251,7 @@ pub(crate) fn read<'py>(
         for trial in &joint.trials {
             let of = PyDict::new(py);
             of.set_item("trial", trial.label())?;
-            of.set_item("start_s", trial.time_s(1))?;
+            of.set_item("start_s", trial.logged_time_s(1))?;
             of.set_item("sample_period", trial.period().seconds())?;
             of.set_item("input", PyArray1::from_slice(py, trial.input()))?;
             of.set_item("output", PyArray1::from_slice(py, trial.output()))?;

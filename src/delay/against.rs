@@ -37,8 +37,10 @@ pub struct StepState {
     pub dwell_s: Option<f64>,
     /// Output at the breakpoint, smoothed if the estimate was made so; output units.
     pub angle: f64,
-    /// Time of the input step, in seconds of the log.
+    /// Time of the input step, in seconds since the [origin](Trial::origin_s).
     pub time_s: f64,
+    /// The same by the clock of the log.
+    pub logged_time_s: f64,
     /// Mean of each further signal over the five samples before the input step, in the
     /// order of [`Joint::covariates`]; none where it was not measured.
     pub covariates: Vec<Option<f64>>,
@@ -208,6 +210,7 @@ fn states<'a>(
             dwell_s: dwell.map(|samples| samples as f64 * period_s),
             angle: *output.get(best.candidate.breakpoint.checked_sub(1)?)?,
             time_s: trial.time_s(step.sample),
+            logged_time_s: trial.logged_time_s(step.sample),
             covariates: trial.covariates().iter().map(covariate).collect(),
         })
     })

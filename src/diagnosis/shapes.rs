@@ -2,6 +2,7 @@
 
 use std::mem::take;
 
+use crate::experiment::Trial;
 use crate::fit::{Evaluation, FitRecord, Window};
 use crate::model::Simulated;
 
@@ -63,7 +64,9 @@ impl Scales {
         let outputs = || record.joint().trials.iter().flat_map(|t| t.output().iter().copied());
         let (low, high) =
             (outputs().fold(f64::INFINITY, f64::min), outputs().fold(f64::NEG_INFINITY, f64::max));
-        let ends = record.joint().trials.iter().map(|trial| trial.time_s(trial.len()));
+        let trials = record.joint().trials.iter().enumerate();
+        let ends =
+            trials.map(|(index, trial)| since_start_s(record, index, trial, trial.len() - 1));
         Self {
             levels: edges,
             middle: f64::midpoint(low, high),
@@ -71,6 +74,11 @@ impl Scales {
             duration_s: ends.fold(f64::MIN_POSITIVE, f64::max),
         }
     }
+}
+
+/// Time of the sample of `trial` with this index, in seconds from the start of the record.
+fn since_start_s(record: &FitRecord<'_>, index: usize, trial: &Trial, sample: usize) -> f64 {
+    record.start_s(index) + sample as f64 * trial.period().seconds()
 }
 
 /// All shapes in one window.
@@ -88,7 +96,7 @@ fn of_window(
         cut(angles).iter().map(|y| (y - scales.middle) / scales.half_span).collect()
     };
     let angle = scaled(trial.output());
-    let first = trial.time_s(window.start + 1);
+    let first = since_start_s(record, window.trial, trial, window.start);
     let time: Vec<f64> =
         (0..acting.len()).map(|k| (first + k as f64 * period) / scales.duration_s).collect();
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).collect::<Vec<f64>>();

@@ -57,7 +57,7 @@ fn of_trial(trial: &Trial, others: &[(&Other<'_>, f64)]) -> Vec<f64> {
         let share = 1.0 / (most * others.len() as f64);
         for part in other.at_the_time_of(trial.label()) {
             for (value, sample) in activity.iter_mut().zip(1..) {
-                *value += share * held(part, trial.time_s(sample) - other.delay_s).abs();
+                *value += share * held(part, trial.logged_time_s(sample) - other.delay_s).abs();
             }
         }
     }
@@ -68,7 +68,7 @@ fn of_trial(trial: &Trial, others: &[(&Other<'_>, f64)]) -> Vec<f64> {
 fn held(trial: &Trial, time_s: f64) -> f64 {
     /// Part of a period by which equal times may differ in rounding.
     const ROUNDING: f64 = 1e-3;
-    let place = (time_s - trial.time_s(1)) / trial.period().seconds() + ROUNDING;
+    let place = (time_s - trial.logged_time_s(1)) / trial.period().seconds() + ROUNDING;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative")]
     let index = (place >= 0.0).then_some(place as usize);
     index.and_then(|index| trial.input().get(index)).copied().unwrap_or_default()

@@ -379,6 +379,19 @@ pub enum ReadError {
         /// Time of this row.
         time: f64,
     },
+    /// Times that cannot be in the unit that is named or supposed.
+    #[error(
+        "{}, column `{column}`: its times would be {period} s apart, so that their unit must be \
+         another; name it in the header, as in `{column} [ms]`, `[us]` or `[ns]`", path.display()
+    )]
+    WrongTimeUnit {
+        /// The log.
+        path: PathBuf,
+        /// The column.
+        column: String,
+        /// The period in that unit, in seconds.
+        period: f64,
+    },
     /// A time step differs from the median by more than 1 %.
     #[error(
         "{}, row {row}: this sample comes {step} s after the one before, but the period is \
@@ -393,6 +406,24 @@ pub enum ReadError {
         step: f64,
         /// Median time step, in seconds.
         period: f64,
+    },
+    /// The times are rounded so coarsely that no sample period follows from them.
+    #[error(
+        "{}, row {row}: the {rows} rows of this trial have only {stamps} different times, {grain_s} s \
+         apart, from which no sample period follows; write times as 64-bit numbers or with more \
+         digits", path.display()
+    )]
+    FewTimes {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file of the trial's first row.
+        row: u64,
+        /// Rows of the trial.
+        rows: usize,
+        /// Different times among them.
+        stamps: usize,
+        /// The least time between two that differ, in seconds.
+        grain_s: f64,
     },
     /// The rows of one trial are not together.
     #[error(
@@ -509,6 +540,7 @@ impl ReadError {
             | Self::Missing { row, .. }
             | Self::TimeNotIncreasing { row, .. }
             | Self::NotUniform { row, .. }
+            | Self::FewTimes { row, .. }
             | Self::TrialNotContiguous { row, .. }
             | Self::SingleRow { row, .. }
             | Self::NoTimeInRow { row, .. } => Some(*row).filter(|row| *row > 0),
@@ -523,6 +555,7 @@ impl ReadError {
             | Self::UnequalColumns { column, .. }
             | Self::DuplicateColumn { column, .. }
             | Self::TimeUnit { column, .. }
+            | Self::WrongTimeUnit { column, .. }
             | Self::MissingColumn { column, .. }
             | Self::NotANumber { column, .. }
             | Self::NotATime { column, .. }

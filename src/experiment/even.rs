@@ -46,6 +46,7 @@ fn fault_of(fault: ClockFault) -> Fault {
         ClockFault::Garbage { row } => Fault::NotIncreasing { row },
         ClockFault::StandsStill => Fault::NotIncreasing { row: 1 },
         ClockFault::SingleRow => Fault::SingleRow,
+        ClockFault::FewStamps { stamps, grain_s } => Fault::FewStamps { stamps, grain_s },
         ClockFault::TooCoarse { row, step, period } => Fault::NotUniform { row, step, period },
     }
 }
@@ -122,7 +123,7 @@ fn part(
     let sampled = SamplePeriod::from_seconds(period).ok_or(Fault::SingleRow)?;
     let longest_gap_s = repair.fill_s.unwrap_or_else(|| filled_s(period));
     if clock.evenness != Evenness::Uneven && repair.resample.is_none() {
-        let start_s = Clock::start_s(run, times, period);
+        let start_s = run.start_s(times, period);
         let grid = Grid::of_places(start_s, run.places.clone(), sampled, longest_gap_s)?;
         return Ok(Part { rows: run.rows.clone(), grid });
     }

@@ -31,6 +31,7 @@ pub struct Signal {
 pub struct Trial {
     label: String,
     start_s: f64,
+    origin_s: f64,
     period: SamplePeriod,
     input: Vec<f64>,
     output: Vec<f64>,
@@ -92,7 +93,16 @@ impl Trial {
         if let Some(index) = input.iter().zip(&output).position(|pair| !finite(pair)) {
             return Err(TrialError::NotFinite { label, sample: index + 1 });
         }
-        Ok(Self { label, start_s, period, input, output, covariates: Vec::new() })
+        let (origin_s, covariates) = (0.0, Vec::new());
+        Ok(Self { label, start_s, origin_s, period, input, output, covariates })
+    }
+
+    /// This trial with times that count from when the clock of the log showed `origin_s` more than
+    /// what they count from now.
+    #[must_use]
+    pub(crate) fn counted_from(self, origin_s: f64) -> Self {
+        let (start_s, origin_s) = (self.start_s - origin_s, self.origin_s + origin_s);
+        Self { start_s, origin_s, ..self }
     }
 
     /// This trial with further signals. Where one was not measured it holds NaN.
@@ -112,7 +122,8 @@ impl Trial {
     pub(crate) fn part(&self, from: usize, to: usize) -> Option<Self> {
         let (input, output) = (self.input().get(from..to)?, self.output().get(from..to)?);
         let start_s = self.time_s(from + 1);
-        Self::new(self.label(), start_s, self.period(), input.to_vec(), output.to_vec()).ok()
+        let part = Self::new(self.label(), start_s, self.period(), input.to_vec(), output.to_vec());
+        Some(Self { origin_s: self.origin_s, ..part.ok()? })
     }
 
     /// The first `samples` of it; none where there would be no sample.
@@ -156,7 +167,19 @@ impl Trial {
         self.output.len()
     }
 
-    /// Time of the sample with the 1-based number `sample`, in seconds of the log.
+    /// What the clock of the log shows where times count from, in seconds: zero, but for a clock that
+    /// counts from 1970 or the like the first second of the log.
+    pub fn origin_s(&self) -> f64 {
+        self.origin_s
+    }
+
+    /// Time of the sample with the 1-based number `sample` by the clock of the log, in seconds.
+    pub fn logged_time_s(&self, sample: usize) -> f64 {
+        self.origin_s + self.time_s(sample)
+    }
+
+    /// Time of the sample with the 1-based number `sample`, in seconds since the
+    /// [origin](Self::origin_s).
     pub fn time_s(&self, sample: usize) -> f64 {
         self.start_s + (sample as f64 - 1.0) * self.period.seconds()
     }

@@ -4,10 +4,12 @@ use std::ops::Range;
 
 use super::error::ReadError;
 use super::even;
+use super::format::date_of_seconds;
 use super::gaps::gap_with_all_steps_s;
 use super::joint::{Joint, Signal, Trial};
 use super::layout::{JointLayout, TimeSource};
 use super::memory::Budget;
+use super::origin::{origin_s, since_1970};
 use super::sampling::{Fault, Grid, Piece, Repair, Signals};
 use super::table::{BadCell, Column, Head, Table, TrialRows};
 use super::wrap::Wrap;
@@ -59,17 +61,60 @@ impl Log<'_> {
         let rows = |trial: &TrialRows| (trial.start..trial.end).collect();
         let rows: Vec<Vec<usize>> = trials.iter().map(rows).collect();
         let (grids, mut notes) = self.grids_of(&times, &rows, trials, repair)?;
-        notes.extend(self.unit_note(time));
+        self.check_unit(time, &grids)?;
+        notes.extend(self.origin_note(time));
         notes.extend(self.rate_note(time, &grids));
         Ok((grids, notes))
     }
 
-    /// What is said of times since 1970 whose unit was told by their size.
-    fn unit_note(&self, time: TimeSource) -> Option<String> {
-        let TimeSource::Times(column, None) = time else { return None };
-        let (scale, unit) = since_1970(&self.column(column)?.values)?;
+    /// The first time, as it stands in the log.
+    fn first_time(&self, column: usize) -> Option<f64> {
+        self.column(column)?.values.iter().copied().find(|value| !value.is_nan())
+    }
+
+    /// What the clock shows where times are counted from, in seconds.
+    fn origin_s(&self, time: TimeSource) -> f64 {
+        let TimeSource::Times(column, scale) = time else { return 0.0 };
+        let first = self.first_time(column).unwrap_or_default();
+        origin_s(first * scale.unwrap_or_else(|| self.scale(column)))
+    }
+
+    /// Seconds of the unit of times that do not name it.
+    fn scale(&self, column: usize) -> f64 {
+        self.first_time(column).and_then(since_1970).map_or(1.0, |(scale, _)| scale)
+    }
+
+    /// What is said of times whose unit was told by their size, or that are counted anew.
+    fn origin_note(&self, time: TimeSource) -> Option<String> {
+        let TimeSource::Times(column, scale) = time else { return None };
+        let origin_s = self.origin_s(time);
+        let counted = (origin_s != 0.0).then(|| match date_of_seconds(origin_s) {
+            Some(date) => format!("times count from {date} ({origin_s} s of its clock)"),
+            None => format!("times count from {origin_s} s of its clock"),
+        });
+        let unit = self.first_time(column).and_then(since_1970);
+        let unit = unit.filter(|(seconds, _)| scale.is_none() && *seconds < 1.0);
         let name = self.header(column);
-        (scale < 1.0).then(|| format!("`{name}` is taken for {unit} since 1970"))
+        let unit = unit.map(|(_, unit)| format!("`{name}` is taken for {unit} since 1970"));
+        let said: Vec<String> = unit.into_iter().chain(counted).collect();
+        (!said.is_empty()).then(|| said.join("; "))
+    }
+
+    /// Refuses times that are so far apart that their unit is another, named or supposed.
+    fn check_unit(&self, time: TimeSource, grids: &[Grid]) -> Result<(), ReadError> {
+        /// No joint is logged so seldom as every quarter of an hour, and nothing that moves once a day.
+        const SELDOM_S: (f64, f64) = (900.0, 86_400.0);
+        let TimeSource::Times(column, scale) = time else { return Ok(()) };
+        let most = if scale.is_some() { SELDOM_S.1 } else { SELDOM_S.0 };
+        let mut periods = grids.iter().map(|grid| grid.period().seconds());
+        match periods.find(|period| *period > most) {
+            Some(period) => Err(ReadError::WrongTimeUnit {
+                path: self.head.path.clone(),
+                column: self.header(column),
+                period,
+            }),
+            None => Ok(()),
+        }
     }
 
     /// A question where no machine is sampled like this, or where seconds are only supposed.
@@ -132,7 +177,7 @@ impl Log<'_> {
             TimeSource::Rows(period) => return Ok(Clock::Rows(period)),
         };
         let values = self.column(column).map_or(&[][..], |column| &column.values);
-        let scale = scale.unwrap_or_else(|| since_1970(values).map_or(1.0, |(scale, _)| scale));
+        let scale = scale.unwrap_or_else(|| self.scale(column));
         let times: Vec<f64> = values.iter().map(|value| value * scale).collect();
         self.check_times(column, &times)?;
         Ok(Clock::Stamps(times))
@@ -174,6 +219,9 @@ impl Log<'_> {
             Fault::NotUniform { row, step, period } => {
                 ReadError::NotUniform { path, row: number(row), step, period }
             }
+            Fault::FewStamps { stamps, grain_s } => {
+                ReadError::FewTimes { path, row: number(0), rows: rows.len(), stamps, grain_s }
+            }
             Fault::TooMany { samples, period } => {
                 ReadError::TooManySamples { path, trial, samples, period }
             }
@@ -196,6 +244,7 @@ impl Log<'_> {
             None => (None, self.missing_notes(layout)),
         };
         let grids = own.as_deref().unwrap_or(grids);
+        let origin_s = self.origin_s(time);
         let mut joint = Joint {
             name: layout.name.clone(),
             input_unit: layout.input.signal.unit.clone(),
@@ -219,7 +268,7 @@ impl Log<'_> {
             }
             let labels = part_labels(&rows.label, pieces.len(), trials);
             for (label, piece) in labels.into_iter().zip(pieces) {
-                joint.trials.push(self.trial(layout, label, grid, piece)?);
+                joint.trials.push(self.trial(layout, label, grid, piece, origin_s)?);
             }
         }
         if joint.trials.is_empty() {
@@ -278,10 +327,12 @@ impl Log<'_> {
         label: String,
         grid: &Grid,
         piece: Piece,
+        origin_s: f64,
     ) -> Result<Trial, ReadError> {
         let Signals { input, output, covariates } = piece.signals;
         let trial = Trial::new(label, piece.start_s, grid.period(), input, output)
-            .and_then(|trial| trial.with_covariates(covariates));
+            .and_then(|trial| trial.with_covariates(covariates))
+            .map(|trial| trial.counted_from(origin_s));
         trial.map_err(|source| ReadError::Trial {
             path: self.head.path.clone(),
             joint: layout.name.clone(),
@@ -406,7 +457,8 @@ impl Log<'_> {
         };
         let begins = |row: &usize| {
             let is_measured = output.get(*row).is_some_and(|value| !value.is_nan());
-            is_measured && time(*row).is_some_and(|time| (time - behind.time_s(1)).abs() <= half)
+            is_measured
+                && time(*row).is_some_and(|time| (time - behind.logged_time_s(1)).abs() <= half)
         };
         let row = (trial.start..trial.end).find(begins)?;
         Some((gap, self.row(row)))
@@ -484,19 +536,6 @@ impl Log<'_> {
             BadCell::Infinite => ReadError::Infinite { path, row, column },
             BadCell::TooLarge(value) => ReadError::BeyondPrecision { path, row, column, value },
         })
-    }
-}
-
-/// The unit of times since 1970, told by their size: its seconds and its name.
-fn since_1970(values: &[f64]) -> Option<(f64, &'static str)> {
-    let first = values.iter().copied().find(|value| !value.is_nan())?;
-    match first {
-        // From the year 2001 to 2128 in each unit.
-        1e9..5e9 => Some((1.0, "seconds")),
-        1e12..5e12 => Some((1e-3, "milliseconds")),
-        1e15..5e15 => Some((1e-6, "microseconds")),
-        1e18..5e18 => Some((1e-9, "nanoseconds")),
-        _ => None,
     }
 }
 

@@ -20,6 +20,7 @@ mod layout;
 mod log;
 mod memory;
 mod names;
+mod origin;
 mod read;
 mod sampling;
 mod source;

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::columns::{ColumnMap, JointColumns};
 use super::error::ReadError;
 use super::format::{self, is_named_like_a_log};
-use super::joint::Joint;
+use super::joint::{Joint, Trial};
 use super::layout::{JointLayout, Layout, find_time_column};
 use super::log::Log;
 use super::memory::{Budget, MemoryLimit};
@@ -138,7 +138,13 @@ fn merge(known: &mut Joint, joint: Joint, path: &Path) -> Result<(), ReadError> 
             expected: describe(known),
         });
     }
-    known.trials.extend(joint.trials);
+    // The clocks of logs that both count from 1970 are one.
+    let origin_s = known.trials.first().map_or(0.0, Trial::origin_s);
+    let on_one_clock = |trial: Trial| match trial.origin_s() {
+        later if later != 0.0 && origin_s != 0.0 => trial.counted_from(origin_s - later),
+        _ => trial,
+    };
+    known.trials.extend(joint.trials.into_iter().map(on_one_clock));
     Ok(())
 }
 

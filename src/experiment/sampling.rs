@@ -38,6 +38,7 @@ pub(super) enum Fault {
     NotIncreasing { row: usize },
     NotUniform { row: usize, step: f64, period: f64 },
     SingleRow,
+    FewStamps { stamps: usize, grain_s: f64 },
     TooMany { samples: f64, period: f64 },
 }
 

@@ -368,7 +368,7 @@ fn windows(joint: &Joint, split: Split, horizon: Horizon) -> Vec<Window> {
 ///
 /// Where their times overlap, as when each counts from zero, they are taken to have followed
 /// one another without a pause: what warms in one trial is warm in the next.
-fn starts_s(trials: &[Trial]) -> Vec<f64> {
+pub(crate) fn starts_s(trials: &[Trial]) -> Vec<f64> {
     let times = || trials.iter().map(|trial| trial.time_s(1));
     let ends = trials.iter().map(|trial| trial.time_s(1) + length_s(trial));
     // Times are rounded: an end may seem to lie a little behind the next start.

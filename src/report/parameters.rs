@@ -3,7 +3,7 @@
 use crate::diagnosis::Comparison;
 use crate::effect::Stage;
 use crate::experiment::{Joint, Trial};
-use crate::fit::{Assessment, Parameter, Status};
+use crate::fit::{Assessment, Parameter, Status, starts_s};
 use crate::model::{Commands, Component, JointModel};
 use crate::wording::{parameter_units, parameter_value, rounded};
 
@@ -50,10 +50,10 @@ pub(crate) fn delay_of_steps(joint: &Joint, model: &JointModel) -> Option<String
         return None;
     }
     let mut delays_s = Vec::new();
-    for trial in &joint.trials {
+    for (trial, start_s) in joint.trials.iter().zip(starts_s(&joint.trials)) {
         let model = model.in_trial(trial.label());
         let commands = Commands::new(trial.input(), trial.period().seconds());
-        delays_s.extend(commands.changes(trial.time_s(1)).map(|change| model.delay_s(&change)));
+        delays_s.extend(commands.changes(start_s).map(|change| model.delay_s(&change)));
     }
     let samples: usize = joint.trials.iter().map(Trial::len).sum();
     if delays_s.is_empty() || delays_s.len() * SAMPLES_PER_STEP > samples {

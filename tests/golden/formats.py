@@ -81,6 +81,31 @@ def parquet(columns):
         "boom.output": np.array(columns["boom.output [deg]"], "float32")})
 
 
+def narrow(columns):
+    """As databases and data frames write small numbers: durations, decimals, half precision."""
+    import decimal
+    import pandas as pd
+
+    samples = len(columns["time_s"]) // 2
+    volts = columns["boom.input [V]"][:samples]
+    degrees = np.round(columns["boom.output [deg]"][:samples], 3)
+    pressures = np.array(columns["boom.pressure [bar]"][:samples], "float16")
+    exact = [decimal.Decimal(f"{value:.3f}") for value in degrees]
+    table = pa.table({
+        "t": pa.array(np.round(np.array(columns["time_s"][:samples]) * 1e9).astype("int64"), pa.duration("ns")),
+        "boom.input": pa.array([decimal.Decimal(f"{value:.1f}") for value in volts], pa.decimal128(5, 1)),
+        "boom.output": pa.array(exact, pa.decimal128(30, 3)),
+        "boom.pressure": pa.array(pressures),
+    })
+    said = pa.Table.from_pandas(pd.DataFrame({"t": pd.to_timedelta([0], unit="ns").as_unit("ns")}),
+                                preserve_index=False).schema.metadata
+    table = table.replace_schema_metadata({b"pandas": said[b"pandas"]})
+    pq.write_table(table, HERE / "narrow.parquet", store_decimal_as_integer=True)
+    write_csv(HERE / "narrow.csv", {
+        "t": columns["time_s"][:samples], "boom.input": volts, "boom.output": degrees,
+        "boom.pressure": pressures})
+
+
 def mat(columns):
     """The first trial: vectors and structures, a matrix, and things that are no columns."""
     first = {name: np.array(values[: len(values) // 2]) for name, values in columns.items()}
@@ -224,5 +249,6 @@ if __name__ == "__main__":
     columns = native(400)
     write_csv(HERE / "log.csv", columns)
     parquet(columns)
+    narrow(columns)
     mat(columns)
     ros()

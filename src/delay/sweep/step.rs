@@ -18,8 +18,10 @@ pub struct SweptStep {
     pub number: usize,
     /// `p_i`: first sample with the new level, from 1.
     pub sample: usize,
-    /// Its time, seconds of the log.
+    /// Its time, seconds since the [origin](Trial::origin_s).
     pub time_s: f64,
+    /// The same by the clock of the log.
+    pub logged_time_s: f64,
     /// Seconds between samples.
     pub period_s: f64,
     /// Which kind of step it is.
@@ -83,6 +85,7 @@ impl SweptStep {
             number,
             sample: step.sample,
             time_s: trial.time_s(step.sample),
+            logged_time_s: trial.logged_time_s(step.sample),
             period_s: trial.period().seconds(),
             transition,
             delays,

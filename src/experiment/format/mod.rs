@@ -5,6 +5,7 @@
 //! endings of its files, its first bytes, its feature and `open`.
 
 mod csv;
+mod date;
 mod fence;
 mod first_bytes;
 #[cfg(feature = "mat")]
@@ -20,4 +21,5 @@ mod text;
 mod xlsx;
 
 pub(super) use csv::GrowingRows;
+pub(super) use date::date_of_seconds;
 pub(super) use registry::{endings, is_named_like_a_log, is_text, open};

@@ -13,6 +13,7 @@ use parquet::errors::ParquetError;
 use parquet::file::metadata::RowGroupMetaData;
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
+use serde_json::Value;
 
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::{Budget, TooLarge};
@@ -46,7 +47,8 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
         return Err(damaged(path, &outside));
     }
     let columns = reader.metadata().file_metadata().schema_descr().columns();
-    let headers = columns.iter().map(|column| header(column)).collect();
+    let spans = pandas_durations(&reader);
+    let headers = columns.iter().map(|column| header(column, &spans)).collect();
     let head = Head { path: path.to_owned(), headers, header_row: 0 };
     Ok(OpenTable { head, rows: Box::new(Unread { reader, budget }) })
 }
@@ -76,16 +78,38 @@ fn damaged(path: &Path, error: &ParquetError) -> ReadError {
     }
 }
 
+/// Names and units of the columns that pandas says are durations, for which Parquet has no type.
+fn pandas_durations(reader: &SerializedFileReader<File>) -> Vec<(String, &'static str)> {
+    let entries = reader.metadata().file_metadata().key_value_metadata();
+    let said = entries.and_then(|all| all.iter().find(|entry| entry.key == "pandas"));
+    let said = said.and_then(|entry| serde_json::from_str::<Value>(entry.value.as_ref()?).ok());
+    let columns = said.as_ref().and_then(|said| said.get("columns")?.as_array());
+    let duration = |column: &Value| {
+        let text = |key: &str| column.get(key)?.as_str();
+        let unit = match text("numpy_type")? {
+            "timedelta64[s]" => "s",
+            "timedelta64[ms]" => "ms",
+            "timedelta64[us]" => "us",
+            "timedelta64[ns]" => "ns",
+            _ => return None,
+        };
+        Some((text("field_name")?.to_owned(), unit))
+    };
+    columns.into_iter().flatten().filter_map(duration).collect()
+}
+
 /// A time without a unit in its name is in the unit of its type.
-fn header(column: &ColumnDescriptor) -> Header {
+fn header(column: &ColumnDescriptor, durations: &[(String, &'static str)]) -> Header {
     let mut header = Header::parse(&column.path().string());
+    let name = column.path().string();
+    let of_pandas = || durations.iter().find(|(of, _)| *of == name).map(|(_, unit)| *unit);
     let of_type = match column.logical_type_ref() {
-        Some(LogicalType::Timestamp(time) | LogicalType::Time(time)) => Some(match time.unit {
-            TimeUnit::MILLIS => "ms",
-            TimeUnit::MICROS => "us",
-            TimeUnit::NANOS => "ns",
-        }),
-        _ => None,
+        Some(LogicalType::Timestamp(time) | LogicalType::Time(time)) => match time.unit {
+            TimeUnit::MILLIS => Some("ms"),
+            TimeUnit::MICROS => Some("us"),
+            TimeUnit::NANOS => Some("ns"),
+        },
+        _ => of_pandas(),
     };
     header.unit = header.unit.or(of_type.map(str::to_owned));
     header
@@ -140,11 +164,8 @@ fn not_numbers(column: &ColumnDescriptor) -> Option<String> {
     let logical = column.logical_type_ref();
     match column.physical_type() {
         _ if column.max_rep_level() > 0 => Some("lists".to_owned()),
-        Type::BOOLEAN | Type::FLOAT | Type::DOUBLE => None,
-        Type::INT32 | Type::INT64 => match logical {
-            Some(LogicalType::Decimal(_)) => Some("decimals".to_owned()),
-            _ => None,
-        },
+        Type::BOOLEAN | Type::FLOAT | Type::DOUBLE | Type::INT32 | Type::INT64 => None,
+        Type::FIXED_LEN_BYTE_ARRAY if fixed_length(column).is_some() => None,
         Type::BYTE_ARRAY if matches!(logical, Some(LogicalType::String)) => Some("text".to_owned()),
         other => Some(format!("values of the type {other}")),
     }
@@ -165,6 +186,8 @@ impl Unread {
             schema.column(column).logical_type_ref(),
             Some(LogicalType::Integer(int)) if !int.is_signed
         );
+        let unit = decimal_unit(&schema.column(column));
+        let fixed = fixed_length(&schema.column(column));
         #[expect(clippy::cast_sign_loss, reason = "the bits are those of an unsigned number")]
         match self.reader.get_row_group(group)?.get_column_reader(column)? {
             ColumnReader::BoolColumnReader(reader) => {
@@ -174,13 +197,13 @@ impl Unread {
                 each(reader, full, |value| Cell::Number(f64::from(value as u32)), rows, cells)
             }
             ColumnReader::Int32ColumnReader(reader) => {
-                each(reader, full, |value| Cell::Number(f64::from(value)), rows, cells)
+                each(reader, full, |value| Cell::Number(f64::from(value) / unit), rows, cells)
             }
             ColumnReader::Int64ColumnReader(reader) if unsigned => {
                 each(reader, full, |value| Cell::Number(value as u64 as f64), rows, cells)
             }
             ColumnReader::Int64ColumnReader(reader) => {
-                each(reader, full, |value| Cell::Number(value as f64), rows, cells)
+                each(reader, full, |value| Cell::Number(value as f64 / unit), rows, cells)
             }
             ColumnReader::FloatColumnReader(reader) => {
                 each(reader, full, |value| Cell::Number(f64::from(value)), rows, cells)
@@ -188,10 +211,71 @@ impl Unread {
             ColumnReader::DoubleColumnReader(reader) => {
                 each(reader, full, Cell::Number, rows, cells)
             }
+            ColumnReader::FixedLenByteArrayColumnReader(reader) => {
+                let fixed = fixed.unwrap_or(Fixed::Half);
+                each(reader, full, |value| fixed.number(value.data()), rows, cells)
+            }
             ColumnReader::ByteArrayColumnReader(reader) => each(reader, full, text, rows, cells),
-            _ => Err(ParquetError::NYI("a column of another type".to_owned())),
+            ColumnReader::Int96ColumnReader(_) => {
+                Err(ParquetError::NYI("a column of 96-bit numbers".to_owned()))
+            }
         }
     }
+}
+
+/// What the integers of a column of decimals are divided by; one for other columns.
+fn decimal_unit(column: &ColumnDescriptor) -> f64 {
+    match column.logical_type_ref() {
+        Some(LogicalType::Decimal(decimal)) => 10_f64.powi(decimal.scale),
+        _ => 1.0,
+    }
+}
+
+/// A number of a fixed count of bytes.
+#[derive(Clone, Copy, Debug)]
+enum Fixed {
+    /// Half precision.
+    Half,
+    /// A decimal, divided by so much.
+    Decimal(f64),
+}
+
+/// How the numbers of a column of fixed length are written; none where these are no numbers.
+fn fixed_length(column: &ColumnDescriptor) -> Option<Fixed> {
+    match column.logical_type_ref()? {
+        LogicalType::Float16 => Some(Fixed::Half),
+        LogicalType::Decimal(_) => Some(Fixed::Decimal(decimal_unit(column))),
+        _ => None,
+    }
+}
+
+impl Fixed {
+    fn number(self, bytes: &[u8]) -> Cell {
+        match self {
+            Self::Half => bytes.try_into().map_or(Cell::Missing, |bytes| Cell::Number(half(bytes))),
+            Self::Decimal(unit) => Cell::Number(signed(bytes) / unit),
+        }
+    }
+}
+
+/// A number of half precision, IEEE 754 binary16: `(−1)^s 2^(e − 15) (1 + f/1024)`.
+fn half(bytes: [u8; 2]) -> f64 {
+    let bits = u16::from_le_bytes(bytes);
+    let (exponent, fraction) = (i32::from((bits >> 10) & 0x1f), f64::from(bits & 0x3ff) / 1024.0);
+    let size = match exponent {
+        0 => fraction * 2_f64.powi(-14),
+        0x1f if fraction > 0.0 => f64::NAN,
+        0x1f => f64::INFINITY,
+        _ => (1.0 + fraction) * 2_f64.powi(exponent - 15),
+    };
+    if bits >> 15 == 1 { -size } else { size }
+}
+
+/// A whole number of any length, in two's complement, the highest byte first.
+fn signed(bytes: &[u8]) -> f64 {
+    let Some((first, others)) = bytes.split_first() else { return 0.0 };
+    let head = f64::from(i8::from_be_bytes([*first]));
+    others.iter().fold(head, |sum, byte| sum * 256.0 + f64::from(*byte))
 }
 
 /// Texts as runs of equal ones.
@@ -271,5 +355,22 @@ fn each<T: DataType>(
             let present = (level == full).then(|| values.next()).flatten();
             cells(present.unwrap_or(Cell::Missing));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_a_fixed_length_are_read() {
+        let halves = [[0, 0x3c], [0, 0xc0], [0xff, 0x7b], [1, 0], [0, 0x7c]].map(half);
+        assert_eq!(
+            halves.map(|x| x.to_string()),
+            ["1", "-2", "65504", "0.00000005960464477539063", "inf"]
+        );
+        assert!(half([1, 0x7c]).is_nan());
+        let whole = [&[0xff, 0xfe][..], &[0, 1, 0], &[0x80, 0], &[]].map(signed);
+        assert_eq!(whole.map(|x| x.to_string()), ["-2", "256", "-32768", "0"]);
     }
 }

@@ -1,6 +1,7 @@
 //! How the rows of a text are written: delimiter, lines before the header, units below it,
 //! numbers and times.
 
+use super::date::seconds_of_date;
 use crate::experiment::table::BadCell;
 use crate::experiment::unit::is_unit;
 
@@ -276,24 +277,7 @@ pub(super) fn parse_cell(cell: &[u8], delimiter: u8) -> Result<f64, BadCell> {
 pub(super) fn parse_time(cell: &[u8], delimiter: u8) -> Result<f64, BadCell> {
     let number = parse_cell(cell, delimiter);
     let Err(BadCell::Text(text)) = &number else { return number };
-    date_time(text).map_or(number.clone(), Ok)
-}
-
-fn date_time(text: &str) -> Option<f64> {
-    use jiff::Timestamp;
-    use jiff::civil::{Date, DateTime, Time};
-    let text = text.trim().trim_matches('"').replace(',', ".");
-    let seconds =
-        |stamp: Timestamp| stamp.as_second() as f64 + f64::from(stamp.subsec_nanosecond()) * 1e-9;
-    if let Ok(stamp) = text.parse::<Timestamp>() {
-        return Some(seconds(stamp));
-    }
-    let midnight = Date::constant(1970, 1, 1);
-    let civil = match text.parse::<Time>() {
-        Ok(time) if !text.contains('-') => midnight.to_datetime(time),
-        _ => text.parse::<DateTime>().ok()?,
-    };
-    civil.to_zoned(jiff::tz::TimeZone::UTC).ok().map(|zoned| seconds(zoned.timestamp()))
+    seconds_of_date(text).map_or(number.clone(), Ok)
 }
 
 #[cfg(test)]

@@ -122,7 +122,7 @@ impl From<ErrorPoint> for PointJson {
 impl<'a> WindowJson<'a> {
     fn of(joint: &'a Joint, window: &Window) -> Self {
         let trial = joint.trials.get(window.trial);
-        let time_s = |sample: usize| trial.map(|trial| trial.time_s(sample));
+        let time_s = |sample: usize| trial.map(|trial| trial.logged_time_s(sample));
         let [value_s, low_s, high_s] = numbers(window.estimate);
         Self {
             trial: trial.map_or("", |trial| trial.label()),

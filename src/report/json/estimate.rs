@@ -427,7 +427,7 @@ impl<'a> From<&'a StepState> for StepStateJson<'a> {
             input_change: step.input_change,
             dwell_s: step.dwell_s,
             angle: step.angle,
-            time_s: step.time_s,
+            time_s: step.logged_time_s,
             covariates: &step.covariates,
         }
     }

@@ -57,7 +57,10 @@ impl<'a> JointJson<'a> {
             input_correlation: comparison.input_correlation.as_ref().map(Into::into),
             fails_horizon: comparison.arising.to_string(),
             fails_where: failure().flat_map(|f| &f.fails_where).map(Into::into).collect(),
-            worst_segments: failure().flat_map(|f| &f.worst_segments).map(Into::into).collect(),
+            worst_segments: failure()
+                .flat_map(|f| &f.worst_segments)
+                .map(|worst| WorstSegmentJson::new(worst, compared.joint))
+                .collect(),
             regions: comparison.regions.iter().map(Into::into).collect(),
             termination: comparison.termination.to_string(),
         }

@@ -6,6 +6,7 @@ use crate::diagnosis::failure::{FailsWhere, Region, WorstSegment};
 use crate::diagnosis::{
     CrossCorrelation, ErrorFigures, InputCorrelation, LackOfFit, LocalMisfit, ShownBy, Whiteness,
 };
+use crate::experiment::{Joint, Trial};
 
 #[derive(Debug, Serialize)]
 pub(super) struct FiguresJson {
@@ -159,9 +160,13 @@ pub(super) struct WorstSegmentJson<'a> {
     share_of_squared_error: f64,
 }
 
-impl<'a> From<&'a WorstSegment> for WorstSegmentJson<'a> {
-    fn from(worst: &'a WorstSegment) -> Self {
+impl<'a> WorstSegmentJson<'a> {
+    /// With times by the clock of the log.
+    pub(super) fn new(worst: &'a WorstSegment, joint: &Joint) -> Self {
         let &WorstSegment { start_s, end_s, rmse, share_of_squared_error, .. } = worst;
+        let trial = joint.trials.iter().find(|trial| trial.label() == worst.trial);
+        let origin_s = trial.map_or(0.0, Trial::origin_s);
+        let [start_s, end_s] = [start_s, end_s].map(|time_s| origin_s + time_s);
         Self { trial: &worst.trial, start_s, end_s, rmse, share_of_squared_error }
     }
 }
@@ -216,6 +221,13 @@ mod tests {
         };
         let expected = "condition share_of_time share_of_squared_error error_of rmse p_value";
         assert_eq!(keys(FailsWhereJson::from(&found)), expected);
+        let joint = Joint {
+            name: "boom".to_owned(),
+            input_unit: None,
+            output_unit: None,
+            covariates: Vec::new(),
+            trials: Vec::new(),
+        };
         let worst = WorstSegment {
             trial: "1".to_owned(),
             start_s: 41.2,
@@ -225,6 +237,6 @@ mod tests {
             samples: 0..10,
         };
         let expected = "trial start_s end_s rmse share_of_squared_error";
-        assert_eq!(keys(WorstSegmentJson::from(&worst)), expected);
+        assert_eq!(keys(WorstSegmentJson::new(&worst, &joint)), expected);
     }
 }

@@ -180,7 +180,7 @@ impl<'a> StepJson<'a> {
             trial: &step.trial,
             i: step.number,
             p: step.sample,
-            time_s: step.time_s,
+            time_s: step.logged_time_s,
             sample_period_s: step.period_s,
             tried: step.tried,
             accepted: step.accepted,

@@ -1,0 +1,121 @@
+//! The period of a clock: a first guess, the least-squares period, and where it changes.
+
+use super::fault::ClockFault;
+use super::run::{JUMP, LOST_SHARE, Run};
+use crate::numerics::median;
+
+/// Changes of stamps that are rounded to several periods, from which the period follows: two whole
+/// grains, of which the number of rows is known.
+const FEWEST_STAMPS: usize = 3;
+
+/// The period before it is fitted, and what stamps are rounded to.
+pub(super) struct Typical {
+    pub(super) seconds: f64,
+    /// The grain of the stamps where it is above half a period; else 0.
+    pub(super) grain_s: f64,
+}
+
+impl Typical {
+    /// Whether several rows share a stamp.
+    pub(super) fn is_coarse(&self) -> bool {
+        self.grain_s > 2.0 * self.seconds
+    }
+}
+
+/// The mean of the steps that are no jumps. Stamps that are rounded may stand still.
+pub(super) fn typical_period(times: &[f64]) -> Result<Typical, ClockFault> {
+    let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
+    let forward: Vec<f64> = steps.clone().filter(|step| *step > 0.0).collect();
+    if times.len() < 2 {
+        return Err(ClockFault::SingleRow);
+    }
+    let middle = median(&forward).ok_or(ClockFault::StandsStill)?;
+    let even: Vec<f64> = steps.filter(|step| (0.0..=JUMP * middle).contains(step)).collect();
+    // Rows that are there twice are few; stamps that are rounded stand still often.
+    let still = even.iter().filter(|step| **step < middle * 1e-3).count();
+    let rounded = still as f64 > LOST_SHARE * even.len() as f64;
+    let counted = even.len() - if rounded { 0 } else { still };
+    let seconds = even.iter().sum::<f64>() / counted.max(1) as f64;
+    let grain = forward.iter().copied().fold(f64::INFINITY, f64::min);
+    let is_multiple = |step: &f64| ((step / grain) - (step / grain).round()).abs() < 1e-3;
+    let coarse = grain > 0.5 * seconds && rounded && forward.iter().all(is_multiple);
+    Ok(Typical { seconds, grain_s: if coarse { grain } else { 0.0 } })
+}
+
+/// The slope of stamps over places that all `runs` share.
+///
+/// Of stamps that are rounded to several periods only the rows count at which they change: when
+/// these were measured is known to a period, of the others to a grain.
+pub(super) fn least_squares_period(
+    runs: &[Run],
+    times: &[f64],
+    typical: &Typical,
+) -> Result<f64, ClockFault> {
+    let points: Vec<Vec<(f64, f64)>> =
+        runs.iter().map(|run| known_to_a_period(run.points(times).collect(), typical)).collect();
+    let stamps: usize = points.iter().map(Vec::len).sum();
+    if typical.is_coarse() && stamps < FEWEST_STAMPS {
+        return Err(ClockFault::FewStamps {
+            stamps: stamps + runs.len(),
+            grain_s: typical.grain_s,
+        });
+    }
+    let (mut products, mut squares) = (0.0, 0.0);
+    for points in points {
+        let n = points.len() as f64;
+        let place = points.iter().map(|(place, _)| place).sum::<f64>() / n;
+        let time = points.iter().map(|(_, time)| time).sum::<f64>() / n;
+        for (x, t) in points {
+            products += (x - place) * (t - time);
+            squares += (x - place) * (x - place);
+        }
+    }
+    let period = products / squares;
+    if period.is_finite() && period > 0.0 { Ok(period) } else { Err(ClockFault::SingleRow) }
+}
+
+/// Those of `points` whose stamps say when they were measured.
+#[expect(clippy::float_cmp, reason = "whether a stamp is repeated")]
+fn known_to_a_period(mut points: Vec<(f64, f64)>, typical: &Typical) -> Vec<(f64, f64)> {
+    if typical.is_coarse() {
+        points.dedup_by(|later, before| later.1 == before.1);
+        // When the first stamp began is not known.
+        points.drain(..1.min(points.len()));
+    }
+    points
+}
+
+/// The rows at which the sampling goes over to another rate for good: the first of them, the
+/// period before and behind it, and how many there are.
+pub(in crate::experiment) fn rate_changes(
+    run: &Run,
+    times: &[f64],
+) -> Option<(usize, [f64; 2], usize)> {
+    /// Steps on either side whose medians are compared.
+    const STEPS: usize = 20;
+    /// Part by which they must differ.
+    const OTHER: f64 = 0.1;
+    let stamps: Vec<f64> = run.rows.iter().filter_map(|row| times.get(*row).copied()).collect();
+    let steps: Vec<f64> = stamps.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let mut found: Option<(usize, [f64; 2], usize)> = None;
+    let mut index = STEPS;
+    while let (Some(before), Some(behind)) =
+        (steps.get(index.saturating_sub(STEPS)..index), steps.get(index..index + STEPS))
+    {
+        index += 1;
+        let Some((before, behind)) = median(before).zip(median(behind)) else { continue };
+        if (behind / before - 1.0).abs() <= OTHER {
+            continue;
+        }
+        let is_new = |step: &&f64| (**step - behind).abs() < (**step - before).abs();
+        let later = steps.iter().skip(index - 1).take_while(|step| !is_new(step)).count();
+        let first = run.rows.get(index + later).copied().unwrap_or_default();
+        // Behind the change, and not across it.
+        let own = steps.iter().skip(index - 1 + later).take(STEPS).copied();
+        let behind = median(&own.collect::<Vec<_>>()).unwrap_or(behind);
+        let (first, periods, count) = found.unwrap_or((first, [before, behind], 0));
+        found = Some((first, periods, count + 1));
+        index += later + STEPS;
+    }
+    found
+}

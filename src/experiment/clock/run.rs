@@ -1,0 +1,32 @@
+//! Rows that follow one another, and what parts them.
+
+/// A step of more periods than this may be a jump.
+pub(super) const JUMP: f64 = 1.5;
+
+/// Largest part of the places without a row; above it rows are not lost, but not even.
+pub(super) const LOST_SHARE: f64 = 0.1;
+
+/// Rows that follow one another without a long gap.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::experiment) struct Run {
+    /// Rows in the order of their time.
+    pub(in crate::experiment) rows: Vec<usize>,
+    /// Their places on an even grid; the first is 0.
+    pub(in crate::experiment) places: Vec<usize>,
+    /// Whether the clock starts anew here, and not behind a gap.
+    pub(in crate::experiment) restarts: bool,
+}
+
+impl Run {
+    /// When its places begin, on a grid of `period`: the least-squares offset.
+    pub(in crate::experiment) fn start_s(&self, times: &[f64], period: f64) -> f64 {
+        let offsets = self.points(times).map(|(place, time)| time - place * period);
+        offsets.sum::<f64>() / self.rows.len().max(1) as f64
+    }
+
+    /// Place and stamp of each row.
+    pub(super) fn points<'a>(&'a self, times: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + 'a {
+        let stamps = self.rows.iter().filter_map(|&row| times.get(row).copied());
+        self.places.iter().map(|&place| place as f64).zip(stamps)
+    }
+}
