@@ -20,4 +20,6 @@ mod span;
 
 pub(crate) use panel::{Axis, Mark, Panel, Place, Shape};
 pub(crate) use role::Role;
+#[cfg(feature = "rrd")]
+pub(crate) use span::power_of_ten;
 pub(crate) use span::{Span, thinned_to};

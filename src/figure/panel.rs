@@ -1,7 +1,7 @@
 //! Panels with axes and marks.
 
 use super::role::Role;
-use super::span::Span;
+use super::span::{Span, power_of_ten};
 use crate::wording::number;
 
 /// An axis: its range, its name with the unit, and its ticks.
@@ -63,9 +63,8 @@ impl Axis {
 
     /// An axis of numbers whose logarithms to base ten are drawn.
     pub(crate) fn logarithmic(span: Span, name: impl Into<String>, ticks: f64) -> Self {
-        // Two digits are enough at an axis.
-        let power = |tick: f64| format!("{:.1e}", 10f64.powf(tick)).parse().map_or(0.0, |p: f64| p);
-        let ticks = span.ticks(ticks).into_iter().map(|tick| (tick, number(power(tick)))).collect();
+        let named = |tick: f64| (tick, number(power_of_ten(tick)));
+        let ticks = span.ticks(ticks).into_iter().map(named).collect();
         Self { span, name: name.into(), ticks }
     }
 

@@ -70,6 +70,11 @@ pub(crate) fn thinned_to(values: &[f64], points: usize) -> Vec<usize> {
     kept
 }
 
+/// What a tick of a logarithmic axis stands for, to two digits.
+pub(crate) fn power_of_ten(tick: f64) -> f64 {
+    format!("{:.1e}", 10_f64.powf(tick)).parse().unwrap_or(0.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

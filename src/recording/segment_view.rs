@@ -20,8 +20,8 @@ use super::paths::{at, drawing};
 use super::rows::Rows;
 use crate::delay::{Candidate, Line, Method, Verdict};
 use crate::experiment::Joint;
-use crate::figure::Role;
 use crate::figure::segment::SegmentFigure;
+use crate::figure::{Role, power_of_ten};
 use crate::study::StepResult;
 use crate::units::signed;
 use crate::wording::{bracketed, number};
@@ -191,7 +191,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         strips.extend(residual.grid(&x_ticks, &ticks, &mut labels));
         strips.push(residual.level(0.0).to_vec());
         let errors = self.error.y_span().ticks(3.0);
-        let errors: Vec<_> = errors.into_iter().map(|e| (e, number(10f64.powf(e)))).collect();
+        let errors: Vec<_> = errors.into_iter().map(|e| (e, number(power_of_ten(e)))).collect();
         strips.extend(self.error.grid(&x_ticks, &errors, &mut labels));
         for k in x_ticks {
             labels.put_whole(self.error.below(k, 4.0), number(k));

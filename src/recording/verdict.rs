@@ -13,7 +13,7 @@ use crate::delay::{Check, Condition, Decision, FineDelay, Lag, LagPart, Outcome}
 use crate::delay::{Settings, Settling, Tracking, Verdict};
 use crate::experiment::Joint;
 use crate::report::{EstimatedJoint, dead_time_sentences};
-use crate::wording::{counted, doubt_percent, number, remedy_text};
+use crate::wording::{counted, doubt_percent, number, remedy_text, rounded};
 
 /// Adds `/verdict` (text, log line and lane), `/segment` and `/trial` (lanes).
 pub(super) fn add(
@@ -271,7 +271,7 @@ impl Facts<'_, '_> {
         let decision = self.segment.decision;
         match (decision.program_verdict(), decision.program_delay()) {
             (Verdict::Accepted, Some(delay)) => {
-                format!("## ✓ accepted: delay {}", self.delay(delay))
+                format!("## ✓ accepted: delay {}\n{}", self.delay(delay), self.why_accepted())
             }
             (Verdict::Accepted, None) => "## ✓ accepted".to_owned(),
             (Verdict::Rejected(first), _) => {
@@ -280,6 +280,25 @@ impl Facts<'_, '_> {
                 format!("## ✗ rejected: {}\n{}", first.meaning(), whys.join("\n"))
             }
         }
+    }
+
+    /// What speaks for the breakpoint, and that nothing speaks against it.
+    fn why_accepted(&self) -> String {
+        let decision = self.segment.decision;
+        let Some(best) = decision.breakpoint() else { return String::new() };
+        let per_second = |slope: f64| rounded(slope / self.trial.trial.period().seconds());
+        let [before, after] = [best.candidate.before, best.candidate.after];
+        let [before, after] = [before, after].map(|line| per_second(line.slope));
+        let unit = self.joint.output_unit.as_deref().map_or_else(String::new, plain);
+        let is_set = |check: &Check| check.outcome == Outcome::Passed;
+        let held = decision.checks.iter().filter(is_set).count();
+        format!(
+            "The slope changes from {before} to {after} {unit}/s there; {} that apply hold.\n",
+            match held {
+                1 => "the one condition".to_owned(),
+                _ => format!("all {held} conditions"),
+            }
+        )
     }
 
     /// A failed condition as a sentence with its numbers.

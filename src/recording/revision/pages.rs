@@ -43,7 +43,7 @@ pub(in crate::recording) fn add(
     let root = at(root, paths::ROOT);
     let mut steps = Steps { chunks, root, numbers, index };
     steps.figures(improved)?;
-    steps.words(improved)?;
+    steps.words(layout, improved)?;
     record::add(&mut steps.rows(paths::record::ROOT), layout, improved)?;
     let evidence = evidence::evidence(improved);
     steps.evidence(&evidence)?;
@@ -134,8 +134,12 @@ impl Steps<'_> {
         self.chunks.push_revisions(entity, self.numbers.clone(), columns)
     }
 
-    fn words(&mut self, improved: &ImprovedJoint<'_>) -> Result<(), RecordError> {
-        let pages = (0..improved.revisions.len()).map(|place| words::page(improved, place));
+    fn words(
+        &mut self,
+        layout: &JointLayout<'_>,
+        improved: &ImprovedJoint<'_>,
+    ) -> Result<(), RecordError> {
+        let pages = (0..improved.revisions.len()).map(|at| words::page(layout, improved, at));
         let columns = TextDocument::update_fields()
             .with_many_text(pages.collect::<Vec<_>>())
             .with_many_media_type(vec![rerun::MediaType::markdown(); self.numbers.len()])

@@ -24,6 +24,9 @@ use super::figure::noise;
 /// Width and height of the sheet.
 pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 620.0);
 
+/// How far above the plot the ranks of the worst segments stand: between their bars and the title.
+const RANKS: f32 = 14.0;
+
 /// Points of a curve: two for each of 1500 columns of pixels.
 const POINTS: usize = 3000;
 
@@ -95,7 +98,10 @@ impl CloseUp {
         let trial = layout.trials.get(window.place).filter(|_| layout.trials.len() > 1);
         let title = trial.map_or_else(
             || "close up: the largest residual".to_owned(),
-            |trial| format!("largest residual: trial {}", trial.trial.label()),
+            |trial| match worst {
+                Some(_) => format!("segment 1: trial {}", trial.trial.label()),
+                None => format!("largest residual: trial {}", trial.trial.label()),
+            },
         );
         let all = trial_values(layout, &window, |trial| {
             let simulated = comparison.fit.evaluation.simulated.get(trial.index);
@@ -200,11 +206,11 @@ impl<'l, 'a> Drawing<'l, 'a> {
             let clauses: Vec<_> = condition.clauses.iter().map(|it| it.with_unit(&units)).collect();
             format!("; red: {}", clauses.join(" and "))
         });
+        let spans = worst_spans(self.layout, comparison);
+        let bars = if spans.is_empty() { "" } else { "; bars 1, 2, …: worst segments" };
         let residual = format!(
-            "residual{unit}{}; between blue lines: 95 % of the noise; bars: worst segments; \
-             grey: not fitted{}",
+            "residual{unit}{}; between blue lines: 95 % of the noise{bars}; grey: not fitted{fails}",
             times.unwrap_or_default(),
-            fails
         );
         let x_ticks = residual_plot.x_span().ticks(10.0);
         // Its title lies above the bars of the worst segments, not on them.
@@ -213,6 +219,10 @@ impl<'l, 'a> Drawing<'l, 'a> {
         sheet.put(residual_plot.above(f64::midpoint(low, high), 50.0), residual);
         for x in x_ticks {
             sheet.put(residual_plot.below(x, 2.0), short(x));
+        }
+        for (rank, (_, ends)) in (1..).zip(spans) {
+            let middle = f64::midpoint(ends[0], ends[1]);
+            sheet.put(residual_plot.above(middle, RANKS), rank.to_string());
         }
         sheet
     }
@@ -267,17 +277,26 @@ impl<'l, 'a> Drawing<'l, 'a> {
     }
 }
 
-/// A bar above each of the worst segments.
-fn worst(layout: &JointLayout<'_>, comparison: &Comparison, plot: &Plot) -> Strips {
+/// The worst segments, the first of all first, with their ends in seconds of the plots, which go
+/// through all trials.
+pub(super) fn worst_spans<'c>(
+    layout: &JointLayout<'_>,
+    comparison: &'c Comparison,
+) -> Vec<(&'c WorstSegment, [f64; 2])> {
     let worst = comparison.failure.iter().flat_map(|failure| &failure.worst_segments);
-    let bar = |worst: &WorstSegment| {
+    let of_plots = |worst: &'c WorstSegment| {
         let mut trials = layout.trials.iter();
         let trial = trials.find(|trial| trial.trial.label() == worst.trial)?;
         let shift = seconds(trial, 1) - trial.trial.time_s(1);
-        let ends = [worst.start_s, worst.end_s].map(|time_s| plot.above(time_s + shift, -12.0));
-        Some(ends.to_vec())
+        Some((worst, [worst.start_s, worst.end_s].map(|time_s| time_s + shift)))
     };
-    worst.filter_map(bar).collect()
+    worst.filter_map(of_plots).collect()
+}
+
+/// A bar above each of the worst segments.
+fn worst(layout: &JointLayout<'_>, comparison: &Comparison, plot: &Plot) -> Strips {
+    let bar = |ends: [f64; 2]| ends.map(|time_s| plot.above(time_s, -12.0)).to_vec();
+    worst_spans(layout, comparison).into_iter().map(|(_, ends)| bar(ends)).collect()
 }
 
 /// Two levels between which 95 % of the noise lies.

@@ -3,19 +3,27 @@
 use std::fmt::Write as _;
 
 use super::figure::noise;
+use super::record::worst_spans;
+use crate::diagnosis::Comparison;
+use crate::effect::Spec;
 use crate::figure::ladder::judged;
 use crate::recording::error_share::short;
+use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
 use crate::recording::parameter_table::parameter_table;
 use crate::report::{ImprovedJoint, Topic, change_in_words};
-use crate::wording::{rounded, unit_suffix};
+use crate::wording::{percent, rounded, unit_suffix};
 
 /// The page of the revision at `place`.
-pub(super) fn page(improved: &ImprovedJoint<'_>, place: usize) -> String {
-    written(improved, place).unwrap_or_default()
+pub(super) fn page(layout: &JointLayout<'_>, improved: &ImprovedJoint<'_>, place: usize) -> String {
+    written(layout, improved, place).unwrap_or_default()
 }
 
-fn written(improved: &ImprovedJoint<'_>, place: usize) -> Result<String, std::fmt::Error> {
+fn written(
+    layout: &JointLayout<'_>,
+    improved: &ImprovedJoint<'_>,
+    place: usize,
+) -> Result<String, std::fmt::Error> {
     let mut page = String::new();
     let Some((revision, step)) = improved.numbered().nth(place) else { return Ok(page) };
     let last = improved.numbered().last().map_or(revision, |(number, _)| number);
@@ -34,7 +42,11 @@ fn written(improved: &ImprovedJoint<'_>, place: usize) -> Result<String, std::fm
         writeln!(page, "**At revision {revision}:** {}\n", plain(&conclusion.headline))?;
     }
     for passage in &conclusion.passages {
-        writeln!(page, "**{}:** {}\n", passage.topic.label(), prose(&passage.text))?;
+        write!(page, "**{}:** {}", passage.topic.label(), prose(&passage.text))?;
+        if passage.topic == Topic::WhereItFails {
+            page.push_str(&in_the_plots(layout, &step.comparison));
+        }
+        writeln!(page, "\n")?;
     }
     for command in conclusion.commands.iter().filter(|_| is_last) {
         writeln!(page, "    {command}\n")?;
@@ -48,10 +60,35 @@ fn written(improved: &ImprovedJoint<'_>, place: usize) -> Result<String, std::fm
 fn what_was_found(page: &mut String, improved: &ImprovedJoint<'_>) -> std::fmt::Result {
     // Not as a table, the widest row of which would push the text out of its panel.
     let components = improved.finding.compared.comparison.fit.model.components();
-    for spec in components.iter().map(|component| component.effect().spec()) {
-        writeln!(page, "- **{}:** {}", plain(spec.id), plain(spec.summary))?;
+    let found = improved.finding.attribution.iter().flat_map(|all| &all.found);
+    let shares: Vec<_> = found.map(|one| (one.effect, one.error_share)).collect();
+    let share_of =
+        |id: &str| shares.iter().find(|(effect, _)| *effect == id).map(|(_, share)| *share);
+    let mut specs: Vec<_> = components.iter().map(|component| component.effect().spec()).collect();
+    // What explains most comes first, behind what the model had before.
+    let share = |spec: &Spec| share_of(spec.id).unwrap_or(f64::INFINITY);
+    specs.sort_by(|a, b| share(b).total_cmp(&share(a)));
+    for spec in specs {
+        let share = share_of(spec.id);
+        let share = share.map_or_else(String::new, |share| format!(" {}", percent(share)));
+        writeln!(page, "- **{}**{share}: {}", plain(spec.id), plain(spec.summary))?;
     }
     writeln!(page)
+}
+
+/// Where the worst segments of several trials lie in the plots.
+fn in_the_plots(layout: &JointLayout<'_>, comparison: &Comparison) -> String {
+    let spans = worst_spans(layout, comparison);
+    if layout.trials.len() < 2 || spans.is_empty() {
+        return String::new();
+    }
+    // As many as the sentence before it names.
+    let spans = (1..)
+        .zip(spans)
+        .take(3)
+        .map(|(rank, (_, [from, to]))| format!("**{rank}** at {} to {} s", short(from), short(to)));
+    let spans: Vec<String> = spans.collect();
+    format!(" In the plots, whose time goes through all trials: {}.", spans.join(", "))
 }
 
 const HOW: &str = "\
