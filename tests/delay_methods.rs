@@ -56,6 +56,33 @@ fn a_broken_line_finds_the_delay_between_samples() {
     assert!(error < 0.13, "{error}");
 }
 
+/// Delays shorter than α, at rates at which the reaction to the next step lies in a segment.
+#[test]
+fn short_delays_are_not_taken_for_those_of_the_next_step() {
+    let mut wrong_of_the_paper = 0;
+    for (period_s, delay_s) in [(0.02, 0.02), (0.02, 0.04), (0.05, 0.1), (0.1, 0.3)] {
+        for seed in 1..=5 {
+            let joint = JointSpec { delay: DelayLaw::Constant { seconds: delay_s }, ..joint() };
+            let spec = PlantSpec {
+                sample_period_s: period_s,
+                ..PlantSpec::new(seed, 120.0, vec![joint])
+            };
+            let trial = &simulate(&spec).unwrap().joints[0].trials[0];
+            let errors = |settings: &Settings| -> Vec<f64> {
+                let found = estimate(trial, settings).unwrap();
+                let delays = found.decisions.iter().filter_map(Decision::accepted_delay);
+                delays.map(|delay| (delay - delay_s / period_s).abs()).collect()
+            };
+            let found = errors(&Settings::default());
+            let wrong = found.iter().filter(|error| **error > 6.0).count();
+            assert!(found.len() > 40 && wrong <= 2, "{period_s} {delay_s} {seed}: {wrong}");
+            let paper = errors(&Settings { paper: true, ..Settings::default() });
+            wrong_of_the_paper += usize::from(paper.iter().filter(|e| **e > 6.0).count() > 20);
+        }
+    }
+    assert!(wrong_of_the_paper > 0, "Algorithm 1 to the letter is not corrected");
+}
+
 #[test]
 fn dead_time_is_separated_from_a_lag_and_from_ringing() {
     let lag = JointSpec { lag_s: Some(0.06), ..joint() };

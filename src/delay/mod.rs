@@ -94,6 +94,7 @@ pub use input_motion::{InputKind, InputMotion};
 pub use interval::FineDelay;
 pub use lag::{Lag, LagPart};
 pub use margin::{Remedy, RunnerUp};
+pub(crate) use method::end_at_the_next_step;
 pub use neutral::Neutral;
 pub use profile::DelayProfile;
 pub use scan::delay_scan;

@@ -1,7 +1,9 @@
 //! Delays of joints: those that have one, and what is said of them.
 
 use crate::cli::failure::{read_failures, said};
-use crate::delay::{Condition, Decision, EstimateError, Verdict};
+use crate::delay::{
+    Condition, Decision, EstimateError, Method, Verdict, end_at_the_next_step,
+};
 use crate::experiment::{Experiment, Joint, Trial, spike_count};
 use crate::report::{EstimatedJoint, input_note};
 use crate::study::JointEstimate;
@@ -55,6 +57,7 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
         if estimate.dead_time.is_none() {
             notes.extend(unsmoothed(joint, estimate));
             notes.extend(unresolved(joint, estimate));
+            notes.extend(cut_at_the_next_step(joint, estimate));
             notes.extend(spikes(joint, estimate));
         }
         let verdicts =
@@ -105,6 +108,20 @@ fn unresolved(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
              them",
             joint.name,
             delays.len()
+        )
+    })
+}
+
+/// A line where segments end at the next step, since they held the reaction to it.
+fn cut_at_the_next_step(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
+    let settings = &estimate.settings;
+    let is_two_line = settings.method == Method::TWO_LINE;
+    let mut trials = estimate.estimated().filter(|_| is_two_line);
+    trials.any(|trial| end_at_the_next_step(&trial.decisions)).then(|| {
+        format!(
+            "joint `{}`: it reacts within α = {} samples, so that segments hold the reaction to the \
+             next step, too: they end at that step",
+            joint.name, settings.alpha
         )
     })
 }

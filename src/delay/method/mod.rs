@@ -7,6 +7,7 @@
 mod hinge;
 mod interface;
 mod lag_aware;
+mod next_reaction;
 mod noise_test;
 mod registry;
 mod settling;
@@ -15,5 +16,6 @@ mod two_line;
 
 pub(super) use hinge::decide_by_broken_lines;
 pub(super) use interface::DelayMethod;
+pub(crate) use next_reaction::end_at_the_next_step;
 pub(super) use registry::implementation;
 pub(super) use settling::decide_settling;

@@ -3,12 +3,16 @@
 //!
 //! For step `i` at sample `p_i` the segment runs from `r_i` to `p_(i+1) + α`, with
 //! `r_i = q_(i−1)` if step `i−1` was accepted and `p_i − α` otherwise. The pair of lines
-//! with the least squared error breaks at `q_i`; the delay is `δ_i = q_i − p_i`.
+//! with the least squared error breaks at `q_i`; the delay is `δ_i = q_i − p_i`. Where the
+//! breakpoints of a trial turn out to be reactions to the next steps, since the joint reacts within
+//! α, all is decided again with segments that end before these; not with
+//! [`Settings::paper`].
 //!
 //! # References
 //! Albrecht and Taylor, Algorithm 1 (time-varying delays of hydraulic manipulators).
 
 use super::interface::DelayMethod;
+use super::next_reaction::answer_the_next_step;
 use super::noise_test;
 use super::step_context::StepContext;
 use crate::delay::decision::{Decision, Verdict};
@@ -65,10 +69,10 @@ impl DelayMethod for TwoLine {
 
 /// The decisions on all steps.
 fn decide_all(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
-    let mut decisions: Vec<Decision> = Vec::with_capacity(trial.steps.len());
-    for index in 0..trial.steps.len() {
-        let context = StepContext { trial, index, settings };
-        decisions.push(decide(&context, decisions.last()));
+    let mut decisions = in_turn(trial, settings, settings.alpha);
+    // Not what a step is judged by that may come later, and nothing that is not the paper's.
+    if !settings.paper && !settings.grows && answer_the_next_step(&decisions, settings.beta) {
+        decisions = in_turn(trial, settings, 0);
     }
     if let Some(confidence) = confidence(trial, settings) {
         noise_test::judge(&mut decisions, trial, confidence);
@@ -81,6 +85,17 @@ fn decide_all(trial: &Prepared<'_>, settings: &Settings) -> Vec<Decision> {
     } else if !settings.paper {
         let departs = |index| StepContext { trial, index, settings }.departed().is_some();
         noise_test::judge_until_one_reacts(&mut decisions, trial, departs, CONFIDENCE);
+    }
+    decisions
+}
+
+/// The steps decided in turn; segments reach `beyond` samples beyond the next step, or end before it
+/// where that is none.
+fn in_turn(trial: &Prepared<'_>, settings: &Settings, beyond: usize) -> Vec<Decision> {
+    let mut decisions: Vec<Decision> = Vec::with_capacity(trial.steps.len());
+    for index in 0..trial.steps.len() {
+        let context = StepContext { trial, index, settings };
+        decisions.push(decide(&context, decisions.last(), beyond));
     }
     decisions
 }
@@ -111,8 +126,8 @@ fn bounds(context: &StepContext<'_>) -> (usize, usize, usize) {
     bounds
 }
 
-/// The decision on a step, after the one `before` it.
-fn decide(context: &StepContext<'_>, before: Option<&Decision>) -> Decision {
+/// The decision on a step, after the one `before` it; see [`in_turn`].
+fn decide(context: &StepContext<'_>, before: Option<&Decision>, beyond: usize) -> Decision {
     let StepContext { settings, .. } = *context;
     let output = context.output();
     let p = context.step().sample;
@@ -124,7 +139,9 @@ fn decide(context: &StepContext<'_>, before: Option<&Decision>) -> Decision {
     // r_i = q_(i−1) if step i−1 was accepted, else p_i − α; what came long before the step is
     // none of its business where its own reaction is bounded.
     let first = breakpoint.map_or(before_step, |breakpoint| breakpoint.max(from));
-    let last = context.next_sample().saturating_add(settings.alpha).min(until);
+    let next = context.next_sample();
+    let end = if beyond == 0 { next.saturating_sub(1) } else { next.saturating_add(beyond) };
+    let last = end.min(until);
     let segment = Segment::clipped(first, last, output.len());
     let values = &output[segment.indices()];
     let candidates = Candidates::search_until(values, segment.first, settings.beta, latest);

@@ -1,5 +1,7 @@
 //! What each topic said, and all of it at the times of one.
 
+use std::collections::HashMap;
+
 use re_ros_msg::deserialize::Value;
 
 use super::clock::Clock;
@@ -81,7 +83,8 @@ impl Series {
 pub(super) struct Aligned {
     /// Nanoseconds.
     times: Vec<i64>,
-    columns: Vec<(usize, Vec<f64>)>,
+    /// By the header of each.
+    columns: HashMap<usize, Vec<f64>>,
     /// What was held.
     pub(super) note: Option<String>,
 }
@@ -95,7 +98,7 @@ pub(super) fn align<'a>(
 ) -> Result<Aligned, Fault> {
     series.iter_mut().for_each(Series::sort);
     let Some(place) = series.iter().position(|series| series.topic == topic) else {
-        return Ok(Aligned { times: Vec::new(), columns: Vec::new(), note: None });
+        return Ok(Aligned { times: Vec::new(), columns: HashMap::new(), note: None });
     };
     let clock = series.swap_remove(place);
     let own = clock.columns.into_iter().map(|column| (column.header, column.values));
@@ -121,6 +124,7 @@ pub(super) fn align<'a>(
     for (_, values) in &mut columns {
         values.drain(..start);
     }
+    let columns = columns.into_iter().collect();
     let note = (!others.is_empty()).then(|| {
         let (topic, others) = (name(topic), others.join("`, `"));
         let early = match start {
@@ -155,8 +159,7 @@ impl Aligned {
 
     /// The column of a header, handed over.
     pub(super) fn column(&mut self, header: usize) -> Column {
-        let found = self.columns.iter_mut().find(|(other, _)| *other == header);
-        Column::of(found.map(|(_, values)| std::mem::take(values)).unwrap_or_default())
+        Column::of(self.columns.remove(&header).unwrap_or_default())
     }
 
     /// Seconds from `zero` on, by the clock that the messages were collected by.

@@ -1,0 +1,67 @@
+//! Whether breakpoints are reactions to the steps behind theirs.
+//!
+//! A segment of Algorithm 1 reaches α samples beyond the next step. Where a joint reacts within α,
+//! the reaction to that step lies in it, too, and may bend the output more than the step's own. The
+//! next segment then begins behind its own reaction, which it cannot find, and so on to the end of
+//! the record: every delay is a hold, and the next delay.
+//!
+//! Which step a breakpoint answers, its change of slope says: it is in proportion to the change of
+//! the input, `c_i = g·Δu_i`, or `c_i = g·Δu_(i+1)`. Of both, that with the smaller squared error
+//! through the origin is believed:
+//!
+//! ```text
+//! R² = (Σ c_i Δu)² / (Σ c_i² · Σ Δu²)
+//! ```
+
+use crate::delay::decision::Decision;
+
+/// Breakpoints behind the next step from which on the question is asked.
+const FEWEST: usize = 3;
+
+/// By how much more of the changes of slope the next steps must explain. Levels that alternate leave
+/// both alike. Chosen: records of three levels and more are told apart by far more.
+const MORE: f64 = 0.1;
+
+/// Whether the breakpoints of `decisions` that lie about or behind the next step, in rows of `beta`
+/// samples, are reactions to it.
+pub(super) fn answer_the_next_step(decisions: &[Decision], beta: usize) -> bool {
+    let late: Vec<Late> =
+        decisions.windows(2).filter_map(|pair| Late::of(&pair[0], &pair[1], beta)).collect();
+    let explained = |change: fn(&Late) -> f64| {
+        let sum = |of: &dyn Fn(&Late) -> f64| late.iter().map(of).sum::<f64>();
+        let product = sum(&|one| one.slope_change * change(one));
+        let squares = sum(&|one| one.slope_change.powi(2)) * sum(&|one| change(one).powi(2));
+        if squares > 0.0 { product * product / squares } else { 0.0 }
+    };
+    late.len() >= FEWEST && explained(|one| one.next) > explained(|one| one.own) + MORE
+}
+
+/// Whether the segments of `decisions` end before the next step, since each would hold the reaction
+/// to it, too: what `two-line` makes of a joint that reacts within α.
+pub(crate) fn end_at_the_next_step(decisions: &[Decision]) -> bool {
+    let next = || decisions.windows(2).map(|pair| (pair[0].segment.last, pair[1].input_step.sample));
+    let at_it = next().filter(|(last, next)| last + 1 == *next).count();
+    at_it >= FEWEST && next().all(|(last, next)| last < next)
+}
+
+/// A breakpoint about or behind the next step.
+struct Late {
+    slope_change: f64,
+    /// Change of the input at the step.
+    own: f64,
+    /// The same at the next step.
+    next: f64,
+}
+
+impl Late {
+    fn of(one: &Decision, next: &Decision, beta: usize) -> Option<Self> {
+        let candidate = one.breakpoint()?.candidate;
+        let is_late = candidate.breakpoint + beta >= next.input_step.sample;
+        let change = |decision: &Decision| decision.input_step.after - decision.input_step.before;
+        is_late.then(|| Self {
+            slope_change: candidate.slope_change(),
+            own: change(one),
+            next: change(next),
+        })
+    }
+}
