@@ -63,10 +63,8 @@ fn short_delays_are_not_taken_for_those_of_the_next_step() {
     for (period_s, delay_s) in [(0.02, 0.02), (0.02, 0.04), (0.05, 0.1), (0.1, 0.3)] {
         for seed in 1..=5 {
             let joint = JointSpec { delay: DelayLaw::Constant { seconds: delay_s }, ..joint() };
-            let spec = PlantSpec {
-                sample_period_s: period_s,
-                ..PlantSpec::new(seed, 120.0, vec![joint])
-            };
+            let spec =
+                PlantSpec { sample_period_s: period_s, ..PlantSpec::new(seed, 120.0, vec![joint]) };
             let trial = &simulate(&spec).unwrap().joints[0].trials[0];
             let errors = |settings: &Settings| -> Vec<f64> {
                 let found = estimate(trial, settings).unwrap();

@@ -45,9 +45,9 @@ fn on_reading(error: &ReadError) -> String {
         ReadError::NoTime { .. } => {
             "; name one with `--time COLUMN`, or give the period with `--sample-period SECONDS`"
         }
-        ReadError::FewTimes { .. } | ReadError::WrongTimeUnit { .. } => {
-            ", or give the period with `--sample-period SECONDS`"
-        }
+        ReadError::FewTimes { .. }
+        | ReadError::CoarseTimes { .. }
+        | ReadError::WrongTimeUnit { .. } => ", or give the period with `--sample-period SECONDS`",
         ReadError::NotATime { .. } => " and give `--sample-period SECONDS`",
         ReadError::Missing { .. } => {
             "; `--fill SECONDS` fills gaps up to that length and splits the trial at longer ones"

@@ -407,6 +407,22 @@ pub enum ReadError {
         /// Median time step, in seconds.
         period: f64,
     },
+    /// The times are rounded to several periods, between which the samples are not even.
+    #[error(
+        "{}, row {row}: the times are rounded to {grain_s} s, in which some {:.0} samples come, but not \
+         evenly: when each was measured is not known; write times with more digits",
+        path.display(), grain_s / period
+    )]
+    CoarseTimes {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file where it is farthest from even.
+        row: u64,
+        /// What the times are rounded to, in seconds.
+        grain_s: f64,
+        /// The mean period, in seconds.
+        period: f64,
+    },
     /// The times are rounded so coarsely that no sample period follows from them.
     #[error(
         "{}, row {row}: the {rows} rows of this trial have only {stamps} different times, {grain_s} s \
@@ -541,6 +557,7 @@ impl ReadError {
             | Self::TimeNotIncreasing { row, .. }
             | Self::NotUniform { row, .. }
             | Self::FewTimes { row, .. }
+            | Self::CoarseTimes { row, .. }
             | Self::TrialNotContiguous { row, .. }
             | Self::SingleRow { row, .. }
             | Self::NoTimeInRow { row, .. } => Some(*row).filter(|row| *row > 0),

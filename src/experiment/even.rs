@@ -47,7 +47,7 @@ fn fault_of(fault: ClockFault) -> Fault {
         ClockFault::StandsStill => Fault::NotIncreasing { row: 1 },
         ClockFault::SingleRow => Fault::SingleRow,
         ClockFault::FewStamps { stamps, grain_s } => Fault::FewStamps { stamps, grain_s },
-        ClockFault::TooCoarse { row, step, period } => Fault::NotUniform { row, step, period },
+        ClockFault::TooCoarse { row, grain_s, period } => Fault::Coarse { row, grain_s, period },
     }
 }
 

@@ -222,6 +222,9 @@ impl Log<'_> {
             Fault::FewStamps { stamps, grain_s } => {
                 ReadError::FewTimes { path, row: number(0), rows: rows.len(), stamps, grain_s }
             }
+            Fault::Coarse { row, grain_s, period } => {
+                ReadError::CoarseTimes { path, row: number(row), grain_s, period }
+            }
             Fault::TooMany { samples, period } => {
                 ReadError::TooManySamples { path, trial, samples, period }
             }

@@ -28,7 +28,8 @@ impl MemoryLimit {
 }
 
 impl Default for MemoryLimit {
-    /// Half of the memory of the machine, or of the share of it that this program may use.
+    /// Half of the memory of the machine, or of the share of it that this program may use: a control
+    /// group's, or that of `ulimit -v`.
     fn default() -> Self {
         /// Where the machine does not say.
         const UNKNOWN: u64 = 4 << 30;
@@ -36,11 +37,23 @@ impl Default for MemoryLimit {
             let memory = MemoryRefreshKind::nothing().with_ram();
             let system = System::new_with_specifics(RefreshKind::nothing().with_memory(memory));
             let share = system.cgroup_limits().map(|limits| limits.total_memory);
-            let all = share.into_iter().chain([system.total_memory()]).filter(|bytes| *bytes > 0);
+            let all = share.into_iter().chain(address_space()).chain([system.total_memory()]);
+            let all = all.filter(|bytes| *bytes > 0);
             all.min().unwrap_or(UNKNOWN) / 2
         });
         Self(*HALF)
     }
+}
+
+/// The addresses that this program may have, where they are limited.
+#[cfg(unix)]
+fn address_space() -> Option<u64> {
+    rustix::process::getrlimit(rustix::process::Resource::As).current
+}
+
+#[cfg(not(unix))]
+fn address_space() -> Option<u64> {
+    None
 }
 
 /// What is left of the limit while a log is read.

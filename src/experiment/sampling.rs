@@ -39,6 +39,7 @@ pub(super) enum Fault {
     NotUniform { row: usize, step: f64, period: f64 },
     SingleRow,
     FewStamps { stamps: usize, grain_s: f64 },
+    Coarse { row: usize, grain_s: f64, period: f64 },
     TooMany { samples: f64, period: f64 },
 }
 

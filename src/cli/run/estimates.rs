@@ -1,9 +1,7 @@
 //! Delays of joints: those that have one, and what is said of them.
 
 use crate::cli::failure::{read_failures, said};
-use crate::delay::{
-    Condition, Decision, EstimateError, Method, Verdict, end_at_the_next_step,
-};
+use crate::delay::{Condition, Decision, EstimateError, Method, Verdict, end_at_the_next_step};
 use crate::experiment::{Experiment, Joint, Trial, spike_count};
 use crate::report::{EstimatedJoint, input_note};
 use crate::study::JointEstimate;

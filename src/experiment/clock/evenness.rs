@@ -93,7 +93,10 @@ impl Deviations {
         let rows: usize = runs.iter().map(|run| run.rows.len()).sum();
         let places = runs.iter().filter_map(|run| run.places.last()).map(|last| last + 1);
         let whole = (1.0 - LOST_SHARE) * places.sum::<usize>() as f64 <= rows as f64;
-        let steady = whole && self.rate <= DRIFT;
+        // Where rounded stamps change is known to a period.
+        let known =
+            if typical.is_coarse() { 1.5 / block_rows(typical, period) as f64 } else { 0.0 };
+        let steady = whole && self.rate <= DRIFT.max(known);
         // Rounding moves a stamp by up to half a grain either way, about a line that is off by part of
         // one where there are few.
         let rounding = 0.55 * typical.grain_s / period;
@@ -102,8 +105,8 @@ impl Deviations {
             return Ok(Evenness::Rounded { to_s: typical.grain_s });
         }
         if typical.grain_s > 2.0 * period {
-            let (largest, row) = self.largest();
-            return Err(ClockFault::TooCoarse { row, step: largest * period, period });
+            let (_, row) = self.largest();
+            return Err(ClockFault::TooCoarse { row, grain_s: typical.grain_s, period });
         }
         Ok(if steady && within(KEPT) { Evenness::Jitters } else { Evenness::Uneven })
     }

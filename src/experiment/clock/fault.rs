@@ -12,5 +12,5 @@ pub(in crate::experiment) enum ClockFault {
     /// The stamps are so few, `grain_s` apart, that no period follows from them.
     FewStamps { stamps: usize, grain_s: f64 },
     /// The stamps are coarser than the sampling, and not even.
-    TooCoarse { row: usize, step: f64, period: f64 },
+    TooCoarse { row: usize, grain_s: f64, period: f64 },
 }

@@ -191,6 +191,9 @@ mod tests {
                 (Evenness::Rounded { to_s: 128.0 }, vec![9000])
             );
         }
+        // Halves are rounded to even whole seconds, so that their lengths differ.
+        let to_even = stamps(6000, |k| (0.01 * k as f64).round_ties_even());
+        assert_eq!(read(&to_even).evenness, Evenness::Rounded { to_s: 1.0 });
         let few = Clock::read(&coarse(1.7e9, 4000), None);
         assert_eq!(few, Err(ClockFault::FewStamps { stamps: 3, grain_s: 128.0 }));
     }
