@@ -1,4 +1,4 @@
-//! Where the error is: its share in each part of a feature, beside the share of the time.
+//! Where the error arises: its share in each part of a feature, beside the share of the time.
 
 use crate::diagnosis::failure::{Feature, Region};
 
@@ -17,7 +17,7 @@ pub(crate) struct Share {
 
 impl Share {
     pub(crate) fn of(region: &Region) -> Self {
-        Self { error: 100.0 * region.share_of_squared_error, time: 100.0 * region.share_of_time }
+        Self { error: 100.0 * region.share_that_arises, time: 100.0 * region.share_of_time }
     }
 }
 

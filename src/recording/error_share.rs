@@ -1,4 +1,4 @@
-//! Where the error is: its share in each part of each feature, beside the share of time.
+//! Where the error arises: its share in each part of each feature, beside the share of time.
 
 use rerun::datatypes::Vec2D;
 use rerun::{Color, EntityPath, LineStrips2D};
@@ -218,6 +218,7 @@ mod tests {
             to,
             share_of_time,
             share_of_squared_error,
+            share_that_arises: share_of_squared_error,
             rmse,
             mean_residual,
         }

@@ -450,7 +450,10 @@ impl Facts<'_, '_> {
                 (said(&|rows| format!("{rows} rows of β = {beta}")), needed("≥"))
             }
             Condition::AtRest => (output("moves by ", ""), needed(">")),
-            Condition::NothingHappened => (said(&|p| format!("p-value {p}")), needed("≤")),
+            Condition::NothingHappened => {
+                let value = check.value.map(|p| format!("p-value {}", rounded(p)));
+                (value.unwrap_or_else(|| "none".to_owned()), needed("≤"))
+            }
             Condition::Reviewer => ("none".to_owned(), None),
         }
     }

@@ -1,6 +1,6 @@
 //! Where a model fails: features, parts of their range, conditions and segments.
 
-use super::{number, percent, rounded};
+use super::{number, rounded};
 use crate::diagnosis::Comparison;
 use crate::diagnosis::failure::{Feature, Region, Units, WorstSegment};
 use crate::experiment::Joint;
@@ -34,16 +34,15 @@ pub(crate) fn feature_with_unit(feature: Feature, joint: &Joint) -> String {
         Feature::Direction => "direction of the input",
         Feature::Input => "input, as it acts",
         Feature::Hold => "how long the input is held",
-        Feature::Time => "time in the record",
         _ => feature.name(),
     };
     super::bracketed(name, feature.unit(&misfit_units(joint)).as_deref())
 }
 
-/// `12.4 s to 13.1 s (9 %)`.
+/// `12.4 s to 13.1 s`.
 pub(crate) fn worst_segment_text(worst: &WorstSegment) -> String {
     let (from, to) = (number(worst.start_s), number(worst.end_s));
-    format!("{from} s to {to} s ({})", percent(worst.share_of_squared_error))
+    format!("{from} s to {to} s")
 }
 
 /// Where a model fails, a sentence for each condition.

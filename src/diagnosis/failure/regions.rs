@@ -22,6 +22,9 @@ pub struct Region {
     pub share_of_time: f64,
     /// Share of the sum of squared residuals; 0 when there is no error at all.
     pub share_of_squared_error: f64,
+    /// Share of the sum of squared errors of the speed, from which residuals arise, as in
+    /// [`FailsWhere`](super::FailsWhere); that of residuals where the speed is not known.
+    pub share_that_arises: f64,
     /// Root mean square of the residual there, output units.
     pub rmse: f64,
     /// Mean of the residual there, output units.
@@ -45,7 +48,8 @@ const FEATURES: [Feature; 8] = [
 /// The regions of a feature do not overlap. They cover all samples where it is known.
 pub fn regions(record: &ResidualRecord) -> Vec<Region> {
     let axes = FEATURES.into_iter().filter_map(|feature| Axis::new(record, feature, PARTS));
-    axes.flat_map(|axis| of_axis(record, &axis)).collect()
+    let arises = record.shares_of_what_arises().unwrap_or_default();
+    axes.flat_map(|axis| of_axis(record, &axis, &arises)).collect()
 }
 
 /// Sums over the samples of a part.
@@ -54,6 +58,8 @@ struct Sums {
     count: f64,
     residual: f64,
     square: f64,
+    /// Share of what arises.
+    arises: f64,
     low: f64,
     high: f64,
 }
@@ -63,12 +69,14 @@ impl Sums {
         count: 0.0,
         residual: 0.0,
         square: 0.0,
+        arises: 0.0,
         low: f64::INFINITY,
         high: f64::NEG_INFINITY,
     };
 
-    fn add(&mut self, residual: f64, value: f64) {
+    fn add(&mut self, residual: f64, arises: f64, value: f64) {
         self.count += 1.0;
+        self.arises += arises;
         self.residual += residual;
         self.square += residual * residual;
         self.low = self.low.min(value);
@@ -76,13 +84,15 @@ impl Sums {
     }
 }
 
-fn of_axis(record: &ResidualRecord, axis: &Axis) -> Vec<Region> {
+fn of_axis(record: &ResidualRecord, axis: &Axis, arises: &[f64]) -> Vec<Region> {
     let mut parts = vec![Sums::NONE; axis.parts()];
     let values = axis.feature.values(record.samples());
-    let samples = record.samples().residual.iter().zip(values).zip(&axis.part_of);
-    for ((residual, value), part) in samples {
+    // Where there is no error at all, none arises.
+    let arises = arises.iter().copied().chain(std::iter::repeat(0.0));
+    let samples = record.samples().residual.iter().zip(arises).zip(values).zip(&axis.part_of);
+    for (((residual, arises), value), part) in samples {
         if let Some(sums) = parts.get_mut(usize::from(*part)) {
-            sums.add(*residual, value);
+            sums.add(*residual, arises, value);
         }
     }
     let squares: f64 = record.samples().residual.iter().map(|r| r * r).sum();
@@ -103,6 +113,7 @@ fn region(record: &ResidualRecord, axis: &Axis, part: usize, sums: Sums, squares
         to,
         share_of_time: sums.count / record.len() as f64,
         share_of_squared_error: if squares > 0.0 { sums.square / squares } else { 0.0 },
+        share_that_arises: sums.arises,
         rmse: (sums.square / sums.count).sqrt(),
         mean_residual: sums.residual / sums.count,
     }

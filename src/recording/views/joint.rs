@@ -316,7 +316,8 @@ impl Views<'_, '_> {
             |name, path, parts: &[&str], size| View::drawing(name, &at(&root, path), parts, size);
         let name = "The error falls; what shows it; what was tried";
         let sheet = drawing(name, sheet::ROOT, &sheet::PARTS, revision::SIZE);
-        let name = "Where the error is: its share (bars), share of the time (white)";
+        let name =
+            "Where the error of the speed arises: its share (bars), share of the time (white)";
         let share = drawing(name, share::ROOT, &share::PARTS, error_share::SIZE);
         let name = "The whole record";
         let record = drawing(name, record::ROOT, &record::PARTS, revision::RECORD_SIZE);

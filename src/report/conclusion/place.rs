@@ -4,7 +4,7 @@ use super::{Passage, Topic};
 use crate::diagnosis::ShownBy;
 use crate::diagnosis::failure::WorstSegment;
 use crate::report::finding::Finding;
-use crate::wording::{failure_sentences, rounded, worst_segment_text};
+use crate::wording::{failure_sentences, percent, rounded, worst_segment_text};
 
 impl Finding<'_> {
     /// How large the error is.
@@ -49,11 +49,13 @@ impl Finding<'_> {
         let conditions = failure_sentences(self.joint(), self.comparison());
         let worst = self.comparison().failure.iter().flat_map(|failure| &failure.worst_segments);
         let several = self.joint().trials.len() > 1;
-        let time = |worst: &WorstSegment| {
+        let time = |(index, worst): (usize, &WorstSegment)| {
             let trial = if several { format!("trial {}, ", worst.trial) } else { String::new() };
-            trial + &worst_segment_text(worst)
+            let of = if index == 0 { " of its squared error" } else { "" };
+            let share = percent(worst.share_of_squared_error);
+            format!("{trial}{} ({share}{of})", worst_segment_text(worst))
         };
-        let times: Vec<String> = worst.take(3).map(time).collect();
+        let times: Vec<String> = worst.take(3).enumerate().map(time).collect();
         let look = format!("The simulated output is farthest off in {}.", times.join(", "));
         let look = Some(look).filter(|_| !times.is_empty());
         let none = "No condition was found that holds most of the error.".to_owned();

@@ -28,8 +28,8 @@ pub(super) fn figure(
     let name = bracketed(feature.name(), feature.unit(&units).as_deref());
     let svg = draw(&[panel(shares)], HALF, &format!("Share of the error of {}", joint.name))?;
     let caption = format!(
-        "Where the error is, by {name}: the squared error, {}. A bar beyond its mark is a part with \
-         too much of it.",
+        "Where the error arises, by {name}: the squared error of the speed, {}. A bar beyond its mark is \
+         a part with too much of it.",
         compared.comparison.arising
     );
     Ok(Some(Figure { file, svg, caption }))
