@@ -34,6 +34,7 @@ pub(crate) fn feature_with_unit(feature: Feature, joint: &Joint) -> String {
         Feature::Direction => "direction of the input",
         Feature::Input => "input, as it acts",
         Feature::Hold => "how long the input is held",
+        Feature::Time => "time in the trial",
         _ => feature.name(),
     };
     super::bracketed(name, feature.unit(&misfit_units(joint)).as_deref())

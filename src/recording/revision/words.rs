@@ -71,7 +71,7 @@ fn what_was_found(page: &mut String, improved: &ImprovedJoint<'_>) -> std::fmt::
     for spec in specs {
         let share = share_of(spec.id);
         let share = share.map_or_else(String::new, |share| format!(" {}", percent(share)));
-        writeln!(page, "- **{}**{share}: {}", plain(spec.id), plain(spec.summary))?;
+        writeln!(page, "- **{}**{share}: {}", plain(spec.id), prose(spec.summary))?;
     }
     writeln!(page)
 }
