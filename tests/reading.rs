@@ -744,6 +744,12 @@ fn times_that_cannot_be_seconds_are_refused_and_so_are_too_few() {
     }
     assert_eq!(periods(&Reading::of(log("t [us]", 1e4)).the_joint()), ["0.01 s"]);
     assert_eq!(periods(&Reading::of(log("time_s", 1e4)).the_joint()), ["10000 s"]);
+    // A date says that the rows are half an hour apart.
+    let rows = (0..40).map(|k| {
+        format!("2026-03-{:02} {:02}:{:02}:00,{},{k}\n", 1 + k / 48, k / 2, k % 2 * 30, k / 10 % 2)
+    });
+    let seldom = format!("time,boom.input,boom.output\n{}", rows.collect::<String>());
+    assert_eq!(periods(&Reading::of(seldom).the_joint()), ["1800 s"]);
     // Seconds since 1970 as a 32-bit number.
     let rows =
         (0..4000).map(|k| format!("{},{},{k}\n", 1_699_999_872 + k / 2500 * 128, k / 500 % 2));

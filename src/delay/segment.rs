@@ -7,7 +7,8 @@ use std::ops::Range;
 pub struct Segment {
     /// `r_i`: the first sample.
     pub first: usize,
-    /// The last sample: `p_(i+1) + α`, clipped to the trial.
+    /// The last sample: `p_(i+1) + α`, clipped to the trial; for a joint that reacts within α, the one
+    /// before `p_(i+1)`.
     pub last: usize,
 }
 

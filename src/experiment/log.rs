@@ -105,7 +105,9 @@ impl Log<'_> {
         /// No joint is logged so seldom as every quarter of an hour, and nothing that moves once a day.
         const SELDOM_S: (f64, f64) = (900.0, 86_400.0);
         let TimeSource::Times(column, scale) = time else { return Ok(()) };
-        let most = if scale.is_some() { SELDOM_S.1 } else { SELDOM_S.0 };
+        // The size of times since 1970 tells their unit, and so does a date.
+        let is_known = scale.is_some() || self.first_time(column).and_then(since_1970).is_some();
+        let most = if is_known { SELDOM_S.1 } else { SELDOM_S.0 };
         let mut periods = grids.iter().map(|grid| grid.period().seconds());
         match periods.find(|period| *period > most) {
             Some(period) => Err(ReadError::WrongTimeUnit {

@@ -47,9 +47,9 @@ impl Removal<'_> {
         let of_whole = noise.evidence(record, whole);
         let judged = tried.into_iter().filter_map(|(change, fit)| {
             let evidence = noise.evidence(record, &fit);
-            let does_harm = of_whole.p_value_over_windows(&evidence) < HARM;
+            let does_harm = of_whole.p_value_over_windows(&evidence) < HARM
+                || !self.misfit.generalizes(record, whole, &fit);
             let behind = evidence.criterion() - of_whole.criterion();
-            let does_harm = does_harm || !self.misfit.generalizes(record, whole, &fit);
             (behind < 0.0 && !does_harm).then_some((behind, (change, fit)))
         });
         let (_, better) = judged.min_by(|a, b| a.0.total_cmp(&b.0))?;

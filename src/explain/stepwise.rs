@@ -115,8 +115,9 @@ pub(super) fn add_stepwise(
         let is_sound = |candidate: &&Candidate| {
             let is_known = !makes_strokes
                 || candidate.determines_as_much_as(&step.fit) && candidate.is_distinct();
-            let generalizes = misfit.generalizes(record, &step.fit, &candidate.fit);
-            candidate.is_significant() && is_known && generalizes
+            candidate.is_significant()
+                && is_known
+                && misfit.generalizes(record, &step.fit, &candidate.fit)
         };
         let counts = |candidate: &Candidate| is_sound(&candidate) && has_consequence(candidate);
         let found = step.ranking.iter().position(counts);

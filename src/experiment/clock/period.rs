@@ -51,21 +51,18 @@ pub(super) fn least_squares_period(
     times: &[f64],
     typical: &Typical,
 ) -> Result<f64, ClockFault> {
-    let points: Vec<Vec<(f64, f64)>> =
-        runs.iter().map(|run| known_to_a_period(run.points(times).collect(), typical)).collect();
-    let stamps: usize = points.iter().map(Vec::len).sum();
+    let stamps: usize = runs.iter().map(|run| known_to_a_period(run, times, typical).count()).sum();
     if typical.is_coarse() && stamps < FEWEST_STAMPS {
-        return Err(ClockFault::FewStamps {
-            stamps: stamps + runs.len(),
-            grain_s: typical.grain_s,
-        });
+        let grain_s = typical.grain_s;
+        return Err(ClockFault::FewStamps { stamps: stamps + runs.len(), grain_s });
     }
     let (mut products, mut squares) = (0.0, 0.0);
-    for points in points {
-        let n = points.len() as f64;
-        let place = points.iter().map(|(place, _)| place).sum::<f64>() / n;
-        let time = points.iter().map(|(_, time)| time).sum::<f64>() / n;
-        for (x, t) in points {
+    for run in runs {
+        let points = || known_to_a_period(run, times, typical);
+        let n = points().count() as f64;
+        let place = points().map(|(place, _)| place).sum::<f64>() / n;
+        let time = points().map(|(_, time)| time).sum::<f64>() / n;
+        for (x, t) in points() {
             products += (x - place) * (t - time);
             squares += (x - place) * (x - place);
         }
@@ -74,15 +71,19 @@ pub(super) fn least_squares_period(
     if period.is_finite() && period > 0.0 { Ok(period) } else { Err(ClockFault::SingleRow) }
 }
 
-/// Those of `points` whose stamps say when they were measured.
-#[expect(clippy::float_cmp, reason = "whether a stamp is repeated")]
-fn known_to_a_period(mut points: Vec<(f64, f64)>, typical: &Typical) -> Vec<(f64, f64)> {
-    if typical.is_coarse() {
-        points.dedup_by(|later, before| later.1 == before.1);
+/// Places and stamps of the rows of `run` whose stamps say when they were measured.
+fn known_to_a_period<'a>(
+    run: &'a Run,
+    times: &'a [f64],
+    typical: &Typical,
+) -> impl Iterator<Item = (f64, f64)> + 'a {
+    let is_coarse = typical.is_coarse();
+    let mut before = None;
+    run.points(times).filter(move |(_, time)| {
         // When the first stamp began is not known.
-        points.drain(..1.min(points.len()));
-    }
-    points
+        let changes = before.replace(*time).is_some_and(|before: f64| before < *time);
+        !is_coarse || changes
+    })
 }
 
 /// The rows at which the sampling goes over to another rate for good: the first of them, the

@@ -212,7 +212,9 @@ impl Unread {
                 each(reader, full, Cell::Number, rows, cells)
             }
             ColumnReader::FixedLenByteArrayColumnReader(reader) => {
-                let fixed = fixed.unwrap_or(Fixed::Half);
+                let fixed = fixed.ok_or_else(|| {
+                    ParquetError::NYI("a column of bytes of a fixed length".to_owned())
+                })?;
                 each(reader, full, |value| fixed.number(value.data()), rows, cells)
             }
             ColumnReader::ByteArrayColumnReader(reader) => each(reader, full, text, rows, cells),
