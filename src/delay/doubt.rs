@@ -158,7 +158,10 @@ impl Decision {
         if let Some(response) = &self.response {
             return response.explained();
         }
-        let last = self.segment.first + (self.candidates.len() + 1) * self.candidates.spacing();
+        // Rows are whole; a break between samples was fitted to every sample, whichever of its
+        // candidates were kept.
+        let rows = (self.candidates.len() + 1) * self.candidates.spacing();
+        let last = self.fine.map_or(self.segment.first + rows, |_| self.segment.last + 1);
         let fitted = |k: usize| {
             let line = if k < best.breakpoint { best.before } else { best.after };
             line.at(k as f64)
@@ -263,7 +266,7 @@ fn stands(output: &[f64], (from, to): (usize, usize), (low, high): (f64, f64)) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::delay::{FirstLast, Settings, estimate};
+    use crate::delay::{FirstLast, Method, Settings, estimate};
     use crate::experiment::Trial;
     use crate::units::SamplePeriod;
 
@@ -312,6 +315,18 @@ mod tests {
         }
         let expected = 1.0 - best.sse / line.sse();
         assert!((decision.doubt(&output).explained - expected).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_clear_bend_is_clear_to_every_method() {
+        for method in [Method::TWO_LINE, Method::HINGE, Method::LAG_AWARE] {
+            let settings = Settings { method, ..settings() };
+            for rise in [0.2, 2.0] {
+                let (decision, output) = decided(rise, 0.0, 99.0, &settings);
+                let doubt = decision.doubt(&output);
+                assert!(doubt.explained > 0.9 && doubt.value() < 0.1, "{method:?}: {doubt:?}");
+            }
+        }
     }
 
     #[test]
