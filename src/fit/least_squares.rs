@@ -158,7 +158,11 @@ pub fn assess(
     let space = Space::of(model, range);
     check_size(record, &space)?;
     let training = record.for_training();
-    let assessment = Search::new(&training, model, &space, plain(model)).assessment(record);
+    // The bounds are those of a fit to this record: a model that is compared as it is may lie
+    // beyond them.
+    let values = plain(model);
+    let held = space.holding(&values);
+    let assessment = Search::new(&training, model, &held, values).assessment(record);
     check_numbers(&assessment)?;
     Ok(assessment)
 }
