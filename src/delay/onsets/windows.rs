@@ -35,9 +35,16 @@ pub(crate) fn fit_windows<'a>(
         return lone_windows(output, path, precision);
     }
     let counting: Vec<_> = path.onsets.iter().filter(|onset| rough || onset.counts).collect();
+    // A log may begin within the delay of a command that it does not hold. The reaction to that,
+    // before the first step's, would pass for a lag of all: where there are others, what is before
+    // the first onset is left out.
+    let (first, counting) = match counting.as_slice() {
+        [first, others @ ..] if others.len() >= TOGETHER => (Some(*first), others),
+        all => (None, all),
+    };
     let guard = guard(path, precision);
     let range = |(index, group): (usize, &[&Onset])| {
-        let before = (index * TOGETHER).checked_sub(1).map(|last| counting[last]);
+        let before = (index * TOGETHER).checked_sub(1).map(|last| counting[last]).or(first);
         let start =
             before.map_or(0, |before| ceil_to_index(before.position) + before.guard().max(guard));
         let next = counting.get((index + 1) * TOGETHER);
