@@ -9,7 +9,9 @@
 //! share = Σ |L_(j+1) − L_j| / Σ |u_k − u_(k−1)|      over edges of at most 0.1 s
 //! ```
 //!
-//! A level is held when the input stays within its noise for 0.15 s and five samples; that with
+//! A level is held when the input stays within its noise for 0.15 s and five samples (where levels
+//! are exact, far apart and last differently long, as those that are drawn for a fast joint, for five
+//! samples); that with
 //! which a trial begins was held before, however short the rest of it is. Noise and
 //! dither are what the input takes back at once: changes that the next change undoes. They are
 //! ignored, as far as they are small beside the range.
@@ -127,7 +129,11 @@ impl Moved {
     fn of(trial: &Trial) -> Self {
         let (input, period_s) = (trial.input(), trial.period().seconds());
         let tolerance = tolerance(input);
-        let shortest = in_samples(HOLD_S, period_s).max(HOLD_SAMPLES);
+        let shortest = if tolerance == 0.0 && is_drawn_in_time_of_its_own(input) {
+            HOLD_SAMPLES
+        } else {
+            in_samples(HOLD_S, period_s).max(HOLD_SAMPLES)
+        };
         let holds = holds(input, tolerance, shortest);
         let edge = edge_samples(period_s);
         let steps = holds.windows(2).filter_map(|pair| match pair {
@@ -145,6 +151,30 @@ impl Moved {
                 .fold(0.0, |sum, step| sum + step),
         }
     }
+}
+
+/// Whether levels that are exact are those of an experiment, however short they are: they last
+/// differently long, and lie far apart.
+///
+/// A slow joystick in a faster log has holds of one length, that of its own period, and one whose
+/// travel is counted in units has levels that lie beside one another.
+fn is_drawn_in_time_of_its_own(input: &[f64]) -> bool {
+    /// How far holds of one length are from their median, and the part of them that are so. Of
+    /// lengths drawn evenly between one and its double, 0.3 are.
+    const ALIKE: f64 = 0.1;
+    const MOST_ALIKE: f64 = 0.5;
+    /// The least usual step, as a part of the range: of levels drawn evenly it is 0.29.
+    const FAR: f64 = 0.1;
+    #[expect(clippy::float_cmp, reason = "levels are exact")]
+    let runs: Vec<&[f64]> = input.chunk_by(|a, b| a == b).collect();
+    let lengths: Vec<f64> = runs.iter().map(|run| run.len() as f64).collect();
+    let level = |run: &[f64]| run.first().copied().unwrap_or_default();
+    let steps = runs.windows(2).map(|pair| (level(pair[1]) - level(pair[0])).abs());
+    let steps: Vec<f64> = steps.collect();
+    let median = |values: &[f64]| crate::numerics::quantile(values, 0.5).unwrap_or_default();
+    let (usual, (low, high)) = (median(&lengths), range(input));
+    let alike = lengths.iter().filter(|length| (*length - usual).abs() <= ALIKE * usual).count();
+    (alike as f64) < MOST_ALIKE * lengths.len() as f64 && median(&steps) >= FAR * (high - low)
 }
 
 /// The noise or dither of an input, as the largest change that is one; 0 where its levels are
@@ -350,6 +380,22 @@ mod tests {
                 assert!(!found.is_continuous(), "{period_s} {number} {found:?}");
                 assert!(found.travel_in_steps.unwrap() > 0.8, "{period_s} {number} {found:?}");
             }
+        }
+    }
+
+    #[test]
+    fn levels_drawn_for_a_fast_joint_are_steps() {
+        for shortest in [6.0, 30.0, 100.0] {
+            let (mut input, mut drawn) = (Vec::new(), 0.0);
+            while input.len() < 4000 {
+                drawn += 1.0;
+                let length = ceil_to_index(shortest * (1.0 + 2.0 * (noise(drawn) + 0.5)));
+                input.extend(std::iter::repeat_n((20.0 * noise(-drawn)).round() / 4.0, length));
+            }
+            let period = SamplePeriod::from_seconds(0.001).unwrap();
+            let trial = Trial::new("1", 0.0, period, input.clone(), input).unwrap();
+            let found = InputMotion::of(&[trial]);
+            assert!(!found.is_continuous(), "{shortest} {found:?}");
         }
     }
 

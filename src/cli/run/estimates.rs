@@ -3,8 +3,10 @@
 use crate::cli::failure::{read_failures, said};
 use crate::delay::{Condition, Decision, EstimateError, Method, Verdict, end_at_the_next_step};
 use crate::experiment::{Experiment, Joint, Trial, spike_count};
+use crate::numerics::median;
 use crate::report::{EstimatedJoint, input_note};
 use crate::study::JointEstimate;
+use crate::wording::number;
 
 /// The delays of each joint.
 pub(crate) type Estimates = Vec<Result<JointEstimate, EstimateError>>;
@@ -56,6 +58,7 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
             notes.extend(unsmoothed(joint, estimate));
             notes.extend(unresolved(joint, estimate));
             notes.extend(cut_at_the_next_step(joint, estimate));
+            notes.extend(smeared(joint, estimate).or_else(|| on_a_coarse_grid(joint, estimate)));
             notes.extend(spikes(joint, estimate));
         }
         let verdicts =
@@ -94,9 +97,7 @@ fn spikes(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
 fn unresolved(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
     /// Delays of which most must be so short.
     const FEWEST: usize = 5;
-    let decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
-    let accepted = decisions.filter(|decision| decision.verdict() == Verdict::Accepted);
-    let delays: Vec<f64> = accepted.filter_map(Decision::delay).collect();
+    let delays: Vec<f64> = accepted(estimate).filter_map(Decision::delay).collect();
     let short = delays.iter().filter(|samples| **samples < 1.0).count();
     let longest = joint.trials.iter().map(|trial| trial.period().seconds()).fold(0.0, f64::max);
     (delays.len() >= FEWEST && 2 * short > delays.len()).then(|| {
@@ -108,6 +109,53 @@ fn unresolved(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
             delays.len()
         )
     })
+}
+
+/// A line where delays come in steps that are large beside them.
+fn on_a_coarse_grid(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
+    /// Fewest delays, and the spacing as a part of their median.
+    const FEWEST: usize = 3;
+    const COARSE: f64 = 1.0 / 3.0;
+    let settings = &estimate.settings;
+    let delays = accepted(estimate).filter(|decision| decision.fine.is_none());
+    let delays: Vec<f64> = delays.filter_map(Decision::delay).collect();
+    let usual = median(&delays).filter(|usual| *usual >= 1.0)?;
+    if delays.len() < FEWEST || settings.paper {
+        return None;
+    }
+    let period_s = joint.trials.first()?.period().seconds();
+    let (beta, name) = (settings.beta, &joint.name);
+    (settings.method == Method::TWO_LINE && beta as f64 >= COARSE * usual).then(|| {
+        format!(
+            "joint `{name}`: delays come in steps of β = {beta} samples ({} s), beside a median of \
+             {} s; `--method hinge` places them between samples, with intervals",
+            number(beta as f64 * period_s),
+            number(usual * period_s),
+        )
+    })
+}
+
+/// A line where the low-pass smears one reaction into the next.
+fn smeared(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
+    let settings = &estimate.settings;
+    let first = joint.trials.first()?.period();
+    let cutoff_hz = settings.low_pass_at(first).filter(|_| !settings.low_pass_required)?.cutoff_hz;
+    let holds = estimate.estimated().flat_map(|trial| &trial.decisions);
+    let holds: Vec<f64> = holds.map(|decision| decision.hold as f64).collect();
+    let hold_s = median(&holds)? * first.seconds();
+    (hold_s * cutoff_hz < 1.0).then(|| {
+        format!(
+            "joint `{}`: the input is held for {} s (median), less than a period of the low-pass of \
+             {cutoff_hz} Hz, which blends reactions into one another: `--method hinge` needs none",
+            joint.name,
+            number(hold_s),
+        )
+    })
+}
+
+fn accepted(estimate: &JointEstimate) -> impl Iterator<Item = &Decision> {
+    let decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
+    decisions.filter(|decision| decision.verdict() == Verdict::Accepted)
 }
 
 /// A line where segments end at the next step, since they held the reaction to it.
