@@ -14,6 +14,7 @@ mod columns;
 mod contents;
 mod decode;
 mod fault;
+mod lengths;
 mod message;
 mod series;
 mod stream;

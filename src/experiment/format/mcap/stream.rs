@@ -13,6 +13,7 @@ use mcap::records::{ChunkHeader, Footer, Record};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 use super::fault::Fault;
+use super::lengths::strings_fit;
 use crate::experiment::memory::Budget;
 
 /// A record larger than this is a sign of damage: memory is not asked for it.
@@ -50,7 +51,7 @@ fn each_from(
                 reader.notify_read(count);
             }
             LinearReadEvent::Record { opcode, data } => {
-                let record = mcap::parse_record(opcode, data).map_err(|error| damaged(&error))?;
+                let record = parsed(opcode, data)?;
                 let flow = match record {
                     Record::Chunk { header, data } => {
                         each_in_chunk(&header, &data, budget, &mut visit)?
@@ -92,7 +93,7 @@ fn each_in_chunk(
         if count.map_err(|error| not_unpacked(&error))? as u64 != length {
             return Err(damaged(&McapError::UnexpectedEoc));
         }
-        let record = mcap::parse_record(opcode, &record).map_err(|error| damaged(&error))?;
+        let record = parsed(opcode, &record)?;
         if visit(record)?.is_break() {
             return Ok(ControlFlow::Break(()));
         }
@@ -102,6 +103,14 @@ fn each_in_chunk(
         return Err(damaged(&McapError::BadChunkCrc { saved, calculated }));
     }
     Ok(ControlFlow::Continue(()))
+}
+
+/// A record, the strings of which lie within it.
+fn parsed(opcode: u8, data: &[u8]) -> Result<Record<'_>, Fault> {
+    if !strings_fit(opcode, data) {
+        return Err(damaged(&McapError::UnexpectedEof));
+    }
+    mcap::parse_record(opcode, data).map_err(|error| damaged(&error))
 }
 
 /// What a chunk holds.
@@ -191,7 +200,7 @@ fn footer(mut file: &File, size: u64) -> Option<Footer> {
     let mut bytes = [0; RECORD_HEAD + LENGTH];
     file.read_exact(&mut bytes).ok()?;
     let [opcode, rest @ ..] = bytes;
-    match mcap::parse_record(opcode, rest.get(RECORD_HEAD - 1..)?).ok()? {
+    match parsed(opcode, rest.get(RECORD_HEAD - 1..)?).ok()? {
         Record::Footer(footer) => Some(footer),
         _ => None,
     }
