@@ -1,4 +1,5 @@
-//! Null offset of the valve: its spool is not centred when the input is zero.
+//! Null offset: the valve is not centred when the input is zero, or the input is coded with another
+//! neutral, as the width of a pulse is.
 //!
 //! ```text
 //! out = in + offset
@@ -16,14 +17,17 @@ use super::{Dimension, Effect, Equations, Moment, Parameter, Spec, Stage};
 #[derive(Clone, Copy, Debug)]
 pub struct InputOffset;
 
-static SPEC: Spec =
-    Spec::new("input_offset", Stage::Input, "null offset: the valve is not centred at zero input")
-        .equation("out = in + offset")
-        .source("Merritt, 1967, Hydraulic Control Systems")
-        .parameters(&[
-            Parameter::new("offset", "what is added to the input", Dimension::Input).typical(0.02)
-        ])
-        .confused_with(&["direction_gain", "leakage", "coulomb_friction", "gravity_load"]);
+static SPEC: Spec = Spec::new(
+    "input_offset",
+    Stage::Input,
+    "null offset: the joint stands still at another input than zero",
+)
+.equation("out = in + offset")
+.source("Merritt, 1967, Hydraulic Control Systems")
+.parameters(&[
+    Parameter::new("offset", "what is added to the input", Dimension::Input).typical(0.02)
+])
+.confused_with(&["direction_gain", "leakage", "coulomb_friction", "gravity_load"]);
 
 impl Effect for InputOffset {
     fn spec(&self) -> &'static Spec {

@@ -15,6 +15,7 @@ mod delay_law;
 mod file;
 mod joint_model;
 mod motion;
+mod neutral;
 mod simulate;
 mod start;
 

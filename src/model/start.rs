@@ -1,8 +1,11 @@
 //! The plain integrator that the estimated delays suggest: where a model begins.
 
-use super::JointModel;
 use super::delay_law::{Start, with_law};
-use crate::delay::{Decision, TrialEstimate, are_strokes, delay_scan};
+use super::neutral::coded_neutral;
+use super::{Component, JointModel, Value};
+use crate::delay::{Decision, Method, Settings, TrialEstimate};
+use crate::delay::{are_strokes, delay_scan, estimate_joint};
+use crate::effect::InputOffset;
 use crate::experiment::Joint;
 use crate::numerics::median;
 
@@ -16,18 +19,34 @@ const UNKNOWN_DELAY_S: f64 = 0.1;
 /// Without an accepted step they come from the whole record, as for an input that changes
 /// all the time.
 ///
-/// Where the joint was driven in strokes, the delay is that of the accepted ones, by the law of
-/// size and direction of the step that they follow or as their median, and fixed: each start from
-/// rest shows its delay to some hundredths of a second, while in a fit a speed that is wrong along a
-/// stroke moves the delay by tenths.
+/// Where the joint was driven in strokes, the delay is that of the starts from rest, placed between
+/// samples, by the law of size and direction of the step that they follow or as their median, and
+/// fixed: each start shows its delay to some hundredths of a second, while in a fit a speed that is
+/// wrong along a stroke moves the delay by tenths.
+///
+/// Where the input is coded, as the width of a pulse or in parts of a range, they have its
+/// neutral as an offset, and `u` counts from there.
 pub fn integrators(joint: &Joint, estimates: &[&TrialEstimate]) -> Vec<JointModel> {
-    let (mut starts, gain) = accepted(joint, estimates);
-    let gain = gain.unwrap_or_else(|| overall_gain(joint));
+    let neutral = coded_neutral(&joint.trials);
+    let (mut starts, gain) = accepted(joint, estimates, neutral.unwrap_or(0.0));
+    let gain = gain.unwrap_or_else(|| overall_gain(joint, neutral.unwrap_or(0.0)));
+    let begun = |gain, delay: f64| {
+        let model = JointModel::integrator(gain, delay.max(0.0));
+        let offset =
+            neutral.and_then(|level| Component::new(&InputOffset, vec![Value::from(-level)]));
+        offset.map_or(model.clone(), |offset| model.with(offset))
+    };
+    if are_strokes(&joint.trials) {
+        let finer = between_samples(joint, estimates);
+        if let Some(finer) = &finer {
+            starts = accepted(joint, &finer.iter().collect::<Vec<_>>(), neutral.unwrap_or(0.0)).0;
+        }
+    }
     let delays: Vec<f64> = starts.iter().map(|start| start.delay_s).collect();
     if are_strokes(&joint.trials)
         && let Some(delay) = median(&delays)
     {
-        let mut model = JointModel::integrator(gain, delay.max(0.0));
+        let mut model = begun(gain, delay);
         model.delay.fixed = true;
         starts.retain(Start::is_from_rest);
         return vec![with_law(model.clone(), &starts).unwrap_or(model)];
@@ -37,11 +56,30 @@ pub fn integrators(joint: &Joint, estimates: &[&TrialEstimate]) -> Vec<JointMode
         delays = scanned(joint).into_iter().chain([UNKNOWN_DELAY_S]).collect();
     }
     delays.dedup();
-    delays.into_iter().map(|delay| JointModel::integrator(gain, delay.max(0.0))).collect()
+    delays.into_iter().map(|delay| begun(gain, delay)).collect()
 }
 
-/// The accepted steps, and the regression of the speed behind them on the input.
-fn accepted(joint: &Joint, estimates: &[&TrialEstimate]) -> (Vec<Start>, Option<f64>) {
+/// The estimates again, with delays between samples; none where they are so, or where fewer steps
+/// would be accepted.
+fn between_samples(joint: &Joint, estimates: &[&TrialEstimate]) -> Option<Vec<TrialEstimate>> {
+    fn delays<'e>(all: impl Iterator<Item = &'e TrialEstimate>) -> usize {
+        all.flat_map(|e| &e.decisions).filter(|d| d.accepted_delay().is_some()).count()
+    }
+    if estimates.iter().flat_map(|estimate| &estimate.decisions).any(|d| d.fine.is_some()) {
+        return None;
+    }
+    let settings = Settings::of(Method::HINGE);
+    let finer = estimate_joint(&joint.trials, &settings);
+    let finer: Vec<TrialEstimate> = finer.into_iter().flatten().collect();
+    (delays(finer.iter()) >= delays(estimates.iter().copied())).then_some(finer)
+}
+
+/// The accepted steps, and the regression of the speed behind them on the input from `neutral` on.
+fn accepted(
+    joint: &Joint,
+    estimates: &[&TrialEstimate],
+    neutral: f64,
+) -> (Vec<Start>, Option<f64>) {
     let trials = joint.trials.iter().filter_map(|trial| {
         let estimate = estimates.iter().find(|estimate| estimate.label == trial.label())?;
         Some((trial.period().seconds(), *estimate))
@@ -50,12 +88,12 @@ fn accepted(joint: &Joint, estimates: &[&TrialEstimate]) -> (Vec<Start>, Option<
     for (period, estimate) in trials {
         for decision in estimate.decisions.iter().filter(|d| d.accepted_delay().is_some()) {
             let step = &decision.input_step;
-            let (before, rise) = (step.before, step.after - step.before);
-            let start = |samples| Start { before, rise, delay_s: samples * period };
+            let (before, after) = (step.before - neutral, step.after - neutral);
+            let start = |samples| Start { before, rise: after - before, delay_s: samples * period };
             starts.extend(decision.accepted_delay().map(start));
             let speed = slope_after(decision) / period;
-            with_speed += decision.input_step.after * speed;
-            squared += decision.input_step.after.powi(2);
+            with_speed += after * speed;
+            squared += after.powi(2);
         }
     }
     (starts, (squared > 0.0).then(|| with_speed / squared))
@@ -85,15 +123,15 @@ fn quartiles(mut delays: Vec<f64>) -> Vec<f64> {
     quartiles.into_iter().flatten().collect()
 }
 
-/// Speed over input, from the steps of the output between samples.
-fn overall_gain(joint: &Joint) -> f64 {
+/// Speed over input from `neutral` on, from the steps of the output between samples.
+fn overall_gain(joint: &Joint, neutral: f64) -> f64 {
     let (mut with_speed, mut squared) = (0.0, 0.0);
     for trial in &joint.trials {
         let speeds = trial.output().windows(2).map(|pair| match pair {
             [from, to] => (to - from) / trial.period().seconds(),
             _ => 0.0,
         });
-        for (speed, input) in speeds.zip(trial.input()) {
+        for (speed, input) in speeds.zip(trial.input().iter().map(|input| input - neutral)) {
             with_speed += speed * input;
             squared += input * input;
         }
