@@ -1,5 +1,6 @@
 //! The trait that every effect implements.
 
+use std::borrow::Cow;
 use std::fmt::Debug;
 
 use super::{Definition, Equations, InputChange, Moment, RecordRange, Spec, Stage};
@@ -20,6 +21,12 @@ pub struct WithinTrials<'a> {
 pub trait Effect: Debug + Send + Sync {
     /// What it is, where it acts, and its parameters.
     fn spec(&self) -> &'static Spec;
+
+    /// What it does with these parameters, in a few words: the summary of its [`Spec`], less what
+    /// parameters at their neutral values leave out.
+    fn summary(&self, _parameters: &[f64]) -> Cow<'static, str> {
+        self.spec().summary.into()
+    }
 
     /// The signal after this effect; `at.signal` itself at the neutral parameters.
     ///

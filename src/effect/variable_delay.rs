@@ -25,6 +25,8 @@
 //! Automatica 30 (rising static friction); Merritt, H. E., 1967, Hydraulic Control
 //! Systems (compressed volumes, viscosity).
 
+use std::borrow::Cow;
+
 use super::{
     Dimension, Effect, Equations, InputChange, Moment, Parameter, RecordRange, Spec, Stage,
     UNLIMITED,
@@ -92,6 +94,22 @@ impl Effect for VariableDelay {
              drifted = -drift * drift_s * expm1(-time / drift_s)
              out = grown + if(after < before, falling, 0) + rested + drifted",
         ))
+    }
+
+    /// Names what its law depends on.
+    fn summary(&self, parameters: &[f64]) -> Cow<'static, str> {
+        if self.takes_measured_delays(parameters) {
+            return "the delay of each step as it was measured".into();
+        }
+        let names = ["step size", "direction", "dwell", "time"];
+        let acting = names.iter().zip(parameters).filter(|(_, value)| **value != 0.0);
+        match acting.map(|(name, _)| *name).collect::<Vec<_>>().as_slice() {
+            [] => SPEC.summary.into(),
+            [before @ .., last] if !before.is_empty() => {
+                format!("the delay depends on {} and {last}", before.join(", ")).into()
+            }
+            one => format!("the delay depends on {}", one.concat()).into(),
+        }
     }
 
     fn depends_on_steps(&self) -> bool {

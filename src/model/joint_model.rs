@@ -52,6 +52,11 @@ impl Component {
         Self::new(effect, effect.measured_delays()?.into_iter().map(Value::from).collect())
     }
 
+    /// What it does with its parameters, in a few words.
+    pub(crate) fn summary(&self) -> Cow<'static, str> {
+        self.effect.summary(&self.plain())
+    }
+
     /// Whether it is of that form.
     pub fn takes_measured_delays(&self) -> bool {
         self.effect.takes_measured_delays(&self.plain())

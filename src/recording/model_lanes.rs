@@ -89,7 +89,10 @@ fn worst(
         let start = layout.trials.iter().find_map(|trial| trial.moments(1).next());
         marks.extend(start.map(|start| (start, "none: the model is adequate".to_owned())));
     }
-    push(chunks, at(root, paths::WORST), marks)
+    push(chunks, at(root, paths::WORST), marks)?;
+    let hint = ["on `sample`, `time` or `decision`: choose it at the bottom left"];
+    let hint = StateChange::new().with_state(hint).columns_of_unit_batches()?;
+    chunks.push(at(root, paths::WORST), Index::off_the_record(layout.first), hint)
 }
 
 /// The samples of `worst` in its trial, counted from 1.

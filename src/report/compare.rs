@@ -134,11 +134,13 @@ fn residual_line(compared: &ComparedJoint<'_>) -> Option<String> {
         .then(|| format!("{} ({}): {}", compared.joint.name, compared.model, parts.join("; ")))
 }
 
-/// Where a model fails, in sentences that start with the joint.
+/// Where a model fails, in lines that start with the joint.
 fn failure_sentences(compared: &ComparedJoint<'_>) -> Vec<String> {
     let ComparedJoint { joint, comparison, .. } = compared;
     let sentences = wording::failure_sentences(joint, comparison).into_iter();
-    sentences.map(|sentence| format!("{} ({}): {sentence}", joint.name, compared.model)).collect()
+    sentences
+        .map(|sentence| format!("{} ({}) fails {sentence}", joint.name, compared.model))
+        .collect()
 }
 
 fn row(compared: &ComparedJoint<'_>) -> [String; 7] {

@@ -13,6 +13,8 @@ use crate::diagnosis::Comparison;
 use crate::effect::by_id;
 use crate::experiment::Joint;
 use crate::explain::{Candidate, Change, Revision, Verdict};
+#[cfg(feature = "rrd")]
+use crate::model::Component;
 use crate::wording::effects_text;
 #[cfg(feature = "rrd")]
 use crate::wording::measure;
@@ -125,9 +127,8 @@ impl<'a> ImprovedJoint<'a> {
         let joint = finding.compared.joint;
         let next = self.revisions.get(index + 1).map(|next| &next.comparison);
         let components = next.map(|next| next.fit.model.components()).unwrap_or_default();
-        let specs = components.iter().map(|component| component.effect().spec());
-        let summary = specs.filter(|spec| spec.id == id).map(|spec| spec.summary).next();
-        let summary = summary.unwrap_or_default();
+        let added = components.iter().find(|component| component.effect().spec().id == id);
+        let summary = added.map(Component::summary).unwrap_or_default();
         let error = |comparison: Option<&Comparison>| {
             let error = comparison.and_then(Comparison::judged).map(|error| error.rmse);
             error.map_or_else(|| "-".to_owned(), |e| measure(e, joint.output_unit.as_deref()))

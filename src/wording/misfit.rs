@@ -1,15 +1,20 @@
 //! What tests say of a residual: lack of fit, whiteness, correlation with the input.
 
-use super::{number, p_text};
+use super::{number, p_text, rounded};
 use crate::diagnosis::{
-    CONFIDENCE, Comparison, InputCorrelation, LackOfFit, SIGNIFICANCE, ShownBy, Whiteness,
+    CONFIDENCE, Comparison, InputCorrelation, LackOfFit, NEGLIGIBLE, SIGNIFICANCE, ShownBy,
+    Whiteness,
 };
 
 /// Whether a lack of fit is shown, and by what.
 pub(crate) fn lack_of_fit(test: LackOfFit) -> String {
     let p_value = p_text(test.p_value);
     match test.shown_by {
-        None => format!("not shown ({p_value})"),
+        None if test.p_value >= SIGNIFICANCE => format!("not shown ({p_value})"),
+        None if test.misfit_share < NEGLIGIBLE => {
+            format!("negligible ({} % of the squared error)", rounded(100.0 * test.misfit_share))
+        }
+        None => format!("close to the noise ({p_value})"),
         _ if test.p_value < SIGNIFICANCE => format!("shown ({p_value})"),
         Some(ShownBy::FewWindows) => "shown (in few windows)".to_owned(),
         Some(ShownBy::UnseenPart) => "shown (on unseen data)".to_owned(),

@@ -28,7 +28,7 @@ pub use number::number;
 pub(crate) use number::{bracketed, measure, rounded, unit_suffix, with_error, with_unit};
 pub(crate) use parameter::{known_value, parameter_units, parameter_value, remark};
 pub(crate) use probability::{p_cell, p_text, percent};
-pub(crate) use prose::{Margins, counted, hanging, lines, listed, wrapped};
+pub(crate) use prose::{Margins, capitalized, counted, hanging, lines, listed, wrapped};
 #[cfg(feature = "rrd")]
 pub(crate) use region::feature_with_unit;
 pub(crate) use region::{

@@ -53,6 +53,12 @@ pub(crate) fn listed(items: &[String], conjunction: &str) -> String {
     }
 }
 
+/// `text` with a capital in front.
+pub(crate) fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// `1 joint`, `2 joints`.
 pub(crate) fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }

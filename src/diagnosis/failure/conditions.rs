@@ -120,15 +120,10 @@ pub struct FailsWhere {
 }
 
 impl FailsWhere {
-    /// A sentence for people: `88 % of the squared error of the speed arises in the 31 % of the
-    /// time when |input| < 1.2 V`.
+    /// For people: `when |input| < 1.2 V: 88 % of the squared error of the speed, in 31 % of the
+    /// time`.
     pub fn sentence(&self, units: &Units) -> String {
-        format!(
-            "{} arises in the {} of the time when {}",
-            self.part(),
-            percent(self.share_of_time),
-            self.condition(units)
-        )
+        format!("when {}: {}", self.condition(units), self.weight())
     }
 
     /// The condition alone: `|input| < 1.2 V`.
@@ -137,16 +132,11 @@ impl FailsWhere {
         clauses.join(" and ")
     }
 
-    /// What it holds, where the condition was named before.
-    #[cfg(feature = "rrd")]
+    /// What it holds: `88 % of the squared error of the speed, in 31 % of the time`.
     pub(crate) fn weight(&self) -> String {
-        format!("{} arises in this {} of the time", self.part(), percent(self.share_of_time))
-    }
-
-    /// The part of the squared error.
-    fn part(&self) -> String {
         let of = if self.of_speed { " of the speed" } else { "" };
-        format!("{} of the squared error{of}", percent(self.share_of_squared_error))
+        let (error, time) = (percent(self.share_of_squared_error), percent(self.share_of_time));
+        format!("{error} of the squared error{of}, in {time} of the time")
     }
 }
 

@@ -16,6 +16,15 @@ pub(super) struct Bars {
     middle_of_all: f32,
 }
 
+/// Where on the sheet the names and the bars lie, from left to right.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Columns {
+    pub(super) left: f32,
+    /// Least and farthest end of the names.
+    pub(super) names: (f32, f32),
+    pub(super) right: f32,
+}
+
 /// Part of a row that its bar fills.
 const FILLED: f64 = 0.62;
 
@@ -29,11 +38,15 @@ const ROWS: (f32, f32) = (44.0, 450.0);
 const HALF_LINE: f32 = 14.0;
 
 impl Bars {
-    /// `rows` bars up to the length `most`, between two columns of the sheet; `names` is
-    /// where the names end.
-    pub(super) fn new((left, names, right): (f32, f32, f32), rows: usize, most: f64) -> Self {
+    /// `rows` bars up to the length `most`, between two columns of the sheet. The names end
+    /// where the one of `longest` letters does, but between `short` and `long`.
+    pub(super) fn new(columns: Columns, (rows, longest): (usize, usize), most: f64) -> Self {
         /// Room for a value behind the longest bar.
         const ROOM: f64 = 1.8;
+        /// Width of a letter on the sheet in a window of 1280 points.
+        const LETTER: f32 = 15.0;
+        let Columns { left, names: (short, long), right } = columns;
+        let names = (left + LETTER * (longest + 2) as f32).clamp(short, long);
         let bottom = (ROWS.0 + HIGHEST * rows.max(1) as f32).min(ROWS.1);
         let (x, y) = (Span::new(0.0, ROOM * most), Span::new(0.0, rows.max(1) as f64));
         let plot = Plot::within((names, right), ROWS.0..=bottom, x, y);
@@ -105,7 +118,8 @@ mod tests {
 
     #[test]
     fn the_first_bar_is_the_highest_and_lengths_are_in_proportion() {
-        let bars = Bars::new((0.0, 300.0, 650.0), 2, 1.0);
+        let columns = Columns { left: 0.0, names: (300.0, 300.0), right: 650.0 };
+        let bars = Bars::new(columns, (2, 10), 1.0);
         let length = |row, value| {
             let lines = bars.bar(row, value, color(palette::REVISION));
             let ends = lines.first().map(|(line, _)| (line[0].x(), line[1].x(), line[0].y()));

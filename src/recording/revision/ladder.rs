@@ -3,7 +3,7 @@
 use rerun::Color;
 use rerun::datatypes::Vec2D;
 
-use super::bars::Bars;
+use super::bars::{Bars, Columns};
 use super::figure::noise;
 use crate::figure::ladder::{self, Rung};
 use crate::recording::canvas::{Labels, Strips};
@@ -14,8 +14,7 @@ use crate::recording::paths::revision::sheet;
 use crate::recording::rows::Rows;
 use crate::report::{ImprovedJoint, change_in_words};
 
-/// Left end, end of the names, and right end on the sheet.
-const COLUMNS: (f32, f32, f32) = (0.0, 300.0, 630.0);
+const COLUMNS: Columns = Columns { left: 0.0, names: (300.0, 370.0), right: 630.0 };
 
 /// Adds the ladder, the revision at hand being bright.
 pub(super) fn add(rows: &mut Rows<'_>, improved: &ImprovedJoint<'_>) -> Result<(), RecordError> {
@@ -35,7 +34,10 @@ struct Ladder<'r> {
 impl<'r> Ladder<'r> {
     fn of(improved: &'r ImprovedJoint<'_>) -> Self {
         let rungs = ladder::rungs(improved.revisions);
-        let bars = Bars::new(COLUMNS, rungs.len(), ladder::largest(&rungs));
+        let names = improved.revisions.iter().map(|step| change_in_words(step).chars().count());
+        // Behind its number.
+        let longest = 3 + names.max().unwrap_or(0);
+        let bars = Bars::new(COLUMNS, (rungs.len(), longest), ladder::largest(&rungs));
         Self { rungs, bars }
     }
 

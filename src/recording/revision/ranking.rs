@@ -3,7 +3,7 @@
 use rerun::Color;
 use rerun::datatypes::Vec2D;
 
-use super::bars::Bars;
+use super::bars::{Bars, Columns};
 use super::figure::noise;
 use crate::explain::{Candidate, Revision, Verdict};
 use crate::figure::ladder::judged;
@@ -15,8 +15,7 @@ use crate::recording::paths::revision::sheet;
 use crate::recording::rows::Rows;
 use crate::report::{ImprovedJoint, change_in_words};
 
-/// Left end, end of the names, and right end on the sheet.
-const COLUMNS: (f32, f32, f32) = (1270.0, 1570.0, 1890.0);
+const COLUMNS: Columns = Columns { left: 1270.0, names: (1570.0, 1660.0), right: 1890.0 };
 
 /// Adds the bars of all revisions: the model as it is, then each candidate.
 pub(super) fn add(rows: &mut Rows<'_>, improved: &ImprovedJoint<'_>) -> Result<(), RecordError> {
@@ -98,5 +97,6 @@ fn tried(improved: &ImprovedJoint<'_>, at: usize) -> Vec<Tried> {
 
 fn bars_of(revision: &Revision, all: &[Tried]) -> Bars {
     let most = all.iter().map(|one| one.error).fold(judged(&revision.comparison), f64::max);
-    Bars::new(COLUMNS, 1 + all.len(), most)
+    let longest = all.iter().map(|one| one.name.chars().count()).max().unwrap_or(0);
+    Bars::new(COLUMNS, (1 + all.len(), longest), most)
 }

@@ -5,13 +5,13 @@ use std::fmt::Write as _;
 use super::figure::noise;
 use super::record::worst_spans;
 use crate::diagnosis::Comparison;
-use crate::effect::Spec;
 use crate::figure::ladder::judged;
+use crate::model::Component;
 use crate::recording::error_share::short;
 use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
 use crate::recording::parameter_table::parameter_table;
-use crate::report::{ImprovedJoint, Topic, change_in_words};
+use crate::report::{ImprovedJoint, Passage, Topic, change_in_words};
 use crate::wording::{percent, rounded, unit_suffix};
 
 /// The page of the revision at `place`.
@@ -42,11 +42,11 @@ fn written(
         writeln!(page, "**At revision {revision}:** {}\n", plain(&conclusion.headline))?;
     }
     for passage in &conclusion.passages {
-        write!(page, "**{}:** {}", passage.topic.label(), prose(&passage.text))?;
         if passage.topic == Topic::WhereItFails {
-            page.push_str(&in_the_plots(layout, &step.comparison));
+            where_it_fails(&mut page, passage, &in_the_plots(layout, &step.comparison))?;
+        } else {
+            writeln!(page, "**{}:** {}\n", passage.topic.label(), prose(&passage.text()))?;
         }
-        writeln!(page, "\n")?;
     }
     for command in conclusion.commands.iter().filter(|_| is_last) {
         writeln!(page, "    {command}\n")?;
@@ -54,6 +54,18 @@ fn written(
     parameter_table(&mut page, improved.finding.compared.joint, &step.comparison.fit)?;
     writeln!(page, "\n{HOW}")?;
     Ok(page)
+}
+
+/// A line for each condition, which stands out, and the worst segments.
+fn where_it_fails(page: &mut String, passage: &Passage, in_the_plots: &str) -> std::fmt::Result {
+    writeln!(page, "**{}:**\n", passage.topic.label())?;
+    for sentence in &passage.sentences {
+        match sentence.rsplit_once(": ") {
+            Some((when, weight)) => writeln!(page, "- **{}**: {}", prose(when), prose(weight))?,
+            None => writeln!(page, "- {}{in_the_plots}", prose(sentence))?,
+        }
+    }
+    writeln!(page)
 }
 
 /// What each effect that was found is.
@@ -64,14 +76,16 @@ fn what_was_found(page: &mut String, improved: &ImprovedJoint<'_>) -> std::fmt::
     let shares: Vec<_> = found.map(|one| (one.effect, one.error_share)).collect();
     let share_of =
         |id: &str| shares.iter().find(|(effect, _)| *effect == id).map(|(_, share)| *share);
-    let mut specs: Vec<_> = components.iter().map(|component| component.effect().spec()).collect();
+    let id = |component: &Component| component.effect().spec().id;
     // What explains most comes first, behind what the model had before.
-    let share = |spec: &Spec| share_of(spec.id).unwrap_or(f64::INFINITY);
-    specs.sort_by(|a, b| share(b).total_cmp(&share(a)));
-    for spec in specs {
-        let share = share_of(spec.id);
+    let share = |component: &Component| share_of(id(component)).unwrap_or(f64::INFINITY);
+    let mut components: Vec<&Component> = components.iter().collect();
+    components.sort_by(|a, b| share(b).total_cmp(&share(a)));
+    for component in components {
+        let share = share_of(id(component));
         let share = share.map_or_else(String::new, |share| format!(" {}", percent(share)));
-        writeln!(page, "- **{}**{share}: {}", plain(spec.id), prose(spec.summary))?;
+        let summary = component.summary();
+        writeln!(page, "- **{}**{share}: {}", plain(id(component)), prose(&summary))?;
     }
     writeln!(page)
 }

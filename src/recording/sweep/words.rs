@@ -11,7 +11,7 @@ use crate::recording::error::RecordError;
 use crate::recording::markdown::plain;
 use crate::recording::paths::{at, sweep as paths};
 use crate::report::{depends_on, level_cell, level_text, sweep_sentences};
-use crate::wording::number;
+use crate::wording::{capitalized, number};
 
 /// Adds all words below `root`.
 pub(super) fn add(
@@ -48,7 +48,7 @@ fn found(swept: &Swept<'_>) -> Written {
     writeln!(page, "## {}\n", plain(&swept.reported.joint.name))?;
     for (place, sentence) in sweep_sentences(swept.grid, &swept.reported).iter().enumerate() {
         let mark = if place == 0 { "**" } else { "" };
-        writeln!(page, "{mark}{}{mark}\n", plain(&capitalised(sentence)))?;
+        writeln!(page, "{mark}{}{mark}\n", plain(&capitalized(sentence)))?;
     }
     writeln!(page, "| setting | median delay, part that differs from most |\n|---|---|")?;
     for (factor, levels) in Factor::ALL.into_iter().zip(&swept.reported.sweep.levels) {
@@ -66,11 +66,6 @@ const HOW_TO_READ: &str = "\
 low-pass, α and β from top to bottom. A row with much orange or blue is a setting that differs; \
 such a column is a delay that is sensitive to a setting. Right and left arrow go from setting to setting; \
 on the timeline `segment` from step to step, and the page* One step *has its output.*";
-
-fn capitalised(sentence: &str) -> String {
-    let mut letters = sentence.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
 
 /// A run in numbers.
 fn setting(swept: &Swept<'_>, run: usize) -> Written {

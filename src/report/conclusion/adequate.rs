@@ -11,7 +11,11 @@ impl Finding<'_> {
     pub(super) fn adequate_headline(&self) -> String {
         let explained =
             self.explained().map_or_else(String::new, |explained| format!("{explained}; "));
-        format!("{}: {explained}no missing effect found", self.joint().name)
+        let none = match self.comparison().lack_of_fit {
+            Some(test) if !test.adequate => "no missing effect of consequence found",
+            _ => "no missing effect found",
+        };
+        format!("{}: {explained}{none}", self.joint().name)
     }
 
     pub(super) fn adequate(&self) -> Vec<Passage> {
@@ -36,22 +40,32 @@ impl Finding<'_> {
                 if test.misfit_share < NEGLIGIBLE {
                     return format!("What it lacks is {share} % of the squared error: negligible.");
                 }
+                let p_value = p_text(test.p_value);
+                let rest = if test.adequate {
+                    "which as a whole is close to the noise"
+                } else {
+                    "and no effect that was tried takes more of it than is of consequence"
+                };
                 format!(
-                    "A pattern is left in {share} % of the squared residual ({}), which as a whole is \
-                     close to the noise.",
-                    p_text(test.p_value)
+                    "A pattern is left in {share} % of the squared residual ({p_value}), {rest}."
                 )
             }
             None => "There are too few samples to test it.".to_owned(),
         }
     }
 
-    /// A warning where the part that was not fitted is worse than noise.
+    /// A warning where the part that was not fitted is worse than noise, and than the other one.
     fn misses_validation(&self) -> Option<String> {
-        let times = self.comparison().validation?.rmse / self.noise()?;
-        let warning = "The test covers the part that was fitted; on the other part the error exceeds \
-                       the noise, so the model does not generalise yet.";
-        (times > ABOVE_NOISE).then(|| warning.to_owned())
+        let validation = self.comparison().validation?.rmse;
+        let times = validation / self.comparison().training?.rmse;
+        let is_worse = times > ABOVE_NOISE && validation > ABOVE_NOISE * self.noise()?;
+        is_worse.then(|| {
+            format!(
+                "The test covers the part that was fitted; on the other part the error is {} times as \
+                 large, so the model does not generalise yet.",
+                rounded(times)
+            )
+        })
     }
 
     /// What the record covers: beyond it nothing was shown.

@@ -11,9 +11,17 @@ use crate::wording::{p_text, parameter_units, parameter_value, rounded};
 
 impl Finding<'_> {
     pub(super) fn missing_headline(&self, best: &Candidate) -> String {
-        let falls = format!("{} to {}", self.output(self.error()), self.output(best.rmse()));
-        let name = best.name();
-        format!("{}: {name} is missing; with it the error falls from {falls}", self.joint().name)
+        /// Percent by which an error falls at least, to be said to.
+        const FALLS: f64 = 0.5;
+        let (before, after) = (self.output(self.error()), self.output(best.rmse()));
+        let (joint, name) = (&self.joint().name, best.name());
+        if best.error_reduction_percent < FALLS {
+            return format!(
+                "{joint}: more than one effect is missing; {name}, the first of them, leaves the error \
+                 at {after} by itself"
+            );
+        }
+        format!("{joint}: {name} is missing; with it the error falls from {before} to {after}")
     }
 
     pub(super) fn missing(&self, best: &Candidate) -> Vec<Passage> {
@@ -34,7 +42,8 @@ impl Finding<'_> {
         let parameters = self.parameters(&best.fit, &format!("{}.", spec.id));
         let law = filled_in(component);
         let with = if parameters.is_empty() { "" } else { ", with " };
-        format!("{} ({}): here {law}{with}{parameters}.", spec.id, spec.summary)
+        let summary = component.summary();
+        format!("{} ({summary}): here {law}{with}{parameters}.", spec.id)
     }
 
     /// What the error becomes.

@@ -33,13 +33,13 @@ pub(crate) struct Conclusion {
 impl Conclusion {
     /// What is behind it, without the questions.
     pub(crate) fn sentences(&self) -> String {
-        let texts: Vec<&str> = self.passages.iter().map(|passage| passage.text.as_str()).collect();
+        let texts: Vec<String> = self.passages.iter().map(Passage::text).collect();
         texts.join(" ")
     }
 
     /// The words below the headline as they are printed.
     pub(super) fn printed(&self) -> String {
-        let passage = |one: &Passage| hanging(&format!("{}: {}", one.topic.label(), one.text));
+        let passage = |one: &Passage| hanging(&format!("{}: {}", one.topic.label(), one.text()));
         let passages: Vec<String> = self.passages.iter().map(passage).collect();
         let commands = self.commands.iter().map(|command| format!("    {command}"));
         let blocks = std::iter::once(passages.join("\n")).chain(commands);

@@ -47,13 +47,18 @@ impl Topic {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Passage {
     pub(crate) topic: Topic,
-    pub(crate) text: String,
+    pub(crate) sentences: Vec<String>,
 }
 
 impl Passage {
     /// `sentences` on `topic`, where there are any.
     pub(crate) fn of(topic: Topic, sentences: impl IntoIterator<Item = String>) -> Option<Self> {
         let sentences: Vec<String> = sentences.into_iter().collect();
-        (!sentences.is_empty()).then(|| Self { topic, text: sentences.join(" ") })
+        (!sentences.is_empty()).then_some(Self { topic, sentences })
+    }
+
+    /// All sentences in one.
+    pub(crate) fn text(&self) -> String {
+        self.sentences.join(" ")
     }
 }

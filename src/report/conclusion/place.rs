@@ -4,7 +4,7 @@ use super::{Passage, Topic};
 use crate::diagnosis::ShownBy;
 use crate::diagnosis::failure::WorstSegment;
 use crate::report::finding::Finding;
-use crate::wording::{failure_sentences, percent, rounded, worst_segment_text};
+use crate::wording::{capitalized, failure_sentences, percent, rounded, worst_segment_text};
 
 impl Finding<'_> {
     /// How large the error is.
@@ -60,7 +60,7 @@ impl Finding<'_> {
         let look = Some(look).filter(|_| !times.is_empty());
         let none = "No condition was found that holds most of the error.".to_owned();
         let none = Some(none).filter(|_| conditions.is_empty() && look.is_some());
-        let conditions = conditions.into_iter().map(|condition| format!("{condition}."));
+        let conditions = conditions.iter().map(|when| format!("{}.", capitalized(when)));
         Passage::of(Topic::WhereItFails, conditions.chain(none).chain(look))
     }
 }

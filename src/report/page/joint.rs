@@ -15,7 +15,7 @@ use crate::report::{
     DecisionDetail, DecisionRow, DelayRange, Doubted, EstimatedJoint, Headline, JointSummary,
     Words, by_doubt, dead_time_sentences,
 };
-use crate::wording::{difference_sentences, doubt_percent, doubt_sentence, number};
+use crate::wording::{capitalized, difference_sentences, doubt_percent, doubt_sentence, number};
 
 /// Rows of a table that a reader may still want to scroll through.
 const MOST_ROWS: usize = 2000;
@@ -72,9 +72,7 @@ fn over_record(estimated: EstimatedJoint<'_>) -> Option<String> {
 
 /// `words` with a capital letter and a full stop.
 fn sentence(words: &str) -> String {
-    let mut letters = words.chars();
-    let first = letters.next().map(|letter| letter.to_uppercase().to_string());
-    format!("{}{}.", first.unwrap_or_default(), letters.as_str())
+    format!("{}.", capitalized(words))
 }
 
 fn delay_sentence(summary: &JointSummary) -> String {

@@ -10,15 +10,14 @@ use crate::explain::{Candidate, Revision, Verdict};
 use crate::fit::Split;
 use crate::model::Component;
 use crate::report::add::gained;
-use crate::report::conclusion::Passage;
 use crate::report::consequence::noise_of;
 use crate::report::equation::filled_in;
 use crate::report::finding::ranking_table;
 use crate::report::text_table::TextTable;
 use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::wording::{
-    correlation_sentences, effect_ids, failure_sentences, known_value, listed, measure,
-    parameter_units, parameter_value, remark, with_unit,
+    capitalized, correlation_sentences, effect_ids, failure_sentences, known_value, listed,
+    measure, parameter_units, parameter_value, remark, with_unit,
 };
 
 /// All that is said of the model of a joint.
@@ -36,7 +35,10 @@ pub(super) fn blocks(
     ];
     let passages = conclusion.passages.into_iter();
     blocks.extend(
-        passages.map(|Passage { topic, text }| Block::Passage { question: topic.label(), text }),
+        passages.map(|passage| Block::Passage {
+            question: passage.topic.label(),
+            text: passage.text(),
+        }),
     );
     blocks.extend(conclusion.commands.into_iter().map(Block::Code));
     blocks.push(Block::Code(equations(compared)));
@@ -240,7 +242,7 @@ fn failures(improved: &ImprovedJoint<'_>, file: &str) -> Result<Vec<Block>, Plot
     };
     let said = failure_sentences(compared.joint, compared.comparison)
         .into_iter()
-        .map(|sentence| format!("{sentence}."));
+        .map(|sentence| format!("{}.", capitalized(&sentence)));
     let said: Vec<String> = said.collect();
     let mut blocks = vec![Block::part(heading)];
     if said.is_empty() {
