@@ -136,8 +136,9 @@ fn a_stroke_that_starts_at_a_limit_of_the_output_is_not_rejected_for_it() {
 fn a_model_of_strokes_has_the_measured_delay_and_gets_the_usual_effects_first() {
     let (trials, _) = strokes();
     let found = estimated(&trials, &Settings::default());
+    let finer = estimated(&trials, &Settings::of(Method::HINGE));
     let mut delays: Vec<f64> =
-        found.iter().filter_map(|found| found.decisions[0].accepted_delay()).collect();
+        finer.iter().filter_map(|found| found.decisions[0].accepted_delay()).collect();
     delays.sort_by(f64::total_cmp);
     let between = delays[3] * PERIOD_S..=delays[4] * PERIOD_S;
     let (input_unit, output_unit) = (Some("V".to_owned()), Some("deg".to_owned()));

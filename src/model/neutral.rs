@@ -5,7 +5,7 @@
 //! goes both ways. An integrator from zero on has nothing to do with such a record, and a search
 //! that begins there would first have to find the neutral among all effects.
 
-use crate::delay::{Neutral, followed};
+use crate::delay::{InputKind, Neutral, followed};
 use crate::experiment::Trial;
 use crate::numerics::NormalEquations;
 use crate::units::ceil_to_index;
@@ -24,8 +24,10 @@ pub(super) fn coded_neutral(trials: &[Trial]) -> Option<f64> {
         return None;
     }
     let is_inside = |level: &f64| (low + margin..=high - margin).contains(level);
-    let held = Neutral::of(trials).map(|neutral| neutral.level);
-    held.filter(is_inside).or_else(|| balanced(trials).filter(is_inside))
+    let held = || Neutral::of(trials).map(|neutral| neutral.level).filter(is_inside);
+    // What hardly holds a level does not rest at one.
+    let held = if InputKind::Auto.is_continuous(trials) { None } else { held() };
+    held.or_else(|| balanced(trials).filter(is_inside))
 }
 
 /// The input at which the speed changes its sign, by the line

@@ -49,6 +49,9 @@ pub(crate) fn delay_of_steps(joint: &Joint, model: &JointModel) -> Option<String
     if !model.components().iter().any(is_law) {
         return None;
     }
+    if model.takes_measured_delays() {
+        return Some("of each as it was measured".to_owned());
+    }
     let mut delays_s = Vec::new();
     for (trial, start_s) in joint.trials.iter().zip(starts_s(&joint.trials)) {
         let model = model.in_trial(trial.label());

@@ -58,7 +58,7 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
             notes.extend(unsmoothed(joint, estimate));
             notes.extend(unresolved(joint, estimate));
             notes.extend(cut_at_the_next_step(joint, estimate));
-            notes.extend(smeared(joint, estimate).or_else(|| on_a_coarse_grid(joint, estimate)));
+            notes.extend(smeared(joint, estimate));
             notes.extend(spikes(joint, estimate));
         }
         let verdicts =
@@ -72,6 +72,7 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
         }
         notes.extend(input_note(&EstimatedJoint { joint, estimate }));
     }
+    notes.extend(coarse_grid(joints));
     notes
 }
 
@@ -111,28 +112,40 @@ fn unresolved(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
     })
 }
 
-/// A line where delays come in steps that are large beside them.
-fn on_a_coarse_grid(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
+/// A line on all joints the delays of which come in steps that are large beside them.
+fn coarse_grid(joints: &[EstimatedJoint<'_>]) -> Option<String> {
+    /// Names that are listed.
+    const NAMED: usize = 3;
+    let coarse: Vec<_> =
+        joints.iter().filter(|joint| is_on_a_coarse_grid(joint.estimate)).collect();
+    let beta = coarse.first()?.estimate.settings.beta;
+    let named = coarse.iter().take(NAMED).map(|one| format!("`{}`", one.joint.name));
+    let named = named.collect::<Vec<_>>().join(", ");
+    let joints = match coarse.len() {
+        1 => format!("joint {named}"),
+        count if count > NAMED => format!("joints {named} and {} more", count - NAMED),
+        _ => format!("joints {named}"),
+    };
+    Some(format!(
+        "{joints}: delays come in steps of β = {beta} samples, which is much beside them; `--method \
+         hinge` places them between samples, with intervals"
+    ))
+}
+
+/// Whether delays come in steps that are large beside their median.
+fn is_on_a_coarse_grid(estimate: &JointEstimate) -> bool {
     /// Fewest delays, and the spacing as a part of their median.
     const FEWEST: usize = 3;
-    const COARSE: f64 = 1.0 / 3.0;
+    const COARSE: f64 = 0.4;
     let settings = &estimate.settings;
+    if settings.method != Method::TWO_LINE || settings.paper || settings.beta < 2 {
+        return false;
+    }
     let delays = accepted(estimate).filter(|decision| decision.fine.is_none());
     let delays: Vec<f64> = delays.filter_map(Decision::delay).collect();
-    let usual = median(&delays).filter(|usual| *usual >= 1.0)?;
-    if delays.len() < FEWEST || settings.paper {
-        return None;
-    }
-    let period_s = joint.trials.first()?.period().seconds();
-    let (beta, name) = (settings.beta, &joint.name);
-    (settings.method == Method::TWO_LINE && beta as f64 >= COARSE * usual).then(|| {
-        format!(
-            "joint `{name}`: delays come in steps of β = {beta} samples ({} s), beside a median of \
-             {} s; `--method hinge` places them between samples, with intervals",
-            number(beta as f64 * period_s),
-            number(usual * period_s),
-        )
-    })
+    let beta = settings.beta as f64;
+    let is_coarse = |usual: f64| usual >= 1.0 && beta >= COARSE * usual;
+    delays.len() >= FEWEST && median(&delays).is_some_and(is_coarse)
 }
 
 /// A line where the low-pass smears one reaction into the next.

@@ -365,8 +365,8 @@ mod tests {
             samples: Vec::new(),
         };
         let units = Units { input: Some("V".into()), output: Some("deg".into()) };
-        let expected = "88 % of the squared error of the speed arises in the 31 % of the time \
-                        when |input| < 1.2 V and speed >= -3 deg/s";
+        let expected = "when |input| < 1.2 V and speed >= -3 deg/s: 88 % of the squared error of the \
+                        speed, in 31 % of the time";
         assert_eq!(found.sentence(&units), expected);
         assert_eq!([0.004, 0.996, 0.0, 1.0].map(percent), ["0.4 %", "99.6 %", "0 %", "100 %"]);
     }
