@@ -279,11 +279,11 @@ mod recorded {
     fn a_file_of_many_never_replaces_a_log() {
         let desk = many();
         desk.write("x_2.rrd", &desk.read("log.csv"));
-        let refused = desk.refusal("estimate x_2.rrd -o x.rrd");
+        let refused = desk.refusal("estimate x_2.rrd -o x.rrd --quiet");
         assert!(refused.contains("x_2.rrd: this is a file that is read"), "{refused}");
         assert!(!desk.has("x_1.rrd") && !desk.has("x.rrd"));
         desk.write("y_2.rrd", "notes");
-        let refused = desk.refusal("estimate log.csv -o y.rrd");
+        let refused = desk.refusal("estimate log.csv -o y.rrd --quiet");
         assert!(refused.contains("y_2.rrd: is there already"), "{refused}");
         assert_eq!(desk.read("y_2.rrd"), "notes");
     }
