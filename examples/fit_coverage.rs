@@ -43,6 +43,7 @@ fn truth(id: &str) -> &'static [f64] {
         "rate_limit" => &[0.06],
         "variable_delay" => &[-0.03, 0.03, 0.03, 0.0005, 3.0, 2.0, 100.0, 0.0],
         "actuator_lag" => &[0.12],
+        "spool_lag" => &[0.12],
         "resonance" => &[0.3, 0.2],
         "oil_column" => &[0.3, 0.08, 0.03, 0.006, 0.0, 0.0],
         "coulomb_friction" => &[0.5, 0.4, 0.12],

@@ -18,7 +18,7 @@ use tauscope::{Effect, JointModel};
 const TOLERANCE: f64 = 1e-9;
 
 /// Effects with parameters away from their neutral ones.
-const EFFECTS: [(&str, &str); 23] = [
+const EFFECTS: [(&str, &str); 24] = [
     ("input_offset", "offset = 0.05"),
     ("dead_band", "lower = -0.3, upper = 0.4"),
     ("stiction", "start = 0.8, stop = 0.45"),
@@ -33,6 +33,7 @@ const EFFECTS: [(&str, &str); 23] = [
          dwell_scale = 1.5, drift_scale = 60.0",
     ),
     ("actuator_lag", "time_constant = 0.17"),
+    ("spool_lag", "time_constant = 0.09"),
     ("resonance", "period = 0.31, damping = 0.2"),
     ("resonance", "period = 0.011, damping = 3.0"),
     (
@@ -95,12 +96,12 @@ fn models() -> Vec<(String, JointModel)> {
     let without = |ids: &[&str]| -> Vec<_> {
         EFFECTS.iter().filter(|(id, _)| !ids.contains(id)).copied().collect()
     };
-    let mut swings = without(&["coulomb_friction", "resonance"]);
+    let mut swings = without(&["coulomb_friction", "resonance", "actuator_lag"]);
     swings.reverse();
-    let brakes = ["actuator_lag", "oil_column", "resonance", "asymmetric_friction"];
+    let brakes = ["actuator_lag", "spool_lag", "oil_column", "resonance", "asymmetric_friction"];
     let together = [
         ("plain", model(&[], "")),
-        ("twice", model(&[EFFECTS[22], ("backlash", "width = 0.3"), EFFECTS[9], EFFECTS[9]], "")),
+        ("twice", model(&[EFFECTS[23], ("backlash", "width = 0.3"), EFFECTS[9], EFFECTS[9]], "")),
         ("own", model(&[], OWN)),
         ("brakes", model(&without(&brakes), OWN)),
         ("swings", model(&swings, "")),

@@ -301,7 +301,7 @@ fn spikes_are_as_many_and_as_large_as_wanted_and_leave_the_noise_alone() {
 
 /// Each effect at its neutral numbers, and how far it may lead: what takes time takes four
 /// time steps at least, 2 ms at up to 20 deg/s.
-const NEUTRAL: [(&str, f64); 26] = [
+const NEUTRAL: [(&str, f64); 27] = [
     ("input_offset:offset=0", 1e-9),
     ("dead_band:lower=0,upper=0", 1e-9),
     ("stiction:start=0,stop=0", 0.1),
@@ -312,6 +312,7 @@ const NEUTRAL: [(&str, f64); 26] = [
     ("variable_delay:small_s=0", 1e-9),
     ("rate_limit:seconds_per_input=1e-9", 0.1),
     ("actuator_lag:time_constant=0.002", 0.1),
+    ("spool_lag:time_constant=0.002", 0.1),
     ("resonance:period=0.02,damping=0.9", 0.2),
     ("oil_column:period=0.02,damping=0.9,valve_damping=0,slope=0,reference=0", 0.2),
     ("coulomb_friction:positive=0,negative=0,time_constant=0.002", 0.1),

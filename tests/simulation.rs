@@ -146,7 +146,8 @@ impl<'a> Fine<'a> {
                 let viscous = if signal < 0.0 { p.get(3).copied() } else { None };
                 signal /= viscous.unwrap_or(1.0);
             }
-            fine.states.push([signal, 0.0]);
+            let held = if *id == "spool_lag" { case.input[0] } else { signal };
+            fine.states.push([held, 0.0]);
         }
         fine
     }
@@ -185,7 +186,17 @@ impl<'a> Fine<'a> {
     }
 
     fn step(&mut self, level: f64, time_s: f64, h: f64, others: f64) {
-        let mut signal = self.after_valve(level);
+        let mut command = level;
+        for (place, (_, p)) in
+            self.case.parts.iter().enumerate().filter(|part| part.1.0 == "spool_lag")
+        {
+            let before = self.states[place][0];
+            let part = 0.5 * h / p[0];
+            let after = (before * (1.0 - part) + 2.0 * part * command) / (1.0 + part);
+            self.states[place][0] = after;
+            command = f64::midpoint(before, after);
+        }
+        let mut signal = self.after_valve(command);
         for (place, (id, p)) in self.case.parts.iter().enumerate() {
             let state = &mut self.states[place];
             let before = state[0];
@@ -342,6 +353,7 @@ fn a_period_that_follows_the_angle_is_that_of_the_middle_of_an_interval() {
 fn effects_of_the_dynamics_are_exact() {
     // What is left is the fine integration's own error.
     assert_within(&[("actuator_lag", &[0.12])], 1e-8);
+    assert_within(&[("spool_lag", &[0.12])], 1e-8);
     assert_within(&[("resonance", &[0.25, 0.15])], 1e-6);
     assert_within(&[("resonance", &[0.3, 1.7])], 1e-6);
     assert_within(&[("rate_limit", &[0.031])], 1e-7);
@@ -377,6 +389,7 @@ fn effects_together() {
     assert_within(&[("actuator_lag", &[0.1]), ("resonance", &[0.2, 0.2])], 1e-4);
     assert_within(&[("rate_limit", &[0.04]), ("actuator_lag", &[0.1])], 1e-4);
     assert_within(&[("dead_band", &[-0.5, 0.7]), ("actuator_lag", &[0.1])], 1e-8);
+    assert_within(&[("spool_lag", &[0.1]), ("dead_band", &[-0.5, 0.7])], 1e-4);
     let load: [Part<'_>; 3] =
         [("gravity_load", &[0.5, 30.0, 2.0]), ("supply_droop", &[0.4]), ("leakage", &[0.1, 15.0])];
     assert_within(&load, 1e-5);

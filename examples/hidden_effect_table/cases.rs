@@ -208,6 +208,8 @@ pub(crate) fn cases(counts: Counts) -> Vec<Case> {
         match case.group {
             Group::Two => case.hidden = scenario::draw(2, seed),
             Group::Three => case.hidden = scenario::draw(3, seed),
+            // Without an overlap a lag of the spool is one of the actuator.
+            Group::Finer if case.hidden == ["spool_lag"] => case.hidden.insert(0, "dead_band"),
             _ => (),
         }
     }

@@ -13,7 +13,8 @@
 //!
 //! The joint is late by the time constant in the long run. A log sampled more slowly than
 //! that cannot separate the lag from a delay. Where friction stops the joint, the lag belongs
-//! into [`CoulombFriction`](super::CoulombFriction).
+//! into [`CoulombFriction`](super::CoulombFriction); where the spool lags, before the overlap of
+//! the valve, see [`SpoolLag`](super::SpoolLag).
 //!
 //! # References
 //! Merritt, H. E., 1967, Hydraulic Control Systems; Ljung, L., 1999, System
@@ -38,8 +39,13 @@ static SPEC: Spec = Spec::new(
 )
 .parameters(&[Parameter::new("time_constant", "time to 63 % of a change", Dimension::Seconds)
     .between(0.0, UNLIMITED)])
-.memory(1 + DECAY_MEMORY)
-.confused_with(&["resonance", "variable_delay", "rate_limit"]);
+.memory(ActuatorLag::MEMORY)
+.confused_with(&["resonance", "variable_delay", "rate_limit", "spool_lag"]);
+
+impl ActuatorLag {
+    /// The output, and the decay that was computed last.
+    pub(super) const MEMORY: usize = 1 + DECAY_MEMORY;
+}
 
 impl Effect for ActuatorLag {
     fn spec(&self) -> &'static Spec {

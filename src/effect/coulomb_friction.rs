@@ -23,6 +23,10 @@
 //! `gain · positive · dt` in the angle at each stop. Here the time of the stop is found in
 //! closed form (`sliding.rs`).
 //!
+//! A spool that lags before its overlap makes a joint start late and stop early, too: a
+//! [dead band](super::DeadBand) with a [`SpoolLag`](super::SpoolLag) is told from a friction with
+//! inertia by how it starts.
+//!
 //! The direction of motion is that of the effect's own speed. Loads that follow it in the
 //! model, such as leakage, do not move the joint against its friction. Breakaway above
 //! the sliding level is [stiction](super::Stiction), and not in here.
@@ -59,7 +63,8 @@ static SPEC: Spec = Spec::new(
 .parameters(&[POSITIVE, NEGATIVE, TIME_CONSTANT])
 .memory(SLIDING_MEMORY)
 .confused_with(&["dead_band", "stiction", "input_offset"])
-.absorbing(&["actuator_lag"]);
+.absorbing(&["actuator_lag"])
+.looking_like_both(&[["dead_band", "spool_lag"], ["dead_band", "actuator_lag"]]);
 
 /// Parameters that the asymmetric form has, too.
 pub(super) const POSITIVE: Parameter =

@@ -30,8 +30,8 @@ pub trait Effect: Debug + Send + Sync {
 
     /// The signal after this effect; `at.signal` itself at the neutral parameters.
     ///
-    /// Fresh memory is all zeros: at rest with no signal. In the dynamics stage the
-    /// result is the mean of the effect's output over the interval `at.dt_s`, in which
+    /// Fresh memory is all zeros: at rest with no signal. In the stages of the
+    /// spool and the dynamics the result is the mean of the effect's output over the interval `at.dt_s`, in which
     /// the signal is constant, and the memory then holds the state at its end. In the
     /// other stages it is the value at this moment.
     fn step(&self, parameters: &[f64], memory: &mut [f64], at: &Moment) -> f64;

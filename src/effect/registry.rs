@@ -4,7 +4,7 @@ use super::within_trials::{OF_CONDITIONS, parts_of, within_trials};
 use super::{
     ActuatorLag, AsymmetricFriction, AsymmetricSaturation, Backlash, CoulombFriction, DeadBand,
     DirectionGain, Effect, EndStop, FlowCurve, GravityLoad, InputOffset, InputSaturation, Leakage,
-    OilColumn, PositionGain, RateLimit, Resonance, Stiction, SupplyDroop, ThermalDrift,
+    OilColumn, PositionGain, RateLimit, Resonance, SpoolLag, Stiction, SupplyDroop, ThermalDrift,
     VariableDelay,
 };
 
@@ -20,6 +20,7 @@ pub const REGISTRY: &[&dyn Effect] = &[
     &RateLimit,
     &VariableDelay,
     &ActuatorLag,
+    &SpoolLag,
     &Resonance,
     &OilColumn,
     &CoulombFriction,
@@ -104,6 +105,7 @@ mod tests {
             "rate_limit",
             "variable_delay",
             "actuator_lag",
+            "spool_lag",
             "resonance",
             "oil_column",
             "coulomb_friction",

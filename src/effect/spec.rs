@@ -37,6 +37,9 @@ pub struct Spec {
     /// Ids of effects that it contains: to add it to a model is to put it in their
     /// place, with their values for the parameters of the same name.
     pub absorbs: &'static [&'static str],
+    /// Ids of pairs of effects that look like it together: where one fits better, it takes its
+    /// place.
+    pub looks_like_both: &'static [[&'static str; 2]],
     /// Id of an effect of which it is a finer form: where that is looked for, too, this one is
     /// only in models that have that.
     pub refines: Option<&'static str>,
@@ -59,6 +62,7 @@ impl Spec {
             memory: 0,
             confused_with: &[],
             absorbs: &[],
+            looks_like_both: &[],
             refines: None,
             acts_on_state: false,
         }
@@ -104,6 +108,12 @@ impl Spec {
     #[must_use]
     pub const fn absorbing(self, absorbs: &'static [&'static str]) -> Self {
         Self { absorbs, ..self }
+    }
+
+    /// It [looks like](Self::looks_like_both) each of these pairs.
+    #[must_use]
+    pub const fn looking_like_both(self, pairs: &'static [[&'static str; 2]]) -> Self {
+        Self { looks_like_both: pairs, ..self }
     }
 
     /// It [refines](Self::refines) this one.

@@ -5,7 +5,9 @@
 pub enum Stage {
     /// On the time at which a change of the input arrives.
     Transport,
-    /// On the delayed input, in input units, without memory of time.
+    /// On the delayed input, in input units, as the spool follows it with time.
+    Spool,
+    /// On the opening of the spool, in input units, without memory of time.
     Input,
     /// On the effective input, in input units, as it changes with time. The gain
     /// follows.
@@ -18,13 +20,14 @@ pub enum Stage {
 
 impl Stage {
     /// All stages, in the order they are computed.
-    pub const ALL: [Self; 5] =
-        [Self::Transport, Self::Input, Self::Dynamics, Self::Load, Self::Output];
+    pub const ALL: [Self; 6] =
+        [Self::Transport, Self::Spool, Self::Input, Self::Dynamics, Self::Load, Self::Output];
 
     /// Its name in files and tables.
     pub fn id(self) -> &'static str {
         match self {
             Self::Transport => "transport",
+            Self::Spool => "spool",
             Self::Input => "input",
             Self::Dynamics => "dynamics",
             Self::Load => "load",

@@ -107,6 +107,7 @@ impl Restricted {
             summary: leaked(format!("{}, in trials `{word}`", inner.summary)),
             confused_with: &[],
             absorbs: &[],
+            looks_like_both: &[],
             refines: None,
             ..inner.clone()
         };

@@ -23,7 +23,7 @@ use super::eligible::signal_range;
 use super::extension::ids;
 use super::misfit::{CONSEQUENCE, Misfit};
 use super::options::Options;
-use super::removal::{fitted_after, replacements};
+use super::removal::{fitted_with, replacements};
 use super::revision::Change;
 use super::workers::Workers;
 use crate::fit::{Fit, FitRecord, fit_to_compare};
@@ -82,7 +82,7 @@ impl Grown<'_, '_> {
         let others =
             |one: &&LeftOut| replacements(self.record, &self.whole.model, one.effect, self.options);
         let changes: Vec<Change> = found.iter().flat_map(others).collect();
-        let tried = fitted_after(self.record, self.whole, &changes, workers);
+        let tried = fitted_with(self.record, self.whole, &changes, workers);
         let alternatives = |effect: &'static str| {
             let as_little = tried.iter().filter_map(|(change, fit)| match *change {
                 Change::Replaced { old, new } if old == effect => {

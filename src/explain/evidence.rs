@@ -140,6 +140,19 @@ impl Evidence {
     /// The p-value of what this model explains beyond another in many windows: see the
     /// [module](self). 1 where it is spread over too few.
     pub(super) fn p_value_over_windows(&self, other: &Self) -> f64 {
+        self.beyond_over_windows(other).1
+    }
+
+    /// Whether many windows show, at `level`, that this model is nearer to what was measured than
+    /// `other`: of what separates the two, more than half is missing from the other.
+    pub(super) fn is_nearer_over_windows(&self, other: &Self, level: f64) -> bool {
+        let (share, p_value) = self.beyond_over_windows(other);
+        share > 0.5 && p_value < level
+    }
+
+    /// The share `β` of the change from `other` to this model that is in the residual of `other`,
+    /// and its p-value.
+    fn beyond_over_windows(&self, other: &Self) -> (f64, f64) {
         let pairs = other.windows.iter().zip(&self.windows);
         let windows: Vec<_> = pairs.map(|(before, after)| WindowSums::of(before, after)).collect();
         let sum = |of: &dyn Fn(&WindowSums) -> f64| windows.iter().map(of).sum::<f64>();
@@ -158,11 +171,12 @@ impl Evidence {
         // F = β² / (var β · q), one-sided: a change against the residual explains nothing.
         let added = self.parameters.saturating_sub(other.parameters).max(1);
         let statistic = slope * slope / (variance * added as f64);
-        if slope > 0.0 {
+        let p_value = if slope > 0.0 {
             fisher_tail(statistic, added, spread.saturating_sub(added)).unwrap_or(1.0)
         } else {
             1.0
-        }
+        };
+        (slope, p_value)
     }
 }
 

@@ -12,7 +12,7 @@ use super::extension::ids;
 use super::misfit::Misfit;
 use super::options::Options;
 use super::ranking::{Scope, rank};
-use super::removal::Removal;
+use super::removal::{Exchange, Removal};
 use super::revision::Change;
 use super::verdict::Verdict;
 use super::workers::Workers;
@@ -149,15 +149,32 @@ pub(super) fn add_stepwise(
         let change = Change::between(&step.fit.model, &found.fit.model, found.newest());
         step = Step::new(record, change, found.fit);
         let mut removal = Removal { given, kept: found.effects, options, misfit };
-        while let Some((change, fit)) = removal.better(record, &step.fit, workers) {
-            if !visit(&step) {
-                let is_adequate = step.is_adequate();
-                let verdict = if is_adequate { Verdict::Adequate } else { Verdict::MissingEffect };
-                return ended(verdict, step.fit, true);
+        while let Some((exchange, fit)) = removal.better(record, &step.fit, workers) {
+            let between = first_of_exchange(record, exchange, &fit);
+            let then = exchange.then.filter(|_| between.is_some());
+            for next in between.into_iter().chain([Step::new(
+                record,
+                then.map_or(exchange.change, Change::Added),
+                fit,
+            )]) {
+                if !visit(&step) {
+                    let is_adequate = step.is_adequate();
+                    let verdict =
+                        if is_adequate { Verdict::Adequate } else { Verdict::MissingEffect };
+                    return ended(verdict, step.fit, true);
+                }
+                step = next;
             }
-            step = Step::new(record, change, fit);
         }
     }
+}
+
+/// The model with the first of two effects that took another's place: a step on the way.
+fn first_of_exchange(record: &FitRecord<'_>, exchange: Exchange, whole: &Fit) -> Option<Step> {
+    let model = whole.model.without(exchange.then?);
+    let levels = record.input_levels();
+    let fit = fit_to_compare(record, &model, &signal_range(record, &model, &levels)).ok()?;
+    Some(Step::new(record, exchange.change, fit))
 }
 
 /// The model with the first effect of a pair alone: a step on the way, which need not be better.

@@ -112,7 +112,8 @@ impl Export {
 
     /// The effects between the input and the gain.
     pub(super) fn drive(&self) -> impl Iterator<Item = &Exported> {
-        self.stage(Stage::Input).chain(self.stage(Stage::Dynamics))
+        let stages = [Stage::Spool, Stage::Input, Stage::Dynamics];
+        stages.into_iter().flat_map(|stage| self.stage(stage))
     }
 
     /// The effects on the output that limit the angle itself.

@@ -92,7 +92,7 @@ impl Component {
 /// The model of one joint: an integrator with effects on it.
 ///
 /// `dy/dt = gain · s(t)`, where `s` is the input, `delay` late, after the effects of the
-/// input and dynamics stages; effects of the load stage change the velocity, those of the
+/// spool, input and dynamics stages; effects of the load stage change the velocity, those of the
 /// output stage the angle. Within a stage, effects act in the order they were added.
 #[derive(Clone, Debug)]
 pub struct JointModel {
@@ -148,7 +148,8 @@ impl JointModel {
 
     /// Whether it takes time until the speed is what the input says.
     pub(crate) fn has_dynamics(&self) -> bool {
-        self.stage(Stage::Dynamics).next().is_some()
+        let is_dynamic = |stage| matches!(stage, Stage::Spool | Stage::Dynamics);
+        self.components.iter().any(|component| is_dynamic(component.effect.spec().stage))
     }
 
     /// Whether any effect can make the speed depend on the angle.

@@ -81,7 +81,7 @@ impl Running {
 /// The state of a joint between two instants.
 pub(super) struct Joint<'a> {
     gain: f64,
-    /// Effects on the input, then those of the dynamics: both before the gain.
+    /// Effects of the spool, on the input, and of the dynamics: all before the gain.
     drive: Vec<Running>,
     /// How many of them, from the front, do the same again as long as the input is held.
     steady: usize,
@@ -111,7 +111,8 @@ impl<'a> Joint<'a> {
         let (limits, sensor): (Vec<_>, Vec<_>) =
             output.partition(|component| component.effect().spec().acts_on_state);
         let load: Vec<_> = stage(Stage::Load).collect();
-        let drive: Vec<_> = stage(Stage::Input).chain(stage(Stage::Dynamics)).collect();
+        let drive = [Stage::Spool, Stage::Input, Stage::Dynamics];
+        let drive: Vec<_> = drive.into_iter().flat_map(stage).collect();
         let is_steady = |running: &&Running| running.effect.is_steady();
         Self {
             gain: model.gain.value,

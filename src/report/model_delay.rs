@@ -16,7 +16,9 @@ const BY_CHANCE: f64 = 3.0;
 
 /// Why a fitted delay is shorter than those measured: a step seems late by the lag behind it, too.
 fn why_shorter(of: &Assessment) -> String {
-    let is_lag = |component: &&Component| component.effect().spec().stage == Stage::Dynamics;
+    let is_lag = |component: &&Component| {
+        matches!(component.effect().spec().stage, Stage::Spool | Stage::Dynamics)
+    };
     match of.model.components().iter().find(is_lag) {
         Some(lag) => {
             format!("those include the lag that the model describes by {}", lag.effect().spec().id)

@@ -49,8 +49,10 @@ const MEASURED: usize = 17;
 const COLUMN_PRESSURE: usize = 18;
 /// Flow out of it.
 const COLUMN_FLOW: usize = 19;
+/// The command that the spool has followed, in input units.
+const FOLLOWED: usize = 20;
 /// Number of states.
-const STATES: usize = 20;
+const STATES: usize = 21;
 
 /// Time steps in which a joint that sticks comes loose.
 const STEPS_TO_LOOSEN: f64 = 2.0;
@@ -69,6 +71,8 @@ pub(super) struct Motion<'a> {
     /// Arrivals that act already.
     arrived: usize,
     now_s: f64,
+    /// What is commanded, in input units.
+    command: f64,
     /// Opening of the valve, in input units.
     opening: f64,
     /// Direction of motion, 0 where it sticks.
@@ -91,11 +95,13 @@ impl<'a> Motion<'a> {
             radians,
             arrived: 0,
             now_s: 0.0,
+            command: 0.0,
             opening: 0.0,
             direction: 0.0,
             others: 0.0,
             state: [0.0; STATES],
         };
+        motion.state[FOLLOWED] = joint.input.initial();
         motion.set(joint.input.initial());
         motion.settle();
         motion
@@ -130,6 +136,16 @@ impl<'a> Motion<'a> {
 
     /// Lets `level` act.
     fn set(&mut self, level: f64) {
+        self.command = level;
+        if self.joint.effect.spool_lag.is_none() {
+            self.open(level);
+        } else {
+            self.open(self.state[FOLLOWED]);
+        }
+    }
+
+    /// Opens the valve as far as a spool at `level` does.
+    fn open(&mut self, level: f64) {
         self.direction = self.valve.direction(level, self.direction);
         self.opening = self.chain.opening(level);
     }
@@ -171,12 +187,16 @@ impl<'a> Motion<'a> {
             *state += dt / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
         }
         self.now_s = end_s;
+        if self.joint.effect.spool_lag.is_some() {
+            self.open(self.state[FOLLOWED]);
+        }
     }
 
     /// Derivative of `state` by time.
     fn rate(&self, state: &State, time_s: f64) -> State {
         let mut rate = [0.0; STATES];
-        let signal = self.loosened(state, &mut rate);
+        let opening = self.opened(state, &mut rate);
+        let signal = self.loosened(opening, state, &mut rate);
         let signal = self.followed(signal, state, &mut rate);
         let speed = self.rung(self.joint.gain * signal, state, &mut rate);
         rate[ANGLE] = self.loaded(speed, state, time_s, &mut rate);
@@ -186,14 +206,21 @@ impl<'a> Motion<'a> {
         rate
     }
 
+    /// The opening of the valve, as far as its spool has come.
+    fn opened(&self, state: &State, rate: &mut State) -> f64 {
+        let Some(lag) = self.joint.effect.spool_lag else { return self.opening };
+        rate[FOLLOWED] = lag.rate(self.command, state[FOLLOWED]);
+        self.chain.opening(state[FOLLOWED])
+    }
+
     /// The opening of the valve, nothing where the joint sticks.
-    fn loosened(&self, state: &State, rate: &mut State) -> f64 {
+    fn loosened(&self, opening: f64, state: &State, rate: &mut State) -> f64 {
         if self.joint.effect.stiction.is_none() {
-            return self.opening;
+            return opening;
         }
         let wanted = f64::from(u8::from(self.direction.abs() > 0.0));
         rate[CONTACT] = (wanted - state[CONTACT]) / (STEPS_TO_LOOSEN * self.clock.substep_s());
-        state[CONTACT] * self.opening
+        state[CONTACT] * opening
     }
 
     /// The effects on how the speed follows, in input units.

@@ -130,7 +130,7 @@ fn equations(compared: &ComparedJoint<'_>) -> String {
     };
     let mut lines = vec![format!("in = input(t − delay), delay = {}", own(1))];
     lines.extend(laws(Stage::Transport, Stage::Dynamics));
-    let acting = behind("in", laws(Stage::Input, Stage::Dynamics).count());
+    let acting = behind("in", laws(Stage::Spool, Stage::Dynamics).count());
     lines.push(format!("speed = gain · {acting}, gain = {}", own(0)));
     lines.extend(laws(Stage::Load, Stage::Load));
     let speed = behind("speed", laws(Stage::Load, Stage::Load).count());
@@ -149,7 +149,8 @@ fn law(component: &Component) -> String {
     let spec = component.effect().spec();
     let acts = match spec.stage {
         Stage::Transport => "on the delay",
-        Stage::Input => "on the delayed input",
+        Stage::Spool => "on the delayed input",
+        Stage::Input => "on the opening of the valve",
         Stage::Dynamics => "on the input as it acts",
         Stage::Load => "on the speed",
         Stage::Output => "on the output",

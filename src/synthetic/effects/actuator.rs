@@ -28,6 +28,15 @@ pub struct ActuatorLag {
     pub time_constant: f64,
 }
 
+/// The spool approaches what is commanded, before the overlap and all that the valve does to its
+/// opening: `time_constant x' = command - x`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpoolLag {
+    /// Time to 63 % of a change, in seconds.
+    pub time_constant: f64,
+}
+
 /// Oil as a spring, with the pressure as a state of its own.
 ///
 /// ```text
@@ -144,6 +153,12 @@ impl ActuatorLag {
     }
 }
 
+impl SpoolLag {
+    pub(in super::super) fn rate(self, command: f64, spool: f64) -> f64 {
+        (command - spool) / self.time_constant
+    }
+}
+
 impl Resonance {
     /// Of pressure and flow.
     pub(in super::super) fn rate(&self, input: f64, [pressure, flow]: [f64; 2]) -> [f64; 2] {
@@ -245,6 +260,13 @@ impl Part for ActuatorLag {
     fn check(&self, place: &Place, clock: &Clock) -> Result<(), PlantError> {
         let shortest_s = MIN_STEPS_PER_LAG * clock.substep_s();
         lasts(place, "effect.actuator_lag.time_constant", self.time_constant, shortest_s)
+    }
+}
+
+impl Part for SpoolLag {
+    fn check(&self, place: &Place, clock: &Clock) -> Result<(), PlantError> {
+        let shortest_s = MIN_STEPS_PER_LAG * clock.substep_s();
+        lasts(place, "effect.spool_lag.time_constant", self.time_constant, shortest_s)
     }
 }
 

@@ -10,7 +10,7 @@ use super::{
     ActuatorLag, AsymmetricFriction, AsymmetricSaturation, Backlash, CoulombFriction, CreepMemory,
     DeadBand, DirectionGain, Disturbance, EndStop, FlowCurve, GravityLoad, InputNotch, InputOffset,
     InputSaturation, Leakage, OilColumn, PositionGain, RateLimit, Resonance, SensorNonlinearity,
-    StickySpot, Stiction, SupplyDroop, ThermalDrift, VariableDelay,
+    SpoolLag, StickySpot, Stiction, SupplyDroop, ThermalDrift, VariableDelay,
 };
 
 /// The effects of the catalogue: `[joint.effect.<name>]` in a plant file.
@@ -21,6 +21,8 @@ use super::{
 pub struct Effects {
     /// The delay depends on the step.
     pub variable_delay: Option<VariableDelay>,
+    /// The spool lags.
+    pub spool_lag: Option<SpoolLag>,
     /// The valve is not centred.
     pub input_offset: Option<InputOffset>,
     /// It starts above one level and stops below a lower one.
@@ -105,6 +107,7 @@ impl Effects {
     pub(in super::super) fn check(&self, place: &Place, clock: &Clock) -> Result<(), PlantError> {
         let parts = [
             part(self.variable_delay.as_ref()),
+            part(self.spool_lag.as_ref()),
             part(self.input_offset.as_ref()),
             part(self.stiction.as_ref()),
             part(self.dead_band.as_ref()),

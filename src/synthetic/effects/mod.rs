@@ -18,6 +18,7 @@ mod valve;
 pub(super) use actuator::MEMORIES;
 pub use actuator::{
     ActuatorLag, AsymmetricFriction, CoulombFriction, CreepMemory, OilColumn, RateLimit, Resonance,
+    SpoolLag,
 };
 pub use groups::{Effects, Outside};
 pub use load::{

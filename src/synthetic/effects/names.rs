@@ -25,7 +25,8 @@ pub const CATALOGUE: [&str; 18] = [
 ];
 
 /// Names of its effects that are finer forms of others.
-pub const FINER: [&str; 3] = ["oil_column", "asymmetric_friction", "asymmetric_saturation"];
+pub const FINER: [&str; 4] =
+    ["oil_column", "asymmetric_friction", "asymmetric_saturation", "spool_lag"];
 
 /// Names of the effects outside it.
 pub const OUTSIDE: [&str; 5] =

@@ -4,7 +4,7 @@ use super::super::effects::{
     ActuatorLag, AsymmetricFriction, AsymmetricSaturation, Backlash, CoulombFriction, CreepMemory,
     DeadBand, DirectionGain, Disturbance, EndStop, FlowCurve, GravityLoad, InputNotch, InputOffset,
     InputSaturation, Leakage, OilColumn, PositionGain, RateLimit, Resonance, SensorNonlinearity,
-    StickySpot, Stiction, SupplyDroop, ThermalDrift, VariableDelay,
+    SpoolLag, StickySpot, Stiction, SupplyDroop, ThermalDrift, VariableDelay,
 };
 use super::super::spec::JointSpec;
 
@@ -37,6 +37,7 @@ pub(super) fn hide(name: &str, joint: &mut JointSpec, strength: f64, chances: Ch
         "rate_limit" => rate_limit(joint, strength, chances),
         "variable_delay" => variable_delay(joint, strength, chances),
         "actuator_lag" => actuator_lag(joint, strength, chances),
+        "spool_lag" => spool_lag(joint, strength, chances),
         "resonance" => resonance(joint, strength, chances),
         "oil_column" => oil_column(joint, strength, chances),
         "coulomb_friction" => coulomb_friction(joint, strength, chances),
@@ -123,6 +124,10 @@ fn variable_delay(joint: &mut JointSpec, strength: f64, chances: Chances) {
 fn actuator_lag(joint: &mut JointSpec, strength: f64, _chances: Chances) {
     // The shortest that the time steps can follow, and more.
     joint.effect.actuator_lag = Some(ActuatorLag { time_constant: 0.01 + strength });
+}
+
+fn spool_lag(joint: &mut JointSpec, strength: f64, _chances: Chances) {
+    joint.effect.spool_lag = Some(SpoolLag { time_constant: 0.01 + strength });
 }
 
 fn resonance(joint: &mut JointSpec, strength: f64, chances: Chances) {
