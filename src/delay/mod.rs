@@ -35,6 +35,7 @@
 
 mod against;
 mod auto;
+mod beyond_holds;
 mod broken_line;
 mod checks;
 mod coming_to_rest;
@@ -78,6 +79,7 @@ mod word;
 pub use crate::numerics::Line;
 pub use against::{AgainstOfKind, AgainstState, Correlation, Direction, StepState};
 pub use auto::{Automatic, Chosen, Grounds, choose};
+pub use beyond_holds::delay_beyond_holds;
 pub use broken_line::{
     BrokenLine, BrokenRegression, Stroke, broken_line, broken_regression, stroke,
 };

@@ -40,7 +40,7 @@ static SPEC: Spec = Spec::new(
 .parameters(&[Parameter::new("time_constant", "time to 63 % of a change", Dimension::Seconds)
     .between(0.0, UNLIMITED)])
 .memory(ActuatorLag::MEMORY)
-.confused_with(&["resonance", "variable_delay", "rate_limit", "spool_lag"]);
+.confused_with(&["resonance", "variable_delay", "rate_limit"]);
 
 impl ActuatorLag {
     /// The output, and the decay that was computed last.

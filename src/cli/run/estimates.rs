@@ -1,7 +1,9 @@
 //! Delays of joints: those that have one, and what is said of them.
 
 use crate::cli::failure::{read_failures, said};
-use crate::delay::{Condition, Decision, EstimateError, Method, Verdict, end_at_the_next_step};
+use crate::delay::{
+    Condition, Decision, EstimateError, Method, Verdict, delay_beyond_holds, end_at_the_next_step,
+};
 use crate::experiment::{Experiment, Joint, Trial, spike_count};
 use crate::numerics::median;
 use crate::report::{EstimatedJoint, input_note};
@@ -59,6 +61,7 @@ pub(crate) fn notes(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
             notes.extend(unresolved(joint, estimate));
             notes.extend(cut_at_the_next_step(joint, estimate));
             notes.extend(smeared(joint, estimate));
+            notes.extend(later_than_the_next_step(joint));
             notes.extend(spikes(joint, estimate));
         }
         let verdicts =
@@ -162,6 +165,19 @@ fn smeared(joint: &Joint, estimate: &JointEstimate) -> Option<String> {
              {cutoff_hz} Hz, which blends reactions into one another: `--method hinge` needs none",
             joint.name,
             number(hold_s),
+        )
+    })
+}
+
+/// A line where the delay is longer than most holds.
+fn later_than_the_next_step(joint: &Joint) -> Option<String> {
+    delay_beyond_holds(&joint.trials).map(|delay_s| {
+        format!(
+            "joint `{}`: over the whole record it answers about {} s late, longer than most levels are \
+             held: what is listed are delays of its answers to earlier steps. A model shows the \
+             delay (`tauscope compare`), and so does an input that holds its levels for longer",
+            joint.name,
+            number(delay_s),
         )
     })
 }

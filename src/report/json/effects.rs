@@ -91,6 +91,6 @@ mod tests {
         assert_eq!(json["effects"][8]["id"], "variable_delay");
         assert_eq!(json["effects"][8]["units"][0], "s/input unit");
         assert_eq!(json["effects"][8]["parameters"][0]["dimension"], "seconds_per_input");
-        assert_eq!(json["effects"][19]["parameters"][1]["neutral"], 1e12);
+        assert_eq!(json["effects"][20]["parameters"][1]["neutral"], 1e12);
     }
 }

@@ -149,8 +149,8 @@ fn law(component: &Component) -> String {
     let spec = component.effect().spec();
     let acts = match spec.stage {
         Stage::Transport => "on the delay",
-        Stage::Spool => "on the delayed input",
-        Stage::Input => "on the opening of the valve",
+        Stage::Spool => "on the delayed input, before the valve",
+        Stage::Input => "on the delayed input",
         Stage::Dynamics => "on the input as it acts",
         Stage::Load => "on the speed",
         Stage::Output => "on the output",
