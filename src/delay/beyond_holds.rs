@@ -115,22 +115,24 @@ fn unexplained(blocks: &[Blocks], skipped: usize, lag: Option<usize>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::SamplePeriod;
-    use rand::rngs::StdRng;
-    use rand::{Rng, SeedableRng};
+    use crate::numerics::testing::uniform;
+    use crate::units::SamplePeriod;
 
     /// An integrator that answers `delay` samples late, through a lag of `lag` samples, to levels
     /// that are held for 100 to 200 samples.
     fn trial(delay: usize, lag: f64) -> Trial {
-        let mut random = StdRng::seed_from_u64(7);
+        // From -0.5 to 0.5.
+        let mut random = uniform(7);
         let mut input = vec![0.0; 50];
         while input.len() < 9000 {
-            let level = random.random_range(-5.0..5.0_f64);
-            input.extend(std::iter::repeat_n(level, random.random_range(100..200)));
+            let level = 10.0 * random();
+            let more = 100.0 * (random() + 0.5);
+            let held = 100 + (0..100).filter(|part| f64::from(*part) < more).count();
+            input.extend(std::iter::repeat_n(level, held));
         }
         let (mut angle, mut speed, mut output) = (0.0, 0.0, Vec::new());
         for k in 0..input.len() {
-            output.push(angle + random.random_range(-0.02..0.02));
+            output.push(angle + 0.04 * random());
             let drive = 10.0 * input[k.saturating_sub(delay)];
             speed += (drive - speed) / (1.0 + lag);
             angle += 0.01 * speed;

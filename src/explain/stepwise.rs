@@ -6,6 +6,8 @@
 //! section 3.3.2 (forward stepwise selection); M. A. Efroymson, "Multiple regression analysis",
 //! 1960 (with removal).
 
+use std::ops::ControlFlow;
+
 use super::candidate::Candidate;
 use super::eligible::signal_range;
 use super::extension::ids;
@@ -148,25 +150,42 @@ pub(super) fn add_stepwise(
         }
         let change = Change::between(&step.fit.model, &found.fit.model, found.newest());
         step = Step::new(record, change, found.fit);
-        let mut removal = Removal { given, kept: found.effects, options, misfit };
-        while let Some((exchange, fit)) = removal.better(record, &step.fit, workers) {
-            let between = first_of_exchange(record, exchange, &fit);
-            let then = exchange.then.filter(|_| between.is_some());
-            for next in between.into_iter().chain([Step::new(
-                record,
-                then.map_or(exchange.change, Change::Added),
-                fit,
-            )]) {
-                if !visit(&step) {
-                    let is_adequate = step.is_adequate();
-                    let verdict =
-                        if is_adequate { Verdict::Adequate } else { Verdict::MissingEffect };
-                    return ended(verdict, step.fit, true);
-                }
-                step = next;
+        let removal = Removal { given, kept: found.effects, options, misfit };
+        step = match exchanged(record, step, removal, workers, &mut visit) {
+            ControlFlow::Continue(step) => step,
+            ControlFlow::Break(ended) => return ended,
+        };
+    }
+}
+
+/// `step` with effects removed or exchanged for as long as that is better; how the search ended
+/// where `visit` says no.
+fn exchanged(
+    record: &FitRecord<'_>,
+    mut step: Step,
+    mut removal: Removal<'_>,
+    workers: &impl Workers,
+    visit: &mut impl FnMut(&Step) -> bool,
+) -> ControlFlow<Ended, Step> {
+    while let Some((exchange, fit)) = removal.better(record, &step.fit, workers) {
+        let between = first_of_exchange(record, exchange, &fit);
+        let then = exchange.then.filter(|_| between.is_some());
+        let change = then.map_or(exchange.change, Change::Added);
+        for next in between.into_iter().chain([Step::new(record, change, fit)]) {
+            if !visit(&step) {
+                let is_adequate = step.is_adequate();
+                let verdict = if is_adequate { Verdict::Adequate } else { Verdict::MissingEffect };
+                return ControlFlow::Break(Ended {
+                    verdict,
+                    fit: step.fit,
+                    was_stopped: true,
+                    refinements: Vec::new(),
+                });
             }
+            step = next;
         }
     }
+    ControlFlow::Continue(step)
 }
 
 /// The model with the first of two effects that took another's place: a step on the way.
