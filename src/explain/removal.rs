@@ -1,5 +1,6 @@
 //! What can be removed from a model, or exchanged, after an effect was added.
 
+use super::candidate::ALIKE;
 use super::eligible::{could_be_missing, is_due, signal_range};
 use super::evidence::NoiseMemory;
 use super::extension::ids;
@@ -45,6 +46,18 @@ impl Exchange {
         Self { change, then: None }
     }
 
+    /// By how much the criterion must speak for it: two effects in the place of one, and a finer form
+    /// of one, have to be more likely beyond doubt; what is as likely keeps its usual name.
+    fn hurdle(self) -> f64 {
+        let is_finer = match self.change {
+            Change::Replaced { new, .. } => {
+                by_id(new).is_some_and(|new| new.spec().refines.is_some())
+            }
+            _ => false,
+        };
+        if is_finer || self.then.is_some() { ALIKE } else { 0.0 }
+    }
+
     /// `model` after it.
     fn applied(self, model: &JointModel) -> Option<JointModel> {
         let model = changed(model, self.change)?;
@@ -76,7 +89,8 @@ impl Removal<'_> {
                 || self.options.keeps_refinements
                 || self.misfit.has_consequence(record, whole, &fit);
             let behind = evidence.criterion() - of_whole.criterion();
-            (behind < 0.0 && !does_harm && is_worth_it).then_some((behind, (change, fit)))
+            (behind < -change.hurdle() && !does_harm && is_worth_it)
+                .then_some((behind, (change, fit)))
         });
         let (_, better) = judged.min_by(|a, b| a.0.total_cmp(&b.0))?;
         if let Change::Replaced { new, .. } = better.0.change {

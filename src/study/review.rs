@@ -237,6 +237,11 @@ impl Reviewed {
         if let Some(was) = self.shown.p.filter(|was| *was != is) {
             return Some(self.note(Why::Moved { was, is }));
         }
+        let left_s = (trial.len() - is) as f64 * trial.period().seconds();
+        let is_outside = |delay_s: &f64| !(0.0..=left_s).contains(delay_s);
+        if let Some(delay_s) = self.delay_s.filter(is_outside) {
+            return Some(self.note(Why::Outside { delay_s, left_s }));
+        }
         let changed = self.changed(decision, trial);
         let word = Word {
             accepted: self.accepted,
@@ -291,6 +296,13 @@ pub enum Why {
         /// Its sample now.
         is: usize,
     },
+    /// The delay leads to before the step or behind the trial's end: the word is not heard.
+    Outside {
+        /// The delay of the word, seconds.
+        delay_s: f64,
+        /// From the step to the trial's end.
+        left_s: f64,
+    },
     /// The program decides otherwise now; the word stands.
     Verdict {
         /// Its verdict then.
@@ -323,6 +335,11 @@ impl fmt::Display for ReviewNote {
                 f,
                 "the step was at sample {was} and is at {is} now; the word is left out, review \
                  it again"
+            ),
+            Why::Outside { delay_s, left_s } => write!(
+                f,
+                "a delay of {delay_s} s lies outside the {left_s:.2} s from the step to the trial's \
+                 end; the word is left out"
             ),
             Why::Verdict { was, is } => write!(
                 f,
@@ -404,6 +421,10 @@ mod tests {
         let changed = Why::Verdict { was: "sse".to_owned(), is: "accepted".to_owned() };
         assert_eq!(why("boom,1,1,rejected,,,Ann,101,sse,"), (Some(changed), 1));
         assert!(matches!(why("boom,1,1,rejected,,,Ann,101,,0.9"), (Some(Why::Delay { .. }), 1)));
+        for delay_s in ["-0.1", "500"] {
+            let (why, words) = why(&format!("boom,1,1,accepted,{delay_s},,Ann,101,,"));
+            assert!(matches!((why, words), (Some(Why::Outside { .. }), 0)), "{delay_s}");
+        }
         assert_eq!(why("arm,1,1,rejected,,,Ann,,,"), (Some(Why::NoJoint), 0));
         assert_eq!(why("boom,2,1,rejected,,,Ann,,,"), (Some(Why::NoTrial), 0));
         assert_eq!(why("boom,1,9,rejected,,,Ann,,,"), (Some(Why::NoStep(3)), 0));
