@@ -21,6 +21,11 @@ const HARM: f64 = 0.01;
 /// Chosen: what is worse by more does not become better by a fit.
 const WORSE: f64 = 1.3;
 
+/// What the cost with two effects in the place of one, or with a finer form of one, must be in parts
+/// of the cost without, whatever the criterion says, which is less sure where more is missing. Chosen:
+/// 2 % of the error, as a single effect has to explain.
+const LESS: f64 = 0.96;
+
 /// Changes that are fitted, at most. Chosen: each more costs a fit.
 const FINALISTS: usize = 6;
 
@@ -46,16 +51,16 @@ impl Exchange {
         Self { change, then: None }
     }
 
-    /// By how much the criterion must speak for it: two effects in the place of one, and a finer form
-    /// of one, have to be more likely beyond doubt; what is as likely keeps its usual name.
-    fn hurdle(self) -> f64 {
+    /// Whether it brings two effects for one, or a finer form of one: what is as likely keeps its usual
+    /// name.
+    fn is_unusual(self) -> bool {
         let is_finer = match self.change {
             Change::Replaced { new, .. } => {
                 by_id(new).is_some_and(|new| new.spec().refines.is_some())
             }
             _ => false,
         };
-        if is_finer || self.then.is_some() { ALIKE } else { 0.0 }
+        is_finer || self.then.is_some()
     }
 
     /// `model` after it.
@@ -89,7 +94,9 @@ impl Removal<'_> {
                 || self.options.keeps_refinements
                 || self.misfit.has_consequence(record, whole, &fit);
             let behind = evidence.criterion() - of_whole.criterion();
-            (behind < -change.hurdle() && !does_harm && is_worth_it)
+            let leaves_less = !change.is_unusual() || fit.cost < LESS * whole.cost;
+            let hurdle = if change.is_unusual() { ALIKE } else { 0.0 };
+            (behind < -hurdle && leaves_less && !does_harm && is_worth_it)
                 .then_some((behind, (change, fit)))
         });
         let (_, better) = judged.min_by(|a, b| a.0.total_cmp(&b.0))?;
