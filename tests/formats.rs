@@ -135,6 +135,15 @@ mod parquet {
     }
 
     #[test]
+    fn dates_without_a_time_of_day_are_no_times() {
+        let message = refusal(golden("dated.parquet"), &ReadOptions::default());
+        assert!(
+            message.contains("column `time`: it holds dates without a time of day"),
+            "{message}"
+        );
+    }
+
+    #[test]
     fn a_column_that_is_missing_is_offered_in_its_right_spelling() {
         let options = mapped(&[("boom", "boom.inptu", "boom.output")]);
         let message = refusal(golden("typed.parquet"), &options);

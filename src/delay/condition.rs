@@ -79,6 +79,25 @@ impl Condition {
     }
 }
 
+impl Condition {
+    /// What is so where it is met, in few words.
+    #[cfg(feature = "rrd")]
+    pub(crate) fn when_met(self) -> &'static str {
+        match self {
+            Self::FirstOrLast => "not first or last",
+            Self::OutputLimit => "output in its limits",
+            Self::BeforeInput => "break after step",
+            Self::SlopeChange => "slope changes",
+            Self::ShortHold => "held long enough",
+            Self::Sse => "lines fit",
+            Self::TooShort => "two lines find room",
+            Self::AtRest => "joint moves",
+            Self::NothingHappened => "more than noise",
+            Self::Reviewer => "no reviewer's word",
+        }
+    }
+}
+
 impl fmt::Display for Condition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.id())

@@ -43,6 +43,7 @@ pub use joint::{Joint, Signal, Trial, TrialError};
 pub use memory::MemoryLimit;
 pub(crate) use names::{is_control, nearest_name};
 pub(crate) use read::is_period;
+pub(crate) use read::notes_on_subfolders;
 pub use read::{Experiment, Failure, ReadOptions, expand_folders};
 pub use sampling::Repair;
 pub use source::Source;

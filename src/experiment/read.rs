@@ -200,6 +200,23 @@ fn logs_in(path: &Path) -> Result<Vec<PathBuf>, ReadError> {
     Ok(logs)
 }
 
+/// A note on each of the folders in `paths` that has logs in folders of its own, which
+/// [`expand_folders`] leaves out.
+pub(crate) fn notes_on_subfolders(paths: &[PathBuf]) -> Vec<String> {
+    let note = |path: &PathBuf| {
+        let entries = path.read_dir().ok()?.filter_map(|entry| Some(entry.ok()?.path()));
+        let mut inner: Vec<PathBuf> =
+            entries.filter(|inner| inner.is_dir() && logs_in(inner).is_ok()).collect();
+        inner.sort();
+        let first = inner.first()?.display();
+        Some(format!(
+            "{}: logs in folders within it are left out; name them to read them, as `{first}`",
+            path.display()
+        ))
+    };
+    paths.iter().filter_map(note).collect()
+}
+
 fn is_log(path: &Path) -> bool {
     is_named_like_a_log(&lower_name(path)) && !is_truth(path) && path.is_file()
 }

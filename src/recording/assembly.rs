@@ -132,6 +132,15 @@ fn open_on_the_first(
     ];
     // On the timeline of differences the first tick is this decision's own.
     let index = Index::before_all(Opening { is_compared: false, ..layout.first });
+    // A recording with a model opens on `time`.
+    let start = layout.trials.first().and_then(|trial| trial.moments(1).next());
+    let starts_with_step = layout.segments().any(|(trial, segment)| {
+        start.is_some_and(|start| trial.opening(segment).sample <= start.sample)
+    });
+    let index = match start.filter(|_| !starts_with_step) {
+        Some(start) => index.and_at(start),
+        None => index,
+    };
     for (path, component) in shown {
         chunks.repeat((&at(root, path), component), segment.opening, &index)?;
     }

@@ -111,6 +111,11 @@ impl Index {
         Self { decision: vec![0], ..Self::default() }.opened(opening)
     }
 
+    /// The same row, at the first sample of the record, too.
+    pub(super) fn and_at(self, Moment { sample, time_ns, .. }: Moment) -> Self {
+        Self { sample: vec![sample; self.len()], time_ns: vec![time_ns; self.len()], ..self }
+    }
+
     /// One row on each timeline on which no sample lies.
     pub(super) fn off_the_record(opening: Opening) -> Self {
         Self { segment: vec![1], doubt: vec![1], ..Self::default() }.opened(opening)

@@ -54,7 +54,7 @@ pub(super) fn add(
     let page = page(layout, models, judged).unwrap_or_default();
     let document = TextDocument::from_markdown(page);
     chunks.push_static(at(root, paths::MODEL_PAGE), &document)?;
-    scatter::add(chunks, &at(root, paths::scatter::ROOT), models)?;
+    scatter::add(chunks, &at(root, paths::scatter::ROOT), models, judged)?;
     error_share::add(chunks, &at(root, paths::error_share::ROOT), models)?;
     correlogram::add(chunks, &at(root, paths::correlation::ROOT), models)?;
     if is_first(models, judged) {

@@ -9,6 +9,7 @@ use super::error::RecordError;
 use super::palette::{self, color};
 use super::paths::{at, of_model, scatter};
 use super::sheet::Sheet;
+use crate::numerics::quantile;
 use crate::report::ComparedJoint;
 use crate::wording::bracketed;
 
@@ -29,22 +30,23 @@ struct Pairs {
 }
 
 /// Draws the residuals of `models` against four quantities below `root`; the points are
-/// those of the first model, the curves those of all.
+/// those of the one that is `judged`, the curves those of all.
 pub(super) fn add(
     chunks: &mut Chunks,
     root: &EntityPath,
     models: &[&ComparedJoint<'_>],
+    judged: &ComparedJoint<'_>,
 ) -> Result<(), RecordError> {
-    let Some(first) = models.first() else { return Ok(()) };
     let (mut sheet, mut points) = (Sheet::default(), Vec::new());
     let mut curves: Vec<Vec<Vec<Vec2D>>> = vec![Vec::new(); models.len()];
     let others: Vec<Vec<Pairs>> = models.iter().map(|model| quantities(model)).collect();
-    for (place, pairs) in quantities(first).iter().enumerate() {
+    for (place, pairs) in quantities(judged).iter().enumerate() {
         let plot = plot(place, pairs);
         sheet.draw(&plot, 4.0, &pairs.name);
         let every = pairs.x.len().div_ceil(POINTS).max(1);
         let places = pairs.x.iter().zip(&pairs.residual).step_by(every);
-        points.extend(places.map(|(x, r)| plot.at(*x, *r)));
+        let inside = places.filter(|(x, _)| is_drawn(&plot, **x));
+        points.extend(inside.map(|(x, r)| plot.at(*x, *r)));
         for (curves, all) in curves.iter_mut().zip(&others) {
             curves.extend(all.get(place).map(|pairs| curve(&plot, pairs)));
         }
@@ -63,9 +65,22 @@ pub(super) fn add(
 fn plot(place: usize, pairs: &Pairs) -> Plot {
     let left = 400.0 * place as f32;
     let (rows, columns) = (48.0..=226.0, (left + 105.0, left + 385.0));
-    let x = Span::around(pairs.x.iter().copied(), 0.03);
-    let y = Span::around(pairs.residual.iter().copied(), 0.05);
+    let x = Span::around(most_of(&pairs.x), 0.03);
+    let y = Span::around(most_of(&pairs.residual), 0.05);
     Plot::within(columns, rows, x, y)
+}
+
+/// Whether the plot reaches so far; what is off it upwards or downwards is drawn on its edge.
+fn is_drawn(plot: &Plot, x: f64) -> bool {
+    (0.0..=1.0).contains(&plot.x_span().part(x))
+}
+
+/// Two values between which all but the outermost of `values` lie: one spike would press the
+/// others together.
+fn most_of(values: &[f64]) -> impl Iterator<Item = f64> {
+    /// Part of the values beyond either end.
+    const BEYOND: f64 = 0.002;
+    [BEYOND, 1.0 - BEYOND].into_iter().filter_map(|part| quantile(values, part))
 }
 
 fn quantities(compared: &ComparedJoint<'_>) -> Vec<Pairs> {
@@ -112,10 +127,10 @@ fn curve(plot: &Plot, pairs: &Pairs) -> Vec<Vec2D> {
     let size = sorted.len().div_ceil(BINS).max(1);
     let mean = |bin: &[(f64, f64)]| {
         let n = bin.len() as f64;
-        let (x, r) = bin.iter().fold((0.0, 0.0), |(x, r), pair| (x + pair.0 / n, r + pair.1 / n));
-        plot.at(x, r)
+        bin.iter().fold((0.0, 0.0), |(x, r), pair| (x + pair.0 / n, r + pair.1 / n))
     };
-    sorted.chunks(size).map(mean).collect()
+    let means = sorted.chunks(size).map(mean).filter(|(x, _)| is_drawn(plot, *x));
+    plot.places(means)
 }
 
 #[cfg(test)]

@@ -24,7 +24,7 @@ use crate::figure::segment::SegmentFigure;
 use crate::figure::{Role, power_of_ten};
 use crate::study::StepResult;
 use crate::units::signed;
-use crate::wording::{bracketed, number};
+use crate::wording::{bracketed, number, samples_text};
 
 /// Width and height of the sheet.
 pub(super) const SIZE: (f32, f32) = (SHEET.0, 770.0);
@@ -344,8 +344,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
             let interval = decision.fine.map_or_else(String::new, |fine| {
                 format!(" ({} … {})", number(fine.low), number(fine.high))
             });
-            let unit = if number(delay) == "1" { "sample" } else { "samples" };
-            let text = format!("δ = {} {unit}{interval} = {seconds} s", number(delay));
+            let text = format!("δ = {}{interval} = {seconds} s", samples_text(delay));
             labels.put_whole(self.output.above(p + delay / 2.0, 62.0), text);
         }
         self.name_places(&mut labels);

@@ -12,8 +12,9 @@ use super::paths::{self, at};
 use crate::delay::{Check, Condition, Decision, FineDelay, Lag, LagPart, Outcome};
 use crate::delay::{Settings, Settling, Tracking, Verdict};
 use crate::experiment::Joint;
+use crate::numerics::quantile;
 use crate::report::{EstimatedJoint, dead_time_sentences};
-use crate::wording::{counted, doubt_percent, number, remedy_text, rounded};
+use crate::wording::{counted, doubt_percent, number, remedy_text, rounded, samples_text};
 
 /// Adds `/verdict` (text, log line and lane), `/segment` and `/trial` (lanes).
 pub(super) fn add(
@@ -26,9 +27,10 @@ pub(super) fn add(
     let (joint, settings) = (estimated.joint, &estimated.estimate.settings);
     let segments: Vec<_> = layout.segments().collect();
     let opening = layout.openings();
+    let typical = typical_delay(estimated);
     let text = |(trial, segment): &Placed<'_, '_>| {
         let methods = methods(trial, segment, settings, others);
-        document(Facts { joint, trial, segment, settings }, &methods)
+        document(Facts { joint, trial, segment, settings, typical: typical.as_deref() }, &methods)
     };
     let texts: Vec<String> = segments.iter().map(text).collect();
     let markdown = std::iter::repeat_n("text/markdown", texts.len());
@@ -190,7 +192,26 @@ pub(super) fn page(
     segment: &SegmentLayout<'_>,
 ) -> String {
     let settings = &estimated.estimate.settings;
-    document(Facts { joint: estimated.joint, trial, segment, settings }, "")
+    let typical = typical_delay(estimated);
+    let typical = typical.as_deref();
+    document(Facts { joint: estimated.joint, trial, segment, settings, typical }, "")
+}
+
+/// The median delay of the accepted steps of a joint, and the range of most of them: what one of
+/// them is held against.
+fn typical_delay(EstimatedJoint { joint, estimate }: EstimatedJoint<'_>) -> Option<String> {
+    /// Share of the steps that lie between both ends.
+    const MOST: f64 = 0.8;
+    let mut delays = Vec::new();
+    for (trial, found) in joint.trials.iter().zip(&estimate.trials) {
+        let decisions = found.iter().flat_map(|found| &found.decisions);
+        let accepted = decisions.filter_map(Decision::accepted_delay);
+        delays.extend(accepted.map(|samples| samples * trial.period().seconds()));
+    }
+    let [low, middle, high] =
+        [0.5 - MOST / 2.0, 0.5, 0.5 + MOST / 2.0].map(|part| quantile(&delays, part).map(rounded));
+    let most = number(100.0 * MOST);
+    Some(format!("{} s; {most} % within {} to {} s", middle?, low?, high?))
 }
 
 /// The table of all results, where there are several.
@@ -217,6 +238,8 @@ struct Facts<'l, 'a> {
     trial: &'l TrialLayout<'a>,
     segment: &'l SegmentLayout<'a>,
     settings: &'l Settings,
+    /// The delays of all accepted steps of the joint, in words.
+    typical: Option<&'l str>,
 }
 
 impl Facts<'_, '_> {
@@ -334,8 +357,7 @@ impl Facts<'_, '_> {
             let candidate = best.candidate;
             let slope = |slope| with_unit(slope, self.joint.output_unit.as_deref(), "/sample");
             let samples = decision.delay().unwrap_or(best.delay as f64);
-            let unit = if number(samples) == "1" { "sample" } else { "samples" };
-            let delay = format!("**{} {unit} = {}**", number(samples), self.delay(samples));
+            let delay = format!("**{} = {}**", samples_text(samples), self.delay(samples));
             let count = decision.candidates.len();
             rows.extend([
                 ("breakpoint q".to_owned(), self.breakpoint(candidate.breakpoint)),
@@ -354,6 +376,8 @@ impl Facts<'_, '_> {
         rows.extend(self.trial.estimate.settling.iter().flat_map(settling_rows));
         rows.extend(self.trial.estimate.tracking.as_ref().map(tracking_row));
         rows.extend(self.how_near());
+        let typical = |words: &str| ("median delay of the joint".to_owned(), words.to_owned());
+        rows.extend(self.typical.map(typical));
         let rows: Vec<_> =
             rows.iter().map(|(name, value)| format!("| {name} | {value} |")).collect();
         format!("| quantity | value |\n|---|---|\n{}", rows.join("\n"))
@@ -402,10 +426,11 @@ impl Facts<'_, '_> {
                 Outcome::Failed => "✗",
                 Outcome::NotChecked => "–",
             };
-            format!("| {mark} | {} | {} |", check.condition, self.in_short(&check))
+            // `✓ nothing_happened` would read inverted.
+            format!("| {mark} | {} | {} |", check.condition.when_met(), self.in_short(&check))
         };
         let rows: Vec<_> = self.segment.decision.checks.iter().map(row).collect();
-        format!("| | condition | value (limit) |\n|---|---|---|\n{}", rows.join("\n"))
+        format!("| | met when | value (limit) |\n|---|---|---|\n{}", rows.join("\n"))
     }
 
     /// Value and what it must be, as narrow as a cell is: `q = 11070 (≥ p = 11069)`.

@@ -5,7 +5,7 @@ use super::decisions::detailed_rows;
 use super::text_table::TextTable;
 use crate::delay::{Decision, InputStep, Verdict};
 use crate::experiment::{Joint, Trial};
-use crate::wording::{number, unit_suffix};
+use crate::wording::{number, samples_text, unit_suffix};
 
 /// One step in a line, as it is reported when it has come, with its trial where there are several.
 pub(crate) fn step_line(joint: &Joint, trial: &Trial, decision: &Decision) -> String {
@@ -22,7 +22,7 @@ pub(crate) fn step_line(joint: &Joint, trial: &Trial, decision: &Decision) -> St
     let Verdict::Rejected(condition) = decision.verdict() else {
         let samples = decision.delay().unwrap_or(0.0);
         let seconds = samples * trial.period().seconds();
-        return format!("{step}: delay {seconds:.3} s ({} samples)", number(samples));
+        return format!("{step}: delay {seconds:.3} s ({})", samples_text(samples));
     };
     format!("{step}: rejected, {}", condition.id())
 }

@@ -5,6 +5,9 @@ use super::counted;
 use super::number;
 use crate::delay::{Condition, Doubt, Flag, Verdict};
 
+/// Margin of a condition that failed up to which it failed by little.
+const LITTLE: f64 = 0.3;
+
 /// What speaks most against a decision with this verdict, on a trial sampled every `period_s`
 /// seconds.
 pub(crate) fn doubt_sentence(doubt: &Doubt, verdict: Verdict, period_s: f64) -> String {
@@ -13,7 +16,10 @@ pub(crate) fn doubt_sentence(doubt: &Doubt, verdict: Verdict, period_s: f64) -> 
     if let Verdict::Rejected(_) = verdict {
         return near.map_or_else(
             || "no number is near its limit".to_owned(),
-            |(condition, _)| format!("{condition} fails by little"),
+            |(condition, margin)| {
+                let far = if margin < LITTLE { "by little" } else { "though not by far" };
+                format!("{condition} fails {far}")
+            },
         );
     }
     let [explained, placed, meeting] = doubt.margins();

@@ -46,6 +46,13 @@ pub(crate) fn bracketed(name: &str, unit: Option<&str>) -> String {
     unit.map_or_else(|| name.to_owned(), |unit| format!("{name} [{unit}]"))
 }
 
+/// So many samples, which may lie between two: `1 sample`, `12.4 samples`.
+pub(crate) fn samples_text(count: f64) -> String {
+    let count = number(count);
+    let noun = if count == "1" { "sample" } else { "samples" };
+    format!("{count} {noun}")
+}
+
 /// A number to five digits, with its unit where there is one.
 pub(crate) fn with_unit(value: f64, unit: Option<&str>) -> String {
     number(value) + &unit_suffix(unit)

@@ -81,6 +81,16 @@ def parquet(columns):
         "boom.output": np.array(columns["boom.output [deg]"], "float32")})
 
 
+def dated(columns):
+    """Times of the type date, which have no time of day."""
+    rows = len(columns["time_s"])
+    pq.write_table(pa.table({
+        "time": pa.array(range(20000, 20000 + rows), pa.date32()),
+        "boom.input [V]": columns["boom.input [V]"],
+        "boom.output [deg]": columns["boom.output [deg]"],
+    }), HERE / "dated.parquet")
+
+
 def narrow(columns):
     """As databases and data frames write small numbers: durations, decimals, half precision."""
     import decimal
@@ -250,5 +260,6 @@ if __name__ == "__main__":
     write_csv(HERE / "log.csv", columns)
     parquet(columns)
     narrow(columns)
+    dated(columns)
     mat(columns)
     ros()

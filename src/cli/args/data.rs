@@ -7,6 +7,7 @@ use crate::cli::console::Host;
 use crate::cli::failure::said;
 use crate::experiment::{
     ColumnMap, Experiment, JointColumns, MemoryLimit, ReadOptions, Repair, expand_folders,
+    notes_on_subfolders,
 };
 use crate::units::SamplePeriod;
 use anyhow::{Context as _, bail};
@@ -274,5 +275,6 @@ fn read_or_take(data: &[PathBuf], options: &ReadOptions) -> Experiment {
     let (files, unlisted) = expand_folders(data);
     let mut experiment = Experiment::read(&files, options);
     experiment.failures.splice(0..0, unlisted);
+    experiment.notes.extend(notes_on_subfolders(data));
     experiment
 }

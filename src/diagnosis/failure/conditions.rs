@@ -109,6 +109,9 @@ pub struct FailsWhere {
     pub share_of_squared_error: f64,
     /// Whether it is of the error of the speed.
     pub of_speed: bool,
+    /// Whether it was looked for in the error beside the speed, `e / v`: another one holds more of
+    /// the error, which says no more than where the joint is fast.
+    pub beside_speed: bool,
     /// Root mean square of their residuals, output units.
     pub rmse: f64,
     /// How often chance gives a condition as good, at most 0.01; see [`fails_where`].
@@ -136,7 +139,12 @@ impl FailsWhere {
     pub(crate) fn weight(&self) -> String {
         let of = if self.of_speed { " of the speed" } else { "" };
         let (error, time) = (percent(self.share_of_squared_error), percent(self.share_of_time));
-        format!("{error} of the squared error{of}, in {time} of the time")
+        let beside = if self.beside_speed {
+            "; relative to the speed the error is largest there"
+        } else {
+            ""
+        };
+        format!("{error} of the squared error{of}, in {time} of the time{beside}")
     }
 }
 
@@ -229,7 +237,8 @@ fn beside_motion(
     let exact = relative.grid().members(&choice.selections, record.rows());
     let (clauses, samples) = in_few_digits(record, search, relative.grid(), &choice, &exact);
     let is_new = overlap(&moving.samples, &samples) <= SAME;
-    is_new.then(|| report(record, search, clauses, samples, p_value))
+    let found = || report(record, search, clauses, samples, p_value);
+    is_new.then(|| FailsWhere { beside_speed: true, ..found() })
 }
 
 /// The clauses of `choice` with bounds of three digits, or up to six where fewer would be
@@ -277,6 +286,7 @@ fn report(
         share_of_time: samples.len() as f64 / record.len() as f64,
         share_of_squared_error: search.share(&samples),
         of_speed: !record.samples().speed_error.is_empty(),
+        beside_speed: false,
         rmse: record.rmse_of(samples.iter().copied()),
         p_value,
         clauses,
@@ -356,6 +366,7 @@ mod tests {
             share_of_time: 0.314,
             share_of_squared_error: 0.879,
             of_speed: true,
+            beside_speed: false,
             rmse: 1.3,
             p_value: 0.005,
             clauses: vec![

@@ -164,6 +164,10 @@ fn not_numbers(column: &ColumnDescriptor) -> Option<String> {
     let logical = column.logical_type_ref();
     match column.physical_type() {
         _ if column.max_rep_level() > 0 => Some("lists".to_owned()),
+        // Days, which would be read as seconds.
+        _ if matches!(logical, Some(LogicalType::Date)) => {
+            Some("dates without a time of day".to_owned())
+        }
         Type::BOOLEAN | Type::FLOAT | Type::DOUBLE | Type::INT32 | Type::INT64 => None,
         Type::FIXED_LEN_BYTE_ARRAY if fixed_length(column).is_some() => None,
         Type::BYTE_ARRAY if matches!(logical, Some(LogicalType::String)) => Some("text".to_owned()),

@@ -9,7 +9,7 @@ use crate::recording::chunk::{Chunks, Index, fine_columns, integers, numbers};
 use crate::recording::error::RecordError;
 use crate::recording::layout::{JointLayout, SegmentLayout, TrialLayout};
 use crate::recording::paths::{self, at, child};
-use crate::wording::number;
+use crate::wording::{number, samples_text};
 
 /// A segment, and its step among the accepted ones, with its place there.
 pub(super) struct Placed<'l, 'a> {
@@ -44,8 +44,8 @@ impl Placed<'_, '_> {
             }
             (Verdict::Accepted, Some((_, state)), Some(delay)) => {
                 let direction = Way::of(state).word();
-                let (samples, seconds) = (number(delay), number(state.delay_s));
-                format!("● {words}, {direction}: delay {samples} samples = {seconds} s")
+                let (samples, seconds) = (samples_text(delay), number(state.delay_s));
+                format!("● {words}, {direction}: delay {samples} = {seconds} s")
             }
             (Verdict::Accepted, ..) => words,
         }

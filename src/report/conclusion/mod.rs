@@ -131,7 +131,10 @@ impl Finding<'_> {
     /// What the model explains of the motion: `1 − e/d` with the standard deviation `d` of what
     /// was measured.
     fn follows(&self) -> String {
-        let model = effects_text(&self.comparison().fit.model);
+        let model = match effects_text(&self.comparison().fit.model) {
+            alone if self.comparison().fit.model.components().is_empty() => format!("the {alone}"),
+            effects => format!("a model with {effects}"),
+        };
         match self.comparison().judged().map(|error| error.fit_percent) {
             Some(fit) if fit > 0.0 => {
                 format!("{model} explains {} of the motion", percent(fit / 100.0))

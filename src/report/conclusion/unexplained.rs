@@ -26,7 +26,16 @@ impl Finding<'_> {
         passages
             .extend(Passage::of(Topic::Residual, self.shape().into_iter().chain(self.nearest())));
         passages.extend(Passage::of(Topic::Shares, self.consequence().sentences()));
+        passages.extend(Passage::of(Topic::Next, self.several_together()));
         passages
+    }
+
+    /// What finds effects that show only together, where one at a time was looked for.
+    fn several_together(&self) -> Option<String> {
+        let next = "Effects that show only together are sought by `tauscope improve`, which adds one \
+                    after the other and takes back what another makes superfluous.";
+        let is_one_at_a_time = self.before.is_none() && !self.ranking.is_empty();
+        (is_one_at_a_time && !self.is_down_to_noise()).then(|| next.to_owned())
     }
 
     pub(super) fn open_headline(&self) -> String {

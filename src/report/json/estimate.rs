@@ -258,13 +258,13 @@ struct DecisionJson<'a> {
 
 impl<'a> EstimateJson<'a> {
     /// Collects the results of one or several runs, the first of which is the answer;
-    /// `against` compares it with further ones; `failures` are messages on joints and files that
-    /// failed.
+    /// `against` compares it with further ones; the last are notes on reading and results, and
+    /// messages on joints and files that failed.
     pub(crate) fn new(
         experiment: &'a Experiment,
         runs: &[(&'a Settings, &'a [EstimatedJoint<'a>])],
         against: &'a [Against<'a>],
-        failures: &'a [String],
+        (notes, failures): (&'a [String], &'a [String]),
     ) -> Option<Self> {
         let run = |(settings, joints): &(&Settings, &'a [EstimatedJoint<'a>])| RunJson {
             settings: (*settings).into(),
@@ -283,7 +283,7 @@ impl<'a> EstimateJson<'a> {
             first: run(first),
             also: others.iter().map(run).collect(),
             against: against.iter().map(OtherJson::new).collect(),
-            notes: &experiment.notes,
+            notes,
             failures,
         })
     }

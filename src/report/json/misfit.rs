@@ -214,6 +214,7 @@ mod tests {
             share_of_time: 0.31,
             share_of_squared_error: 0.88,
             of_speed: true,
+            beside_speed: false,
             rmse: 1.3,
             p_value: 0.001,
             clauses: Vec::new(),

@@ -71,7 +71,8 @@ pub(crate) fn run(args: &Args, program: &clap::Command) -> anyhow::Result<Comple
     let notes: Vec<_> = notes(first_joints).into_iter().chain(further).collect();
     session.warn(&failures, &notes);
     files.write(&result, &session.stream, verbosity)?;
-    let json = || EstimateJson::new(experiment, &runs, &against, &failures);
+    let all_notes: Vec<_> = experiment.notes.iter().cloned().chain(notes).collect();
+    let json = || EstimateJson::new(experiment, &runs, &against, (&all_notes, &failures));
     session.end(Completion::without(&failures), || text(&args.output, &result), json)
 }
 
