@@ -334,6 +334,26 @@ fn errors_are_small_and_intervals_hold_what_they_say() {
     }
 }
 
+/// The reaction to a command that the log does not hold is no lag of all steps.
+#[test]
+fn a_log_that_begins_within_a_delay_shows_no_lag() {
+    /// Samples of the delay that have passed.
+    const PASSED: usize = 6;
+    let levels = (-2..=2).map(f64::from).collect();
+    let input = InputSpec::Levels { levels, hold_s: [1.0, 2.5] };
+    let delay = DelayLaw::Constant { seconds: 0.2 };
+    let made = lasting(90.0, JointSpec { noise: 0.02, ..JointSpec::new("arm", input, delay) });
+    let whole = &made.joints[0].trials[0];
+    for step in made.truth.iter().take(12) {
+        let first = step.p - 1 + PASSED;
+        let [input, output] = [whole.input(), whole.output()].map(|all| all[first..].to_vec());
+        let trial = Trial::new("1", 0.0, whole.period(), input, output).unwrap();
+        let found = estimate(&trial, &Settings::of(Method::LAG_AWARE)).unwrap();
+        let order = found.lag.as_ref().map(tauscope::delay::Lag::order);
+        assert_eq!(order, Some(0), "begun at sample {first}: {:?}", found.lag);
+    }
+}
+
 #[test]
 fn holds_may_be_shorter_than_delay_and_lag() {
     let short = JointSpec {

@@ -6,7 +6,7 @@ use rerun::log::LogMsg;
 use rerun::{ApplicationId, EntityPath};
 
 use super::beside::{Other, weight};
-use super::chunk::{Chunks, Index, Opening};
+use super::chunk::{Chunks, Index, Moment, Opening};
 use super::content::{Content, Growth, Tab, hashed, name_of};
 use super::error::RecordError;
 use super::layout::{JointLayout, TrialStarts};
@@ -98,9 +98,10 @@ fn add_joint(
     delay_state::add(chunks, &root, estimated, layout)?;
     doubt::add(chunks, &root, joint, layout)?;
     difference::add(chunks, &root, joint, layout, others)?;
-    open_on_the_first(chunks, &root, layout)?;
     let models = recording.models.iter().filter(|model| model.joint.name == joint.name);
     let models: Vec<_> = models.collect();
+    let first_sample = first_sample(layout).filter(|_| !models.is_empty());
+    open_on_the_first(chunks, &root, layout, first_sample)?;
     let revisions = recording.revisions_of(joint);
     // Of several revisions the last one is what there is to judge.
     let judged = if revisions.is_some() { models.last() } else { models.first() };
@@ -113,12 +114,20 @@ fn add_joint(
     }
 }
 
+/// The first sample of all, where no step begins at it.
+fn first_sample(layout: &JointLayout<'_>) -> Option<Moment> {
+    let first = layout.trials.first().and_then(|trial| trial.moments(1).next())?;
+    let mut steps = layout.segments().map(|(trial, segment)| trial.opening(segment).sample);
+    steps.all(|step| step > first.sample).then_some(first)
+}
+
 /// Shows the most different or most doubtful decision before the first tick, where the viewer
-/// opens, and on the timeline of revisions.
+/// opens, on the timeline of revisions, and at the `first_sample` where it opens on `time`.
 fn open_on_the_first(
     chunks: &mut Chunks,
     root: &EntityPath,
     layout: &JointLayout<'_>,
+    first_sample: Option<Moment>,
 ) -> Result<(), RecordError> {
     let Some(segment) = layout.shown_first() else { return Ok(()) };
     let map = format!("{}/{}", map::ROOT, map::HERE);
@@ -132,12 +141,7 @@ fn open_on_the_first(
     ];
     // On the timeline of differences the first tick is this decision's own.
     let index = Index::before_all(Opening { is_compared: false, ..layout.first });
-    // A recording with a model opens on `time`.
-    let start = layout.trials.first().and_then(|trial| trial.moments(1).next());
-    let starts_with_step = layout.segments().any(|(trial, segment)| {
-        start.is_some_and(|start| trial.opening(segment).sample <= start.sample)
-    });
-    let index = match start.filter(|_| !starts_with_step) {
+    let index = match first_sample {
         Some(start) => index.and_at(start),
         None => index,
     };

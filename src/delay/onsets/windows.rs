@@ -25,6 +25,10 @@ pub(crate) enum Precision {
 
 /// Windows of a few onsets each, at the positions of the path. Each begins and ends where
 /// no other onset can be, as well as their positions are known.
+///
+/// A log may begin within the delay of a command that it does not hold. The reaction to that, before
+/// the first step's, would pass for a lag of all: where there are others, what is before the first
+/// onset is left out.
 pub(crate) fn fit_windows<'a>(
     output: &'a [f64],
     path: &OnsetPath,
@@ -35,9 +39,6 @@ pub(crate) fn fit_windows<'a>(
         return lone_windows(output, path, precision);
     }
     let counting: Vec<_> = path.onsets.iter().filter(|onset| rough || onset.counts).collect();
-    // A log may begin within the delay of a command that it does not hold. The reaction to that,
-    // before the first step's, would pass for a lag of all: where there are others, what is before
-    // the first onset is left out.
     let (first, counting) = match counting.as_slice() {
         [first, others @ ..] if others.len() >= TOGETHER => (Some(*first), others),
         all => (None, all),
@@ -74,12 +75,15 @@ fn lone_windows<'a>(
     let rough = precision == Precision::Rough;
     let window = |(index, onset): (usize, &Onset)| {
         let range = path.window(index);
-        let onsets = vec![onset.position - range.start as f64];
+        let (start, onsets) = (range.start, vec![onset.position - range.start as f64]);
         let is_fit = !onset.alone && !onset.at_rest && (rough || onset.counts);
         let values = output.get(range).filter(|values| is_fit && values.len() > FEWEST)?;
-        Some(FitWindow { values, onsets, shared: (0, 0) })
+        Some((start, FitWindow { values, onsets, shared: (0, 0) }))
     };
-    path.onsets.iter().enumerate().filter_map(window).collect()
+    let windows: Vec<_> = path.onsets.iter().enumerate().filter_map(window).collect();
+    let later = windows.iter().filter(|(start, _)| *start > 0).count();
+    let from_the_first = |start: usize| start == 0 && later >= TOGETHER;
+    windows.into_iter().filter(|(start, _)| !from_the_first(*start)).map(|(_, it)| it).collect()
 }
 
 /// Samples by which an onset of another step may be later than it was found.

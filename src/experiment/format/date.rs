@@ -26,6 +26,14 @@ pub(in crate::experiment) fn date_of_seconds(seconds: f64) -> Option<String> {
     Some(Timestamp::from_second(whole).ok()?.to_string())
 }
 
+/// Days from the first of January 1970 to a day of the calendar; none where there is no such day.
+#[cfg(feature = "xlsx")]
+pub(super) fn days_since_1970(year: u16, month: u8, day: u8) -> Option<f64> {
+    let (month, day) = (i8::try_from(month).ok()?, i8::try_from(day).ok()?);
+    let date = Date::new(i16::try_from(year).ok()?, month, day).ok()?;
+    Some((date.duration_since(Date::constant(1970, 1, 1)).as_hours() / 24) as f64)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,10 +6,10 @@ use std::io::{BufReader, Read as _};
 use std::path::Path;
 
 use calamine::{Data, DataRef, ExcelDateTime, Range, Reader as _, Xlsx, XlsxError, open_workbook};
-use jiff::civil::Date;
 use zip::ZipArchive;
 
 use super::csv::table;
+use super::date::days_since_1970;
 use super::text::Bytes;
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::{Budget, TooLarge};
@@ -197,15 +197,12 @@ const DAYS_TO_1970: f64 = 25_569.0;
 
 /// Days since 1970 of a date: books count from 1900 or, those of older Macintoshes, from 1904, which
 /// only its day in the calendar tells.
-fn days_since_1970(time: &ExcelDateTime) -> f64 {
+fn days_of(time: &ExcelDateTime) -> f64 {
     const DAYS_FROM_1900_TO_1904: f64 = 1462.0;
     let from_1900 = time.as_f64() - DAYS_TO_1970;
     let (year, month, day, ..) = time.to_ymd_hms_milli();
-    let narrow = |part: u8| i8::try_from(part).unwrap_or_default();
-    let year = i16::try_from(year).unwrap_or_default();
-    let Ok(date) = Date::new(year, narrow(month), narrow(day)) else { return from_1900 };
-    let days = date.duration_since(Date::constant(1970, 1, 1)).as_hours() / 24;
-    let apart = days as f64 - from_1900;
+    let Some(days) = days_since_1970(year, month, day) else { return from_1900 };
+    let apart = days - from_1900;
     from_1900 + DAYS_FROM_1900_TO_1904 * (apart / DAYS_FROM_1900_TO_1904).round()
 }
 
@@ -217,7 +214,7 @@ fn cell(data: &Data) -> String {
         Data::Float(value) => value.to_string(),
         Data::Int(value) => value.to_string(),
         Data::Bool(value) => u8::from(*value).to_string(),
-        Data::DateTime(time) if time.is_datetime() => (days_since_1970(time) * SECONDS).to_string(),
+        Data::DateTime(time) if time.is_datetime() => (days_of(time) * SECONDS).to_string(),
         Data::DateTime(time) => (time.as_f64() * SECONDS).to_string(),
         // A line of the text is a row of the sheet.
         other => other.to_string().replace(['\n', '\r'], " "),
@@ -237,7 +234,7 @@ mod tests {
             let from_1900 = 45_352.0 + part;
             let date = |value, is_1904| {
                 let kind = ExcelDateTimeType::DateTime;
-                days_since_1970(&ExcelDateTime::new(value, kind, is_1904))
+                days_of(&ExcelDateTime::new(value, kind, is_1904))
             };
             let days = 19_783.0 + part;
             assert!((date(from_1900, false) - days).abs() < 1e-9);
