@@ -43,7 +43,7 @@ pub(crate) fn doubt_sentence(doubt: &Doubt, verdict: Verdict, period_s: f64) -> 
 /// A condition that holds by little.
 fn by_little(condition: Condition) -> String {
     let words = match condition {
-        Condition::BeforeInput => "the breakpoint is hardly behind the input step",
+        Condition::BeforeInput => "hardly behind the input step",
         Condition::SlopeChange => "the slope hardly changes enough",
         Condition::ShortHold => "the input is held hardly long enough",
         Condition::OutputLimit => "the output is near its limit",
