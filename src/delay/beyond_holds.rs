@@ -36,9 +36,9 @@ const EXPLAINED: f64 = 0.2;
 const UNEXPLAINED: f64 = 0.5;
 
 /// The delay over the record of `trials` in seconds, where it is longer than most holds of the input
-/// and not to be mistaken for a short one; none elsewhere.
-pub fn delay_beyond_holds(trials: &[Trial]) -> Option<f64> {
-    if are_strokes(trials) || InputMotion::of(trials).is_continuous() {
+/// and not to be mistaken for a short one; none elsewhere. `motion` is that of their input.
+pub fn delay_beyond_holds(trials: &[Trial], motion: &InputMotion) -> Option<f64> {
+    if motion.is_continuous() || are_strokes(trials) {
         return None;
     }
     let hold = median(&trials.iter().flat_map(holds).collect::<Vec<f64>>())?;
@@ -140,10 +140,15 @@ mod tests {
         Trial::new("1", 0.0, SamplePeriod::from_seconds(0.01).unwrap(), input, output).unwrap()
     }
 
+    fn found(trial: Trial) -> Option<f64> {
+        let trials = [trial];
+        delay_beyond_holds(&trials, &InputMotion::of(&trials))
+    }
+
     #[test]
     fn a_delay_longer_than_the_holds_is_seen() {
         for delay in [140, 200, 450] {
-            let found = delay_beyond_holds(&[trial(delay, 0.0)]).unwrap();
+            let found = found(trial(delay, 0.0)).unwrap();
             assert!((found - 0.01 * delay as f64).abs() < 0.11, "{delay}: {found}");
         }
     }
@@ -151,7 +156,7 @@ mod tests {
     #[test]
     fn short_delays_and_long_lags_are_not_taken_for_one() {
         for (delay, lag) in [(0, 0.0), (15, 0.0), (60, 0.0), (15, 40.0), (15, 150.0), (15, 400.0)] {
-            assert_eq!(delay_beyond_holds(&[trial(delay, lag)]), None, "{delay}, {lag}");
+            assert_eq!(found(trial(delay, lag)), None, "{delay}, {lag}");
         }
     }
 }
