@@ -125,6 +125,12 @@ mod parquet {
     }
 
     #[test]
+    fn durations_have_the_unit_that_arrow_notes_without_pandas() {
+        let found = read_whole("durations.parquet", &ReadOptions::default());
+        assert_eq!(found.joints, read_whole("narrow.csv", &ReadOptions::default()).joints);
+    }
+
+    #[test]
     fn text_in_place_of_numbers_is_named_with_its_column() {
         let options = mapped(&[("boom", "boom.input", "note")]);
         let message = refusal(golden("typed.parquet"), &options);

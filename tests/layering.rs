@@ -255,6 +255,7 @@ fn each_library_is_named_in_its_own_place_only() {
         ("flate2", "src/experiment/format"),
         ("encoding_rs", "src/experiment/format/text.rs"),
         ("jiff", "src/experiment/format/date.rs"),
+        ("arrow_ipc", "src/experiment/format/parquet"),
         ("calamine", "src/experiment/format/xlsx.rs"),
         ("hdf5_pure", "src/experiment/format/mat"),
         ("zip", "src/export/fmu src/experiment/format/xlsx.rs"),

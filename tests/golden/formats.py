@@ -111,6 +111,13 @@ def narrow(columns):
                                 preserve_index=False).schema.metadata
     table = table.replace_schema_metadata({b"pandas": said[b"pandas"]})
     pq.write_table(table, HERE / "narrow.parquet", store_decimal_as_integer=True)
+    of_arrow = pa.table({
+        "t": pa.array(np.round(np.array(columns["time_s"][:samples]) * 1e3).astype("int64"), pa.duration("ms")),
+        "boom": pa.StructArray.from_arrays(
+            [pa.array(volts), pa.array(degrees), pa.array(pressures.astype("float32"))],
+            ["input", "output", "pressure"]),
+    })
+    pq.write_table(of_arrow, HERE / "durations.parquet")
     write_csv(HERE / "narrow.csv", {
         "t": columns["time_s"][:samples], "boom.input": volts, "boom.output": degrees,
         "boom.pressure": pressures})

@@ -2,6 +2,8 @@
 //!
 //! A column in a structure is called by its path, `boom.input`, as is a flat one of that name.
 
+mod durations;
+
 use std::fs::File;
 use std::iter::repeat_n;
 use std::path::Path;
@@ -13,7 +15,6 @@ use parquet::errors::ParquetError;
 use parquet::file::metadata::RowGroupMetaData;
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
-use serde_json::Value;
 
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::{Budget, TooLarge};
@@ -47,8 +48,8 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
         return Err(damaged(path, &outside));
     }
     let columns = reader.metadata().file_metadata().schema_descr().columns();
-    let spans = pandas_durations(&reader);
-    let headers = columns.iter().map(|column| header(column, &spans)).collect();
+    let durations = durations::durations(&reader);
+    let headers = columns.iter().map(|column| header(column, &durations)).collect();
     let head = Head { path: path.to_owned(), headers, header_row: 0 };
     Ok(OpenTable { head, rows: Box::new(Unread { reader, budget }) })
 }
@@ -78,38 +79,18 @@ fn damaged(path: &Path, error: &ParquetError) -> ReadError {
     }
 }
 
-/// Names and units of the columns that pandas says are durations, for which Parquet has no type.
-fn pandas_durations(reader: &SerializedFileReader<File>) -> Vec<(String, &'static str)> {
-    let entries = reader.metadata().file_metadata().key_value_metadata();
-    let said = entries.and_then(|all| all.iter().find(|entry| entry.key == "pandas"));
-    let said = said.and_then(|entry| serde_json::from_str::<Value>(entry.value.as_ref()?).ok());
-    let columns = said.as_ref().and_then(|said| said.get("columns")?.as_array());
-    let duration = |column: &Value| {
-        let text = |key: &str| column.get(key)?.as_str();
-        let unit = match text("numpy_type")? {
-            "timedelta64[s]" => "s",
-            "timedelta64[ms]" => "ms",
-            "timedelta64[us]" => "us",
-            "timedelta64[ns]" => "ns",
-            _ => return None,
-        };
-        Some((text("field_name")?.to_owned(), unit))
-    };
-    columns.into_iter().flatten().filter_map(duration).collect()
-}
-
 /// A time without a unit in its name is in the unit of its type.
 fn header(column: &ColumnDescriptor, durations: &[(String, &'static str)]) -> Header {
     let mut header = Header::parse(&column.path().string());
     let name = column.path().string();
-    let of_pandas = || durations.iter().find(|(of, _)| *of == name).map(|(_, unit)| *unit);
+    let of_duration = || durations.iter().find(|(of, _)| *of == name).map(|(_, unit)| *unit);
     let of_type = match column.logical_type_ref() {
         Some(LogicalType::Timestamp(time) | LogicalType::Time(time)) => match time.unit {
             TimeUnit::MILLIS => Some("ms"),
             TimeUnit::MICROS => Some("us"),
             TimeUnit::NANOS => Some("ns"),
         },
-        _ => of_pandas(),
+        _ => of_duration(),
     };
     header.unit = header.unit.or(of_type.map(str::to_owned));
     header
