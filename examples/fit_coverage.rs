@@ -116,8 +116,12 @@ fn measured(
     random: &mut ChaCha8Rng,
 ) -> anyhow::Result<Vec<f64>> {
     let output = random.random_range(-10.0..10.0);
-    let surroundings =
-        Surroundings { others, radians_per_output_unit: 1_f64.to_radians(), start_s };
+    let surroundings = Surroundings {
+        others,
+        radians_per_output_unit: 1_f64.to_radians(),
+        start_s,
+        ..Surroundings::default()
+    };
     let simulated = simulate_input(model, input, PERIOD_S, output, &surroundings);
     let noise = Normal::new(0.0, NOISE)?;
     Ok(simulated.output.iter().map(|y| y + noise.sample(random)).collect())

@@ -25,6 +25,7 @@ fn means(effect: &dyn Effect, parameters: &[f64], holds: &[Hold]) -> Vec<f64> {
             time_s: 0.0,
             dt_s: *dt_s,
             others: 0.0,
+            measured: f64::NAN,
             radians_per_output_unit: 1.0,
         };
         effect.step(parameters, &mut memory, &at)

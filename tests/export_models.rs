@@ -130,6 +130,7 @@ impl Record {
             others: &self.others,
             radians_per_output_unit: 1_f64.to_radians(),
             start_s: self.start_s,
+            ..Surroundings::default()
         };
         simulate_input(model, &self.input, self.period_s, self.output, &surroundings).output
     }

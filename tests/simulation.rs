@@ -83,6 +83,7 @@ impl Case<'_> {
             others: &self.others,
             radians_per_output_unit: DEGREE,
             start_s: START_S,
+            ..Surroundings::default()
         };
         let samples = self.input.len();
         simulate(&self.model(), &arrivals, samples, PERIOD_S, &restarts, &surroundings).output

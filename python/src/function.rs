@@ -215,7 +215,8 @@ impl Called {
         [0.0, 0.01, -0.7, 3.0, -45.0, 1000.0].into_iter().zip(1..).all(|(signal, k)| {
             let (position, time_s) = (17.0 * f64::from(k) - 50.0, 3.0 * f64::from(k));
             let velocity = 0.5 * signal;
-            let (dt_s, others, radians_per_output_unit) = (0.01, 0.2, 1_f64.to_radians());
+            let (dt_s, others, measured) = (0.01, 0.2, f64::NAN);
+            let radians_per_output_unit = 1_f64.to_radians();
             let at = Moment {
                 signal,
                 position,
@@ -223,6 +224,7 @@ impl Called {
                 time_s,
                 dt_s,
                 others,
+                measured,
                 radians_per_output_unit,
             };
             let change = InputChange { before: position, after: signal, held_s: dt_s, time_s };

@@ -81,7 +81,12 @@ pub(crate) fn simulate<'py>(
     let input = input.as_array().to_vec();
     let others = others.map(|others| others.as_array().to_vec()).unwrap_or_default();
     let simulated = py.detach(|| {
-        let surroundings = Surroundings { others: &others, radians_per_output_unit, start_s };
+        let surroundings = Surroundings {
+            others: &others,
+            radians_per_output_unit,
+            start_s,
+            ..Surroundings::default()
+        };
         simulate_input(&model, &input, period_s, output, &surroundings).output
     });
     Function::check(&functions)?;

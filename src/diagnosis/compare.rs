@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::failure::{self, Diagnosis, Region, Samples, diagnose, regions};
+use super::input_edges::without_edges;
 use super::local_misfit::local_misfit;
 use super::noise::share_not_followed;
 use super::residual_size::{ResidualSize, clipped};
@@ -143,20 +144,39 @@ pub(crate) fn lack_of(record: &FitRecord<'_>, fit: &Assessment) -> Option<LackOf
         return None;
     }
     let floor = floor_of(record, fit);
-    let residuals = |part| record.cut(&fit.evaluation.residuals, part);
+    let tested = record.excerpt();
+    let own = sensitivities(record, fit, &tested);
+    let (test, own) = lack_in(record, &fit.evaluation, own, floor, &tested);
+    let lacks = test.filter(|test| !test.adequate);
+    let between = lacks.and_then(|_| without_edges(record, &fit.evaluation, floor?));
+    let (Some(test), Some((edges, rest))) = (test, between) else { return test };
+    let (without, _) = lack_in(record, &rest, own, floor, &tested);
+    Some(if without?.adequate { test.but_for(edges) } else { test })
+}
+
+/// Whether the residuals of `evaluation` are more than noise where they are `tested`, and the
+/// sensitivities that it was given.
+fn lack_in(
+    record: &FitRecord<'_>,
+    evaluation: &Evaluation,
+    own: Vec<Vec<Vec<f64>>>,
+    floor: Option<f64>,
+    tested: &Excerpt,
+) -> (Option<LackOfFit>, Vec<Vec<Vec<f64>>>) {
     let local = {
+        let residuals = |part| record.cut(&evaluation.residuals, part);
         let mut everywhere = residuals(Part::Training);
         everywhere.extend(residuals(Part::Validation));
         local_misfit(&clipped(&everywhere), floor)
     };
-    let tested = record.excerpt();
     let columns = TestColumns {
-        residuals: tested.cut(&fit.evaluation.residuals),
-        own: sensitivities(record, fit, &tested),
-        size: ResidualSize::of(record, &fit.evaluation, floor),
+        residuals: tested.cut(&evaluation.residuals),
+        own,
+        size: ResidualSize::of(record, evaluation, floor),
         local,
     };
-    lack_of_fit(&columns, || shapes(record, &fit.evaluation, tested.windows()))
+    let test = lack_of_fit(&columns, || shapes(record, evaluation, tested.windows()));
+    (test, columns.own)
 }
 
 /// The training part of each trial.

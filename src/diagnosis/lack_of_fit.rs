@@ -23,11 +23,15 @@
 //!    shapes do not explain is less than half of that noise; beyond three times it is no
 //!    noise. Nor is it noise where it is larger on the part that was not fitted.
 //! 5. Evenness: nor is it where it stands out in a few windows ([`LocalMisfit`]).
+//! 6. Times of the steps: where a lack of fit is shown, and the steps of the input lie between
+//!    the samples of the log, the test is made again without what their times explain
+//!    ([`InputEdges`]).
 //!
 //! # References
 //! T. Bohlin, "Practical Grey-box Process Identification", 2006, chapter 2 (falsification
 //! by alternative models). G. Schwarz, "Estimating the dimension of a model", 1978.
 
+use super::input_edges::InputEdges;
 use super::local_misfit::LocalMisfit;
 use super::residual_size::{BEYOND_NOISE, ResidualSize, Says, independent, is_near_noise};
 use super::shown_by::ShownBy;
@@ -53,6 +57,8 @@ pub struct LackOfFit {
     pub local: Option<LocalMisfit>,
     /// What shows it, where it is shown; the first of these that does.
     pub shown_by: Option<ShownBy>,
+    /// Where no lack of fit is left but for the times of the steps, what they explain.
+    pub edges: Option<InputEdges>,
     /// No lack of fit is shown at [`SIGNIFICANCE`], or one that is below [`NEGLIGIBLE`]; near
     /// the noise always, far beyond it never, nor where the error is larger on data that were
     /// not fitted, nor where it stands out in a part of the record.
@@ -120,6 +126,7 @@ pub fn lack_of_fit(columns: &TestColumns, shapes: impl Fn() -> Vec<Column>) -> O
         times_training,
         local: columns.local,
         shown_by,
+        edges: None,
         adequate: shown_by.is_none(),
     })
 }
@@ -145,6 +152,12 @@ fn is_noise(times_noise: Option<f64>, misfit_share: f64) -> bool {
 }
 
 impl LackOfFit {
+    /// This test, of a residual that shows no lack of fit without what `edges` explain of it.
+    #[must_use]
+    pub(super) fn but_for(self, edges: InputEdges) -> Self {
+        Self { shown_by: None, edges: Some(edges), adequate: true, ..self }
+    }
+
     /// Whether the residual is hardly more than the noise.
     pub fn is_near_noise(&self) -> bool {
         is_near_noise(self.times_noise)

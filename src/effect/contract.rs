@@ -176,7 +176,7 @@ fn check_spec(spec: &Spec) -> Result<(), Fault> {
         return Err(Fault::Empty { field });
     }
     let names = spec.parameters.iter().map(|parameter| parameter.name);
-    // Behind it may stand the condition in which it acts.
+    // Behind it may stand the condition in which it acts, or the signal that it depends on.
     let id = parts_of(spec.id).map_or(spec.id, |(effect, _)| effect);
     if let Some(name) = names.chain([id]).find(|name| !is_snake_case(name)) {
         return Err(Fault::Name { name });
@@ -333,6 +333,7 @@ fn moment(spread: &mut Spread) -> Moment {
         time_s: 1e5 * spread.next().powi(4),
         dt_s: 10_f64.powf(5.0 * spread.next() - 5.0),
         others: spread.next(),
+        measured: spread.signal(),
         radians_per_output_unit: if spread.next() < 0.5 { 1.0 } else { 1_f64.to_radians() },
     }
 }
@@ -380,8 +381,17 @@ mod tests {
         let one = (signal(), signal(), signal(), time, 0.0..=1.0, 1e-3..1.0);
         let moment =
             one.prop_map(|(signal, position, velocity, (time_s, dt_s), others, radians)| {
-                let radians_per_output_unit = radians;
-                Moment { signal, position, velocity, time_s, dt_s, others, radians_per_output_unit }
+                let (measured, radians_per_output_unit) = (f64::NAN, radians);
+                Moment {
+                    signal,
+                    position,
+                    velocity,
+                    time_s,
+                    dt_s,
+                    others,
+                    measured,
+                    radians_per_output_unit,
+                }
             });
         prop::collection::vec(moment, 1..12)
     }

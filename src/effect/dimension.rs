@@ -24,10 +24,14 @@ pub enum Dimension {
     PerOutput,
     /// 1 / output unit².
     PerOutputSquared,
+    /// Units of the measured signal on which the effect depends.
+    Signal,
+    /// 1 / unit of that signal.
+    PerSignal,
 }
 
 impl Dimension {
-    /// All dimensions.
+    /// All dimensions of parameters that a user's own effect may have.
     pub const ALL: [Self; 10] = [
         Self::One,
         Self::Seconds,
@@ -54,10 +58,13 @@ impl Dimension {
             Self::OutputPerSecond => "output_per_second",
             Self::PerOutput => "per_output",
             Self::PerOutputSquared => "per_output_squared",
+            Self::Signal => "signal",
+            Self::PerSignal => "per_signal",
         }
     }
 
-    /// The unit in words, `input` and `output` being the units of the log: `s/V`.
+    /// The unit in words, `input` and `output` being the units of the log: `s/V`. That of a
+    /// [signal](Self::of_signal) is not known here.
     ///
     /// Empty for a number without a unit.
     pub fn unit(self, input: Option<&str>, output: Option<&str>) -> String {
@@ -74,6 +81,18 @@ impl Dimension {
             Self::OutputPerSecond => format!("{output}/s"),
             Self::PerOutput => format!("1/{output}"),
             Self::PerOutputSquared => format!("1/{output}^2"),
+            Self::Signal | Self::PerSignal => self.of_signal(None),
+        }
+    }
+
+    /// The unit in words of what depends on a measured signal with this unit; that of anything else
+    /// is empty.
+    pub fn of_signal(self, signal: Option<&str>) -> String {
+        let signal = signal.unwrap_or("signal unit");
+        match self {
+            Self::Signal => signal.to_owned(),
+            Self::PerSignal => format!("1/{signal}"),
+            _ => String::new(),
         }
     }
 }

@@ -85,6 +85,13 @@ pub trait Effect: Debug + Send + Sync {
         false
     }
 
+    /// The name of the measured signal on which it depends, where it does on one.
+    ///
+    /// A record without that signal cannot show it; there it does nothing.
+    fn measured_signal(&self) -> Option<&str> {
+        None
+    }
+
     /// Whether a joint with it moves otherwise when the machine has worked for a while.
     fn depends_on_warmth(&self) -> bool {
         false

@@ -15,6 +15,9 @@ pub struct Moment {
     pub dt_s: f64,
     /// Activity of the other joints, from 0 (at rest) to 1 (all at full speed).
     pub others: f64,
+    /// The measured signal on which the effect depends, where it does on one; NaN where it was
+    /// not measured.
+    pub measured: f64,
     /// The angle in radians of one output unit: π/180 where the output is in degrees.
     pub radians_per_output_unit: f64,
 }

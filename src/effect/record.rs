@@ -23,6 +23,31 @@ pub struct RecordRange<'a> {
     pub sample_period_s: f64,
     /// The angle in radians of one output unit.
     pub radians_per_output_unit: f64,
+    /// The further signals that were measured.
+    pub signals: &'a [SignalRange<'a>],
+}
+
+/// The range of a measured signal, in its own unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SignalRange<'a> {
+    /// Its name, without the joint's.
+    pub name: &'a str,
+    /// Lowest value.
+    pub min: f64,
+    /// Highest value.
+    pub max: f64,
+}
+
+impl SignalRange<'_> {
+    /// The value halfway between the lowest and the highest.
+    pub fn middle(&self) -> f64 {
+        f64::midpoint(self.min, self.max)
+    }
+
+    /// Half of highest minus lowest; 1 where it never changes.
+    pub fn half(&self) -> f64 {
+        positive(0.5 * (self.max - self.min))
+    }
 }
 
 /// A minute of a joint in degrees at 100 Hz, driven by one unit of input.
@@ -38,6 +63,7 @@ impl Default for RecordRange<'_> {
             duration_s: 60.0,
             sample_period_s: 0.01,
             radians_per_output_unit: 1_f64.to_radians(),
+            signals: &[],
         }
     }
 }
@@ -61,12 +87,22 @@ impl RecordRange<'_> {
         std::f64::consts::TAU / positive(self.radians_per_output_unit)
     }
 
+    /// The range of the measured signal with this name; 0 to 2 where there is none.
+    pub fn signal(&self, name: &str) -> SignalRange<'_> {
+        let known = self.signals.iter().find(|signal| signal.name == name);
+        known.copied().unwrap_or(SignalRange { name: "", min: 0.0, max: 2.0 })
+    }
+
     /// The size in this record of a quantity of this dimension, above zero.
     ///
     /// Times are not measured by the record: their size is one second.
     pub fn size(&self, dimension: Dimension) -> f64 {
         match dimension {
-            Dimension::One | Dimension::Seconds | Dimension::PerSecond => 1.0,
+            Dimension::One
+            | Dimension::Seconds
+            | Dimension::PerSecond
+            | Dimension::Signal
+            | Dimension::PerSignal => 1.0,
             Dimension::Input => positive(self.input_abs_max),
             Dimension::PerInput | Dimension::SecondsPerInput => 1.0 / positive(self.input_abs_max),
             Dimension::Output => self.output_span(),
@@ -80,7 +116,9 @@ impl RecordRange<'_> {
     pub fn extent(&self, dimension: Dimension) -> (f64, f64) {
         let size = self.size(dimension);
         match dimension {
-            Dimension::One | Dimension::PerSecond => (f64::NEG_INFINITY, f64::INFINITY),
+            Dimension::One | Dimension::PerSecond | Dimension::Signal | Dimension::PerSignal => {
+                (f64::NEG_INFINITY, f64::INFINITY)
+            }
             Dimension::Input | Dimension::OutputPerSecond => (-size, size),
             Dimension::Output => (self.output_min - size, self.output_max + size),
             Dimension::Seconds => {

@@ -1,6 +1,7 @@
 //! The catalogue: one line for each effect.
 
-use super::within_trials::{OF_CONDITIONS, parts_of, within_trials};
+use super::signal_gain::{is_signal_gain, signal_gain};
+use super::within_trials::{OF_CONDITIONS, is_word, parts_of, within_trials};
 use super::{
     ActuatorLag, AsymmetricFriction, AsymmetricSaturation, Backlash, CoulombFriction, DeadBand,
     DirectionGain, Effect, EndStop, FlowCurve, GravityLoad, InputOffset, InputSaturation, Leakage,
@@ -65,8 +66,8 @@ pub fn find(id: &str) -> Result<&'static dyn Effect, UnknownEffect> {
     find_among(id, &[])
 }
 
-/// The effect with this id, built in or one of `others`; in the trials of one condition where
-/// the id says so, as `gravity_load[H]` does.
+/// The effect with this id, built in or one of `others`; in the trials of one condition, or of one
+/// measured signal, where the id says so, as `gravity_load[H]` and `signal_gain[pressure]` do.
 ///
 /// # Errors
 /// [`UnknownEffect`] when none has it.
@@ -74,11 +75,15 @@ pub fn find_among(
     id: &str,
     others: &[&'static dyn Effect],
 ) -> Result<&'static dyn Effect, UnknownEffect> {
-    if let Some((effect, word)) = parts_of(id) {
-        let of_conditions = |known: &&dyn Effect| known.spec().id == effect;
-        let known = OF_CONDITIONS.iter().copied().find(of_conditions);
-        let effect = known.map_or_else(|| find_among(effect, others), Ok)?;
-        return Ok(within_trials(effect, word));
+    match parts_of(id) {
+        Some((effect, signal)) if is_signal_gain(effect) => return Ok(signal_gain(signal)),
+        Some((effect, word)) if is_word(word) => {
+            let of_conditions = |known: &&dyn Effect| known.spec().id == effect;
+            let known = OF_CONDITIONS.iter().copied().find(of_conditions);
+            let effect = known.map_or_else(|| find_among(effect, others), Ok)?;
+            return Ok(within_trials(effect, word));
+        }
+        _ => {}
     }
     let all = || REGISTRY.iter().chain(others).copied();
     let likeness = |known: &str| strsim::jaro_winkler(id, known);
@@ -138,5 +143,13 @@ mod tests {
         assert_eq!((of.effect.spec().id, of.word), ("gravity_load", "heavy"));
         assert_eq!(find("gain[H]").unwrap().spec().id, "gain[H]");
         assert!(find("gain").is_err());
+        assert_eq!(find("gravity_load[a b]").unwrap_err().nearest, "gravity_load");
+    }
+
+    #[test]
+    fn an_id_may_name_a_signal() {
+        let supply = find("signal_gain[supply_pressure]").unwrap();
+        assert_eq!(supply.measured_signal(), Some("supply_pressure"));
+        assert!(find("signal_gain").is_err());
     }
 }

@@ -11,6 +11,7 @@ pub(super) fn moment(signal: f64) -> Moment {
         time_s: 0.0,
         dt_s: 0.01,
         others: 0.0,
+        measured: f64::NAN,
         radians_per_output_unit: 1_f64.to_radians(),
     }
 }

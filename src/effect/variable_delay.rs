@@ -216,6 +216,7 @@ mod tests {
             duration_s: 60.0,
             sample_period_s: 0.01,
             radians_per_output_unit: 1.0,
+            signals: &[],
         };
         for start in VariableDelay.starts(&record) {
             assert_eq!(start.last(), Some(&0.0));

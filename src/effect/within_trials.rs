@@ -64,7 +64,12 @@ impl Effect for TrialGain {
 /// The effect and the word of an id such as `gravity_load[H]`.
 pub(super) fn parts_of(id: &str) -> Option<(&str, &str)> {
     let (effect, word) = id.strip_suffix(']')?.split_once('[')?;
-    (!word.is_empty() && word.chars().all(char::is_alphanumeric)).then_some((effect, word))
+    (!word.is_empty() && !word.contains(['[', ']'])).then_some((effect, word))
+}
+
+/// Whether `word` can be one of a trial's label.
+pub(super) fn is_word(word: &str) -> bool {
+    word.chars().all(char::is_alphanumeric)
 }
 
 #[derive(Debug)]

@@ -18,8 +18,10 @@
 //! predictive inference for regression", Journal of the American Statistical Association 113
 //! (2018), 1094-1111 (leave-one-covariate-out).
 
+use super::candidate::ALIKE;
 use super::contribution::{Attribution, Contribution};
 use super::eligible::signal_range;
+use super::evidence::NoiseMemory;
 use super::extension::ids;
 use super::misfit::{CONSEQUENCE, Misfit};
 use super::options::Options;
@@ -67,26 +69,56 @@ impl Grown<'_, '_> {
 
     /// What is attributed to which effect.
     pub(super) fn attribution(&self, workers: &impl Workers) -> Attribution {
-        self.attribution_of(&self.left_out(workers), Vec::new(), workers)
+        let left_out = self.left_out(workers);
+        let exchanged = self.exchanged(&left_out, workers);
+        self.attribution_of(&left_out, &exchanged, Vec::new())
     }
 
-    /// The same, given what each leaves behind, and what has no consequence beside it.
+    /// The model with each effect of consequence exchanged for one that looks like it, fitted.
+    pub(super) fn exchanged(
+        &self,
+        left_out: &[LeftOut],
+        workers: &impl Workers,
+    ) -> Vec<(Change, Fit)> {
+        let found = left_out.iter().filter(|one| one.has_consequence());
+        let others =
+            |one: &LeftOut| replacements(self.record, &self.whole.model, one.effect, self.options);
+        let changes: Vec<Change> = found.flat_map(others).collect();
+        fitted_with(self.record, self.whole, &changes, workers)
+    }
+
+    /// The exchange that leaves as little and is as likely with the fewest parameters, where it
+    /// needs fewer than the model: of such models the simpler one is named. A friction without
+    /// inertia is a dead band.
+    pub(super) fn simpler<'f>(&self, exchanged: &'f [(Change, Fit)]) -> Option<&'f (Change, Fit)> {
+        let noise = NoiseMemory::of(self.record, self.whole);
+        let of_whole = noise.evidence(self.record, self.whole).criterion();
+        let is_as_likely =
+            |fit: &Fit| noise.evidence(self.record, fit).criterion() < of_whole + ALIKE;
+        let count = |fit: &Fit| fit.parameters.len();
+        let fewer = exchanged.iter().filter(|(_, fit)| count(fit) < count(self.whole));
+        let as_little = fewer.filter(|(_, fit)| {
+            self.leaves_as_little(fit)
+                && is_as_likely(fit)
+                && self.misfit.generalizes(self.record, self.whole, fit)
+        });
+        as_little.min_by_key(|(_, fit)| count(fit))
+    }
+
+    /// What is attributed to which effect, given what each leaves behind, what was `exchanged` for
+    /// it, and what has no consequence beside it.
     pub(super) fn attribution_of(
         &self,
         left_out: &[LeftOut],
+        exchanged: &[(Change, Fit)],
         mut refinements: Vec<&'static str>,
-        workers: &impl Workers,
     ) -> Attribution {
         let (found, small): (Vec<_>, Vec<_>) =
             left_out.iter().partition(|one| one.has_consequence());
-        let others =
-            |one: &&LeftOut| replacements(self.record, &self.whole.model, one.effect, self.options);
-        let changes: Vec<Change> = found.iter().flat_map(others).collect();
-        let tried = fitted_with(self.record, self.whole, &changes, workers);
         let alternatives = |effect: &'static str| {
-            let as_little = tried.iter().filter_map(|(change, fit)| match *change {
+            let as_little = exchanged.iter().filter_map(|(change, fit)| match *change {
                 Change::Replaced { old, new } if old == effect => {
-                    (self.share(fit) < CONSEQUENCE).then_some(new)
+                    self.leaves_as_little(fit).then_some(new)
                 }
                 _ => None,
             });
@@ -99,6 +131,11 @@ impl Grown<'_, '_> {
         };
         refinements.extend(small.iter().map(|one| one.effect));
         Attribution { found: found.into_iter().map(contribution).collect(), refinements }
+    }
+
+    /// Whether what the error of `fit` is larger by has no consequence.
+    fn leaves_as_little(&self, fit: &Fit) -> bool {
+        self.share(fit) < CONSEQUENCE
     }
 
     /// The model without `effect`, the rest fitted again.

@@ -47,6 +47,7 @@ pub(super) fn could_be_missing(
     let has_steps = || !InputMotion::of(&record.joint().trials).is_continuous();
     !has(model, is_it)
         && (!effect.depends_on_others() || record.has_others())
+        && effect.measured_signal().is_none_or(|name| record.has_signal(name))
         && effect.within_trials().is_none_or(|of| shows_condition(record, model, of))
         && (!effect.depends_on_steps() || has_steps())
 }
@@ -76,7 +77,7 @@ fn has(model: &JointModel, is_it: impl Fn(&Spec) -> bool) -> bool {
 
 /// How large the signals of `record` are, for a model with about the gain of `model`.
 pub(crate) fn signal_range<'l>(
-    record: &FitRecord<'_>,
+    record: &'l FitRecord<'_>,
     model: &JointModel,
     levels: &'l [f64],
 ) -> RecordRange<'l> {

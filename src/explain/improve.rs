@@ -64,8 +64,8 @@ pub fn improve(
 }
 
 /// What each effect of the whole model carries, without those of no consequence, which are removed
-/// one after the other, the least first, and join the `refinements`. `visit` sees each model on the
-/// way.
+/// one after the other, the least first, and join the `refinements`, and with those in whose place a
+/// simpler one leaves as little exchanged for it. `visit` sees each model on the way.
 fn attributed(
     all: &Grown<'_, '_>,
     mut refinements: Vec<&'static str>,
@@ -80,13 +80,19 @@ fn attributed(
             let is_refinement = !all.options.keeps_refinements && !least.has_consequence();
             is_refinement && all.misfit.generalizes(all.record, &whole, &least.fit)
         };
-        let Some(least) = left_out.pop_if(|least| may_go(least)) else {
-            return grown.attribution_of(&left_out, refinements, workers);
+        let (change, fit) = if let Some(least) = left_out.pop_if(|least| may_go(least)) {
+            refinements.push(least.effect);
+            (Change::Removed(least.effect), least.fit)
+        } else {
+            let exchanged = grown.exchanged(&left_out, workers);
+            let Some((change, fit)) = grown.simpler(&exchanged) else {
+                return grown.attribution_of(&left_out, &exchanged, refinements);
+            };
+            (*change, fit.clone())
         };
-        refinements.push(least.effect);
-        if !visit(&Step::new(all.record, Change::Removed(least.effect), least.fit.clone())) {
+        if !visit(&Step::new(all.record, change, fit.clone())) {
             return Attribution::default();
         }
-        whole = least.fit;
+        whole = fit;
     }
 }

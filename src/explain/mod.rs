@@ -33,6 +33,7 @@ mod extension;
 mod improve;
 mod judge;
 mod ladder;
+mod measured_signals;
 mod misfit;
 mod options;
 mod pairs;

@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-use crate::effect::{Effect, OF_CONDITIONS, REGISTRY, TrialGain, within_trials};
+use super::measured_signals::possible_causes;
+use crate::effect::{Effect, OF_CONDITIONS, REGISTRY, TrialGain, signal_gain, within_trials};
 use crate::experiment::{Joint, are_opposites, conditions};
 
 /// Which effects are tried, and which may stay.
@@ -15,18 +16,20 @@ pub struct Options {
     /// Whether effects without practical consequence stay in an improved model.
     pub keeps_refinements: bool,
     /// Whether what [differs between trials](conditions) is tried, too: the effects of
-    /// [`OF_CONDITIONS`], each in the trials of one condition.
+    /// [`OF_CONDITIONS`], each in the trials of one condition; and a gain that depends on a measured
+    /// signal, for each that may be a cause.
     pub tries_conditions: bool,
 }
 
 impl Options {
-    /// These options for `joint`, with the effects of its conditions.
+    /// These options for `joint`, with the effects of its conditions and measured signals.
     pub(super) fn of(&self, joint: &Joint) -> Cow<'_, Self> {
-        let words = if self.tries_conditions { conditions(&joint.trials) } else { Vec::new() };
-        if words.is_empty() {
+        if !self.tries_conditions {
             return Cow::Borrowed(self);
         }
+        let words = conditions(&joint.trials);
         let mut options = self.clone();
+        options.effects.extend(possible_causes(joint).into_iter().map(signal_gain));
         for (index, word) in words.iter().enumerate() {
             let is_opposite = |other: &String| are_opposites(&joint.trials, [other, word]);
             let has_opposite = words[..index].iter().any(is_opposite);

@@ -12,10 +12,10 @@ use super::speed;
 use super::thin::thinned;
 use super::window::{Horizon, Part, Split, Window, changes, cut, shorter};
 use crate::delay::{StepDelay, step_delays};
-use crate::effect::RecordRange;
+use crate::effect::{RecordRange, SignalRange};
 use crate::experiment::{Joint, Trial, has_word, spike_weights};
 use crate::model::{
-    Arrivals, Commands, JointModel, Surroundings, outputs_together, simulate_together,
+    Arrivals, Commands, JointModel, Signals, Surroundings, outputs_together, simulate_together,
 };
 use crate::units::{floor_to_index, radians_in};
 
@@ -42,6 +42,8 @@ pub struct FitRecord<'a> {
     commands: Vec<Commands>,
     /// Highest minus lowest output, per trial.
     spans: Vec<f64>,
+    /// Ranges of the further signals that were measured.
+    signals: Arc<Vec<SignalRange<'a>>>,
     /// Per trial and sample 0 for a spike of the sensor and else 1; none where there is no spike.
     weights: Option<Arc<Vec<Vec<f64>>>>,
 }
@@ -74,6 +76,7 @@ impl<'a> FitRecord<'a> {
             starts_s: starts_s(&joint.trials),
             commands: joint.trials.iter().map(commands).collect(),
             spans: joint.trials.iter().map(span).collect(),
+            signals: Arc::new(signal_ranges(joint)),
             weights: spike_weights(&joint.trials).map(Arc::new),
         }
     }
@@ -133,6 +136,11 @@ impl<'a> FitRecord<'a> {
     /// Whether it is known what other joints did.
     pub fn has_others(&self) -> bool {
         self.others.iter().flatten().any(|activity| *activity > 0.0)
+    }
+
+    /// Whether the further signal with this name was measured.
+    pub fn has_signal(&self, name: &str) -> bool {
+        self.signals.iter().any(|signal| signal.name == name)
     }
 
     /// Whether each part has trials with `word` in their labels, and without.
@@ -270,6 +278,11 @@ impl<'a> FitRecord<'a> {
             others: self.others.get(index).map_or(&[], Vec::as_slice),
             radians_per_output_unit: self.radians_per_output_unit,
             start_s: self.start_s(index),
+            signals: Signals {
+                signals: &self.joint.covariates,
+                values: trial.covariates(),
+                from: 0,
+            },
         };
         let model = model.in_trial(trial.label());
         let windows = self.windows_of(index).to_vec();
@@ -311,7 +324,7 @@ impl<'a> FitRecord<'a> {
 
     /// How large the signals are; `levels` are the input's magnitudes, see
     /// [`input_levels`](Self::input_levels).
-    pub fn range<'l>(&self, levels: &'l [f64], speed_abs_max: f64) -> RecordRange<'l> {
+    pub fn range<'l>(&'l self, levels: &'l [f64], speed_abs_max: f64) -> RecordRange<'l> {
         let outputs = || self.joint.trials.iter().flat_map(|trial| trial.output().iter().copied());
         let inputs = || self.joint.trials.iter().flat_map(|trial| trial.input().iter().copied());
         let lowest_input = inputs().fold(f64::INFINITY, f64::min);
@@ -328,6 +341,7 @@ impl<'a> FitRecord<'a> {
             duration_s: ends.fold(0.0, f64::max),
             sample_period_s: periods.fold(f64::INFINITY, f64::min),
             radians_per_output_unit: self.radians_per_output_unit,
+            signals: &self.signals,
         }
     }
 
@@ -393,6 +407,20 @@ fn span(trial: &Trial) -> f64 {
     let output = trial.output().iter().copied();
     let (low, high) = output.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
     high - low
+}
+
+/// Ranges of the further signals of `joint`, of the samples at which they were measured.
+fn signal_ranges(joint: &Joint) -> Vec<SignalRange<'_>> {
+    let ends = |index: usize| {
+        let values = joint.trials.iter().filter_map(|trial| trial.covariates().get(index));
+        let values = values.flatten().copied().filter(|value| value.is_finite());
+        values.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)))
+    };
+    let signals = joint.covariates.iter().enumerate().map(|(index, signal)| {
+        let (min, max) = ends(index);
+        SignalRange { name: &signal.name, min, max }
+    });
+    signals.filter(|range| range.min <= range.max).collect()
 }
 
 fn length_s(trial: &Trial) -> f64 {

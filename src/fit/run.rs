@@ -8,7 +8,7 @@ use super::speed;
 use super::window::Window;
 use crate::experiment::Trial;
 use crate::model::{
-    Arrivals, Driven, JointModel, Restart, Simulated, Surroundings, outputs_together,
+    Arrivals, Driven, JointModel, Restart, Signals, Simulated, Surroundings, outputs_together,
 };
 
 /// How stretches are simulated: as a whole, or the output alone.
@@ -104,6 +104,7 @@ impl Run<'_> {
             surroundings: Surroundings {
                 others: self.surroundings.others.get(start..).unwrap_or_default(),
                 start_s: self.surroundings.start_s + self.seconds(start),
+                signals: Signals { from: start, ..self.surroundings.signals },
                 ..self.surroundings
             },
         }

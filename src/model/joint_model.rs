@@ -132,6 +132,11 @@ impl JointModel {
         model
     }
 
+    /// Names of the measured signals on which its effects depend.
+    pub fn measured_signals(&self) -> impl Iterator<Item = &str> {
+        self.components.iter().filter_map(|component| component.effect.measured_signal())
+    }
+
     /// This model in a trial of this label: without the effects of other conditions (see
     /// [`Effect::within_trials`]).
     pub fn in_trial(&self, label: &str) -> Cow<'_, Self> {

@@ -2,6 +2,7 @@
 
 use super::{Arrival, Component, JointModel};
 use crate::effect::{Effect, Moment, Stage};
+use crate::experiment::Signal;
 
 /// Where the simulated output is set anew.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +25,29 @@ pub struct Surroundings<'a> {
     pub radians_per_output_unit: f64,
     /// Seconds of the record before the trial's first sample.
     pub start_s: f64,
+    /// Further signals that were measured.
+    pub signals: Signals<'a>,
+}
+
+/// The further measured signals of a trial.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Signals<'a> {
+    /// What they are.
+    pub signals: &'a [Signal],
+    /// Their values, one per sample.
+    pub values: &'a [Vec<f64>],
+    /// Index of the sample with which the simulation begins.
+    pub from: usize,
+}
+
+impl<'a> Signals<'a> {
+    /// The values of the signal with this name, from where the simulation begins; none where it was
+    /// not measured.
+    fn named(&self, name: &str) -> &'a [f64] {
+        let index = self.signals.iter().position(|signal| signal.name == name);
+        let values = index.and_then(|index| self.values.get(index));
+        values.and_then(|values| values.get(self.from..)).unwrap_or_default()
+    }
 }
 
 /// The level that acts, and those that are to come.
@@ -56,17 +80,21 @@ impl Input<'_> {
 
 /// An effect with its values and its memory, ready to run.
 #[derive(Clone)]
-struct Running {
+struct Running<'a> {
     effect: &'static dyn Effect,
     parameters: Vec<f64>,
     memory: Vec<f64>,
+    /// The measured signal on which it depends, one value per sample, and the one of now.
+    signal: &'a [f64],
+    measured: f64,
 }
 
-impl Running {
-    fn new(component: &Component) -> Self {
+impl<'a> Running<'a> {
+    fn new(component: &Component, signals: Signals<'a>) -> Self {
         let effect = component.effect();
         let memory = vec![0.0; effect.spec().memory];
-        Self { effect, parameters: component.plain(), memory }
+        let signal = effect.measured_signal().map_or(&[][..], |name| signals.named(name));
+        Self { effect, parameters: component.plain(), memory, signal, measured: f64::NAN }
     }
 
     fn settle(&mut self, at: &Moment) {
@@ -82,16 +110,16 @@ impl Running {
 pub(super) struct Joint<'a> {
     gain: f64,
     /// Effects of the spool, on the input, and of the dynamics: all before the gain.
-    drive: Vec<Running>,
+    drive: Vec<Running<'a>>,
     /// How many of them, from the front, do the same again as long as the input is held.
     steady: usize,
     /// The input that was last held, and what these made of it.
     held: Option<(f64, f64)>,
-    load: Vec<Running>,
+    load: Vec<Running<'a>>,
     /// Effects that limit the angle itself.
-    limits: Vec<Running>,
+    limits: Vec<Running<'a>>,
     /// Effects between the angle and its sensor.
-    sensor: Vec<Running>,
+    sensor: Vec<Running<'a>>,
     /// Whether an effect of the load remembers anything.
     load_remembers: bool,
     /// What the load added to the commanded velocity in the last interval.
@@ -106,14 +134,15 @@ pub(super) struct Joint<'a> {
 
 impl<'a> Joint<'a> {
     pub(super) fn new(model: &JointModel, surroundings: Surroundings<'a>) -> Self {
-        let stage = |stage| model.stage(stage).map(Running::new);
+        let running = |component| Running::new(component, surroundings.signals);
+        let stage = |stage| model.stage(stage).map(running);
         let output = model.stage(Stage::Output);
         let (limits, sensor): (Vec<_>, Vec<_>) =
             output.partition(|component| component.effect().spec().acts_on_state);
         let load: Vec<_> = stage(Stage::Load).collect();
         let drive = [Stage::Spool, Stage::Input, Stage::Dynamics];
         let drive: Vec<_> = drive.into_iter().flat_map(stage).collect();
-        let is_steady = |running: &&Running| running.effect.is_steady();
+        let is_steady = |running: &&Running<'_>| running.effect.is_steady();
         Self {
             gain: model.gain.value,
             steady: drive.iter().take_while(is_steady).count(),
@@ -122,13 +151,21 @@ impl<'a> Joint<'a> {
             load_remembers: load.iter().any(|running| !running.memory.is_empty()),
             load,
             load_adds: 0.0,
-            limits: limits.into_iter().map(Running::new).collect(),
-            sensor: sensor.into_iter().map(Running::new).collect(),
+            limits: limits.into_iter().map(running).collect(),
+            sensor: sensor.into_iter().map(running).collect(),
             surroundings,
             others: 0.0,
             angle: 0.0,
             velocity: 0.0,
             measured: 0.0,
+        }
+    }
+
+    /// Lets the effects see what was measured with the sample of this index.
+    pub(super) fn observe(&mut self, sample: usize) {
+        let stages = [&mut self.drive, &mut self.load, &mut self.limits, &mut self.sensor];
+        for running in stages.into_iter().flatten().filter(|running| !running.signal.is_empty()) {
+            running.measured = running.signal.get(sample).copied().unwrap_or(f64::NAN);
         }
     }
 
@@ -223,6 +260,7 @@ impl<'a> Joint<'a> {
             time_s: self.surroundings.start_s + time_s,
             dt_s: dt,
             others: self.others,
+            measured: f64::NAN,
             radians_per_output_unit: self.surroundings.radians_per_output_unit,
         }
     }
@@ -310,8 +348,9 @@ impl<'a> Joint<'a> {
 }
 
 /// The signal after all of `effects`.
-fn through(effects: &mut [Running], mut at: Moment) -> f64 {
+fn through(effects: &mut [Running<'_>], mut at: Moment) -> f64 {
     for running in effects {
+        at.measured = running.measured;
         at.signal = running.step(&at);
     }
     at.signal

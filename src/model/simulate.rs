@@ -105,6 +105,8 @@ struct Running<'a, const WHOLE: bool> {
     input: Input<'a>,
     restarts: Peekable<Iter<'a, Restart>>,
     others: &'a [f64],
+    /// Whether an effect of the model depends on a measured signal.
+    is_signal_driven: bool,
     samples: usize,
     period_s: f64,
     simulated: Simulated,
@@ -120,6 +122,7 @@ impl<'a, const WHOLE: bool> Running<'a, WHOLE> {
             input: Input { level: arrivals.initial, coming: &arrivals.changes },
             restarts: restarts.iter().peekable(),
             others: surroundings.others,
+            is_signal_driven: model.measured_signals().next().is_some(),
             samples,
             period_s,
             simulated: Simulated::with_capacity(samples, if WHOLE { samples } else { 0 }),
@@ -134,6 +137,9 @@ impl<'a, const WHOLE: bool> Running<'a, WHOLE> {
             joint.restart(restart, start, *period_s);
         }
         joint.others = self.others.get(sample).copied().unwrap_or(0.0);
+        if self.is_signal_driven {
+            joint.observe(sample);
+        }
         input.advance(start);
         simulated.output.push(joint.measured);
         let (before, level) = (joint.angle, input.level);

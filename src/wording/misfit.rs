@@ -10,6 +10,7 @@ use crate::diagnosis::{
 pub(crate) fn lack_of_fit(test: LackOfFit) -> String {
     let p_value = p_text(test.p_value);
     match test.shown_by {
+        None if test.edges.is_some() => "not shown but for the times of the steps".to_owned(),
         None if test.p_value >= SIGNIFICANCE => format!("not shown ({p_value})"),
         None if test.misfit_share < NEGLIGIBLE => {
             format!("negligible ({} % of the squared error)", rounded(100.0 * test.misfit_share))

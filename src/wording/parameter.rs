@@ -4,7 +4,7 @@ use super::{number, with_error};
 use crate::effect::{Dimension, UNLIMITED};
 use crate::experiment::Joint;
 use crate::fit::{Parameter, Status};
-use crate::model::JointModel;
+use crate::model::{Component, JointModel};
 
 /// What is remarkable about how a parameter was found; nothing where it was simply fitted.
 pub(crate) fn remark(status: Status) -> Option<&'static str> {
@@ -38,7 +38,19 @@ pub(crate) fn parameter_units(joint: &Joint, model: &JointModel) -> Vec<String> 
     let unit = |unit: &Option<String>, kind: &str| unit.clone().unwrap_or_else(|| kind.to_owned());
     let (input, output) = (unit(&joint.input_unit, "input"), unit(&joint.output_unit, "output"));
     let own = [format!("{output}/s/{input}"), "s".to_owned()].into_iter();
-    let of = |dimension: Dimension| dimension.unit(Some(&input), Some(&output));
-    let parameters = model.components().iter().flat_map(|c| c.effect().spec().parameters);
-    own.chain(parameters.map(|parameter| of(parameter.dimension))).collect()
+    let of_signal = |name: &str| {
+        let signal = joint.covariates.iter().find(|signal| signal.name == name);
+        signal.and_then(|signal| signal.unit.as_deref())
+    };
+    let of = |component: &Component, dimension: Dimension| match dimension {
+        Dimension::Signal | Dimension::PerSignal => {
+            dimension.of_signal(component.effect().measured_signal().and_then(of_signal))
+        }
+        _ => dimension.unit(Some(&input), Some(&output)),
+    };
+    let parameters = model.components().iter().flat_map(|component| {
+        let parameters = component.effect().spec().parameters.iter();
+        parameters.map(move |parameter| of(component, parameter.dimension))
+    });
+    own.chain(parameters).collect()
 }

@@ -152,6 +152,7 @@ pub fn expression(bytes: &[u8]) -> bool {
             time_s: 1.0,
             dt_s: 0.01,
             others: 0.5,
+            measured: f64::NAN,
             radians_per_output_unit: 1.0,
         };
         assert!(effect.step(&values, &mut [], &moment).is_finite());

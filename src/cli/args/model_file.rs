@@ -136,7 +136,7 @@ pub(crate) fn note_missing(file: &ModelFile, joints: &[Joint], verbosity: Verbos
     note_conditions(file, joints, verbosity);
 }
 
-/// Says which effects do nothing as no trial is of their condition.
+/// Says which effects do nothing as no trial is of their condition, or their signal was not measured.
 pub(crate) fn note_conditions(file: &ModelFile, joints: &[Joint], verbosity: Verbosity) {
     if verbosity == Verbosity::Quiet {
         return;
@@ -144,6 +144,13 @@ pub(crate) fn note_conditions(file: &ModelFile, joints: &[Joint], verbosity: Ver
     for joint in joints {
         let model = file.joint(&joint.name).into_iter();
         for effect in model.flat_map(JointModel::components).map(Component::effect) {
+            let signal = effect.measured_signal();
+            let is_measured = |name: &str| joint.covariates.iter().any(|own| own.name == name);
+            if let Some(signal) = signal.filter(|signal| !is_measured(signal)) {
+                let (name, id) = (&joint.name, effect.spec().id);
+                let none = format!("the log has no column `{name}.{signal}`: `{id}` does nothing");
+                message("note", &format!("joint `{name}`: {none}"));
+            }
             let Some(of) = effect.within_trials() else { continue };
             if !joint.trials.iter().any(|trial| has_word(trial.label(), of.word)) {
                 let (name, id, word) = (&joint.name, effect.spec().id, of.word);

@@ -248,8 +248,17 @@ fn samples() -> impl Iterator<Item = Moment> {
     signals.flat_map(move |signal| {
         states.map(|(position, velocity, time_s, others)| {
             let radians_per_output_unit = 1_f64.to_radians();
-            let dt_s = 0.01;
-            Moment { signal, position, velocity, time_s, dt_s, others, radians_per_output_unit }
+            let (dt_s, measured) = (0.01, f64::NAN);
+            Moment {
+                signal,
+                position,
+                velocity,
+                time_s,
+                dt_s,
+                others,
+                measured,
+                radians_per_output_unit,
+            }
         })
     })
 }
@@ -299,6 +308,7 @@ mod tests {
             time_s: 4.0,
             dt_s: 5.0,
             others: 6.0,
+            measured: f64::NAN,
             radians_per_output_unit: 7.0,
         };
         assert_close(&[own(text, &[]).step(&[], &mut [], &at)], &[7_654_321.0]);

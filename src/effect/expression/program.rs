@@ -153,7 +153,7 @@ mod tests {
                 let mut memory = vec![0.0; effect.spec().memory];
                 let at = |signal, position, velocity, others, time_s| Moment {
                     signal, position, velocity, time_s, dt_s, others,
-                    radians_per_output_unit: 1_f64.to_radians(),
+                    measured: f64::NAN, radians_per_output_unit: 1_f64.to_radians(),
                 };
                 let start = at(held, 0.0, 0.0, 0.0, 0.0);
                 effect.settle(&parameters, &mut memory, &start);

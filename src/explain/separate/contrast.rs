@@ -61,6 +61,7 @@ impl ExperimentSpace {
             others: &others,
             radians_per_output_unit: self.radians_per_output_unit,
             start_s: start.worked_s,
+            ..Surroundings::default()
         };
         simulate_input(model, input, self.period_s, start.angle, &surroundings)
     }

@@ -96,6 +96,7 @@ impl Still {
             others: &[],
             radians_per_output_unit: self.radians_per_output_unit,
             start_s: self.time_s,
+            ..Surroundings::default()
         };
         let simulated =
             simulate(model, &arrivals, samples, self.period_s, &restarts, &surroundings);

@@ -1,11 +1,11 @@
 //! What is said where no effect is missing.
 
 use super::{ABOVE_NOISE, Passage, Topic};
-use crate::diagnosis::{NEGLIGIBLE, SIGNIFICANCE};
+use crate::diagnosis::{LackOfFit, NEGLIGIBLE, SIGNIFICANCE};
 use crate::experiment::Trial;
 use crate::fit::Status;
 use crate::report::finding::Finding;
-use crate::wording::{measure, p_text, rounded};
+use crate::wording::{measure, p_text, percent, rounded};
 
 impl Finding<'_> {
     pub(super) fn adequate_headline(&self) -> String {
@@ -32,6 +32,15 @@ impl Finding<'_> {
     /// What the test of the lack of fit says of an adequate model.
     fn test(&self) -> String {
         match self.comparison().lack_of_fit {
+            Some(LackOfFit { edges: Some(edges), .. }) => {
+                let (spread, share) = (measure(edges.spread_s, Some("s")), percent(edges.share));
+                format!(
+                    "The steps of the input lie between the samples of the log, and their times, the \
+                     middle 80 % of which are spread over {spread}, explain {share} of the squared \
+                     residual; beside that no lack of fit is shown. A log with the samples of the \
+                     controller, or a faster one, would show smaller errors of the model."
+                )
+            }
             Some(test) if test.p_value >= SIGNIFICANCE => {
                 format!("No lack of fit is shown ({}).", p_text(test.p_value))
             }

@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use crate::diagnosis::failure::{FailsWhere, Region, WorstSegment};
 use crate::diagnosis::{
-    CrossCorrelation, ErrorFigures, InputCorrelation, LackOfFit, LocalMisfit, ShownBy, Whiteness,
+    CrossCorrelation, ErrorFigures, InputCorrelation, InputEdges, LackOfFit, LocalMisfit, ShownBy,
+    Whiteness,
 };
 use crate::experiment::{Joint, Trial};
 
@@ -31,7 +32,23 @@ pub(super) struct LackOfFitJson {
     times_training: Option<f64>,
     local: Option<LocalJson>,
     shown_by: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    input_edges: Option<EdgesJson>,
     adequate: bool,
+}
+
+/// Steps of the input between the samples of the log.
+#[derive(Debug, Serialize)]
+struct EdgesJson {
+    steps: usize,
+    spread_s: f64,
+    share_of_squared_residual: f64,
+}
+
+impl From<InputEdges> for EdgesJson {
+    fn from(InputEdges { steps, spread_s, share }: InputEdges) -> Self {
+        Self { steps, spread_s, share_of_squared_residual: share }
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -52,6 +69,7 @@ impl From<&LackOfFit> for LackOfFitJson {
             times_training: test.times_training,
             local: test.local.map(local),
             shown_by: test.shown_by.map(shown_by_id),
+            input_edges: test.edges.map(EdgesJson::from),
             adequate: test.adequate,
         }
     }
