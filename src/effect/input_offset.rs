@@ -11,7 +11,7 @@
 //! # References
 //! Merritt, H. E., 1967, Hydraulic Control Systems (null shift of a valve).
 
-use super::{Dimension, Effect, Equations, Moment, Parameter, Spec, Stage};
+use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +45,17 @@ impl Effect for InputOffset {
     fn step(&self, parameters: &[f64], _memory: &mut [f64], at: &Moment) -> f64 {
         let &[offset] = parameters else { return at.signal };
         at.signal + offset
+    }
+
+    /// About the one that takes a coded input to its neutral.
+    fn bounds(&self, record: &RecordRange<'_>) -> Vec<(f64, f64)> {
+        let own = SPEC.parameters.iter().map(|parameter| parameter.bounds(record));
+        own.map(|(low, high)| (low - record.input_neutral, high - record.input_neutral)).collect()
+    }
+
+    fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
+        let own = SPEC.parameters.iter().map(|parameter| parameter.start(record));
+        vec![own.map(|start| start - record.input_neutral).collect()]
     }
 }
 

@@ -5,6 +5,9 @@ use super::Dimension;
 /// The ranges of the signals of one joint's record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordRange<'a> {
+    /// The neutral of a coded input, in input units: levels count from there. Zero where the input is
+    /// not coded.
+    pub input_neutral: f64,
     /// Largest magnitude of the input, in input units.
     pub input_abs_max: f64,
     /// Highest minus lowest input, in input units.
@@ -54,6 +57,7 @@ impl SignalRange<'_> {
 impl Default for RecordRange<'_> {
     fn default() -> Self {
         Self {
+            input_neutral: 0.0,
             input_abs_max: 1.0,
             input_span: 2.0,
             input_levels: &[],

@@ -207,6 +207,7 @@ mod tests {
     fn a_fit_of_the_law_takes_no_measured_delays() {
         let levels = [1.0, 2.0];
         let record = RecordRange {
+            input_neutral: 0.0,
             input_abs_max: 2.0,
             input_span: 4.0,
             input_levels: &levels,

@@ -9,7 +9,7 @@ use super::options::Options;
 use super::revision::{AddError, Addition};
 use super::workers::Workers;
 use crate::diagnosis::{ErrorFigures, NEAR_NOISE, compare, floor_of};
-use crate::effect::Effect;
+use crate::effect::{Effect, RecordRange};
 use crate::fit::{Fit, FitRecord, Part, fit};
 use crate::model::{Component, JointModel};
 
@@ -28,6 +28,9 @@ pub fn add(
     let levels = record.input_levels();
     let range = signal_range(record, &model, &levels);
     let by_law = fit(record, &model, &range)?;
+    let by_law = as_first_order(record, &base, &range, effect)
+        .filter(|other| other.cost < by_law.cost)
+        .unwrap_or(by_law);
     let measured = of_measured_delays(record, &base, &by_law, effect);
     let measured = measured.and_then(|model| fit(record, &model, &range).ok());
     let costs_less = |other: &&Fit| other.cost < by_law.cost;
@@ -49,6 +52,21 @@ pub fn add(
         p_value: effect.nests().then_some(p_value),
         attribution,
     })
+}
+
+/// The model of `base` as the first order that the output follows, fitted, where `effect` is what
+/// makes it one: too far from an integrator for a descent to find it.
+fn as_first_order(
+    record: &FitRecord<'_>,
+    base: &Fit,
+    range: &RecordRange<'_>,
+    effect: &'static dyn Effect,
+) -> Option<Fit> {
+    let (effects, model) = record.follower()?.started_at(&base.model)?;
+    if effects != [effect.spec().id] {
+        return None;
+    }
+    fit(record, &model, range).ok()
 }
 
 /// The model of `base` with `effect` in the form that takes measured delays, where it has one

@@ -111,6 +111,12 @@ fn accounts_for_it(
     workers: &impl Workers,
 ) -> bool {
     let Some(best) = ranking.first().filter(|best| best.is_significant()) else { return false };
+    // What is to be added to an effect that explains nearly all by itself, as no other does, would
+    // not change its name.
+    let explains_most = |one: &&Candidate| one.share_of_misfit >= MOST_OF_IT;
+    if explains_most(&best) && ranking.iter().filter(explains_most).count() == 1 {
+        return true;
+    }
     let id = best.effects[0];
     let first = Step::new(record, Change::Added(id), best.fit.clone());
     let given: Vec<_> = ids(&best.fit.model).into_iter().filter(|given| *given != id).collect();

@@ -142,7 +142,7 @@ impl Search<'_, '_> {
             return None;
         }
         let fit = fit_to_compare(self.record, &model, self.range).ok()?;
-        Some(Extension { effects, fit })
+        (fit.cost < self.base.cost).then_some(Extension { effects, fit })
     }
 
     /// Whether one of `extensions` comes near the noise.

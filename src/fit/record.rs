@@ -15,7 +15,8 @@ use crate::delay::{StepDelay, step_delays};
 use crate::effect::{RecordRange, SignalRange};
 use crate::experiment::{Joint, Trial, has_word, spike_weights};
 use crate::model::{
-    Arrivals, Commands, JointModel, Signals, Surroundings, outputs_together, simulate_together,
+    Arrivals, Commands, JointModel, Signals, Surroundings, coded_neutral, outputs_together,
+    simulate_together,
 };
 use crate::units::{floor_to_index, radians_in};
 
@@ -42,6 +43,8 @@ pub struct FitRecord<'a> {
     commands: Vec<Commands>,
     /// Highest minus lowest output, per trial.
     spans: Vec<f64>,
+    /// The neutral of a coded input, else zero.
+    neutral: f64,
     /// Ranges of the further signals that were measured.
     signals: Arc<Vec<SignalRange<'a>>>,
     /// Per trial and sample 0 for a spike of the sensor and else 1; none where there is no spike.
@@ -76,6 +79,7 @@ impl<'a> FitRecord<'a> {
             starts_s: starts_s(&joint.trials),
             commands: joint.trials.iter().map(commands).collect(),
             spans: joint.trials.iter().map(span).collect(),
+            neutral: coded_neutral(&joint.trials).map_or(0.0, |neutral| neutral.level),
             signals: Arc::new(signal_ranges(joint)),
             weights: spike_weights(&joint.trials).map(Arc::new),
         }
@@ -332,6 +336,7 @@ impl<'a> FitRecord<'a> {
         let ends = ends.map(|(trial, start_s)| start_s + length_s(trial));
         let periods = self.joint.trials.iter().map(|trial| trial.period().seconds());
         RecordRange {
+            input_neutral: self.neutral,
             input_abs_max: levels.last().copied().unwrap_or(1.0),
             input_span: inputs().fold(f64::NEG_INFINITY, f64::max) - lowest_input,
             input_levels: levels,
@@ -362,10 +367,10 @@ impl<'a> FitRecord<'a> {
         *self.follower.get_or_init(of)
     }
 
-    /// The distinct magnitudes of the input, ascending.
+    /// The distinct magnitudes of the input, ascending; those from its neutral where it is coded.
     pub fn input_levels(&self) -> Vec<f64> {
         let inputs = self.joint.trials.iter().flat_map(Trial::input);
-        let mut levels: Vec<f64> = inputs.map(|input| input.abs()).collect();
+        let mut levels: Vec<f64> = inputs.map(|input| (input - self.neutral).abs()).collect();
         levels.sort_by(f64::total_cmp);
         levels.dedup();
         levels

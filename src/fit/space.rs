@@ -113,7 +113,9 @@ fn reach(model: &JointModel, index: usize, range: &RecordRange<'_>) -> Bounds {
     let spec = component.effect().spec();
     match parameter.dimension {
         Dimension::Input if spec.stage == Stage::Input => {
-            Bounds { low: -range.input_abs_max, high: range.input_abs_max }
+            // Levels count from the neutral, and an offset is what takes the input there.
+            let (most, neutral) = (range.input_abs_max, range.input_neutral);
+            Bounds { low: -most - neutral.max(0.0), high: most - neutral.min(0.0) }
         }
         Dimension::Output if spec.acts_on_state => {
             let noise = NOISE * range.output_span();

@@ -23,6 +23,7 @@ pub use arrivals::{Arrival, Arrivals, Commands};
 pub use file::{ModelError, ModelFile, Revision};
 pub use joint_model::{Component, JointModel, Value};
 pub use motion::{Restart, Signals, Surroundings};
+pub(crate) use neutral::coded_neutral;
 pub(crate) use simulate::{BESIDE, Driven, outputs_together, simulate_together};
 pub use simulate::{Simulated, simulate, simulate_input};
 pub use start::integrators;

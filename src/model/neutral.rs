@@ -13,9 +13,21 @@ use crate::units::ceil_to_index;
 /// How far from both ends of the input the neutral is at least, in parts of its range.
 const INSIDE: f64 = 0.05;
 
+/// How far from a held neutral the input may be that is held there, in parts of its range.
+const NEAR: f64 = 0.01;
+
+/// The neutral of a coded input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CodedNeutral {
+    /// In input units.
+    pub(crate) level: f64,
+    /// Whether it is a level at which the joint rests, and not only where a line crosses zero.
+    pub(crate) is_held: bool,
+}
+
 /// The neutral of an input that is coded: of one sign, between its ends, and not zero. None where it
 /// is not so, where the output follows the input itself, or where the record does not show it.
-pub(super) fn coded_neutral(trials: &[Trial]) -> Option<f64> {
+pub(crate) fn coded_neutral(trials: &[Trial]) -> Option<CodedNeutral> {
     let ends = (f64::INFINITY, f64::NEG_INFINITY);
     let inputs = trials.iter().flat_map(Trial::input);
     let (low, high) = inputs.fold(ends, |(low, high), u| (low.min(*u), high.max(*u)));
@@ -25,7 +37,23 @@ pub(super) fn coded_neutral(trials: &[Trial]) -> Option<f64> {
     }
     let is_inside = |level: &f64| (low + margin..=high - margin).contains(level);
     let held = Neutral::of(trials).map(|neutral| neutral.level);
-    held.filter(is_inside).or_else(|| balanced(trials).filter(is_inside))
+    let held = held.filter(is_inside).map(|level| {
+        CodedNeutral { level, is_held: is_usual(trials, level, NEAR * (high - low)) }
+    });
+    held.or_else(|| {
+        let level = balanced(trials).filter(is_inside)?;
+        Some(CodedNeutral { level, is_held: false })
+    })
+}
+
+/// Whether the input is for a good part of the time within `near` of `level`: a stick that swings
+/// through it is there for 1 %.
+fn is_usual(trials: &[Trial], level: f64, near: f64) -> bool {
+    /// The part of the time (chosen).
+    const PART: f64 = 0.1;
+    let there = |input: &[f64]| input.iter().filter(|u| (**u - level).abs() <= near).count();
+    let samples: usize = trials.iter().map(Trial::len).sum();
+    trials.iter().map(|trial| there(trial.input())).sum::<usize>() as f64 >= PART * samples as f64
 }
 
 /// The input at which the speed changes its sign, by the line
@@ -140,7 +168,9 @@ mod tests {
     #[test]
     fn a_stick_about_a_pulse_width_is_neutral_there() {
         let record = trial(1500.0, 0.0);
-        let [found, by_speed] = [coded_neutral(&record), balanced(&record)].map(Option::unwrap);
+        let [found, by_speed] =
+            [coded_neutral(&record).map(|neutral| neutral.level), balanced(&record)]
+                .map(Option::unwrap);
         // A slow turn of the stick is a level that is held; it is where a fit starts.
         assert!((found - 1500.0).abs() < 60.0, "{found}");
         assert!((by_speed - 1500.0).abs() < 5.0, "{by_speed}");

@@ -1,7 +1,7 @@
 //! The plain integrator that the estimated delays suggest: where a model begins.
 
 use super::delay_law::{Start, with_law};
-use super::neutral::coded_neutral;
+use super::neutral::{CodedNeutral, coded_neutral};
 use super::{Component, JointModel, Value};
 use crate::delay::{Decision, Method, Settings, TrialEstimate};
 use crate::delay::{are_strokes, delay_scan, estimate_joint};
@@ -25,21 +25,23 @@ const UNKNOWN_DELAY_S: f64 = 0.1;
 /// wrong along a stroke moves the delay by tenths.
 ///
 /// Where the input is coded, as the width of a pulse or in parts of a range, they have its
-/// neutral as an offset, and `u` counts from there.
+/// neutral as an offset, and `u` counts from there. A neutral at which the joint was held is known,
+/// and fixed: beside a dead band, whose two ends an offset moves alike, nothing else would say it.
 pub fn integrators(joint: &Joint, estimates: &[&TrialEstimate]) -> Vec<JointModel> {
     let neutral = coded_neutral(&joint.trials);
-    let (mut starts, gain) = accepted(joint, estimates, neutral.unwrap_or(0.0));
-    let gain = gain.unwrap_or_else(|| overall_gain(joint, neutral.unwrap_or(0.0)));
+    let zero = neutral.map_or(0.0, |neutral| neutral.level);
+    let (mut starts, gain) = accepted(joint, estimates, zero);
+    let gain = gain.unwrap_or_else(|| overall_gain(joint, zero));
     let begun = |gain, delay: f64| {
         let model = JointModel::integrator(gain, delay.max(0.0));
         let offset =
-            neutral.and_then(|level| Component::new(&InputOffset, vec![Value::from(-level)]));
+            neutral.and_then(|neutral| Component::new(&InputOffset, vec![offset_of(neutral)]));
         offset.map_or(model.clone(), |offset| model.with(offset))
     };
     if are_strokes(&joint.trials) {
         let finer = between_samples(joint, estimates);
         if let Some(finer) = &finer {
-            starts = accepted(joint, &finer.iter().collect::<Vec<_>>(), neutral.unwrap_or(0.0)).0;
+            starts = accepted(joint, &finer.iter().collect::<Vec<_>>(), zero).0;
         }
     }
     let delays: Vec<f64> = starts.iter().map(|start| start.delay_s).collect();
@@ -57,6 +59,11 @@ pub fn integrators(joint: &Joint, estimates: &[&TrialEstimate]) -> Vec<JointMode
     }
     delays.dedup();
     delays.into_iter().map(|delay| begun(gain, delay)).collect()
+}
+
+/// The offset that takes a coded input to its neutral.
+fn offset_of(neutral: CodedNeutral) -> Value {
+    Value { fixed: neutral.is_held, ..Value::from(-neutral.level) }
 }
 
 /// The estimates again, with delays between samples; none where they are so, or where fewer steps
