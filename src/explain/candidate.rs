@@ -88,7 +88,7 @@ impl Candidate {
     }
 
     /// Whether it explains so much of the error that it is worth a name.
-    pub(super) fn is_significant(&self) -> bool {
+    pub(crate) fn is_significant(&self) -> bool {
         self.is_reached()
             && match self.effects.as_slice() {
                 [_] => self.p_value < OF_A_CATALOGUE && self.explains(SINGLE_PERCENT),

@@ -10,7 +10,7 @@ use super::first_order::Follower;
 use super::run::{Run, best_starts, simulated_from};
 use super::speed;
 use super::thin::thinned;
-use super::window::{Horizon, Part, Split, Window, changes, cut, shorter};
+use super::window::{Horizon, Part, Split, Window, changes, cut, places, shorter};
 use crate::delay::{StepDelay, step_delays};
 use crate::effect::{RecordRange, SignalRange};
 use crate::experiment::{Joint, Trial, has_word, spike_weights};
@@ -379,8 +379,9 @@ impl<'a> FitRecord<'a> {
 
 /// All windows of a joint.
 fn windows(joint: &Joint, split: Split, horizon: Horizon) -> Vec<Window> {
-    let trials = joint.trials.iter().enumerate();
-    trials.flat_map(|(index, trial)| cut(trial, index, split, horizon)).collect()
+    let trials = joint.trials.iter().enumerate().zip(places(&joint.trials));
+    let split = |place| split.of_trial(place);
+    trials.flat_map(|((index, trial), place)| cut(trial, index, split(place), horizon)).collect()
 }
 
 /// Seconds from the start of the record to that of each of `trials`.

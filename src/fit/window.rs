@@ -51,7 +51,8 @@ impl std::fmt::Display for Horizon {
 pub enum Split {
     /// The first part of each trial is for training: its share, 0 to 1.
     Time(f64),
-    /// Every third trial is for validation.
+    /// Every third trial in the order of their labels is for validation: which are does not depend
+    /// on the order of the rows.
     Trials,
 }
 
@@ -62,6 +63,32 @@ impl Split {
         const ENOUGH: usize = 6;
         if joint.trials.len() >= ENOUGH { Self::Trials } else { Self::Time(0.7) }
     }
+
+    /// The share of a trial that is for training, which has this place among the labels.
+    pub(super) fn of_trial(self, place: usize) -> f64 {
+        match self {
+            Self::Time(share) => share.clamp(0.0, 1.0),
+            Self::Trials if place % 3 == 2 => 0.0,
+            Self::Trials => 1.0,
+        }
+    }
+}
+
+/// The place of each of `trials` in the order of their labels, which is that of numbers where all
+/// are numbers; those of one label stay as they are.
+pub(super) fn places(trials: &[Trial]) -> Vec<usize> {
+    let number = |trial: &Trial| trial.label().parse::<f64>().ok();
+    let numbers: Option<Vec<f64>> = trials.iter().map(number).collect();
+    let mut order: Vec<usize> = (0..trials.len()).collect();
+    match numbers {
+        Some(numbers) => order.sort_by(|a, b| numbers[*a].total_cmp(&numbers[*b])),
+        None => order.sort_by_key(|index| trials[*index].label()),
+    }
+    let mut places = vec![0; trials.len()];
+    for (place, index) in order.into_iter().enumerate() {
+        places[index] = place;
+    }
+    places
 }
 
 /// What a window is for.
@@ -89,15 +116,11 @@ pub struct Window {
 /// Fewest samples of a window: its offset is taken from them.
 const SHORTEST_WINDOW: usize = 10;
 
-/// The windows of one trial.
-pub(super) fn cut(trial: &Trial, index: usize, split: Split, horizon: Horizon) -> Vec<Window> {
+/// The windows of one trial, the first `share` of which, 0 to 1, is for training.
+pub(super) fn cut(trial: &Trial, index: usize, share: f64, horizon: Horizon) -> Vec<Window> {
     let samples = trial.len();
-    let border = match split {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1")]
-        Split::Time(share) => (samples as f64 * share.clamp(0.0, 1.0)) as usize,
-        Split::Trials if index % 3 == 2 => 0,
-        Split::Trials => samples,
-    };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1")]
+    let border = (samples as f64 * share) as usize;
     let mut borders = vec![0, border, samples];
     match horizon {
         Horizon::FreeRun => {}
@@ -181,9 +204,19 @@ mod tests {
         let input: Vec<f64> = (0..1000).map(f64::from).collect();
         let period = SamplePeriod::from_seconds(0.01).unwrap();
         let trial = Trial::new("a", 0.0, period, input, vec![0.0; 1000]).unwrap();
-        let windows = cut(&trial, 0, Split::Time(0.5), Horizon::Steps);
+        let windows = cut(&trial, 0, 0.5, Horizon::Steps);
         let borders: Vec<_> = windows.iter().map(|window| window.start).collect();
         assert_eq!(borders, [0, 200, 400, 500, 600, 800]);
+    }
+
+    #[test]
+    fn the_order_of_the_rows_does_not_say_which_trials_are_unseen() {
+        let period = SamplePeriod::from_seconds(0.01).unwrap();
+        let trial = |label: &&str| Trial::new(*label, 0.0, period, vec![0.0], vec![0.0]).unwrap();
+        let of = |labels: &[&str]| places(&labels.iter().map(trial).collect::<Vec<_>>());
+        assert_eq!(of(&["b-20", "a-100", "b-3", "a-100"]), [2, 0, 3, 1]);
+        assert_eq!(of(&["10", "9", "1"]), [2, 1, 0]);
+        assert!((Split::Trials.of_trial(2)).abs() < 1e-15 && Split::Trials.of_trial(3) > 0.5);
     }
 
     #[test]
@@ -191,7 +224,7 @@ mod tests {
         let input: Vec<f64> = (0..1000).map(|k| if k < 450 { 1.0 } else { 2.0 }).collect();
         let period = SamplePeriod::from_seconds(0.01).unwrap();
         let trial = Trial::new("a", 0.0, period, input, vec![0.0; 1000]).unwrap();
-        let windows = cut(&trial, 0, Split::Time(1.0), Horizon::Steps);
+        let windows = cut(&trial, 0, 1.0, Horizon::Steps);
         let borders: Vec<_> = windows.iter().map(|window| window.start).collect();
         assert_eq!(borders, [0, 150, 300, 450, 633, 816]);
     }

@@ -37,9 +37,9 @@ pub(crate) fn coded_neutral(trials: &[Trial]) -> Option<CodedNeutral> {
     }
     let is_inside = |level: &f64| (low + margin..=high - margin).contains(level);
     let held = Neutral::of(trials).map(|neutral| neutral.level);
-    let held = held.filter(is_inside).map(|level| {
-        CodedNeutral { level, is_held: is_usual(trials, level, NEAR * (high - low)) }
-    });
+    let held = held
+        .filter(is_inside)
+        .map(|level| CodedNeutral { level, is_held: is_usual(trials, level, NEAR * (high - low)) });
     held.or_else(|| {
         let level = balanced(trials).filter(is_inside)?;
         Some(CodedNeutral { level, is_held: false })

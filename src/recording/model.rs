@@ -18,7 +18,9 @@ use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures, SIGNIFICANCE, sensor_noise};
 use crate::experiment::Joint;
 use crate::report::{ComparedJoint, model_differences};
-use crate::wording::{correlation_sentences, measure, misfit_units, number};
+use crate::wording::{
+    capitalized, correlation_sentences, fails_or_errs, measure, misfit_units, number,
+};
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
@@ -169,7 +171,8 @@ fn page(
         let found = compared.comparison.failure.iter().flat_map(|failure| &failure.fails_where);
         for found in found {
             let (when, weight) = (plain(&found.condition(&units)), found.weight());
-            writeln!(page, "\n**Fails when {when}** ({}): {weight}", compared.model)?;
+            let errs = capitalized(fails_or_errs(compared.comparison));
+            writeln!(page, "\n**{errs} when {when}** ({}): {weight}", compared.model)?;
         }
     }
     for compared in &told {
@@ -233,7 +236,7 @@ fn worst_segments(
         page,
         "\nWhere the output of {} is farthest off, {horizon}, and the share of the squares. The output \
          keeps each error of the speed until the next restart, so that this need not be where it \
-         fails:",
+         arises:",
         judged.model
     )?;
     // A narrow page has no room for what is the same in each row.

@@ -48,7 +48,7 @@ pub(crate) fn compare_table(joints: &[ComparedJoint<'_>]) -> String {
         String::new()
     } else {
         let horizon = horizons_of(joints.iter().copied(), |comparison| comparison.arising);
-        format!("\nwhere it fails ({horizon}):\n{}\n", failures.join("\n"))
+        format!("\nwhere the error arises ({horizon}):\n{}\n", failures.join("\n"))
     };
     let residuals: Vec<_> = joints.iter().filter_map(residual_line).collect();
     let residuals = if residuals.is_empty() {
@@ -137,9 +137,10 @@ fn residual_line(compared: &ComparedJoint<'_>) -> Option<String> {
 /// Where a model fails, in lines that start with the joint.
 fn failure_sentences(compared: &ComparedJoint<'_>) -> Vec<String> {
     let ComparedJoint { joint, comparison, .. } = compared;
+    let fails = wording::fails_or_errs(comparison);
     let sentences = wording::failure_sentences(joint, comparison).into_iter();
     sentences
-        .map(|sentence| format!("{} ({}) fails {sentence}", joint.name, compared.model))
+        .map(|sentence| format!("{} ({}) {fails} {sentence}", joint.name, compared.model))
         .collect()
 }
 

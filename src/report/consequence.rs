@@ -27,6 +27,16 @@ pub(super) fn noise_of(joint: &Joint) -> Option<f64> {
     sensor_noise(&joint.trials).filter(|noise| *noise > 0.0)
 }
 
+/// `5.6 times the noise`; far above it, or where it is not known, `12 % of the motion`.
+pub(super) fn in_proportion(error: ErrorFigures, noise: Option<f64>) -> String {
+    /// Times the noise that say nothing to a person any more.
+    const MANY: f64 = 20.0;
+    match noise.map(|noise| error.rmse / noise) {
+        Some(times) if times < MANY => format!("{} times the noise", rounded(times)),
+        _ => format!("{} of the motion", percent(1.0 - error.fit_percent / 100.0)),
+    }
+}
+
 impl Consequence<'_> {
     /// The part of the error that the effects explain, 0 to 1: `1 − (e − s)/(e₀ − s)` with the
     /// root-mean-square errors `e₀` before and `e` with them, and the noise `s`.
@@ -45,19 +55,9 @@ impl Consequence<'_> {
     /// `0.28 deg remain, 5.6 times the noise`; far above it, as a part of the motion:
     /// `0.88 deg remain, 12 % of the motion`.
     pub(super) fn remains(&self) -> String {
-        /// Times the noise that say nothing to a person any more.
-        const MANY: f64 = 20.0;
         let Some(after) = self.after else { return "an error remains".to_owned() };
         let error = measure(after.rmse, self.joint.output_unit.as_deref());
-        match self.times_noise() {
-            Some(times) if times < MANY => {
-                format!("{error} remain, {} times the noise", rounded(times))
-            }
-            _ => {
-                let part = percent(1.0 - after.fit_percent / 100.0);
-                format!("{error} remain, {part} of the motion")
-            }
-        }
+        format!("{error} remain, {}", in_proportion(after, self.sensor_noise))
     }
 
     /// What each of several effects carries, and what could stand in its place.

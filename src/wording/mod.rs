@@ -34,6 +34,7 @@ pub(crate) use prose::{Margins, capitalized, counted, hanging, lines, listed, wr
 #[cfg(feature = "rrd")]
 pub(crate) use region::feature_with_unit;
 pub(crate) use region::{
-    failure_sentences, feature_with_level, misfit_units, region_text, worst_segment_text,
+    fails_or_errs, failure_sentences, feature_with_level, misfit_units, region_text,
+    worst_segment_text,
 };
 pub(crate) use remedy::remedy_text;

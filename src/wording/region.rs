@@ -46,6 +46,15 @@ pub(crate) fn worst_segment_text(worst: &WorstSegment) -> String {
     format!("{from} s to {to} s")
 }
 
+/// The verb for a model and where its error arises: one that explains most of the motion does not
+/// fail.
+pub(crate) fn fails_or_errs(comparison: &Comparison) -> &'static str {
+    /// Percent of the motion that are most of it.
+    const MOST: f64 = 50.0;
+    let explains_most = comparison.judged().is_some_and(|error| error.fit_percent > MOST);
+    if explains_most { "errs most" } else { "fails" }
+}
+
 /// Where a model fails, a sentence for each condition.
 pub(crate) fn failure_sentences(joint: &Joint, comparison: &Comparison) -> Vec<String> {
     let units = misfit_units(joint);

@@ -70,8 +70,8 @@ impl Finding<'_> {
         let is_worse = times > ABOVE_NOISE && validation > ABOVE_NOISE * self.noise()?;
         is_worse.then(|| {
             format!(
-                "The test covers the part that was fitted; on the other part the error is {} times as \
-                 large, so the model does not generalise yet.",
+                "The test covers the part that was fitted; on the other part, which says what to \
+                 expect of new data, the error is {} times as large.",
                 rounded(times)
             )
         })

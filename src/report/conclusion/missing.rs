@@ -2,10 +2,11 @@
 
 use super::{ABOVE_NOISE, Passage, Topic};
 use crate::explain::Candidate;
-use crate::fit::{Fit, Status};
+use crate::fit::{Fit, Status, makes_first_order};
 use crate::model::Component;
 use crate::report::equation::filled_in;
 use crate::report::finding::{Finding, added, specs};
+use crate::report::first_order::first_order;
 use crate::report::separation::sentence;
 use crate::wording::{p_text, parameter_units, parameter_value, rounded};
 
@@ -39,10 +40,16 @@ impl Finding<'_> {
     /// What an effect does, its law here, and its parameters.
     fn described(&self, best: &Candidate, component: &Component) -> String {
         let spec = component.effect().spec();
+        let is_first_order =
+            makes_first_order(spec.id) && first_order(self.joint(), &best.fit).is_some();
         let parameters = self.parameters(&best.fit, &format!("{}.", spec.id));
         let law = filled_in(component);
         let with = if parameters.is_empty() { "" } else { ", with " };
-        let summary = component.summary();
+        let summary = if is_first_order {
+            "of an integrator it makes a first order, which settles where the input holds it".into()
+        } else {
+            component.summary()
+        };
         format!("{} ({summary}): here {law}{with}{parameters}.", spec.id)
     }
 

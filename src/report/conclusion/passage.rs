@@ -30,7 +30,7 @@ impl Topic {
     pub(crate) fn label(self) -> &'static str {
         match self {
             Self::Error => "Error",
-            Self::WhereItFails => "Where it fails",
+            Self::WhereItFails => "Where the error arises",
             Self::Missing => "What is missing",
             Self::Next => "What comes next",
             Self::Residual => "What the residual follows",

@@ -3,6 +3,7 @@
 use super::{Passage, Topic};
 use crate::diagnosis::ShownBy;
 use crate::diagnosis::failure::WorstSegment;
+use crate::report::consequence::in_proportion;
 use crate::report::finding::Finding;
 use crate::wording::{capitalized, failure_sentences, percent, rounded, worst_segment_text};
 
@@ -10,12 +11,11 @@ impl Finding<'_> {
     /// How large the error is.
     pub(super) fn size(&self) -> String {
         let error = self.output(self.error());
-        match self.noise() {
-            Some(noise) => {
-                let times = rounded(self.error() / noise);
-                format!("The error is {error}, {times} times the noise.")
+        match (self.comparison().judged(), self.noise()) {
+            (Some(judged), Some(noise)) => {
+                format!("The error is {error}, {}.", in_proportion(judged, Some(noise)))
             }
-            None => format!("The error is {error}."),
+            _ => format!("The error is {error}."),
         }
     }
 

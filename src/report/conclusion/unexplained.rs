@@ -75,14 +75,30 @@ impl Finding<'_> {
         format!("{} where it is {part}{unit}", self.output(region.mean_residual))
     }
 
-    /// The effect that comes nearest, and that it is not to be trusted.
+    /// The effect that comes nearest, and what is to be thought of it; nothing where it is named as of
+    /// no consequence already.
     fn nearest(&self) -> Option<String> {
+        /// The share of the misfit from which a significant effect is likely one of several.
+        /// Chosen: of misfits from outside the catalogue none leaves an effect with as much.
+        const ONE_OF_SEVERAL: f64 = 0.5;
         let nearest = self.ranking.first()?;
-        let (name, share) = (nearest.name(), percent(nearest.share_of_misfit.clamp(0.0, 1.0)));
-        Some(format!(
-            "The nearest effect, {name}, would explain {share} of the misfit and is not to be \
-             trusted."
-        ))
+        let refinements = self.attribution.map_or(&[][..], |known| &known.refinements);
+        if nearest.effects.iter().all(|id| refinements.contains(id)) {
+            return None;
+        }
+        let (name, explained) = (nearest.name(), nearest.share_of_misfit.clamp(0.0, 1.0));
+        let share = percent(explained);
+        Some(if explained >= ONE_OF_SEVERAL && nearest.is_significant() {
+            format!(
+                "The nearest effect, {name}, would explain {share} of the misfit by itself, and the \
+                 model with it still lacks something: it is there only together with more."
+            )
+        } else {
+            format!(
+                "The nearest effect, {name}, would explain {share} of the misfit and is not to be \
+                 trusted."
+            )
+        })
     }
 }
 

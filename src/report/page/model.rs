@@ -237,9 +237,9 @@ fn failures(improved: &ImprovedJoint<'_>, file: &str) -> Result<Vec<Block>, Plot
     let last = improved.finding.compared;
     let compared = ComparedJoint { revision, comparison: &step.comparison, ..last };
     let heading = if revision == last.revision {
-        "Where it fails".to_owned()
+        "Where the error arises".to_owned()
     } else {
-        format!("Where revision {revision} failed")
+        format!("Where the error of revision {revision} arose")
     };
     let said = failure_sentences(compared.joint, compared.comparison)
         .into_iter()
