@@ -70,7 +70,7 @@ impl Grown<'_, '_> {
         self.attribution_of(&self.left_out(workers), Vec::new(), workers)
     }
 
-    /// The same, given what each leaves behind, and what has no consequence beside it.
+    /// What is attributed, given the models without each effect and the negligible refinements.
     pub(super) fn attribution_of(
         &self,
         left_out: &[LeftOut],

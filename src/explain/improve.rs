@@ -63,7 +63,7 @@ pub fn improve(
     Improvement { revisions, verdict, attribution }
 }
 
-/// What each effect of the whole model carries, without those of no consequence, which are removed
+/// What each effect of the whole model carries, without negligible ones, which are removed
 /// one after the other, the least first, and join the `refinements`. `visit` sees each model on the
 /// way.
 fn attributed(

@@ -162,7 +162,7 @@ pub(super) fn best_starts(runs: &[Run<'_>]) -> Vec<Starts> {
 }
 
 /// The simulation of each run from its starts, and its residuals; what the starts are still wrong by
-/// is taken off as far as it is linear.
+/// is removed as far as it is linear.
 pub(super) fn simulated_from<'r>(
     begun: impl Iterator<Item = (&'r Run<'r>, &'r Starts)>,
     simulate: Simulate,

@@ -91,7 +91,7 @@ impl Basis {
         motions
     }
 
-    /// The same motion seen `by` samples later.
+    /// `motion` seen `by` samples later.
     pub(crate) fn later(&self, motion: &Motion, by: usize) -> Motion {
         let [level, ramp, modes @ ..] = *motion;
         let decayed = self.modes.get(by).copied().unwrap_or_default();

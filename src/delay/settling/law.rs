@@ -113,7 +113,7 @@ impl Settling {
         self.part(self.law.constants.rising, 0)
     }
 
-    /// The same after the input falls, where it is another one.
+    /// Time constant after the input falls, seconds, where it is another one.
     pub fn falling_s(&self) -> Option<LagPart> {
         Some(self.part(self.law.constants.falling?, 1))
     }
@@ -303,7 +303,7 @@ fn selected(search: Search<'_>) -> (Search<'_>, Option<Search<'_>>) {
     }
 }
 
-/// The same with a further lag of at least so many samples.
+/// `search` with a further lag of at least `least` samples.
 fn with_further<'a>(search: &Search<'a>, least: f64) -> Option<Search<'a>> {
     /// Parts of the time constant at which it is looked for: the valley has several hollows.
     const PARTS: [f64; 3] = [0.02, 0.06, 0.2];

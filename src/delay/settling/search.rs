@@ -143,7 +143,7 @@ impl<'a> Search<'a> {
         is_finite.then(|| step.iter().map(|by| by.clamp(-LONGEST, LONGEST)).collect())
     }
 
-    /// The noise of what is left, where it was taken for white.
+    /// The noise of the residual, where it was taken for white.
     pub(super) fn noise(&self) -> NoiseModel {
         /// Windows that are enough.
         const ENOUGH: usize = 100;
