@@ -23,7 +23,7 @@ use tauscope::synthetic::{
 const RECORDS: u64 = 20;
 /// Records of a plant for which the bound is computed, at most.
 const BOUNDS: u64 = 40;
-/// The same where many steps make it take long.
+/// Records with a computed bound where many steps make it take long.
 const SLOW_BOUNDS: u64 = 3;
 /// The seed of the first record where none is given.
 const FIRST_SEED: u64 = 1000;
@@ -128,7 +128,7 @@ fn inner<'a>(made: &'a Synthetic, trial: &Trial) -> &'a [StepTruth] {
 }
 
 /// A response that starts `t` samples before, integrated; the equations are solved here
-/// again, so that the bound does not hang on the estimator.
+/// again, so that the bound does not depend on the estimator.
 fn response(lag: Option<f64>, ringing: Option<(f64, f64)>, t: f64) -> f64 {
     if t <= 0.0 {
         return 0.0;

@@ -3,7 +3,7 @@
 //!
 //! A decision counts as wrong when its step was accepted though nothing changed, or its delay is
 //! off that of the others by more than one and a half rows of β: what all steps of a joint share,
-//! as a lag, no decision can show. The area is the chance that a wrong decision is ranked before a
+//! as a lag, no decision can show. The area is the probability that a wrong decision is ranked before a
 //! right one: 0.5 for no order, 1 for a perfect one. For comparison the same is shown for the
 //! margin of the second-best breakpoint alone.
 //! Usage: `doubt_order [RECORDS [FIRST_SEED]]`
@@ -94,7 +94,7 @@ fn wrong(all: &[Judged]) -> Vec<bool> {
     all.iter().map(|judged| judged.is_still || (judged.error - middle).abs() > most).collect()
 }
 
-/// The chance that a wrong decision scores above a right one; equal scores count half.
+/// The probability that a wrong decision scores above a right one; equal scores count half.
 fn area(scores: &[f64], wrong: &[bool]) -> f64 {
     let of = |kind: bool| {
         let scored = scores.iter().zip(wrong).filter(move |(_, wrong)| **wrong == kind);

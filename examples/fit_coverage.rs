@@ -266,7 +266,7 @@ fn parameters_are_found_again() -> anyhow::Result<()> {
         let effect = REGISTRY.iter().find(|effect| effect.spec().id == id).context(id)?;
         let coverage = cover(*effect, 2)?;
         for (name, tally) in coverage.names.iter().zip(&coverage.tallies) {
-            // A switch has no standard error: what hangs on it is whether the gain is right.
+            // A switch has no standard error: what depends on it is whether the gain is right.
             let is_switch = name.starts_with("stiction");
             assert!(is_switch || tally.within(4.0) >= 100.0, "{name}: {:?}", tally.scores);
         }

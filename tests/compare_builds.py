@@ -45,7 +45,10 @@ REAL = [
     ("davinci_tool.csv", [], [], False),
     ("gas_furnace_seriesJ.csv", ["--joint", "gas=gas_rate:co2_pct"], [], True),
     ("cascaded_tanks.csv", ["--joint", "tank=u_est_V:y_est_V"], [], True),
+    ("bj_sales_seriesM.csv", ["--joint", "sales=lead:sales"], [], True),
 ]
+# Tables that are no logs of a joint: what can be said of their columns, or why they are refused.
+TABLES = ("segmented_stagnant.csv", "rotary_hydraulic_labels.csv", "excavator_rc_valve_map.csv")
 EFFECTS = [[], ["dead_band"], ["gravity_load", "dead_band"], ["actuator_lag"], ["input_saturation"],
            ["resonance"], ["coulomb_friction"], ["end_stop"], ["backlash"], ["variable_delay"]]
 
@@ -89,10 +92,11 @@ def runs(args, folder):
         yield f"{log}: improve text", ["improve", path, "-w", "m.toml"]
         yield f"{log}: design", ["design", path, "--duration", "60", "--format", "json", "-o", "in.csv"]
     for command in ("estimate", "compare", "explain", "improve", "add", "sweep", "report",
-                    "design", "simulate", "effects", "doctor"):
+                    "design", "simulate", "effects", "doctor", "merge", "export", "columns"):
         yield f"{command} --help", [command, "--help"]
     yield "effects", ["effects"]
     yield "effects json", ["effects", "--format", "json"]
+    yield from of_results(args, folder)
     yield "no such file", ["estimate", "none.csv"]
     yield "no such effect", ["add", "deadband", str(ROOT / "data" / "hidden_effect.csv")]
     count = 4 if args.quick else 20
@@ -111,6 +115,9 @@ def runs(args, folder):
     if not args.real.is_dir():
         print(f"skipped: measured logs are not at {args.real}")
         return
+    for table in (*TABLES, *(log for log, *_ in REAL)):
+        if (args.real / table).exists():
+            yield f"{table}: columns", ["columns", str(args.real / table)]
     for log, how, more, fitted in REAL:
         path = args.real / log
         if not path.exists():
@@ -125,6 +132,29 @@ def runs(args, folder):
             yield f"{log}: page", ["report", str(path), *how, "-o", "page.html"]
             yield f"{log}: improve", ["improve", str(path), *how, "--format", "json",
                                       "--max-effects", "2", "-w", "m.toml"]
+
+
+def of_results(args, folder):
+    """Commands that read what others have written: here OLD, for both."""
+    log = str(ROOT / "data" / "hidden_effect.csv")
+    model, earlier, parts = folder / "model.toml", folder / "earlier.json", folder / "parts"
+    def old(*arguments):
+        return subprocess.run([args.old, *arguments, "--quiet"], check=True, capture_output=True).stdout
+    old("add", "dead_band", log, "-w", str(model))
+    old("estimate", str(ROOT / "data"), "--results", str(parts))
+    earlier.write_bytes(old("estimate", log, "--format", "json"))
+    for language in ("c", "m", "py", "fmu"):
+        yield f"export .{language}", ["export", str(model), "--joint", "boom", f"exported.{language}"]
+    for language in ("c", "m", "py", "json"):
+        yield f"lookup .{language}", ["estimate", log, "--export", f"lookup.{language}"]
+    yield "merge", ["merge", str(parts), "--decisions", "d.csv", "--summary", "s.csv"]
+    yield "merge json", ["merge", str(parts), "--format", "json"]
+    hinge = ["estimate", log, "--method", "hinge", "--against", str(earlier)]
+    yield "estimate --against", hinge
+    yield "estimate --against json", [*hinge, "--format", "json"]
+    against = ["compare", log, "-m", str(model), "--against", str(model)]
+    yield "compare --against", against
+    yield "compare --against json", [*against, "--format", "json"]
 
 
 def outputs(program, arguments):

@@ -24,7 +24,7 @@ impl Effect for Hose {
     }
 }
 
-/// The same, with the neutral value forgotten.
+/// The hose with its neutral value forgotten.
 #[derive(Debug)]
 struct Choked;
 

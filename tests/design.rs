@@ -299,7 +299,7 @@ fn write_trials(desk: &Desk, name: &str, trials: &[(Vec<f64>, Vec<f64>)]) {
     desk.write(name, &text);
 }
 
-/// Rest, one step, motion up to the end stop, step back: what a stop takes off no plan can.
+/// Rest, one step, motion up to the end stop, step back: what a stop removes no plan can.
 #[test]
 fn a_plan_from_strokes_keeps_its_range_for_as_long_as_it_is() {
     let desk = desk();

@@ -1,4 +1,4 @@
-//! The same log gives the same results: on any number of threads, in any order of joints.
+//! One log gives equal results on any number of threads, in any order of joints.
 #![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
 
 use std::collections::BTreeMap;

@@ -59,6 +59,43 @@ fn the_effect_shown_is_the_one_that_is_run() {
     assert!(shown.iter().any(|shown| run.ends_with(shown)));
 }
 
+/// Every source file below `folder`.
+fn sources(folder: &Path) -> Vec<std::path::PathBuf> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
+    let files = files.into_iter().filter(|path| path.extension().is_some_and(|e| e == "rs"));
+    files.chain(folders.iter().flat_map(|folder| sources(folder))).collect()
+}
+
+/// Docs of a source that lean on what is documented before them: each is read by itself.
+fn leaning_docs(text: &str) -> Vec<&str> {
+    let lines: Vec<&str> = text.lines().map(str::trim_start).collect();
+    let doc = |line: &str| {
+        let words = line.strip_prefix("///").or_else(|| line.strip_prefix("//!"));
+        words.map(|words| words.trim().to_owned())
+    };
+    let begins = |index: usize| {
+        let before = index.checked_sub(1).and_then(|before| doc(lines[before]));
+        let own = doc(lines[index]);
+        before.is_none_or(|before| before.is_empty())
+            && own.is_some_and(|own| own == "The same" || own.starts_with("The same "))
+    };
+    (0..lines.len()).filter(|index| begins(*index)).map(|index| lines[index]).collect()
+}
+
+#[test]
+fn docs_of_the_source_stand_alone() {
+    let files = sources(Path::new("src"));
+    assert!(files.len() > 100);
+    for path in files {
+        let text = fs::read_to_string(&path).unwrap();
+        assert_eq!(leaning_docs(&text), [""; 0], "{}", path.display());
+    }
+    let fault = "/// A mean.\nfn mean() {}\n/// The same of a slice.\nfn of() {}";
+    assert_eq!(leaning_docs(fault), ["/// The same of a slice."]);
+    assert_eq!(leaning_docs("/// Whether both are of\n/// The same kind."), [""; 0]);
+}
+
 #[test]
 fn every_link_of_the_documents_leads_somewhere() {
     let folders = [".", "docs", "data", "benches"];

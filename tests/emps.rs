@@ -102,7 +102,7 @@ fn force_error_percent(joint: &Joint, [inertia, viscous, coulomb, offset]: [f64;
     force_error_by_direction_percent(joint, inertia, [forward, [viscous, coulomb - offset]])
 }
 
-/// The same with the viscous and the constant friction of forward and of backward motion.
+/// [`force_error_percent`] with frictions of their own forward and backward.
 fn force_error_by_direction_percent(joint: &Joint, inertia: f64, friction: [[f64; 2]; 2]) -> f64 {
     let [[viscous_up, up], [viscous_down, down]] = friction;
     let rest = f64::midpoint(up, -down);

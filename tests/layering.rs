@@ -1,5 +1,5 @@
-//! Modules import downward only, and no files import in a circle: the order is part of the
-//! design.
+//! Modules import downward only, no files import in a circle, and each library stays in its
+//! place: the order is part of the design.
 #![expect(clippy::unwrap_used, clippy::panic, reason = "a test may fail loudly")]
 
 #[path = "layering/imports.rs"]
@@ -148,6 +148,20 @@ fn an_upward_import_is_seen_in_each_way_to_write_it() {
     }
 }
 
+/// The program's root is not the library's, which it would hide.
+#[test]
+fn an_upward_import_by_way_of_the_root_is_seen_beside_a_program() {
+    let files = [
+        ("lib.rs", "pub mod delay; mod experiment; pub use delay::Settings;"),
+        ("main.rs", "fn main() { tauscope::delay::estimate() }"),
+        ("delay/mod.rs", "pub struct Settings; pub fn estimate() {}"),
+        ("experiment/read.rs", "use crate::Settings;"),
+    ];
+    let house = house(&files);
+    assert_eq!(house.len(), files.len());
+    assert_eq!(upward(&house).len(), 1);
+}
+
 #[test]
 fn a_circle_is_seen_wherever_it_runs() {
     for (kind, files) in [
@@ -206,6 +220,22 @@ fn a_circle_is_seen_wherever_it_runs() {
     assert_eq!(circles(&facade), [""; 0]);
 }
 
+#[test]
+fn a_circle_by_way_of_methods_is_seen() {
+    let methods = |call: &str| {
+        let folder = format!("mod a; mod b; impl b::B {{ pub fn f(&self) {{ {call} }} }}");
+        circles(&house(&[
+            ("delay/mod.rs", &folder),
+            ("delay/a.rs", "use super::b::B; impl B { fn g(&self) { self.f() } fn new() {} }"),
+            ("delay/b.rs", "pub struct B;"),
+        ]))
+    };
+    for call in ["self.g()", "println!(\"{}\", self.g())", "Self::new()", "b::B::new()"] {
+        assert!(!methods(call).is_empty(), "by methods of one type in two files: {call}");
+    }
+    assert_eq!(methods("self.of_a_trait()"), [""; 0]);
+}
+
 /// What ties the maker of test data to what is tested with it, as sentences: it may use only
 /// validated scalars and logs, and of the library only the command line may use it.
 fn ties_of_test_data(house: &House) -> Vec<String> {
@@ -240,35 +270,142 @@ fn a_tie_of_the_maker_of_test_data_is_seen() {
     }
 }
 
+/// Libraries, and the places that may name them.
+const PLACES: [(&str, &[&str]); 19] = [
+    ("rayon", &["src/batch.rs"]),
+    ("rerun", &["src/recording"]),
+    ("sci_rs", &["src/numerics/filter.rs"]),
+    ("statrs", &["src/numerics/statistics"]),
+    ("winnow", &["src/effect/expression"]),
+    ("toml_edit", &["src/model/file"]),
+    ("ctrlc", &["src/cli/console/interrupt.rs"]),
+    ("signal_hook", &["src/cli/output/limit.rs"]),
+    ("plotters", &["src/report/page/plot.rs"]),
+    ("flate2", &["src/experiment/format"]),
+    ("encoding_rs", &["src/experiment/format/text.rs"]),
+    ("jiff", &["src/experiment/format/date.rs"]),
+    ("arrow_ipc", &["src/experiment/format/parquet"]),
+    ("calamine", &["src/experiment/format/xlsx.rs"]),
+    ("hdf5_pure", &["src/experiment/format/mat"]),
+    ("zip", &["src/export/fmu", "src/experiment/format/xlsx.rs"]),
+    ("mcap", &["src/experiment/format"]),
+    ("re_cdr", &["src/experiment/format/mcap"]),
+    ("re_ros_msg", &["src/experiment/format/mcap"]),
+];
+
+/// What of [`PLACES`] a source names that lies elsewhere.
+fn misplaced(path: &Path, text: &str) -> Vec<&'static str> {
+    let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+    let code: Vec<&str> = code.collect();
+    let names = |library: &str| {
+        let ways = [format!("{library}::"), format!("use {library};"), format!("use {library} as")];
+        code.iter().any(|line| ways.iter().any(|way| line.contains(way)))
+    };
+    let elsewhere = PLACES.iter().filter(|(_, own)| !own.iter().any(|own| path.starts_with(own)));
+    elsewhere.map(|(library, _)| *library).filter(|library| names(library)).collect()
+}
+
 #[test]
 fn each_library_is_named_in_its_own_place_only() {
-    for (library, place) in [
-        ("rayon", "src/batch.rs"),
-        ("rerun", "src/recording"),
-        ("sci_rs", "src/numerics/filter.rs"),
-        ("statrs", "src/numerics/statistics"),
-        ("winnow", "src/effect/expression"),
-        ("toml_edit", "src/model/file"),
-        ("ctrlc", "src/cli/console/interrupt.rs"),
-        ("signal_hook", "src/cli/output/limit.rs"),
-        ("plotters", "src/report/page/plot.rs"),
-        ("flate2", "src/experiment/format"),
-        ("encoding_rs", "src/experiment/format/text.rs"),
-        ("jiff", "src/experiment/format/date.rs"),
-        ("arrow_ipc", "src/experiment/format/parquet"),
-        ("calamine", "src/experiment/format/xlsx.rs"),
-        ("hdf5_pure", "src/experiment/format/mat"),
-        ("zip", "src/export/fmu src/experiment/format/xlsx.rs"),
-        ("mcap", "src/experiment/format"),
-        ("re_cdr", "src/experiment/format/mcap"),
-        ("re_ros_msg", "src/experiment/format/mcap"),
-    ] {
-        for path in sources(Path::new("src")) {
-            let text = fs::read_to_string(&path).unwrap();
-            let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
-            let named = code.clone().any(|line| line.contains(&format!("{library}::")));
-            let is_its_own = place.split(' ').any(|place| path.starts_with(place));
-            assert!(!named || is_its_own, "{} names {library}", path.display());
+    for (library, places) in PLACES {
+        for place in places {
+            assert!(Path::new(place).exists(), "{library}: {place}");
         }
+    }
+    for path in sources(Path::new("src")) {
+        let text = fs::read_to_string(&path).unwrap();
+        assert_eq!(misplaced(&path, &text), [""; 0], "{}", path.display());
+    }
+}
+
+#[test]
+fn a_library_out_of_its_place_is_seen() {
+    for fault in [
+        "use rayon::prelude::*;",
+        "use rayon;",
+        "use rayon as threads;",
+        "fn f() { rayon::join(g, h); }",
+    ] {
+        assert_eq!(misplaced(Path::new("src/fit/run.rs"), fault), ["rayon"], "{fault}");
+        assert_eq!(misplaced(Path::new("src/batch.rs"), fault), [""; 0], "{fault}");
+    }
+    assert_eq!(misplaced(Path::new("src/fit/run.rs"), "// rayon::join is elsewhere"), [""; 0]);
+}
+
+/// Where equations may be solved by a decomposition of `nalgebra` outside `numerics`: there,
+/// rank and projection have their one tolerance, and a caller asks them.
+const DECOMPOSED: [(&str, &str); 4] = [
+    ("delay/broken_line/regression", "four by four, and the inverse is the covariance, too"),
+    ("delay/lag/information", "three by three, and the inverse is the covariance, too"),
+    ("delay/settling/search", "damped, and the inverse is the covariance, too"),
+    ("fit/descent", "a damped step: its matrix is positive definite by the damping"),
+];
+
+/// The decompositions and inverses that `nalgebra` has, as methods and as types.
+const DECOMPOSITIONS: [&str; 24] = [
+    "cholesky",
+    "lu",
+    "full_piv_lu",
+    "qr",
+    "col_piv_qr",
+    "svd",
+    "svd_unordered",
+    "udu",
+    "schur",
+    "hessenberg",
+    "bidiagonalize",
+    "symmetric_eigen",
+    "symmetric_eigenvalues",
+    "complex_eigenvalues",
+    "singular_values",
+    "pseudo_inverse",
+    "try_inverse",
+    "Cholesky",
+    "LU",
+    "QR",
+    "ColPivQR",
+    "SVD",
+    "SymmetricEigen",
+    "Schur",
+];
+
+/// Files that decompose a matrix, though they may not.
+fn decomposed_elsewhere(house: &House) -> BTreeSet<String> {
+    let is_one = |name: &String| DECOMPOSITIONS.contains(&name.as_str());
+    let called = house.called().filter(|(_, names)| names.iter().any(is_one)).map(|(file, _)| file);
+    // A variable may be called as a method is.
+    let is_type = |name: &String| is_one(name) && name.starts_with(char::is_uppercase);
+    let named = house.named().filter(|(_, paths)| paths.iter().flatten().any(is_type));
+    let files = called.chain(named.map(|(file, _)| file)).map(|file| file.join("/"));
+    let may = |file: &String| {
+        file.starts_with("numerics/") || DECOMPOSED.iter().any(|(place, _)| place == file)
+    };
+    files.filter(|file| !may(file)).collect()
+}
+
+#[test]
+fn matrices_are_decomposed_in_stated_places_only() {
+    let project = project();
+    assert_eq!(decomposed_elsewhere(&project), BTreeSet::new());
+    for (place, reason) in DECOMPOSED {
+        let of_file = |(file, _): &(&Module, _)| file.join("/") == place;
+        let (_, called) = project.called().find(of_file).unwrap_or_else(|| panic!("no {place}"));
+        assert!(called.iter().any(|name| DECOMPOSITIONS.contains(&name.as_str())), "{place}");
+        assert!(!reason.is_empty());
+    }
+}
+
+#[test]
+fn a_decomposition_elsewhere_is_seen() {
+    for fault in [
+        "fn f(a: Matrix3<f64>) { a.lu().solve(&b); }",
+        "fn f() { format!(\"{}\", a.try_inverse()) }",
+        "use nalgebra::linalg::SVD; fn f() { SVD::new(a, true, true); }",
+    ] {
+        let seen = decomposed_elsewhere(&house(&[("model/start.rs", fault)]));
+        assert_eq!(seen.len(), 1, "{fault}");
+        assert!(decomposed_elsewhere(&house(&[("numerics/rank.rs", fault)])).is_empty());
+        let test = format!("#[cfg(test)] mod tests {{ {fault} }}");
+        assert!(decomposed_elsewhere(&house(&[("model/start.rs", &test)])).is_empty());
     }
 }

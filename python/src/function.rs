@@ -68,7 +68,7 @@ const MOMENT: [(&str, Signal); 7] = [
     ("radians", Signal::Radians),
 ];
 
-/// The same of the transport stage.
+/// What functions of the transport stage see, by the names of their arguments.
 const CHANGE: [(&str, Signal); 4] = [
     ("before", Signal::Before),
     ("after", Signal::After),

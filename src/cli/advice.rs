@@ -4,7 +4,7 @@
 use std::error::Error;
 
 use crate::delay::{EstimateError, Growing, Method, Scope};
-use crate::design::SuspectsError;
+use crate::design::{NotKept, PlanError, SuspectsError, rounded};
 use crate::experiment::ReadError;
 use crate::explain::AddError;
 use crate::numerics::FilterError;
@@ -16,6 +16,9 @@ pub(crate) fn advice(error: &(dyn Error + 'static)) -> String {
     }
     if let Some(error) = error.downcast_ref::<Growing>() {
         return on_growing(*error);
+    }
+    if let Some(error) = error.downcast_ref::<PlanError>() {
+        return on_plan(error);
     }
     let text = match error.downcast_ref::<EstimateError>() {
         Some(EstimateError::Filter(error)) => on_filter(error),
@@ -82,6 +85,37 @@ fn on_growing(error: Growing) -> String {
     format!("; expected `{expected}`")
 }
 
+fn on_plan(error: &PlanError) -> String {
+    let text = match error {
+        PlanError::TooFewLevels => "; `--levels` and `--dead-band` say which there are",
+        PlanError::HoldTooLong { .. } => "; choose a shorter `--hold`, or a longer `--duration`",
+        PlanError::ErrorUnknown => "; give a longer log, or `--model` alone",
+        PlanError::Elsewhere { .. } => "; give an `--output-range` there, or a log of this range",
+        PlanError::SettlesElsewhere { .. } => "; give an `--output-range` about two of these",
+        PlanError::OneSign { .. } => "; give a log with inputs of either sign, or `--levels`",
+        PlanError::Start { range, .. } => {
+            return format!("; choose a `--start` near {}", rounded(0.5 * (range.0 + range.1)));
+        }
+        PlanError::NotKept { why, .. } => return on_range(why),
+    };
+    text.to_owned()
+}
+
+fn on_range(NotKept { shorter_s, wider, .. }: &NotKept) -> String {
+    let shorter = shorter_s.map(|s| format!("`--duration {s}`"));
+    let wider = wider.map(|(low, high)| format!("`--output-range={low},{high}`"));
+    match (shorter, wider) {
+        (Some(shorter), Some(wider)) => {
+            format!("; give {shorter}, or {wider}, or go without `--trials`")
+        }
+        (Some(shorter), None) => format!("; give {shorter}, or go without `--trials`"),
+        (None, Some(wider)) => format!("; give {wider}"),
+        (None, None) => ": give a log in which the joint is driven for longer without a break, or \
+                         smaller levels (`--largest`)"
+            .to_owned(),
+    }
+}
+
 fn on_filter(error: &FilterError) -> &'static str {
     match error {
         FilterError::AboveNyquist { .. } => "; choose a lower `--passband`, or `--passband none`",
@@ -93,6 +127,18 @@ fn on_filter(error: &FilterError) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_range_is_kept_for_shorter_or_in_a_wider_one() {
+        let why = |shorter_s, wider| {
+            on_range(&NotKept { duration_s: 30.0, trial_s: None, margin: None, shorter_s, wider })
+        };
+        let both = "; give `--duration 11`, or `--output-range=-15,15`, or go without `--trials`";
+        assert_eq!(why(Some(11.0), Some((-15.0, 15.0))), both);
+        assert_eq!(why(None, Some((-15.0, 15.0))), "; give `--output-range=-15,15`");
+        assert!(why(Some(11.0), None).ends_with("without `--trials`"));
+        assert!(why(None, None).contains("`--largest`"));
+    }
 
     #[test]
     fn lost_rows_can_be_filled_and_a_jitter_cannot() {

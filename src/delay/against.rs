@@ -39,7 +39,7 @@ pub struct StepState {
     pub angle: f64,
     /// Time of the input step, in seconds since the [origin](Trial::origin_s).
     pub time_s: f64,
-    /// The same by the clock of the log.
+    /// Time of the input step by the clock of the log, seconds.
     pub logged_time_s: f64,
     /// Mean of each further signal over the five samples before the input step, in the
     /// order of [`Joint::covariates`]; none where it was not measured.
@@ -94,7 +94,7 @@ pub struct AgainstState {
     pub correlations: Vec<Correlation>,
     /// Steps up against steps down, of all kinds.
     pub direction: Direction,
-    /// The same for the steps of each kind that there is.
+    /// Correlations and directions for the steps of each kind that there is.
     pub kinds: Vec<AgainstOfKind>,
 }
 

@@ -14,7 +14,7 @@ pub struct Checks {
     outcomes: [Outcome; COUNT],
     /// A bit for each condition that has a value; that of the first is the lowest.
     with_value: u16,
-    /// The same of limits.
+    /// A bit for each condition that has a limit; that of the first is the lowest.
     with_limit: u16,
 }
 

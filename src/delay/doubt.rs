@@ -9,7 +9,7 @@ use super::search::Candidate;
 /// A number this near its limit, as a part of their sum, is near; farther away it is no doubt.
 const NEAR: f64 = 0.25;
 
-/// The same for an output limit, as a part of the range of the output.
+/// So near to an output limit it is doubtful, as a part of the output's range.
 const NEAR_STOP: f64 = 0.05;
 
 /// Part of the output's range that is its end: within it a joint stands at a stop.

@@ -41,7 +41,7 @@ impl Neutral {
         Self::within(trials, level_tolerance(trials))
     }
 
-    /// The same where the tolerance of levels is known.
+    /// The neutral input of `trials`, whose levels have a known tolerance.
     pub(super) fn within(trials: &[Trial], tolerance: f64) -> Option<Self> {
         let held: Vec<Vec<Hold>> = trials.iter().map(|trial| holds(trial, tolerance)).collect();
         let levels = Level::all(&held.concat(), tolerance);
@@ -107,7 +107,7 @@ impl Level {
     fn motion(&self, all: &Self) -> Motion {
         /// Largest part of the mean speed elsewhere, coasting included (chosen).
         const REST: f64 = 0.5;
-        /// The same in the second halves of the holds, when it has coasted.
+        /// Largest part of it in the second halves of holds, when the joint has coasted.
         const LATE: f64 = 0.25;
         let others_s = all.seconds - self.seconds;
         let elsewhere = (all.travel - self.travel) / others_s;

@@ -44,8 +44,8 @@ impl<'a> Prepared<'a> {
         Ok(Self { raw, mended, smoothed, period, steps, motions, is_tested: false })
     }
 
-    /// The same in less memory, where the output is smoothed: of what was mended, the samples
-    /// alone.
+    /// A trial prepared in less memory where its output is smoothed: of what was mended, the
+    /// samples alone.
     pub(super) fn lean(trial: &'a Trial, settings: &Settings) -> Result<Self, FilterError> {
         let Some(filter) = settings.low_pass_at(trial.period()) else {
             return Self::of(trial, settings);

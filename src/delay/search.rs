@@ -100,8 +100,9 @@ impl Candidates {
         Self::search_until(values, first_sample, beta, usize::MAX)
     }
 
-    /// The same, with a best candidate that breaks at the sample `latest` at the latest;
-    /// later ones are evidence only.
+    /// Fits every pair of lines, the best of those that break by the sample `latest`.
+    ///
+    /// Later ones are evidence only. See [`search`](Self::search).
     pub fn search_until(values: &[f64], first_sample: usize, beta: usize, latest: usize) -> Self {
         let beta = beta.max(1);
         let rows = values.len() / beta;
@@ -136,7 +137,7 @@ impl Candidates {
         Self { first_sample, beta: 1, sse, few: None, lines, best }
     }
 
-    /// The same for lines that meet; the best ones meet between two samples.
+    /// Lines that meet and were fitted elsewhere; the best meet between two samples.
     pub(super) fn broken(
         first_sample: usize,
         sse: Vec<f64>,

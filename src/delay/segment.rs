@@ -27,7 +27,7 @@ impl Segment {
         self.last + 1 - self.first
     }
 
-    /// The same samples as indices of a slice, counted from 0.
+    /// Its samples as indices of a slice, counted from 0.
     pub fn indices(&self) -> Range<usize> {
         self.first - 1..self.last
     }

@@ -70,7 +70,7 @@ pub struct Settings {
     /// Zero-phase low-pass on the output before anything else.
     pub low_pass: Option<LowPass>,
     /// Refuse a trial that is sampled too slowly for the low-pass. Else the low-pass is left
-    /// out there: such a record holds nothing that it would take off.
+    /// out there: such a record holds nothing that it would remove.
     pub low_pass_required: bool,
     /// `τ_min`: the shortest hold, in samples, that is accepted.
     pub min_delay: usize,

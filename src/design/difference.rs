@@ -9,7 +9,7 @@ pub struct Apart {
     /// The difference at each sample in deviations of the noise, every window of a fit without
     /// its mean.
     pub over_noise: Vec<f64>,
-    /// The same of each hold.
+    /// The difference during each hold.
     pub holds: Vec<HoldApart>,
 }
 

@@ -45,7 +45,7 @@ impl FreeRunError {
     /// The errors of `model` on `joint`, its numbers fitted anew to what is left each time a part
     /// is left out: a fifth of the trials, or a fifth of the time of each where they are few.
     ///
-    /// A stop takes off the error that a run has made. So runs end where the joint comes to a
+    /// A stop removes the error that a run has made. So runs end where the joint comes to a
     /// stop, and go on where it leaves it with the error that they had; so do they from one trial
     /// to the next. Where motions from stop to stop are too few to show a trend, each is by
     /// itself, and what is off in it is off in proportion later. Of an output that regulates

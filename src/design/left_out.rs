@@ -33,7 +33,7 @@ const ORDERS: usize = 4;
 pub(super) struct LeftOut<'a> {
     parts: Vec<(JointModel, Vec<Piece<'a>>)>,
     around: Surroundings<'static>,
-    /// Whether the joint came to stops, which take off the error that a run has made.
+    /// Whether the joint came to stops, which remove the error that a run has made.
     pub(super) has_stops: bool,
     /// Whether an error is forgotten: the output regulates itself.
     pub(super) is_bounded: bool,
@@ -122,7 +122,7 @@ impl<'a> LeftOut<'a> {
 /// What becomes of the model's stops in a free run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum EndStops {
-    /// They are left out, as they would take off errors.
+    /// They are left out, as they would remove errors.
     LeftOut,
     /// They stay.
     Kept,
@@ -137,7 +137,7 @@ pub(super) enum Length {
     Joined,
 }
 
-/// `model` without a stop, which would take off errors as the joint's own does; of a joint that is
+/// `model` without a stop, which would remove errors as the joint's own does; of a joint that is
 /// not driven from stop to stop it stands for touches that are too short to be seen.
 fn freed(model: &JointModel) -> JointModel {
     model.without(EndStop.spec().id)
@@ -296,7 +296,7 @@ fn run(
     Some(Run { period_s, way, distance, error: without_spikes(&error) })
 }
 
-/// The output at `sample`, of which noise is taken off by its neighbours.
+/// The output at `sample`, of which noise is removed by its neighbours.
 fn start_of(trial: &Trial, sample: usize) -> Option<f64> {
     median(trial.output().get(sample.saturating_sub(1)..(sample + 2).min(trial.len()))?)
 }

@@ -57,8 +57,10 @@ impl Logged {
         Self { rest, levels, extent, settling }
     }
 
-    /// The same about the level at which an output that regulates itself settles nearest to the
-    /// middle of `range`: what it is to rest at. Other outputs rest where they do.
+    /// These levels about the one at which a self-regulating output is to rest.
+    ///
+    /// It is the one where it settles nearest to the middle of the range. Other outputs rest where
+    /// they do.
     #[must_use]
     pub fn within(self, (low, high): (f64, f64)) -> Self {
         let (low, high) = (low.max(self.extent.0), high.min(self.extent.1));
@@ -79,8 +81,8 @@ impl Logged {
         outputs.get(place).copied()
     }
 
-    /// The same without the levels at which an output that regulates itself settles elsewhere
-    /// than from `low` to `high`.
+    /// The levels at which a self-regulating output settles from `low` to `high`; all levels of
+    /// other outputs.
     #[must_use]
     pub(super) fn settling_within(&self, (low, high): (f64, f64)) -> Self {
         let Some(settling) = &self.settling else { return self.clone() };
@@ -91,7 +93,7 @@ impl Logged {
         Self { levels, settling, ..self.clone() }
     }
 
-    /// The same with levels as they are in the log.
+    /// These levels as they are in the log, about zero.
     #[must_use]
     pub fn as_it_is(self) -> Self {
         let levels = self.levels.iter().map(|level| level + self.rest).collect();

@@ -51,6 +51,7 @@ pub use planned::{Plan, Wishes};
 pub use power::{Distance, Expected};
 pub use predict::{Prediction, TestRig, Uncertain};
 pub use random::{RandomSteps, random_steps, transitions};
+pub(crate) use refusal::rounded;
 pub use refusal::{NotKept, PlanError};
 pub use response::{response_s, resting_band};
 pub use result::{Design, DesignError, OpenThreshold, Order, Rehearsal, Side};

@@ -62,7 +62,7 @@ impl Plan {
         }
     }
 
-    /// The same where `all` levels would be played in a wide range.
+    /// This plan, where `all` levels would be played in a wide range.
     #[must_use]
     pub(super) fn leaving_out(self, all: &[f64]) -> Self {
         let played = self.schedule.levels();

@@ -80,9 +80,11 @@ impl TestRig {
         simulate_input(model, &schedule.input(), period_s, self.start, &surroundings).output
     }
 
-    /// The same with its margin: what the models do that a record holds for as likely, and no
-    /// less than predictions were off where the model was not fitted. Where there is no record,
-    /// the deviations of all parameters, each by itself, added as independent ones are.
+    /// The output with its margin: how far it may be off.
+    ///
+    /// That is what the models do that a record holds for as likely, and no less than predictions
+    /// were off where the model was not fitted. Where there is no record, it is the deviations of
+    /// all parameters, each by itself, added as independent ones are.
     pub fn prediction(&self, uncertain: &Uncertain, schedule: &Schedule) -> Prediction {
         /// Models that are looked at.
         const LIKELY: usize = 12;

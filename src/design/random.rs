@@ -126,7 +126,7 @@ impl<'a> Drawing<'a> {
         Self { steps, rig, model, random, samples, holds, before, is_brought_back, settling_s }
     }
 
-    /// The same behind other trials.
+    /// This draw behind other trials.
     fn behind(mut self, Behind { before, draw, is_brought_back }: Behind<'_>) -> Self {
         /// Joints of one experiment, at most: streams of random numbers of another draw lie apart.
         const JOINTS: u64 = 1 << 32;

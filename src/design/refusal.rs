@@ -5,10 +5,10 @@
 #[non_exhaustive]
 pub enum PlanError {
     /// Fewer than two levels.
-    #[error("--levels: fewer than two are left; an input needs two different levels or more")]
+    #[error("fewer than two are left of the levels; an input needs two different ones or more")]
     TooFewLevels,
     /// A hold is longer than all.
-    #[error("--hold {hold_s}: longer than the whole input of {duration_s} s")]
+    #[error("a hold of {hold_s} s is longer than the whole input of {duration_s} s")]
     HoldTooLong {
         /// The shortest hold, seconds.
         hold_s: f64,
@@ -16,15 +16,12 @@ pub enum PlanError {
         duration_s: f64,
     },
     /// Nothing is known of how far predictions are off.
-    #[error(
-        "--output-range: the log is too short to show how far predictions of the joint are off; \
-         give a longer log, or --model alone"
-    )]
+    #[error("the log is too short to show how far predictions of the joint are off")]
     ErrorUnknown,
     /// The range lies where the joint has not been.
     #[error(
-        "--output-range={},{}: the log shows the joint only from {} to {}, and nothing is known of it \
-         elsewhere; give a range there, or a log of this range",
+        "no input is planned from {} to {}: the log shows the joint only from {} to {}, and nothing \
+         is known of it elsewhere",
         rounded(.range.0), rounded(.range.1), rounded(.extent.0), rounded(.extent.1)
     )]
     Elsewhere {
@@ -35,8 +32,8 @@ pub enum PlanError {
     },
     /// Fewer than two inputs of the log let an output that regulates itself rest in the range.
     #[error(
-        "--output-range={},{}: the output regulates itself, and fewer than two inputs of the log \
-         let it rest there{}: it rests at {}; give a range about two of these",
+        "no input is planned from {} to {}: the output regulates itself, and fewer than two inputs \
+         of the log let it rest there{}: it rests at {}",
         rounded(.range.0), rounded(.range.1), with_margin(*.margin), rounded_list(.outputs)
     )]
     SettlesElsewhere {
@@ -49,8 +46,8 @@ pub enum PlanError {
     },
     /// The log has inputs of one sign only, and no model of it leads back.
     #[error(
-        "--output-range={},{}: the log has {} inputs only, and does not show what leads the joint \
-         back; give a log with inputs of either sign, or --levels",
+        "no input is planned from {} to {}: the log has {} inputs only, and does not show what \
+         leads the joint back",
         rounded(.range.0), rounded(.range.1), if *.is_positive { "positive" } else { "negative" }
     )]
     OneSign {
@@ -61,8 +58,8 @@ pub enum PlanError {
     },
     /// It starts too near to an end of the range, or beyond.
     #[error(
-        "--start {start}: too near to the ends of the range, {} to {}, or beyond; start near {}",
-        rounded(.range.0), rounded(.range.1), rounded(0.5 * (.range.0 + .range.1))
+        "a start at {start} is too near to the ends of the range, {} to {}, or beyond",
+        rounded(.range.0), rounded(.range.1)
     )]
     Start {
         /// Where it starts.
@@ -71,11 +68,11 @@ pub enum PlanError {
         range: (f64, f64),
     },
     /// The range cannot be kept.
-    #[error("--output-range={},{}: {}", rounded(.range.0), rounded(.range.1), .why)]
+    #[error("the range {} to {} {}", rounded(.range.0), rounded(.range.1), .why)]
     NotKept {
         /// The range.
         range: (f64, f64),
-        /// What there is to do about it.
+        /// Why, and what would do.
         why: NotKept,
     },
 }
@@ -108,24 +105,14 @@ impl std::fmt::Display for NotKept {
             write!(f, ": a prediction of this joint may be off by {margin} after that time")?;
         }
         match (shorter_s, wider) {
-            (Some(s), Some((low, high))) => {
-                write!(
-                    f,
-                    "; give --duration {s}, or --output-range={low},{high}, or go without --trials"
-                )
-            }
-            (Some(s), None) => write!(f, "; give --duration {s}, or go without --trials"),
-            (None, Some((low, high))) => write!(f, "; give --output-range={low},{high}"),
-            (None, None) => f.write_str(
-                "; no shorter input and no wider range will do: give a log in which the joint is \
-                 driven for longer without a break, or smaller levels (--largest)",
-            ),
+            (None, None) => f.write_str("; no shorter input and no wider range will do"),
+            _ => Ok(()),
         }
     }
 }
 
 /// `x` to four digits or so, as it is typed.
-pub(super) fn rounded(x: f64) -> f64 {
+pub(crate) fn rounded(x: f64) -> f64 {
     let scale = 10_f64.powf(3.0 - x.abs().max(f64::MIN_POSITIVE).log10().floor().clamp(-9.0, 3.0));
     (x * scale).round() / scale
 }

@@ -27,7 +27,7 @@ impl Schedule {
         Self { period, holds, borders: Vec::new() }
     }
 
-    /// The same with another trial behind it.
+    /// This schedule with another trial behind it.
     #[must_use]
     pub(super) fn followed_by(mut self, trial: &Self) -> Self {
         let behind = trial.borders.iter().map(|border| self.holds.len() + border);
@@ -120,7 +120,7 @@ impl Schedule {
         ends.take_while(|end| *end <= most).count()
     }
 
-    /// The same with `rest` added to each level.
+    /// This schedule with `rest` added to each level.
     #[must_use]
     pub fn about(&self, rest: f64) -> Self {
         let about = |hold: &Hold| Hold { level: hold.level + rest, ..*hold };

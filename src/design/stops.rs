@@ -1,4 +1,4 @@
-//! Where a joint stands at its stops, which take off whatever a prediction was off before.
+//! Where a joint stands at its stops, which remove whatever a prediction was off before.
 
 use crate::experiment::{Joint, Trial};
 use crate::fit::follows_input;

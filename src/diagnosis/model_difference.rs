@@ -15,7 +15,7 @@ pub struct ModelDifference {
     pub is_validation: bool,
     /// Root mean square of the residual on them of this model, output units.
     pub rmse: f64,
-    /// The same of the other one.
+    /// Root mean square of the other model's residual on them, output units.
     pub other_rmse: f64,
     /// Steps on which this model has the smaller error.
     pub better_steps: usize,

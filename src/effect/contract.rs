@@ -98,7 +98,7 @@ pub enum Fault {
         /// The output.
         found: f64,
     },
-    /// The same moments gave other outputs the second time.
+    /// A second run over equal moments gave other outputs.
     #[error("at {parameters:?} a second run is not equal to the first")]
     NotRepeatable {
         /// The parameters.

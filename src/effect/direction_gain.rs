@@ -9,7 +9,7 @@
 #![doc = include_str!("drawing/direction_gain.txt")]
 //! ```
 //!
-//! The same flow moves the piston faster where the rod takes up part of the area. The
+//! A flow moves the piston faster where the rod takes up part of the area. The
 //! factor is that of the two areas and of the valve's two edges together; the gain of
 //! the joint is that of the positive direction.
 //!

@@ -4,8 +4,8 @@
 //! time_constant · x' + x = in
 //! ```
 //!
-//! The same equation as that of [`ActuatorLag`], before the curve of the valve instead of behind
-//! it: here the spool has to leave the overlap before the joint moves, so that a lag adds to the
+//! The equation is that of [`ActuatorLag`], before the curve of the valve instead of behind it:
+//! here the spool has to leave the overlap before the joint moves, so that a lag adds to the
 //! delay of small openings more than to that of large ones, and a joint stops as soon as the spool
 //! is back in the overlap. Without an overlap, a limit or another effect on the input the two are
 //! the same, and the record shows which it is only where there is one.

@@ -10,6 +10,7 @@
 //! the trials that it does not belong to (see [`Effect::within_trials`]); here it only has a name
 //! of its own.
 
+use std::borrow::Cow;
 use std::sync::{Mutex, PoisonError};
 
 use super::{
@@ -120,9 +121,15 @@ impl Restricted {
     }
 }
 
+/// All that the effect itself says holds of it in these trials, too, but for its measured delays,
+/// which leave no delay to the other trials, and its definition, which is of another id.
 impl Effect for Restricted {
     fn spec(&self) -> &'static Spec {
         self.spec
+    }
+
+    fn summary(&self, parameters: &[f64]) -> Cow<'static, str> {
+        format!("{}, in trials `{}`", self.effect.summary(parameters), self.word).into()
     }
 
     fn within_trials(&self) -> Option<WithinTrials<'_>> {
@@ -153,6 +160,18 @@ impl Effect for Restricted {
         self.effect.depends_on_angle()
     }
 
+    fn depends_on_others(&self) -> bool {
+        self.effect.depends_on_others()
+    }
+
+    fn depends_on_warmth(&self) -> bool {
+        self.effect.depends_on_warmth()
+    }
+
+    fn depends_on_steps(&self) -> bool {
+        self.effect.depends_on_steps()
+    }
+
     fn equations(&self) -> Option<Equations> {
         self.effect.equations()
     }
@@ -171,10 +190,34 @@ mod tests {
     use super::super::testing::{assert_close, run};
     use super::*;
     use crate::effect::contract::check;
+    use crate::effect::{REGISTRY, SupplyDroop, VariableDelay};
 
     #[test]
     fn the_gain_differs_by_direction() {
         assert_close(&run(&TrialGain, &[0.5, -0.25], &[2.0, 0.0, -2.0]), &[3.0, 0.0, -1.5]);
+    }
+
+    #[test]
+    fn what_an_effect_depends_on_it_depends_on_in_some_trials() {
+        for effect in REGISTRY {
+            let restricted = within_trials(*effect, "H");
+            let depends = |effect: &dyn Effect| {
+                [
+                    effect.depends_on_angle(),
+                    effect.depends_on_others(),
+                    effect.depends_on_warmth(),
+                    effect.depends_on_steps(),
+                    effect.is_steady(),
+                    effect.nests(),
+                ]
+            };
+            assert_eq!(depends(restricted), depends(*effect), "{}", restricted.spec().id);
+        }
+        assert!(within_trials(&SupplyDroop, "H").depends_on_others());
+        let law = within_trials(&VariableDelay, "H");
+        let parameters: Vec<f64> = law.spec().parameters.iter().map(|p| p.neutral).collect();
+        let own = VariableDelay.summary(&parameters);
+        assert_eq!(law.summary(&parameters), format!("{own}, in trials `H`"));
     }
 
     #[test]

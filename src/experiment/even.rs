@@ -7,7 +7,7 @@ use crate::units::SamplePeriod;
 /// Trials whose periods differ by less are of one rate: the tolerance of a uniform clock.
 const ONE_RATE: f64 = 0.01;
 
-/// The same where the sampling itself is uneven, so that a period is only a mean.
+/// Tolerance of one rate where the sampling is uneven, so that a period is only a mean.
 const ONE_UNEVEN_RATE: f64 = 0.15;
 
 /// By so many periods a row may be off its time because the period is a round number.

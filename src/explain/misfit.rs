@@ -18,7 +18,7 @@ const UNCHANGED: f64 = 0.01;
 pub(super) struct Misfit {
     /// The error of that model on the whole record.
     first: f64,
-    /// The same on the part that was not fitted, where there is one.
+    /// The error of that model on the part that was not fitted, where there is one.
     unseen: Option<f64>,
     noise: f64,
 }
@@ -36,8 +36,9 @@ impl Misfit {
         self.part_of(self.first, error(record, worse) - error(record, better))
     }
 
-    /// The same on the whole record or on the part that was not fitted, whichever is more: an
-    /// effect that only the unseen part needs is needed.
+    /// The larger of the shares on the whole record and on the part that was not fitted.
+    ///
+    /// An effect that only the unseen part needs is needed.
     pub(super) fn share_of_either(self, record: &FitRecord<'_>, worse: &Fit, better: &Fit) -> f64 {
         let grown = unseen_error(record, worse).zip(unseen_error(record, better));
         let unseen = self.unseen.zip(grown);

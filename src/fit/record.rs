@@ -188,7 +188,7 @@ impl<'a> FitRecord<'a> {
         Evaluation { horizon: self.horizon, simulated, residuals, starts: Vec::new() }
     }
 
-    /// The same without what was simulated: a quarter of the memory.
+    /// The residuals of `model` alone, without the outputs: a quarter of the memory.
     pub(crate) fn evaluate_residuals(&self, model: &JointModel) -> Evaluation {
         let runs = self.runs(model);
         let starts = best_starts(&runs);

@@ -32,7 +32,7 @@ impl Run<'_> {
     /// The outputs that were measured where the windows start.
     fn measured_starts(&self) -> Vec<f64> {
         let measured = self.trial.output();
-        let start = |w: &Window| measured.get(w.start).copied().unwrap_or_default();
+        let start = |w: &Window| measured[w.start];
         self.windows.iter().map(start).collect()
     }
 
@@ -40,9 +40,9 @@ impl Run<'_> {
     fn shifted(&self, mut simulated: Simulated, slope: Option<&[f64]>) -> (Simulated, Vec<f64>) {
         let shifts = self.shifts(&simulated.output, slope);
         for (window, shift) in self.windows.iter().zip(shifts) {
-            let values = simulated.output.get_mut(window.start..window.end).unwrap_or_default();
+            let values = &mut simulated.output[window.start..window.end];
             for (index, value) in (window.start..).zip(values) {
-                *value += shift * slope.map_or(1.0, |g| g.get(index).copied().unwrap_or(1.0));
+                *value += shift * slope.map_or(1.0, |g| g[index]);
             }
         }
         let pairs = self.trial.output().iter().zip(&simulated.output);
@@ -83,7 +83,7 @@ impl Run<'_> {
             let own = restarts.iter().filter(|restart| stretch.contains(&restart.sample));
             let shifted = own.map(|r| Restart { sample: r.sample - stretch.start, ..*r });
             // It begins as it was measured.
-            let output = self.trial.output().get(stretch.start).copied().unwrap_or_default();
+            let output = self.trial.output()[stretch.start];
             let begin = Restart { sample: 0, output, speed: None };
             let restarts = std::iter::once(begin).chain(shifted).collect();
             let ends = (self.seconds(stretch.start), self.seconds(stretch.end));
@@ -120,7 +120,7 @@ impl Run<'_> {
         let shift = |window: &Window| {
             let (mut with, mut square) = (0.0, f64::MIN_POSITIVE);
             for index in window.start..window.end {
-                let at = |values: &[f64]| values.get(index).copied().unwrap_or(1.0);
+                let at = |values: &[f64]| values[index];
                 let (g, w) = (slope.map_or(1.0, at), self.weights.map_or(1.0, at));
                 with += w * g * (at(self.trial.output()) - at(simulated));
                 square += w * g * g;
@@ -146,16 +146,17 @@ pub(super) fn best_starts(runs: &[Run<'_>]) -> Vec<Starts> {
     let all = runs.iter().zip(measured.iter().zip(&ahead));
     let curved = all.filter(|(run, _)| run.model.depends_on_angle());
     let begun = curved.flat_map(|(run, (here, ahead))| [(run, here.as_slice()), (run, ahead)]);
-    let mut found = simulated(&begun.collect::<Vec<_>>(), outputs_together).into_iter();
+    let found = simulated(&begun.collect::<Vec<_>>(), outputs_together);
+    // Two for each run that depends on the angle.
+    let mut pairs = found.chunks_exact(2);
     let best = |(run, outputs): (&Run<'_>, Vec<f64>)| {
-        if !run.model.depends_on_angle() {
+        let pair = if run.model.depends_on_angle() { pairs.next() } else { None };
+        let Some([Simulated { output: here, .. }, Simulated { output: ahead, .. }]) = pair else {
             return Starts { outputs, slope: None };
-        }
-        let here = found.next().unwrap_or_default().output;
-        let ahead = found.next().unwrap_or_default().output;
+        };
         let nudge = run.nudge();
-        let slope: Vec<f64> = ahead.iter().zip(&here).map(|(a, b)| (a - b) / nudge).collect();
-        let wrong = run.shifts(&here, Some(&slope));
+        let slope: Vec<f64> = ahead.iter().zip(here).map(|(a, b)| (a - b) / nudge).collect();
+        let wrong = run.shifts(here, Some(&slope));
         let outputs = outputs.iter().zip(wrong).map(|(start, by)| start + by).collect();
         Starts { outputs, slope: Some(slope) }
     };
@@ -163,7 +164,7 @@ pub(super) fn best_starts(runs: &[Run<'_>]) -> Vec<Starts> {
 }
 
 /// The simulation of each run from its starts, and its residuals; what the starts are still wrong by
-/// is taken off as far as it is linear.
+/// is removed as far as it is linear.
 pub(super) fn simulated_from<'r>(
     begun: impl Iterator<Item = (&'r Run<'r>, &'r Starts)>,
     simulate: Simulate,

@@ -74,7 +74,7 @@ impl LowPass {
         self.smooth_in_place(signal.to_vec(), period)
     }
 
-    /// The same of a signal that is not needed any more: in its memory.
+    /// Smooths a signal in its own memory, as [`smooth`](Self::smooth) does a copy.
     pub(crate) fn smooth_in_place(
         &self,
         signal: Vec<f64>,

@@ -5,7 +5,7 @@ use super::rank::PIVOT;
 
 /// The products of all columns with each other, the last of them the target; eliminated
 /// from the front as far as is asked for.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct NormalEquations {
     size: usize,
     /// Rows of the upper triangle, in a square.
@@ -22,7 +22,7 @@ struct Column<'a> {
 
 impl<'a> Column<'a> {
     fn from(&self, row: usize) -> &'a [f64] {
-        self.values.get(row..).unwrap_or_default()
+        &self.values[row..]
     }
 
     /// Puts its products with the `others` into `slots`.
@@ -43,7 +43,8 @@ impl NormalEquations {
     pub(crate) fn of(columns: &[f64], length: usize, starts: &[usize]) -> Self {
         let size = columns.len() / length.max(1);
         let mut products = vec![0.0; size * size];
-        let starts = starts.iter().copied().chain(std::iter::repeat(0));
+        // A column that begins behind the last row is 0.
+        let starts = starts.iter().map(|start| *start.min(&length)).chain(std::iter::repeat(0));
         let columns = columns.chunks_exact(length.max(1)).zip(starts);
         let columns: Vec<Column<'_>> =
             columns.map(|(values, start)| Column { values, start }).collect();
@@ -78,19 +79,18 @@ impl NormalEquations {
 
     /// The entry at a row and a column of the upper triangle.
     pub(crate) fn at(&self, row: usize, column: usize) -> f64 {
-        self.products.get(row * self.size + column).copied().unwrap_or(0.0)
+        self.products[row * self.size + column]
     }
 
     /// The squared error of the target after the columns eliminated so far.
     pub(crate) fn error(&self) -> f64 {
-        let last = self.size.saturating_sub(1);
-        self.at(last, last).max(0.0)
+        self.products.last().map_or(0.0, |square| square.max(0.0))
     }
 
-    /// Whether a column is no combination of those before it.
+    /// Whether a column is there, and no combination of those before it.
     pub(crate) fn stands_alone(&self, column: usize) -> bool {
-        let square = self.squares.get(column).copied().unwrap_or(0.0);
-        self.at(column, column) > PIVOT * square && square > 0.0
+        let stands = |square: &f64| self.at(column, column) > PIVOT * square && *square > 0.0;
+        self.squares.get(column).is_some_and(stands)
     }
 
     /// Eliminates `column` from all behind it: `A_rs −= A_cr A_cs / A_cc`.
@@ -105,7 +105,7 @@ impl NormalEquations {
         let row = &done[column * size..];
         for (offset, target) in behind.chunks_exact_mut(size).enumerate() {
             let r = column + 1 + offset;
-            let factor = row.get(r).copied().unwrap_or(0.0) / pivot;
+            let factor = row[r] / pivot;
             let parts = row.iter().zip(target).skip(r);
             parts.for_each(|(value, slot)| *slot -= factor * value);
         }
@@ -125,9 +125,7 @@ impl NormalEquations {
             let given: f64 =
                 behind.iter().map(|(column, value)| self.at(row, *column) * value).sum();
             let value = (self.at(row, target) - known - given) / self.at(row, row);
-            if let Some(slot) = found.get_mut(row) {
-                *slot = value;
-            }
+            found[row] = value;
         }
         found
     }

@@ -57,7 +57,7 @@ pub(super) fn decided_in_short(name: &str, decision: &Decision) -> String {
     format!("{name}: δ = {} {}", delay(decision.delay(), interval), mark(decision.verdict()))
 }
 
-/// The same of another result.
+/// The verdict of another result on a step, with the delay and its interval.
 pub(super) fn in_short(name: &str, step: &StepResult) -> String {
     format!("{name}: δ = {} {}", delay(step.delay, step.interval), mark(step.verdict))
 }

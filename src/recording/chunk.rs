@@ -83,23 +83,25 @@ impl Index {
         lengths.into_iter().max().unwrap_or(0)
     }
 
-    /// The same rows on the timeline of doubt, too.
+    /// These rows on the timeline of doubt, too.
     pub(super) fn with_doubt(self, ranks: impl Iterator<Item = i64>) -> Self {
         Self { doubt: ranks.collect(), ..self }
     }
 
-    /// The same rows on the timeline of differences, too; without any, there is none.
+    /// These rows on the timeline of differences, too; without any, there is none.
     pub(super) fn with_difference(self, ranks: impl Iterator<Item = i64>) -> Self {
         Self { difference: ranks.collect(), ..self }
     }
 
-    /// The same rows, but for the timeline of segments: on it the samples of a segment would all
-    /// lie at one place, and a plot of them would be a comb.
+    /// These rows off the timeline of segments.
+    ///
+    /// On it the samples of a segment would all lie at one place, and a plot of them would be a
+    /// comb.
     pub(super) fn without_segment(self) -> Self {
         Self { segment: Vec::new(), ..self }
     }
 
-    /// The same rows on the timeline of revisions, too, all at one of them.
+    /// These rows on the timeline of revisions, too, all at one of them.
     pub(super) fn at_revision(self, revision: Option<i64>) -> Self {
         let revision = revision.map_or_else(Vec::new, |number| vec![number; self.len()]);
         Self { revision, ..self }
@@ -111,7 +113,7 @@ impl Index {
         Self { decision: vec![0], ..Self::default() }.opened(opening)
     }
 
-    /// The same row, at the first sample of the record, too.
+    /// This row at the first sample of the record, too.
     pub(super) fn and_at(self, Moment { sample, time_ns, .. }: Moment) -> Self {
         Self { sample: vec![sample; self.len()], time_ns: vec![time_ns; self.len()], ..self }
     }

@@ -47,7 +47,7 @@ impl<'a, W: Write> EndHeld<'a, W> {
     }
 }
 
-/// The same footer, with stores and columns in order.
+/// `footer` with its stores and columns in order.
 fn sorted(footer: &[u8]) -> Result<Vec<u8>, CodecError> {
     // The type that a footer is read as has no name here.
     let mut stores = RrdFooter::default().to_transport(())?;

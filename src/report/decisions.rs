@@ -47,7 +47,8 @@ pub struct DecisionRow<'a> {
     /// Its value at sample 0, output units.
     pub intercept_after: Option<f64>,
     /// `accepted`, or the first condition that failed.
-    pub verdict: String,
+    #[serde(serialize_with = "in_words")]
+    pub verdict: Verdict,
     /// All conditions that failed, separated by spaces.
     pub failed: String,
 }
@@ -113,10 +114,16 @@ impl<'a> DecisionRow<'a> {
             intercept_before: candidate.map(|candidate| candidate.before.intercept),
             slope_after: candidate.map(|candidate| candidate.after.slope),
             intercept_after: candidate.map(|candidate| candidate.after.intercept),
-            verdict: decision.verdict().to_string(),
+            verdict: decision.verdict(),
             failed: failed.join(" "),
         }
     }
+}
+
+/// The verdict as its [`Display`](std::fmt::Display) has it.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives it so")]
+fn in_words<S: Serializer>(verdict: &Verdict, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(verdict)
 }
 
 /// Whole numbers without a point.

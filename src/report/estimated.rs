@@ -40,7 +40,7 @@ impl EstimatedJoint<'_> {
         self.against_state_about(Neutral::of(&self.joint.trials).as_ref())
     }
 
-    /// The same where its neutral input is known.
+    /// The joint's accepted delays against its state about a known neutral input.
     pub(super) fn against_state_about(&self, neutral: Option<&Neutral>) -> AgainstState {
         let estimates = self.estimate.trials.iter().map(|trial| trial.as_ref().ok());
         AgainstState::of(self.joint, neutral, estimates)

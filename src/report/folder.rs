@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::text_table::TextTable;
 use super::{DataTable, DelayRange, Kind, Methods, decision_columns};
+use crate::delay::Method;
 use crate::wording::{counted, percent};
 
 /// The result of one log: the document that the command prints as JSON.
@@ -61,7 +62,8 @@ impl FolderReport {
     pub(crate) fn decisions(&self) -> DataTable {
         let paper = |log: &LogResult| {
             let runs = std::iter::once(&log.document).chain(array(&log.document, "also"));
-            runs.into_iter().all(|run| run.pointer("/settings/method") == Some(&json!("two-line")))
+            runs.into_iter()
+                .all(|run| run.pointer("/settings/method") == Some(&json!(Method::TWO_LINE.id())))
         };
         let paper = self.logs.iter().all(paper);
         let methods = if paper { Methods::PaperOnly } else { Methods::Others };

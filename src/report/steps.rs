@@ -40,15 +40,16 @@ pub(crate) fn steps_table(joints: &[EstimatedJoint<'_>]) -> String {
                 || "-".to_owned(),
                 |(low, high)| format!("{} … {}", number(low), number(high)),
             );
-            let near = match (row.verdict.as_str(), detail.runner_up_margin, detail.runner_up_q) {
-                ("accepted", Some(margin), Some(q)) => {
+            let near = match (row.verdict, detail.runner_up_margin, detail.runner_up_q) {
+                (Verdict::Accepted, Some(margin), Some(q)) => {
                     format!("SSE {} % above at q = {q}", number(100.0 * margin))
                 }
-                ("accepted", ..) => "-".to_owned(),
+                (Verdict::Accepted, ..) => "-".to_owned(),
                 _ => detail.accepted_with,
             };
             let (joint, trial) = (row.joint.to_owned(), row.trial.to_owned());
-            table.row([joint, trial, row.i.to_string(), delay, interval, row.verdict, near]);
+            let verdict = row.verdict.to_string();
+            table.row([joint, trial, row.i.to_string(), delay, interval, verdict, near]);
         }
     }
     format!("{table}\ndelays in samples\n")

@@ -91,7 +91,7 @@ impl JointSummary {
         Self::with(joint, joint.delay_table().kinds)
     }
 
-    /// The same where the delays by kinds of steps are known.
+    /// Counts the decisions of `joint`, whose delays by kinds of steps are known.
     pub(crate) fn with(joint: EstimatedJoint<'_>, kinds: Vec<KindDelay>) -> Self {
         let with = |verdict: Verdict| verdicts(joint).filter(move |(found, ..)| *found == verdict);
         let samples = with(Verdict::Accepted).filter_map(|(_, samples, _)| samples);

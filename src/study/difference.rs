@@ -22,7 +22,7 @@ pub struct StepResult {
     pub verdict: Verdict,
     /// The delay in samples, accepted or not.
     pub delay: Option<f64>,
-    /// The same in seconds.
+    /// The delay in seconds, accepted or not.
     pub delay_s: Option<f64>,
     /// Ends of the delay's interval in samples, where the method gives one.
     pub interval: Option<(f64, f64)>,

@@ -20,7 +20,7 @@ pub(crate) fn joint(name: &str) -> JointSpec {
     JointSpec { noise: 0.05, ..spec }
 }
 
-/// The same, with no flow between −0.3 V and 0.3 V.
+/// A joint with no flow between −0.3 V and 0.3 V.
 pub(crate) fn banded(name: &str) -> JointSpec {
     JointSpec { dead_band: Some([-0.3, 0.3]), ..joint(name) }
 }
@@ -30,7 +30,7 @@ impl Desk {
         Self::for_seconds(30.0, joints)
     }
 
-    /// The same with a log of `duration_s` seconds.
+    /// A desk with a log of `duration_s` seconds.
     pub(crate) fn for_seconds(duration_s: f64, joints: Vec<JointSpec>) -> Self {
         let plant = PlantSpec { sample_period_s: 0.02, ..PlantSpec::new(11, duration_s, joints) };
         let made = simulate(&plant).unwrap();

@@ -116,7 +116,7 @@ pub(crate) mod mat {
         element(14, &parts.concat())
     }
 
-    /// The same packed.
+    /// `array` as a compressed element.
     pub(crate) fn packed(array: &[u8]) -> Vec<u8> {
         let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
         std::io::Write::write_all(&mut encoder, array).unwrap();

@@ -1,14 +1,17 @@
 //! Which file uses what of which other file, read from the source by `syn`.
 //!
 //! A path such as `super::Line` leads to the file that defines the item, through whatever
-//! re-exports stand between. Tests inside a file do not count, nor does a `mod` or `pub use`
-//! line: a facade names its parts without using them.
+//! re-exports stand between. A call of a method leads to the file of its `impl` block, which need
+//! not be that of the type. Tests inside a file do not count, nor does a `mod` or `pub use` line:
+//! a facade names its parts without using them.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::{TokenStream, TokenTree};
+use syn::parse::Parser as _;
+use syn::punctuated::Punctuated;
 use syn::visit::{self, Visit};
-use syn::{Attribute, Item, UseTree, Visibility};
+use syn::{Attribute, Expr, ImplItem, Item, Token, Type, UseTree, Visibility};
 
 /// A module's path inside the crate, `["delay", "hinge"]`.
 pub(crate) type Module = Vec<String>;
@@ -35,9 +38,18 @@ struct File {
     globs: Vec<Vec<String>>,
     /// Absolute paths of private `use` lines.
     used: Vec<Vec<String>>,
-    /// Paths in bodies and signatures, as written.
+    /// Paths in bodies and signatures, as written, but for `Self`, which is its type.
     named: BTreeSet<Vec<String>>,
+    /// Methods of `impl` blocks, each behind its type's path as written.
+    methods: BTreeSet<Vec<String>>,
+    /// Methods that are called on `self`, each behind its type's path as written.
+    of_self: BTreeSet<Vec<String>>,
+    /// Methods that are called on anything.
+    called: BTreeSet<String>,
 }
+
+/// A type's file, its name, and that of a method.
+type Method = (Module, String, String);
 
 impl House {
     /// Of sources by their path below `src`, `delay/hinge.rs`.
@@ -54,11 +66,19 @@ impl House {
     /// Every use of one file's items in another, in order, each pair of files once.
     pub(crate) fn imports(&self) -> Vec<Import> {
         let mut found = BTreeMap::new();
+        let methods = self.methods();
         for (from, file) in &self.files {
             let named = file.named.iter().filter_map(|path| self.absolute(from, file, path));
             for path in file.used.iter().cloned().chain(named) {
                 if let Some(to) = self.home(&path, 0).filter(|to| to != from) {
                     found.entry((from.clone(), to)).or_insert_with(|| path.join("::"));
+                }
+            }
+            let called = file.of_self.iter().chain(&file.named);
+            for method in called.filter_map(|path| self.method(from, file, path)) {
+                if let Some(to) = methods.get(&method).filter(|to| *to != from) {
+                    let what = format!("{}::{}()", method.1, method.2);
+                    found.entry((from.clone(), to.clone())).or_insert(what);
                 }
             }
         }
@@ -68,6 +88,36 @@ impl House {
 
     pub(crate) fn len(&self) -> usize {
         self.files.len()
+    }
+
+    /// Each file with the methods that it calls, on whatever.
+    pub(crate) fn called(&self) -> impl Iterator<Item = (&Module, &BTreeSet<String>)> {
+        self.files.iter().map(|(module, file)| (module, &file.called))
+    }
+
+    /// Each file with the paths that its bodies and signatures name.
+    pub(crate) fn named(&self) -> impl Iterator<Item = (&Module, &BTreeSet<Vec<String>>)> {
+        self.files.iter().map(|(module, file)| (module, &file.named))
+    }
+
+    /// The file of each method's `impl` block.
+    fn methods(&self) -> BTreeMap<Method, Module> {
+        let of = |(module, file): (&Module, &File)| {
+            let known = file.methods.iter().filter_map(|path| self.method(module, file, path));
+            known.map(|method| (method, module.clone())).collect::<Vec<_>>()
+        };
+        self.files.iter().flat_map(of).collect()
+    }
+
+    /// The method at the end of a path behind its type; `None` where that is another crate's.
+    fn method(&self, from: &Module, file: &File, path: &[String]) -> Option<Method> {
+        let (name, of) = path.split_last()?;
+        let (last, before) = of.split_last()?;
+        if before.is_empty() && file.defined.contains(last) {
+            return Some((from.clone(), last.clone(), name.clone()));
+        }
+        let absolute = self.absolute(from, file, of)?;
+        Some((self.home(&absolute, 0)?, absolute.last()?.clone(), name.clone()))
     }
 
     /// The absolute path of one in a body; `None` for what is no module's.
@@ -125,7 +175,7 @@ impl File {
         }
         let Item::Use(line) = item else {
             self.defined.extend(defined(item));
-            return Paths(&mut self.named).visit_item(item);
+            return Paths { file: self, of: None }.visit_item(item);
         };
         let private = matches!(line.vis, Visibility::Inherited);
         for leaf in leaves(&line.tree) {
@@ -169,8 +219,22 @@ fn leaves(tree: &UseTree) -> Vec<Leaf> {
     }
 }
 
-/// Collects all paths of an item that is no test.
-struct Paths<'a>(&'a mut BTreeSet<Vec<String>>);
+/// Collects all paths and calls of an item that is no test.
+struct Paths<'a> {
+    file: &'a mut File,
+    /// The type whose `impl` block this is.
+    of: Option<Vec<String>>,
+}
+
+impl Paths<'_> {
+    fn name(&mut self, path: Vec<String>) {
+        let path = match (path.split_first(), &self.of) {
+            (Some((first, rest)), Some(of)) if first == "Self" => [of, rest].concat(),
+            _ => path,
+        };
+        self.file.named.insert(path);
+    }
+}
 
 impl<'ast> Visit<'ast> for Paths<'_> {
     fn visit_item(&mut self, item: &'ast Item) {
@@ -179,20 +243,61 @@ impl<'ast> Visit<'ast> for Paths<'_> {
         }
     }
 
+    fn visit_item_impl(&mut self, block: &'ast syn::ItemImpl) {
+        let before = self.of.take();
+        if let Type::Path(of) = &*block.self_ty {
+            let of = parts(&of.path);
+            let methods = block.items.iter().filter_map(|item| match item {
+                ImplItem::Fn(method) if block.trait_.is_none() => Some(&method.sig.ident),
+                _ => None,
+            });
+            let own = methods.map(|name| [of.as_slice(), &[name.to_string()]].concat());
+            self.file.methods.extend(own);
+            self.of = Some(of);
+        }
+        visit::visit_item_impl(self, block);
+        self.of = before;
+    }
+
+    fn visit_impl_item_fn(&mut self, method: &'ast syn::ImplItemFn) {
+        if !is_test(&method.attrs) {
+            visit::visit_impl_item_fn(self, method);
+        }
+    }
+
+    fn visit_expr_method_call(&mut self, call: &'ast syn::ExprMethodCall) {
+        let name = call.method.to_string();
+        let is_self = matches!(&*call.receiver, Expr::Path(path) if path.path.is_ident("self"));
+        if let Some(of) = self.of.as_ref().filter(|_| is_self) {
+            self.file.of_self.insert([of.as_slice(), std::slice::from_ref(&name)].concat());
+        }
+        self.file.called.insert(name);
+        visit::visit_expr_method_call(self, call);
+    }
+
     fn visit_path(&mut self, path: &'ast syn::Path) {
-        self.0.insert(path.segments.iter().map(|part| part.ident.to_string()).collect());
+        self.name(parts(path));
         visit::visit_path(self, path);
     }
 
     fn visit_item_use(&mut self, line: &'ast syn::ItemUse) {
         // Inside a function.
-        self.0.extend(leaves(&line.tree).into_iter().map(|leaf| leaf.path));
+        self.file.named.extend(leaves(&line.tree).into_iter().map(|leaf| leaf.path));
     }
 
     fn visit_macro(&mut self, found: &'ast syn::Macro) {
-        paths_in(found.tokens.clone(), self.0);
+        paths_in(found.tokens.clone(), &mut self.file.named);
+        // What is no list of expressions, as a pattern, has its paths alone.
+        let listed = Punctuated::<Expr, Token![,]>::parse_terminated;
+        for argument in listed.parse2(found.tokens.clone()).into_iter().flatten() {
+            Paths { file: &mut *self.file, of: self.of.clone() }.visit_expr(&argument);
+        }
         visit::visit_macro(self, found);
     }
+}
+
+fn parts(path: &syn::Path) -> Vec<String> {
+    path.segments.iter().map(|part| part.ident.to_string()).collect()
 }
 
 /// Runs of `name::name` in tokens that nobody has parsed.
@@ -220,16 +325,17 @@ fn paths_in(tokens: TokenStream, found: &mut BTreeSet<Vec<String>>) {
     found.insert(path);
 }
 
-/// The module that a file below `src` is.
+/// The module that a file below `src` is: the library's root has no name, the program's is its
+/// own root.
 fn module_of(path: &str) -> Module {
     let path = path.trim_end_matches(".rs").trim_end_matches("/mod");
-    let root = ["lib", "main"].contains(&path);
-    path.split('/').filter(|_| !root).map(str::to_owned).collect()
+    path.split('/').filter(|_| path != "lib").map(str::to_owned).collect()
 }
 
 /// Where `crate`, the library's name, `self` and `super` lead.
 fn rooted(first: &str, module: &Module) -> Option<Module> {
     match first {
+        "crate" if module.first().is_some_and(|root| root == "main") => Some(module.clone()),
         "crate" | "tauscope" => Some(Vec::new()),
         "self" => Some(module.clone()),
         "super" => Some(module.split_last()?.1.to_vec()),

@@ -47,7 +47,7 @@ pub(crate) struct ConditionArgs {
     #[arg(long, value_enum, default_value_t = EndSteps::Auto)]
     first_last: EndSteps,
 
-    /// The same as `--first-last keep`
+    /// Judge the first and the last step of a trial, as `--first-last keep` does
     #[arg(long, conflicts_with = "first_last")]
     keep_first_last: bool,
 

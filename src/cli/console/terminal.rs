@@ -28,7 +28,7 @@ pub(super) fn shown(text: &str) -> String {
     text.chars().map(letter).collect()
 }
 
-/// The same of a text with words that are [`toned`], whose colours are sent.
+/// `text` with its control characters shown, but for the colours of [`toned`] words.
 fn shown_in_tones(text: &str) -> String {
     let tones = [Tone::Good, Tone::Notice, Tone::Bad].map(Tone::style);
     let mut codes: Vec<String> = tones.iter().map(ToString::to_string).collect();

@@ -19,7 +19,7 @@ pub(super) struct Frame {
     level: f64,
     shift: f64,
     onset: OnsetSums,
-    /// What a ramp has in common with itself, along a constant and along a slope: cubics in the
+    /// The square of a ramp, and its inner products with a constant and a slope: cubics in the
     /// samples behind its beginning.
     ramps: [[f64; 4]; 3],
     /// One over the length of a constant, and of a slope.
@@ -130,7 +130,7 @@ impl Frame {
         [sum * self.per_level, (x * sum + moment) * self.per_slope]
     }
 
-    /// The piece behind sample `j`, given what its level and its ramp have in common with the
+    /// The piece behind sample `j`, given the inner products of its level and its ramp with the
     /// output.
     pub(super) fn piece(&self, j: usize, level_y: f64, ramp_y: f64) -> Piece {
         let Self { order, level, shift, onset, .. } = *self;
@@ -154,7 +154,7 @@ impl Frame {
         }
     }
 
-    /// No level that begins before `reach` samples has more left in common with itself.
+    /// No level that begins before `reach` samples has a larger square beside the line.
     #[inline]
     pub(super) fn most_level(&self, reach: f64) -> f64 {
         let (behind, before) = (reach - self.order, self.last - reach + 1.0);
@@ -170,8 +170,8 @@ impl Frame {
         self.lines_of(along, j + s, change, number)
     }
 
-    /// The same given the change of slope at a `position`, and what it takes along a constant and
-    /// along a slope.
+    /// The lines of a `change` of slope at a `position`, whose inner products with a constant and
+    /// with a slope are `along`.
     fn lines_of(&self, along: [f64; 2], position: f64, change: f64, number: f64) -> (Line, Line) {
         let [along_level, along_slope] = along.map(|part| part * self.per_noise_level);
         let slope = self.slope - along_slope * self.per_slope;

@@ -1,4 +1,4 @@
-//! The positions of a window where a line may break: what a ramp behind each has in common with the
+//! The positions of a window where a line may break: the inner product of a ramp behind each with the
 //! output, and what a break there subtracts from the squared error.
 
 use std::ops::RangeInclusive;
@@ -11,7 +11,7 @@ use crate::numerics::moments;
 #[derive(Clone, Debug, Default)]
 pub(super) struct BreakGains {
     pub(super) first: usize,
-    /// What each ramp has in common with the output; one more, behind the last.
+    /// The inner product of each ramp with the output; one more, behind the last.
     ramp_y: Vec<f64>,
     /// Each ramp's own residual square; 0 behind the last.
     size: Vec<f64>,
@@ -65,7 +65,7 @@ impl BreakGains {
     }
 
     /// Positions behind which a break between two samples may take away the most, from the
-    /// back: what it has in common with the output is linear between them, and its own square
+    /// back: its inner product with the output is linear between them, and its own square
     /// at most by a quarter of the level's below both ends.
     pub(super) fn promising(&self, frame: &Frame) -> impl Iterator<Item = usize> + use<> {
         /// More than rounding.
@@ -112,7 +112,7 @@ impl BreakGains {
     }
 }
 
-/// Puts what ramps behind each sample have in common with the output into `ramps`, given the
+/// Puts the inner products of ramps behind each sample with the output into `ramps`, given the
 /// `values` there and the sums over all behind them; those sums with the values.
 #[inline]
 fn add_up([ramp_sum, level_sum]: [f64; 2], ramps: &mut [f64], values: &[f64]) -> [f64; 2] {

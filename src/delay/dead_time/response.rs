@@ -162,7 +162,7 @@ mod tests {
         out
     }
 
-    /// The same by fine steps of Euler's method.
+    /// The changes of the output by fine steps of Euler's method.
     fn by_steps(structure: Structure, delay: f64, lags: Lags, input: &[f64]) -> Vec<f64> {
         const FINE: usize = 4000;
         let level = |time: f64| {

@@ -157,7 +157,7 @@ fn least_of_parabola(middle: f64, around: [f64; 6]) -> (f64, f64) {
     (a.clamp(-1.0, 1.0), b.clamp(-1.0, 1.0))
 }
 
-/// The same with other lags.
+/// `fitted` with other lags.
 pub(super) fn at_lags(trials: &[Whitened], fitted: Fitted, lags: Lags) -> Fitted {
     let numerators = Numerators::of(fitted.structure, fitted.delay, lags);
     Fitted { lags, error: error_of(trials, &numerators, lags), ..fitted }

@@ -79,7 +79,8 @@ impl Basis {
         let n = length as f64;
         let ramp = n * (n - 1.0) / 2.0;
         let mut motions = [[0.0; COLUMNS]; COLUMNS];
-        let sums = self.sums.get(length).or(self.sums.last()).copied().unwrap_or_default();
+        // Behind the last sample that feels the modes they add nothing more.
+        let sums = self.sums[length.min(self.sums.len() - 1)];
         let [r, s, t] = sums.ones;
         let [kr, ks, kt] = sums.ramps;
         motions[0] = [n, ramp, r, s, t];
@@ -91,10 +92,11 @@ impl Basis {
         motions
     }
 
-    /// The same motion seen `by` samples later.
+    /// `motion` seen `by` samples later.
     pub(crate) fn later(&self, motion: &Motion, by: usize) -> Motion {
         let [level, ramp, modes @ ..] = *motion;
-        let decayed = self.modes.get(by).copied().unwrap_or_default();
+        // They have decayed behind the last sample that feels them.
+        let decayed = self.modes.get(by).copied().unwrap_or([0.0; MAX_PARAMETERS]);
         let [a, b, c] = self.response.later(modes, decayed);
         [level + ramp * by as f64, ramp, a, b, c]
     }

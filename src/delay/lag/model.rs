@@ -76,7 +76,7 @@ impl LagModel {
         self.poles == other.poles && pairs.take(self.order()).all(|(a, b)| (a - b).abs() < NEAR)
     }
 
-    /// The same lag with all times `factor` as long.
+    /// This lag with all times `factor` as long.
     pub(super) fn scaled(mut self, factor: f64) -> Self {
         let shift = factor.ln();
         match (self.poles, &mut self.logs) {

@@ -50,7 +50,7 @@ struct Late {
     slope_change: f64,
     /// Change of the input at the step.
     own: f64,
-    /// The same at the next step.
+    /// Change of the input at the next step.
     next: f64,
 }
 

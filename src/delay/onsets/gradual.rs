@@ -13,7 +13,7 @@
 //! strokes do not show.
 //!
 //! Only the start is of that shape. The window ends as far behind the departure, the first sample
-//! that is plainly off the rest, as the departure is behind the onset; sooner, while what is left
+//! that is plainly off the rest, as the departure is behind the onset; sooner, while the residual
 //! behind the step has more than [`LACKING`] times the variance of the rest before it. For every
 //! τ, `n` and `T` the rest is linear; the interval holds every τ whose squared error, at its best
 //! `n` and `T`, is within `t²·s²·g` of the least one, where `g = 1 + 2·Σ ρ_j` is how much less

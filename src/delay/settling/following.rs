@@ -110,8 +110,10 @@ impl FirstOrder {
         self.dead_time_s + CONSTANTS * self.time_constant_s
     }
 
-    /// The same where time constants as long as holds of the input hide it from the correlation
-    /// with the input alone: the output is compared with the input behind a lag.
+    /// A first-order output whose time constant is as long as holds of the input.
+    ///
+    /// The correlation with the input alone does not show it: the output is compared with the
+    /// input behind a lag.
     pub(super) fn within_holds(trials: &[Trial], hold_s: f64) -> Option<Self> {
         /// Squared correlation (chosen).
         const FOLLOWS: f64 = 0.8;

@@ -113,7 +113,7 @@ impl Settling {
         self.part(self.law.constants.rising, 0)
     }
 
-    /// The same after the input falls, where it is another one.
+    /// Time constant after the input falls, seconds, where it is another one.
     pub fn falling_s(&self) -> Option<LagPart> {
         Some(self.part(self.law.constants.falling?, 1))
     }
@@ -125,7 +125,7 @@ impl Settling {
 
     fn part(&self, samples: f64, index: usize) -> LagPart {
         let value = samples * self.period.seconds();
-        let variance = self.law.covariance.get((index, index)).copied().unwrap_or(0.0);
+        let variance = self.law.covariance[(index, index)];
         LagPart { value, std_error: value * variance.max(0.0).sqrt() }
     }
 
@@ -204,7 +204,7 @@ impl Law {
 
     fn variance_along(&self, slopes: &[f64]) -> f64 {
         let product = |(i, a): (usize, &f64)| -> f64 {
-            let entry = |j: usize| self.covariance.get((i, j)).copied().unwrap_or(0.0);
+            let entry = |j: usize| self.covariance[(i, j)];
             slopes.iter().enumerate().map(|(j, b)| a * entry(j) * b).sum()
         };
         slopes.iter().enumerate().map(product).sum::<f64>().max(0.0)
@@ -268,8 +268,8 @@ fn bounded(search: &Search<'_>) -> DMatrix<f64> {
     const Z: f64 = 1.96;
     let mut covariance = search.covariance();
     let last = search.constants.parameters() - 1;
-    let variance = covariance.get((last, last)).copied().unwrap_or(0.0);
-    if search.constants.further.is_none() || variance <= 0.0 {
+    let variance = covariance[(last, last)];
+    if search.constants.further.is_none() || variance.is_nan() || variance <= 0.0 {
         return covariance;
     }
     let error = variance.sqrt();
@@ -303,7 +303,7 @@ fn selected(search: Search<'_>) -> (Search<'_>, Option<Search<'_>>) {
     }
 }
 
-/// The same with a further lag of at least so many samples.
+/// `search` with a further lag of at least `least` samples.
 fn with_further<'a>(search: &Search<'a>, least: f64) -> Option<Search<'a>> {
     /// Parts of the time constant at which it is looked for: the valley has several hollows.
     const PARTS: [f64; 3] = [0.02, 0.06, 0.2];

@@ -9,7 +9,7 @@
 //! T₂ y' + y = x                                 y = x without a further lag
 //! ```
 //!
-//! `A₀`, `B`, `A₁`, and what is left of the further lag at the start, are linear: a column each.
+//! `A₀`, `B`, `A₁`, and what the further lag still holds at the start, are linear: a column each.
 
 /// The output about one step as it was fitted, in closed form: a record may have many steps.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,7 +122,7 @@ impl Constants {
 mod tests {
     use super::*;
 
-    /// The same by small steps in time, from a level of 2 and a decay of 3 to a level of 5.
+    /// The response by small steps in time, from a level of 2 and a decay of 3 to a level of 5.
     fn simulated(constants: &Constants, onset: f64, length: usize) -> Vec<f64> {
         const PARTS: usize = 2000;
         let (mut x, mut y) = (5.0, 5.0);

@@ -68,7 +68,8 @@ impl<'a> Search<'a> {
         members = members.into_iter().step_by(every).collect();
         // A window reaches over two holds: those of neighbours share one.
         let shared = if every > 1 { 1.0 } else { 2.0 };
-        let inverse = DMatrix::zeros(0, 0);
+        // Until a step is determined nothing is known of any parameter.
+        let inverse = DMatrix::zeros(constants.parameters(), constants.parameters());
         Self { trials, members, constants, shared, sse: f64::INFINITY, inverse }
     }
 
@@ -143,7 +144,7 @@ impl<'a> Search<'a> {
         is_finite.then(|| step.iter().map(|by| by.clamp(-LONGEST, LONGEST)).collect())
     }
 
-    /// The noise of what is left, where it was taken for white.
+    /// The noise of the residual, where it was taken for white.
     pub(super) fn noise(&self) -> NoiseModel {
         /// Windows that are enough.
         const ENOUGH: usize = 100;
@@ -168,7 +169,9 @@ impl<'a> Search<'a> {
 
     /// This with other time constants to start from, every onset earlier by so many samples.
     pub(super) fn started_at(&self, constants: TimeConstants, earlier: f64) -> Self {
-        let mut next = Self { constants, ..self.clone() };
+        let count = constants.parameters();
+        let inverse = self.inverse.clone().resize(count, count, 0.0);
+        let mut next = Self { constants, inverse, ..self.clone() };
         for member in &mut next.members {
             let (low, high) = member.limits;
             member.onset = (member.onset - earlier).clamp(low, high);

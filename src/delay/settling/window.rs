@@ -47,7 +47,7 @@ impl<'a> StepWindow<'a> {
         (self.len() - self.noise.order()) as f64
     }
 
-    /// Degrees of freedom of what is left.
+    /// Degrees of freedom of the residual.
     pub(super) fn freedom(&self, constants: &Constants) -> f64 {
         (self.rows() - constants.columns() as f64 - 1.0).max(1.0)
     }

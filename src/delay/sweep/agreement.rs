@@ -29,7 +29,7 @@ impl ReportedDelay {
         Some(Self { delay, low, high })
     }
 
-    /// The same, known less well by `tolerance` samples.
+    /// This delay, known less well by `tolerance` samples.
     pub(super) fn widened(self, tolerance: f64) -> Self {
         Self { low: self.low - tolerance, high: self.high + tolerance, ..self }
     }

@@ -96,7 +96,7 @@ impl Grid {
         grid
     }
 
-    /// The same combinations with other settings that are not varied.
+    /// These combinations with other settings that are not varied.
     #[must_use]
     pub fn with_settings(&self, of: impl Fn(&Settings) -> Settings) -> Self {
         let base = |base: &Base| Base { settings: of(&base.settings), ..base.clone() };
@@ -105,15 +105,16 @@ impl Grid {
         Self::new(bases, passbands.clone(), alphas.iter().copied(), betas.iter().copied())
     }
 
-    /// The same with other low-passes.
+    /// This grid with other low-passes.
     #[must_use]
     pub fn with_passbands(&self, passbands: Vec<Option<LowPass>>) -> Self {
         let (alphas, betas) = (self.alphas.iter().copied(), self.betas.iter().copied());
         Self::new(self.bases.clone(), passbands, alphas, betas)
     }
 
-    /// The same with all lengths in samples, where all of `trials` have one period; what is then
-    /// the same is tried once.
+    /// This grid with all lengths in samples, where all of `trials` have one period.
+    ///
+    /// Lengths that are then equal are tried once.
     #[must_use]
     pub fn in_samples<'a>(&self, trials: impl Iterator<Item = &'a Trial>) -> Self {
         let Some(period) = common_period(trials) else { return self.clone() };

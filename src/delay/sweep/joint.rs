@@ -15,7 +15,7 @@ pub struct JointSweep {
     pub runs: Vec<Option<RunSummary>>,
     /// What became of each value of each factor, in the order of [`Factor::ALL`].
     pub levels: Vec<Vec<LevelSummary>>,
-    /// The same for each kind of step, where most runs find that their medians differ.
+    /// The levels for each kind of step, where most runs find that their medians differ.
     pub kinds: Vec<(Transition, Vec<Vec<LevelSummary>>)>,
 }
 

@@ -20,7 +20,7 @@ pub struct SweptStep {
     pub sample: usize,
     /// Its time, seconds since the [origin](Trial::origin_s).
     pub time_s: f64,
-    /// The same by the clock of the log.
+    /// Its time by the clock of the log, seconds.
     pub logged_time_s: f64,
     /// Seconds between samples.
     pub period_s: f64,

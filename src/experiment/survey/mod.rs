@@ -25,12 +25,12 @@ pub struct Survey {
     pub path: PathBuf,
     /// Each column, in the order of the file.
     pub columns: Vec<SurveyedColumn>,
-    /// The mapping that follows; without joints where none can be told.
+    /// The mapping that follows; without joints where none can be found.
     pub map: ColumnMap,
     /// Whether names say what drives and what measures each of its joints, and leave nothing
     /// else that could be meant.
     pub is_sure: bool,
-    /// What could not be told.
+    /// What could not be found out.
     pub open: Vec<String>,
 }
 
@@ -112,7 +112,7 @@ impl Columns<'_> {
         }
         if joints.is_empty() {
             open.push(
-                "which columns drive and measure a joint cannot be told from names or data"
+                "which columns drive and measure a joint is clear neither from names nor from data"
                     .to_owned(),
             );
         }
@@ -153,7 +153,7 @@ impl Columns<'_> {
         let (role, why) = if Some(column) == time {
             unit = unit.or_else(|| unit::of_time(bare).map(str::to_owned));
             let taken =
-                if unit.is_some() { "" } else { ", taken for seconds, or told by its size" };
+                if unit.is_some() { "" } else { ", taken for seconds, or judged by its size" };
             (Role::Time, format!("its name{taken}"))
         } else if Some(column) == trial {
             (Role::Trial, "its name".to_owned())
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn joints_are_told_by_names_or_by_what_follows_what() {
+    fn joints_are_known_by_names_or_by_what_follows_what() {
         for (header, name) in [
             ("time_ms,u_boom_duty,y_boom,p_bar", "boom"),
             ("time_ms,boom.input,boom.output,boom.pressure", "boom"),
@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_told_is_said() {
+    fn what_cannot_be_found_is_said() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log.csv");
         std::fs::write(&path, "a,b\n1,5\n2,3\n3,9\n4,1\n").unwrap();

@@ -25,7 +25,7 @@ pub(crate) fn quantile_of(values: &(impl Iterator<Item = f64> + Clone), part: f6
     Some(quantile_by_digits(values, last, part))
 }
 
-/// The same, of values whose last index is `last`, by passes over them.
+/// The quantile of values whose last index is `last`, by passes over them.
 fn quantile_by_digits(values: &(impl Iterator<Item = f64> + Clone), last: usize, part: f64) -> f64 {
     let place = part.clamp(0.0, 1.0) * last as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index")]

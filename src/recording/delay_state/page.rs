@@ -226,16 +226,16 @@ impl<'f> Page<'f> {
             more => format!(" and {more} more"),
         };
         let named = names.into_iter().take(NAMED).collect::<Vec<_>>().join(", ");
-        let apart = self.not_told_apart();
+        let apart = self.confounded_words();
         format!("{name}: the delay depends on {named}{more}{apart} ({basis})")
     }
 
     /// Two variables that go together, if any do.
-    fn not_told_apart(&self) -> String {
+    fn confounded_words(&self) -> String {
         let pairs = self.found.kinds.iter().flat_map(|kind| &kind.confounded);
         let words = |[one, other]: &[String; 2]| {
             let (one, other) = (variable_text(one, None), variable_text(other, None));
-            format!("; {one} and {other} go together and are not told apart")
+            format!("; {one} and {other} go together and cannot be separated")
         };
         pairs.map(words).next().unwrap_or_default()
     }

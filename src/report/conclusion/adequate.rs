@@ -1,6 +1,7 @@
 //! What is said where no effect is missing.
 
-use super::{ABOVE_NOISE, Passage, Topic};
+use super::figures::ABOVE_NOISE;
+use super::{Passage, Topic};
 use crate::diagnosis::{LackOfFit, NEGLIGIBLE, SIGNIFICANCE};
 use crate::experiment::Trial;
 use crate::fit::Status;

@@ -1,6 +1,7 @@
 //! What is said where an effect is missing.
 
-use super::{ABOVE_NOISE, Passage, Topic};
+use super::figures::ABOVE_NOISE;
+use super::{Passage, Topic};
 use crate::explain::Candidate;
 use crate::fit::{Fit, Status, makes_first_order};
 use crate::model::Component;

@@ -1,6 +1,7 @@
 //! A verdict in words that an engineer can act on.
 
 mod adequate;
+mod figures;
 mod missing;
 mod passage;
 mod place;
@@ -9,15 +10,11 @@ mod unexplained;
 pub(crate) use passage::{Passage, Topic};
 
 use super::EstimatedJoint;
-use super::add::gained;
-use super::consequence::noise_of;
 use super::finding::{Finding, added};
 use super::first_order::first_order;
 use super::model_delay::model_delay;
-use crate::diagnosis::Comparison;
-use crate::experiment::Joint;
 use crate::explain::{Candidate, Verdict};
-use crate::wording::{effects_text, hanging, measure, percent, rounded};
+use crate::wording::hanging;
 
 /// What is concluded of a joint.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,9 +43,6 @@ impl Conclusion {
         blocks.collect::<Vec<_>>().join("\n\n") + "\n"
     }
 }
-
-/// Times the noise above which an error is said to be more than noise.
-const ABOVE_NOISE: f64 = 1.15;
 
 impl Finding<'_> {
     /// The verdict in words.
@@ -90,56 +84,5 @@ impl Finding<'_> {
         let estimate = self.delays?;
         let measured = EstimatedJoint { joint: self.joint(), estimate };
         model_delay(self.consequence().fit, measured)
-    }
-
-    fn joint(&self) -> &Joint {
-        self.compared.joint
-    }
-
-    fn comparison(&self) -> &Comparison {
-        self.compared.comparison
-    }
-
-    /// A number in output units.
-    fn output(&self, value: f64) -> String {
-        measure(value, self.joint().output_unit.as_deref())
-    }
-
-    fn error(&self) -> f64 {
-        self.comparison().judged().map_or(f64::NAN, |error| error.rmse)
-    }
-
-    fn noise(&self) -> Option<f64> {
-        noise_of(self.joint())
-    }
-
-    /// What the effects that were added explain of the error, where any were:
-    /// `dead_band and end_stop explain 70 % of the error beyond the noise (2.89 to 0.88 deg)`.
-    fn explained(&self) -> Option<String> {
-        let before = self.before?;
-        let mut gained = gained(&before.fit.model, &self.comparison().fit.model);
-        let last = gained.pop()?;
-        let (names, explain) = match gained.as_slice() {
-            [] => (last.to_owned(), "explains"),
-            others => (format!("{} and {last}", others.join(", ")), "explain"),
-        };
-        let share = percent(self.consequence().explained()?);
-        let (from, to) = (rounded(before.judged()?.rmse), self.output(self.error()));
-        Some(format!("{names} {explain} {share} of the error beyond the noise ({from} to {to})"))
-    }
-
-    /// What the model explains of the motion: `1 − e/d` with the standard deviation `d` of what
-    /// was measured.
-    fn follows(&self) -> String {
-        let model = match effects_text(&self.comparison().fit.model) {
-            alone if self.comparison().fit.model.components().is_empty() => format!("the {alone}"),
-            effects => format!("a model with {effects}"),
-        };
-        match self.comparison().judged().map(|error| error.fit_percent) {
-            Some(fit) if fit > 0.0 => {
-                format!("{model} explains {} of the motion", percent(fit / 100.0))
-            }
-            _ => format!("{model} does not explain the motion"),
-        }
     }
 }

@@ -1,6 +1,7 @@
 //! What is said where no effect that was tried accounts for the error.
 
-use super::{ABOVE_NOISE, Passage, Topic};
+use super::figures::ABOVE_NOISE;
+use super::{Passage, Topic};
 use crate::diagnosis::failure::Region;
 use crate::report::finding::Finding;
 use crate::wording::{misfit_units, percent, region_text, unit_suffix};

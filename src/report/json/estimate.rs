@@ -173,7 +173,7 @@ struct AgainstJson {
     by_transition: Vec<AgainstKindJson>,
 }
 
-/// The same for the steps of one kind.
+/// The delay of the steps of one kind against the state of the joint.
 #[derive(Debug, Serialize)]
 struct AgainstKindJson {
     transition: &'static str,

@@ -43,7 +43,7 @@ struct JointJson<'a> {
     agreeing_settings: Vec<usize>,
     settings: Vec<Option<SettingJson>>,
     levels: Map<String, Value>,
-    /// The same for each kind of step, where these differ.
+    /// The levels for each kind of step, where these differ.
     #[serde(skip_serializing_if = "Map::is_empty")]
     levels_by_transition: Map<String, Value>,
     decisions: Vec<StepJson<'a>>,

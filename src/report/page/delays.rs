@@ -4,7 +4,7 @@ use super::document::Figure;
 use super::layout::{HALF, WIDTH};
 use super::plot::{PlotError, draw};
 use super::timeline::Timeline;
-use crate::delay::{AgainstOfKind, AgainstState, DelayProfile, DelayTable, Transition};
+use crate::delay::{AgainstOfKind, AgainstState, DelayProfile, DelayTable, Transition, Verdict};
 use crate::figure::Role;
 use crate::figure::delay_levels::{self, Series};
 use crate::figure::{Axis, Mark, Panel, Place, Shape};
@@ -270,7 +270,7 @@ struct Spread {
 impl Spread {
     fn of(estimated: EstimatedJoint<'_>) -> Option<Self> {
         let mut delays: Vec<f64> = crate::report::decision_rows(estimated)
-            .filter(|(_, row)| row.verdict == "accepted")
+            .filter(|(_, row)| row.verdict == Verdict::Accepted)
             .filter_map(|(_, row)| row.delta_s)
             .collect();
         delays.sort_by(f64::total_cmp);

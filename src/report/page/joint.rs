@@ -280,11 +280,11 @@ fn decision_table(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> TextTab
     TextTable {
         numbers: (1..before.len() + 1 + usize::from(method.has_intervals)).collect(),
         header: header.chain(behind).collect(),
-        rows: rows.map(|(row, detail)| decision_row(row, detail, method)).collect(),
+        rows: rows.map(|(row, detail)| decision_row(&row, detail, method)).collect(),
     }
 }
 
-fn decision_row(row: DecisionRow<'_>, detail: DecisionDetail, method: &MethodSpec) -> Vec<String> {
+fn decision_row(row: &DecisionRow<'_>, detail: DecisionDetail, method: &MethodSpec) -> Vec<String> {
     let dash = || "-".to_owned();
     let optional = |value: Option<f64>| value.map_or_else(dash, number);
     let ends = detail.delta_low.zip(detail.delta_high);
@@ -293,6 +293,6 @@ fn decision_row(row: DecisionRow<'_>, detail: DecisionDetail, method: &MethodSpe
     let samples = [row.i, row.p, row.r, row.end].map(|number| number.to_string());
     let delay = [row.q, row.delta, row.delta_s].map(optional);
     let before = [row.trial.to_owned()].into_iter().chain(samples).chain(delay);
-    let behind = [optional(row.sse), row.verdict, detail.accepted_with];
+    let behind = [optional(row.sse), row.verdict.to_string(), detail.accepted_with];
     before.chain(method.has_intervals.then(interval)).chain(behind).collect()
 }

@@ -96,7 +96,7 @@ pub struct StickySpot {
     pub share: f64,
 }
 
-/// Not in the catalogue: something pushes for a while, as a load that hangs on the arm.
+/// Not in the catalogue: something pushes for a while, as a load that the arm carries.
 ///
 /// It comes and goes within some 0.2 s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::batch::Threads;
-use crate::delay::{Automatic, InputKind, Settings, check_growing, final_part};
+use crate::delay::{Automatic, InputKind, Settings, Verdict, check_growing, final_part};
 use crate::experiment::{Experiment, GrowingLog, Joint};
 use crate::report::{DecisionRow, EstimatedJoint, decision_rows, step_line};
 use crate::study::{JointEstimate, estimate_each};
@@ -210,7 +210,7 @@ impl<'a> Followed<'a> {
     }
 }
 
-type DelayAndVerdict = (Option<f64>, String);
+type DelayAndVerdict = (Option<f64>, Verdict);
 
 /// What was reported of a log so far.
 #[derive(Default)]
@@ -284,7 +284,7 @@ impl Reported {
             if decision.number <= steps.len() {
                 continue;
             }
-            steps.push((row.delta, row.verdict.clone()));
+            steps.push((row.delta, row.verdict));
             match format {
                 Format::Text => {
                     console::print(&(step_line(joint, trial, decision) + "\n"))?;
@@ -315,7 +315,7 @@ impl Reported {
             let key = (row.joint.to_owned(), row.trial.to_owned());
             let before = self.steps.get(&key).and_then(|steps| steps.get(row.i.checked_sub(1)?));
             let Some((delta, verdict)) = before else { continue };
-            if (*delta, verdict) != (row.delta, &row.verdict) {
+            if (*delta, *verdict) != (row.delta, row.verdict) {
                 let (name, step, now) = (row.joint, row.i, &row.verdict);
                 message("note", &format!("{name}, step {step}: the whole log changes it to {now}"));
             }

@@ -18,7 +18,7 @@ use crate::experiment::table::Header;
 pub(super) struct Topic {
     pub(super) name: String,
     pub(super) fields: Vec<Field>,
-    /// The same by their names.
+    /// The names of these fields.
     known: HashSet<String>,
 }
 

@@ -139,7 +139,9 @@ fn collect(value: &Value, at: &Field, found: &mut Vec<Field>) {
             let at = at.element(&key_of(fields, index, length));
             match field {
                 Value::Array(values) | Value::Sequence(values) => {
-                    values.iter().skip(index).take(1).for_each(|value| collect(value, &at, found));
+                    if let Some(value) = values.get(index) {
+                        collect(value, &at, found);
+                    }
                 }
                 Value::PrimitiveArray(values) | Value::PrimitiveSeq(values) => {
                     found.extend(primitive(values, index).map(|_| at.clone()));

@@ -1,0 +1,64 @@
+//! The figures of a finding that several sentences name: error, noise, what is explained.
+
+use crate::diagnosis::Comparison;
+use crate::experiment::Joint;
+use crate::report::add::gained;
+use crate::report::consequence::noise_of;
+use crate::report::finding::Finding;
+use crate::wording::{effects_text, measure, percent, rounded};
+
+/// Times the noise above which an error is said to be more than noise.
+pub(super) const ABOVE_NOISE: f64 = 1.15;
+
+impl Finding<'_> {
+    pub(super) fn joint(&self) -> &Joint {
+        self.compared.joint
+    }
+
+    pub(super) fn comparison(&self) -> &Comparison {
+        self.compared.comparison
+    }
+
+    /// A number in output units.
+    pub(super) fn output(&self, value: f64) -> String {
+        measure(value, self.joint().output_unit.as_deref())
+    }
+
+    pub(super) fn error(&self) -> f64 {
+        self.comparison().judged().map_or(f64::NAN, |error| error.rmse)
+    }
+
+    pub(super) fn noise(&self) -> Option<f64> {
+        noise_of(self.joint())
+    }
+
+    /// What the effects that were added explain of the error, where any were:
+    /// `dead_band and end_stop explain 70 % of the error beyond the noise (2.89 to 0.88 deg)`.
+    pub(super) fn explained(&self) -> Option<String> {
+        let before = self.before?;
+        let mut gained = gained(&before.fit.model, &self.comparison().fit.model);
+        let last = gained.pop()?;
+        let (names, explain) = match gained.as_slice() {
+            [] => (last.to_owned(), "explains"),
+            others => (format!("{} and {last}", others.join(", ")), "explain"),
+        };
+        let share = percent(self.consequence().explained()?);
+        let (from, to) = (rounded(before.judged()?.rmse), self.output(self.error()));
+        Some(format!("{names} {explain} {share} of the error beyond the noise ({from} to {to})"))
+    }
+
+    /// What the model explains of the motion: `1 − e/d` with the standard deviation `d` of what
+    /// was measured.
+    pub(super) fn follows(&self) -> String {
+        let model = match effects_text(&self.comparison().fit.model) {
+            alone if self.comparison().fit.model.components().is_empty() => format!("the {alone}"),
+            effects => format!("a model with {effects}"),
+        };
+        match self.comparison().judged().map(|error| error.fit_percent) {
+            Some(fit) if fit > 0.0 => {
+                format!("{model} explains {} of the motion", percent(fit / 100.0))
+            }
+            _ => format!("{model} does not explain the motion"),
+        }
+    }
+}
