@@ -150,7 +150,7 @@ fn a_report_has_the_word_beside_what_the_program_says() {
     let cells: Vec<_> = row.split('|').map(str::trim).collect();
     assert_eq!(&cells[1..6], ["1", first.as_str(), "rejected", "-", "Ann"]);
     assert_eq!(cells[7], "accepted");
-    assert!(page.contains("Ann, 1.2.") && page.contains("Doubtful decisions"), "{page}");
+    assert!(page.contains("Ann, 1.2.") && page.contains("Most doubtful decisions"), "{page}");
 }
 
 #[test]

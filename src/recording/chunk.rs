@@ -138,11 +138,12 @@ impl Index {
         Self { doubt: (1..).take(count).collect(), ..Self::default() }
     }
 
-    /// A row per revision, all of them at `moment`: on the other timelines the last one
-    /// is seen.
-    pub(super) fn of_revisions(revision: Vec<i64>, moment: Moment) -> Self {
+    /// A row per revision, all of them at `moment` and, where decisions are `ranked`, at the first rank
+    /// by doubt: on the other timelines the last one is seen.
+    pub(super) fn of_revisions(revision: Vec<i64>, moment: Moment, ranked: bool) -> Self {
         let moments = std::iter::repeat_n(moment, revision.len());
-        Self { revision, ..moments.collect() }
+        let doubt = if ranked { vec![1; revision.len()] } else { Vec::new() };
+        Self { revision, doubt, ..moments.collect() }
     }
 
     fn columns(self) -> Vec<TimeColumn> {

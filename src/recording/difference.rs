@@ -39,9 +39,10 @@ pub(super) fn add(
         .last()
         .map(|(trial, segment)| trial.moment(segment, segment.verdict(), trial.trial.len()));
     let shown: Vec<_> = ranked.iter().filter(|placed| differs(placed, others)).collect();
-    // At the last moment of every other timeline, as the list by doubt.
+    // At the first rank by doubt, and at the last moment of every other timeline.
     let index: Index = last.into_iter().cycle().take(shown.len()).collect();
     let index = index.with_difference(shown.iter().map(|(_, segment)| segment.difference));
+    let index = index.with_doubt(std::iter::repeat_n(1, shown.len()));
     let lines: Vec<_> = shown.iter().map(|placed| line(joint, placed, others)).collect();
     let levels: Vec<_> = shown.iter().map(|placed| level(placed, others)).collect();
     let log = TextLog::update_fields().with_many_text(lines).with_many_level(levels);

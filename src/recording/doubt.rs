@@ -23,7 +23,7 @@ pub(super) fn add(
     if ranked.is_empty() {
         return Ok(());
     }
-    // All at the last moment of every other timeline: there the list keeps this order, a viewer
+    // All at the first difference, and at the last moment of every other timeline: there the list keeps this order, a viewer
     // does not scroll it to the cursor, and a click on a rank leads to the timeline of doubt.
     let last = layout
         .segments()
@@ -32,6 +32,8 @@ pub(super) fn add(
     let index: Index = last.into_iter().cycle().take(ranked.len()).collect();
     let index = index.at_revision(layout.last_revision);
     let index = index.with_doubt(ranked.iter().map(|(_, segment)| segment.rank));
+    let firsts = std::iter::repeat_n(1, if layout.first.is_compared { ranked.len() } else { 0 });
+    let index = index.with_difference(firsts);
     let lines: Vec<_> = ranked.iter().map(|(trial, segment)| line(joint, trial, segment)).collect();
     let level = |segment: &SegmentLayout<'_>| match segment.doubt.value() {
         doubt if doubt >= LIKELY => "ERROR",

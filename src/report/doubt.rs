@@ -52,10 +52,11 @@ pub(crate) fn doubtful_lines(joints: &[EstimatedJoint<'_>]) -> Vec<String> {
     lines(&all_by_doubt(joints))
 }
 
-/// A line for each decision that is doubtful, of all by doubt.
+/// A line for each decision that is doubtful and on which no reviewer has said a word, of all by doubt.
 fn lines(all: &[(EstimatedJoint<'_>, Doubted<'_>)]) -> Vec<String> {
     let doubtful = all.iter().take_while(|(_, found)| found.doubt.is_doubtful());
-    doubtful.map(|(joint, found)| line(*joint, found)).collect()
+    let open = doubtful.filter(|(_, found)| found.decision.word.is_none());
+    open.map(|(joint, found)| line(*joint, found)).collect()
 }
 
 /// How many decisions are doubtful, and the most doubtful ones, a line each; nothing where none is.
@@ -71,7 +72,10 @@ pub(super) fn doubtful_text(joints: &[EstimatedJoint<'_>]) -> String {
     };
     let said: String = doubtful.iter().take(MOST).flat_map(|line| ["  ", line, "\n"]).collect();
     let first = if doubtful.len() > MOST { "look first at" } else { "look at" };
-    format!("{} of {} {are} doubtful; {first}\n{said}", doubtful.len(), counted(steps, "decision"))
+    let is_reviewed = all.iter().any(|(_, found)| found.decision.word.is_some());
+    let open = if is_reviewed { " and not reviewed" } else { "" };
+    let (count, all) = (doubtful.len(), counted(steps, "decision"));
+    format!("{count} of {all} {are} doubtful{open}; {first}\n{said}")
 }
 
 /// Where a decision is, and what speaks against it.

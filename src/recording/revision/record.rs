@@ -5,7 +5,6 @@ use std::ops::Range;
 use crate::diagnosis::Comparison;
 use crate::diagnosis::failure::WorstSegment;
 use crate::figure::ladder::judged;
-use crate::fit::Horizon;
 use crate::recording::canvas::{Plot, SHEET, Span, Strips, simplified, thinned_to};
 use crate::recording::error::RecordError;
 use crate::recording::error_share::{HATCH, short};
@@ -187,11 +186,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let unit = bracketed("", unit.as_deref());
         let mut sheet = Sheet::default();
         let horizon = improved.finding.compared.comparison.fit.evaluation.horizon;
-        let restarts = match horizon {
-            Horizon::Steps => "restarted every 200 samples".to_owned(),
-            other => other.to_string(),
-        };
-        let output = format!("measured (white) and simulated (orange){unit}, {restarts}");
+        let output = format!("measured (white) and simulated (orange){unit}, {horizon}");
         sheet.frame(&self.output, &self.output.x_span().ticks(8.0), &ticks(&self.output), &output);
         sheet.frame(&close.plot, &[], &ticks(&close.plot), &close.title);
         let ends = close.plot.x_span();

@@ -2,7 +2,7 @@
 
 use rerun::EntityPath;
 use rerun::components::{Range1D, Visible};
-use rerun::datatypes::Utf8;
+use rerun::datatypes::{TimeRange, TimeRangeBoundary, Utf8};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
     DataframeQuery, PlotLegend, ScalarAxis, TimeAxis,
 };
@@ -28,7 +28,8 @@ use crate::recording::{
 use crate::report::{ComparedJoint, EstimatedJoint, by_doubt};
 
 /// What the lanes of the model that is judged are called.
-const LANES: &str = "Where it fails (its speed); what was not fitted; worst segments (1 first)";
+const LANES: &str =
+    "Where the error of its speed arises; what was not fitted; worst segments (1 first)";
 
 /// Numbers of the models that are drawn beside the measurement: of many revisions of one model the
 /// first and the last, since what came between is on the page of the revisions.
@@ -53,7 +54,8 @@ pub(super) fn tab(
     let mut decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
     let fine = decisions.any(|decision| decision.fine.is_some());
     let doubts = by_doubt(EstimatedJoint { joint, estimate });
-    let doubtful = doubts.iter().filter(|found| found.doubt.is_doubtful()).count();
+    let open = doubts.iter().filter(|found| found.decision.word.is_none());
+    let doubtful = open.filter(|found| found.doubt.is_doubtful()).count();
     let doubtful = format!("{doubtful} of {} doubtful: click a number", doubts.len());
     let decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
     let longest = decisions.filter_map(Decision::accepted_delay).reduce(f64::max);
@@ -109,6 +111,12 @@ impl Steps {
             ),
         }
     }
+}
+
+/// Lanes start with all of the record in view: viewers from 0.41 on begin in its middle.
+fn whole_record() -> TimeAxis {
+    let infinite = TimeRangeBoundary::Infinite;
+    TimeAxis::new().with_view_range(TimeRange { start: infinite, end: infinite })
 }
 
 /// Scalars over the timeline.
@@ -195,7 +203,7 @@ impl Views<'_, '_> {
 
     fn lanes(&self, name: &'static str, lanes: &[&str]) -> View<'static> {
         let paths: Vec<_> = lanes.iter().map(|lane| self.path(lane)).collect();
-        View::new("StateTimeline", name, &paths)
+        View::new("StateTimeline", name, &paths).with("TimeAxis", whole_record())
     }
 
     /// The decisions by doubt, in their order, and by doubt with the reasons.
@@ -393,7 +401,7 @@ impl Views<'_, '_> {
         if has(|model| model.comparison.failure.is_some()) {
             paths.push(self.path(paths::FAILS));
         }
-        self.view(View::new("StateTimeline", LANES, &paths))
+        self.view(View::new("StateTimeline", LANES, &paths).with("TimeAxis", whole_record()))
     }
 
     /// Which of several models is better, along the record.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::delay::{Check, Outcome};
+use crate::delay::{Check, Decision, Outcome};
 use crate::report::doubt::all_by_doubt;
 use crate::report::review::SheetRow;
 use crate::report::{Doubted, EstimatedJoint};
@@ -30,6 +30,8 @@ struct StepJson<'a> {
     input: [f64; 2],
     /// First and last sample of the segment.
     segment: [usize; 2],
+    /// Last sample that the lines are fitted to: of rows of β samples an incomplete one is left out.
+    fitted_to: usize,
     hold: usize,
     /// Sample number of the first value below.
     first: usize,
@@ -93,6 +95,7 @@ fn step<'a>(joint: EstimatedJoint<'a>, doubted: &Doubted<'a>) -> StepJson<'a> {
         period_s: trial.period().seconds(),
         input: [decision.input_step.before, decision.input_step.after],
         segment: [first, last],
+        fitted_to: fitted_to(decision).unwrap_or(last),
         hold: decision.hold,
         first: start,
         measured: part(trial.output()),
@@ -101,6 +104,16 @@ fn step<'a>(joint: EstimatedJoint<'a>, doubted: &Doubted<'a>) -> StepJson<'a> {
         conditions: decision.checks.iter().map(ConditionJson::from).collect(),
         flags: doubt.flags.iter().map(|flag| flag.meaning()).collect(),
     }
+}
+
+/// Last sample of the last whole row of the segment; `None` where the rows are not known.
+fn fitted_to(decision: &Decision) -> Option<usize> {
+    let breakpoint = |back: usize| {
+        let candidates = &decision.candidates;
+        candidates.get(candidates.len().checked_sub(back)?).map(|candidate| candidate.breakpoint)
+    };
+    let beta = breakpoint(1)?.checked_sub(breakpoint(2)?)?;
+    Some((breakpoint(1)? + beta.saturating_sub(1)).min(decision.segment.last))
 }
 
 /// What is drawn needs no more.

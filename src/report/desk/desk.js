@@ -47,17 +47,19 @@ function line(values, first, from, to) {
   return [slope, my - slope * mx, Math.max(yy - slope * xy, 0)];
 }
 
+const isNumber = (x) => x !== null && x !== undefined && x !== "";
+const samples = (n) => `${number(n)} ${Number(n) === 1 ? "sample" : "samples"}`;
 const fitted = (s) => (s.smoothed.length ? s.smoothed : s.measured);
 const programQ = (s) => (s.program_delay_s === null ? null : s.p + s.program_delay_s / s.period_s);
 function chosenQ(s) {
   const word = words[key(s)];
-  if (word && word.delay_s !== null && word.delay_s !== undefined && word.delay_s !== "") return s.p + word.delay_s / s.period_s;
+  if (word && isNumber(word.delay_s)) return s.p + word.delay_s / s.period_s;
   return programQ(s);
 }
 
 function pair(s, q) {
   if (q === null) return null;
-  const [r, end] = s.segment;
+  const r = s.segment[0], end = s.fitted_to;
   const middle = Math.min(Math.max(Math.round(q), r + 2), end - 1);
   const before = line(fitted(s), s.first, r, middle - 1), after = line(fitted(s), s.first, middle, end);
   return { q, middle, before, after, sse: before[2] + after[2] };
@@ -152,7 +154,7 @@ function draw() {
   by("plot-title").textContent = `Step ${s.i} of ${s.joint}`;
   by("plot-desc").textContent = `Output around the input step at sample ${s.p}, with the lines before and after the breakpoint` + (mine ? ` at sample ${number(mine.q)}.` : ".");
   const shown = moved ? mine : program;
-  by("break").textContent = shown ? `${moved ? "your breakpoint" : "breakpoint"} q = ${number(shown.q)}: delay ${number((shown.q - s.p) * s.period_s)} s = ${number(shown.q - s.p)} samples, squared error ${number(shown.sse)}` + (moved ? ` (the program: ${number(program.q)}, ${number(program.sse)})` : "") : "no breakpoint was found; click into the output to set one";
+  by("break").textContent = shown ? `${moved ? "your breakpoint" : "breakpoint"} q = ${number(shown.q)}: delay ${number((shown.q - s.p) * s.period_s)} s = ${samples(shown.q - s.p)}, squared error ${number(shown.sse)}` + (moved ? ` (the program: ${number(program.q)}, ${number(program.sse)})` : "") : "no breakpoint was found; click into the output to set one";
 }
 
 function show() {
@@ -160,7 +162,7 @@ function show() {
   by("step").textContent = `${s.joint}, trial ${s.trial}, step ${s.i}: input ${number(s.input[0])} → ${number(s.input[1])}${s.input_unit ? " " + s.input_unit : ""} at sample ${s.p}, held ${number(s.hold * s.period_s)} s`;
   const program = s.program_verdict === "accepted" ? `✓ accepted: delay ${number(s.program_delay_s)} s` : `✗ rejected: ${s.program_verdict}`;
   const verdict = by("verdict");
-  verdict.textContent = word ? `You: ${word.verdict === "accepted" ? "✓ accepted" : "✗ rejected"}${word.delay_s ? ", " + number(word.delay_s) + " s" : ""} · the program: ${program}` : `The program: ${program}`;
+  verdict.textContent = word ? `You: ${word.verdict === "accepted" ? "✓ accepted" : "✗ rejected"}${isNumber(word.delay_s) ? ", " + number(word.delay_s) + " s" : ""} · the program: ${program}` : `The program: ${program}`;
   verdict.className = (word ? word.verdict : s.program_verdict) === "accepted" ? "good" : "bad";
   by("doubt").textContent = `doubt ${Math.round(100 * s.doubt)} % (${at + 1} of ${steps.length}): ${s.why}`;
   by("accept").setAttribute("aria-pressed", String(!!word && word.verdict === "accepted"));
@@ -184,7 +186,7 @@ function show() {
   [...list.children].forEach((item, index) => {
     const button = item.firstChild, of = steps[index], word = words[key(of)];
     button.setAttribute("aria-current", String(index === at));
-    button.textContent = `${Math.round(100 * of.doubt)} % ${of.joint} ${of.trial}/${of.i} ${of.program_verdict === "accepted" ? "✓" : "✗"}${word ? " → " + (word.verdict === "accepted" ? "✓" : "✗") : ""} ${of.program_verdict === "accepted" ? number(of.program_delay_s) + " s" : of.program_verdict}`;
+    button.textContent = `${Math.round(100 * of.doubt)} % ${of.joint} ${of.trial}/${of.i} ${of.program_verdict === "accepted" ? "✓" : "✗"}${word ? " → " + (word.verdict === "accepted" ? "✓" : "✗") : ""} ${word && isNumber(word.delay_s) ? number(word.delay_s) + " s" : of.program_verdict === "accepted" ? number(of.program_delay_s) + " s" : of.program_verdict}`;
   });
   const current = list.children[at];
   if (current) current.scrollIntoView({ block: "nearest" });

@@ -185,7 +185,7 @@ fn doubtful(estimated: EstimatedJoint<'_>) -> Vec<Block> {
             doubt_sentence(doubt, decision.program_verdict(), period_s),
         ]);
     }
-    vec![Block::part("Doubtful decisions"), Block::Table(table)]
+    vec![Block::part("Most doubtful decisions"), Block::Table(table)]
 }
 
 /// Where the decisions differ from those of other results.
