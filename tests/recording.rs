@@ -18,7 +18,9 @@ use rerun::external::arrow::array::AsArray as _;
 use rerun::external::re_log_encoding::DecoderApp;
 use rerun::log::{Chunk, LogMsg};
 use tauscope::batch::Threads;
-use tauscope::delay::{Decision, Doubt, FineDelay, FirstLast, Method, Settings};
+use tauscope::delay::{
+    Condition, Decision, Doubt, FineDelay, FirstLast, Method, Settings, Verdict,
+};
 use tauscope::experiment::{Experiment, ReadOptions};
 use tauscope::recording::{Detail, RecordError, Recording, write_recording};
 use tauscope::report::{DecisionRow, EstimatedJoint, decision_rows};
@@ -231,11 +233,14 @@ fn each_verdict_says_why() {
         let texts = back.texts(&format!("/{}/verdict", joint.joint.name), "TextDocument:text");
         let rows: Vec<_> = decision_rows(joint).map(|(_, row)| row).collect();
         assert_eq!(texts.len(), rows.len());
-        assert!(rows.iter().any(|row| row.verdict == "slope_change"), "the limit rejects some");
+        assert!(
+            rows.iter().any(|row| row.verdict == Verdict::Rejected(Condition::SlopeChange)),
+            "the limit rejects some"
+        );
         for (row, (times, text)) in rows.iter().zip(&texts) {
             assert_eq!(times["segment"], whole(row.i));
-            match row.verdict.as_str() {
-                "accepted" => assert!(text.contains("✓ accepted"), "{text}"),
+            match row.verdict {
+                Verdict::Accepted => assert!(text.contains("✓ accepted"), "{text}"),
                 failed => assert!(text.contains(&format!("**{failed}**")), "{text}"),
             }
         }
@@ -273,8 +278,8 @@ fn lean_keeps_rejected_segments_whole_and_says_so() {
         for row in decision_rows(joint).map(|(_, row)| row) {
             let ticks: Vec<_> = numbers.iter().filter(|(_, i)| *i == whole(row.i)).collect();
             let kept = ticks.len() - 1;
-            match row.verdict.as_str() {
-                "accepted" => assert!(kept <= 25 && kept < row.candidates),
+            match row.verdict {
+                Verdict::Accepted => assert!(kept <= 25 && kept < row.candidates),
                 _ => assert_eq!(kept, row.candidates),
             }
             let best = candidates.iter().any(|(times, j)| {

@@ -10,7 +10,7 @@ mod recorded;
 use read_back::{places, whole};
 use recorded::{Recorded, samples};
 use rerun::log::Chunk;
-use tauscope::delay::Settings;
+use tauscope::delay::{Settings, Verdict};
 use tauscope::recording::Detail;
 use tauscope::report::decision_rows;
 use tauscope::synthetic::DelayLaw;
@@ -31,7 +31,7 @@ fn the_state_at_each_accepted_step_is_that_of_the_report() {
         assert!(column("angle").eq(steps.iter().map(|step| step.angle)));
         assert!(column("time_s").eq(steps.iter().map(|step| step.time_s)));
         let rows = decision_rows(joint).map(|(_, row)| row);
-        let accepted = rows.filter(|row| row.verdict == "accepted");
+        let accepted = rows.filter(|row| row.verdict == Verdict::Accepted);
         let expected =
             accepted.map(|row| (whole(row.i), whole(row.p), samples(row.delta.unwrap())));
         let deltas = back.integers(&entity, "delta").into_iter();
@@ -107,8 +107,8 @@ fn the_step_under_the_cursor_is_marked_in_every_plot() {
         let words = back.texts(&page("step"), "Points2D:labels");
         for ((times, words), (_, row)) in words.iter().zip(decision_rows(joint)) {
             assert_eq!(times["segment"], whole(row.i));
-            match row.verdict.as_str() {
-                "accepted" => {
+            match row.verdict {
+                Verdict::Accepted => {
                     let delay = format!("delay {} samples", row.delta.unwrap());
                     assert!(words.contains(&delay), "{words}");
                 }
