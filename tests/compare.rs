@@ -293,7 +293,7 @@ fn where_the_output_follows_the_input_no_error_is_one_of_the_speed() {
                  parameters = { rate = 3.0, y0 = 0.0 }\n";
     std::fs::write(desk.folder.path().join("leaky.toml"), model).unwrap();
     let text = String::from_utf8(desk.run("--model leaky.toml --quiet").stdout).unwrap();
-    assert!(text.contains("where it fails (free run):"), "{text}");
+    assert!(text.contains("where the error arises (free run):"), "{text}");
     assert!(text.contains("of the squared error, in"), "{text}");
     assert!(!text.contains("of the speed"), "{text}");
 }

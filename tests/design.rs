@@ -261,7 +261,7 @@ fn a_range_that_cannot_be_kept_is_refused_with_a_remedy() {
     for (options, expected) in cases {
         let said = desk.refusal(&format!("design log.csv {options} -o none.csv"));
         assert!(said.contains(expected), "{options}: {said}");
-        assert!(said.contains("give") || said.contains("start near"), "{options}: {said}");
+        assert!(said.contains("give") || said.contains("`--start` near"), "{options}: {said}");
         assert!(!desk.has("none.csv"));
     }
 }

@@ -89,6 +89,41 @@ fn logs_whose_names_differ_in_bytes_that_are_no_text_have_a_result_each() {
 }
 
 #[test]
+fn merged_tables_replace_no_result_and_no_model() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("log.csv"), bytes::log_text()).unwrap();
+    let improve = ["improve", "log.csv", "--results", "r", "--quiet"];
+    assert_eq!(tauscope(folder.path()).args(improve).output().unwrap().status.code(), Some(0));
+    let kept = || fs::read_dir(folder.path().join("r")).unwrap().map(|entry| entry.unwrap().path());
+    assert!(kept().any(|file| file.extension().is_some_and(|ending| ending == "toml")));
+    for file in kept() {
+        let before = fs::read(&file).unwrap();
+        let merged = tauscope(folder.path()).args(["merge", "r", "--summary"]).arg(&file).output();
+        assert_eq!(merged.unwrap().status.code(), Some(2), "{}", file.display());
+        assert_eq!(fs::read(&file).unwrap(), before);
+    }
+}
+
+#[test]
+fn logs_in_folders_within_a_folder_are_said_to_be_left_out() {
+    let folder = TempDir::new().unwrap();
+    let inner = folder.path().join("day").join("monday");
+    fs::create_dir_all(&inner).unwrap();
+    fs::write(inner.join("log.csv"), bytes::log_text()).unwrap();
+    let said = |code| {
+        let command = ["estimate", "day", "--results", "r"];
+        let ended = tauscope(folder.path()).args(command).output().unwrap();
+        assert_eq!(ended.status.code(), Some(code));
+        String::from_utf8(ended.stderr).unwrap()
+    };
+    let only = said(2);
+    assert!(only.contains("folders within it; name those") && only.contains("monday"), "{only}");
+    fs::write(folder.path().join("day").join("log.csv"), bytes::log_text()).unwrap();
+    let beside = said(0);
+    assert!(beside.contains("left out") && beside.contains("monday"), "{beside}");
+}
+
+#[test]
 fn a_name_as_long_as_can_be_has_a_result() {
     let folder = TempDir::new().unwrap();
     let name = format!("{}.csv", "n".repeat(251));

@@ -116,6 +116,17 @@ pub enum ReadError {
         /// How the names of logs end.
         endings: String,
     },
+    /// A folder holds no log, but folders within it do.
+    #[error(
+        "{}: no log in this folder, but in folders within it; name those, as `{}`", path.display(),
+        first.display()
+    )]
+    OnlyFolders {
+        /// The folder.
+        path: PathBuf,
+        /// The first of the folders within it.
+        first: PathBuf,
+    },
     /// A row has more or fewer cells than the header.
     #[error(
         "{}, row {row}: {found} cells, but the header has {expected}; give every row a cell per \

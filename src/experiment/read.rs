@@ -168,7 +168,7 @@ fn unique_stem(path: &Path, taken: &[String]) -> String {
 /// a shell's pattern `*.csv` names both.
 ///
 /// Beside the files, the folders that cannot be listed ([`ReadError::Io`]) or hold no log
-/// ([`ReadError::EmptyFolder`]).
+/// ([`ReadError::EmptyFolder`], [`ReadError::OnlyFolders`]).
 pub fn expand_folders(paths: &[PathBuf]) -> (Vec<PathBuf>, Vec<Failure>) {
     let (mut files, mut failures) = (Vec::new(), Vec::new());
     for path in paths {
@@ -194,20 +194,24 @@ fn logs_in(path: &Path) -> Result<Vec<PathBuf>, ReadError> {
     }
     logs.retain(|file| is_log(file));
     logs.sort();
-    if logs.is_empty() {
-        return Err(ReadError::EmptyFolder { path: path.to_owned(), endings: format::endings() });
+    if !logs.is_empty() {
+        return Ok(logs);
     }
-    Ok(logs)
+    let path = path.to_owned();
+    Err(match folders_with_logs(&path).into_iter().next() {
+        Some(first) => ReadError::OnlyFolders { path, first },
+        None => ReadError::EmptyFolder { path, endings: format::endings() },
+    })
 }
 
 /// A note on each of the folders in `paths` that has logs in folders of its own, which
 /// [`expand_folders`] leaves out.
 pub(crate) fn notes_on_subfolders(paths: &[PathBuf]) -> Vec<String> {
     let note = |path: &PathBuf| {
-        let entries = path.read_dir().ok()?.filter_map(|entry| Some(entry.ok()?.path()));
-        let mut inner: Vec<PathBuf> =
-            entries.filter(|inner| inner.is_dir() && logs_in(inner).is_ok()).collect();
-        inner.sort();
+        if logs_in(path).is_err() {
+            return None;
+        }
+        let inner = folders_with_logs(path);
         let first = inner.first()?.display();
         Some(format!(
             "{}: logs in folders within it are left out; name them to read them, as `{first}`",
@@ -215,6 +219,18 @@ pub(crate) fn notes_on_subfolders(paths: &[PathBuf]) -> Vec<String> {
         ))
     };
     paths.iter().filter_map(note).collect()
+}
+
+/// The folders in `path` that hold logs, sorted; none where it cannot be listed.
+fn folders_with_logs(path: &Path) -> Vec<PathBuf> {
+    let holds_logs = |inner: &PathBuf| {
+        let mut entries = inner.read_dir().into_iter().flatten().flatten();
+        inner.is_dir() && entries.any(|entry| is_log(&entry.path()))
+    };
+    let entries = path.read_dir().into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut inner: Vec<PathBuf> = entries.filter(holds_logs).collect();
+    inner.sort();
+    inner
 }
 
 fn is_log(path: &Path) -> bool {

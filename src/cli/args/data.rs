@@ -107,6 +107,11 @@ impl DataArgs {
         (files, unlisted.iter().map(|failure| said(&failure.error)).collect())
     }
 
+    /// A note on each folder that has logs in folders of its own, which are left out.
+    pub(crate) fn left_out(&self) -> Vec<String> {
+        notes_on_subfolders(&self.data)
+    }
+
     /// The only log, which need not be there yet.
     ///
     /// # Errors

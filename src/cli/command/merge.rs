@@ -7,7 +7,7 @@ use clap::Args as ClapArgs;
 
 use crate::cli::args::Format;
 use crate::cli::console::Verbosity;
-use crate::cli::each_log::{Tables, present, read_folders, results_in};
+use crate::cli::each_log::{Tables, kept_in, present, read_folders};
 use crate::cli::exit::Completion;
 use crate::cli::output::CsvText;
 
@@ -46,7 +46,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     let (decisions, summary) = (args.decisions.as_deref(), args.summary.as_deref());
     let tables = Tables { decisions, summary, text: CsvText::from(args.safe_csv) };
-    tables.check(&results_in(&args.folders)?)?;
+    tables.check(&kept_in(&args.folders)?)?;
     let (command, results, missing) = read_folders(&args.folders)?;
     let report = FolderReport::new(&command, results);
     if command != "estimate" && tables.decisions.is_some() {

@@ -24,7 +24,7 @@ use crate::cli::output::{CsvText, check_outputs, check_tables, target_of, write_
 
 pub(crate) use each::Each;
 use store::name_of;
-pub(crate) use store::{read_folders, results_in};
+pub(crate) use store::{kept_in, read_folders};
 pub(crate) use with_parent::end_with_parent;
 
 /// Many logs, each by itself.
@@ -114,6 +114,11 @@ impl FolderArgs {
         std::fs::create_dir_all(results)
             .with_context(|| format!("{}: cannot be made", results.display()))?;
         let (all, mut failures) = each.data.logs();
+        if each.run.verbosity() == Verbosity::Normal {
+            for note in each.data.left_out() {
+                message("note", &note);
+            }
+        }
         tables.check(&[each.data.files(), typed.files.clone()].concat())?;
         tables.check_beside(results, &all)?;
         if all.is_empty() {

@@ -154,7 +154,20 @@ impl Kept {
 }
 
 /// The files of results in some folders.
-pub(crate) fn results_in(folders: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
+fn results_in(folders: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
+    files_in(folders, &["json"])
+}
+
+/// What a run over many logs keeps in `folders`, sorted: results and models.
+///
+/// # Errors
+/// When a folder cannot be listed.
+pub(crate) fn kept_in(folders: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
+    files_in(folders, &["json", "toml"])
+}
+
+/// The files in `folders` whose names have one of the `endings`, sorted.
+fn files_in(folders: &[PathBuf], endings: &[&str]) -> anyhow::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for folder in folders {
         let unread = || format!("{}: cannot be read as a folder of results", folder.display());
@@ -162,7 +175,10 @@ pub(crate) fn results_in(folders: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
             files.push(entry.with_context(unread)?.path());
         }
     }
-    files.retain(|file| file.extension().is_some_and(|ending| ending == "json"));
+    let has_ending = |file: &PathBuf| {
+        file.extension().is_some_and(|own| endings.iter().any(|ending| own == *ending))
+    };
+    files.retain(has_ending);
     files.sort();
     Ok(files)
 }
