@@ -241,7 +241,9 @@ fn each_verdict_says_why() {
             assert_eq!(times["segment"], whole(row.i));
             match row.verdict {
                 Verdict::Accepted => assert!(text.contains("✓ accepted"), "{text}"),
-                failed => assert!(text.contains(&format!("**{failed}**")), "{text}"),
+                failed @ Verdict::Rejected(_) => {
+                    assert!(text.contains(&format!("**{failed}**")), "{text}");
+                }
             }
         }
     }
@@ -280,7 +282,7 @@ fn lean_keeps_rejected_segments_whole_and_says_so() {
             let kept = ticks.len() - 1;
             match row.verdict {
                 Verdict::Accepted => assert!(kept <= 25 && kept < row.candidates),
-                _ => assert_eq!(kept, row.candidates),
+                Verdict::Rejected(_) => assert_eq!(kept, row.candidates),
             }
             let best = candidates.iter().any(|(times, j)| {
                 Some(*j) == row.f_opt.map(whole) && times["segment"] == whole(row.i)

@@ -112,7 +112,7 @@ fn the_step_under_the_cursor_is_marked_in_every_plot() {
                     let delay = format!("delay {} samples", row.delta.unwrap());
                     assert!(words.contains(&delay), "{words}");
                 }
-                _ => assert!(words.contains("rejected"), "{words}"),
+                Verdict::Rejected(_) => assert!(words.contains("rejected"), "{words}"),
             }
         }
     }

@@ -126,7 +126,8 @@ fn a_model_is_reported_with_its_ladder() {
         assert!(text.contains(&shown), "no {shown}");
     }
     let headings: Vec<String> = page.select(&select("h3")).map(words).collect();
-    for part in ["Model", "Errors", "Measured and simulated", "Where the error of revision 0 arose"] {
+    for part in ["Model", "Errors", "Measured and simulated", "Where the error of revision 0 arose"]
+    {
         assert!(headings.iter().any(|heading| heading == part), "no {part} in {headings:?}");
     }
     for part in ["dead_band, on the delayed input: out = max(in", "[joint.boom]", "1: + dead_band"]

@@ -138,11 +138,11 @@ impl Index {
         Self { doubt: (1..).take(count).collect(), ..Self::default() }
     }
 
-    /// A row per revision, all of them at `moment` and, where decisions are `ranked`, at the first rank
-    /// by doubt: on the other timelines the last one is seen.
-    pub(super) fn of_revisions(revision: Vec<i64>, moment: Moment, ranked: bool) -> Self {
+    /// A row per revision, all of them at `moment` and, where decisions are ranked, at this rank by
+    /// doubt: on the other timelines the last one is seen.
+    pub(super) fn of_revisions(revision: Vec<i64>, moment: Moment, rank: Option<i64>) -> Self {
         let moments = std::iter::repeat_n(moment, revision.len());
-        let doubt = if ranked { vec![1; revision.len()] } else { Vec::new() };
+        let doubt = rank.map_or_else(Vec::new, |rank| vec![rank; revision.len()]);
         Self { revision, doubt, ..moments.collect() }
     }
 

@@ -39,8 +39,8 @@ pub(in crate::recording) fn add(
     // Before the first tick, where a viewer may open.
     let moment = Moment { decision: 0, ..start };
     let numbers: Vec<i64> = improved.numbered().map(|(number, _)| i64::from(number)).collect();
-    let ranked = layout.segments().next().is_some();
-    let index = Index::of_revisions(numbers.clone(), moment, ranked);
+    let rank = layout.segments().next().map(|_| 1);
+    let index = Index::of_revisions(numbers.clone(), moment, rank);
     let root = at(root, paths::ROOT);
     let mut steps = Steps { chunks, root, numbers, index };
     steps.figures(improved)?;
