@@ -270,6 +270,18 @@ fn a_name_that_is_none_is_refused() {
 }
 
 #[test]
+fn a_trial_in_each_row_counts_before_it_is_held() {
+    let folder = TempDir::new().unwrap();
+    let mut log = "time_s,trial,a.input,a.output\n".to_owned();
+    for row in 0..100_000_u32 {
+        writeln!(log, "{row},t{row},{},{row}", row / 50 % 2).unwrap();
+    }
+    let path = file(&folder, "trials.csv", log.as_bytes());
+    assert_says(&path, &["--max-memory", "20MB"], "or allow more with `--max-memory`");
+    assert_says(&path, &["--max-memory", "100MB"], "trial `t0` has one row only");
+}
+
+#[test]
 fn what_columns_are_taken_for_takes_time_with_their_number() {
     let folder = TempDir::new().unwrap();
     for [input, output] in [[".input", ".output"], ["_cmd", "_angle"]] {

@@ -171,7 +171,8 @@ fn read(
     let mut labels = Labels::default();
     if let Some(column) = layout.trial.and_then(|place| log.columns.get(place)) {
         for row in 0..rows {
-            labels.push(&column.values.text(row), row as u64 + 1, &head.path)?;
+            let memory = (head.path.as_path(), budget);
+            labels.push(&column.values.text(row), row as u64 + 1, memory)?;
         }
     }
     let numeric = layout.numeric_columns();

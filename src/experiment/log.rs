@@ -19,6 +19,10 @@ use crate::units::SamplePeriod;
 /// what is made of it until its delays are known.
 const SAMPLE_SIZE: usize = 8 * size_of::<f64>();
 
+/// Memory of a trial of a joint beside its samples and its label: itself, what its vector has to
+/// spare, and its allocations.
+const TRIAL_SIZE: usize = 2 * size_of::<Trial>() + 128;
+
 /// A table that was read, with what is needed to speak of its cells.
 pub(super) struct Log<'a> {
     pub(super) head: &'a Head,
@@ -262,8 +266,7 @@ impl Log<'_> {
         let mut split: Vec<(&TrialRows, Range<usize>)> = Vec::new();
         let size = (2 + joint.covariates.len()) * SAMPLE_SIZE;
         for (rows, grid) in trials.iter().zip(grids) {
-            let taken = self.budget.take_values(grid.samples(), size);
-            taken.map_err(|error| error.refuse(&self.head.path))?;
+            self.take(grid.samples(), size)?;
             let mut signals = self.signals(layout, rows);
             turns += wrap.map_or(0, |wrap| wrap.unwrap(&mut signals.output));
             let pieces = grid.pieces(signals);
@@ -271,6 +274,7 @@ impl Log<'_> {
                 let first = joint.trials.len();
                 split.push((rows, first..first + pieces.len()));
             }
+            self.take(pieces.len(), TRIAL_SIZE + rows.label.len())?;
             let labels = part_labels(&rows.label, pieces.len(), trials);
             for (label, piece) in labels.into_iter().zip(pieces) {
                 joint.trials.push(self.trial(layout, label, grid, piece, origin_s)?);
@@ -286,6 +290,12 @@ impl Log<'_> {
         };
         notes.extend(wrap.filter(|_| turns > 0).map(note));
         Ok((joint, notes))
+    }
+
+    /// Takes the memory of `count` values of `size` bytes each.
+    fn take(&self, count: usize, size: usize) -> Result<(), ReadError> {
+        let taken = self.budget.take_values(count, size);
+        taken.map_err(|error| error.refuse(&self.head.path))
     }
 
     /// The turn after which the output of a joint wraps. Of a log that still grows it is

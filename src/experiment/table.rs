@@ -7,6 +7,7 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use super::error::ReadError;
+use super::memory::Budget;
 use super::names::{listed, on_one_line, shown};
 use super::source::Source;
 #[cfg(any(feature = "mat", feature = "parquet"))]
@@ -308,6 +309,15 @@ const LARGEST: f64 = 1e75;
 /// what is left of them by a model, are lost to zero.
 const SMALLEST: f64 = 1e-75;
 
+/// Memory of a trial beside the bytes of its label: its run of rows and the text with what their
+/// allocations have to spare, once as they come, once in the table and once in the log; its label
+/// among those seen; the numbers of its rows, their times and its grid (measured: 290 bytes before
+/// the grid).
+const TRIAL_SIZE: usize = 512;
+
+/// Copies of a label that are held at once: among the runs and those seen, in the table and the log.
+const LABEL_COPIES: usize = 4;
+
 /// The labels of rows as they come, as runs.
 #[derive(Debug, Default)]
 pub(super) struct Labels {
@@ -317,7 +327,13 @@ pub(super) struct Labels {
 }
 
 impl Labels {
-    pub(super) fn push(&mut self, label: &str, row: u64, path: &Path) -> Result<(), ReadError> {
+    /// Adds the label of the next row of the log at `path`; a new trial is taken from `budget`.
+    pub(super) fn push(
+        &mut self,
+        label: &str,
+        row: u64,
+        (path, budget): (&Path, &Budget),
+    ) -> Result<(), ReadError> {
         let index = self.rows;
         self.rows += 1;
         let label = &*on_one_line(label);
@@ -326,6 +342,8 @@ impl Labels {
             return Ok(());
         }
         check_name(label, row, path)?;
+        let taken = budget.take_values(1, TRIAL_SIZE + LABEL_COPIES * label.len());
+        taken.map_err(|error| error.refuse(path))?;
         let label = label.to_owned();
         if !self.seen.insert(label.clone()) {
             return Err(ReadError::TrialNotContiguous { path: path.to_owned(), row, trial: label });
@@ -364,6 +382,21 @@ mod tests {
         }
         assert_eq!(column.values.len(), 2);
         assert_eq!(column.error, Some((3, BadCell::Infinite)));
+    }
+
+    #[test]
+    fn each_trial_is_taken_from_the_memory_and_a_row_of_it_is_not() {
+        use crate::experiment::MemoryLimit;
+
+        let path = Path::new("log.csv");
+        let budget = Budget::new(MemoryLimit::of_bytes(3 * (TRIAL_SIZE + LABEL_COPIES) as u64));
+        let mut labels = Labels::default();
+        for (row, label) in ["a", "b", "b", "b", "c"].into_iter().enumerate() {
+            labels.push(label, row as u64, (path, &budget)).unwrap();
+        }
+        assert_eq!(labels.runs().len(), 3);
+        let refused = labels.push("d", 5, (path, &budget));
+        assert!(matches!(refused, Err(ReadError::TooLarge { .. })), "{refused:?}");
     }
 
     #[test]

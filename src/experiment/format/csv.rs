@@ -247,7 +247,8 @@ impl Gathered {
             column.push(self.marks.agreed(cell(*index), self.delimiter, parsed), row);
         }
         if let Some(labels) = &mut self.labels {
-            labels.push(&String::from_utf8_lossy(label), row, wanted.path())?;
+            let memory = (wanted.path(), &self.budget);
+            labels.push(&String::from_utf8_lossy(label), row, memory)?;
         }
         Ok(())
     }

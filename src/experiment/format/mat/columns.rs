@@ -55,7 +55,7 @@ impl Rows for Unread {
         let texts =
             wanted.label.map_or_else(|| Ok(Vec::new()), |l| self.labels(l, wanted.path()))?;
         for (text, row) in texts.iter().zip(1..) {
-            labels.push(text, row, wanted.path())?;
+            labels.push(text, row, (wanted.path(), &self.budget))?;
         }
         Table::counted(wanted.path(), rows, columns, &labels)
     }

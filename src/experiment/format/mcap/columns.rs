@@ -87,7 +87,7 @@ impl Rows for Unread {
         for (value, row) in
             wanted.label.map(|label| column(&label).values).iter().flatten().zip(1..)
         {
-            labels.push(&value.to_string(), row, wanted.path())?;
+            labels.push(&value.to_string(), row, (wanted.path(), &self.budget))?;
         }
         let rows = RowNumbers::counted(aligned.rows());
         Ok(Table { source, rows, columns, trials: labels.runs(), notes })

@@ -131,7 +131,7 @@ impl Rows for Unread {
                 let rows = rows + 1..;
                 let each = texts.all.iter().flat_map(|(text, count)| repeat_n(text, *count));
                 for (text, row) in each.zip(rows) {
-                    labels.push(text, row as u64, wanted.path())?;
+                    labels.push(text, row as u64, (wanted.path(), &self.budget))?;
                 }
             }
             rows += count;
