@@ -116,6 +116,17 @@ fn periods_and_delays_that_no_log_has_are_refused() {
         let said = refused(folder.path(), &["estimate", LOG, "--sample-period", period]);
         assert!(said.contains("--sample-period"), "{said}");
     }
+    let log = |period: &str| {
+        let row = |k: i32| format!("{k}{period},{},{k}\n", k / 9 % 2);
+        let rows: String = (0..90).map(row).collect();
+        fs::write(folder.path().join("log.csv"), format!("time_s,j.input,j.output\n{rows}"))
+    };
+    for period in ["e-300", "e-10"] {
+        log(period).unwrap();
+        let said = refused(folder.path(), &["estimate", "log.csv"]);
+        let place = "log.csv, row 2, column `time_s`: from here on samples come 1e-";
+        assert!(said.contains(place) && said.contains("--sample-period"), "{said}");
+    }
     let review = "joint,trial,i,verdict,delay_s,note,reviewer\nboom,1,2,accepted,1e308,,\n";
     fs::write(folder.path().join("review.csv"), review).unwrap();
     let said = refused(folder.path(), &["estimate", LOG, "--review", "review.csv"]);

@@ -50,6 +50,7 @@ fn on_reading(error: &ReadError) -> String {
         }
         ReadError::FewTimes { .. }
         | ReadError::CoarseTimes { .. }
+        | ReadError::NoPeriod { .. }
         | ReadError::WrongTimeUnit { .. } => ", or give the period with `--sample-period SECONDS`",
         ReadError::NotATime { .. } => " and give `--sample-period SECONDS`",
         ReadError::Missing { .. } => {

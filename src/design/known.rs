@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, StandardNormal};
 
 use super::predict::Uncertain;
-use crate::effect::UNLIMITED;
+use crate::effect::is_unlimited;
 use crate::experiment::Trial;
 use crate::fit::{Assessment, FitRecord, Status};
 use crate::model::JointModel;
@@ -198,7 +198,7 @@ fn span(
     const AS_LIKELY: f64 = DEVIATIONS * DEVIATIONS;
     let value = model.values().get(place)?.value;
     let (low, high) = limits(model).get(place).copied()?;
-    if value.abs() >= UNLIMITED || value.abs() <= f64::MIN_POSITIVE {
+    if is_unlimited(value) || value.abs() <= f64::MIN_POSITIVE {
         return None;
     }
     let cost = |value: f64| cost(record, &with(model, place, value), noise);

@@ -3,7 +3,7 @@
 use super::free_run::FreeRunError;
 use super::schedule::Schedule;
 use super::trend::Travel;
-use crate::effect::UNLIMITED;
+use crate::effect::is_unlimited;
 use crate::experiment::{Joint, Trial};
 use crate::fit::{FitRecord, Horizon, Split};
 use crate::model::{JointModel, Surroundings, simulate_input};
@@ -55,7 +55,7 @@ const DEVIATIONS: f64 = 2.0;
 impl Uncertain {
     /// `model` with each parameter off by `share` of its value.
     pub fn by_share(model: JointModel, share: f64) -> Self {
-        let off = |value: f64| if value.abs() < UNLIMITED { share * value.abs() } else { 0.0 };
+        let off = |value: f64| if is_unlimited(value) { 0.0 } else { share * value.abs() };
         let deviations = model.values().iter().map(|value| off(value.value)).collect();
         Self { model, deviations, draws: Vec::new(), free_run: None }
     }

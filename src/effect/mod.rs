@@ -77,6 +77,7 @@ pub use interface::{Effect, WithinTrials};
 pub use leakage::Leakage;
 pub use moment::{InputChange, Moment};
 pub use oil_column::OilColumn;
+pub(crate) use parameter::is_unlimited;
 pub use parameter::{Parameter, UNLIMITED};
 pub use placebo::Placebo;
 pub use position_gain::PositionGain;

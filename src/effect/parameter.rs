@@ -6,6 +6,11 @@ use super::{Dimension, RecordRange};
 /// to a file and computed with, and far from anything a joint reaches.
 pub const UNLIMITED: f64 = 1e12;
 
+/// Whether `value` stands for "no limit": a number that happens to be larger is one.
+pub(crate) fn is_unlimited(value: f64) -> bool {
+    value.abs().total_cmp(&UNLIMITED).is_eq()
+}
+
 /// One parameter of an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameter {
@@ -77,6 +82,12 @@ impl Parameter {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_number_stands_for_no_limit() {
+        assert!([UNLIMITED, -UNLIMITED].into_iter().all(is_unlimited));
+        assert!(![0.0, 5e13, -5e13, f64::NAN].into_iter().any(is_unlimited));
+    }
 
     #[test]
     fn bounds_are_as_wide_as_the_record_but_within_the_own_limits() {

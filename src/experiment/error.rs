@@ -403,6 +403,22 @@ pub enum ReadError {
         /// The period in that unit, in seconds.
         period: f64,
     },
+    /// Times that are so near to one another that they are of no clock.
+    #[error(
+        "{}, row {row}, column `{column}`: from here on samples come {period:e} s apart, and a \
+         sample period is one from 1e-9 to 1e8 s; write the times in seconds, or in the unit that \
+         the header names", path.display()
+    )]
+    NoPeriod {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file of the trial's first row.
+        row: u64,
+        /// The column.
+        column: String,
+        /// The period, in seconds.
+        period: f64,
+    },
     /// A time step differs from the median by more than 1 %.
     #[error(
         "{}, row {row}: this sample comes {step} s after the one before, but the period is \
@@ -568,6 +584,7 @@ impl ReadError {
             | Self::TimeNotIncreasing { row, .. }
             | Self::NotUniform { row, .. }
             | Self::FewTimes { row, .. }
+            | Self::NoPeriod { row, .. }
             | Self::CoarseTimes { row, .. }
             | Self::TrialNotContiguous { row, .. }
             | Self::SingleRow { row, .. }
@@ -584,6 +601,7 @@ impl ReadError {
             | Self::DuplicateColumn { column, .. }
             | Self::TimeUnit { column, .. }
             | Self::WrongTimeUnit { column, .. }
+            | Self::NoPeriod { column, .. }
             | Self::MissingColumn { column, .. }
             | Self::NotANumber { column, .. }
             | Self::NotATime { column, .. }

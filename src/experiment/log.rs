@@ -10,6 +10,7 @@ use super::joint::{Joint, Signal, Trial};
 use super::layout::{JointLayout, TimeSource};
 use super::memory::Budget;
 use super::origin::{origin_s, since_1970};
+use super::read::is_period;
 use super::sampling::{Fault, Grid, Piece, Repair, Signals};
 use super::table::{BadCell, Column, Head, Table, TrialRows};
 use super::wrap::Wrap;
@@ -66,6 +67,7 @@ impl Log<'_> {
         let rows: Vec<Vec<usize>> = trials.iter().map(rows).collect();
         let (grids, mut notes) = self.grids_of(&times, &rows, trials, repair)?;
         self.check_unit(time, &grids)?;
+        self.check_periods(time, trials, &grids)?;
         notes.extend(self.origin_note(time));
         notes.extend(self.rate_note(time, &grids));
         Ok((grids, notes))
@@ -116,6 +118,26 @@ impl Log<'_> {
         match periods.find(|period| *period > most) {
             Some(period) => Err(ReadError::WrongTimeUnit {
                 path: self.head.path.clone(),
+                column: self.header(column),
+                period,
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses times whose period is none that may be given as an option.
+    fn check_periods(
+        &self,
+        time: TimeSource,
+        trials: &[TrialRows],
+        grids: &[Grid],
+    ) -> Result<(), ReadError> {
+        let Some(column) = time.column() else { return Ok(()) };
+        let periods = grids.iter().map(|grid| grid.period().seconds());
+        match trials.iter().zip(periods).find(|(_, period)| !is_period(*period)) {
+            Some((trial, period)) => Err(ReadError::NoPeriod {
+                path: self.head.path.clone(),
+                row: self.row(trial.start),
                 column: self.header(column),
                 period,
             }),

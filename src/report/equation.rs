@@ -1,6 +1,6 @@
 //! The equation of an effect with its numbers in it.
 
-use crate::effect::UNLIMITED;
+use crate::effect::is_unlimited;
 use crate::model::Component;
 use crate::wording::number;
 
@@ -45,7 +45,7 @@ fn is_of_name(c: char) -> bool {
 /// A number as it is written behind `before`: in brackets where it would run into a sign or
 /// another number.
 fn in_place(value: f64, before: &str) -> String {
-    if value.abs() >= UNLIMITED {
+    if is_unlimited(value) {
         return if value < 0.0 { "-infinity" } else { "infinity" }.to_owned();
     }
     let last = before.trim_end().chars().next_back().unwrap_or('=');
@@ -73,6 +73,7 @@ mod tests {
         assert_eq!(filled("thermal_drift", &[0.01, 60.0]), drift);
         assert_eq!(filled("input_offset", &[-0.2]), "out = in + (-0.2)");
         assert_eq!(filled("end_stop", &[-20.0, 1e12]), "-20 <= y <= infinity");
+        assert_eq!(in_place(5e13, "= "), number(5e13));
     }
 
     #[test]

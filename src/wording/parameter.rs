@@ -1,7 +1,7 @@
 //! Fitted parameters: status, certainty and units.
 
 use super::{number, with_error};
-use crate::effect::{Dimension, UNLIMITED};
+use crate::effect::{Dimension, is_unlimited};
 use crate::experiment::Joint;
 use crate::fit::{Parameter, Status};
 use crate::model::{Component, JointModel};
@@ -20,7 +20,7 @@ pub(crate) fn remark(status: Status) -> Option<&'static str> {
 /// about it: `0.612 ± 0.021 V`, `2.3 s (fixed)`, `none` for a limit that there is not.
 pub(crate) fn parameter_value(parameter: &Parameter, unit: &str) -> String {
     let Parameter { value, std_error, status, .. } = parameter;
-    if value.abs() >= UNLIMITED {
+    if is_unlimited(*value) {
         return "none".to_owned();
     }
     let known = known_value(*value, *std_error);
@@ -53,4 +53,19 @@ pub(crate) fn parameter_units(joint: &Joint, model: &JointModel) -> Vec<String> 
         parameters.map(move |parameter| of(component, parameter.dimension))
     });
     own.chain(parameters).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_limit_is_none_and_a_large_number_is_a_number() {
+        let said = |value: f64| {
+            let (name, std_error, status) = ("gain".to_owned(), None, Status::Fitted);
+            parameter_value(&Parameter { name, value, std_error, status }, "deg/s/V")
+        };
+        assert_eq!([1e12, -1e12].map(said), ["none", "none"]);
+        assert_eq!(said(5e13), format!("{} deg/s/V", number(5e13)));
+    }
 }
