@@ -10,7 +10,7 @@ use super::joint::{Joint, Signal, Trial};
 use super::layout::{JointLayout, TimeSource};
 use super::memory::Budget;
 use super::origin::{origin_s, since_1970};
-use super::read::is_period;
+use super::period::is_period;
 use super::sampling::{Fault, Grid, Piece, Repair, Signals};
 use super::table::{BadCell, Column, Head, Table, TrialRows};
 use super::wrap::Wrap;

@@ -13,6 +13,7 @@ use super::layout::{JointLayout, Layout, find_time_column};
 use super::log::Log;
 use super::memory::{Budget, MemoryLimit};
 use super::names::on_one_line;
+use super::period::is_period;
 use super::sampling::Repair;
 use super::source::{Source, source_of};
 use super::survey::Survey;
@@ -384,10 +385,4 @@ fn sample_period(path: &Path, map: &ColumnMap) -> Result<Option<SamplePeriod>, R
     let bad = || ReadError::BadPeriod { path: path.to_owned(), seconds };
     let period = Some(seconds).filter(|seconds| is_period(*seconds));
     period.and_then(SamplePeriod::from_seconds).map(Some).ok_or_else(bad)
-}
-
-/// Whether samples may be so many seconds apart: from a nanosecond to three years, beyond which the
-/// times of a record leave what a clock counts.
-pub(crate) fn is_period(seconds: f64) -> bool {
-    (1e-9..=1e8).contains(&seconds)
 }
