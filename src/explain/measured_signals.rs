@@ -13,9 +13,8 @@ use crate::units::floor_to_index;
 pub(super) fn possible_causes(joint: &Joint) -> Vec<&str> {
     /// Signals that are tried, at most: each costs fits.
     const MOST: usize = 4;
-    /// The part of a signal's variance from which on the joint's own signals tell it. Chosen: a
-    /// sensor of the same motion is beyond 0.95, a pressure of the load that falls as the joint
-    /// accelerates below 0.6.
+    /// The part of a signal's variance from which on the joint's own signals explain it. Chosen, not
+    /// measured: a second sensor of the same motion is nearly 1.
     const TOLD: f64 = 0.8;
     let names = joint.covariates.iter().enumerate();
     let causes = names.filter(|(index, _)| {
