@@ -17,8 +17,9 @@ pub(super) fn is_determined(fit: &Fit, component: &Component) -> bool {
     free.peek().is_none()
         || free.any(|(parameter, status)| match status {
             Status::Fitted => true,
-            Status::Undetermined => switches_at(component.effect(), parameter),
-            Status::AtBound | Status::BeyondReach | Status::Fixed => false,
+            // Of a value that changes nothing nearby no bound can be far.
+            Status::Undetermined | Status::AtBound => switches_at(component.effect(), parameter),
+            Status::BeyondReach | Status::Fixed => false,
         })
 }
 

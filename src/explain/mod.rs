@@ -34,6 +34,7 @@ mod extension;
 mod improve;
 mod judge;
 mod ladder;
+mod likeness;
 mod measured_signals;
 mod misfit;
 mod options;

@@ -5,6 +5,7 @@ use super::determined::is_determined;
 use super::eligible::{could_be_missing, is_due, signal_range};
 use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
+use super::likeness::{least_share, looks_like};
 use super::misfit::Misfit;
 use super::options::Options;
 use super::revision::Change;
@@ -106,9 +107,11 @@ impl Removal<'_> {
             let does_harm = of_whole.is_nearer_over_windows(&evidence, HARM)
                 || !self.misfit.generalizes(record, whole, &fit);
             // More parameters in the place of an effect are worth as much as a further effect.
+            let new: Vec<&str> = change.new_effects().collect();
+            let least = least_share(&fit.model, &new);
             let is_worth_it = fit.parameters.len() <= whole.parameters.len()
                 || self.options.keeps_refinements
-                || self.misfit.has_consequence(record, whole, &fit);
+                || self.misfit.share(record, whole, &fit) >= least;
             let behind = evidence.criterion() - of_whole.criterion();
             let leaves_less = !change.is_unusual() || fit.cost < LESS * whole.cost;
             let hurdle = if change.is_unusual() { ALIKE } else { 0.0 };
@@ -182,15 +185,6 @@ pub(super) fn replacements(
 fn is_as_simple_a_form(of: &Spec, old: &str) -> bool {
     let parameters = by_id(old).map(|old| old.spec().parameters.len());
     of.refines == Some(old) && parameters == Some(of.parameters.len())
-}
-
-/// Whether one effect is taken for the other, or contains it.
-pub(super) fn looks_like(one: &str, other: &str) -> bool {
-    let near = |a: &str, b: &str| {
-        let spec = by_id(a).map(Effect::spec);
-        spec.is_some_and(|spec| spec.confused_with.contains(&b) || spec.absorbs.contains(&b))
-    };
-    one != other && (near(one, other) || near(other, one))
 }
 
 /// The models with the best few of `changes`.

@@ -11,17 +11,17 @@ use std::ops::ControlFlow;
 use super::candidate::Candidate;
 use super::eligible::signal_range;
 use super::extension::ids;
-use super::misfit::{CONSEQUENCE, Misfit};
+use super::likeness::least_share;
+use super::misfit::Misfit;
 use super::options::Options;
 use super::ranking::{Scope, rank};
-use super::removal::{Exchange, Removal, looks_like};
+use super::removal::{Exchange, Removal};
 use super::revision::Change;
 use super::verdict::Verdict;
 use super::workers::Workers;
 use crate::delay::are_strokes;
 use crate::diagnosis::{LackOfFit, floor_of, lack_of};
 use crate::fit::{Fit, FitRecord, fit_to_compare};
-use crate::model::Component;
 
 /// A model on the way.
 #[derive(Clone, Debug)]
@@ -81,21 +81,6 @@ impl Step {
 /// curve and the gain match three.
 const FEW_LEVELS: usize = 3;
 
-/// The share of the misfit from which an effect has a consequence beside one that looks like it: two
-/// frictions and an overlap together follow many a curve that is none of them. Chosen: on a measured
-/// boom a friction and a stiction beside the overlap carry 4 and 3 %, each known to two standard
-/// errors or less.
-const BESIDE_ITS_LIKE: f64 = 0.05;
-
-/// Whether one of the effects of `candidate` looks like one that is fitted beside it.
-fn is_beside_its_like(candidate: &Candidate) -> bool {
-    let components = candidate.fit.model.components().iter();
-    let is_fitted = |component: &&Component| component.parameters().iter().any(|p| !p.fixed);
-    let fitted = components.filter(is_fitted).map(|component| component.effect().spec().id);
-    let mut beside = fitted.filter(|id| !candidate.effects.contains(id));
-    beside.any(|old| candidate.effects.iter().any(|new| looks_like(old, new)))
-}
-
 /// How stepwise addition ended.
 pub(super) struct Ended {
     pub(super) verdict: Verdict,
@@ -133,7 +118,7 @@ pub(super) fn add_stepwise(
             return ended(Verdict::Adequate, step.fit, was_stopped);
         }
         let has_consequence = |candidate: &Candidate| {
-            let least = if is_beside_its_like(candidate) { BESIDE_ITS_LIKE } else { CONSEQUENCE };
+            let least = least_share(&candidate.fit.model, &candidate.effects);
             options.keeps_refinements || misfit.share(record, &step.fit, &candidate.fit) >= least
         };
         let is_sound = |candidate: &&Candidate| {
