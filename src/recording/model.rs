@@ -13,7 +13,8 @@ use super::model_signal::signal;
 use super::palette::{self, Rgb, color};
 use super::parameter_table::parameter_table;
 use super::paths::{self, at, child};
-use super::{correlogram, error_share, model_difference, model_lanes, scatter};
+use super::rows::Rows;
+use super::{correlogram, error_share, model_difference, model_lanes, revision, scatter};
 use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures, SIGNIFICANCE, sensor_noise};
 use crate::experiment::Joint;
@@ -63,6 +64,21 @@ pub(super) fn add(
         model_difference::add(chunks, root, layout, models)?;
     }
     model_lanes::add(chunks, root, layout, (judged.joint, judged.comparison))
+}
+
+/// Adds what is seen of the record on every timeline of a model that has no revisions, whose own
+/// drawings are.
+pub(super) fn add_map(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    layout: &JointLayout<'_>,
+    judged: &ComparedJoint<'_>,
+) -> Result<(), RecordError> {
+    let start = layout.trials.iter().find_map(|trial| trial.moments(1).next());
+    let Some(start) = start else { return Ok(()) };
+    let index = Index::everywhere(start, layout.first);
+    let mut rows = Rows::new(chunks, at(root, paths::MODEL_MAP), index).back_to_front();
+    revision::add_record(&mut rows, layout, judged.joint, &[judged.comparison])
 }
 
 /// Regions and correlations as lists of numbers, for programs.

@@ -45,7 +45,9 @@ pub(in crate::recording) fn add(
     let mut steps = Steps { chunks, root, numbers, index };
     steps.figures(improved)?;
     steps.words(layout, improved)?;
-    record::add(&mut steps.rows(paths::record::ROOT), layout, improved)?;
+    let models: Vec<_> = improved.revisions.iter().map(|revision| &revision.comparison).collect();
+    let joint = improved.finding.compared.joint;
+    record::add(&mut steps.rows(paths::record::ROOT), layout, joint, &models)?;
     let evidence = evidence::evidence(improved);
     steps.evidence(&evidence)?;
     let mut rows = steps.rows(paths::sheet::ROOT);
