@@ -40,7 +40,7 @@ pub(super) fn add(
     ] {
         let style = Marks { kind, color: color(rgb), marker };
         let breakpoint = |s: &SegmentLayout<'_>| {
-            let best = s.decision.candidates.best()?;
+            let best = s.decision.shown_candidate()?;
             Some((best.breakpoint, best.after.at(best.breakpoint as f64)))
         };
         style.add(chunks, at(root, on_output), layout, breakpoint)?;
@@ -134,7 +134,7 @@ fn add_lines(
         let (mut values, mut lengths) = (Vec::new(), Vec::new());
         for (trial, segment) in layout.segments() {
             // Of an output that settles the lines are but chords of what was fitted.
-            let best = segment.decision.candidates.best();
+            let best = segment.decision.shown_candidate();
             let Some(best) = best.filter(|_| segment.decision.response.is_none()) else {
                 continue;
             };
@@ -300,7 +300,7 @@ impl Map {
     }
 
     fn breakpoint(&self, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> Option<Vec2D> {
-        let best = segment.decision.candidates.best()?;
+        let best = segment.decision.shown_candidate()?;
         let y = best.after.at(best.breakpoint as f64);
         Some(self.output.at(trial.sample(best.breakpoint) as f64, y))
     }

@@ -124,15 +124,18 @@ pub(crate) mod drawing {
     /// What the chosen lines leave.
     pub(crate) const RESIDUAL: &str = "residual";
     pub(crate) const SSE: &str = "sse";
+    /// What the program found where a reviewer moved the breakpoint.
+    pub(crate) const BEFORE_REVIEW: &str = "before_review";
     pub(crate) const ACCEPTED: &str = "accepted";
     pub(crate) const REJECTED: &str = "rejected";
     pub(crate) const NAMES: &str = "names";
     pub(crate) const CANDIDATE: &str = "candidate";
     pub(crate) const CANDIDATE_MARK: &str = "candidate/mark";
-    pub(crate) const PARTS: [&str; 13] = [
+    pub(crate) const PARTS: [&str; 14] = [
         GRID,
         TICKS,
         BORDERS,
+        BEFORE_REVIEW,
         INPUT_STEP,
         MEASURED,
         SMOOTHED,

@@ -158,13 +158,14 @@ impl Steps<'_> {
             comparison,
             ..improved.finding.compared
         };
-        let of_each = improved.numbered().map(|(number, revision)| {
-            error_share::Drawing::of(&[&compared(number, &revision.comparison)])
+        let of_each = improved.numbered().zip(0..).map(|((number, revision), place)| {
+            let shares = error_share::Drawing::of(&[&compared(number, &revision.comparison)]);
+            (shares, palette::model(place))
         });
         let (mut grids, mut texts) = (Vec::new(), Vec::new());
         let (mut bars, mut marks) = (Vec::new(), Vec::new());
-        for drawing in of_each {
-            bars.push(drawing.filling());
+        for (drawing, rgb) in of_each {
+            bars.push(drawing.filling(rgb));
             let (grid, labels) = drawing.sheet.into_parts();
             grids.push(grid);
             texts.push(labels);

@@ -3,6 +3,8 @@
 use std::ops::{Range, RangeInclusive};
 
 use crate::diagnosis::failure::WorstSegment;
+use rerun::datatypes::Vec2D;
+
 use crate::diagnosis::{Comparison, sensor_noise};
 use crate::experiment::Joint;
 use crate::figure::ladder::judged;
@@ -25,7 +27,7 @@ pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 690.0);
 const ROWS: RangeInclusive<f32> = 56.0..=292.0;
 
 /// How far above the plot the ranks of the worst segments stand: between their bars and the title.
-const RANKS: f32 = 14.0;
+const RANKS: f32 = 40.0;
 
 /// Points of a curve: two for each of 1500 columns of pixels.
 const POINTS: usize = 3000;
@@ -44,8 +46,10 @@ pub(in crate::recording) fn add(
     let of_each = || models.iter().copied();
     let residuals: Vec<Plot> = of_each().map(|c| drawing.residual_plot(c)).collect();
     let close_ups: Vec<CloseUp> = of_each().map(|c| CloseUp::of(layout, c)).collect();
-    let sheet = |((comparison, plot), close)| drawing.sheet(comparison, plot, close).into_parts();
-    let sheets = of_each().zip(&residuals).zip(&close_ups).map(sheet);
+    let sheet = |(((comparison, plot), close), number)| {
+        drawing.sheet(comparison, plot, close, palette::name(number)).into_parts()
+    };
+    let sheets = of_each().zip(&residuals).zip(&close_ups).zip(0..).map(sheet);
     let (grids, texts): (Vec<_>, Vec<_>) = sheets.unzip();
     for (path, rgb, spans) in [
         (record::VALIDATION, palette::UNSEEN_GROUND, validation as fn(&Comparison) -> Spans),
@@ -63,10 +67,11 @@ pub(in crate::recording) fn add(
         close_ups.iter().map(|close| drawing.outputs(close, |trial| trial.trial.output()));
     rows.strips(record::MEASURED, palette::MEASURED, 3.0, measured)?;
     let simulated = of_each().zip(&close_ups).map(|(c, close)| drawing.simulated(c, close));
-    rows.strips(record::SIMULATED, palette::REVISION, 1.2, simulated)?;
+    let own: Vec<_> = (0..models.len()).map(palette::model).collect();
+    rows.strips_by_row(record::SIMULATED, &own, 1.2, simulated)?;
     let of_plots = || of_each().zip(&residuals);
     let curves = of_plots().map(|(comparison, plot)| drawing.residual(comparison, plot));
-    rows.strips(record::RESIDUAL, palette::REVISION, 1.0, curves)?;
+    rows.strips_by_row(record::RESIDUAL, &own, 1.0, curves)?;
     let worst = of_plots().map(|(comparison, plot)| worst(layout, comparison, plot));
     rows.strips(record::WORST, palette::REJECTED, 3.0, worst)?;
     // The noise is the sensor's, whatever the model.
@@ -181,7 +186,13 @@ impl<'l, 'a> Drawing<'l, 'a> {
         Plot::new(446.0..=644.0, self.x, Span::around(residuals, 0.05))
     }
 
-    fn sheet(&self, comparison: &Comparison, residual_plot: &Plot, close: &CloseUp) -> Sheet {
+    fn sheet(
+        &self,
+        comparison: &Comparison,
+        residual_plot: &Plot,
+        close: &CloseUp,
+        color: &str,
+    ) -> Sheet {
         let unit = bracketed("", self.joint.output_unit.as_deref());
         let mut sheet = Sheet::default();
         let horizon = comparison.fit.evaluation.horizon;
@@ -189,7 +200,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
             (
                 &self.output,
                 self.output.x_span().ticks(8.0),
-                format!("output{unit}: measured white, simulated orange"),
+                format!("output{unit}: measured white, simulated {color}"),
             ),
             (&close.plot, Vec::new(), close.title.clone()),
         ] {
@@ -197,8 +208,10 @@ impl<'l, 'a> Drawing<'l, 'a> {
             sheet.put(plot.above(middle(plot), 46.0), title);
         }
         let ends = close.plot.x_span();
-        for end in [ends.low, ends.high] {
-            sheet.put(close.plot.below(end, 2.0), format!("{} s", short(end)));
+        // Moved inward: at the corner it would cover the lowest tick of the output.
+        for (end, inward) in [(ends.low, 45.0), (ends.high, -45.0)] {
+            let Vec2D([x, y]) = close.plot.below(end, 2.0);
+            sheet.put(Vec2D::new(x + inward, y), format!("{} s", short(end)));
         }
         let times =
             self.noise.map(|noise| format!(": {} × noise", rounded(judged(comparison) / noise)));
@@ -217,8 +230,8 @@ impl<'l, 'a> Drawing<'l, 'a> {
         // Its title lies above the bars of the worst segments, not on them.
         sheet.outline(residual_plot, &x_ticks, &ticks(residual_plot));
         // Two rows: one of all of it is wider than a small window.
-        sheet.put(residual_plot.above(middle(residual_plot), 106.0), residual);
-        sheet.put(residual_plot.above(middle(residual_plot), 68.0), key.join(" · "));
+        sheet.put(residual_plot.above(middle(residual_plot), 112.0), residual);
+        sheet.put(residual_plot.above(middle(residual_plot), 78.0), key.join(" · "));
         for x in x_ticks {
             sheet.put(residual_plot.below(x, 2.0), short(x));
         }

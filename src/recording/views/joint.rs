@@ -37,7 +37,7 @@ const ALONG: &str = "Along sample, time or decision";
 /// Numbers of the models that are drawn beside the measurement: of many revisions of one model the
 /// first and the last, since what came between is on the page of the revisions.
 fn drawn(models: usize, revisions: usize) -> Vec<usize> {
-    if revisions > 0 && models > palette::NAMES.len() {
+    if revisions > 0 && models > palette::NAMED {
         vec![0, models - 1]
     } else {
         (0..models).collect()
@@ -148,9 +148,18 @@ struct Views<'b, 'i> {
     revisions: usize,
 }
 
-/// Columns of the table of candidates.
-const CANDIDATE_COLUMNS: [&str; 8] =
-    ["i", "j", "q", "delta", "sse_shown", "slope_before_shown", "slope_after_shown", "f"];
+/// Columns of the table of candidates, in the order in which a viewer shows them.
+const CANDIDATE_COLUMNS: [&str; 9] = [
+    "1_rank",
+    "2_delay_s",
+    "3_sse",
+    "4_sse_ratio",
+    "5_verdict",
+    "i",
+    "q",
+    "slope_after_shown",
+    "slope_before_shown",
+];
 
 impl Views<'_, '_> {
     /// The entity at `path` below the joint.
@@ -367,15 +376,14 @@ impl Views<'_, '_> {
         let residuals: Vec<_> = of_each(paths::RESIDUAL);
         let outputs = [vec![self.at(paths::OUTPUT_RAW)], simulated].concat();
         // A model keeps its colour where others are not drawn.
-        let color = |number: &usize| palette::NAMES.get(*number).copied();
-        let colors: Option<Vec<&str>> = shown.iter().map(color).collect();
-        let (legend, colors) = match colors {
-            Some(colors) => {
+        let colors: Vec<&str> = shown.iter().map(|number| palette::name(*number)).collect();
+        let (legend, colors) = match colors.len() {
+            ..=palette::NAMED => {
                 let own = names.iter().zip(colors);
                 let own: Vec<_> = own.map(|(name, color)| format!("{name} {color}")).collect();
                 (Legend::InTitle, format!(": measured grey, {}", own.join(", ")))
             }
-            None => (Legend::Apart, String::new()),
+            _ => (Legend::Apart, String::new()),
         };
         let noise = [paths::NOISE_UPPER, paths::NOISE_LOWER].map(|path| self.at(path));
         let residuals = [noise.to_vec(), residuals].concat();
