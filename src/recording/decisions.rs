@@ -263,3 +263,14 @@ fn add_table(
         whole.chain(real).chain(rounded).chain(accepted).chain(words).chain(fine).collect();
     chunks.push(at(root, paths::DECISION_TABLE), table.index, columns)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_error_is_the_first() {
+        assert_eq!(ranks(&[3.0, 1.0, 2.0]), [3, 1, 2]);
+        assert_eq!(ranks(&[]), [0; 0]);
+    }
+}

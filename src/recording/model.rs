@@ -258,7 +258,7 @@ fn worst_segments(
     // A narrow page has no room for what is the same in each row.
     let several = judged.joint.trials.len() > 1;
     let columns = if several { ["trial", "from `time`"] } else { ["from", "`sample`"] };
-    let unit = judged.joint.output_unit.as_deref().map_or_else(String::new, |it| plain(it));
+    let unit = judged.joint.output_unit.as_deref().map_or_else(String::new, plain);
     let [place, on] = columns;
     let height = |worst: &WorstSegment| worst.largest_residual.abs();
     let highest = failure.worst_segments.iter().map(height).reduce(f64::max).unwrap_or_default();
