@@ -27,7 +27,7 @@ pub(super) const ERROR: Rgb = rgb(204, 121, 167);
 /// Borders of a segment.
 pub(super) const BORDER: Rgb = rgb(225, 225, 225);
 /// The candidate that comes next: no revision has this colour.
-pub(super) const PROPOSED: Rgb = rgb(255, 255, 255);
+pub(super) const PROPOSED: Rgb = rgb(170, 255, 80);
 /// What was measured, beside revisions.
 pub(super) const MEASURED: Rgb = rgb(200, 205, 210);
 /// What noise alone would leave.

@@ -191,7 +191,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let y_ticks = named(self.output.y_span().ticks(5.0));
         let mut strips = self.output.grid(&x_ticks, &y_ticks, &mut labels);
         let (_, residual) = &self.residual;
-        let ticks = named(residual.y_span().ticks(2.0));
+        let ticks = named(apart(residual.y_span().ticks(2.0), residual));
         strips.extend(residual.grid(&x_ticks, &ticks, &mut labels));
         strips.push(residual.level(0.0).to_vec());
         let errors = self.error.y_span().ticks(3.0);
@@ -380,6 +380,19 @@ impl<'l, 'a> Drawing<'l, 'a> {
 /// Whether two texts whose middles and halves these are would cover each other.
 fn collide(a: (f32, f32), b: (f32, f32)) -> bool {
     (a.0 - b.0).abs() < a.1 + b.1
+}
+
+/// Ticks without those whose text would cover that of the one before, in a small window.
+fn apart(ticks: Vec<f64>, plot: &Plot) -> Vec<f64> {
+    /// Height of a line of text on the sheet in a window of 1280 points.
+    const LINE: f32 = 46.0;
+    let mut kept: Vec<f64> = Vec::new();
+    for tick in ticks.into_iter().rev() {
+        if kept.last().is_none_or(|last| (plot.y(*last) - plot.y(tick)).abs() >= LINE) {
+            kept.push(tick);
+        }
+    }
+    kept
 }
 
 fn diamond(Vec2D([x, y]): Vec2D, radius: f32) -> Vec<Vec2D> {

@@ -105,7 +105,10 @@ impl CloseUp {
         let window = named.unwrap_or_else(|| Window::worst(&residuals(layout, comparison)));
         let trial = layout.trials.get(window.place).filter(|_| layout.trials.len() > 1);
         let title = trial.map_or_else(
-            || "close up: the largest residual".to_owned(),
+            || match worst {
+                Some(_) => "close up: worst segment 1".to_owned(),
+                None => "close up: where the residual is largest".to_owned(),
+            },
             |trial| match worst {
                 Some(_) => format!("segment 1: trial {}", trial.trial.label()),
                 None => format!("largest residual: trial {}", trial.trial.label()),

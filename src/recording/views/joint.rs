@@ -152,8 +152,8 @@ struct Views<'b, 'i> {
 const CANDIDATE_COLUMNS: [&str; 9] = [
     "1_rank",
     "2_delay_s",
-    "3_sse",
-    "4_sse_ratio",
+    "3_squared_error",
+    "4_times_least",
     "5_verdict",
     "i",
     "q",
@@ -321,7 +321,7 @@ impl Views<'_, '_> {
         let map = self.view(map)?;
         let tabs = self.builder.container(ContainerKind::Tabs, "Record", &[map, plots], &[])?;
         let rows = [self.place()?, tabs];
-        self.builder.container(ContainerKind::Vertical, "Record", &rows, &[0.9, 9.1])
+        self.builder.container(ContainerKind::Vertical, "Record", &rows, &[1.1, 8.9])
     }
 
     /// The record of a joint whose input moves all the time, and its dead time in words.
@@ -410,7 +410,7 @@ impl Views<'_, '_> {
             self.residuals(&names, &shown)?,
         ];
         let builder = &mut *self.builder;
-        let plots = builder.container(ContainerKind::Vertical, "Plots", &rows, &[1.0, 7.4, 3.6])?;
+        let plots = builder.container(ContainerKind::Vertical, "Plots", &rows, &[1.3, 7.2, 3.5])?;
         let page = [self.path(paths::MODEL_PAGE)];
         let page = self.view(View::new("TextDocument", "Models", &page))?;
         let columns = [plots, page];
