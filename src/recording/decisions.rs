@@ -171,8 +171,13 @@ impl Table {
     const WHOLE: [&str; 8] = ["i", "p", "r", "end", "f", "j", "q", "delta"];
     const REAL: [&str; 3] = ["sse", "slope_before", "slope_after"];
     /// A viewer orders columns by their names: the most telling ones come first.
-    const SHOWN: [&str; 5] =
-        ["2_delay_s", "3_squared_error", "4_times_least", "slope_before_shown", "slope_after_shown"];
+    const SHOWN: [&str; 5] = [
+        "2_delay_s",
+        "3_squared_error",
+        "4_times_least",
+        "slope_before_shown",
+        "slope_after_shown",
+    ];
 
     /// The numbers of `candidate`, of which so many have a smaller error; `j` is its number, empty on
     /// the row of the verdict.

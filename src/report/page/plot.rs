@@ -182,17 +182,21 @@ impl Panel {
         let range = |axis: &Axis| {
             let [low, high] = [axis.span.low, axis.span.high].map(|end| rounded(axis.number(end)));
             let scale = if axis.is_logarithmic { ", on a logarithmic scale" } else { "" };
-            format!("{} from {low} to {high}{scale}", axis.name)
+            format!("from {low} to {high}{scale}")
         };
         let names = |axis: &Axis| {
             let names: Vec<_> = axis.ticks.iter().map(|(_, name)| name.clone()).collect();
-            format!("a row for each of {}", listed(&names, "and"))
+            format!("There is a row for each of {}", listed(&names, "and"))
         };
-        let upward = if self.y.has_names() { names(&self.y) } else { range(&self.y) };
+        let upward = if self.y.has_names() {
+            names(&self.y)
+        } else {
+            capitalized(&format!("{} runs {}", self.y.name, range(&self.y)))
+        };
         let across = if self.x.is_bare() {
             "over the same horizontal axis as the plot below".to_owned()
         } else {
-            format!("over {}", range(&self.x))
+            format!("over {}, which runs {}", self.x.name, range(&self.x))
         };
         let marks = self.marks.iter().filter_map(|mark| mark.name.clone());
         let marks: Vec<String> = marks.collect();
@@ -200,7 +204,7 @@ impl Panel {
             [] => String::new(),
             marks => format!(" It shows: {}.", listed(marks, "and")),
         };
-        format!("{}, {across}.{shown}", capitalized(&upward))
+        format!("{upward}, {across}.{shown}")
     }
 
     fn has_legend(&self) -> bool {
@@ -416,13 +420,15 @@ mod tests {
         let first = Panel { x: first.x.bare(), ..first };
         let y = Axis::logarithmic(Span::new(-2.0, 1.0), "SSE", 3.0);
         let second = Panel { y, ..panel(Vec::new()) };
-        let expected = "Plot 1 of 2: <angle> & more from 0 to 10, over the same horizontal axis as \
-                        the plot below. It shows: measured and simulated. Plot 2 of 2: SSE from 0.01 \
-                        to 10, on a logarithmic scale, over time [s] from 0 to 10.";
+        let expected = "Plot 1 of 2: <angle> & more runs from 0 to 10, over the same horizontal \
+                        axis as the plot below. It shows: measured and simulated. Plot 2 of 2: SSE \
+                        runs from 0.01 to 10, on a logarithmic scale, over time [s], which runs from \
+                        0 to 10.";
         assert_eq!(in_words(&[first, second]), expected);
         let names = ["boom", "arm"].map(str::to_owned);
         let rows = Panel { y: Axis::of_names(&names, ""), ..panel(Vec::new()) };
-        let expected = "A row for each of boom and arm, over time [s] from 0 to 10.";
+        let expected =
+            "There is a row for each of boom and arm, over time [s], which runs from 0 to 10.";
         assert_eq!(in_words(&[rows]), expected);
     }
 

@@ -129,7 +129,8 @@ impl Choice<'_> {
             (Verdict::Accepted, None) => "accepted".to_owned(),
             (Verdict::Rejected(condition), _) => format!("rejected as {condition}"),
         };
-        format!(" by {by}; the program: {program}")
+        let moved = decision.delay_before_review().map_or("", |_| " (grey line)");
+        format!(" by {by}; the program: {program}{moved}")
     }
 
     /// `delay 0.17 s`, with its interval where there is one.
@@ -189,13 +190,13 @@ impl Choice<'_> {
         marks.extend(smoothed.map(|line| {
             Mark::new(Role::Smoothed, Shape::Lines(vec![line], 1.0)).named("smoothed")
         }));
-        marks.push(Mark::new(Role::Input, Shape::Verticals(step, 1.2)).named("input step"));
+        marks.push(Mark::new(Role::Input, Shape::Verticals(step, 1.2)).named("step"));
         marks.push(Mark::new(role, Shape::Verticals(q, 1.2)).named("q"));
         let before = self.decision.delay_before_review();
         let p = self.decision.input_step.sample as f64;
         marks.extend(before.map(|delay| {
             let q = vec![self.at(p + delay)];
-            Mark::new(Role::Faint, Shape::Verticals(q, 1.2)).named("the program's q")
+            Mark::new(Role::Faint, Shape::Verticals(q, 1.2))
         }));
         let y = Axis::new(y, bracketed("output", joint.output_unit.as_deref()), 4.0);
         Panel { x, y, height: 170, marks }
