@@ -27,6 +27,7 @@ mod attribution;
 mod candidate;
 mod comparison;
 mod contribution;
+mod determined;
 mod eligible;
 mod evidence;
 mod extension;
