@@ -225,13 +225,11 @@ impl Viewer {
     fn until(&mut self, tool: [&str; 2], arguments: &Value, is_so: impl Fn(&Value) -> bool) {
         /// Half a minute.
         const TRIES: usize = 120;
-        for _ in 0..TRIES {
-            if is_so(&self.tool(tool, arguments)) {
-                return;
-            }
+        let answered = (0..TRIES).any(|_| {
             std::thread::sleep(Duration::from_millis(250));
-        }
-        panic!("the viewer does not answer: {}", tool[0]);
+            is_so(&self.tool(tool, arguments))
+        });
+        assert!(answered, "the viewer does not answer: {}", tool[0]);
     }
 
     fn frames(&mut self, count: u32) {
