@@ -4,7 +4,7 @@ use super::attribution::Grown;
 use super::comparison::MUCH_LESS;
 use super::eligible::signal_range;
 use super::evidence::NoiseMemory;
-use super::misfit::Misfit;
+use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::revision::{AddError, Addition};
 use super::workers::Workers;
@@ -43,7 +43,7 @@ pub fn add(
     let with = better.unwrap_or(by_law);
     let p_value = evidence(&with).p_value_against(&evidence(&base));
     let options = Options::default();
-    let misfit = Misfit::of(record, &base);
+    let misfit = Misfit::of(record, Errors::of(record, &base));
     let grown = Grown { record, first: &base, whole: &with, misfit, options: &options };
     let attribution = grown.attribution(workers);
     Ok(Addition {

@@ -4,7 +4,7 @@ use super::attribution::{Grown, LeftOut};
 use super::contribution::Attribution;
 use super::extension::ids;
 use super::ladder::climbed;
-use super::misfit::Misfit;
+use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::revision::{Change, Improvement, Revision};
 use super::separate::separate;
@@ -41,7 +41,7 @@ pub fn improve(
         revisions.push(revision);
         goes_on
     };
-    let misfit = Misfit::of(record, &start);
+    let misfit = Misfit::of(record, Errors::of(record, &start));
     let makes_strokes = are_strokes(&record.joint().trials);
     let first = if makes_strokes {
         climbed(record, first, options, misfit, &mut visit)
@@ -75,20 +75,21 @@ fn attributed(
     let mut whole = all.whole.clone();
     loop {
         let grown = Grown { whole: &whole, ..*all };
+        let own = Errors::of(all.record, &whole);
         let mut left_out = grown.left_out(workers);
         let may_go = |least: &LeftOut| {
             let is_refinement = !all.options.keeps_refinements && !least.has_consequence();
-            is_refinement && all.misfit.generalizes(all.record, &whole, &least.fit)
+            is_refinement && all.misfit.generalizes(own, least.fit.errors)
         };
         let (change, fit) = if let Some(least) = left_out.pop_if(|least| may_go(least)) {
             refinements.push(least.effect);
-            (Change::Removed(least.effect), least.fit)
+            (Change::Removed(least.effect), least.fit.on(all.record))
         } else {
             let exchanged = grown.exchanged(&left_out, workers);
             let Some((change, fit)) = grown.simpler(&exchanged) else {
                 return grown.attribution_of(&left_out, &exchanged, refinements);
             };
-            (*change, fit.clone())
+            (*change, fit.on(all.record))
         };
         if !visit(&Step::new(all.record, change, fit.clone())) {
             return Attribution::default();

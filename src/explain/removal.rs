@@ -4,8 +4,9 @@ use super::candidate::ALIKE;
 use super::eligible::{could_be_missing, is_due, signal_range};
 use super::evidence::NoiseMemory;
 use super::extension::ids;
-use super::misfit::Misfit;
+use super::misfit::{Errors, Misfit};
 use super::options::Options;
+use super::outcome::FitOutcome;
 use super::revision::Change;
 use super::screening::fit_best;
 use super::workers::Workers;
@@ -84,15 +85,16 @@ impl Removal<'_> {
         let models: Vec<_> = exchanges.iter().filter_map(with).collect();
         let tried = fitted_after(record, whole, &models, workers);
         let noise = NoiseMemory::of(record, whole);
+        let own = Errors::of(record, whole);
         let of_whole = noise.evidence(record, whole);
         let judged = tried.into_iter().filter_map(|(change, fit)| {
-            let evidence = noise.evidence(record, &fit);
+            let evidence = noise.evidence(record, &fit.on(record));
             let does_harm = of_whole.is_nearer_over_windows(&evidence, HARM)
-                || !self.misfit.generalizes(record, whole, &fit);
+                || !self.misfit.generalizes(own, fit.errors);
             // More parameters in the place of an effect are worth as much as a further effect.
             let is_worth_it = fit.parameters.len() <= whole.parameters.len()
                 || self.options.keeps_refinements
-                || self.misfit.has_consequence(record, whole, &fit);
+                || self.misfit.has_consequence(own, fit.errors);
             let behind = evidence.criterion() - of_whole.criterion();
             let leaves_less = !change.is_unusual() || fit.cost < LESS * whole.cost;
             let hurdle = if change.is_unusual() { ALIKE } else { 0.0 };
@@ -103,7 +105,8 @@ impl Removal<'_> {
         if let Change::Replaced { new, .. } = better.0.change {
             self.kept.extend([Some(new), better.0.then].into_iter().flatten());
         }
-        Some(better)
+        let (exchange, fit) = better;
+        Some((exchange, fit.on(record)))
     }
 
     /// Removals of effects that may go, and exchanges for those that look like them.
@@ -182,7 +185,7 @@ pub(super) fn fitted_with(
     whole: &Fit,
     changes: &[Change],
     workers: &impl Workers,
-) -> Vec<(Change, Fit)> {
+) -> Vec<(Change, FitOutcome)> {
     let with = |change: &Change| Some((*change, changed(&whole.model, *change)?));
     let models: Vec<_> = changes.iter().filter_map(with).collect();
     fitted_after(record, whole, &models, workers)
@@ -195,7 +198,7 @@ fn fitted_after<K: Copy + Send + Sync>(
     whole: &Fit,
     models: &[(K, JointModel)],
     workers: &impl Workers,
-) -> Vec<(K, Fit)> {
+) -> Vec<(K, FitOutcome)> {
     if models.is_empty() {
         return Vec::new();
     }

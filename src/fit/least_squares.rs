@@ -1,11 +1,13 @@
 //! The parameters that make the training error least.
 
+use std::sync::Arc;
+
 use super::beginning::Beginning;
 use super::covariance::Covariance;
 use super::descent::Limits;
 use super::problem::Problem;
 use super::record::FitRecord;
-use super::result::{Assessment, Fit, FitError, Parameter, Status, Survey};
+use super::result::{AssessedModel, Assessment, Fit, FitError, Parameter, Status, Survey};
 use super::search::{ROUGH, Search, comparing, whole};
 use super::space::Space;
 use super::starts::starts;
@@ -207,10 +209,8 @@ impl Search<'_, '_> {
             Parameter { name, value, std_error, status }
         };
         let named = model.names().into_iter().zip(plain(&model)).enumerate();
-        Assessment {
-            parameters: named.map(parameter).collect(),
-            evaluation: whole.evaluate(&model),
-            model,
-        }
+        let parameters = named.map(parameter).collect();
+        let evaluation = Arc::new(whole.evaluate(&model));
+        Assessment { assessed: AssessedModel { model, parameters }, evaluation }
     }
 }

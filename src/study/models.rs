@@ -154,7 +154,7 @@ fn improved(
     let judged = FitRecord::new(&part, Split::of(&part), horizon);
     let start = best_fit(&judged, std::slice::from_ref(plain))?.ok()?;
     let improvement = improve(&judged, start, &options, workers, |_| true);
-    let last = improvement.revisions.into_iter().last()?.comparison.fit.model;
+    let last = improvement.revisions.into_iter().last()?.comparison.fit.assessed.model;
     let fit = best_fit(record, &[last])?.ok()?;
     Some((FreeRunError::of(joint, &fit.model), fit))
 }
