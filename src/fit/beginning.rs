@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, DVector};
 use super::record::FitRecord;
 use super::search::Search;
 use super::space::Space;
-use crate::model::JointModel;
+use crate::model::{BESIDE, JointModel};
 use crate::numerics::{Basis, rank};
 
 /// Where all starts of a model begin: its values as they are.
@@ -61,9 +61,13 @@ impl<'p, 'r> Beginning<'p, 'r> {
             // What starts move and no fit does is in the start alone.
             problem.model.with_values(&problem.space.values(start, &there))
         };
-        let models: Vec<JointModel> = starts.iter().map(model).collect();
-        let found = problem.record.training_near(&models, problem.here());
-        found.into_iter().map(|residuals| self.left(&(residuals - &self.residuals))).collect()
+        let left = |some: &[Vec<f64>]| -> Vec<f64> {
+            let models: Vec<JointModel> = some.iter().map(model).collect();
+            let found = problem.record.training_near(&models, problem.here());
+            found.into_iter().map(|residuals| self.left(&(residuals - &self.residuals))).collect()
+        };
+        // Of many starts all at once would take more than a fit.
+        starts.chunks(BESIDE).flat_map(left).collect()
     }
 
     /// The sum of squares that is left where a start makes `change` of the residuals.
