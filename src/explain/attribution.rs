@@ -34,7 +34,7 @@ use crate::fit::{AssessedModel, Fit, FitRecord, fit_to_compare};
 /// A model, and the one to which its effects were added.
 pub(super) struct Grown<'a, 'r> {
     pub(super) record: &'a FitRecord<'r>,
-    pub(super) first: &'a Fit,
+    pub(super) first: &'a FitOutcome,
     pub(super) whole: &'a Fit,
     pub(super) misfit: Misfit,
     pub(super) options: &'a Options,
@@ -148,7 +148,7 @@ impl Grown<'_, '_> {
     fn without(&self, effect: &str) -> Option<FitOutcome> {
         let model = self.whole.model.without(effect);
         if ids(&model) == ids(&self.first.model) {
-            return Some(FitOutcome::of(self.record, self.first.clone()));
+            return Some(self.first.clone());
         }
         let levels = self.record.input_levels();
         let range = signal_range(self.record, &model, &levels);

@@ -6,6 +6,7 @@ use super::extension::ids;
 use super::ladder::climbed;
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
+use super::outcome::FitOutcome;
 use super::revision::{Change, Improvement, Revision};
 use super::separate::separate;
 use super::stepwise::{Step, add_stepwise};
@@ -28,9 +29,9 @@ pub fn improve(
     mut done: impl FnMut(&Revision) -> bool,
 ) -> Improvement {
     let options = &*options.of(record.joint());
-    let start = fit;
+    let start = FitOutcome::of(record, fit.clone());
     let given = ids(&start.model);
-    let first = Step::new(record, Change::Start, start.clone());
+    let first = Step::new(record, Change::Start, fit);
     let mut revisions = Vec::new();
     let mut visit = |step: &Step| {
         let Step { change, fit, lack_of_fit, mut ranking } = step.clone();
@@ -38,10 +39,13 @@ pub fn improve(
         let comparison = compare_knowing(record, fit, lack_of_fit);
         let revision = Revision { change, comparison, ranking };
         let goes_on = done(&revision);
+        if let Some(before) = revisions.last_mut().filter(|_| !options.keeps_series) {
+            Revision::drop_series(before);
+        }
         revisions.push(revision);
         goes_on
     };
-    let misfit = Misfit::of(record, Errors::of(record, &start));
+    let misfit = Misfit::of(record, start.errors);
     let makes_strokes = are_strokes(&record.joint().trials);
     let first = if makes_strokes {
         climbed(record, first, options, misfit, &mut visit)

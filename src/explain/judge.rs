@@ -7,6 +7,7 @@ use super::extension::ids;
 use super::ladder::{climbed, is_usual};
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
+use super::outcome::FitOutcome;
 use super::revision::Change;
 use super::separate::separate;
 use super::stepwise::{Step, add_stepwise};
@@ -51,8 +52,9 @@ pub fn explain(
     }
     let best = ranking.first().filter(|_| named);
     let attribution = best.map_or(attribution, |best| {
-        let misfit = Misfit::of(record, Errors::of(record, &fit));
-        Grown { record, first: &fit, whole: &best.fit.on(record), misfit, options }
+        let first = FitOutcome::of(record, fit);
+        let misfit = Misfit::of(record, first.errors);
+        Grown { record, first: &first, whole: &best.fit.on(record), misfit, options }
             .attribution(workers)
     });
     let verdict = if named { Verdict::MissingEffect } else { Verdict::Unexplained };

@@ -51,6 +51,11 @@ impl FitOutcome {
         self.evaluation = Some(self.on(record).assessment.evaluation);
     }
 
+    /// Keeps them no longer.
+    pub(super) fn drop_series(&mut self) {
+        self.evaluation = None;
+    }
+
     /// The series, of the candidate that is proposed or was taken.
     pub fn evaluation(&self) -> Option<&Evaluation> {
         self.evaluation.as_deref()
