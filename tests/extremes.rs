@@ -162,7 +162,7 @@ fn a_log_in_the_folder_of_the_drawings_is_not_replaced() {
 fn notes_on(offset: f64) -> String {
     let folder = TempDir::new().unwrap();
     let row = |k: u32| {
-        let input = if k / 50 % 2 == 0 { 1 } else { -1 };
+        let input = if (k / 50).is_multiple_of(2) { 1 } else { -1 };
         let output = f64::from(k % 100).min(f64::from(100 - k % 100)) * 0.1;
         format!("{},{input},{}\n", f64::from(k) * 0.02, output + offset)
     };
