@@ -19,7 +19,7 @@ fn log() -> String {
     let mut random = ChaCha8Rng::seed_from_u64(8);
     let mut text = "run,t_s,boom.input,boom.output\n".to_owned();
     for (run, level) in [2.0, 1.6, 2.2, 1.8].into_iter().enumerate() {
-        let mut place = 60.0;
+        let mut place: f64 = 60.0;
         for sample in 0..200_u32 {
             let time_s = f64::from(sample) * 0.02;
             let at = |time_s: f64| match time_s {

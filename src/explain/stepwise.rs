@@ -12,7 +12,7 @@ use super::candidate::Candidate;
 use super::eligible::signal_range;
 use super::extension::ids;
 use super::likeness::least_share;
-use super::misfit::Misfit;
+use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::ranking::{Scope, rank};
 use super::removal::{Exchange, Removal};
@@ -117,29 +117,29 @@ pub(super) fn add_stepwise(
             let was_stopped = !visit(&step);
             return ended(Verdict::Adequate, step.fit, was_stopped);
         }
+        let own = Errors::of(record, &step.fit);
         let has_consequence = |candidate: &Candidate| {
             let least = least_share(&candidate.fit.model, &candidate.effects);
-            options.keeps_refinements || misfit.share(record, &step.fit, &candidate.fit) >= least
+            options.keeps_refinements || misfit.share(own, candidate.fit.errors) >= least
         };
         let is_sound = |candidate: &&Candidate| {
             let is_known = !matched_by_many
                 || candidate.determines_as_much_as(&step.fit) && candidate.is_distinct();
-            candidate.is_significant()
-                && is_known
-                && misfit.generalizes(record, &step.fit, &candidate.fit)
+            candidate.is_significant() && is_known && misfit.generalizes(own, candidate.fit.errors)
         };
         let counts = |candidate: &Candidate| is_sound(&candidate) && has_consequence(candidate);
         let found = step.ranking.iter().position(counts);
         if found.is_none() && step.ranking.iter().any(Candidate::is_significant) {
             let refused = step.ranking.iter().find(is_sound);
             let refinements = refused.map(|refused| refused.effects.clone()).unwrap_or_default();
-            let is_explained = misfit.is_explained(record, &step.fit);
+            let is_explained = misfit.is_explained(own);
             let verdict = if is_explained { Verdict::Adequate } else { Verdict::Unexplained };
             let was_stopped = !visit(&step);
             return Ended { refinements, ..ended(verdict, step.fit, was_stopped) };
         }
         if let Some(index) = found {
             step.ranking[..=index].rotate_right(1);
+            step.ranking[0].fit.keep_series(record);
         }
         let found = found.and(step.ranking.first().cloned());
         let explained = found.is_some();
@@ -156,7 +156,7 @@ pub(super) fn add_stepwise(
             }
         }
         let change = Change::between(&step.fit.model, &found.fit.model, found.newest());
-        step = Step::new(record, change, found.fit);
+        step = Step::new(record, change, found.fit.on(record));
         let removal = Removal { given, kept: found.effects, options, misfit };
         step = match exchanged(record, step, removal, workers, &mut visit) {
             ControlFlow::Continue(step) => step,
