@@ -6,11 +6,11 @@
 //! as a lag, no decision can show. The area is the probability that a wrong decision is ranked before a
 //! right one: 0.5 for no order, 1 for a perfect one. For comparison the same is shown for the
 //! margin of the second-best breakpoint alone.
-//! Usage: `doubt_order [RECORDS [FIRST_SEED]]`
+//! Usage: `doubt_order [RECORDS [FIRST_SEED]]`, for the methods `two-line` and `hinge`
 #![expect(clippy::print_stdout, reason = "an example prints")]
 
 use anyhow::Context as _;
-use tauscope::delay::{Decision, Settings, Verdict, estimate};
+use tauscope::delay::{Decision, Method, Settings, Verdict, estimate};
 use tauscope::experiment::Trial;
 use tauscope::synthetic::{
     DelayLaw, InputSpec, JointSpec, PlantSpec, Ringing, StepTruth, Synthetic, simulate,
@@ -23,6 +23,8 @@ const FIRST_SEED: u64 = 5000;
 const PERIOD_S: f64 = 0.01;
 const DURATION_S: f64 = 120.0;
 const NOISE: f64 = 0.05;
+/// The paper's method, and one that finds delays between samples.
+const METHODS: [Method; 2] = [Method::TWO_LINE, Method::HINGE];
 /// Rows of β that a delay may be off.
 const ROWS_OFF: f64 = 1.5;
 
@@ -71,7 +73,7 @@ fn judged(truth: &StepTruth, decision: &Decision, output: &[f64]) -> Option<Judg
 }
 
 /// All accepted decisions on one record, with what is wrong about each.
-fn record(joint: &JointSpec, seed: u64) -> anyhow::Result<Vec<Judged>> {
+fn record(joint: &JointSpec, method: Method, seed: u64) -> anyhow::Result<Vec<Judged>> {
     let plant = PlantSpec {
         sample_period_s: PERIOD_S,
         ..PlantSpec::new(seed, DURATION_S, vec![joint.clone()])
@@ -79,7 +81,7 @@ fn record(joint: &JointSpec, seed: u64) -> anyhow::Result<Vec<Judged>> {
     let made: Synthetic = simulate(&plant)?;
     let trial: &Trial =
         made.joints.first().and_then(|joint| joint.trials.first()).context("no trial")?;
-    let found = estimate(trial, &Settings::default())?;
+    let found = estimate(trial, &Settings { method, ..Settings::default() })?;
     let output = found.smoothed.as_deref().unwrap_or(trial.output());
     let pairs = made.truth.iter().zip(&found.decisions);
     Ok(pairs.filter_map(|(truth, decision)| judged(truth, decision, output)).collect())
@@ -116,15 +118,15 @@ fn row(name: &str, all: &[Judged], wrong: &[bool]) -> f64 {
     by_doubt
 }
 
-fn areas(records: u64, first_seed: u64) -> anyhow::Result<Vec<f64>> {
-    println!("| plant | accepted steps | wrong | area by doubt | by the second-best |");
+fn areas(method: Method, records: u64, first_seed: u64) -> anyhow::Result<Vec<f64>> {
+    println!("| plant, {method} | accepted steps | wrong | area by doubt | by the second-best |");
     println!("|---|---|---|---|---|");
     let (mut all, mut all_wrong) = (Vec::new(), Vec::new());
     let mut areas = Vec::new();
     for (name, joint) in plants() {
         let mut found = Vec::new();
         for seed in first_seed..first_seed + records {
-            found.extend(record(&joint, seed)?);
+            found.extend(record(&joint, method, seed)?);
         }
         let wrong = wrong(&found);
         areas.push(row(name, &found, &wrong));
@@ -139,14 +141,23 @@ fn main() -> anyhow::Result<()> {
     let mut numbers = std::env::args().skip(1).map(|word| word.parse::<u64>());
     let records = numbers.next().transpose()?.unwrap_or(RECORDS);
     let first_seed = numbers.next().transpose()?.unwrap_or(FIRST_SEED);
-    areas(records, first_seed).map(drop)
+    METHODS.into_iter().try_for_each(|method| areas(method, records, first_seed).map(drop))
 }
+
+/// What no order gives is 0.5. Of the seeds below the least area of all plants together is 0.87 with
+/// either method, of ten records each 0.91: the limit leaves room for other seeds, and is
+/// missed by the order of the second-best breakpoint.
+#[cfg(test)]
+const LEAST: f64 = 0.83;
 
 #[test]
 fn the_doubtful_decisions_are_the_wrong_ones() -> anyhow::Result<()> {
-    let areas = areas(3, FIRST_SEED)?;
-    // What no order gives is 0.5; the program's is at 0.9 and above with more records.
-    assert!(areas.iter().all(|area| *area > 0.75), "{areas:?}");
-    assert!(areas.last().is_some_and(|all| *all > 0.85), "{areas:?}");
+    for method in METHODS {
+        for first_seed in [FIRST_SEED, 7000, 9000] {
+            let areas = areas(method, 1, first_seed)?;
+            let all = areas.last().copied().unwrap_or_default();
+            assert!(all > LEAST, "{method}, seeds from {first_seed}: {areas:?}");
+        }
+    }
     Ok(())
 }

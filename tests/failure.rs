@@ -326,6 +326,29 @@ fn a_condition_says_where_an_error_arises_and_a_segment_where_it_is_seen() {
     }
 }
 
+/// The largest residual, whatever its sign, in `samples`.
+fn residual_of(record: &ResidualRecord, samples: &std::ops::Range<usize>) -> f64 {
+    let own = &record.samples().residual[samples.clone()];
+    own.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
+}
+
+#[test]
+fn a_short_spike_is_among_the_worst_segments_though_its_squares_are_few() {
+    let record = Made::usual(12).with_noise(0.5, |_, _| 1.0);
+    let spike = record.segments()[3].clone();
+    let mut residual = vec![0.1; record.len()];
+    for (number, span) in record.segments().iter().enumerate().skip(10) {
+        residual[span.clone()].fill(1.0 + number as f64 * 1e-3);
+    }
+    residual[spike.start] = -4.0;
+    let worst = worst_segments(&record, residual, 5);
+    assert_eq!(worst.len(), 5);
+    let last = &worst[4];
+    assert_eq!((last.samples.clone(), last.largest_residual), (spike, -4.0));
+    assert!(worst[..4].iter().all(|it| it.largest_residual > 0.0));
+    assert!(worst.is_sorted_by(|a, b| a.share_of_squared_error >= b.share_of_squared_error));
+}
+
 #[test]
 fn the_worst_segment_is_that_of_the_residual_that_is_shown() {
     let record = Made::usual(12).with_noise(0.5, |_, _| 1.0);
@@ -388,7 +411,10 @@ proptest! {
         for (index, segment) in worst.iter().enumerate() {
             let (time, error, rmse) = brute_shares(&record, |k| segment.samples.contains(&k));
             prop_assert!(near(segment.share_of_squared_error, error) && near(segment.rmse, rmse));
-            prop_assert!(error > time && near(segment.start_s, segment.samples.start as f64 * 0.01));
+            let largest = residual_of(&record, &segment.samples);
+            prop_assert!(near(segment.largest_residual.abs(), largest));
+            let is_spike = near(largest, residual_of(&record, &(0..record.len())));
+            prop_assert!((error > time || is_spike) && near(segment.start_s, segment.samples.start as f64 * 0.01));
             prop_assert!(index == 0 || error <= worst[index - 1].share_of_squared_error);
         }
     }

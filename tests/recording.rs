@@ -19,7 +19,7 @@ use rerun::external::re_log_encoding::DecoderApp;
 use rerun::log::{Chunk, LogMsg};
 use tauscope::batch::Threads;
 use tauscope::delay::{
-    Condition, Decision, Doubt, FineDelay, FirstLast, Method, Settings, Verdict,
+    Condition, Decision, Doubt, FineDelay, FirstLast, Method, Settings, Verdict, Word,
 };
 use tauscope::experiment::{Experiment, ReadOptions};
 use tauscope::recording::{Detail, RecordError, Recording, write_recording};
@@ -239,6 +239,8 @@ fn each_verdict_says_why() {
         );
         for (row, (times, text)) in rows.iter().zip(&texts) {
             assert_eq!(times["segment"], whole(row.i));
+            assert!(text.contains("What the conditions ask"), "{text}");
+            assert!(text.contains(Condition::BeforeInput.asks()), "{text}");
             match row.verdict {
                 Verdict::Accepted => assert!(text.contains("✓ accepted"), "{text}"),
                 failed @ Verdict::Rejected(_) => {
@@ -247,6 +249,61 @@ fn each_verdict_says_why() {
             }
         }
     }
+}
+
+#[test]
+fn the_whole_record_is_drawn_whatever_the_timeline() {
+    let recorded = Recorded::with(Settings::default());
+    let back = recorded.read_back(Detail::Full);
+    for joint in recorded.joints() {
+        let at = |part: &str| format!("/{}/map_of_record/{part}", joint.joint.name);
+        assert_eq!(back.cell(&at("output"), "LineStrips2D:strips").len(), 1);
+        let points =
+            ["accepted", "rejected"].map(|it| back.cell(&at(it), "Points2D:positions").len());
+        let steps = decision_rows(joint).count();
+        // A breakpoint each, and the delays that do not press the others together.
+        assert!((steps..=2 * steps).contains(&points.iter().sum::<usize>()), "{points:?}");
+        let frames = back.rows(&at("here"), "Boxes2D:half_sizes", |cell| cell.len());
+        let by_doubt = frames.iter().filter(|(times, _)| times.contains_key("doubt"));
+        assert_eq!(by_doubt.count(), steps);
+    }
+}
+
+#[test]
+fn a_breakpoint_that_a_reviewer_moved_is_drawn_beside_the_programs() {
+    let mut recorded = Recorded::with(Settings::default());
+    let decision = &mut recorded.estimates[0].trials[0].as_mut().unwrap().decisions[2];
+    let (p, found) = (decision.input_step.sample, decision.program_delay().unwrap());
+    let (note, reviewer) = (String::new(), "Ann".to_owned());
+    let said = Some(found + 10.0);
+    decision.word = Some(Box::new(Word { accepted: true, delay: said, note, reviewer }));
+    let back = recorded.read_back(Detail::Full);
+    let [program, person] = [found, found + 10.0].map(|delay| samples(delay) + whole(p));
+    let names = back.rows("/boom/drawing/names", "Points2D:labels", |cell| {
+        cell.as_string::<i32>().iter().flatten().map(str::to_owned).collect::<Vec<_>>().join("; ")
+    });
+    let own = names.iter().find(|(times, _)| times.get("segment") == Some(&3)).unwrap();
+    assert!(own.1.contains(&format!("q = {person} by a reviewer")), "{}", own.1);
+    assert!(own.1.contains(&format!("program: q = {program}, SSE")), "{}", own.1);
+    let lines = |part: &str| {
+        let rows =
+            back.rows(&format!("/boom/drawing/{part}"), "LineStrips2D:strips", |cell| cell.len());
+        rows.iter().find(|(times, _)| times.get("segment") == Some(&3)).unwrap().1
+    };
+    assert_eq!((lines("before_review"), lines("accepted")), (3, 5));
+    let texts = back.texts("/boom/verdict", "TextDocument:text");
+    let text = &texts.iter().find(|(times, _)| times.get("segment") == Some(&3)).unwrap().1;
+    assert!(
+        text.contains("(by Ann)") && text.contains("**The program:** ✓ accepted: delay"),
+        "{text}"
+    );
+    let sentence = text.split_once("**The program:**").unwrap().1.lines().next().unwrap();
+    assert!(sentence.ends_with(" s."), "{sentence}");
+    let log = back.texts("/boom/verdict/log", "TextLog:text");
+    assert!(
+        log.iter()
+            .any(|(_, line)| line.contains("by a reviewer δ") && line.contains("the program: ✓"))
+    );
 }
 
 #[test]

@@ -54,6 +54,12 @@ fn figures_of_a_model_are_those_of_its_comparison() {
         let drawn =
             |part: &str| back.cell(&format!("/{}/{part}", joint.name), "LineStrips2D:strips").len();
         assert_eq!(drawn("error_share/time"), count);
+        // The record is drawn on every timeline that the page may be opened on.
+        let map = format!("/{}/model_map/residual", joint.name);
+        let rows = back.rows(&map, "LineStrips2D:strips", |strips| strips.len());
+        let timelines = ["decision", "doubt", "sample", "segment", "time"];
+        assert!(matches!(rows.as_slice(), [(_, 1)]), "{rows:?}");
+        assert!(timelines.iter().all(|timeline| rows[0].0.contains_key(*timeline)), "{rows:?}");
         assert!(drawn("error_share/bars/0") > count);
         assert_eq!((drawn("correlation/curve/0"), drawn("correlation/band/0")), (3, 6));
     }

@@ -88,12 +88,39 @@ impl Condition {
             Self::OutputLimit => "output in its limits",
             Self::BeforeInput => "break after step",
             Self::SlopeChange => "slope changes",
-            Self::ShortHold => "held long enough",
+            Self::ShortHold => "next step far off",
             Self::Sse => "lines fit",
-            Self::TooShort => "two lines find room",
+            Self::TooShort => "room for two lines",
             Self::AtRest => "joint moves",
             Self::NothingHappened => "more than noise",
             Self::Reviewer => "no reviewer's word",
+        }
+    }
+}
+
+impl Condition {
+    /// What it asks for, in a sentence without its end.
+    pub fn asks(self) -> &'static str {
+        match self {
+            Self::FirstOrLast => "there is a step before it and one behind it in the trial",
+            Self::OutputLimit => "no sample of the segment touches a limit of the output",
+            Self::BeforeInput => "the breakpoint q is not before the input step p",
+            Self::SlopeChange => {
+                "the slopes of the lines before and after q differ by no less than the limit"
+            }
+            Self::ShortHold => {
+                "the input keeps its new level, until the next step, for no fewer samples than the \
+                 limit"
+            }
+            Self::Sse => "the squared errors of both lines add up to less than the limit",
+            Self::TooShort => "the segment has two rows of β samples, one for each line",
+            Self::AtRest => {
+                "the joint moves, and does not stand still or at its stop before and after the step"
+            }
+            Self::NothingHappened => {
+                "the slope changes more than noise makes it: the p-value is not above the limit"
+            }
+            Self::Reviewer => "no person rejected the step",
         }
     }
 }

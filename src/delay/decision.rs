@@ -113,6 +113,26 @@ impl Decision {
         said.or_else(|| self.program_delay())
     }
 
+    /// The delay that the program found, in samples, where a reviewer says another one.
+    #[expect(clippy::float_cmp, reason = "another number is another delay")]
+    pub fn delay_before_review(&self) -> Option<f64> {
+        let said = self.word.as_ref().and_then(|word| word.delay)?;
+        self.program_delay().filter(|found| *found != said)
+    }
+
+    /// The candidate that is shown: the best one, or the nearest one to where a reviewer put the
+    /// breakpoint.
+    pub fn shown_candidate(&self) -> Option<Candidate> {
+        let best = self.candidates.best();
+        if self.delay_before_review().is_none() {
+            return best;
+        }
+        let q = self.input_step.sample as f64 + self.delay()?;
+        let distance = |candidate: &Candidate| (candidate.breakpoint as f64 - q).abs();
+        let nearest = self.candidates.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        nearest.or(best)
+    }
+
     /// The delay in samples, accepted or not, as finely as the method gives it.
     pub fn program_delay(&self) -> Option<f64> {
         let fine = self.fine.map(|fine| fine.delay);

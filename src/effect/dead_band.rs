@@ -13,12 +13,18 @@
 //! Its output has a corner at each end of the band. An input held at few levels shows
 //! the ends only through the speeds at the levels outside.
 //!
+//! A limit of the flow lies behind the overlap, one of the command before it. The two differ where
+//! the band is not symmetric, so that a search tries both.
+//!
 //! # References
 //! Tao, G., and Kokotović, P. V., 1996, Adaptive Control of Systems with Actuator and
 //! Sensor Nonlinearities; Merritt, H. E., 1967, Hydraulic Control Systems (overlapped
 //! valves).
 
-use super::{Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage, UNLIMITED};
+use super::{
+    CoulombFriction, Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage,
+    UNLIMITED,
+};
 
 /// See the [module](self).
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +45,8 @@ static SPEC: Spec = Spec::new(
     Parameter::new("lower", "lower end of the band", Dimension::Input).between(-UNLIMITED, 0.0),
     Parameter::new("upper", "upper end of the band", Dimension::Input).between(0.0, UNLIMITED),
 ])
-.confused_with(&["stiction", "flow_curve", "coulomb_friction"]);
+.confused_with(&["stiction", "flow_curve", "coulomb_friction"])
+.upstream_of(&["input_saturation", "asymmetric_saturation"]);
 
 /// Gaps between input levels in which a fit starts.
 const GAPS: usize = 4;
@@ -65,6 +72,16 @@ impl Effect for DeadBand {
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
         record.thresholds(GAPS).into_iter().map(|end| vec![-end, end]).collect()
     }
+
+    /// A friction without inertia is a dead band between its levels.
+    fn in_place_of(&self, other: &Spec, values: &[f64]) -> Option<Vec<f64>> {
+        match *values {
+            [positive, negative, ..] if other.id == CoulombFriction.spec().id => {
+                Some(vec![-negative, positive])
+            }
+            _ => None,
+        }
+    }
 }
 
 /// `signal` less the band from `lower` to `upper`.
@@ -82,6 +99,15 @@ mod tests {
         let inputs = [-1.0, -0.2, -0.1, 0.0, 0.3, 0.5, 2.0];
         let outputs = [-0.8, 0.0, 0.0, 0.0, 0.0, 0.2, 1.7];
         assert_close(&run(&DeadBand, &[-0.2, 0.3], &inputs), &outputs);
+    }
+
+    #[test]
+    fn it_does_what_a_friction_without_inertia_did_in_whose_place_it_is_tried() {
+        let (inputs, friction) = ([1.0, 0.3, -0.1, -1.0], [0.3, 0.2, 0.0]);
+        let spec = CoulombFriction.spec();
+        let Some(band) = DeadBand.in_place_of(spec, &friction) else { panic!("no values") };
+        assert_close(&run(&DeadBand, &band, &inputs), &run(&CoulombFriction, &friction, &inputs));
+        assert_eq!(DeadBand.in_place_of(DeadBand.spec(), &band), None);
     }
 
     #[test]

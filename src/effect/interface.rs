@@ -138,6 +138,12 @@ pub trait Effect: Debug + Send + Sync {
         vec![self.spec().parameters.iter().map(|parameter| parameter.start(record)).collect()]
     }
 
+    /// Parameters with which it does about what the effect `other` does with `values`, in whose
+    /// place a fit then tries it from there, too; `None` where they have nothing in common.
+    fn in_place_of(&self, _other: &Spec, _values: &[f64]) -> Option<Vec<f64>> {
+        None
+    }
+
     /// Where a fit to `record` should start: the [`guesses`](Self::guesses), each value
     /// moved into its [`bounds`](Self::bounds).
     fn starts(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {

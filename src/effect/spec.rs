@@ -40,6 +40,8 @@ pub struct Spec {
     /// Ids of pairs of effects that look like it together: where one fits better, it takes its
     /// place.
     pub looks_like_both: &'static [[&'static str; 2]],
+    /// Ids of effects of its stage before which it may act, though it was added after them.
+    pub upstream_of: &'static [&'static str],
     /// Id of an effect of which it is a finer form: where that is looked for, too, this one is
     /// only in models that have that.
     pub refines: Option<&'static str>,
@@ -63,6 +65,7 @@ impl Spec {
             confused_with: &[],
             absorbs: &[],
             looks_like_both: &[],
+            upstream_of: &[],
             refines: None,
             acts_on_state: false,
         }
@@ -114,6 +117,12 @@ impl Spec {
     #[must_use]
     pub const fn looking_like_both(self, pairs: &'static [[&'static str; 2]]) -> Self {
         Self { looks_like_both: pairs, ..self }
+    }
+
+    /// It may act [before](Self::upstream_of) these.
+    #[must_use]
+    pub const fn upstream_of(self, upstream_of: &'static [&'static str]) -> Self {
+        Self { upstream_of, ..self }
     }
 
     /// It [refines](Self::refines) this one.

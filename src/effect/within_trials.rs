@@ -183,6 +183,10 @@ impl Effect for Restricted {
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
         self.effect.guesses(record)
     }
+
+    fn in_place_of(&self, other: &Spec, values: &[f64]) -> Option<Vec<f64>> {
+        self.effect.in_place_of(other, values)
+    }
 }
 
 #[cfg(test)]

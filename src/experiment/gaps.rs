@@ -1,6 +1,9 @@
 //! Gaps at which a trial was split, and what is lost in them.
 
+use std::ops::Range;
+
 use super::joint::{Joint, Trial};
+use crate::units::floor_to_index;
 
 /// The longest gap between two parts of a trial that was split, with a period to spare, to three
 /// digits, in seconds.
@@ -30,6 +33,24 @@ pub(super) fn gap_with_all_steps_s(joint: &Joint) -> Option<f64> {
     let is_constant = |trial: &Trial| trial.input().windows(2).all(|pair| pair[0] == pair[1]);
     let in_gaps = joint.trials.windows(2).any(differs) && joint.trials.iter().all(is_constant);
     longest_gap_s(&joint.trials).filter(|gap| in_gaps && *gap <= LONGEST_S)
+}
+
+/// The samples of `whole`, in which gaps are filled, of the gaps between those of its `parts` behind
+/// which the input is another one.
+pub(super) fn unlogged(whole: &Trial, parts: &[Trial]) -> Vec<Range<usize>> {
+    let period_s = whole.period().seconds();
+    let sample = |time_s: f64| floor_to_index(((time_s - whole.time_s(1)) / period_s).round());
+    let gap = |pair: &[Trial]| {
+        let [before, behind] = pair else { return None };
+        let ends = [before, behind].map(|part| stem(part.label()));
+        if ends != [Some(whole.label()); 2] {
+            return None;
+        }
+        let (last, next) = (sample(before.time_s(before.len())), sample(behind.time_s(1)));
+        let gap = last + 1..next.min(whole.len());
+        (!gap.is_empty()).then_some(gap)
+    };
+    parts.windows(2).filter_map(gap).collect()
 }
 
 /// Whether both are parts of the same trial.

@@ -1,5 +1,7 @@
 //! Joints and their trials: what drove them, what they did.
 
+use std::ops::Range;
+
 use crate::units::SamplePeriod;
 
 /// One joint: what drove it and what it did, in every trial.
@@ -36,6 +38,7 @@ pub struct Trial {
     input: Vec<f64>,
     output: Vec<f64>,
     covariates: Vec<Vec<f64>>,
+    unlogged: Vec<Range<usize>>,
 }
 
 /// Why samples do not make a [`Trial`].
@@ -93,8 +96,8 @@ impl Trial {
         if let Some(index) = input.iter().zip(&output).position(|pair| !finite(pair)) {
             return Err(TrialError::NotFinite { label, sample: index + 1 });
         }
-        let (origin_s, covariates) = (0.0, Vec::new());
-        Ok(Self { label, start_s, origin_s, period, input, output, covariates })
+        let (origin_s, covariates, unlogged) = (0.0, Vec::new(), Vec::new());
+        Ok(Self { label, start_s, origin_s, period, input, output, covariates, unlogged })
     }
 
     /// This trial with times that count from when the clock of the log showed `origin_s` more than
@@ -118,6 +121,18 @@ impl Trial {
         Ok(self)
     }
 
+    /// This trial with samples that were filled in while nothing was logged, in order.
+    #[must_use]
+    pub(crate) fn with_unlogged(self, unlogged: Vec<Range<usize>>) -> Self {
+        Self { unlogged, ..self }
+    }
+
+    /// Samples that were filled in while nothing was logged, in order: what the input was there is
+    /// not known.
+    pub fn unlogged(&self) -> &[Range<usize>] {
+        &self.unlogged
+    }
+
     /// The samples `from..to` by themselves, at their time; `None` where that is no trial.
     pub(crate) fn part(&self, from: usize, to: usize) -> Option<Self> {
         let (input, output) = (self.input().get(from..to)?, self.output().get(from..to)?);
@@ -133,7 +148,8 @@ impl Trial {
         let covariates = self.covariates.iter().map(|signal| cut(signal)).collect();
         let (input, output) = (cut(&self.input), cut(&self.output));
         let label = self.label.clone();
-        (samples > 0).then_some(Self { label, input, output, covariates, ..*self })
+        let unlogged = self.unlogged.iter().filter(|gap| gap.end < samples).cloned().collect();
+        (samples > 0).then_some(Self { label, input, output, covariates, unlogged, ..*self })
     }
 
     /// Name of the trial.

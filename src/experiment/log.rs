@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::error::ReadError;
 use super::even;
 use super::format::date_of_seconds;
-use super::gaps::gap_with_all_steps_s;
+use super::gaps::{gap_with_all_steps_s, unlogged};
 use super::joint::{Joint, Signal, Trial};
 use super::layout::{JointLayout, TimeSource};
 use super::memory::Budget;
@@ -350,7 +350,12 @@ impl Log<'_> {
         let gap_s = gap_with_all_steps_s(read)?;
         let repair = Repair { fill_s: Some(gap_s), ..repair };
         let (grids, _) = self.grids(time, trials, repair).ok()?;
-        let (joint, mut notes) = self.joint(layout, trials, &grids, time, repair).ok()?;
+        let (mut joint, mut notes) = self.joint(layout, trials, &grids, time, repair).ok()?;
+        let marked = joint.trials.into_iter().map(|whole| {
+            let gaps = unlogged(&whole, &read.trials);
+            whole.with_unlogged(gaps)
+        });
+        joint.trials = marked.collect();
         notes.push(format!(
             "joint `{}`: its input changes only in gaps (of up to {gap_s} s): they are filled, the \
              output interpolated and the input held, and delays count from their ends",

@@ -48,5 +48,5 @@ pub(crate) use read::notes_on_subfolders;
 pub use read::{Experiment, Failure, ReadOptions, expand_folders};
 pub use sampling::Repair;
 pub use source::Source;
-pub(crate) use spikes::{spike_count, spike_weights, without_spikes};
+pub(crate) use spikes::{spike_count, weights, without_spikes};
 pub use survey::{Role, Survey, SurveyedColumn};

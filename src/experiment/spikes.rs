@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::joint::Trial;
-use crate::numerics::robust_scale;
+use crate::numerics::{quantile, robust_scale};
 
 /// Samples on either side that a spike is held against.
 const SIDE: usize = 3;
@@ -22,20 +22,21 @@ const LONGEST: usize = 2;
 /// where differences show only half of a noise with a memory.
 const BEYOND: f64 = 8.0;
 
-/// For each trial the weights of its samples, 0 for spikes and 1 for others; `None` where no
-/// trial has a spike.
-pub(crate) fn spike_weights(trials: &[Trial]) -> Option<Vec<Vec<f64>>> {
+/// For each trial the weights of its samples, 0 for spikes and for what was filled in where nothing
+/// was logged, and 1 for others; `None` where all are 1.
+pub(crate) fn weights(trials: &[Trial]) -> Option<Vec<Vec<f64>>> {
     let noise = noise(trials);
     let found: Vec<_> = trials.iter().map(|trial| spikes(trial.output(), noise)).collect();
-    let weights = |(trial, spikes): (&Trial, &Vec<Range<usize>>)| {
+    let of = |(trial, spikes): (&Trial, &Vec<Range<usize>>)| {
         let mut weights = vec![1.0; trial.output().len()];
-        for spike in spikes {
-            weights[spike.clone()].fill(0.0);
+        for range in spikes.iter().chain(trial.unlogged()) {
+            weights[range.clone()].fill(0.0);
         }
         weights
     };
-    let any = found.iter().any(|spikes| !spikes.is_empty());
-    any.then(|| trials.iter().zip(&found).map(weights).collect())
+    let any = found.iter().any(|spikes| !spikes.is_empty())
+        || trials.iter().any(|trial| !trial.unlogged().is_empty());
+    any.then(|| trials.iter().zip(&found).map(of).collect())
 }
 
 /// Samples of `trial` that are spikes.
@@ -65,12 +66,15 @@ pub(crate) fn without_spikes(trial: &Trial) -> Option<Vec<f64>> {
 }
 
 /// Standard deviation of the sensor's noise: from differences of the second order, which leave
-/// little of a motion, and not below the sensor's step.
+/// little of a motion, and not below what most samples that change at all change by, which is about
+/// the sensor's step where it is coarse, also where a grid lies between its samples.
 fn noise(trials: &[Trial]) -> f64 {
     /// The variance of `a − 2b + c` in parts of that of white noise.
     const SECOND_ORDER: f64 = 6.0;
     /// Differences that are enough to know it.
     const ENOUGH: usize = 20_000;
+    /// Changes that are smaller than most (chosen: a lower quartile).
+    const SMALL: f64 = 0.25;
     let samples: usize = trials.iter().map(|trial| trial.output().len()).sum();
     let every = samples.div_ceil(ENOUGH).max(1);
     let triples = trials.iter().flat_map(|trial| trial.output().windows(3).step_by(every));
@@ -79,12 +83,14 @@ fn noise(trials: &[Trial]) -> f64 {
         _ => 0.0,
     });
     let second: Vec<f64> = second.collect();
-    let steps = trials.iter().flat_map(|trial| trial.output().windows(2)).map(|pair| match pair {
+    let pairs = trials.iter().flat_map(|trial| trial.output().windows(2).step_by(every));
+    let steps = pairs.map(|pair| match pair {
         [a, b] => (b - a).abs(),
         _ => 0.0,
     });
-    let step = steps.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);
-    (robust_scale(&second) / SECOND_ORDER.sqrt()).max(if step.is_finite() { step } else { 0.0 })
+    let steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
+    let step = quantile(&steps, SMALL).unwrap_or(0.0);
+    (robust_scale(&second) / SECOND_ORDER.sqrt()).max(step)
 }
 
 /// The spikes of an output with this noise, the single ones first.

@@ -20,6 +20,7 @@
 
 use super::candidate::ALIKE;
 use super::contribution::{Attribution, Contribution};
+use super::determined::is_determined;
 use super::eligible::signal_range;
 use super::evidence::NoiseMemory;
 use super::extension::ids;
@@ -47,6 +48,10 @@ pub(super) struct LeftOut {
     pub(super) fit: FitOutcome,
 }
 
+/// The share below which an effect that the record does not determine is a refinement. Chosen: what
+/// carries a tenth of the misfit is there under one name or another, and its bound is said.
+const UNDETERMINED: f64 = 0.1;
+
 impl LeftOut {
     pub(super) fn has_consequence(&self) -> bool {
         self.share >= CONSEQUENCE
@@ -66,6 +71,15 @@ impl Grown<'_, '_> {
         let mut left_out: Vec<_> = workers.map(&added, without).into_iter().flatten().collect();
         left_out.sort_by(|a, b| b.share.total_cmp(&a.share));
         left_out
+    }
+
+    /// Whether what was left out has no practical consequence, or little of it and no parameter that the
+    /// record determines.
+    pub(super) fn is_refinement(&self, one: &LeftOut) -> bool {
+        let mut components = self.whole.model.components().iter();
+        let component = components.find(|component| component.effect().spec().id == one.effect);
+        let is_known = component.is_some_and(|component| is_determined(self.whole, component));
+        !one.has_consequence() || !is_known && one.share < UNDETERMINED
     }
 
     /// What is attributed to which effect.

@@ -1,10 +1,11 @@
 //! A model with one effect more, beside the measurement, and when it is worth a name.
 
+use super::determined::{is_determined, is_reached};
 use super::extension::components_of;
 use super::outcome::FitOutcome;
 use super::separation::Separation;
 use crate::diagnosis::ErrorFigures;
-use crate::effect::{Dimension, Parameter, Spec, Stage};
+use crate::effect::{Parameter, Spec};
 use crate::fit::{AssessedModel, Status};
 use crate::model::Component;
 
@@ -88,33 +89,14 @@ impl Candidate {
         self.effects[self.effects.len() - 1]
     }
 
-    /// Whether it explains so much of the error that it is worth a name.
+    /// Whether it explains so much of the error that it is worth a name, and the record determines
+    /// each effect of it.
     pub(crate) fn is_significant(&self) -> bool {
-        self.is_reached()
+        self.added().all(|effect| is_reached(&self.fit, effect) && is_determined(&self.fit, effect))
             && match self.effects.as_slice() {
                 [_] => self.p_value < OF_A_CATALOGUE && self.explains(SINGLE_PERCENT),
                 _ => self.p_value < OF_ALL_PAIRS && self.explains(PAIR_PERCENT),
             }
-    }
-
-    /// Whether each effect acts within what the record reaches: not one of which all levels or
-    /// limits lie beyond.
-    fn is_reached(&self) -> bool {
-        let statuses: Vec<_> = self.fit.parameters.iter().map(|p| (&p.name, p.status)).collect();
-        self.added().all(|component| {
-            let spec = component.effect().spec();
-            let limits = spec.parameters.iter().filter(|parameter| match parameter.dimension {
-                Dimension::Input => spec.stage == Stage::Input,
-                Dimension::Output => spec.acts_on_state,
-                _ => false,
-            });
-            let is_beyond = |parameter: &Parameter| {
-                let name = format!("{}.{}", spec.id, parameter.name);
-                statuses.contains(&(&name, Status::BeyondReach))
-            };
-            let mut limits = limits.peekable();
-            limits.peek().is_none() || limits.any(|parameter| !is_beyond(parameter))
-        })
     }
 
     /// Whether at least as many parameters are determined with it as in `base`: an effect that

@@ -82,10 +82,12 @@ fn attributed(
         let own = Errors::of(all.record, &whole);
         let mut left_out = grown.left_out(workers);
         let may_go = |least: &LeftOut| {
-            let is_refinement = !all.options.keeps_refinements && !least.has_consequence();
+            let is_refinement = !all.options.keeps_refinements && grown.is_refinement(least);
             is_refinement && all.misfit.generalizes(own, least.fit.errors)
         };
-        let (change, fit) = if let Some(least) = left_out.pop_if(|least| may_go(least)) {
+        // The least comes last.
+        let least = left_out.iter().rposition(may_go).map(|index| left_out.remove(index));
+        let (change, fit) = if let Some(least) = least {
             refinements.push(least.effect);
             (Change::Removed(least.effect), least.fit.on(all.record))
         } else {

@@ -97,9 +97,11 @@ impl Search<'_, '_> {
         workers: &impl Workers,
     ) -> Vec<Candidate> {
         let with = |effect: &&'static dyn Effect| {
-            (effect.spec().id, self.base.model.with(Component::neutral(*effect)))
+            let id = effect.spec().id;
+            let models = self.base.model.placements(&Component::neutral(*effect));
+            models.into_iter().map(move |model| (id, model))
         };
-        let models: Vec<_> = self.effects.iter().map(with).collect();
+        let models: Vec<_> = self.effects.iter().flat_map(with).collect();
         let kept = |costs: &[f64]| {
             let (most, least) = FINALISTS;
             let limit = costs.first().map_or(0.0, |best| HOPELESS * best);

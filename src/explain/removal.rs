@@ -1,9 +1,11 @@
 //! What can be removed from a model, or exchanged, after an effect was added.
 
 use super::candidate::ALIKE;
+use super::determined::is_determined;
 use super::eligible::{could_be_missing, is_due, signal_range};
 use super::evidence::NoiseMemory;
-use super::extension::ids;
+use super::extension::{components_of, ids};
+use super::likeness::{least_share, looks_like};
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::outcome::FitOutcome;
@@ -41,7 +43,7 @@ pub(super) struct Removal<'a> {
 }
 
 /// A change of one effect, with a further effect that is then added or without.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Exchange {
     pub(super) change: Change,
     pub(super) then: Option<&'static str>,
@@ -64,10 +66,22 @@ impl Exchange {
         is_finer || self.then.is_some()
     }
 
-    /// `model` after it.
-    fn applied(self, model: &JointModel) -> Option<JointModel> {
-        let model = changed(model, self.change)?;
-        self.then.map_or_else(|| Some(model.clone()), |id| changed(&model, Change::Added(id)))
+    /// The effects that it brings.
+    fn new_effects(self) -> impl Iterator<Item = &'static str> {
+        let replaced = match self.change {
+            Change::Replaced { new, .. } | Change::Added(new) => Some(new),
+            Change::Removed(_) | Change::Start => None,
+        };
+        replaced.into_iter().chain(self.then)
+    }
+
+    /// `model` after it, once for each start of what is new.
+    fn applied(self, model: &JointModel) -> Vec<JointModel> {
+        let then = |model: JointModel| match self.then {
+            Some(id) => changed(&model, Change::Added(id)),
+            None => vec![model],
+        };
+        changed(model, self.change).into_iter().flat_map(then).collect()
     }
 }
 
@@ -81,8 +95,11 @@ impl Removal<'_> {
         workers: &impl Workers,
     ) -> Option<(Exchange, Fit)> {
         let exchanges = self.changes(record, &whole.model);
-        let with = |exchange: &Exchange| Some((*exchange, exchange.applied(&whole.model)?));
-        let models: Vec<_> = exchanges.iter().filter_map(with).collect();
+        let with = |exchange: &Exchange| {
+            let exchange = *exchange;
+            exchange.applied(&whole.model).into_iter().map(move |model| (exchange, model))
+        };
+        let models: Vec<_> = exchanges.iter().flat_map(with).collect();
         let tried = fitted_after(record, whole, &models, workers);
         let noise = NoiseMemory::of(record, whole);
         let own = Errors::of(record, whole);
@@ -92,19 +109,22 @@ impl Removal<'_> {
             let does_harm = of_whole.is_nearer_over_windows(&evidence, HARM)
                 || !self.misfit.generalizes(own, fit.errors);
             // More parameters in the place of an effect are worth as much as a further effect.
+            let new: Vec<&str> = change.new_effects().collect();
+            let least = least_share(&fit.model, &new);
             let is_worth_it = fit.parameters.len() <= whole.parameters.len()
                 || self.options.keeps_refinements
-                || self.misfit.has_consequence(own, fit.errors);
+                || self.misfit.share(own, fit.errors) >= least;
             let behind = evidence.criterion() - of_whole.criterion();
             let leaves_less = !change.is_unusual() || fit.cost < LESS * whole.cost;
             let hurdle = if change.is_unusual() { ALIKE } else { 0.0 };
-            (behind < -hurdle && leaves_less && !does_harm && is_worth_it)
+            let is_known = change
+                .new_effects()
+                .all(|new| components_of(&fit.model, &[new]).all(|one| is_determined(&fit, one)));
+            (behind < -hurdle && leaves_less && !does_harm && is_worth_it && is_known)
                 .then_some((behind, (change, fit)))
         });
         let (_, better) = judged.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        if let Change::Replaced { new, .. } = better.0.change {
-            self.kept.extend([Some(new), better.0.then].into_iter().flatten());
-        }
+        self.kept.extend(better.0.new_effects());
         let (exchange, fit) = better;
         Some((exchange, fit.on(record)))
     }
@@ -170,15 +190,6 @@ fn is_as_simple_a_form(of: &Spec, old: &str) -> bool {
     of.refines == Some(old) && parameters == Some(of.parameters.len())
 }
 
-/// Whether one effect is taken for the other, or contains it.
-fn looks_like(one: &str, other: &str) -> bool {
-    let near = |a: &str, b: &str| {
-        let spec = by_id(a).map(Effect::spec);
-        spec.is_some_and(|spec| spec.confused_with.contains(&b) || spec.absorbs.contains(&b))
-    };
-    one != other && (near(one, other) || near(other, one))
-}
-
 /// The models with the best few of `changes`.
 pub(super) fn fitted_with(
     record: &FitRecord<'_>,
@@ -186,14 +197,17 @@ pub(super) fn fitted_with(
     changes: &[Change],
     workers: &impl Workers,
 ) -> Vec<(Change, FitOutcome)> {
-    let with = |change: &Change| Some((*change, changed(&whole.model, *change)?));
-    let models: Vec<_> = changes.iter().filter_map(with).collect();
+    let with = |change: &Change| {
+        let change = *change;
+        changed(&whole.model, change).into_iter().map(move |model| (change, model))
+    };
+    let models: Vec<_> = changes.iter().flat_map(with).collect();
     fitted_after(record, whole, &models, workers)
 }
 
 /// The best few of the `models` that came of `whole`, of those that a survey does not rule out,
-/// fitted.
-fn fitted_after<K: Copy + Send + Sync>(
+/// fitted; of each change once.
+fn fitted_after<K: Copy + PartialEq + Send + Sync>(
     record: &FitRecord<'_>,
     whole: &Fit,
     models: &[(K, JointModel)],
@@ -212,14 +226,20 @@ fn fitted_after<K: Copy + Send + Sync>(
     fit_best(record, &thinned, models, &range, kept, workers)
 }
 
-/// `model` after a change.
-fn changed(model: &JointModel, change: Change) -> Option<JointModel> {
-    match change {
-        Change::Start => Some(model.clone()),
-        Change::Added(id) => Some(model.with(Component::neutral(by_id(id)?))),
-        Change::Removed(id) => Some(model.without(id)),
+/// `model` after a change: with a new effect at its neutral values, and, in another's place, at those
+/// that do what the other does.
+fn changed(model: &JointModel, change: Change) -> Vec<JointModel> {
+    let neutral = |id| by_id(id).map(Component::neutral);
+    let (rest, new) = match change {
+        Change::Start => return vec![model.clone()],
+        Change::Removed(id) => return vec![model.without(id)],
+        Change::Added(id) => (model.clone(), vec![neutral(id)]),
         Change::Replaced { old, new } => {
-            Some(model.without(old).with(Component::neutral(by_id(new)?)))
+            let alike = by_id(new).and_then(|new| {
+                components_of(model, &[old]).next().and_then(|old| old.replaced_by(new))
+            });
+            (model.without(old), vec![neutral(new), alike])
         }
-    }
+    };
+    new.into_iter().flatten().flat_map(|component| rest.placements(&component)).collect()
 }

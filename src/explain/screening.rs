@@ -10,8 +10,8 @@ use crate::fit::{FitRecord, Survey, fit_to_compare_beside, survey};
 use crate::model::JointModel;
 
 /// Surveys `models` on `surveyed` and fits the best of them to `record`; `kept` says how many,
-/// of the ascending costs of all surveys.
-pub(super) fn fit_best<K: Copy + Send + Sync>(
+/// of the ascending costs of all surveys. Of several with one key the best by its survey counts.
+pub(super) fn fit_best<K: Copy + PartialEq + Send + Sync>(
     record: &FitRecord<'_>,
     surveyed: &FitRecord<'_>,
     models: &[(K, JointModel)],
@@ -24,6 +24,12 @@ pub(super) fn fit_best<K: Copy + Send + Sync>(
     let mut surveys: Vec<_> =
         models.iter().zip(surveyed).filter_map(|(of, survey)| Some((of, survey?))).collect();
     surveys.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+    let mut seen = Vec::new();
+    surveys.retain(|((key, _), _)| {
+        let is_new = !seen.contains(key);
+        seen.push(*key);
+        is_new
+    });
     let costs: Vec<f64> = surveys.iter().map(|(_, survey)| survey.cost).collect();
     surveys.truncate(kept(&costs));
     let fit = |((key, model), survey): &(&(K, JointModel), Survey)| {

@@ -11,6 +11,7 @@ use std::ops::ControlFlow;
 use super::candidate::Candidate;
 use super::eligible::signal_range;
 use super::extension::ids;
+use super::likeness::least_share;
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::ranking::{Scope, rank};
@@ -76,6 +77,10 @@ impl Step {
     }
 }
 
+/// Magnitudes of the input, with rest, that many curves of a valve match. Chosen: two parameters of a
+/// curve and the gain match three.
+const FEW_LEVELS: usize = 3;
+
 /// How stepwise addition ended.
 pub(super) struct Ended {
     pub(super) verdict: Verdict,
@@ -103,8 +108,9 @@ pub(super) fn add_stepwise(
 ) -> Ended {
     let ended =
         |verdict, fit, was_stopped| Ended { verdict, fit, was_stopped, refinements: Vec::new() };
-    // The few levels of strokes are matched by many curves.
-    let makes_strokes = are_strokes(&record.joint().trials);
+    // Few levels, as those of strokes, are matched by many curves.
+    let are_few = record.input_levels().len() <= FEW_LEVELS;
+    let matched_by_many = are_strokes(&record.joint().trials) || are_few;
     let mut step = first;
     loop {
         if !step.rank_missing(record, options, workers) {
@@ -113,10 +119,11 @@ pub(super) fn add_stepwise(
         }
         let own = Errors::of(record, &step.fit);
         let has_consequence = |candidate: &Candidate| {
-            options.keeps_refinements || misfit.has_consequence(own, candidate.fit.errors)
+            let least = least_share(&candidate.fit.model, &candidate.effects);
+            options.keeps_refinements || misfit.share(own, candidate.fit.errors) >= least
         };
         let is_sound = |candidate: &&Candidate| {
-            let is_known = !makes_strokes
+            let is_known = !matched_by_many
                 || candidate.determines_as_much_as(&step.fit) && candidate.is_distinct();
             candidate.is_significant() && is_known && misfit.generalizes(own, candidate.fit.errors)
         };

@@ -19,7 +19,7 @@ pub(crate) mod segment;
 mod span;
 
 pub(crate) use panel::{Axis, Mark, Panel, Place, Shape};
-pub(crate) use role::Role;
+pub(crate) use role::{Revision, Role};
 #[cfg(feature = "rrd")]
 pub(crate) use span::power_of_ten;
 pub(crate) use span::{Span, thinned_to};

@@ -10,6 +10,8 @@ pub(crate) struct Axis {
     pub(crate) span: Span,
     pub(crate) name: String,
     pub(crate) ticks: Vec<(f64, String)>,
+    /// Whether its range is of logarithms to base ten, and its ticks name the numbers.
+    pub(crate) is_logarithmic: bool,
 }
 
 /// A place in a panel.
@@ -58,27 +60,32 @@ impl Axis {
     /// An axis with about so many round numbers at it.
     pub(crate) fn new(span: Span, name: impl Into<String>, ticks: f64) -> Self {
         let ticks = span.ticks(ticks).into_iter().map(|tick| (tick, number(tick))).collect();
-        Self { span, name: name.into(), ticks }
+        Self { span, name: name.into(), ticks, is_logarithmic: false }
     }
 
     /// An axis of numbers whose logarithms to base ten are drawn.
     pub(crate) fn logarithmic(span: Span, name: impl Into<String>, ticks: f64) -> Self {
         let named = |tick: f64| (tick, number(power_of_ten(tick)));
         let ticks = span.ticks(ticks).into_iter().map(named).collect();
-        Self { span, name: name.into(), ticks }
+        Self { span, name: name.into(), ticks, is_logarithmic: true }
     }
 
     /// An axis of names, one at each whole number from 0, from the top down.
     pub(crate) fn of_names(names: &[String], name: impl Into<String>) -> Self {
         let ticks = (0..).zip(names).map(|(row, name)| (-f64::from(row), name.clone()));
         let span = Span::new(0.6 - names.len() as f64, 0.6);
-        Self { span, name: name.into(), ticks: ticks.collect() }
+        Self { span, name: name.into(), ticks: ticks.collect(), is_logarithmic: false }
     }
 
     /// This axis without numbers and name: those of the panel below hold for it.
     pub(crate) fn bare(&self) -> Self {
         let ticks = self.ticks.iter().map(|(tick, _)| (*tick, String::new())).collect();
-        Self { name: String::new(), ticks, span: self.span }
+        Self { name: String::new(), ticks, ..*self }
+    }
+
+    /// The number that is drawn at `place`.
+    pub(crate) fn number(&self, place: f64) -> f64 {
+        if self.is_logarithmic { power_of_ten(place) } else { place }
     }
 }
 

@@ -27,10 +27,35 @@ pub(crate) enum Role {
     Noise,
     /// A part of the record that deserves a look.
     Attention,
+    /// The revisions of a model behind the first one, which is [`Self::Model`].
+    Revision(Revision),
+}
+
+/// One of the colours of revisions behind the first, counted from 1 to [`Revision::COUNT`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Revision(u8);
+
+impl Revision {
+    /// Colours; then they begin anew.
+    pub(crate) const COUNT: u8 = 9;
+
+    /// Its place among the colours, from 0.
+    pub(crate) const fn place(self) -> usize {
+        self.0 as usize - 1
+    }
 }
 
 impl Role {
-    pub(crate) const ALL: [Self; 12] = [
+    /// That of the revision with this number, counted from 0.
+    pub(crate) fn of_revision(number: usize) -> Self {
+        let place = number % (usize::from(Revision::COUNT) + 1);
+        match u8::try_from(place) {
+            Ok(place @ 1..) => Self::Revision(Revision(place)),
+            _ => Self::Model,
+        }
+    }
+
+    pub(crate) const ALL: [Self; 21] = [
         Self::Ink,
         Self::Faint,
         Self::Grid,
@@ -43,5 +68,14 @@ impl Role {
         Self::Model,
         Self::Noise,
         Self::Attention,
+        Self::Revision(Revision(1)),
+        Self::Revision(Revision(2)),
+        Self::Revision(Revision(3)),
+        Self::Revision(Revision(4)),
+        Self::Revision(Revision(5)),
+        Self::Revision(Revision(6)),
+        Self::Revision(Revision(7)),
+        Self::Revision(Revision(8)),
+        Self::Revision(Revision(9)),
     ];
 }

@@ -24,6 +24,7 @@ mod space;
 mod speed;
 mod starts;
 mod thin;
+mod unlogged;
 mod window;
 
 pub use evaluation::Evaluation;

@@ -10,10 +10,11 @@ use super::first_order::Follower;
 use super::run::{Run, best_starts, residuals_from, simulated_from};
 use super::speed;
 use super::thin::thinned;
+use super::unlogged::commands;
 use super::window::{Horizon, Part, Split, Window, changes, cut, places, shorter};
 use crate::delay::{StepDelay, step_delays};
 use crate::effect::{RecordRange, SignalRange};
-use crate::experiment::{Joint, Trial, has_word, spike_weights};
+use crate::experiment::{Joint, Trial, has_word, weights};
 use crate::model::{Arrivals, Commands, JointModel, Signals, Surroundings, coded_neutral};
 use crate::units::{floor_to_index, radians_in};
 
@@ -44,7 +45,8 @@ pub struct FitRecord<'a> {
     neutral: f64,
     /// Ranges of the further signals that were measured.
     signals: Arc<Vec<SignalRange<'a>>>,
-    /// Per trial and sample 0 for a spike of the sensor and else 1; none where there is no spike.
+    /// Per trial and sample 0 for a spike of the sensor or what was not logged, and else 1; none
+    /// where all are 1.
     weights: Option<Arc<Vec<Vec<f64>>>>,
 }
 
@@ -63,6 +65,7 @@ impl<'a> FitRecord<'a> {
         let speeds_measured = speed::are_measured(&joint.trials, &windows);
         let others = Arc::new(vec![Vec::new(); joint.trials.len()]);
         let radians_per_output_unit = radians_in(joint.output_unit.as_deref());
+        let neutral = coded_neutral(&joint.trials).map_or(0.0, |neutral| neutral.level);
         Self {
             joint,
             split,
@@ -74,11 +77,11 @@ impl<'a> FitRecord<'a> {
             follower: Arc::default(),
             speeds_measured,
             starts_s: starts_s(&joint.trials),
-            commands: joint.trials.iter().map(commands).collect(),
+            commands: commands(&joint.trials, neutral),
             spans: joint.trials.iter().map(span).collect(),
-            neutral: coded_neutral(&joint.trials).map_or(0.0, |neutral| neutral.level),
+            neutral,
             signals: Arc::new(signal_ranges(joint)),
-            weights: spike_weights(&joint.trials).map(Arc::new),
+            weights: weights(&joint.trials).map(Arc::new),
         }
     }
 
@@ -258,8 +261,9 @@ impl<'a> FitRecord<'a> {
         DVector::from_vec(all)
     }
 
-    /// The weights of the samples of a trial: 0 for isolated spikes of the sensor, which no
-    /// error counts, and 1 for all others; `None` where there is no spike in the record.
+    /// The weights of the samples of a trial: 0 for isolated spikes of the sensor and for gaps that
+    /// were filled, which no error counts, and 1 for all others; `None` where all of the record are
+    /// 1.
     pub fn weights_of(&self, trial: usize) -> Option<&[f64]> {
         self.weights.as_ref()?.get(trial).map(Vec::as_slice)
     }
@@ -425,10 +429,6 @@ fn signal_ranges(joint: &Joint) -> Vec<SignalRange<'_>> {
 
 fn length_s(trial: &Trial) -> f64 {
     trial.len() as f64 * trial.period().seconds()
-}
-
-fn commands(trial: &Trial) -> Commands {
-    Commands::new(trial.input(), trial.period().seconds())
 }
 
 #[cfg(test)]

@@ -25,8 +25,18 @@ pub struct Arrivals {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Commands {
     initial: f64,
-    /// Seconds since the first sample, and the level from then on.
-    changes: Vec<(f64, f64)>,
+    changes: Vec<Command>,
+}
+
+/// A change of the input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Command {
+    /// Seconds since the first sample.
+    time_s: f64,
+    /// The level from then on.
+    level: f64,
+    /// Whether it is in the log.
+    is_logged: bool,
 }
 
 impl Commands {
@@ -38,18 +48,35 @@ impl Commands {
         for (&level, sample) in levels.zip(1..) {
             #[expect(clippy::float_cmp, reason = "a step is any change")]
             if level != before {
-                changes.push((f64::from(sample) * period_s, level));
+                let time_s = f64::from(sample) * period_s;
+                changes.push(Command { time_s, level, is_logged: true });
                 before = level;
             }
         }
         Self { initial, changes }
     }
 
+    /// These changes of a trial that began with a step from `level`, which nobody logged.
+    #[must_use]
+    pub(crate) fn begun_at(mut self, level: f64) -> Self {
+        let first = Command { time_s: 0.0, level: self.initial, is_logged: false };
+        self.changes.insert(0, first);
+        Self { initial: level, ..self }
+    }
+
+    /// These changes with one to `level` at `time_s`, which nobody logged.
+    #[must_use]
+    pub(crate) fn with_rest_at(mut self, level: f64, time_s: f64) -> Self {
+        let place = self.changes.partition_point(|change| change.time_s <= time_s);
+        self.changes.insert(place, Command { time_s, level, is_logged: false });
+        self
+    }
+
     /// The changes as they arrive at the joint: change `i` at `t_i + delay + extra_i`.
     ///
     /// `extra` comes from the effects of the transport stage. `per_step` holds delays in
-    /// seconds for each change of the input; the model's own delay is taken only for those
-    /// that are not known (`None`).
+    /// seconds for each change of the input in the log; the model's own delay is taken only for
+    /// those that are not known (`None`).
     ///
     /// A change that would act before an earlier one takes its place: an earlier level never
     /// comes back. Delays are not below zero. `start_s` is the time of the record at the
@@ -63,28 +90,28 @@ impl Commands {
         let changes = Vec::with_capacity(self.changes.len());
         let mut arrivals = Arrivals { initial: self.initial, changes };
         let delay_of = model.delay_of();
-        let commanded_s = self.changes.iter().map(|&(time_s, _)| time_s);
-        for (number, (change, time_s)) in self.changes(start_s).zip(commanded_s).enumerate() {
-            let known = per_step.and_then(|delays| delays.get(number).copied().flatten());
+        let mut of_steps = per_step.unwrap_or_default().iter();
+        for (change, command) in self.changes(start_s).zip(&self.changes) {
+            let known = if command.is_logged { of_steps.next().copied().flatten() } else { None };
             let delay_s = known.map_or_else(|| delay_of(&change), |delay_s| delay_s.max(0.0));
-            arrivals.insert(Arrival { time_s: time_s + delay_s, level: change.after });
+            arrivals.insert(Arrival { time_s: command.time_s + delay_s, level: change.after });
         }
         arrivals
     }
 
     /// The changes as a delay may depend on them, in a record whose first sample is at `start_s`.
     pub(crate) fn changes(&self, start_s: f64) -> impl Iterator<Item = InputChange> + '_ {
-        let before = self.changes.iter().map(|&(_, level)| level);
+        let before = self.changes.iter().map(|change| change.level);
         let before = [self.initial].into_iter().chain(before);
-        let since = [0.0].into_iter().chain(self.changes.iter().map(|&(time_s, _)| time_s));
-        self.changes.iter().zip(before).zip(since).map(
-            move |((&(time_s, after), before), since)| InputChange {
+        let since = [0.0].into_iter().chain(self.changes.iter().map(|change| change.time_s));
+        self.changes.iter().zip(before).zip(since).map(move |((change, before), since)| {
+            InputChange {
                 before,
-                after,
-                held_s: time_s - since,
-                time_s: start_s + time_s,
-            },
-        )
+                after: change.level,
+                held_s: change.time_s - since,
+                time_s: start_s + change.time_s,
+            }
+        })
     }
 }
 
@@ -113,6 +140,16 @@ impl Arrivals {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_nobody_logged_takes_no_measured_delay() {
+        let logged = Commands::new(&[1.0, 1.0, 1.0, -1.0, -1.0], 1.0);
+        let commands = logged.begun_at(0.0).with_rest_at(0.0, 2.0);
+        let model = JointModel::integrator(1.0, 0.25);
+        let Arrivals { initial, changes } = commands.arriving(&model, 0.0, Some(&[Some(0.5)]));
+        let found: Vec<(f64, f64)> = changes.iter().map(|a| (a.time_s, a.level)).collect();
+        assert_eq!((initial, found), (0.0, vec![(0.25, 1.0), (2.25, 0.0), (3.5, -1.0)]));
+    }
 
     #[test]
     fn a_stretch_has_the_level_before_it_and_the_changes_within() {

@@ -46,6 +46,12 @@ impl Component {
         Self { effect, parameters }
     }
 
+    /// `effect` with values at which it does about what this one does; `None` where it has none.
+    pub(crate) fn replaced_by(&self, effect: &'static dyn Effect) -> Option<Self> {
+        let values = effect.in_place_of(self.effect.spec(), &self.plain())?;
+        Self::new(effect, values.into_iter().map(Value::from).collect())
+    }
+
     /// `effect` in the form that takes each step's delay as it was measured; `None` where it
     /// has none.
     pub fn measured(effect: &'static dyn Effect) -> Option<Self> {
@@ -122,6 +128,20 @@ impl JointModel {
         }
         model.components.push(component);
         model
+    }
+
+    /// This model with one more effect, [added](Self::with) behind those of its stage, and also before
+    /// those that it may be [upstream of](crate::effect::Spec::upstream_of), where it has any.
+    pub(crate) fn placements(&self, component: &Component) -> Vec<Self> {
+        let behind = self.with(component.clone());
+        let later = component.effect.spec().upstream_of;
+        let first = behind.components.iter().position(|c| later.contains(&c.effect.spec().id));
+        let before = first.map(|first| {
+            let mut model = behind.clone();
+            model.components[first..].rotate_right(1);
+            model
+        });
+        [Some(behind), before].into_iter().flatten().collect()
     }
 
     /// This model without the effect `id`.

@@ -94,7 +94,7 @@ fn add_joint(
     decisions::add(chunks, &root, joint, layout)?;
     verdict::add(chunks, &root, estimated, layout, others)?;
     segment_view::add(chunks, &root, joint, layout, (recording.settings.method, others))?;
-    overview::add(chunks, &root, layout)?;
+    overview::add(chunks, &root, joint, layout)?;
     delay_state::add(chunks, &root, estimated, layout)?;
     doubt::add(chunks, &root, joint, layout)?;
     difference::add(chunks, &root, joint, layout, others)?;
@@ -108,9 +108,10 @@ fn add_joint(
     if let Some(judged) = judged {
         model::add(chunks, &root, layout, &models, judged)?;
     }
-    match revisions {
-        Some(improved) => revision::add(chunks, &root, layout, improved),
-        None => Ok(()),
+    match (revisions, judged) {
+        (Some(improved), _) => revision::add(chunks, &root, layout, improved),
+        (None, Some(judged)) => model::add_map(chunks, &root, layout, judged),
+        (None, None) => Ok(()),
     }
 }
 
@@ -130,11 +131,12 @@ fn open_on_the_first(
     first_sample: Option<Moment>,
 ) -> Result<(), RecordError> {
     let Some(segment) = layout.shown_first() else { return Ok(()) };
-    let map = format!("{}/{}", map::ROOT, map::HERE);
+    let [map, large] = [map::ROOT, map::LARGE].map(|root| format!("{root}/{}", map::HERE));
     let [here, step] = [against::HERE, against::STEP].map(|p| format!("{}/{p}", against::ROOT));
     let shown = [
         (drawing::ROOT, ""),
         (map.as_str(), ""),
+        (large.as_str(), ""),
         (here.as_str(), ""),
         (step.as_str(), ""),
         (paths::VERDICT, "TextDocument"),

@@ -118,6 +118,12 @@ impl Index {
         Self { sample: vec![sample; self.len()], time_ns: vec![time_ns; self.len()], ..self }
     }
 
+    /// One row on every timeline, at its first tick or before it; `start` is the first sample.
+    pub(super) fn everywhere(start: Moment, opening: Opening) -> Self {
+        let start = Moment { decision: 0, ..start };
+        Self { doubt: vec![1], ..std::iter::once(start).collect() }.opened(opening)
+    }
+
     /// One row on each timeline on which no sample lies.
     pub(super) fn off_the_record(opening: Opening) -> Self {
         Self { segment: vec![1], doubt: vec![1], ..Self::default() }.opened(opening)

@@ -55,7 +55,7 @@ fn page_header(joint: &Joint) -> String {
 
 fn page_row(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     let decision = segment.decision;
-    let best = decision.candidates.best();
+    let best = decision.shown_candidate();
     let of = |value: Option<f64>| value.map_or_else(String::new, number);
     let delay = decision.delay();
     let period_s = trial.trial.period().seconds();
@@ -157,6 +157,10 @@ struct Table {
     index: Index,
     whole: [Vec<Option<i64>>; 8],
     real: [Vec<Option<f64>>; 3],
+    /// Rank by squared error within the step.
+    rank: Vec<Option<i64>>,
+    /// What a person reads, in the order of [`Self::SHOWN`].
+    shown: [Vec<Option<f64>>; 5],
     accepted: Vec<Option<i64>>,
     fine: Vec<Option<FineDelay>>,
     /// Trial and verdict.
@@ -166,14 +170,22 @@ struct Table {
 impl Table {
     const WHOLE: [&str; 8] = ["i", "p", "r", "end", "f", "j", "q", "delta"];
     const REAL: [&str; 3] = ["sse", "slope_before", "slope_after"];
-    const SHOWN: [&str; 3] = ["sse_shown", "slope_before_shown", "slope_after_shown"];
+    /// A viewer orders columns by their names: the most telling ones come first.
+    const SHOWN: [&str; 5] = [
+        "2_delay_s",
+        "3_squared_error",
+        "4_times_least",
+        "slope_before_shown",
+        "slope_after_shown",
+    ];
 
-    /// The numbers of `candidate`; `j` is its number, empty on the row of the verdict.
+    /// The numbers of `candidate`, of which so many have a smaller error; `j` is its number, empty on
+    /// the row of the verdict.
     fn row(
         &mut self,
         (trial, segment): (&TrialLayout<'_>, &SegmentLayout<'_>),
         j: Option<usize>,
-        candidate: Option<Candidate>,
+        (candidate, rank): (Option<Candidate>, Option<i64>),
     ) {
         let decision = segment.decision;
         let p = decision.input_step.sample;
@@ -196,6 +208,14 @@ impl Table {
         ];
         self.whole.iter_mut().zip(whole).for_each(|(column, value)| column.push(value));
         self.real.iter_mut().zip(real).for_each(|(column, value)| column.push(value));
+        let period_s = trial.trial.period().seconds();
+        let own = decision.delay().filter(|_| j.is_none());
+        let delay = own.or_else(|| breakpoint.map(|q| (q - signed(p)) as f64));
+        let [sse, before, after] = real;
+        let ratio = sse.zip(best.filter(|best| best.sse > 0.0)).map(|(sse, best)| sse / best.sse);
+        let shown = [delay.map(|delay| delay * period_s), sse, ratio, before, after];
+        self.shown.iter_mut().zip(shown).for_each(|(column, value)| column.push(value));
+        self.rank.push(rank);
         let accepted = i64::from(decision.verdict() == Verdict::Accepted);
         self.accepted.push(j.is_none().then_some(accepted));
         self.fine.push(decision.fine.filter(|_| j.is_none()));
@@ -205,13 +225,25 @@ impl Table {
     }
 
     fn segment(&mut self, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) {
+        let ranks = ranks(segment.decision.candidates.sse());
         for (moment, candidate) in trial.candidates(segment) {
             self.index.extend([moment]);
-            self.row((trial, segment), Some(candidate.f), Some(candidate));
+            let rank = ranks.get(candidate.f - 1).copied();
+            self.row((trial, segment), Some(candidate.f), (Some(candidate), rank));
         }
         self.index.extend([trial.verdict(segment)]);
-        self.row((trial, segment), None, segment.decision.candidates.best());
+        let best = segment.decision.candidates.best();
+        self.row((trial, segment), None, (best, best.map(|_| 1)));
     }
+}
+
+/// The place of each of `errors` among them, the least being the first.
+fn ranks(errors: &[f64]) -> Vec<i64> {
+    let mut order: Vec<(usize, &f64)> = errors.iter().enumerate().collect();
+    order.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+    let mut ranks: Vec<(usize, i64)> = order.into_iter().map(|(index, _)| index).zip(1..).collect();
+    ranks.sort_unstable();
+    ranks.into_iter().map(|(_, rank)| rank).collect()
 }
 
 /// A row per candidate, and one per verdict: without `j`, but with `accepted` (1 or 0),
@@ -227,12 +259,23 @@ fn add_table(
     }
     let whole = Table::WHOLE.iter().zip(&table.whole).map(|(name, values)| integers(name, values));
     let real = Table::REAL.iter().zip(&table.real).map(|(name, values)| numbers(name, values));
-    let rounded = Table::SHOWN.iter().zip(&table.real).map(|(name, values)| shown(name, values));
+    let rounded = Table::SHOWN.iter().zip(&table.shown).map(|(name, values)| shown(name, values));
     let [trials, verdicts] = &table.words;
-    let words = [texts("trial", trials), texts("verdict", verdicts)];
-    let accepted = [integers("accepted", &table.accepted)];
+    let words = [texts("trial", trials), texts("verdict", verdicts), texts("5_verdict", verdicts)];
+    let accepted = [integers("accepted", &table.accepted), integers("1_rank", &table.rank)];
     let fine = fine_columns(&table.fine);
     let columns: Vec<_> =
         whole.chain(real).chain(rounded).chain(accepted).chain(words).chain(fine).collect();
     chunks.push(at(root, paths::DECISION_TABLE), table.index, columns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_error_is_the_first() {
+        assert_eq!(ranks(&[3.0, 1.0, 2.0]), [3, 1, 2]);
+        assert_eq!(ranks(&[]), [0; 0]);
+    }
 }

@@ -20,7 +20,7 @@ use crate::study::{StepPair, StepResult};
 use crate::wording::{difference_in_short, difference_sentences, result_in_short, step_name};
 
 /// Width and height of the drawing.
-pub(super) const SIZE: (f32, f32) = (SHEET.0, 330.0);
+pub(super) const SIZE: (f32, f32) = (SHEET.0, 344.0);
 
 /// Adds `/difference`, `/difference/log` and the drawing.
 pub(super) fn add(
@@ -169,9 +169,9 @@ impl Figure {
         let last = steps.fold(1.0, f64::max);
         let differences = marks.iter().map(|mark| mark.difference).chain([0.0]);
         Self {
-            delays: Plot::new(34.0..=165.0, Span::around(times, 0.01), Span::around(delays, 0.08)),
+            delays: Plot::new(44.0..=165.0, Span::around(times, 0.01), Span::around(delays, 0.08)),
             ranks: Plot::new(
-                222.0..=300.0,
+                250.0..=312.0,
                 Span::new(0.0, last + 1.0),
                 Span::around(differences, 0.08),
             ),

@@ -63,9 +63,9 @@ impl Drawing {
         Self { sheet, bars, marks }
     }
 
-    /// The lines that fill the bars of all models, each in its colour.
-    pub(super) fn filling(&self) -> Vec<(Vec<Vec2D>, Color)> {
-        let filling = self.bars.iter().zip(palette::models()).flat_map(|(bars, rgb)| {
+    /// The lines that fill the bars, in the colour of the model that they are of.
+    pub(super) fn filling(&self, rgb: Rgb) -> Vec<(Vec<Vec2D>, Color)> {
+        let filling = self.bars.iter().flat_map(|bars| {
             let lines = bars.strips.iter().zip(bars.shades(rgb));
             lines.map(|(strip, color)| (strip.to_vec(), color)).collect::<Vec<_>>()
         });

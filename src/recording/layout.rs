@@ -21,7 +21,7 @@ use crate::delay::{Decision, Doubt, TrialEstimate, Verdict, doubts};
 use crate::experiment::{Joint, Trial};
 use crate::report::EstimatedJoint;
 use crate::units::signed;
-use crate::wording::doubt_sentence;
+use crate::wording::{doubt_sentence, number};
 
 /// How many candidates of each segment are recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -144,6 +144,9 @@ impl SegmentLayout<'_> {
     /// Where the delay ends: a sample, or a place between two where it is known so finely.
     pub(super) fn place(&self) -> Option<String> {
         let p = self.decision.input_step.sample;
+        if self.decision.delay_before_review().is_some() {
+            return self.decision.delay().map(|delay| number(p as f64 + delay));
+        }
         match (self.decision.fine, self.decision.candidates.best()) {
             (Some(fine), Some(_)) => Some(format!("{:.2}", p as f64 + fine.delay)),
             (_, best) => best.map(|best| best.breakpoint.to_string()),

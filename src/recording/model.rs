@@ -13,13 +13,14 @@ use super::model_signal::signal;
 use super::palette::{self, Rgb, color};
 use super::parameter_table::parameter_table;
 use super::paths::{self, at, child};
-use super::{correlogram, error_share, model_difference, model_lanes, scatter};
+use super::rows::Rows;
+use super::{correlogram, error_share, model_difference, model_lanes, revision, scatter};
 use crate::diagnosis::failure::{Region, WorstSegment};
 use crate::diagnosis::{Comparison, ErrorFigures, SIGNIFICANCE, sensor_noise};
 use crate::experiment::Joint;
 use crate::report::{ComparedJoint, model_differences};
 use crate::wording::{
-    capitalized, correlation_sentences, fails_or_errs, measure, misfit_units, number,
+    capitalized, correlation_sentences, fails_or_errs, measure, misfit_units, number, rounded,
 };
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
@@ -63,6 +64,21 @@ pub(super) fn add(
         model_difference::add(chunks, root, layout, models)?;
     }
     model_lanes::add(chunks, root, layout, (judged.joint, judged.comparison))
+}
+
+/// Adds what is seen of the record on every timeline of a model that has no revisions, whose own
+/// drawings are.
+pub(super) fn add_map(
+    chunks: &mut Chunks,
+    root: &EntityPath,
+    layout: &JointLayout<'_>,
+    judged: &ComparedJoint<'_>,
+) -> Result<(), RecordError> {
+    let start = layout.trials.iter().find_map(|trial| trial.moments(1).next());
+    let Some(start) = start else { return Ok(()) };
+    let index = Index::everywhere(start, layout.first);
+    let mut rows = Rows::new(chunks, at(root, paths::MODEL_MAP), index).back_to_front();
+    revision::add_record(&mut rows, layout, judged.joint, &[judged.comparison])
 }
 
 /// Regions and correlations as lists of numbers, for programs.
@@ -234,24 +250,28 @@ fn worst_segments(
     let horizon = judged.comparison.fit.evaluation.horizon;
     writeln!(
         page,
-        "\nWhere the output of {} is farthest off, {horizon}, and the share of the squares. The output \
-         keeps each error of the speed until the next restart, so that this need not be where it \
-         arises:",
+        "\nWhere the output of {} is farthest off, {horizon}: the segments with the largest sums of \
+         squares, and the one with the largest residual of all (bold). The output keeps each error \
+         of the speed until the next restart, so that this need not be where it arises:",
         judged.model
     )?;
     // A narrow page has no room for what is the same in each row.
     let several = judged.joint.trials.len() > 1;
-    let columns = ["time | share | `sample`", "trial | share | `time`"][usize::from(several)];
-    writeln!(page, "\n| rank | {columns} |\n|---|---|---|---|")?;
+    let columns = if several { ["trial", "from `time`"] } else { ["from", "`sample`"] };
+    let unit = judged.joint.output_unit.as_deref().map_or_else(String::new, plain);
+    let [place, on] = columns;
+    let height = |worst: &WorstSegment| worst.largest_residual.abs();
+    let highest = failure.worst_segments.iter().map(height).reduce(f64::max).unwrap_or_default();
+    writeln!(page, "\n| rank | {place} | squares | largest {unit} | {on} |")?;
+    writeln!(page, "|---|---|---|---|---|")?;
     for (rank, worst) in (1..).zip(&failure.worst_segments) {
-        let place = if several {
-            plain(&worst.trial)
-        } else {
-            format!("{} … {} s", number(worst.start_s), number(worst.end_s))
-        };
+        let place =
+            if several { plain(&worst.trial) } else { format!("{} s", number(worst.start_s)) };
         let share = 100.0 * worst.share_of_squared_error;
         let on_timeline = on_timeline(layout, worst);
-        writeln!(page, "| {rank} | {place} | {share:.0} % | {on_timeline} |")?;
+        let largest = rounded(worst.largest_residual);
+        let largest = if height(worst) < highest { largest } else { format!("**{largest}**") };
+        writeln!(page, "| {rank} | {place} | {share:.0} % | {largest} | {on_timeline} |")?;
     }
     Ok(())
 }
@@ -283,18 +303,18 @@ fn parameters(page: &mut String, joint: &Joint, models: &[&ComparedJoint<'_>]) -
     Ok(())
 }
 
-/// Where `worst` is on the timeline `sample`; of several trials, which have one clock each, on that
+/// Where `worst` begins on the timeline `sample`; of several trials, which have one clock each, on that
 /// of the record.
 fn on_timeline(layout: &JointLayout<'_>, worst: &WorstSegment) -> String {
     let of_label = layout.trials.iter().find(|trial| trial.trial.label() == worst.trial);
     let place = of_label.map(|trial| {
         let samples = samples_of(worst, trial);
-        let (first, last) = (*samples.start(), *samples.end());
+        let first = *samples.start();
         if layout.trials.len() > 1 {
             let clock = |k| clock(trial.time_ns(k) / 1_000_000_000);
-            format!("{} … {}", clock(first), clock(last))
+            clock(first)
         } else {
-            format!("{} … {}", trial.sample(first), trial.sample(last))
+            trial.sample(first).to_string()
         }
     });
     place.unwrap_or_default()

@@ -1,5 +1,5 @@
-//! The whole record of a joint: chosen lines, breakpoints, delays; and a map of it on
-//! which the segment under the cursor is framed.
+//! The whole record of a joint: chosen lines, breakpoints, delays; and maps of it, a small and a
+//! large one, on which the segment under the cursor is framed.
 
 use rerun::components::{Color, MarkerShape};
 use rerun::datatypes::Vec2D;
@@ -13,12 +13,14 @@ use super::palette::{self, Rgb, color};
 use super::paths::{self, at, map};
 use super::sheet::strips;
 use crate::delay::{Candidate, Line, Verdict};
-use crate::wording::number;
+use crate::experiment::Joint;
+use crate::wording::{bracketed, number};
 
 /// Adds everything of the overview below `root`.
 pub(super) fn add(
     chunks: &mut Chunks,
     root: &EntityPath,
+    joint: &Joint,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
     add_lines(chunks, root, layout)?;
@@ -38,7 +40,7 @@ pub(super) fn add(
     ] {
         let style = Marks { kind, color: color(rgb), marker };
         let breakpoint = |s: &SegmentLayout<'_>| {
-            let best = s.decision.candidates.best()?;
+            let best = s.decision.shown_candidate()?;
             Some((best.breakpoint, best.after.at(best.breakpoint as f64)))
         };
         style.add(chunks, at(root, on_output), layout, breakpoint)?;
@@ -49,7 +51,8 @@ pub(super) fn add(
         };
         style.add(chunks, at(root, on_delay), layout, delay)?;
     }
-    Map::of(layout).add(chunks, &at(root, map::ROOT), layout)
+    Map::small(layout).add(chunks, &at(root, map::ROOT), layout)?;
+    Map::large(layout, joint).add(chunks, &at(root, map::LARGE), layout)
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -131,7 +134,7 @@ fn add_lines(
         let (mut values, mut lengths) = (Vec::new(), Vec::new());
         for (trial, segment) in layout.segments() {
             // Of an output that settles the lines are but chords of what was fitted.
-            let best = segment.decision.candidates.best();
+            let best = segment.decision.shown_candidate();
             let Some(best) = best.filter(|_| segment.decision.response.is_none()) else {
                 continue;
             };
@@ -166,26 +169,66 @@ fn vertices([first, last]: [usize; 2], steps: [usize; 2]) -> Vec<usize> {
 struct Map {
     output: Plot,
     input: Plot,
+    /// Delays, in seconds, where there is room for them.
+    delay: Option<Plot>,
+    titles: Vec<(Vec2D, String)>,
     /// Height of the frame that marks a segment.
     rows: (f32, f32),
 }
 
-/// Height of the map on its sheet.
+/// Height of the small map on its sheet.
 pub(super) const MAP_HEIGHT: f32 = 182.0;
 
+/// Height of the large one.
+pub(super) const LARGE_HEIGHT: f32 = 680.0;
+
 impl Map {
-    fn of(layout: &JointLayout<'_>) -> Self {
-        let last = layout.trials.iter().map(|trial| trial.sample(trial.trial.len())).max();
-        let x = Span::new(1.0, last.unwrap_or(1) as f64);
-        let span = |values: for<'t> fn(&'t TrialLayout<'_>) -> &'t [f64]| {
-            Span::around(layout.trials.iter().flat_map(|t| values(t).iter().copied()), 0.08)
-        };
-        let output = span(|trial| trial.trial.output());
-        let input = span(|trial| trial.trial.input());
+    /// Beside the drawing of a segment.
+    fn small(layout: &JointLayout<'_>) -> Self {
+        let [x, output, input] = spans(layout);
         Self {
             output: Plot::new(6.0..=96.0, x, output),
             input: Plot::new(104.0..=138.0, x, input),
+            delay: None,
+            titles: Vec::new(),
             rows: (2.0, 142.0),
+        }
+    }
+
+    /// A page of its own, which is there on timelines that have no samples.
+    fn large(layout: &JointLayout<'_>, joint: &Joint) -> Self {
+        let [x, output, input] = spans(layout);
+        let delays = delays(layout).map(|(_, delay_s, _)| delay_s).chain([0.0]);
+        let delay = Span::around(delays, 0.08);
+        let (output_plot, delay_plot, input_plot) = (
+            Plot::new(64.0..=318.0, x, output),
+            Plot::new(398.0..=486.0, x, delay),
+            Plot::new(566.0..=634.0, x, input),
+        );
+        let middle = f64::midpoint(x.low, x.high);
+        let unit = |name: &str, unit: &Option<String>| bracketed(name, unit.as_deref());
+        let output = unit("output", &joint.output_unit);
+        let titles = if layout.segments().next().is_some() {
+            [
+                format!("{output} over samples; breakpoints green accepted, red rejected"),
+                "delay [s] of each step: green accepted, red rejected".to_owned(),
+            ]
+        } else {
+            [format!("{output} over samples"), "dead time of each window [s]".to_owned()]
+        };
+        let [output, delay] = titles;
+        let titles = [
+            (&output_plot, output),
+            (&delay_plot, delay),
+            (&input_plot, unit("input", &joint.input_unit)),
+        ];
+        let titles = titles.map(|(plot, title)| (plot.above(middle, TITLE), title)).into();
+        Self {
+            output: output_plot,
+            input: input_plot,
+            delay: Some(delay_plot),
+            titles,
+            rows: (60.0, 638.0),
         }
     }
 
@@ -202,8 +245,14 @@ impl Map {
         let x_ticks = self.output.x_span().ticks(12.0);
         let mut grid = self.output.grid(&x_ticks, &named(self.output.y_span(), 3.0), &mut labels);
         grid.extend(self.input.grid(&x_ticks, &named(self.input.y_span(), 1.5), &mut labels));
+        if let Some(plot) = &self.delay {
+            grid.extend(plot.grid(&x_ticks, &named(plot.y_span(), 2.0), &mut labels));
+        }
         for k in x_ticks {
             labels.put_whole(self.input.below(k, 4.0), number(k));
+        }
+        for (place, title) in &self.titles {
+            labels.put(*place, title.clone());
         }
         strips(chunks, at(root, map::GRID), palette::GRID, 0.7, grid)?;
         let outputs = layout.trials.iter().map(|trial| self.output_curve(trial)).collect();
@@ -215,7 +264,10 @@ impl Map {
             (map::REJECTED, palette::REJECTED, Kind::Rejected),
         ] {
             let breaks = layout.segments().filter(|(_, segment)| Kind::of(segment) == kind);
-            let places: Vec<_> = breaks.filter_map(|(t, s)| self.breakpoint(t, s)).collect();
+            let breaks = breaks.filter_map(|(t, s)| self.breakpoint(t, s));
+            let own = delays(layout).filter(|(.., of)| *of == kind);
+            let delays = own.filter_map(|(k, delay_s, _)| Some(self.delay?.at(k, delay_s)));
+            let places: Vec<_> = breaks.chain(delays).collect();
             let points = Points2D::new(places).with_colors([color(rgb)]).with_radii([3.0]);
             chunks.push_static(at(root, path), &points)?;
         }
@@ -248,7 +300,7 @@ impl Map {
     }
 
     fn breakpoint(&self, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> Option<Vec2D> {
-        let best = segment.decision.candidates.best()?;
+        let best = segment.decision.shown_candidate()?;
         let y = best.after.at(best.breakpoint as f64);
         Some(self.output.at(trial.sample(best.breakpoint) as f64, y))
     }
@@ -275,6 +327,52 @@ impl Map {
         chunks.push(entity.clone(), index, boxes.columns_of_unit_batches()?)
     }
 }
+
+/// Samples, output and input of the whole record.
+fn spans(layout: &JointLayout<'_>) -> [Span; 3] {
+    let last = layout.trials.iter().map(|trial| trial.sample(trial.trial.len())).max();
+    let span = |values: for<'t> fn(&'t TrialLayout<'_>) -> &'t [f64]| {
+        Span::around(layout.trials.iter().flat_map(|t| values(t).iter().copied()), 0.08)
+    };
+    [
+        Span::new(1.0, last.unwrap_or(1) as f64),
+        span(|trial| trial.trial.output()),
+        span(|trial| trial.trial.input()),
+    ]
+}
+
+/// Sample and delay in seconds of each step that has one, or of each window where there are no
+/// steps. A rejected one that is longer than all accepted ones, as at the end of a long hold, or
+/// before its step, is left out: it would press the others together.
+fn delays<'l>(layout: &'l JointLayout<'_>) -> impl Iterator<Item = (f64, f64, Kind)> + 'l {
+    let longest = layout.segments().filter_map(|(_, s)| s.decision.accepted_delay());
+    let longest = longest.reduce(f64::max).map(|longest| 1.2 * longest);
+    let of_steps = layout.segments().filter_map(move |(trial, segment)| {
+        let delay = segment.decision.delay().filter(|delay| *delay >= 0.0)?;
+        let is_shown = longest.is_none_or(|longest| delay <= longest);
+        let k = trial.sample(segment.decision.input_step.sample) as f64;
+        let delay_s = delay * trial.trial.period().seconds();
+        is_shown.then_some((k, delay_s, Kind::of(segment)))
+    });
+    let without_steps = layout.trials.iter().filter(|trial| trial.segments.is_empty());
+    let of_windows = without_steps.flat_map(|trial| {
+        let period_s = trial.trial.period().seconds();
+        let all: Vec<Option<f64>> = trial.estimate.profile.iter().collect();
+        let every = all.len().div_ceil(WINDOW_POINTS).max(1);
+        let kept = all.into_iter().zip(1..).step_by(every);
+        let kept = kept.filter_map(move |(delay, k)| {
+            Some((trial.sample(k) as f64, delay? * period_s, Kind::Accepted))
+        });
+        kept.collect::<Vec<_>>()
+    });
+    of_steps.chain(of_windows)
+}
+
+/// Points of the dead times of windows: more hide one another.
+const WINDOW_POINTS: usize = 300;
+
+/// How far above its plot a title is put, so that it covers no data in a small window.
+const TITLE: f32 = 48.0;
 
 /// A signal of a trial, thinned.
 fn curve(trial: &TrialLayout<'_>, signal: &[f64]) -> Vec<(f64, f64)> {

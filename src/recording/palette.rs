@@ -26,12 +26,8 @@ pub(super) const REJECTED: Rgb = rgb(235, 85, 60);
 pub(super) const ERROR: Rgb = rgb(204, 121, 167);
 /// Borders of a segment.
 pub(super) const BORDER: Rgb = rgb(225, 225, 225);
-/// The revision of a model under the cursor.
-pub(super) const REVISION: Rgb = rgb(230, 159, 0);
-/// The revision before it.
-pub(super) const BEFORE: Rgb = rgb(150, 105, 135);
-/// The candidate that comes next.
-pub(super) const PROPOSED: Rgb = rgb(0, 190, 140);
+/// The candidate that comes next: no revision has this colour.
+pub(super) const PROPOSED: Rgb = rgb(170, 255, 80);
 /// What was measured, beside revisions.
 pub(super) const MEASURED: Rgb = rgb(200, 205, 210);
 /// What noise alone would leave.
@@ -48,6 +44,16 @@ pub(super) const UNSEEN_GROUND: Rgb = rgb(34, 38, 44);
 pub(super) const FAILS_GROUND: Rgb = rgb(74, 30, 26);
 /// Grid lines.
 pub(super) const GRID: Rgb = rgb(60, 62, 66);
+
+/// The model or revision of this number among those of a joint: it has this colour everywhere.
+pub(super) fn model(number: usize) -> Rgb {
+    models().nth(number % NAMES.len()).unwrap_or(BORDER)
+}
+
+/// What that colour is called.
+pub(super) fn name(number: usize) -> &'static str {
+    NAMES.get(number % NAMES.len()).copied().unwrap_or_default()
+}
 
 /// Models, one after the other; from the eleventh on they repeat.
 pub(super) fn models() -> impl Iterator<Item = Rgb> {
@@ -67,8 +73,22 @@ pub(super) fn models() -> impl Iterator<Item = Rgb> {
     .cycle()
 }
 
-/// What the first colours of [`models`] are called.
-pub(super) const NAMES: [&str; 3] = ["orange", "green", "pink"];
+/// What the colours of [`models`] are called.
+const NAMES: [&str; 10] = [
+    "orange",
+    "green",
+    "pink",
+    "vermilion",
+    "light blue",
+    "yellow",
+    "violet",
+    "light green",
+    "salmon",
+    "turquoise",
+];
+
+/// Models that a title has room to name with their colours.
+pub(super) const NAMED: usize = 3;
 
 /// Another result beside this one.
 pub(super) const OTHER: Rgb = rgb(180, 140, 255);

@@ -75,6 +75,8 @@ pub(crate) const REGIONS: &str = "regions";
 pub(crate) const WHITENESS: &str = "whiteness";
 pub(crate) const INPUT_CORRELATION: &str = "input_correlation";
 pub(crate) const MODEL_PAGE: &str = "model_page";
+/// The judged model beside the measurement, on one sheet: the parts of [`revision::record`].
+pub(crate) const MODEL_MAP: &str = "model_map";
 pub(crate) const NOISE_UPPER: &str = "noise/upper";
 pub(crate) const NOISE_LOWER: &str = "noise/lower";
 pub(crate) const WORST: &str = "worst";
@@ -122,15 +124,18 @@ pub(crate) mod drawing {
     /// What the chosen lines leave.
     pub(crate) const RESIDUAL: &str = "residual";
     pub(crate) const SSE: &str = "sse";
+    /// What the program found where a reviewer moved the breakpoint.
+    pub(crate) const BEFORE_REVIEW: &str = "before_review";
     pub(crate) const ACCEPTED: &str = "accepted";
     pub(crate) const REJECTED: &str = "rejected";
     pub(crate) const NAMES: &str = "names";
     pub(crate) const CANDIDATE: &str = "candidate";
     pub(crate) const CANDIDATE_MARK: &str = "candidate/mark";
-    pub(crate) const PARTS: [&str; 13] = [
+    pub(crate) const PARTS: [&str; 14] = [
         GRID,
         TICKS,
         BORDERS,
+        BEFORE_REVIEW,
         INPUT_STEP,
         MEASURED,
         SMOOTHED,
@@ -157,6 +162,8 @@ pub(crate) mod drawing {
 /// The record on one sheet, on which the segment under the cursor is framed.
 pub(crate) mod map {
     pub(crate) const ROOT: &str = "map";
+    /// The same with the delays, on a page of its own.
+    pub(crate) const LARGE: &str = "map_of_record";
     pub(crate) use crate::recording::paths::GRID;
     pub(crate) const TICKS: &str = "ticks";
     pub(crate) const INPUT: &str = "input";

@@ -57,8 +57,8 @@ const WITHOUT_STEPS: &str = "**No steps**: what is found of the whole record is 
 const OPENING_COMPARED: &str = "**The most different decision**; on `decision` the right arrow \
 begins with the first step.";
 
-const HINT: &str = "**These plots run along the record: choose `sample`, `time` or `decision` at \
-the bottom left** (now there is the name of another timeline).";
+const HINT: &str = "**The whole record is drawn below.** To move along it choose `sample`, `time` or \
+`decision` at the bottom left, and the tab *Along …*.";
 
 /// A timeline of candidates stretches the record.
 const AXIS: &str = "*`decision` counts candidates: choose `time` for an axis in seconds*";

@@ -1,7 +1,7 @@
 //! Drawings that change along a timeline: a row per drawing, one call per entity.
 
 use rerun::datatypes::Vec2D;
-use rerun::{Color, EntityPath, LineStrips2D, Points2D};
+use rerun::{Color, EntityPath, LineStrips2D, Points2D, SerializedComponentColumn};
 
 use super::canvas::Labels;
 use super::chunk::{Chunks, Index};
@@ -58,6 +58,54 @@ impl<'c> Rows<'c> {
         self.lines(path, style, lines, lengths)
     }
 
+    /// Strips whose colour is another one in each row.
+    pub(super) fn strips_by_row(
+        &mut self,
+        path: &str,
+        rgbs: &[Rgb],
+        radius: f32,
+        rows: impl Iterator<Item = Vec<Vec<Vec2D>>>,
+    ) -> Result<(), RecordError> {
+        let (strips, lengths) = flattened(rows);
+        let style = LineStrips2D::update_fields().with_radii([radius]);
+        self.lines(path, style, LineStrips2D::update_fields().with_strips(strips), lengths)?;
+        let colors = LineStrips2D::update_fields().with_colors(rgbs.iter().map(|rgb| color(*rgb)));
+        self.color(path, colors.columns_of_unit_batches()?)
+    }
+
+    /// Points whose colour is another one in each row.
+    pub(super) fn points_by_row(
+        &mut self,
+        path: &str,
+        rgbs: &[Rgb],
+        radius: f32,
+        rows: impl Iterator<Item = Vec<Vec2D>>,
+    ) -> Result<(), RecordError> {
+        self.points(path, None, radius, rows)?;
+        let colors = Points2D::update_fields().with_colors(rgbs.iter().map(|rgb| color(*rgb)));
+        self.color(path, colors.columns_of_unit_batches()?)
+    }
+
+    /// Texts whose colour is another one in each row.
+    pub(super) fn texts_by_row(
+        &mut self,
+        path: &str,
+        rgbs: &[Rgb],
+        rows: impl Iterator<Item = Labels>,
+    ) -> Result<(), RecordError> {
+        self.texts(path, None, rows)?;
+        let colors = Points2D::update_fields().with_colors(rgbs.iter().map(|rgb| color(*rgb)));
+        self.color(path, colors.columns_of_unit_batches()?)
+    }
+
+    fn color(
+        &mut self,
+        path: &str,
+        colors: impl Iterator<Item = SerializedComponentColumn>,
+    ) -> Result<(), RecordError> {
+        self.chunks.push(at(&self.root, path), self.index.clone(), colors)
+    }
+
     fn lines(
         &mut self,
         path: &str,
@@ -76,13 +124,16 @@ impl<'c> Rows<'c> {
     pub(super) fn points(
         &mut self,
         path: &str,
-        rgb: Rgb,
+        rgb: impl Into<Option<Rgb>>,
         radius: f32,
         rows: impl Iterator<Item = Vec<Vec2D>>,
     ) -> Result<(), RecordError> {
         let entity = at(&self.root, path);
         let (points, lengths) = flattened(rows);
-        let mut style = Points2D::update_fields().with_colors([color(rgb)]).with_radii([radius]);
+        let mut style = Points2D::update_fields().with_radii([radius]);
+        if let Some(rgb) = rgb.into() {
+            style = style.with_colors([color(rgb)]);
+        }
         if let Some(order) = self.next_order() {
             style = style.with_draw_order(order);
         }
@@ -94,11 +145,14 @@ impl<'c> Rows<'c> {
     pub(super) fn texts(
         &mut self,
         path: &str,
-        rgb: Rgb,
+        rgb: impl Into<Option<Rgb>>,
         rows: impl Iterator<Item = Labels>,
     ) -> Result<(), RecordError> {
         let entity = at(&self.root, path);
-        let style = Points2D::update_fields().with_colors([color(rgb)]).with_radii([HIDDEN]);
+        let mut style = Points2D::update_fields().with_radii([HIDDEN]);
+        if let Some(rgb) = rgb.into() {
+            style = style.with_colors([color(rgb)]);
+        }
         self.chunks.push_static(entity.clone(), &style.with_show_labels(true))?;
         let (mut places, mut texts, mut lengths) = (Vec::new(), Vec::new(), Vec::new());
         for labels in rows {

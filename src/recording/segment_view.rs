@@ -68,6 +68,10 @@ pub(super) fn add_drawings(
     ] {
         sheet.strips(path, rgb, 2.4, rows().map(|d| d.chosen(role)))?;
     }
+    if rows().any(|drawing| drawing.segment.decision.delay_before_review().is_some()) {
+        let before = rows().map(Drawing::before_review);
+        sheet.strips(drawing::BEFORE_REVIEW, palette::BORDER, 1.0, before)?;
+    }
     sheet.texts(drawing::NAMES, palette::BORDER, rows().map(Drawing::names))?;
     if rows().any(|drawing| drawing.segment.decision.fine.is_some()) {
         sheet.strips(drawing::INTERVAL, palette::BORDER, 1.6, rows().map(Drawing::interval))?;
@@ -159,7 +163,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let y = Span::around(values, 0.06);
         let left = figure.residual(trial.output());
         let heights = left.iter().map(|(_, y)| *y).chain([0.0]);
-        let residual = Plot::new(500.0..=568.0, x, Span::around(heights, 0.1));
+        let residual = Plot::new(494.0..=556.0, x, Span::around(heights, 0.1));
         Self {
             joint,
             trial,
@@ -187,7 +191,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let y_ticks = named(self.output.y_span().ticks(5.0));
         let mut strips = self.output.grid(&x_ticks, &y_ticks, &mut labels);
         let (_, residual) = &self.residual;
-        let ticks = named(residual.y_span().ticks(2.0));
+        let ticks = named(apart(residual.y_span().ticks(2.0), residual));
         strips.extend(residual.grid(&x_ticks, &ticks, &mut labels));
         strips.push(residual.level(0.0).to_vec());
         let errors = self.error.y_span().ticks(3.0);
@@ -213,7 +217,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
     /// What the chosen lines leave, thinned; the line breaks where they do.
     fn residual(&self) -> Vec<Vec<Vec2D>> {
         let (all, plot) = &self.residual;
-        let q = self.segment.decision.candidates.best().map_or(0.0, |best| best.breakpoint as f64);
+        let q = self.segment.decision.shown_candidate().map_or(0.0, |best| best.breakpoint as f64);
         let parts = all.split_at(all.partition_point(|(k, _)| *k < q));
         let curve = |part: &[(f64, f64)]| {
             let heights: Vec<f64> = part.iter().map(|(_, y)| *y).collect();
@@ -241,7 +245,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
     /// The chosen pair, a mark on the error curve, and the delay as a distance.
     fn best(&self) -> Vec<Vec<Vec2D>> {
         let decision = self.segment.decision;
-        let Some((best, delay)) = decision.candidates.best().zip(decision.delay()) else {
+        let Some((best, delay)) = decision.shown_candidate().zip(decision.delay()) else {
             return Vec::new();
         };
         let p = decision.input_step.sample as f64;
@@ -282,6 +286,14 @@ impl<'l, 'a> Drawing<'l, 'a> {
         lines.into_iter().chain(bar).collect()
     }
 
+    /// The program's lines and breakpoint, where a reviewer put another one.
+    fn before_review(&self) -> Vec<Vec<Vec2D>> {
+        let decision = self.segment.decision;
+        let found = decision.candidates.best().zip(decision.delay_before_review());
+        let p = decision.input_step.sample as f64;
+        found.map_or_else(Vec::new, |(best, delay)| self.pair(&best, p + delay).to_vec())
+    }
+
     /// Where the delay may end: a bar from one end of its interval to the other.
     fn interval(&self) -> Vec<Vec<Vec2D>> {
         let decision = self.segment.decision;
@@ -308,9 +320,12 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let p = decision.input_step.sample as f64;
         let step = format!("p = {}", decision.input_step.sample);
         let mut names = vec![(self.output.x(p), step)];
-        if let Some((best, delay)) = decision.candidates.best().zip(decision.delay()) {
+        if let Some((best, delay)) = decision.shown_candidate().zip(decision.delay()) {
             let place = self.segment.place().unwrap_or_default();
-            let text = format!("q = {place}, SSE = {}", number(best.sse));
+            let text = match decision.delay_before_review() {
+                None => format!("q = {place}, SSE = {}", number(best.sse)),
+                Some(_) => format!("q = {place} by a reviewer"),
+            };
             names.push((self.output.x(p + delay), text));
         }
         if let [(at_p, step), (at_q, text)] = &mut names[..] {
@@ -320,6 +335,11 @@ impl<'l, 'a> Drawing<'l, 'a> {
                 let middle = f32::midpoint(*at_p, *at_q);
                 (*at_p, *at_q) = (middle - side * of_p, middle + side * of_q);
             }
+        }
+        if let Some((best, delay)) = decision.candidates.best().zip(decision.delay_before_review())
+        {
+            let (q, sse) = (number(p + delay), number(best.sse));
+            names.push((self.output.x(p + delay), format!("program: q = {q}, SSE = {sse}")));
         }
         let ends = [("r", decision.segment.first), ("end", decision.segment.last)];
         names.extend(ends.map(|(name, k)| (self.output.x(k as f64), format!("{name} = {k}"))));
@@ -341,7 +361,8 @@ impl<'l, 'a> Drawing<'l, 'a> {
         let p = decision.input_step.sample as f64;
         if let Some(delay) = decision.delay() {
             let seconds = number(delay * self.trial.trial.period().seconds());
-            let interval = decision.fine.map_or_else(String::new, |fine| {
+            let own = decision.fine.filter(|_| decision.delay_before_review().is_none());
+            let interval = own.map_or_else(String::new, |fine| {
                 format!(" ({} … {})", number(fine.low), number(fine.high))
             });
             let text = format!("δ = {}{interval} = {seconds} s", samples_text(delay));
@@ -350,8 +371,8 @@ impl<'l, 'a> Drawing<'l, 'a> {
         self.name_places(&mut labels);
         let output = bracketed("output", self.joint.output_unit.as_deref());
         labels.put_whole(Vec2D::new(62.0, 22.0), output);
-        labels.put(Vec2D::new(190.0, 470.0), "residual".to_owned());
-        labels.put(Vec2D::new(190.0, 578.0), "SSE (log)".to_owned());
+        labels.put(Vec2D::new(75.0, 442.0), "residual".to_owned());
+        labels.put(Vec2D::new(190.0, 550.0), "SSE (log)".to_owned());
         labels
     }
 }
@@ -359,6 +380,19 @@ impl<'l, 'a> Drawing<'l, 'a> {
 /// Whether two texts whose middles and halves these are would cover each other.
 fn collide(a: (f32, f32), b: (f32, f32)) -> bool {
     (a.0 - b.0).abs() < a.1 + b.1
+}
+
+/// Ticks without those whose text would cover that of the one before, in a small window.
+fn apart(ticks: Vec<f64>, plot: &Plot) -> Vec<f64> {
+    /// Height of a line of text on the sheet in a window of 1280 points.
+    const LINE: f32 = 46.0;
+    let mut kept: Vec<f64> = Vec::new();
+    for tick in ticks.into_iter().rev() {
+        if kept.last().is_none_or(|last| (plot.y(*last) - plot.y(tick)).abs() >= LINE) {
+            kept.push(tick);
+        }
+    }
+    kept
 }
 
 fn diamond(Vec2D([x, y]): Vec2D, radius: f32) -> Vec<Vec2D> {

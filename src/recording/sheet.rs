@@ -11,6 +11,9 @@ use super::paths::{self, at};
 use super::rows::HIDDEN;
 use crate::wording::number;
 
+/// How far above a plot its title is put: it covers no data in a window of 1280 points.
+const TITLE: f32 = 44.0;
+
 /// What all plots of a drawing have behind and around their data.
 #[derive(Debug, Default)]
 pub(super) struct Sheet {
@@ -37,7 +40,7 @@ impl Sheet {
         title: &str,
     ) {
         self.outline(plot, x_ticks, y_ticks);
-        self.put(plot.above(middle(plot.x_span()), 26.0), title);
+        self.put(plot.above(middle(plot.x_span()), TITLE), title);
     }
 
     /// Frame and grid of `plot`, with the ticks that are given.

@@ -91,7 +91,7 @@ fn log_line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>)
     let step = format!("{trials}step {:>3}", decision.number);
     let verdict = verdict(trial, decision);
     let at = format!("p {}", decision.input_step.sample);
-    let found = decision.candidates.best().zip(decision.delay());
+    let found = decision.shown_candidate().zip(decision.delay());
     let found = found.map_or_else(String::new, |(best, delay)| {
         let (q, sse) = (segment.place().unwrap_or_default(), number(best.sse));
         format!(", q {q}, δ {}, SSE {sse}", number(delay))
@@ -125,12 +125,19 @@ pub(super) fn in_short(
 fn verdict(trial: &TrialLayout<'_>, decision: &Decision) -> String {
     let period = trial.trial.period().seconds();
     let seconds = |delay: f64| format!("δ {}", seconds(decision, delay, period));
-    let by = decision.word.as_ref().map_or("", |_| "by a reviewer ");
-    match (decision.verdict(), decision.delay()) {
-        (Verdict::Rejected(Condition::Reviewer), _) => "✗ by a reviewer".to_owned(),
+    let program = match (decision.program_verdict(), decision.program_delay()) {
         (Verdict::Rejected(condition), _) => format!("✗ {}", condition.meaning()),
-        (Verdict::Accepted, delay) => format!("✓ {by}{}", delay.map_or_else(String::new, seconds)),
+        (Verdict::Accepted, delay) => format!("✓ {}", delay.map_or_else(String::new, seconds)),
+    };
+    if decision.word.is_some() {
+        let said = match (decision.verdict(), decision.delay()) {
+            (Verdict::Accepted, Some(delay)) => format!("✓ by a reviewer {}", seconds(delay)),
+            (Verdict::Accepted, None) => "✓ by a reviewer".to_owned(),
+            (Verdict::Rejected(_), _) => "✗ by a reviewer".to_owned(),
+        };
+        return format!("{said} (the program: {program})");
     }
+    program
 }
 
 /// Seconds: to a millisecond, and finer where delays are between samples.
@@ -182,7 +189,8 @@ fn document(facts: Facts<'_, '_>, methods: &str) -> String {
     let title = format!("### {name}{in_trial}: step {} of {of}", decision.number);
     let headline = facts.headline();
     let (doubt, conditions, quantities) = (facts.doubt(of), facts.conditions(), facts.quantities());
-    format!("{title}\n{headline}\n\n{doubt}\n{methods}\n{conditions}\n\n{quantities}\n")
+    let asked = facts.asked();
+    format!("{title}\n{headline}\n\n{doubt}\n{methods}\n{conditions}\n\n{quantities}\n\n{asked}\n")
 }
 
 /// The page on a decision, without other results.
@@ -285,7 +293,10 @@ impl Facts<'_, '_> {
                 let by = if by.is_empty() { "a reviewer".to_owned() } else { by };
                 let note = if note.is_empty() { note } else { format!("\n> {note}\n") };
                 let program = self.program_headline().replacen("## ", "", 1);
-                format!("## {said} (by {by})\n{note}\nThe program: {program}")
+                // A heading of its own has no stop behind it.
+                let program = program.replacen('\n', ".\n\n", 1);
+                let stop = if program.contains('\n') { "" } else { "." };
+                format!("## {said} (by {by})\n{note}\n**The program:** {program}{stop}\n")
             }
         }
     }
@@ -316,10 +327,10 @@ impl Facts<'_, '_> {
         let is_set = |check: &Check| check.outcome == Outcome::Passed;
         let held = decision.checks.iter().filter(is_set).count();
         format!(
-            "The slope changes from {before} to {after} {unit}/s there; {} that apply hold.\n",
+            "The slope changes from {before} to {after} {unit}/s there; {} met.\n",
             match held {
-                1 => "the one condition".to_owned(),
-                _ => format!("all {held} conditions"),
+                1 => "the one condition that applies is".to_owned(),
+                _ => format!("all {held} conditions that apply are"),
             }
         )
     }
@@ -341,7 +352,7 @@ impl Facts<'_, '_> {
             ("input step p".to_owned(), self.at(step.sample)),
             ("input".to_owned(), format!("{} → {}", input(step.before), input(step.after))),
             (
-                "held for".to_owned(),
+                "input keeps this level for".to_owned(),
                 format!(
                     "{} = {}",
                     counted(decision.hold, "sample"),
@@ -359,8 +370,17 @@ impl Facts<'_, '_> {
             let samples = decision.delay().unwrap_or(best.delay as f64);
             let delay = format!("**{} = {}**", samples_text(samples), self.delay(samples));
             let count = decision.candidates.len();
+            let breakpoint = match decision.delay_before_review().and(self.segment.place()) {
+                Some(place) => format!("sample {place}, by a reviewer"),
+                None => self.breakpoint(candidate.breakpoint),
+            };
+            if let Some(delay) = decision.delay_before_review() {
+                let program = format!("{} = {}", samples_text(delay), self.delay(delay));
+                let place = self.at(candidate.breakpoint);
+                rows.push(("the program's δ and q".to_owned(), format!("{program}; {place}")));
+            }
             rows.extend([
-                ("breakpoint q".to_owned(), self.breakpoint(candidate.breakpoint)),
+                ("breakpoint q".to_owned(), breakpoint),
                 ("candidate f".to_owned(), format!("{} of {count}", candidate.f)),
                 ("**delay δ = q − p**".to_owned(), delay),
                 (
@@ -431,6 +451,18 @@ impl Facts<'_, '_> {
         };
         let rows: Vec<_> = self.segment.decision.checks.iter().map(row).collect();
         format!("| | met when | value (limit) |\n|---|---|---|\n{}", rows.join("\n"))
+    }
+
+    /// What the conditions ask that were checked; `–` has no limit, or nothing to compare.
+    fn asked(&self) -> String {
+        let checks = self.segment.decision.checks.iter();
+        let checked = checks.filter(|check| check.outcome != Outcome::NotChecked);
+        let asked = checked.map(|check| {
+            let condition = check.condition;
+            format!("- *{}* (`{condition}`): {}", condition.when_met(), condition.asks())
+        });
+        let asked: Vec<_> = asked.collect();
+        format!("What the conditions ask (–: no limit, not checked):\n\n{}", asked.join("\n"))
     }
 
     /// Value and what it must be, as narrow as a cell is: `q = 11070 (≥ p = 11069)`.

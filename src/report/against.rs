@@ -15,7 +15,7 @@ pub fn against_table<'a>(joints: impl IntoIterator<Item = (&'a str, &'a AgainstS
         confounded
             .extend(confounded_sentences(found).into_iter().map(|one| format!("{joint}: {one}\n")));
     }
-    let note = "Spearman's rank correlation; `yes`: p at most 0.05 after Holm's correction";
+    let note = format!("{CORRECTED}; `yes`: p at most 0.05");
     format!("{table}\n{note}\n{}", confounded.concat())
 }
 
@@ -35,6 +35,10 @@ pub(super) fn confounded_sentences(found: &AgainstState) -> Vec<String> {
     };
     found.kinds.iter().flat_map(of_kind).collect()
 }
+
+/// What is said once of every p-value of the delay against the state.
+pub(super) const CORRECTED: &str = "Spearman's rank correlation ρ of the delay with each quantity, \
+                                    and p after Holm's correction for their number";
 
 /// What the cells of [`against_rows`] are.
 pub(super) const AGAINST_HEADER: [&str; 7] =
@@ -62,13 +66,13 @@ fn kind_rows(joint: &str, kind: &AgainstOfKind) -> Vec<[String; 7]> {
 }
 
 fn correlation_row(found: &Correlation) -> [String; 5] {
-    let Correlation { variable, unit, steps, rho, p_value, significant, .. } = found;
+    let Correlation { variable, unit, steps, rho, p_value, p_holm, significant } = found;
     let rho = rho.map_or_else(|| "-".to_owned(), |rho| format!("{rho:+.2}"));
     [
         variable_text(variable, unit.as_deref()),
         steps.to_string(),
         rho,
-        p_cell(*p_value),
+        p_cell(*p_holm),
         answer(p_value.map(|_| *significant)),
     ]
 }
@@ -79,12 +83,12 @@ pub(crate) fn variable_text(variable: &str, unit: Option<&str>) -> String {
 }
 
 fn direction_row(found: &Direction) -> [String; 5] {
-    let Direction { up, down, median_difference_s, p_value, significant, .. } = found;
+    let Direction { up, down, median_difference_s, p_value, p_holm, significant } = found;
     let difference = median_difference_s
         .map_or_else(|| "-".to_owned(), |seconds| format!("up - down {seconds:+.3} s"));
     let steps = format!("{up} up, {down} down");
     let significant = p_value.map(|_| *significant);
-    ["direction".to_owned(), steps, difference, p_cell(*p_value), answer(significant)]
+    ["direction".to_owned(), steps, difference, p_cell(*p_holm), answer(significant)]
 }
 
 fn answer(significant: Option<bool>) -> String {

@@ -2,7 +2,7 @@
 
 use super::EstimatedJoint;
 use super::summary::{DelayRange, JointSummary};
-use crate::delay::InputStep;
+use crate::delay::{Bounds, DeadTime, Finding, InputStep};
 use crate::effect::{InputChange, Stage};
 use crate::fit::{AssessedModel, Status};
 use crate::model::Component;
@@ -33,6 +33,9 @@ fn why_shorter(of: &AssessedModel) -> String {
 pub(super) fn model_delay(of: &AssessedModel, measured: EstimatedJoint<'_>) -> Option<String> {
     let is_law = |component: &&Component| component.effect().spec().stage == Stage::Transport;
     let laws: Vec<&Component> = of.model.components().iter().filter(is_law).collect();
+    if let Some(found) = &measured.estimate.dead_time {
+        return if laws.is_empty() { over_the_record(of, found) } else { None };
+    }
     let summary = JointSummary::of(measured);
     let range = summary.delay_s.filter(|_| summary.accepted >= FEWEST)?;
     if laws.is_empty() { constant(of, range) } else { held_law(of, &laws, measured) }
@@ -81,6 +84,30 @@ fn accepted(measured: EstimatedJoint<'_>) -> Vec<(InputChange, f64)> {
         }
     }
     accepted
+}
+
+/// Of a constant delay beside the dead time of an input that moves all the time, where it lies
+/// outside the interval of that.
+fn over_the_record(of: &AssessedModel, found: &DeadTime) -> Option<String> {
+    let (Finding::Known(Bounds { low_s, high_s, .. })
+    | Finding::LagOnly(Bounds { low_s, high_s, .. })) = found.finding
+    else {
+        return None;
+    };
+    let delay = of.parameters.iter().find(|parameter| parameter.name == "delay")?;
+    let (value, leeway) = (delay.value, BY_CHANCE * delay.std_error.unwrap_or(0.0));
+    let is_held = delay.status == Status::Fixed;
+    let interval = format!("the dead time of the record ({low_s:.3} to {high_s:.3} s)");
+    let how = if is_held { "held" } else { "fitted" };
+    let why_longer =
+        "with it the fit makes up for a motion that the model has too fast, or too early";
+    if value + leeway < low_s {
+        Some(format!("The {how} delay, {value:.3} s, is below {interval}: {}.", why_shorter(of)))
+    } else if value - leeway > high_s {
+        Some(format!("The {how} delay, {value:.3} s, is above {interval}: {why_longer}."))
+    } else {
+        None
+    }
 }
 
 fn constant(of: &AssessedModel, measured: DelayRange) -> Option<String> {

@@ -121,7 +121,7 @@ mod tests {
         let columns = Columns { left: 0.0, names: (300.0, 300.0), right: 650.0 };
         let bars = Bars::new(columns, (2, 10), 1.0);
         let length = |row, value| {
-            let lines = bars.bar(row, value, color(palette::REVISION));
+            let lines = bars.bar(row, value, color(palette::model(0)));
             let ends = lines.first().map(|(line, _)| (line[0].x(), line[1].x(), line[0].y()));
             ends.unwrap()
         };

@@ -80,24 +80,27 @@ fn title(joint: &Joint, shown: Shown) -> String {
 /// Adds the points, and the laws drawn through them.
 pub(super) fn add(rows: &mut Rows<'_>, evidence: &Evidence) -> Result<(), RecordError> {
     let figures = || evidence.figures.iter();
-    for (name, which, rgb, radius) in [
-        ("before", 1, palette::BEFORE, 2.0),
-        ("proposed", 2, palette::PROPOSED, 2.0),
-        ("law", 0, palette::REVISION, 3.0),
-    ] {
-        rows.strips(name, rgb, radius, figures().map(|figure| figure.curve(which)))?;
+    let own: Vec<_> = (0..evidence.figures.len()).map(palette::model).collect();
+    // The first one has none before it.
+    let before: Vec<_> = own.first().into_iter().chain(&own).take(own.len()).copied().collect();
+    let proposed = vec![palette::PROPOSED; own.len()];
+    let fallen = vec![palette::DOWN; own.len()];
+    for (name, which, rgbs, radius) in
+        [("before", 1, &before, 2.0), ("proposed", 2, &proposed, 2.0), ("law", 0, &own, 3.0)]
+    {
+        rows.strips_by_row(name, rgbs, radius, figures().map(|figure| figure.curve(which)))?;
     }
     rows.strips(sheet::UNCERTAIN, palette::MEASURED, 0.8, figures().map(Figure::uncertain))?;
-    rows.points(sheet::SIMULATED, palette::REVISION, 3.5, figures().map(Figure::simulated))?;
+    rows.points_by_row(sheet::SIMULATED, &own, 3.5, figures().map(Figure::simulated))?;
     rows.points(sheet::POINTS, palette::MEASURED, 4.0, figures().map(Figure::measured))?;
     rows.points(sheet::FALLEN, palette::DOWN, 4.0, figures().map(Figure::fallen))?;
-    for (name, which, rgb) in [
-        ("law_name", 0, palette::REVISION),
-        ("before_name", 1, palette::BEFORE),
-        ("proposed_name", 2, palette::PROPOSED),
-        (sheet::FALLEN_NAME, 3, palette::DOWN),
+    for (name, which, rgbs) in [
+        ("law_name", 0, &own),
+        ("before_name", 1, &before),
+        ("proposed_name", 2, &proposed),
+        (sheet::FALLEN_NAME, 3, &fallen),
     ] {
-        rows.texts(name, rgb, figures().map(|figure| figure.legend(which)))?;
+        rows.texts_by_row(name, rgbs, figures().map(|figure| figure.legend(which)))?;
     }
     Ok(())
 }

@@ -43,7 +43,7 @@ impl<'r> Ladder<'r> {
 
     fn bars(&self, at: usize) -> Vec<(Vec<Vec2D>, Color)> {
         let bar = |(row, rung): (usize, &Rung<'_>)| {
-            let rgb = palette::REVISION;
+            let rgb = palette::model(row);
             let shade = if row == at { rgb } else { palette::dimmed(rgb) };
             self.bars.bar(row, rung.error, color(shade))
         };

@@ -63,12 +63,12 @@ impl Still {
         self.levels().into_iter().map(|level| (level, self.speed(model, level))).collect()
     }
 
-    /// `revision 9 (orange)`; where what `model` makes of a level depends on where the joint is, with
+    /// `revision 9`; where what `model` makes of a level depends on where the joint is, with
     /// the output of the law: `revision 9 (line: at -45 deg)`.
     pub(super) fn legend(&self, number: u32, model: &JointModel, joint: &Joint) -> String {
         let aside = Self { angle: self.angle + 0.5 * (self.highest - self.angle), ..*self };
         if are_alike(&self.law(model), &aside.law(model)) {
-            return format!("revision {number} (orange)");
+            return format!("revision {number}");
         }
         let output = measure(self.angle, joint.output_unit.as_deref());
         format!("revision {number} (line: at {output})")
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn a_law_says_where_it_is_only_if_it_depends_on_that() {
         let (still, plain) = (Still::of(&joint(), Shown::Speed), JointModel::integrator(10.0, 0.2));
-        assert_eq!(still.legend(3, &plain, &joint()), "revision 3 (orange)");
+        assert_eq!(still.legend(3, &plain, &joint()), "revision 3");
         let slower = Component::new(&PositionGain, vec![0.2.into(), 0.0.into(), 0.0.into()]);
         let bent = plain.with(slower.unwrap());
         assert_eq!(still.legend(4, &bent, &joint()), "revision 4 (line: at 2.5 deg)");

@@ -17,4 +17,4 @@ mod residual;
 mod words;
 
 pub(super) use pages::{SIZE, add};
-pub(super) use record::SIZE as RECORD_SIZE;
+pub(super) use record::{SIZE as RECORD_SIZE, add as add_record};

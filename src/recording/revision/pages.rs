@@ -45,7 +45,9 @@ pub(in crate::recording) fn add(
     let mut steps = Steps { chunks, root, numbers, index };
     steps.figures(improved)?;
     steps.words(layout, improved)?;
-    record::add(&mut steps.rows(paths::record::ROOT), layout, improved)?;
+    let models: Vec<_> = improved.revisions.iter().map(|revision| &revision.comparison).collect();
+    let joint = improved.finding.compared.joint;
+    record::add(&mut steps.rows(paths::record::ROOT), layout, joint, &models)?;
     let evidence = evidence::evidence(improved);
     steps.evidence(&evidence)?;
     let mut rows = steps.rows(paths::sheet::ROOT);
@@ -156,13 +158,14 @@ impl Steps<'_> {
             comparison,
             ..improved.finding.compared
         };
-        let of_each = improved.numbered().map(|(number, revision)| {
-            error_share::Drawing::of(&[&compared(number, &revision.comparison)])
+        let of_each = improved.numbered().zip(0..).map(|((number, revision), place)| {
+            let shares = error_share::Drawing::of(&[&compared(number, &revision.comparison)]);
+            (shares, palette::model(place))
         });
         let (mut grids, mut texts) = (Vec::new(), Vec::new());
         let (mut bars, mut marks) = (Vec::new(), Vec::new());
-        for drawing in of_each {
-            bars.push(drawing.filling());
+        for (drawing, rgb) in of_each {
+            bars.push(drawing.filling(rgb));
             let (grid, labels) = drawing.sheet.into_parts();
             grids.push(grid);
             texts.push(labels);

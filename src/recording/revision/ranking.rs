@@ -25,7 +25,7 @@ pub(super) fn add(rows: &mut Rows<'_>, improved: &ImprovedJoint<'_>) -> Result<(
         let candidates = all
             .iter()
             .map(|one| (one.error, if one.is_taken { palette::PROPOSED } else { palette::RAW }));
-        let own = std::iter::once((judged(&revision.comparison), palette::REVISION));
+        let own = std::iter::once((judged(&revision.comparison), palette::model(at)));
         let bar = |(row, (error, rgb))| bars.bar(row, error, color(rgb));
         let all: Vec<(Vec<Vec2D>, Color)> =
             own.chain(candidates).enumerate().flat_map(bar).collect();

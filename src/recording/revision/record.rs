@@ -1,9 +1,12 @@
 //! The whole record: what was measured, what a revision simulates, and the residual.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
-use crate::diagnosis::Comparison;
 use crate::diagnosis::failure::WorstSegment;
+use rerun::datatypes::Vec2D;
+
+use crate::diagnosis::{Comparison, sensor_noise};
+use crate::experiment::Joint;
 use crate::figure::ladder::judged;
 use crate::recording::canvas::{Plot, SHEET, Span, Strips, simplified, thinned_to};
 use crate::recording::error::RecordError;
@@ -14,17 +17,17 @@ use crate::recording::paths::revision::record;
 use crate::recording::rows::Rows;
 use crate::recording::shaded::{Spans, areas, condition, validation, where_it_fails};
 use crate::recording::sheet::Sheet;
-use crate::report::ImprovedJoint;
 use crate::units::floor_to_index;
 use crate::wording::{bracketed, misfit_units, rounded};
 
-use super::figure::noise;
-
 /// Width and height of the sheet.
-pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 620.0);
+pub(in crate::recording) const SIZE: (f32, f32) = (SHEET.0, 690.0);
+
+/// Top and bottom of the plots of the output: above them their titles.
+const ROWS: RangeInclusive<f32> = 56.0..=292.0;
 
 /// How far above the plot the ranks of the worst segments stand: between their bars and the title.
-const RANKS: f32 = 14.0;
+const RANKS: f32 = 40.0;
 
 /// Points of a curve: two for each of 1500 columns of pixels.
 const POINTS: usize = 3000;
@@ -32,19 +35,21 @@ const POINTS: usize = 3000;
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
 
-/// Adds the drawings of all revisions.
-pub(super) fn add(
+/// Adds the drawings of models of `joint`, which follow one another on the timeline of `rows`.
+pub(in crate::recording) fn add(
     rows: &mut Rows<'_>,
     layout: &JointLayout<'_>,
-    improved: &ImprovedJoint<'_>,
+    joint: &Joint,
+    models: &[&Comparison],
 ) -> Result<(), RecordError> {
-    let drawing = Drawing::of(layout);
-    let of_each = || improved.revisions.iter().map(|revision| &revision.comparison);
+    let drawing = Drawing::of(layout, joint);
+    let of_each = || models.iter().copied();
     let residuals: Vec<Plot> = of_each().map(|c| drawing.residual_plot(c)).collect();
     let close_ups: Vec<CloseUp> = of_each().map(|c| CloseUp::of(layout, c)).collect();
-    let sheet =
-        |((comparison, plot), close)| drawing.sheet(improved, comparison, plot, close).into_parts();
-    let sheets = of_each().zip(&residuals).zip(&close_ups).map(sheet);
+    let sheet = |(((comparison, plot), close), number)| {
+        drawing.sheet(comparison, plot, close, palette::name(number)).into_parts()
+    };
+    let sheets = of_each().zip(&residuals).zip(&close_ups).zip(0..).map(sheet);
     let (grids, texts): (Vec<_>, Vec<_>) = sheets.unzip();
     for (path, rgb, spans) in [
         (record::VALIDATION, palette::UNSEEN_GROUND, validation as fn(&Comparison) -> Spans),
@@ -62,20 +67,24 @@ pub(super) fn add(
         close_ups.iter().map(|close| drawing.outputs(close, |trial| trial.trial.output()));
     rows.strips(record::MEASURED, palette::MEASURED, 3.0, measured)?;
     let simulated = of_each().zip(&close_ups).map(|(c, close)| drawing.simulated(c, close));
-    rows.strips(record::SIMULATED, palette::REVISION, 1.2, simulated)?;
+    let own: Vec<_> = (0..models.len()).map(palette::model).collect();
+    rows.strips_by_row(record::SIMULATED, &own, 1.2, simulated)?;
     let of_plots = || of_each().zip(&residuals);
     let curves = of_plots().map(|(comparison, plot)| drawing.residual(comparison, plot));
-    rows.strips(record::RESIDUAL, palette::REVISION, 1.0, curves)?;
+    rows.strips_by_row(record::RESIDUAL, &own, 1.0, curves)?;
     let worst = of_plots().map(|(comparison, plot)| worst(layout, comparison, plot));
     rows.strips(record::WORST, palette::REJECTED, 3.0, worst)?;
     // The noise is the sensor's, whatever the model.
-    let noise = noise(improved).filter(|noise| *noise > 0.0);
+    let noise = drawing.noise;
     rows.strips(record::NOISE, palette::NOISE, 1.0, residuals.iter().map(|p| band(p, noise)))
 }
 
 /// Where the curves lie on the sheet.
 struct Drawing<'l, 'a> {
     layout: &'l JointLayout<'a>,
+    joint: &'l Joint,
+    /// The noise of the sensor, where there is some.
+    noise: Option<f64>,
     output: Plot,
     /// Seconds of the whole record.
     x: Span,
@@ -96,7 +105,10 @@ impl CloseUp {
         let window = named.unwrap_or_else(|| Window::worst(&residuals(layout, comparison)));
         let trial = layout.trials.get(window.place).filter(|_| layout.trials.len() > 1);
         let title = trial.map_or_else(
-            || "close up: the largest residual".to_owned(),
+            || match worst {
+                Some(_) => "close up: worst segment 1".to_owned(),
+                None => "close up: where the residual is largest".to_owned(),
+            },
             |trial| match worst {
                 Some(_) => format!("segment 1: trial {}", trial.trial.label()),
                 None => format!("largest residual: trial {}", trial.trial.label()),
@@ -155,14 +167,16 @@ impl Window {
 const PARTS: usize = 15;
 
 impl<'l, 'a> Drawing<'l, 'a> {
-    fn of(layout: &'l JointLayout<'a>) -> Self {
+    fn of(layout: &'l JointLayout<'a>, joint: &'l Joint) -> Self {
         let trials = &layout.trials;
         let ends = trials.iter().flat_map(|t| [seconds(t, 1), seconds(t, t.trial.len())]);
         let x = Span::around(ends, 0.005);
         let outputs = trials.iter().flat_map(|trial| trial.trial.output().iter().copied());
         Self {
             layout,
-            output: Plot::within((120.0, 900.0), 40.0..=290.0, x, Span::around(outputs, 0.08)),
+            joint,
+            noise: sensor_noise(&joint.trials).filter(|noise| *noise > 0.0),
+            output: Plot::within((120.0, 900.0), ROWS, x, Span::around(outputs, 0.08)),
             x,
             samples: trials.iter().map(|trial| trial.trial.len()).sum(),
         }
@@ -172,46 +186,55 @@ impl<'l, 'a> Drawing<'l, 'a> {
     /// one's.
     fn residual_plot(&self, comparison: &Comparison) -> Plot {
         let residuals = comparison.fit.evaluation.residuals.iter().flatten().copied();
-        Plot::new(382.0..=580.0, self.x, Span::around(residuals, 0.05))
+        Plot::new(446.0..=644.0, self.x, Span::around(residuals, 0.05))
     }
 
     fn sheet(
         &self,
-        improved: &ImprovedJoint<'_>,
         comparison: &Comparison,
         residual_plot: &Plot,
         close: &CloseUp,
+        color: &str,
     ) -> Sheet {
-        let unit = &improved.finding.compared.joint.output_unit;
-        let unit = bracketed("", unit.as_deref());
+        let unit = bracketed("", self.joint.output_unit.as_deref());
         let mut sheet = Sheet::default();
-        let horizon = improved.finding.compared.comparison.fit.evaluation.horizon;
-        let output = format!("measured (white) and simulated (orange){unit}, {horizon}");
-        sheet.frame(&self.output, &self.output.x_span().ticks(8.0), &ticks(&self.output), &output);
-        sheet.frame(&close.plot, &[], &ticks(&close.plot), &close.title);
-        let ends = close.plot.x_span();
-        for end in [ends.low, ends.high] {
-            sheet.put(close.plot.below(end, 2.0), format!("{} s", short(end)));
+        let horizon = comparison.fit.evaluation.horizon;
+        for (plot, x_ticks, title) in [
+            (
+                &self.output,
+                self.output.x_span().ticks(8.0),
+                format!("output{unit}: measured white, simulated {color}"),
+            ),
+            (&close.plot, Vec::new(), close.title.clone()),
+        ] {
+            sheet.outline(plot, &x_ticks, &ticks(plot));
+            sheet.put(plot.above(middle(plot), 46.0), title);
         }
-        let floor = noise(improved).filter(|noise| *noise > 0.0);
+        let ends = close.plot.x_span();
+        // Moved inward: at the corner it would cover the lowest tick of the output.
+        for (end, inward) in [(ends.low, 45.0), (ends.high, -45.0)] {
+            let Vec2D([x, y]) = close.plot.below(end, 2.0);
+            sheet.put(Vec2D::new(x + inward, y), format!("{} s", short(end)));
+        }
         let times =
-            floor.map(|noise| format!(" ({} × noise)", rounded(judged(comparison) / noise)));
-        let units = misfit_units(improved.finding.compared.joint);
-        let fails = condition(comparison).map_or_else(String::new, |condition| {
+            self.noise.map(|noise| format!(": {} × noise", rounded(judged(comparison) / noise)));
+        let units = misfit_units(self.joint);
+        let fails = condition(comparison).map(|condition| {
             let clauses: Vec<_> = condition.clauses.iter().map(|it| it.with_unit(&units)).collect();
-            format!("; red: {}", clauses.join(" and "))
+            format!("red: {}", clauses.join(" and "))
         });
         let spans = worst_spans(self.layout, comparison);
-        let bars = if spans.is_empty() { "" } else { "; bars 1, 2, …: worst segments" };
-        let residual = format!(
-            "residual{unit}{}; between blue lines: 95 % of the noise{bars}; grey: not fitted{fails}",
-            times.unwrap_or_default(),
-        );
+        let bars = (!spans.is_empty()).then(|| "bars: worst segments".to_owned());
+        let noise = self.noise.map(|_| "blue lines: 95 % of the noise".to_owned());
+        let grey = (!comparison.per_step.is_empty()).then(|| "grey: not fitted".to_owned());
+        let key: Vec<String> = [noise, bars, grey, fails].into_iter().flatten().collect();
+        let residual = format!("residual{unit}, {horizon}{}", times.unwrap_or_default());
         let x_ticks = residual_plot.x_span().ticks(10.0);
         // Its title lies above the bars of the worst segments, not on them.
         sheet.outline(residual_plot, &x_ticks, &ticks(residual_plot));
-        let Span { low, high } = residual_plot.x_span();
-        sheet.put(residual_plot.above(f64::midpoint(low, high), 50.0), residual);
+        // Two rows: one of all of it is wider than a small window.
+        sheet.put(residual_plot.above(middle(residual_plot), 112.0), residual);
+        sheet.put(residual_plot.above(middle(residual_plot), 78.0), key.join(" · "));
         for x in x_ticks {
             sheet.put(residual_plot.below(x, 2.0), short(x));
         }
@@ -331,7 +354,12 @@ fn close_up(layout: &JointLayout<'_>, window: &Window, simulated: &[f64]) -> Plo
     let (lowest, highest) = (2.0 * low - high, 2.0 * high - low);
     let shown = simulated.iter().filter(|y| y.is_finite()).map(|y| y.clamp(lowest, highest));
     let x = Span::around(ends.into_iter().flatten(), 0.0);
-    Plot::within((1010.0, SHEET.0 - 15.0), 40.0..=290.0, x, Span::around(output.chain(shown), 0.08))
+    Plot::within((1010.0, SHEET.0 - 15.0), ROWS, x, Span::around(output.chain(shown), 0.08))
+}
+
+fn middle(plot: &Plot) -> f64 {
+    let Span { low, high } = plot.x_span();
+    f64::midpoint(low, high)
 }
 
 fn ticks(plot: &Plot) -> Vec<(f64, String)> {

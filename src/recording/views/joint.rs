@@ -16,7 +16,7 @@ use crate::experiment::Joint;
 use crate::recording::blueprint::{Builder, Node, View, bounds, clickable};
 use crate::recording::canvas::SHEET;
 use crate::recording::error::RecordError;
-use crate::recording::overview::{MAP_HEIGHT, MAP_WIDTH};
+use crate::recording::overview::{LARGE_HEIGHT, MAP_HEIGHT, MAP_WIDTH};
 use crate::recording::palette;
 use crate::recording::paths::revision::{record, share, sheet};
 use crate::recording::paths::{
@@ -31,10 +31,13 @@ use crate::report::{ComparedJoint, EstimatedJoint, by_doubt};
 const LANES: &str =
     "Where the error of its speed arises; what was not fitted; worst segments (1 first)";
 
+/// What plots along the record are called: they are empty on timelines that have no samples.
+const ALONG: &str = "Along sample, time or decision";
+
 /// Numbers of the models that are drawn beside the measurement: of many revisions of one model the
 /// first and the last, since what came between is on the page of the revisions.
 fn drawn(models: usize, revisions: usize) -> Vec<usize> {
-    if revisions > 0 && models > palette::NAMES.len() {
+    if revisions > 0 && models > palette::NAMED {
         vec![0, models - 1]
     } else {
         (0..models).collect()
@@ -145,9 +148,18 @@ struct Views<'b, 'i> {
     revisions: usize,
 }
 
-/// Columns of the table of candidates.
-const CANDIDATE_COLUMNS: [&str; 8] =
-    ["i", "j", "q", "delta", "sse_shown", "slope_before_shown", "slope_after_shown", "f"];
+/// Columns of the table of candidates, in the order in which a viewer shows them.
+const CANDIDATE_COLUMNS: [&str; 9] = [
+    "1_rank",
+    "2_delay_s",
+    "3_squared_error",
+    "4_times_least",
+    "5_verdict",
+    "i",
+    "q",
+    "slope_after_shown",
+    "slope_before_shown",
+];
 
 impl Views<'_, '_> {
     /// The entity at `path` below the joint.
@@ -285,8 +297,8 @@ impl Views<'_, '_> {
             }
             None => delay,
         })?;
-        let mut rows = vec![self.place()?, input, output, delay];
-        let mut shares = vec![0.9, 1.1, 3.1, 1.6];
+        let mut rows = vec![input, output, delay];
+        let mut shares = vec![1.1, 3.1, 1.6];
         if !self.joint.covariates.is_empty() {
             let root = self.at(paths::COVARIATE);
             let all = self.joint.covariates.iter().map(|signal| child(&root, &signal.name));
@@ -299,7 +311,17 @@ impl Views<'_, '_> {
         }
         rows.push(self.view(self.lanes(lanes, &shown))?);
         shares.push(if self.joint.trials.len() > 1 { 2.6 } else { 2.1 });
-        self.builder.container(ContainerKind::Vertical, "Record", &rows, &shares)
+        let plots = self.builder.container(ContainerKind::Vertical, ALONG, &rows, &shares)?;
+        let size = (MAP_WIDTH, LARGE_HEIGHT);
+        let name = match steps {
+            Steps::Some => "Whole record, on every timeline: the framed step is under the cursor",
+            Steps::None => "Whole record, on every timeline",
+        };
+        let map = View::drawing(name, &self.at(map::LARGE), &map::PARTS, size);
+        let map = self.view(map)?;
+        let tabs = self.builder.container(ContainerKind::Tabs, "Record", &[map, plots], &[])?;
+        let rows = [self.place()?, tabs];
+        self.builder.container(ContainerKind::Vertical, "Record", &rows, &[1.1, 8.9])
     }
 
     /// The record of a joint whose input moves all the time, and its dead time in words.
@@ -354,21 +376,19 @@ impl Views<'_, '_> {
         let residuals: Vec<_> = of_each(paths::RESIDUAL);
         let outputs = [vec![self.at(paths::OUTPUT_RAW)], simulated].concat();
         // A model keeps its colour where others are not drawn.
-        let color = |number: &usize| palette::NAMES.get(*number).copied();
-        let colors: Option<Vec<&str>> = shown.iter().map(color).collect();
-        let (legend, colors) = match colors {
-            Some(colors) => {
+        let colors: Vec<&str> = shown.iter().map(|number| palette::name(*number)).collect();
+        let (legend, colors) = match colors.len() {
+            ..=palette::NAMED => {
                 let own = names.iter().zip(colors);
                 let own: Vec<_> = own.map(|(name, color)| format!("{name} {color}")).collect();
                 (Legend::InTitle, format!(": measured grey, {}", own.join(", ")))
             }
-            None => (Legend::Apart, String::new()),
+            _ => (Legend::Apart, String::new()),
         };
         let noise = [paths::NOISE_UPPER, paths::NOISE_LOWER].map(|path| self.at(path));
         let residuals = [noise.to_vec(), residuals].concat();
-        let rows = [
-            self.place()?,
-            self.plot(&format!("Measured and simulated ({horizon}){colors}"), &outputs, legend)?,
+        let plots = [
+            self.plot(&format!("Measured and simulated{colors}"), &outputs, legend)?,
             self.plot(
                 &format!("Residual ({horizon}); 95 % of the noise lies in the band"),
                 &residuals,
@@ -376,19 +396,36 @@ impl Views<'_, '_> {
             )?,
             self.plot("Input", &[self.at(paths::INPUT)], Legend::InTitle)?,
             self.lanes_of_models(models)?,
+        ];
+        let builder = &mut *self.builder;
+        let shares = [2.3, 1.8, 1.5, 2.9];
+        let plots = builder.container(ContainerKind::Vertical, ALONG, &plots, &shares)?;
+        let map = self.view(self.map_of_model())?;
+        // Models side by side are compared in the plots: the map is of the first one alone.
+        let tabs =
+            if models.len() > 1 && self.revisions == 0 { [plots, map] } else { [map, plots] };
+        let rows = [
+            self.place()?,
+            self.builder.container(ContainerKind::Tabs, "Record", &tabs, &[])?,
             self.residuals(&names, &shown)?,
         ];
         let builder = &mut *self.builder;
-        let plots = builder.container(
-            ContainerKind::Vertical,
-            "Plots",
-            &rows,
-            &[1.1, 2.3, 1.8, 1.5, 3.5, 3.2],
-        )?;
+        let plots = builder.container(ContainerKind::Vertical, "Plots", &rows, &[1.3, 7.2, 3.5])?;
         let page = [self.path(paths::MODEL_PAGE)];
         let page = self.view(View::new("TextDocument", "Models", &page))?;
         let columns = [plots, page];
         self.builder.container(ContainerKind::Horizontal, "Models", &columns, &[7.2, 2.8])
+    }
+
+    /// What is measured, simulated and left, on every timeline.
+    fn map_of_model(&self) -> View<'static> {
+        let root = if self.revisions > 0 {
+            at(&self.at(paths::revision::ROOT), record::ROOT)
+        } else {
+            self.at(paths::MODEL_MAP)
+        };
+        let name = "Whole record, on every timeline";
+        View::drawing(name, &root, &record::PARTS, revision::RECORD_SIZE)
     }
 
     /// The worst segments, what was not fitted to, and where the model fails.

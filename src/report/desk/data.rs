@@ -48,6 +48,7 @@ struct StepJson<'a> {
 struct ConditionJson {
     id: &'static str,
     meaning: &'static str,
+    asks: &'static str,
     value: Option<f64>,
     limit: Option<f64>,
     /// `true` where it is met, `null` where it was not checked.
@@ -61,8 +62,9 @@ impl From<Check> for ConditionJson {
             Outcome::Failed => Some(false),
             Outcome::NotChecked => None,
         };
-        let (id, meaning) = (check.condition.id(), check.condition.meaning());
-        Self { id, meaning, value: check.value, limit: check.limit, met }
+        let condition = check.condition;
+        let (id, meaning, asks) = (condition.id(), condition.meaning(), condition.asks());
+        Self { id, meaning, asks, value: check.value, limit: check.limit, met }
     }
 }
 

@@ -171,11 +171,12 @@ function show() {
   const body = by("conditions");
   body.replaceChildren(...s.conditions.map((c) => {
     const row = document.createElement("tr");
-    row.title = c.meaning;
+    row.title = c.met === false ? c.meaning : c.asks;
     const mark = c.met === null ? "–" : c.met ? "✓" : "✗";
     for (const text of [mark, c.id, number(c.value), number(c.limit)]) {
       row.appendChild(document.createElement("td")).textContent = text;
     }
+    row.children[1].appendChild(document.createElement("small")).textContent = c.asks;
     row.className = c.met === false ? "bad" : "";
     return row;
   }));

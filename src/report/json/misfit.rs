@@ -175,17 +175,20 @@ pub(super) struct WorstSegmentJson<'a> {
     start_s: f64,
     end_s: f64,
     rmse: f64,
+    largest_residual: f64,
     share_of_squared_error: f64,
 }
 
 impl<'a> WorstSegmentJson<'a> {
     /// With times by the clock of the log.
     pub(super) fn new(worst: &'a WorstSegment, joint: &Joint) -> Self {
-        let &WorstSegment { start_s, end_s, rmse, share_of_squared_error, .. } = worst;
+        let &WorstSegment {
+            start_s, end_s, rmse, largest_residual, share_of_squared_error, ..
+        } = worst;
         let trial = joint.trials.iter().find(|trial| trial.label() == worst.trial);
         let origin_s = trial.map_or(0.0, Trial::origin_s);
         let [start_s, end_s] = [start_s, end_s].map(|time_s| origin_s + time_s);
-        Self { trial: &worst.trial, start_s, end_s, rmse, share_of_squared_error }
+        Self { trial: &worst.trial, start_s, end_s, rmse, largest_residual, share_of_squared_error }
     }
 }
 
@@ -252,10 +255,11 @@ mod tests {
             start_s: 41.2,
             end_s: 43.0,
             rmse: 2.2,
+            largest_residual: -4.1,
             share_of_squared_error: 0.12,
             samples: 0..10,
         };
-        let expected = "trial start_s end_s rmse share_of_squared_error";
+        let expected = "trial start_s end_s rmse largest_residual share_of_squared_error";
         assert_eq!(keys(WorstSegmentJson::new(&worst, &joint)), expected);
     }
 }

@@ -11,7 +11,7 @@ use crate::figure::{Axis, Mark, Panel, Place, Shape};
 use crate::figure::{Span, thinned_to};
 use crate::report::EstimatedJoint;
 use crate::report::against::variable_text;
-use crate::wording::{bracketed, p_cell};
+use crate::wording::{bracketed, capitalized, p_cell};
 
 /// Steps between which the delay is drawn.
 const MOST_STEPS: usize = 2000;
@@ -219,10 +219,7 @@ fn caption(found: &AgainstState, variable: usize, name: &str) -> String {
     };
     let said: Vec<_> = found.kinds.iter().filter_map(of_kind).collect();
     let name = name.replace('_', " ");
-    format!(
-        "Delay against {name}, Spearman's rank correlation, p after Holm's correction; {}.",
-        said.join("; ")
-    )
+    format!("Delay against {name}. {}.", capitalized(&said.join("; ")))
 }
 
 /// An axis' name for the spread of delays of all joints.

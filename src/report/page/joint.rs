@@ -5,7 +5,7 @@ use super::plot::PlotError;
 use super::report::Report;
 use super::{dead_time, delays, model, record, segment};
 use crate::delay::{AgainstState, Condition, DelayTable, MethodSpec};
-use crate::report::against::{AGAINST_HEADER, against_rows, confounded_sentences};
+use crate::report::against::{AGAINST_HEADER, CORRECTED, against_rows, confounded_sentences};
 use crate::report::decisions::detailed_rows;
 use crate::report::delay_table::{LEVEL_HEADER, kind_sentence, level_cells, neutral_sentence};
 use crate::report::difference::difference_table;
@@ -114,11 +114,12 @@ fn delay_blocks(estimated: EstimatedJoint<'_>, file: &str) -> Result<Vec<Block>,
     blocks.extend(tracking_line(&estimated).map(|line| Block::text(line.trim_end())));
     blocks.extend(lag_line(&estimated).map(|line| Block::text(line.trim_end())));
     blocks.push(Block::Figures(vec![figure]));
+    let note = format!("{CORRECTED}: the delay depends on a quantity where p is at most 0.05.");
+    blocks.push(Block::text(note));
     blocks.push(Block::Figures(delays::against(&estimated.joint.name, &found, file)?));
     let table = Block::Table(against(&estimated.joint.name, &found));
-    let note = "Spearman's rank correlation; `yes`: p at most 0.05 after Holm's correction.";
     let summary = "What the delay depends on".to_owned();
-    let mut details = vec![table, Block::text(note)];
+    let mut details = vec![table];
     let confounded = confounded_sentences(&found);
     if !confounded.is_empty() {
         details.push(Block::List(confounded.iter().map(|one| sentence(one)).collect()));
@@ -242,20 +243,27 @@ fn rejections(estimated: EstimatedJoint<'_>) -> Vec<Block> {
     if summary.rejected.is_empty() {
         return Vec::new();
     }
-    let mut table = TextTable::new(["rejected as", "steps", "meaning"], &[1]);
+    let header = ["rejected as", "steps", "meaning", "what the condition asks"];
+    let mut table = TextTable::new(header, &[1]);
     for (condition, count) in &summary.rejected {
-        table.row([condition.to_string(), count.to_string(), condition.meaning().to_owned()]);
+        let [meaning, asks] = [condition.meaning(), condition.asks()].map(str::to_owned);
+        table.row([condition.to_string(), count.to_string(), meaning, asks]);
     }
-    vec![Block::part("Rejected steps"), Block::Table(table)]
+    let asked = Condition::ALL.map(|condition| format!("{condition}: {}.", condition.asks()));
+    let all = Block::Details {
+        summary: "What each condition asks".to_owned(),
+        blocks: vec![Block::List(asked.to_vec())],
+    };
+    vec![Block::part("Rejected steps"), Block::Table(table), all]
 }
 
 /// All decisions, numbers to five digits.
 fn decisions(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Block {
     let all = detailed_rows(estimated).count();
     let mut blocks = vec![Block::text(
-        "Sample numbers count from 1 within the trial: p is the step of the input, r and end \
-         are the first and the last sample of the segment, q is the breakpoint, δ = q − p the \
-         delay, SSE the squared error of both lines.",
+        "Sample numbers count from 1 within the trial: at the step sample the input changes, r and \
+         end are the first and the last sample of the segment, q is the breakpoint, δ, from the step \
+         sample to q, the delay, SSE the squared error of both lines.",
     )];
     if all > MOST_ROWS {
         blocks.push(Block::text(format!(
@@ -271,7 +279,7 @@ fn decisions(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> Block {
 fn decision_table(report: &Report<'_>, estimated: EstimatedJoint<'_>) -> TextTable {
     let unit = estimated.joint.output_unit.as_ref();
     let sse = unit.map_or_else(|| "SSE".to_owned(), |unit| format!("SSE [{unit}²]"));
-    let before = ["trial", "i", "p", "r", "end", "q", "δ [samples]", "δ [s]"];
+    let before = ["trial", "i", "step sample", "r", "end", "q", "δ [samples]", "δ [s]"];
     let method = report.settings.method.spec();
     let interval = method.has_intervals.then(|| "interval [samples]".to_owned());
     let header = before.map(str::to_owned).into_iter().chain(interval).chain([sse]);

@@ -9,6 +9,7 @@ use crate::figure::ladder::{self, Rung};
 use crate::figure::{Axis, Mark, Panel, Shape};
 use crate::report::consequence::noise_of;
 use crate::report::{ImprovedJoint, change_in_words};
+use crate::units::floor_to_index;
 use crate::wording::{bracketed, number};
 
 /// A bar for the error of each revision, and the noise as a line.
@@ -26,10 +27,16 @@ pub(super) fn figure(improved: &ImprovedJoint<'_>, file: String) -> Result<Figur
     let largest = ladder::largest(&rungs).max(f64::MIN_POSITIVE);
     let noise = noise_of(joint);
     let rows = || (0..).zip(&rungs);
-    let mut marks = vec![
-        Mark::new(Role::Model, Shape::Bars(rows().map(bar).collect())).named(judged_on(improved)),
-        Mark::new(Role::Ink, Shape::Words(rows().map(words).collect())),
-    ];
+    // A revision has its colour in all figures, and in the recording.
+    let bars = rows().map(|(row, rung)| {
+        let role = Role::of_revision(floor_to_index(f64::from(row)));
+        Mark::new(role, Shape::Bars(vec![bar((row, rung))]))
+    });
+    let mut marks: Vec<Mark> = bars.collect();
+    if let Some(first) = marks.first_mut() {
+        first.name = Some(judged_on(improved).to_owned());
+    }
+    marks.push(Mark::new(Role::Ink, Shape::Words(rows().map(words).collect())));
     marks.extend(noise.map(|noise| {
         Mark::new(Role::Noise, Shape::Verticals(vec![noise], 1.2)).named("noise of the sensor")
     }));

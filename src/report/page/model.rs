@@ -218,7 +218,7 @@ fn beside_the_measurement(
 ) -> Result<Vec<Block>, PlotError> {
     let compared = &improved.finding.compared;
     let split = report.split.unwrap_or_else(|| Split::of(compared.joint));
-    let figure = simulated::figure(compared, split, format!("{file}-simulated"))?;
+    let figure = simulated::figure(improved, split, format!("{file}-simulated"))?;
     let mut blocks = vec![Block::part("Measured and simulated"), Block::Figures(vec![figure])];
     let earlier = simulated::earlier(improved, format!("{file}-earlier-residuals"))?;
     blocks.extend(earlier.map(|figure| Block::Figures(vec![figure])));
@@ -232,8 +232,9 @@ fn beside_the_measurement(
 /// Where the last revision that fails does so; nothing where none fails.
 fn failures(improved: &ImprovedJoint<'_>, file: &str) -> Result<Vec<Block>, PlotError> {
     let fails = |revision: &Revision| revision.comparison.failure.is_some();
-    let failing = improved.numbered().filter(|(_, revision)| fails(revision)).last();
-    let Some((revision, step)) = failing else { return Ok(Vec::new()) };
+    let failing =
+        improved.numbered().enumerate().filter(|(_, (_, revision))| fails(revision)).last();
+    let Some((place, (revision, step))) = failing else { return Ok(Vec::new()) };
     let last = improved.finding.compared;
     let compared = ComparedJoint { revision, comparison: &step.comparison, ..last };
     let heading = if revision == last.revision {
@@ -253,7 +254,7 @@ fn failures(improved: &ImprovedJoint<'_>, file: &str) -> Result<Vec<Block>, Plot
         blocks.push(Block::List(said));
     }
     let share = share::figure(&compared, format!("{file}-error-share"))?;
-    let worst = simulated::worst(&compared, format!("{file}-worst-segment"))?;
+    let worst = simulated::worst(&compared, place, format!("{file}-worst-segment"))?;
     blocks.push(Block::Figures(share.into_iter().chain(worst).collect()));
     Ok(blocks)
 }

@@ -8,7 +8,21 @@
 
 use std::fmt::Write as _;
 
-use crate::figure::Role;
+use crate::figure::{Revision, Role};
+
+/// Shades of the revisions behind the first one, on light and on dark ground: the hues that the
+/// recording has.
+const REVISIONS: [(u32, u32); Revision::COUNT as usize] = [
+    (0x00_7F5C, 0x00_9E73),
+    (0xB0_4A8A, 0xCC_79A7),
+    (0xB8_4A00, 0xD5_5E00),
+    (0x1F_6FB5, 0x78_BEFF),
+    (0x7A_6B00, 0xF0_E442),
+    (0x6A_4FC0, 0xA0_78F0),
+    (0x3F_7F2A, 0x96_DC78),
+    (0xB0_4040, 0xFF_9696),
+    (0x00_7C85, 0x00_C8D2),
+];
 
 impl Role {
     /// Its shades on light and on dark ground, as `0xRRGGBB`.
@@ -26,6 +40,7 @@ impl Role {
             Self::Model => (0xC4_7A00, 0xE6_9F00),
             Self::Noise => (0x2F_8FCB, 0x57_B5EA),
             Self::Attention => (0xCC_79A7, 0xCC_79A8),
+            Self::Revision(one) => REVISIONS[one.place()],
         }
     }
 

@@ -12,7 +12,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::figure::{Axis, Mark, Panel, Place, Role, Shape};
-use crate::wording::{legible, rounded};
+use crate::wording::{capitalized, legible, listed, rounded};
 
 /// Parts of a pixel that a coordinate resolves.
 const FINE: u32 = 4;
@@ -148,8 +148,17 @@ pub(super) fn draw(panels: &[Panel], width: u32, name: &str) -> Result<String, P
         }
         rest.present().map_err(failed)?;
     }
-    let described: Vec<_> = panels.iter().map(Panel::in_words).collect();
-    Ok(framed(&text, (width, height), (name, &described.join(". "))))
+    Ok(framed(&text, (width, height), (name, &in_words(panels))))
+}
+
+/// The panels in sentences, for those who do not see them.
+fn in_words(panels: &[Panel]) -> String {
+    let of = panels.len();
+    let one = |(place, panel): (usize, &Panel)| {
+        let which = if of > 1 { format!("Plot {} of {of}: ", place + 1) } else { String::new() };
+        format!("{which}{}", panel.in_words())
+    };
+    panels.iter().enumerate().map(one).collect::<Vec<_>>().join(" ")
 }
 
 /// The drawing in a frame of its own size, with its name and what it shows for those who do not see
@@ -168,16 +177,34 @@ fn framed(text: &str, (width, height): (u32, u32), (name, described): (&str, &st
 }
 
 impl Panel {
-    /// Axes with their ranges, and what is drawn.
+    /// Sentences on the axes with their ranges, and on what is drawn.
     fn in_words(&self) -> String {
-        let range = |axis: &Axis, what: &str| {
-            let name = if axis.name.is_empty() { what } else { axis.name.as_str() };
-            format!("{name} from {} to {}", rounded(axis.span.low), rounded(axis.span.high))
+        let range = |axis: &Axis| {
+            let [low, high] = [axis.span.low, axis.span.high].map(|end| rounded(axis.number(end)));
+            let scale = if axis.is_logarithmic { ", on a logarithmic scale" } else { "" };
+            format!("from {low} to {high}{scale}")
         };
-        let marks: Vec<&str> = self.marks.iter().filter_map(|mark| mark.name.as_deref()).collect();
-        let shown =
-            if marks.is_empty() { String::new() } else { format!(": {}", marks.join(", ")) };
-        format!("{}, {}{shown}", range(&self.y, "height"), range(&self.x, "width"))
+        let names = |axis: &Axis| {
+            let names: Vec<_> = axis.ticks.iter().map(|(_, name)| name.clone()).collect();
+            format!("There is a row for each of {}", listed(&names, "and"))
+        };
+        let upward = if self.y.has_names() {
+            names(&self.y)
+        } else {
+            capitalized(&format!("{} runs {}", self.y.name, range(&self.y)))
+        };
+        let across = if self.x.is_bare() {
+            "over the same horizontal axis as the plot below".to_owned()
+        } else {
+            format!("over {}, which runs {}", self.x.name, range(&self.x))
+        };
+        let marks = self.marks.iter().filter_map(|mark| mark.name.clone());
+        let marks: Vec<String> = marks.collect();
+        let shown = match marks.as_slice() {
+            [] => String::new(),
+            marks => format!(" It shows: {}.", listed(marks, "and")),
+        };
+        format!("{upward}, {across}.{shown}")
     }
 
     fn has_legend(&self) -> bool {
@@ -383,6 +410,26 @@ mod tests {
         for expected in ["1 < 2", "a < b", "time [s]", "<angle> & more", "10"] {
             assert!(texts.contains(&expected), "no {expected} in {texts:?}");
         }
+    }
+
+    #[test]
+    fn a_drawing_is_described_in_sentences() {
+        let lines = || Shape::Lines(vec![vec![(0.0, 0.0), (10.0, 10.0)]], 1.0);
+        let mark = |name: &str| Mark::new(Role::Model, lines()).named(name);
+        let first = panel(vec![mark("measured"), mark("simulated")]);
+        let first = Panel { x: first.x.bare(), ..first };
+        let y = Axis::logarithmic(Span::new(-2.0, 1.0), "SSE", 3.0);
+        let second = Panel { y, ..panel(Vec::new()) };
+        let expected = "Plot 1 of 2: <angle> & more runs from 0 to 10, over the same horizontal \
+                        axis as the plot below. It shows: measured and simulated. Plot 2 of 2: SSE \
+                        runs from 0.01 to 10, on a logarithmic scale, over time [s], which runs from \
+                        0 to 10.";
+        assert_eq!(in_words(&[first, second]), expected);
+        let names = ["boom", "arm"].map(str::to_owned);
+        let rows = Panel { y: Axis::of_names(&names, ""), ..panel(Vec::new()) };
+        let expected =
+            "There is a row for each of boom and arm, over time [s], which runs from 0 to 10.";
+        assert_eq!(in_words(&[rows]), expected);
     }
 
     #[test]

@@ -114,14 +114,31 @@ impl Choice<'_> {
                 format!("rejected as {condition}: {}", condition.meaning())
             }
         };
-        format!("{why}: step {i}{trial_said} at {at} s, {delay}, {verdict}.")
+        format!("{why}: step {i}{trial_said} at {at} s, {delay}, {verdict}{}.", self.beside_word())
+    }
+
+    /// Who said it, and what the program says, where a person said something.
+    fn beside_word(&self) -> String {
+        let decision = self.decision;
+        let Some(word) = &decision.word else { return String::new() };
+        let by = if word.reviewer.is_empty() { "a person" } else { word.reviewer.as_str() };
+        let program = match (decision.program_verdict(), decision.program_delay()) {
+            (Verdict::Accepted, Some(delay)) => {
+                format!("accepted, delay {} s", rounded(delay * self.trial.period().seconds()))
+            }
+            (Verdict::Accepted, None) => "accepted".to_owned(),
+            (Verdict::Rejected(condition), _) => format!("rejected as {condition}"),
+        };
+        let moved = decision.delay_before_review().map_or("", |_| " (grey line)");
+        format!(" by {by}; the program: {program}{moved}")
     }
 
     /// `delay 0.17 s`, with its interval where there is one.
     fn delay(&self) -> String {
         let seconds = |samples: f64| rounded(samples * self.trial.period().seconds());
         let Some(delay) = self.decision.delay() else { return "no delay".to_owned() };
-        let ends = self.decision.fine.map(|fine| (seconds(fine.low), seconds(fine.high)));
+        let own = self.decision.fine.filter(|_| self.decision.delay_before_review().is_none());
+        let ends = own.map(|fine| (seconds(fine.low), seconds(fine.high)));
         let ends = ends.map_or_else(String::new, |(low, high)| format!(" ({low} to {high} s)"));
         format!("delay {} s{ends}", seconds(delay))
     }
@@ -156,7 +173,8 @@ impl Choice<'_> {
         let smoothed = self.smoothed.map(signal);
         let chosen = self.decision.breakpoint().map(|best| {
             let q = drawn.breakpoint().unwrap_or(best.candidate.breakpoint as f64);
-            drawn.lines(&best.candidate, q).map(|line| self.timed(line)).to_vec()
+            let candidate = self.decision.shown_candidate().unwrap_or(best.candidate);
+            drawn.lines(&candidate, q).map(|line| self.timed(line)).to_vec()
         });
         let chosen = chosen.unwrap_or_default();
         let values =
@@ -172,8 +190,14 @@ impl Choice<'_> {
         marks.extend(smoothed.map(|line| {
             Mark::new(Role::Smoothed, Shape::Lines(vec![line], 1.0)).named("smoothed")
         }));
-        marks.push(Mark::new(Role::Input, Shape::Verticals(step, 1.2)).named("p"));
+        marks.push(Mark::new(Role::Input, Shape::Verticals(step, 1.2)).named("step"));
         marks.push(Mark::new(role, Shape::Verticals(q, 1.2)).named("q"));
+        let before = self.decision.delay_before_review();
+        let p = self.decision.input_step.sample as f64;
+        marks.extend(before.map(|delay| {
+            let q = vec![self.at(p + delay)];
+            Mark::new(Role::Faint, Shape::Verticals(q, 1.2))
+        }));
         let y = Axis::new(y, bracketed("output", joint.output_unit.as_deref()), 4.0);
         Panel { x, y, height: 170, marks }
     }
@@ -183,7 +207,9 @@ impl Choice<'_> {
         let drawn = self.drawn();
         let candidates = &self.decision.candidates;
         let curve = self.timed(drawn.errors(candidates.len()));
-        let best = self.timed(candidates.best().map(|best| drawn.error(&best)));
+        let shown = self.decision.shown_candidate();
+        let best = self.timed(shown.map(|shown| drawn.error(&shown)));
+        let moved = self.decision.delay_before_review().is_some();
         let unit = joint.output_unit.as_ref().map(|unit| format!("{unit}²"));
         let curve = Mark::new(Role::Error, Shape::Lines(vec![curve], 1.6));
         Panel {
@@ -192,7 +218,11 @@ impl Choice<'_> {
             height: 76,
             marks: vec![
                 curve.named("error of each candidate"),
-                Mark::new(Role::Error, Shape::Dots(best)).named("least"),
+                Mark::new(Role::Error, Shape::Dots(best)).named(if moved {
+                    "at q"
+                } else {
+                    "least"
+                }),
             ],
         }
     }

@@ -13,17 +13,19 @@ use crate::fit::{FitRecord, Horizon, Part, Split, Window};
 use crate::report::consequence::noise_of;
 use crate::report::{ComparedJoint, ImprovedJoint};
 use crate::wording::bracketed;
-use crate::wording::percent;
+use crate::wording::{measure, percent, worst_segment_text};
 
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
 
 /// Measured and simulated output over time, and the residual.
 pub(super) fn figure(
-    compared: &ComparedJoint<'_>,
+    improved: &ImprovedJoint<'_>,
     split: Split,
     file: String,
 ) -> Result<Figure, PlotError> {
+    let compared = &improved.finding.compared;
+    let role = Role::of_revision(improved.revisions.len().saturating_sub(1));
     let joint = compared.joint;
     let timeline = Timeline::of(joint);
     let unfitted = Mark::new(Role::Faint, Shape::Spans(unfitted(joint, split, &timeline), 0.13));
@@ -39,26 +41,31 @@ pub(super) fn figure(
             Mark::new(Role::Measured, Shape::Lines(timeline.lines(|_, t| t.output()), 3.0))
                 .named("measured"),
             Mark::new(
-                Role::Model,
+                role,
                 Shape::Lines(timeline.lines(|index, _| simulated(compared, index)), 1.3),
             )
             .named("simulated"),
         ],
     };
     let mut marks = vec![unfitted, borders];
-    if !worst.is_empty() {
+    let has_worst = !worst.is_empty();
+    if has_worst {
         marks.push(Mark::new(Role::Attention, Shape::Spans(worst, 0.3)).named("worst segments"));
     }
     marks.extend(noise(compared).map(|mark| mark.named("95 % of the noise")));
     let left = timeline.lines(|index, _| residual(compared, index));
-    marks.push(Mark::new(Role::Model, Shape::Lines(left, 1.0)).named("measured − simulated"));
+    marks.push(Mark::new(role, Shape::Lines(left, 1.0)).named("measured − simulated"));
     marks.extend(noise_edges(compared, timeline.ends()));
     let y =
         Axis::new(residuals(compared), bracketed("residual", joint.output_unit.as_deref()), 6.0);
     let left = Panel { x: timeline.axis(), y, height: 110, marks };
     let name = format!("Measured and simulated output of {}", joint.name);
     let svg = draw(&[output, left], WIDTH, &name)?;
-    let caption = "The measured output beside the simulated one, and the residual.".to_owned();
+    let mut caption = "The measured output beside the simulated one, and the residual.".to_owned();
+    if has_worst {
+        caption += " Worst segments are those with the largest sums of squares, and the one with the \
+                    largest residual.";
+    }
     Ok(Figure { file, svg, caption })
 }
 
@@ -86,7 +93,7 @@ pub(super) fn earlier(
             marks.push(worst.named("worst segments"));
         }
         marks.extend(noise(compared));
-        marks.push(Mark::new(Role::Model, Shape::Lines(lines, 1.0)).named(name));
+        marks.push(Mark::new(Role::of_revision(place), Shape::Lines(lines, 1.0)).named(name));
         marks.extend(noise_edges(compared, timeline.ends()));
         let y = Axis::new(residuals(compared), bracketed("residual", unit), 4.0);
         let x = if place + 1 < before.len() { axis.bare() } else { axis };
@@ -106,6 +113,7 @@ pub(super) fn earlier(
 /// fit is shown.
 pub(super) fn worst(
     compared: &ComparedJoint<'_>,
+    place: usize,
     file: String,
 ) -> Result<Option<Figure>, PlotError> {
     let joint = compared.joint;
@@ -126,12 +134,29 @@ pub(super) fn worst(
         marks: vec![
             Mark::new(Role::Attention, Shape::Spans(vec![(worst.start_s, worst.end_s)], 0.22)),
             Mark::new(Role::Measured, Shape::Lines(vec![measured], 3.0)).named("measured"),
-            Mark::new(Role::Model, Shape::Lines(vec![simulated], 1.4)).named("simulated"),
+            Mark::new(Role::of_revision(place), Shape::Lines(vec![simulated], 1.4))
+                .named("simulated"),
         ],
     };
     let svg = draw(&[panel], HALF, &format!("The worst segment of {}", joint.name))?;
     let share = percent(worst.share_of_squared_error);
-    let caption = format!("The worst segment: it holds {share} of the squared error.");
+    let unit = joint.output_unit.as_deref();
+    let all = failure.iter().flat_map(|failure| &failure.worst_segments);
+    let spike = all.max_by(|a, b| a.largest_residual.abs().total_cmp(&b.largest_residual.abs()));
+    let spike = spike.map_or_else(String::new, |spike| {
+        let height = measure(spike.largest_residual.abs(), unit);
+        let place = if spike == worst {
+            "is in it".to_owned()
+        } else if joint.trials.len() > 1 {
+            format!("is in trial {}, {}", spike.trial, worst_segment_text(spike))
+        } else {
+            format!("is in {}", worst_segment_text(spike))
+        };
+        format!(" The largest residual of all, {height}, {place}.")
+    });
+    let caption = format!(
+        "The worst segment: it holds {share} of the squared error, more than any other.{spike}"
+    );
     Ok(Some(Figure { file, svg, caption }))
 }
 

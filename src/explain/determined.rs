@@ -1,0 +1,63 @@
+//! Whether a record determines an effect of a fitted model.
+//!
+//! An effect none of whose parameters is determined may lower the error all the same: at the bound of
+//! its exponent or level it is another shape than its name says. That is no reason to name it.
+
+use crate::effect::{Dimension, Effect, Parameter, Stage};
+use crate::fit::{AssessedModel, Status};
+use crate::model::Component;
+
+/// Whether the record of `fit` determines at least one parameter of an effect of its model, or, with
+/// nothing to fit, does not have to.
+///
+/// A level at which an effect switches between two that the input had, or a limit between two places
+/// of the joint, is nowhere else than between them, which is enough.
+pub(super) fn is_determined(fit: &AssessedModel, component: &Component) -> bool {
+    let mut free = free_parameters(fit, component).peekable();
+    free.peek().is_none()
+        || free.any(|(parameter, status)| match status {
+            Status::Fitted => true,
+            // Of a value that changes nothing nearby no bound can be far.
+            Status::Undetermined | Status::AtBound => switches_at(component.effect(), parameter),
+            Status::BeyondReach | Status::Fixed => false,
+        })
+}
+
+/// Whether an effect acts within what the record of `fit` reaches: not one of which all levels or
+/// limits lie beyond.
+pub(super) fn is_reached(fit: &AssessedModel, component: &Component) -> bool {
+    let limits = free_parameters(fit, component)
+        .filter(|(parameter, _)| is_limit(component.effect(), parameter));
+    let mut limits = limits.peekable();
+    limits.peek().is_none() || limits.any(|(_, status)| status != Status::BeyondReach)
+}
+
+/// Whether a parameter of `effect` is a level of the input or a limit of the output.
+fn is_limit(effect: &dyn Effect, parameter: &Parameter) -> bool {
+    let spec = effect.spec();
+    match parameter.dimension {
+        Dimension::Input => spec.stage == Stage::Input,
+        Dimension::Output => spec.acts_on_state,
+        _ => false,
+    }
+}
+
+/// Whether `effect` does not change with a parameter but in jumps: a limit of the output, or a level of
+/// what remembers on which side of it the input was.
+fn switches_at(effect: &dyn Effect, parameter: &Parameter) -> bool {
+    let has_memory = effect.spec().memory > 0;
+    is_limit(effect, parameter) && (parameter.dimension == Dimension::Output || has_memory)
+}
+
+/// The parameters of an effect that were free in `fit`, and what the record says of them.
+fn free_parameters<'a>(
+    fit: &'a AssessedModel,
+    component: &'a Component,
+) -> impl Iterator<Item = (&'static Parameter, Status)> + 'a {
+    let spec = component.effect().spec();
+    spec.parameters.iter().filter_map(move |parameter| {
+        let name = format!("{}.{}", spec.id, parameter.name);
+        let status = fit.parameters.iter().find(|fitted| fitted.name == name)?.status;
+        (status != Status::Fixed).then_some((parameter, status))
+    })
+}
