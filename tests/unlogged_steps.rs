@@ -44,9 +44,11 @@ fn their_delay_is_found_and_no_backlash_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let (data, model) = (folder.path().join("log.csv"), folder.path().join("model.toml"));
     // The neutral is known of a run in which the joint rests.
-    let rest: String =
-        (0..100).map(|k| format!("rest,{:.2},7.5,60.0\n", 0.02 * f64::from(k))).collect();
-    std::fs::write(&data, log() + &rest).unwrap();
+    let mut text = log();
+    for sample in 0..100_u32 {
+        writeln!(text, "rest,{:.2},7.5,60.0", 0.02 * f64::from(sample)).unwrap();
+    }
+    std::fs::write(&data, text).unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_tauscope"));
     command.args(["improve", "--quiet", "--format", "json", "--write"]).args([&model, &data]);
     let output = command.output().unwrap();
