@@ -8,7 +8,7 @@ mod real;
 use tauscope::effect::find;
 use tauscope::experiment::{Joint, Trial};
 use tauscope::explain::{Options, Sequential, improve};
-use tauscope::fit::{Assessment, Fit, FitRecord, Horizon, Split, fit};
+use tauscope::fit::{AssessedModel, Assessment, Fit, FitRecord, Horizon, Split, fit};
 use tauscope::model::{Component, JointModel};
 use tauscope::numerics::LowPass;
 use tauscope::units::SamplePeriod;
@@ -59,7 +59,7 @@ fn error_m(joint: &Joint, model: &JointModel, horizon: Horizon) -> f64 {
 
 /// `M a + Fv v + Fc sign(v) + OF = F`, divided by `Fv`, is the model: its levels are
 /// `Fc + OF` and `Fc − OF`.
-fn physical(fit: &Fit) -> [f64; 4] {
+fn physical(fit: &AssessedModel) -> [f64; 4] {
     let value = |name: &str| fit.parameters.iter().find(|p| p.name == name).unwrap().value;
     let viscous = 1.0 / value("gain");
     let [up, down, constant] = ["positive", "negative", "time_constant"]

@@ -25,7 +25,7 @@ const ROUNDING: f64 = 1e-9;
 /// many samples one is taken in the short test.
 type Log = (&'static str, Option<&'static str>, [&'static str; 3], usize);
 
-const LOGS: [Log; 12] = [
+const LOGS: [Log; 16] = [
     ("excavator_full_arm_single.csv", Some("test"), ["t_s", "u_duty_pct", "angle_deg"], 8),
     ("excavator_full_bucket_single.csv", Some("test"), ["t_s", "u_duty_pct", "angle_deg"], 7),
     ("excavator_rc_manual.csv", Some("run"), ["t_s", "u_boom_duty", "y_boom"], 4),
@@ -38,6 +38,10 @@ const LOGS: [Log; 12] = [
     ("mataveid_hydmotor.csv", None, ["time_s", "motor.input", "motor.output"], 5),
     ("mataveid_cylinders.csv", None, ["time_s", "cyl0.input", "cyl0.output"], 1),
     ("cascaded_tanks.csv", None, ["t_s", "u_est_V", "y_est_V"], 1),
+    ("emps_test_pulses.csv", None, ["t_s", "force_N", "q_m"], 9),
+    ("gas_furnace_seriesJ.csv", None, ["t_s", "gas_rate", "co2_pct"], 1),
+    ("bj_sales_seriesM.csv", None, ["t", "lead", "sales"], 1),
+    ("rotary_hydraulic_strokes.csv", Some("stroke"), ["k", "p_drive_cnt", "angle_cnt"], 20),
 ];
 
 /// Effects of the models to which others are added.
@@ -140,8 +144,8 @@ fn fitted(record: &FitRecord<'_>, model: &JointModel, what: &str) -> Fit {
 }
 
 /// Every effect on one base, on one joint.
-fn every_effect_on(joint: &Joint, base: &[&str], what: &str) {
-    let record = FitRecord::new(joint, Split::of(joint), Horizon::Steps);
+fn every_effect_on(joint: &Joint, base: &[&str], horizon: Horizon, what: &str) {
+    let record = FitRecord::new(joint, Split::of(joint), horizon);
     let span = |values: &mut dyn Iterator<Item = f64>| {
         let (low, high) = values.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
         high - low
@@ -168,17 +172,18 @@ fn every_effect_on(joint: &Joint, base: &[&str], what: &str) {
 fn no_effect_makes_the_training_error_of_a_synthetic_log_larger() {
     for (index, joint) in synthetic(25.0).iter().enumerate() {
         for base in [BASES[index], BASES[3 + index]] {
-            every_effect_on(joint, base, &format!("synthetic {index}"));
+            every_effect_on(joint, base, Horizon::Steps, &format!("synthetic {index}"));
         }
     }
 }
 
-/// One base per log, a part of the samples: some minutes. All of it is the test below.
+/// One base and horizon per log, a part of the samples: some minutes. All of it is the test below.
 #[test]
 fn no_effect_makes_the_training_error_of_a_measured_log_larger() {
     for (index, log) in LOGS.into_iter().enumerate() {
         let Some(joint) = measured(log, log.3) else { continue };
-        every_effect_on(&joint, BASES[index % BASES.len()], log.0);
+        let horizon = if index % 2 == 0 { Horizon::Steps } else { Horizon::Auto };
+        every_effect_on(&joint, BASES[index % BASES.len()], horizon, log.0);
     }
 }
 
@@ -188,10 +193,12 @@ fn no_effect_makes_the_training_error_of_any_whole_log_larger() {
     for base in BASES {
         for log in LOGS {
             let Some(joint) = measured(log, 1) else { continue };
-            every_effect_on(&joint, base, log.0);
+            for horizon in [Horizon::Steps, Horizon::Auto] {
+                every_effect_on(&joint, base, horizon, log.0);
+            }
         }
         for (index, joint) in synthetic(120.0).iter().enumerate() {
-            every_effect_on(joint, base, &format!("synthetic {index}"));
+            every_effect_on(joint, base, Horizon::Steps, &format!("synthetic {index}"));
         }
     }
 }

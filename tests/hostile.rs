@@ -154,6 +154,14 @@ fn more_variables_than_can_be_told_apart_are_refused_and_not_waited_for() {
 }
 
 #[test]
+#[cfg(feature = "mat")]
+fn a_header_that_names_its_parts_twice_is_refused_and_not_followed() {
+    let folder = TempDir::new().unwrap();
+    let bytes = fs::read("fuzz/found/mat73/header_that_names_its_parts_twice").unwrap();
+    assert_says(&file(&folder, "twice.mat", &bytes), &[], "names its own parts without end");
+}
+
+#[test]
 #[cfg(feature = "xlsx")]
 fn what_is_blank_in_a_workbook_counts_as_well() {
     let folder = TempDir::new().unwrap();

@@ -169,7 +169,7 @@ fn refitted(joint: &Joint, model: &JointModel, part: usize) -> Option<(JointMode
     let begin = |joint: &Joint| joint.trials.first().map(|trial| trial.time_s(1));
     let is_cut = joint.trials.len() < PARTS;
     let later_s = if is_cut { begin(&rest)? - begin(joint)? } else { 0.0 };
-    fit(&record, model, &range).ok().map(|fit| (fit.assessment.model, later_s))
+    fit(&record, model, &range).ok().map(|fit| (fit.assessment.assessed.model, later_s))
 }
 
 /// The samples `from..to` of `trial`, where they are enough.

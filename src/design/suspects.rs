@@ -64,7 +64,7 @@ impl Suspects {
         let models = [&one, &other].map(|fit| Uncertain::of_fit(record, fit, noise, share));
         let ahead = behind(&other) - behind(&one);
         let excluded = [-ahead > CLEAR, ahead > CLEAR];
-        Ok(Self { effects, base: plain.assessment.model, models, noise, excluded })
+        Ok(Self { effects, base: plain.assessment.assessed.model, models, noise, excluded })
     }
 
     /// `model`, which has the first of `effects`, and the same with the second in its place: as

@@ -95,7 +95,7 @@ fn figures(
     let per_step = step_errors(&by_step, &evaluation);
     let (arising, restarted) = if follows_input(record.joint()).is_some() {
         drop(evaluation);
-        let evaluation = fit.evaluation.clone();
+        let evaluation = Evaluation::clone(&fit.evaluation);
         (fit.evaluation.horizon, residual_record(&by_step, evaluation, ErrorOf::Output))
     } else {
         (Horizon::Steps, residual_record(&by_step, evaluation, ErrorOf::Speed))

@@ -1,5 +1,8 @@
 //! How much the other joints of a log do: what a shared pump feels.
 
+use std::collections::{HashMap, HashSet};
+use std::sync::OnceLock;
+
 use super::joint::{Joint, Trial};
 
 /// Another joint of the log, and its delay in seconds: 0 where none is known.
@@ -11,57 +14,145 @@ pub struct Other<'a> {
     pub delay_s: f64,
 }
 
-/// The activity of the `others`, for each trial of `own` a value per sample, from 0 (all at
-/// rest) to 1 (all driven as hard as ever in the log).
+/// The joints that share a supply.
 ///
-/// It is the mean of `|u| / max|u|` over the other joints, where `u` is the input of a joint
-/// at that time, held between its samples and late by the joint's delay, and the maximum is
-/// over all its trials. Trials belong together by their labels, samples by their times. Where a
-/// joint was not logged it counts as at rest. Without other joints the lists are empty.
-pub fn activity(own: &Joint, others: &[Other<'_>]) -> Vec<Vec<f64>> {
-    let others: Vec<(&Other<'_>, f64)> = others.iter().map(|other| (other, other.most())).collect();
-    own.trials.iter().map(|trial| of_trial(trial, &others)).collect()
+/// What all of them do together is added up once for each list of times that several of them have,
+/// and what a joint does itself is taken off: the work grows with the joints, not with their square.
+/// The sums are of whole steps of an activity, which are exact in any order, so that nothing is
+/// left of a joint where the others are at rest.
+#[derive(Debug)]
+pub struct Supply<'a> {
+    drawn: Vec<Draw<'a>>,
+    /// Steps of a joint that is driven as hard as ever: a power of two, for up to a thousand joints
+    /// finer than what a double near 1 is rounded by.
+    steps: f64,
+    sums: HashMap<Clock<'a>, OnceLock<Vec<u64>>>,
 }
 
-impl<'a> Other<'a> {
+/// The times of the samples of a trial.
+type Clock<'a> = (&'a str, [u64; 3], usize);
+
+/// What a joint draws from the supply.
+#[derive(Debug)]
+struct Draw<'a> {
+    other: Other<'a>,
     /// The largest magnitude of its input.
-    fn most(&self) -> f64 {
-        let inputs = self.joint.trials.iter().flat_map(Trial::input);
-        inputs.fold(0.0, |most, input| most.max(input.abs()))
+    most: f64,
+    /// Its trials by their labels, and by the labels of what they are parts of.
+    by_label: HashMap<&'a str, Vec<&'a Trial>>,
+    by_whole: HashMap<&'a str, Vec<&'a Trial>>,
+}
+
+/// Steps that the activities of all joints may sum up to.
+const ALL_STEPS: u64 = 1 << 63;
+
+impl<'a> Supply<'a> {
+    /// All `joints` that share it.
+    pub fn of(joints: impl IntoIterator<Item = Other<'a>>) -> Self {
+        let drawn: Vec<Draw<'a>> = joints.into_iter().map(Draw::of).collect();
+        let mut sums = HashMap::new();
+        let mut met = HashSet::new();
+        for trial in drawn.iter().flat_map(|draw| &draw.other.joint.trials) {
+            let clock = clock(trial);
+            // Of times that one joint has alone the sum would be used once.
+            if !met.insert(clock) {
+                sums.entry(clock).or_default();
+            }
+        }
+        let joints = drawn.len().next_power_of_two() as u64;
+        Self { drawn, steps: (ALL_STEPS / joints) as f64, sums }
+    }
+
+    /// The activity of all joints but the one with this index, for each of its trials a value per
+    /// sample, from 0 (all at rest) to 1 (all driven as hard as ever in the log).
+    ///
+    /// It is the mean of `|u| / max|u|` over the other joints, where `u` is the input of a joint
+    /// at that time, held between its samples and late by the joint's delay, and the maximum is
+    /// over all its trials. Trials belong together by their labels, samples by their times. Where a
+    /// joint was not logged it counts as at rest. Without other joints the lists are empty.
+    pub fn beside(&self, index: usize) -> Vec<Vec<f64>> {
+        let Some(own) = self.drawn.get(index) else { return Vec::new() };
+        let trials = &own.other.joint.trials;
+        let others = self.drawn.len() - 1;
+        if others == 0 {
+            return vec![Vec::new(); trials.len()];
+        }
+        let of_trial = |trial: &Trial| {
+            let mut own_steps = vec![0; trial.len()];
+            own.add_to(&mut own_steps, trial, self.steps);
+            let beside =
+                |(all, own): (&u64, &u64)| (all - own) as f64 / (self.steps * others as f64);
+            match self.sums.get(&clock(trial)) {
+                Some(sum) => {
+                    let sum = sum.get_or_init(|| self.sum(trial));
+                    sum.iter().zip(&own_steps).map(beside).collect()
+                }
+                None => self.sum(trial).iter().zip(&own_steps).map(beside).collect(),
+            }
+        };
+        trials.iter().map(of_trial).collect()
+    }
+
+    /// What all joints draw at the times of `trial`, in steps.
+    fn sum(&self, trial: &Trial) -> Vec<u64> {
+        let mut sum = vec![0; trial.len()];
+        for draw in &self.drawn {
+            draw.add_to(&mut sum, trial, self.steps);
+        }
+        sum
+    }
+}
+
+/// The times of the samples of `trial`, and its label: what is drawn at them is the same for all
+/// trials that have both.
+fn clock(trial: &Trial) -> Clock<'_> {
+    let numbers = [trial.origin_s(), trial.time_s(1), trial.period().seconds()];
+    (trial.label(), numbers.map(f64::to_bits), trial.len())
+}
+
+impl<'a> Draw<'a> {
+    fn of(other: Other<'a>) -> Self {
+        let trials = &other.joint.trials;
+        let inputs = trials.iter().flat_map(Trial::input);
+        let most = inputs.fold(0.0, |most: f64, input| most.max(input.abs()));
+        let (mut by_label, mut by_whole) = (HashMap::new(), HashMap::new());
+        for trial in trials {
+            by_label.entry(trial.label()).or_insert_with(Vec::new).push(trial);
+            by_whole.entry(whole(trial.label())).or_insert_with(Vec::new).push(trial);
+        }
+        Self { other, most, by_label, by_whole }
     }
 
     /// Its trials that may run at the same time as one labelled `label`: the one with this
     /// label; else the parts of the same trial, which were split where one joint has a gap.
-    fn at_the_time_of(&self, label: &str) -> Vec<&'a Trial> {
-        let same = self.joint.trials.iter().filter(|trial| trial.label() == label);
-        let same: Vec<_> = same.collect();
-        if !same.is_empty() {
-            return same;
+    fn at_the_time_of(&self, label: &str) -> &[&'a Trial] {
+        let parts = || self.by_whole.get(whole(label));
+        self.by_label.get(label).or_else(parts).map_or(&[], Vec::as_slice)
+    }
+
+    /// Adds what it draws at the times of `trial` to `sum`, in steps.
+    fn add_to(&self, sum: &mut [u64], trial: &Trial, steps: f64) {
+        if self.most <= 0.0 {
+            return;
         }
-        let parts = self.joint.trials.iter().filter(|trial| whole(trial.label()) == whole(label));
-        parts.collect()
+        for part in self.at_the_time_of(trial.label()) {
+            for (value, sample) in sum.iter_mut().zip(1..) {
+                let input = held(part, trial.logged_time_s(sample) - self.other.delay_s);
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "a part of the steps of all"
+                )]
+                let drawn = (input.abs() / self.most * steps) as u64;
+                *value += drawn;
+            }
+        }
     }
 }
 
 /// The label of the trial that `label` is a part of: `a` of `a#2`.
 fn whole(label: &str) -> &str {
     label.split_once('#').map_or(label, |(whole, _)| whole)
-}
-
-fn of_trial(trial: &Trial, others: &[(&Other<'_>, f64)]) -> Vec<f64> {
-    if others.is_empty() {
-        return Vec::new();
-    }
-    let mut activity = vec![0.0; trial.len()];
-    for (other, most) in others.iter().filter(|(_, most)| *most > 0.0) {
-        let share = 1.0 / (most * others.len() as f64);
-        for part in other.at_the_time_of(trial.label()) {
-            for (value, sample) in activity.iter_mut().zip(1..) {
-                *value += share * held(part, trial.logged_time_s(sample) - other.delay_s).abs();
-            }
-        }
-    }
-    activity
 }
 
 /// The input of `trial` at a time, held from its last sample; zero before and behind it.
@@ -91,10 +182,9 @@ mod tests {
 
     /// What the joints but the first do, with their delays.
     fn of_first(joints: &[Joint], delays_s: &[f64]) -> Vec<Vec<f64>> {
-        let delays_s = delays_s.iter().copied().chain(std::iter::repeat(0.0));
-        let others = joints[1..].iter().zip(delays_s);
-        let others: Vec<_> = others.map(|(joint, delay_s)| Other { joint, delay_s }).collect();
-        activity(&joints[0], &others)
+        let delays_s = [0.0].iter().chain(delays_s).copied().chain(std::iter::repeat(0.0));
+        Supply::of(joints.iter().zip(delays_s).map(|(joint, delay_s)| Other { joint, delay_s }))
+            .beside(0)
     }
 
     #[test]
@@ -143,5 +233,34 @@ mod tests {
         assert_eq!(of_first(&joints, &[])[0], [1.0, 1.0, 0.0, 0.0, 1.0, 1.0]);
         let joints = [joint("a", parts), joint("b", vec![trial("1", 0.0, 0.1, &[1.0; 6])])];
         assert_eq!(of_first(&joints, &[]), [[1.0; 2], [1.0; 2]]);
+    }
+
+    #[test]
+    fn what_many_do_is_what_each_does_added_up() {
+        let input = |joint: usize| (0..6).map(|k| ((k * joint) % 5) as f64 - 2.0).collect();
+        let inputs: Vec<Vec<f64>> = (1..40).map(input).collect();
+        let of = |(index, input): (usize, &Vec<f64>)| {
+            joint(&index.to_string(), vec![trial("1", 0.0, 0.1, input)])
+        };
+        let joints: Vec<Joint> = inputs.iter().enumerate().map(of).collect();
+        let supply = Supply::of(joints.iter().map(|joint| Other { joint, delay_s: 0.0 }));
+        let most = |input: &[f64]| input.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+        for index in 0..joints.len() {
+            let others = || inputs.iter().enumerate().filter(|(other, _)| *other != index);
+            let found = &supply.beside(index)[0];
+            for (sample, found) in found.iter().enumerate() {
+                let each = others().map(|(_, input)| input[sample].abs() / most(input));
+                let expected = each.sum::<f64>() / others().count() as f64;
+                assert!((found - expected).abs() < 1e-15, "{found} and {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_is_left_of_a_joint_where_the_others_are_at_rest() {
+        let input = [0.1, 0.7, 0.3];
+        let mut joints = vec![joint("a", vec![trial("1", 0.0, 0.1, &input)])];
+        joints.extend(["b", "c"].map(|name| joint(name, vec![trial("1", 0.0, 0.1, &[0.0; 3])])));
+        assert_eq!(of_first(&joints, &[]), [[0.0; 3]]);
     }
 }

@@ -12,7 +12,7 @@ use super::memory::Budget;
 use super::origin::{origin_s, since_1970};
 use super::period::is_period;
 use super::sampling::{Fault, Grid, Piece, Repair, Signals};
-use super::table::{BadCell, Column, Head, Table, TrialRows};
+use super::table::{BadCell, Coarse, Column, Head, Table, TrialRows};
 use super::wrap::Wrap;
 use crate::units::SamplePeriod;
 
@@ -274,6 +274,7 @@ impl Log<'_> {
             Some(rows) => self.sparse_grids(layout, trials, rows, time)?,
             None => (None, self.missing_notes(layout)),
         };
+        notes.extend(self.coarse_notes(layout));
         let grids = own.as_deref().unwrap_or(grids);
         let origin_s = self.origin_s(time);
         let mut joint = Joint {
@@ -504,6 +505,20 @@ impl Log<'_> {
         };
         let row = (trial.start..trial.end).find(begins)?;
         Some((gap, self.row(row)))
+    }
+
+    /// The signals whose offset is so large that double precision does not hold their motion.
+    fn coarse_notes(&self, layout: &JointLayout) -> Vec<String> {
+        let note = |column: usize| {
+            let Coarse { largest, apart, range } = self.column(column)?.coarse()?;
+            let (name, column) = (&layout.name, self.header(column));
+            Some(format!(
+                "joint `{name}`: numbers near {largest:.1e} as in `{column}` are {apart} apart, and \
+                 these differ by {range} at most: how the signal moves is beyond double precision; \
+                 log it without the offset"
+            ))
+        };
+        [layout.input.column, layout.output.column].into_iter().filter_map(note).collect()
     }
 
     /// Refuses bad cells, and missing ones where they may not be filled.

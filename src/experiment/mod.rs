@@ -31,7 +31,7 @@ mod table;
 mod unit;
 mod wrap;
 
-pub use activity::{Other, activity};
+pub use activity::{Other, Supply};
 pub(crate) use bounded::{read_result, read_text};
 pub use columns::{ColumnMap, ColumnMapError, JointColumns};
 pub(crate) use conditions::are_opposites;

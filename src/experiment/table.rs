@@ -264,6 +264,19 @@ impl Column {
         (largest > 0.0 && largest < SMALLEST).then_some(largest)
     }
 
+    /// How far apart doubles are where its numbers are, if that is much of what they differ by.
+    pub(super) fn coarse(&self) -> Option<Coarse> {
+        let known = || self.values.iter().copied().filter(|value| value.is_finite());
+        let (low, high) = known().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
+        let largest = low.abs().max(high.abs());
+        let apart = largest.next_up() - largest;
+        (low < high && apart > COARSE * (high - low)).then_some(Coarse {
+            largest,
+            apart,
+            range: high - low,
+        })
+    }
+
     /// A column that holds texts.
     pub(super) fn text() -> Self {
         Self { values: Vec::new(), error: Some((0, BadCell::Kind("text".to_owned()))) }
@@ -308,6 +321,21 @@ const LARGEST: f64 = 1e75;
 /// What the largest number of a signal must reach: products of squares of smaller ones, and of
 /// what is left of them by a model, are lost to zero.
 const SMALLEST: f64 = 1e-75;
+
+/// The part of the range of a signal from which it matters how far apart doubles are: that of a
+/// sensor of ten bits.
+const COARSE: f64 = 1e-3;
+
+/// A signal with an offset so large that doubles are too far apart for what it does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Coarse {
+    /// The largest magnitude in it.
+    pub(super) largest: f64,
+    /// The distance of doubles there.
+    pub(super) apart: f64,
+    /// Highest minus lowest number.
+    pub(super) range: f64,
+}
 
 /// Memory of a trial beside the bytes of its label: its run of rows and the text with what their
 /// allocations have to spare, once as they come, once in the table and once in the log; its label

@@ -6,6 +6,7 @@ use super::eligible::signal_range;
 use super::evidence::NoiseMemory;
 use super::misfit::Misfit;
 use super::options::Options;
+use super::outcome::FitOutcome;
 use super::revision::{AddError, Addition};
 use super::workers::Workers;
 use crate::diagnosis::{ErrorFigures, NEAR_NOISE, compare, floor_of};
@@ -43,8 +44,9 @@ pub fn add(
     let with = better.unwrap_or(by_law);
     let p_value = evidence(&with).p_value_against(&evidence(&base));
     let options = Options::default();
-    let misfit = Misfit::of(record, &base);
-    let grown = Grown { record, first: &base, whole: &with, misfit, options: &options };
+    let first = FitOutcome::of(record, base.clone());
+    let misfit = Misfit::of(record, first.errors);
+    let grown = Grown { record, first: &first, whole: &with, misfit, options: &options };
     let attribution = grown.attribution(workers);
     Ok(Addition {
         before: compare(record, base),

@@ -24,17 +24,18 @@ use super::determined::is_determined;
 use super::eligible::signal_range;
 use super::evidence::NoiseMemory;
 use super::extension::ids;
-use super::misfit::{CONSEQUENCE, Misfit};
+use super::misfit::{CONSEQUENCE, Errors, Misfit};
 use super::options::Options;
+use super::outcome::FitOutcome;
 use super::removal::{fitted_with, replacements};
 use super::revision::Change;
 use super::workers::Workers;
-use crate::fit::{Fit, FitRecord, fit_to_compare};
+use crate::fit::{AssessedModel, Fit, FitRecord, fit_to_compare};
 
 /// A model, and the one to which its effects were added.
 pub(super) struct Grown<'a, 'r> {
     pub(super) record: &'a FitRecord<'r>,
-    pub(super) first: &'a Fit,
+    pub(super) first: &'a FitOutcome,
     pub(super) whole: &'a Fit,
     pub(super) misfit: Misfit,
     pub(super) options: &'a Options,
@@ -44,7 +45,7 @@ pub(super) struct Grown<'a, 'r> {
 pub(super) struct LeftOut {
     pub(super) effect: &'static str,
     pub(super) share: f64,
-    pub(super) fit: Fit,
+    pub(super) fit: FitOutcome,
 }
 
 /// The share below which an effect that the record does not determine is a refinement. Chosen: what
@@ -93,7 +94,7 @@ impl Grown<'_, '_> {
         &self,
         left_out: &[LeftOut],
         workers: &impl Workers,
-    ) -> Vec<(Change, Fit)> {
+    ) -> Vec<(Change, FitOutcome)> {
         let found = left_out.iter().filter(|one| one.has_consequence());
         let others =
             |one: &LeftOut| replacements(self.record, &self.whole.model, one.effect, self.options);
@@ -104,17 +105,22 @@ impl Grown<'_, '_> {
     /// The exchange that leaves as little and is as likely with the fewest parameters, where it
     /// needs fewer than the model: of such models the simpler one is named. A friction without
     /// inertia is a dead band.
-    pub(super) fn simpler<'f>(&self, exchanged: &'f [(Change, Fit)]) -> Option<&'f (Change, Fit)> {
+    pub(super) fn simpler<'f>(
+        &self,
+        exchanged: &'f [(Change, FitOutcome)],
+    ) -> Option<&'f (Change, FitOutcome)> {
         let noise = NoiseMemory::of(self.record, self.whole);
         let of_whole = noise.evidence(self.record, self.whole).criterion();
-        let is_as_likely =
-            |fit: &Fit| noise.evidence(self.record, fit).criterion() < of_whole + ALIKE;
-        let count = |fit: &Fit| fit.parameters.len();
+        let is_as_likely = |fit: &FitOutcome| {
+            noise.evidence(self.record, &fit.on(self.record)).criterion() < of_whole + ALIKE
+        };
+        let own = Errors::of(self.record, self.whole);
+        let count = |fit: &AssessedModel| fit.parameters.len();
         let fewer = exchanged.iter().filter(|(_, fit)| count(fit) < count(self.whole));
         let as_little = fewer.filter(|(_, fit)| {
             self.leaves_as_little(fit)
+                && self.misfit.generalizes(own, fit.errors)
                 && is_as_likely(fit)
-                && self.misfit.generalizes(self.record, self.whole, fit)
         });
         as_little.min_by_key(|(_, fit)| count(fit))
     }
@@ -124,7 +130,7 @@ impl Grown<'_, '_> {
     pub(super) fn attribution_of(
         &self,
         left_out: &[LeftOut],
-        exchanged: &[(Change, Fit)],
+        exchanged: &[(Change, FitOutcome)],
         mut refinements: Vec<&'static str>,
     ) -> Attribution {
         let (found, small): (Vec<_>, Vec<_>) =
@@ -148,24 +154,25 @@ impl Grown<'_, '_> {
     }
 
     /// Whether what the error of `fit` is larger by has no consequence.
-    fn leaves_as_little(&self, fit: &Fit) -> bool {
+    fn leaves_as_little(&self, fit: &FitOutcome) -> bool {
         self.share(fit) < CONSEQUENCE
     }
 
     /// The model without `effect`, the rest fitted again.
-    fn without(&self, effect: &str) -> Option<Fit> {
+    fn without(&self, effect: &str) -> Option<FitOutcome> {
         let model = self.whole.model.without(effect);
         if ids(&model) == ids(&self.first.model) {
             return Some(self.first.clone());
         }
         let levels = self.record.input_levels();
         let range = signal_range(self.record, &model, &levels);
-        fit_to_compare(self.record, &model, &range).ok()
+        Some(FitOutcome::of(self.record, fit_to_compare(self.record, &model, &range).ok()?))
     }
 
     /// What the error is larger in `fit` than in the whole model, in parts of the misfit of the
     /// first.
-    fn share(&self, fit: &Fit) -> f64 {
-        self.misfit.share_of_either(self.record, fit, self.whole).min(1.0)
+    fn share(&self, fit: &FitOutcome) -> f64 {
+        let own = Errors::of(self.record, self.whole);
+        self.misfit.share_of_either(fit.errors, own).min(1.0)
     }
 }

@@ -2,10 +2,11 @@
 
 use super::determined::{is_determined, is_reached};
 use super::extension::components_of;
+use super::outcome::FitOutcome;
 use super::separation::Separation;
 use crate::diagnosis::ErrorFigures;
 use crate::effect::{Parameter, Spec};
-use crate::fit::{Fit, Status};
+use crate::fit::{AssessedModel, Status};
 use crate::model::Component;
 
 /// The p-value below which the best of a whole catalogue is significant: about 0.02 for all of
@@ -43,7 +44,7 @@ pub struct Candidate {
     /// Ids of what was added.
     pub effects: Vec<&'static str>,
     /// The fitted model.
-    pub fit: Fit,
+    pub fit: FitOutcome,
     /// The error on the part it was fitted to.
     pub training: Option<ErrorFigures>,
     /// The error on the part it was not fitted to.
@@ -100,8 +101,8 @@ impl Candidate {
 
     /// Whether at least as many parameters are determined with it as in `base`: an effect that
     /// does what others do already leaves them all undetermined.
-    pub(super) fn determines_as_much_as(&self, base: &Fit) -> bool {
-        let determined = |fit: &Fit| {
+    pub(super) fn determines_as_much_as(&self, base: &AssessedModel) -> bool {
+        let determined = |fit: &AssessedModel| {
             fit.parameters.iter().filter(|parameter| parameter.status == Status::Fitted).count()
         };
         determined(&self.fit) >= determined(base)

@@ -22,7 +22,7 @@ pub(super) fn compared(
     let Some(best) = extensions.iter().min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost)) else {
         return Vec::new();
     };
-    let noise = NoiseMemory::of(record, &best.fit);
+    let noise = NoiseMemory::of(record, &best.fit.on(record));
     let of_base = Judged::of(record, base, &noise);
     let candidate = |extension| of_base.candidate(record, &noise, noise_floor, extension);
     let mut candidates: Vec<Candidate> = extensions.into_iter().map(candidate).collect();
@@ -64,7 +64,8 @@ impl Judged {
         noise_floor: f64,
         extension: Extension,
     ) -> Candidate {
-        let own = Self::of(record, &extension.fit, noise);
+        let fit = extension.fit.on(record);
+        let own = Self::of(record, &fit, noise);
         let (square, base_square) = (own.training_square(), self.training_square());
         let (before, after) = match (self.validation, own.validation) {
             (Some(before), Some(after)) => (before.rmse, after.rmse),
@@ -87,7 +88,7 @@ impl Judged {
             deviance,
             indistinguishable_from: Vec::new(),
             separated_by: Vec::new(),
-            noise_floor: floor_of(record, &extension.fit),
+            noise_floor: floor_of(record, &fit),
             fit: extension.fit,
         }
     }

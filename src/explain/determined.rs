@@ -4,7 +4,7 @@
 //! its exponent or level it is another shape than its name says. That is no reason to name it.
 
 use crate::effect::{Dimension, Effect, Parameter, Stage};
-use crate::fit::{Fit, Status};
+use crate::fit::{AssessedModel, Status};
 use crate::model::Component;
 
 /// Whether the record of `fit` determines at least one parameter of an effect of its model, or, with
@@ -12,19 +12,20 @@ use crate::model::Component;
 ///
 /// A level at which an effect switches between two that the input had, or a limit between two places
 /// of the joint, is nowhere else than between them, which is enough.
-pub(super) fn is_determined(fit: &Fit, component: &Component) -> bool {
+pub(super) fn is_determined(fit: &AssessedModel, component: &Component) -> bool {
     let mut free = free_parameters(fit, component).peekable();
     free.peek().is_none()
         || free.any(|(parameter, status)| match status {
             Status::Fitted => true,
-            Status::Undetermined => switches_at(component.effect(), parameter),
-            Status::AtBound | Status::BeyondReach | Status::Fixed => false,
+            // Of a value that changes nothing nearby no bound can be far.
+            Status::Undetermined | Status::AtBound => switches_at(component.effect(), parameter),
+            Status::BeyondReach | Status::Fixed => false,
         })
 }
 
 /// Whether an effect acts within what the record of `fit` reaches: not one of which all levels or
 /// limits lie beyond.
-pub(super) fn is_reached(fit: &Fit, component: &Component) -> bool {
+pub(super) fn is_reached(fit: &AssessedModel, component: &Component) -> bool {
     let limits = free_parameters(fit, component)
         .filter(|(parameter, _)| is_limit(component.effect(), parameter));
     let mut limits = limits.peekable();
@@ -50,7 +51,7 @@ fn switches_at(effect: &dyn Effect, parameter: &Parameter) -> bool {
 
 /// The parameters of an effect that were free in `fit`, and what the record says of them.
 fn free_parameters<'a>(
-    fit: &'a Fit,
+    fit: &'a AssessedModel,
     component: &'a Component,
 ) -> impl Iterator<Item = (&'static Parameter, Status)> + 'a {
     let spec = component.effect().spec();

@@ -1,7 +1,7 @@
 //! A model with one effect more, or several, fitted.
 
+use super::outcome::FitOutcome;
 use crate::effect::Effect;
-use crate::fit::Fit;
 use crate::model::{Component, JointModel};
 
 /// A model with effects added to it, fitted.
@@ -9,7 +9,7 @@ use crate::model::{Component, JointModel};
 pub(super) struct Extension {
     /// Ids of what was added.
     pub(super) effects: Vec<&'static str>,
-    pub(super) fit: Fit,
+    pub(super) fit: FitOutcome,
 }
 
 impl Extension {

@@ -4,8 +4,9 @@ use super::attribution::{Grown, LeftOut};
 use super::contribution::Attribution;
 use super::extension::ids;
 use super::ladder::climbed;
-use super::misfit::Misfit;
+use super::misfit::{Errors, Misfit};
 use super::options::Options;
+use super::outcome::FitOutcome;
 use super::revision::{Change, Improvement, Revision};
 use super::separate::separate;
 use super::stepwise::{Step, add_stepwise};
@@ -28,9 +29,9 @@ pub fn improve(
     mut done: impl FnMut(&Revision) -> bool,
 ) -> Improvement {
     let options = &*options.of(record.joint());
-    let start = fit;
+    let start = FitOutcome::of(record, fit.clone());
     let given = ids(&start.model);
-    let first = Step::new(record, Change::Start, start.clone());
+    let first = Step::new(record, Change::Start, fit);
     let mut revisions = Vec::new();
     let mut visit = |step: &Step| {
         let Step { change, fit, lack_of_fit, mut ranking } = step.clone();
@@ -38,10 +39,13 @@ pub fn improve(
         let comparison = compare_knowing(record, fit, lack_of_fit);
         let revision = Revision { change, comparison, ranking };
         let goes_on = done(&revision);
+        if let Some(before) = revisions.last_mut().filter(|_| !options.keeps_series) {
+            Revision::drop_series(before);
+        }
         revisions.push(revision);
         goes_on
     };
-    let misfit = Misfit::of(record, &start);
+    let misfit = Misfit::of(record, start.errors);
     let makes_strokes = are_strokes(&record.joint().trials);
     let first = if makes_strokes {
         climbed(record, first, options, misfit, &mut visit)
@@ -75,22 +79,23 @@ fn attributed(
     let mut whole = all.whole.clone();
     loop {
         let grown = Grown { whole: &whole, ..*all };
+        let own = Errors::of(all.record, &whole);
         let mut left_out = grown.left_out(workers);
         let may_go = |least: &LeftOut| {
             let is_refinement = !all.options.keeps_refinements && grown.is_refinement(least);
-            is_refinement && all.misfit.generalizes(all.record, &whole, &least.fit)
+            is_refinement && all.misfit.generalizes(own, least.fit.errors)
         };
         // The least comes last.
         let least = left_out.iter().rposition(may_go).map(|index| left_out.remove(index));
         let (change, fit) = if let Some(least) = least {
             refinements.push(least.effect);
-            (Change::Removed(least.effect), least.fit)
+            (Change::Removed(least.effect), least.fit.on(all.record))
         } else {
             let exchanged = grown.exchanged(&left_out, workers);
             let Some((change, fit)) = grown.simpler(&exchanged) else {
                 return grown.attribution_of(&left_out, &exchanged, refinements);
             };
-            (*change, fit.clone())
+            (*change, fit.on(all.record))
         };
         if !visit(&Step::new(all.record, change, fit.clone())) {
             return Attribution::default();

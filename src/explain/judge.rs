@@ -5,8 +5,9 @@ use super::candidate::Candidate;
 use super::contribution::Attribution;
 use super::extension::ids;
 use super::ladder::{climbed, is_usual};
-use super::misfit::Misfit;
+use super::misfit::{Errors, Misfit};
 use super::options::Options;
+use super::outcome::FitOutcome;
 use super::revision::Change;
 use super::separate::separate;
 use super::stepwise::{Step, add_stepwise};
@@ -46,10 +47,15 @@ pub fn explain(
     }
     let named = is_named(record, &fit, &mut ranking, options, workers);
     separate(record, &mut ranking, workers);
+    if let Some(best) = ranking.first_mut().filter(|_| named) {
+        best.fit.keep_series(record);
+    }
     let best = ranking.first().filter(|_| named);
     let attribution = best.map_or(attribution, |best| {
-        let misfit = Misfit::of(record, &fit);
-        Grown { record, first: &fit, whole: &best.fit, misfit, options }.attribution(workers)
+        let first = FitOutcome::of(record, fit);
+        let misfit = Misfit::of(record, first.errors);
+        Grown { record, first: &first, whole: &best.fit.on(record), misfit, options }
+            .attribution(workers)
     });
     let verdict = if named { Verdict::MissingEffect } else { Verdict::Unexplained };
     Explanation { base, verdict, ranking, attribution }
@@ -88,9 +94,10 @@ fn usual_account_for_most(record: &FitRecord<'_>, fit: &Fit, options: &Options) 
     /// The share of the misfit that is most of it.
     const MOST: f64 = 0.5;
     let first = Step::new(record, Change::Start, fit.clone());
-    let misfit = Misfit::of(record, fit);
+    let own = Errors::of(record, fit);
+    let misfit = Misfit::of(record, own);
     let with_all = climbed(record, first, options, misfit, &mut |_| true);
-    with_all.is_some_and(|all| misfit.share(record, fit, &all.fit) >= MOST)
+    with_all.is_some_and(|all| misfit.share(own, Errors::of(record, &all.fit)) >= MOST)
 }
 
 /// Puts the first candidate that `is_it` in front; whether there is one.
@@ -118,10 +125,10 @@ fn accounts_for_it(
         return true;
     }
     let id = best.effects[0];
-    let first = Step::new(record, Change::Added(id), best.fit.clone());
+    let first = Step::new(record, Change::Added(id), best.fit.on(record));
     let given: Vec<_> = ids(&best.fit.model).into_iter().filter(|given| *given != id).collect();
     let ahead = Options { max_effects: 1 + LOOK_AHEAD, keeps_refinements: true, ..options.clone() };
-    let misfit = Misfit::of(record, &best.fit);
+    let misfit = Misfit::of(record, best.fit.errors);
     let mut last = Vec::new();
     let ended = add_stepwise(record, first, &given, &ahead, workers, misfit, |step| {
         last = ids(&step.fit.model);

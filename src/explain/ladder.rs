@@ -12,7 +12,7 @@
 //! Journal of Aerospace Engineering 7 (linkages of excavators).
 
 use super::eligible::{could_be_missing, is_due, signal_range};
-use super::misfit::Misfit;
+use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::revision::Change;
 use super::stepwise::Step;
@@ -50,11 +50,12 @@ pub(super) fn climbed(
         let Ok(fit) = fit_to_compare(record, &with, &signal_range(record, &with, &levels)) else {
             continue;
         };
-        if !misfit.generalizes(record, &step.fit, &fit) {
+        let (own, with_effect) = (Errors::of(record, &step.fit), Errors::of(record, &fit));
+        if !misfit.generalizes(own, with_effect) {
             continue;
         }
         // A finer form is worth its parameters or not; whether an effect is, is seen at the end.
-        if spec.refines.is_some() && !misfit.has_consequence(record, &step.fit, &fit) {
+        if spec.refines.is_some() && !misfit.has_consequence(own, with_effect) {
             continue;
         }
         if !visit(&step) {

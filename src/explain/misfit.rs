@@ -23,47 +23,69 @@ pub(super) struct Misfit {
     noise: f64,
 }
 
+/// The root-mean-square errors of a model.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Errors {
+    /// On the whole record.
+    whole: f64,
+    /// On the part that was fitted, where it has samples.
+    pub(super) seen: Option<f64>,
+    /// On the part that was not fitted, where there is one.
+    unseen: Option<f64>,
+}
+
+impl Errors {
+    pub(super) fn of(record: &FitRecord<'_>, fit: &Fit) -> Self {
+        let whole = ErrorFigures::of_record(record, &fit.evaluation);
+        let on = |part| Some(ErrorFigures::of(record, &fit.evaluation, part)?.rmse);
+        Self {
+            whole: whole.map_or(f64::NAN, |error| error.rmse),
+            seen: on(Part::Training),
+            unseen: on(Part::Validation),
+        }
+    }
+}
+
 impl Misfit {
-    pub(super) fn of(record: &FitRecord<'_>, first: &Fit) -> Self {
-        let unseen = unseen_error(record, first);
-        let first = error(record, first);
+    /// That of a model with the errors `first`.
+    pub(super) fn of(record: &FitRecord<'_>, first: Errors) -> Self {
+        let Errors { whole: first, unseen, .. } = first;
         let noise = sensor_noise(&record.joint().trials).unwrap_or(0.0).min(first);
         Self { first, unseen, noise }
     }
 
     /// What the error of `worse` is larger than that of `better`, in parts of the misfit.
-    pub(super) fn share(self, record: &FitRecord<'_>, worse: &Fit, better: &Fit) -> f64 {
-        self.part_of(self.first, error(record, worse) - error(record, better))
+    pub(super) fn share(self, worse: Errors, better: Errors) -> f64 {
+        self.part_of(self.first, worse.whole - better.whole)
     }
 
     /// The larger of the shares on the whole record and on the part that was not fitted.
     ///
     /// An effect that only the unseen part needs is needed.
-    pub(super) fn share_of_either(self, record: &FitRecord<'_>, worse: &Fit, better: &Fit) -> f64 {
-        let grown = unseen_error(record, worse).zip(unseen_error(record, better));
-        let unseen = self.unseen.zip(grown);
+    pub(super) fn share_of_either(self, worse: Errors, better: Errors) -> f64 {
+        let unseen = self.unseen.zip(worse.unseen.zip(better.unseen));
         let unseen = unseen.map(|(first, (worse, better))| self.part_of(first, worse - better));
-        self.share(record, worse, better).max(unseen.unwrap_or(f64::NEG_INFINITY))
+        self.share(worse, better).max(unseen.unwrap_or(f64::NEG_INFINITY))
     }
 
     /// Whether an effect has a practical consequence with which the error falls from that of
     /// `worse` to that of `better`.
-    pub(super) fn has_consequence(self, record: &FitRecord<'_>, worse: &Fit, better: &Fit) -> bool {
-        self.share(record, worse, better) >= CONSEQUENCE
+    pub(super) fn has_consequence(self, worse: Errors, better: Errors) -> bool {
+        self.share(worse, better) >= CONSEQUENCE
     }
 
     /// Whether `after` predicts the part that was not fitted as well as `before` or as the first model.
     ///
     /// Where each model of a search does, the last is off there no more than the first. A model that
     /// fits what it has seen and nothing else explains nothing.
-    pub(super) fn generalizes(self, record: &FitRecord<'_>, before: &Fit, after: &Fit) -> bool {
-        let errors = unseen_error(record, before).zip(unseen_error(record, after)).zip(self.unseen);
+    pub(super) fn generalizes(self, before: Errors, after: Errors) -> bool {
+        let errors = before.unseen.zip(after.unseen).zip(self.unseen);
         errors.is_none_or(|((before, after), first)| after <= before.max((1.0 + UNCHANGED) * first))
     }
 
-    /// Whether what `fit` leaves beside the noise is hardly a part of the misfit.
-    pub(super) fn is_explained(self, record: &FitRecord<'_>, fit: &Fit) -> bool {
-        self.part_of(self.first, error(record, fit) - self.noise) < HARDLY
+    /// Whether what a model leaves beside the noise is hardly a part of the misfit.
+    pub(super) fn is_explained(self, errors: Errors) -> bool {
+        self.part_of(self.first, errors.whole - self.noise) < HARDLY
     }
 
     /// `error` in parts of that of the first model beyond the noise.
@@ -72,18 +94,10 @@ impl Misfit {
     }
 }
 
-/// The error on the whole record.
-fn error(record: &FitRecord<'_>, fit: &Fit) -> f64 {
-    ErrorFigures::of_record(record, &fit.evaluation).map_or(f64::NAN, |error| error.rmse)
-}
-
-/// The error on the part that was not fitted.
-fn unseen_error(record: &FitRecord<'_>, fit: &Fit) -> Option<f64> {
-    Some(ErrorFigures::of(record, &fit.evaluation, Part::Validation)?.rmse)
-}
-
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::experiment::{Joint, Trial};
     use crate::fit::{Horizon, Split, fit};
@@ -115,17 +129,18 @@ mod tests {
         // The unseen part is off by so much everywhere.
         let off_by = |error: f64| {
             let mut fit = exact.clone();
-            let residuals = fit.assessment.evaluation.residuals.iter_mut().flatten();
+            let evaluation = Arc::make_mut(&mut fit.assessment.evaluation);
+            let residuals = evaluation.residuals.iter_mut().flatten();
             residuals.enumerate().for_each(|(k, e)| *e = if k < 240 { 0.1 } else { error });
-            fit
+            Errors::of(&record, &fit)
         };
-        let misfit = Misfit::of(&record, &off_by(0.5));
-        let holds = |before, after| misfit.generalizes(&record, &off_by(before), &off_by(after));
+        let misfit = Misfit::of(&record, off_by(0.5));
+        let holds = |before, after| misfit.generalizes(off_by(before), off_by(after));
         assert!(holds(0.5, 0.2) && holds(0.2, 0.504), "what is no worse than at first");
         assert!(!holds(0.2, 0.51) && !holds(0.5, 0.51), "what is worse than at first");
         assert!(holds(0.7, 0.6), "a start that was worse may be mended");
         let whole = FitRecord::new(&joint, Split::Time(1.0), Horizon::Auto);
-        let misfit = Misfit::of(&whole, &exact);
-        assert!(misfit.generalizes(&whole, &off_by(0.1), &off_by(9.0)), "nothing is unseen");
+        let misfit = Misfit::of(&whole, Errors::of(&whole, &exact));
+        assert!(misfit.generalizes(off_by(0.1), off_by(9.0)), "nothing is unseen");
     }
 }

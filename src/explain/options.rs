@@ -15,6 +15,9 @@ pub struct Options {
     pub max_effects: usize,
     /// Whether effects without practical consequence stay in an improved model.
     pub keeps_refinements: bool,
+    /// Whether each revision keeps what its model simulates, as recordings need it, and not the last
+    /// alone: of a long record that is most of the memory.
+    pub keeps_series: bool,
     /// Whether what [differs between trials](conditions) is tried, too: the effects of
     /// [`OF_CONDITIONS`], each in the trials of one condition; and a gain that depends on a measured
     /// signal, for each that may be a cause.
@@ -54,6 +57,7 @@ impl Default for Options {
             effects: REGISTRY.to_vec(),
             max_effects: MAX_EFFECTS,
             keeps_refinements: false,
+            keeps_series: true,
             tries_conditions: true,
         }
     }

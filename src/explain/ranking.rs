@@ -5,12 +5,13 @@ use super::comparison::{MUCH_LESS, compared};
 use super::eligible::{eligible, signal_range, steady_refinements};
 use super::extension::Extension;
 use super::options::Options;
+use super::outcome::FitOutcome;
 use super::pairs::pairs;
 use super::screening::fit_best;
 use super::workers::Workers;
-use crate::diagnosis::{ErrorFigures, NEAR_NOISE};
+use crate::diagnosis::NEAR_NOISE;
 use crate::effect::{Effect, RecordRange};
-use crate::fit::{Fit, FitRecord, Part, fit_to_compare};
+use crate::fit::{Fit, FitRecord, fit_to_compare};
 use crate::model::Component;
 
 /// What is tried.
@@ -144,23 +145,19 @@ impl Search<'_, '_> {
             return None;
         }
         let fit = fit_to_compare(self.record, &model, self.range).ok()?;
+        let fit = FitOutcome::of(self.record, fit);
         (fit.cost < self.base.cost).then_some(Extension { effects, fit })
     }
 
     /// Whether one of `extensions` comes near the noise.
     fn is_explained(&self, extensions: &[Extension]) -> bool {
-        self.least_error(extensions) <= NEAR_NOISE * self.noise_floor
+        Self::least_error(extensions) <= NEAR_NOISE * self.noise_floor
     }
 
     /// The least root mean square error of `extensions` on what they were fitted to.
-    fn least_error(&self, extensions: &[Extension]) -> f64 {
-        let errors = extensions.iter().filter_map(|one| self.error(one));
+    fn least_error(extensions: &[Extension]) -> f64 {
+        let errors = extensions.iter().filter_map(|one| one.fit.errors.seen);
         errors.fold(f64::INFINITY, f64::min)
-    }
-
-    fn error(&self, extension: &Extension) -> Option<f64> {
-        let evaluation = &extension.fit.evaluation;
-        Some(ErrorFigures::of(self.record, evaluation, Part::Training)?.rmse)
     }
 
     /// The finer forms that leave much less than all of `extensions`: a limit that only one direction
@@ -169,11 +166,12 @@ impl Search<'_, '_> {
         let with = |effect: &&'static dyn Effect| {
             let model = self.base.model.with(Component::neutral(*effect));
             let fit = fit_to_compare(self.record, &model, self.range).ok()?;
+            let fit = FitOutcome::of(self.record, fit);
             Some(Extension { effects: vec![effect.spec().id], fit })
         };
-        let limit = MUCH_LESS * self.least_error(extensions);
+        let limit = MUCH_LESS * Self::least_error(extensions);
         let fitted = workers.map(self.refinements, with).into_iter().flatten();
-        fitted.filter(|one| self.error(one).is_some_and(|error| error < limit)).collect()
+        fitted.filter(|one| one.fit.errors.seen.is_some_and(|error| error < limit)).collect()
     }
 
     /// The base with each step's own delay as it was measured, where these differ: delays may follow any
@@ -187,6 +185,7 @@ impl Search<'_, '_> {
             return None;
         }
         let fit = fit_to_compare(record, &model, self.range).ok()?;
+        let fit = FitOutcome::of(record, fit);
         Some(Extension { effects: vec![id], fit })
     }
 

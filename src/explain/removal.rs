@@ -5,8 +5,10 @@ use super::determined::is_determined;
 use super::eligible::{could_be_missing, is_due, signal_range};
 use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
-use super::misfit::Misfit;
+use super::likeness::{least_share, looks_like};
+use super::misfit::{Errors, Misfit};
 use super::options::Options;
+use super::outcome::FitOutcome;
 use super::revision::Change;
 use super::screening::fit_best;
 use super::workers::Workers;
@@ -100,15 +102,18 @@ impl Removal<'_> {
         let models: Vec<_> = exchanges.iter().flat_map(with).collect();
         let tried = fitted_after(record, whole, &models, workers);
         let noise = NoiseMemory::of(record, whole);
+        let own = Errors::of(record, whole);
         let of_whole = noise.evidence(record, whole);
         let judged = tried.into_iter().filter_map(|(change, fit)| {
-            let evidence = noise.evidence(record, &fit);
+            let evidence = noise.evidence(record, &fit.on(record));
             let does_harm = of_whole.is_nearer_over_windows(&evidence, HARM)
-                || !self.misfit.generalizes(record, whole, &fit);
+                || !self.misfit.generalizes(own, fit.errors);
             // More parameters in the place of an effect are worth as much as a further effect.
+            let new: Vec<&str> = change.new_effects().collect();
+            let least = least_share(&fit.model, &new);
             let is_worth_it = fit.parameters.len() <= whole.parameters.len()
                 || self.options.keeps_refinements
-                || self.misfit.has_consequence(record, whole, &fit);
+                || self.misfit.share(own, fit.errors) >= least;
             let behind = evidence.criterion() - of_whole.criterion();
             let leaves_less = !change.is_unusual() || fit.cost < LESS * whole.cost;
             let hurdle = if change.is_unusual() { ALIKE } else { 0.0 };
@@ -120,7 +125,8 @@ impl Removal<'_> {
         });
         let (_, better) = judged.min_by(|a, b| a.0.total_cmp(&b.0))?;
         self.kept.extend(better.0.new_effects());
-        Some(better)
+        let (exchange, fit) = better;
+        Some((exchange, fit.on(record)))
     }
 
     /// Removals of effects that may go, and exchanges for those that look like them.
@@ -184,22 +190,13 @@ fn is_as_simple_a_form(of: &Spec, old: &str) -> bool {
     of.refines == Some(old) && parameters == Some(of.parameters.len())
 }
 
-/// Whether one effect is taken for the other, or contains it.
-pub(super) fn looks_like(one: &str, other: &str) -> bool {
-    let near = |a: &str, b: &str| {
-        let spec = by_id(a).map(Effect::spec);
-        spec.is_some_and(|spec| spec.confused_with.contains(&b) || spec.absorbs.contains(&b))
-    };
-    one != other && (near(one, other) || near(other, one))
-}
-
 /// The models with the best few of `changes`.
 pub(super) fn fitted_with(
     record: &FitRecord<'_>,
     whole: &Fit,
     changes: &[Change],
     workers: &impl Workers,
-) -> Vec<(Change, Fit)> {
+) -> Vec<(Change, FitOutcome)> {
     let with = |change: &Change| {
         let change = *change;
         changed(&whole.model, change).into_iter().map(move |model| (change, model))
@@ -215,7 +212,7 @@ fn fitted_after<K: Copy + PartialEq + Send + Sync>(
     whole: &Fit,
     models: &[(K, JointModel)],
     workers: &impl Workers,
-) -> Vec<(K, Fit)> {
+) -> Vec<(K, FitOutcome)> {
     if models.is_empty() {
         return Vec::new();
     }

@@ -1,5 +1,7 @@
 //! Models as they change: what was added and removed, and the error before and after.
 
+use std::sync::Arc;
+
 use super::candidate::Candidate;
 use super::contribution::Attribution;
 use super::extension::ids;
@@ -47,6 +49,17 @@ pub struct Revision {
     pub comparison: Comparison,
     /// The candidates for what comes next, best first; none where none was looked for.
     pub ranking: Vec<Candidate>,
+}
+
+impl Revision {
+    /// Keeps what it came to, and not what its model and its candidates simulate.
+    pub(super) fn drop_series(&mut self) {
+        let evaluation = &mut self.comparison.fit.evaluation;
+        *evaluation = Arc::new(evaluation.without_series());
+        for candidate in &mut self.ranking {
+            candidate.fit.drop_series();
+        }
+    }
 }
 
 /// A model that was improved.

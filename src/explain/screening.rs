@@ -3,9 +3,10 @@
 //! A survey, which is a rough descent in short windows of a part of the record, is cheap; a
 //! fit is not.
 
+use super::outcome::FitOutcome;
 use super::workers::Workers;
 use crate::effect::RecordRange;
-use crate::fit::{Fit, FitRecord, Survey, fit_to_compare_beside, survey};
+use crate::fit::{FitRecord, Survey, fit_to_compare_beside, survey};
 use crate::model::JointModel;
 
 /// Surveys `models` on `surveyed` and fits the best of them to `record`; `kept` says how many,
@@ -17,7 +18,7 @@ pub(super) fn fit_best<K: Copy + PartialEq + Send + Sync>(
     range: &RecordRange<'_>,
     kept: impl FnOnce(&[f64]) -> usize,
     workers: &impl Workers,
-) -> Vec<(K, Fit)> {
+) -> Vec<(K, FitOutcome)> {
     let surveyed: Vec<Option<Survey>> =
         workers.map(models, |(_, model)| survey(surveyed, model, range).ok());
     let mut surveys: Vec<_> =
@@ -32,7 +33,8 @@ pub(super) fn fit_best<K: Copy + PartialEq + Send + Sync>(
     let costs: Vec<f64> = surveys.iter().map(|(_, survey)| survey.cost).collect();
     surveys.truncate(kept(&costs));
     let fit = |((key, model), survey): &(&(K, JointModel), Survey)| {
-        Some((*key, fit_to_compare_beside(record, &survey.model, model, range).ok()?))
+        let fit = fit_to_compare_beside(record, &survey.model, model, range).ok()?;
+        Some((*key, FitOutcome::of(record, fit)))
     };
     workers.map(&surveys, fit).into_iter().flatten().collect()
 }

@@ -11,17 +11,17 @@ use std::ops::ControlFlow;
 use super::candidate::Candidate;
 use super::eligible::signal_range;
 use super::extension::ids;
-use super::misfit::{CONSEQUENCE, Misfit};
+use super::likeness::least_share;
+use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::ranking::{Scope, rank};
-use super::removal::{Exchange, Removal, looks_like};
+use super::removal::{Exchange, Removal};
 use super::revision::Change;
 use super::verdict::Verdict;
 use super::workers::Workers;
 use crate::delay::are_strokes;
 use crate::diagnosis::{LackOfFit, floor_of, lack_of};
 use crate::fit::{Fit, FitRecord, fit_to_compare};
-use crate::model::Component;
 
 /// A model on the way.
 #[derive(Clone, Debug)]
@@ -81,21 +81,6 @@ impl Step {
 /// curve and the gain match three.
 const FEW_LEVELS: usize = 3;
 
-/// The share of the misfit from which an effect has a consequence beside one that looks like it: two
-/// frictions and an overlap together follow many a curve that is none of them. Chosen: on a measured
-/// boom a friction and a stiction beside the overlap carry 4 and 3 %, each known to two standard
-/// errors or less.
-const BESIDE_ITS_LIKE: f64 = 0.05;
-
-/// Whether one of the effects of `candidate` looks like one that is fitted beside it.
-fn is_beside_its_like(candidate: &Candidate) -> bool {
-    let components = candidate.fit.model.components().iter();
-    let is_fitted = |component: &&Component| component.parameters().iter().any(|p| !p.fixed);
-    let fitted = components.filter(is_fitted).map(|component| component.effect().spec().id);
-    let mut beside = fitted.filter(|id| !candidate.effects.contains(id));
-    beside.any(|old| candidate.effects.iter().any(|new| looks_like(old, new)))
-}
-
 /// How stepwise addition ended.
 pub(super) struct Ended {
     pub(super) verdict: Verdict,
@@ -132,29 +117,29 @@ pub(super) fn add_stepwise(
             let was_stopped = !visit(&step);
             return ended(Verdict::Adequate, step.fit, was_stopped);
         }
+        let own = Errors::of(record, &step.fit);
         let has_consequence = |candidate: &Candidate| {
-            let least = if is_beside_its_like(candidate) { BESIDE_ITS_LIKE } else { CONSEQUENCE };
-            options.keeps_refinements || misfit.share(record, &step.fit, &candidate.fit) >= least
+            let least = least_share(&candidate.fit.model, &candidate.effects);
+            options.keeps_refinements || misfit.share(own, candidate.fit.errors) >= least
         };
         let is_sound = |candidate: &&Candidate| {
             let is_known = !matched_by_many
                 || candidate.determines_as_much_as(&step.fit) && candidate.is_distinct();
-            candidate.is_significant()
-                && is_known
-                && misfit.generalizes(record, &step.fit, &candidate.fit)
+            candidate.is_significant() && is_known && misfit.generalizes(own, candidate.fit.errors)
         };
         let counts = |candidate: &Candidate| is_sound(&candidate) && has_consequence(candidate);
         let found = step.ranking.iter().position(counts);
         if found.is_none() && step.ranking.iter().any(Candidate::is_significant) {
             let refused = step.ranking.iter().find(is_sound);
             let refinements = refused.map(|refused| refused.effects.clone()).unwrap_or_default();
-            let is_explained = misfit.is_explained(record, &step.fit);
+            let is_explained = misfit.is_explained(own);
             let verdict = if is_explained { Verdict::Adequate } else { Verdict::Unexplained };
             let was_stopped = !visit(&step);
             return Ended { refinements, ..ended(verdict, step.fit, was_stopped) };
         }
         if let Some(index) = found {
             step.ranking[..=index].rotate_right(1);
+            step.ranking[0].fit.keep_series(record);
         }
         let found = found.and(step.ranking.first().cloned());
         let explained = found.is_some();
@@ -171,7 +156,7 @@ pub(super) fn add_stepwise(
             }
         }
         let change = Change::between(&step.fit.model, &found.fit.model, found.newest());
-        step = Step::new(record, change, found.fit);
+        step = Step::new(record, change, found.fit.on(record));
         let removal = Removal { given, kept: found.effects, options, misfit };
         step = match exchanged(record, step, removal, workers, &mut visit) {
             ControlFlow::Continue(step) => step,

@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, DVector};
 use super::record::FitRecord;
 use super::search::Search;
 use super::space::Space;
-use crate::model::JointModel;
+use crate::model::{BESIDE, JointModel};
 use crate::numerics::{Basis, rank};
 
 /// Where all starts of a model begin: its values as they are.
@@ -28,9 +28,13 @@ pub(super) struct Beginning<'p, 'r> {
     own: Vec<bool>,
     /// Slopes to the others; 0 for those that starts move.
     slopes: DMatrix<f64>,
+}
+
+/// What the other parameters explain.
+struct Rest {
     others: Basis,
-    /// The residual without what the others explain.
-    rest: DVector<f64>,
+    /// The residual without what they explain.
+    residual: DVector<f64>,
 }
 
 impl<'p, 'r> Beginning<'p, 'r> {
@@ -48,9 +52,7 @@ impl<'p, 'r> Beginning<'p, 'r> {
         let mut slopes = DMatrix::zeros(residuals.len(), own.len());
         let given: Vec<usize> = (0..own.len()).filter(|index| !own[*index]).collect();
         search.problem.put_slopes(&mut slopes, &given, &residuals);
-        let others = Basis::of(slopes.as_slice(), slopes.nrows(), rank::DIFFERENCED);
-        let rest = DVector::from_vec(others.residual(residuals.as_slice()));
-        Self { search, residuals, own, slopes, others, rest }
+        Self { search, residuals, own, slopes }
     }
 
     /// The sums of squares that fits from `starts` would leave, to first order.
@@ -61,18 +63,16 @@ impl<'p, 'r> Beginning<'p, 'r> {
             // What starts move and no fit does is in the start alone.
             problem.model.with_values(&problem.space.values(start, &there))
         };
-        let models: Vec<JointModel> = starts.iter().map(model).collect();
-        let found = problem.record.training_near(&models, problem.here());
-        found.into_iter().map(|residuals| self.left(&(residuals - &self.residuals))).collect()
-    }
-
-    /// The sum of squares that is left where a start makes `change` of the residuals.
-    fn left(&self, change: &DVector<f64>) -> f64 {
-        let change = DVector::from_vec(self.others.residual(change.as_slice()));
-        let (forwards, square) = (-self.rest.dot(&change), change.norm_squared());
-        let gain = if square > 0.0 { forwards.max(0.0).powi(2) / square } else { 0.0 };
-        let expected = self.rest.norm_squared() - gain;
-        if expected.is_finite() { expected } else { f64::INFINITY }
+        let others = Basis::of(self.slopes.as_slice(), self.slopes.nrows(), rank::DIFFERENCED);
+        let residual = DVector::from_vec(others.residual(self.residuals.as_slice()));
+        let rest = Rest { others, residual };
+        let left = |some: &[Vec<f64>]| -> Vec<f64> {
+            let models: Vec<JointModel> = some.iter().map(model).collect();
+            let found = problem.record.training_near(&models, problem.here());
+            found.into_iter().map(|residuals| rest.left(&(residuals - &self.residuals))).collect()
+        };
+        // Of many starts all at once would take more than a fit.
+        starts.chunks(BESIDE).flat_map(left).collect()
     }
 
     /// The search from `start`, which knows the slopes about there.
@@ -88,5 +88,16 @@ impl<'p, 'r> Beginning<'p, 'r> {
         search.problem.put_slopes(&mut slopes, &own, &residuals);
         search.slopes = Some(slopes);
         search
+    }
+}
+
+impl Rest {
+    /// The sum of squares that is left where a start makes `change` of the residuals.
+    fn left(&self, change: &DVector<f64>) -> f64 {
+        let change = DVector::from_vec(self.others.residual(change.as_slice()));
+        let (forwards, square) = (-self.residual.dot(&change), change.norm_squared());
+        let gain = if square > 0.0 { forwards.max(0.0).powi(2) / square } else { 0.0 };
+        let expected = self.residual.norm_squared() - gain;
+        if expected.is_finite() { expected } else { f64::INFINITY }
     }
 }

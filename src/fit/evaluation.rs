@@ -17,6 +17,18 @@ pub struct Evaluation {
     pub(super) starts: Vec<Starts>,
 }
 
+impl Evaluation {
+    /// An evaluation of which it is known how it was made, and no more.
+    pub(crate) fn without_series(&self) -> Self {
+        Self {
+            horizon: self.horizon,
+            simulated: Vec::new(),
+            residuals: Vec::new(),
+            starts: Vec::new(),
+        }
+    }
+}
+
 /// Where the windows of a trial begin.
 #[derive(Clone, Debug)]
 pub(super) struct Starts {

@@ -1,11 +1,13 @@
 //! The parameters that make the training error least.
 
+use std::sync::Arc;
+
 use super::beginning::Beginning;
 use super::covariance::Covariance;
 use super::descent::Limits;
 use super::problem::Problem;
 use super::record::FitRecord;
-use super::result::{Assessment, Fit, FitError, Parameter, Status, Survey};
+use super::result::{AssessedModel, Assessment, Fit, FitError, Parameter, Status, Survey};
 use super::search::{ROUGH, Search, comparing, whole};
 use super::space::Space;
 use super::starts::starts;
@@ -86,7 +88,7 @@ fn fit_to(
     let space = Space::of(model, range);
     check_size(record, &space)?;
     let (training, short) = (record.for_training(), record.shortened());
-    let searches = rough(&short, model, &space, range).into_iter();
+    let searches = rough(&short, Some(&training), model, &space, range).into_iter();
     let finished = searches.map(|s| s.across_flats().onto(&training).descended(limits));
     let best = finished.min_by(|a, b| a.cost.total_cmp(&b.cost));
     // A value that does nothing may lie outside of the bounds.
@@ -101,16 +103,24 @@ fn fit_to(
     Ok(best.into_fit(record))
 }
 
-/// A rough descent from each of the most promising starts: the best of these.
+/// A rough descent from each of the most promising starts: the best of these. Slopes are kept for
+/// descents that go on in the windows of `next`, where these are the same.
 fn rough<'p, 'r>(
     short: &'p FitRecord<'r>,
+    next: Option<&FitRecord<'_>>,
     model: &'p JointModel,
     space: &'p Space,
     range: &RecordRange<'_>,
 ) -> Vec<Search<'p, 'r>> {
+    let keeps_slopes = next.is_some_and(|next| next.windows() == short.windows());
+    let descended = |search: Search<'p, 'r>| {
+        let mut search = search.descended(ROUGH);
+        search.slopes.take_if(|_| !keeps_slopes);
+        search
+    };
     let mut starts = starts(model, range);
     let mut searches: Vec<_> = if starts.len() == 1 {
-        let search = |start| Search::new(short, model, space, start).descended(ROUGH);
+        let search = |start| descended(Search::new(short, model, space, start));
         starts.into_iter().map(search).collect()
     } else {
         let beginning = Beginning::of(short, model, space, (plain(model), &starts));
@@ -119,7 +129,7 @@ fn rough<'p, 'r>(
             ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
             starts = ranked.into_iter().take(FOLLOWED).map(|(_, start)| start).collect();
         }
-        starts.into_iter().map(|start| beginning.search(start).descended(ROUGH)).collect()
+        starts.into_iter().map(|start| descended(beginning.search(start))).collect()
     };
     searches.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     searches.truncate(FINALISTS);
@@ -138,8 +148,9 @@ pub fn survey(
     let space = Space::of(model, range);
     check_size(record, &space)?;
     let short = record.shortened();
-    let best =
-        rough(&short, model, &space, range).into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost));
+    let best = rough(&short, None, model, &space, range)
+        .into_iter()
+        .min_by(|a, b| a.cost.total_cmp(&b.cost));
     let best = best.map(Search::across_flats);
     let found = best.map(|search| Survey { model: search.problem.model_now(), cost: search.cost });
     Ok(found.unwrap_or_else(|| Survey { model: model.clone(), cost: f64::MAX }))
@@ -207,10 +218,8 @@ impl Search<'_, '_> {
             Parameter { name, value, std_error, status }
         };
         let named = model.names().into_iter().zip(plain(&model)).enumerate();
-        Assessment {
-            parameters: named.map(parameter).collect(),
-            evaluation: whole.evaluate(&model),
-            model,
-        }
+        let parameters = named.map(parameter).collect();
+        let evaluation = Arc::new(whole.evaluate(&model));
+        Assessment { assessed: AssessedModel { model, parameters }, evaluation }
     }
 }

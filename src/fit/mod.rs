@@ -33,6 +33,8 @@ pub(crate) use first_order::{follows_input, makes_first_order, time_constant_s};
 pub use least_squares::{assess, fit, fit_to_compare, fit_to_compare_beside, survey};
 pub use record::FitRecord;
 pub(crate) use record::starts_s;
-pub use result::{Assessment, Fit, FitError, Parameter, Status, Survey, Termination};
+pub use result::{
+    AssessedModel, Assessment, Fit, FitError, Parameter, Status, Survey, Termination,
+};
 pub use score::{Directions, Score};
 pub use window::{Horizon, Part, Split, Window};

@@ -7,7 +7,7 @@ use nalgebra::DVector;
 use super::evaluation::Evaluation;
 use super::excerpt::Excerpt;
 use super::first_order::Follower;
-use super::run::{Run, best_starts, simulated_from};
+use super::run::{Run, best_starts, residuals_from, simulated_from};
 use super::speed;
 use super::thin::thinned;
 use super::unlogged::commands;
@@ -15,10 +15,7 @@ use super::window::{Horizon, Part, Split, Window, changes, cut, places, shorter}
 use crate::delay::{StepDelay, step_delays};
 use crate::effect::{RecordRange, SignalRange};
 use crate::experiment::{Joint, Trial, has_word, weights};
-use crate::model::{
-    Arrivals, Commands, JointModel, Signals, Surroundings, coded_neutral, outputs_together,
-    simulate_together,
-};
+use crate::model::{Arrivals, Commands, JointModel, Signals, Surroundings, coded_neutral};
 use crate::units::{floor_to_index, radians_in};
 
 /// A joint's trials, cut into windows.
@@ -186,8 +183,7 @@ impl<'a> FitRecord<'a> {
     pub fn evaluate(&self, model: &JointModel) -> Evaluation {
         let runs = self.runs(model);
         let starts = best_starts(&runs);
-        let (simulated, residuals) =
-            simulated_from(runs.iter().zip(&starts), simulate_together).into_iter().unzip();
+        let (simulated, residuals) = simulated_from(runs.iter().zip(&starts)).into_iter().unzip();
         Evaluation { horizon: self.horizon, simulated, residuals, starts: Vec::new() }
     }
 
@@ -195,8 +191,7 @@ impl<'a> FitRecord<'a> {
     pub(crate) fn evaluate_residuals(&self, model: &JointModel) -> Evaluation {
         let runs = self.runs(model);
         let starts = best_starts(&runs);
-        let residuals = simulated_from(runs.iter().zip(&starts), outputs_together);
-        let residuals = residuals.into_iter().map(|(_, residuals)| residuals).collect();
+        let residuals = residuals_from(runs.iter().zip(&starts));
         Evaluation { horizon: self.horizon, simulated: Vec::new(), residuals, starts }
     }
 
@@ -213,8 +208,7 @@ impl<'a> FitRecord<'a> {
             runs.iter().filter_map(move |runs| Some((runs.get(trial)?, starts)))
         });
         let mut residuals = vec![Vec::new(); models.len()];
-        let found = simulated_from(all, outputs_together).into_iter();
-        for (index, (_, own)) in found.enumerate() {
+        for (index, own) in residuals_from(all).into_iter().enumerate() {
             residuals[index % models.len()].push(own);
         }
         residuals.iter().map(|residuals| self.training(residuals)).collect()

@@ -2,19 +2,35 @@
 
 use std::fmt;
 use std::ops::Deref;
+use std::sync::Arc;
 
 use super::evaluation::Evaluation;
 use crate::model::JointModel;
 
-/// A model on a record, fitted or as it was given, with how sure its parameters are.
+/// A model, fitted or as it was given, with how sure its parameters are.
 #[derive(Clone, Debug)]
-pub struct Assessment {
+pub struct AssessedModel {
     /// The model.
     pub model: JointModel,
     /// Its parameters, in the order of [`JointModel::values`].
     pub parameters: Vec<Parameter>,
-    /// The model on the record.
-    pub evaluation: Evaluation,
+}
+
+/// A model on a record, with how sure its parameters are.
+#[derive(Clone, Debug)]
+pub struct Assessment {
+    /// The model and its parameters.
+    pub assessed: AssessedModel,
+    /// The model on the record. Copies of the assessment share it, as it is long.
+    pub evaluation: Arc<Evaluation>,
+}
+
+impl Deref for Assessment {
+    type Target = AssessedModel;
+
+    fn deref(&self) -> &AssessedModel {
+        &self.assessed
+    }
 }
 
 /// A fitted model: its assessment at the fitted values, and how the fit went.

@@ -9,6 +9,7 @@ use super::window::Window;
 use crate::experiment::Trial;
 use crate::model::{
     Arrivals, Driven, JointModel, Restart, Signals, Simulated, Surroundings, outputs_together,
+    simulate_together,
 };
 
 /// How stretches are simulated: as a whole, or the output alone.
@@ -167,12 +168,22 @@ pub(super) fn best_starts(runs: &[Run<'_>]) -> Vec<Starts> {
 /// is removed as far as it is linear.
 pub(super) fn simulated_from<'r>(
     begun: impl Iterator<Item = (&'r Run<'r>, &'r Starts)>,
-    simulate: Simulate,
 ) -> Vec<(Simulated, Vec<f64>)> {
     let begun: Vec<_> = begun.collect();
     let outputs: Vec<_> = begun.iter().map(|(run, from)| (*run, from.outputs.as_slice())).collect();
-    let all = simulated(&outputs, simulate).into_iter().zip(begun);
+    let all = simulated(&outputs, simulate_together).into_iter().zip(begun);
     all.map(|(simulated, (run, starts))| run.shifted(simulated, starts.slope.as_deref())).collect()
+}
+
+/// The residuals of each run from its starts, as [`simulated_from`] has them, without the outputs.
+pub(super) fn residuals_from<'r>(
+    begun: impl Iterator<Item = (&'r Run<'r>, &'r Starts)>,
+) -> Vec<Vec<f64>> {
+    let begun: Vec<_> = begun.collect();
+    let outputs: Vec<_> = begun.iter().map(|(run, from)| (*run, from.outputs.as_slice())).collect();
+    let all = simulated(&outputs, outputs_together).into_iter().zip(begun);
+    all.map(|(simulated, (run, starts))| run.shifted(simulated, starts.slope.as_deref()).1)
+        .collect()
 }
 
 /// The simulations of the windows of each run, from their starts; not a number where there is none.

@@ -178,8 +178,11 @@ mod tests {
         let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::Steps);
         let levels = record.input_levels();
         let range = record.range(&levels, 20.0);
-        let base =
-            fit(&record, &JointModel::integrator(8.0, 0.05), &range).unwrap().assessment.model;
+        let base = fit(&record, &JointModel::integrator(8.0, 0.05), &range)
+            .unwrap()
+            .assessment
+            .assessed
+            .model;
         let score = Score::of(&record, &base, &range).unwrap();
         let of = |effect: &'static dyn Effect| {
             score.directions(&base.with(Component::neutral(effect)), &range)

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::markdown::plain;
 use crate::experiment::Joint;
-use crate::fit::Assessment;
+use crate::fit::AssessedModel;
 use crate::report::{DELAY_OF_STEPS, delay_of_steps, telling_parameters};
 use crate::wording::parameter_value;
 
@@ -12,7 +12,7 @@ use crate::wording::parameter_value;
 pub(super) fn parameter_table(
     page: &mut String,
     joint: &Joint,
-    fit: &Assessment,
+    fit: &AssessedModel,
 ) -> std::fmt::Result {
     writeln!(page, "| parameter | value ± standard error |\n|---|---|")?;
     let delays = delay_of_steps(joint, &fit.model);

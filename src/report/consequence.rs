@@ -3,7 +3,7 @@
 use crate::diagnosis::{ErrorFigures, sensor_noise};
 use crate::experiment::Joint;
 use crate::explain::{Attribution, Contribution};
-use crate::fit::Assessment;
+use crate::fit::AssessedModel;
 use crate::wording::{measure, percent, rounded};
 
 /// A model with effects that were added, or are proposed, beside the model without them.
@@ -11,7 +11,7 @@ use crate::wording::{measure, percent, rounded};
 pub(crate) struct Consequence<'a> {
     pub(crate) joint: &'a Joint,
     /// The model with the effects.
-    pub(crate) fit: &'a Assessment,
+    pub(crate) fit: &'a AssessedModel,
     /// What each of them carries, where that was found out.
     pub(crate) attribution: Option<&'a Attribution>,
     /// The error without them, where there are any.

@@ -41,10 +41,10 @@ impl<'a> Finding<'a> {
         let comparison = self.compared.comparison;
         let (fit, before, after) = match (self.before, self.proposed()) {
             (None, Some(best)) => {
-                (&best.fit.assessment, comparison.judged(), best.validation.or(best.training))
+                (&best.fit.assessed, comparison.judged(), best.validation.or(best.training))
             }
             (before, _) => {
-                (&comparison.fit, before.and_then(Comparison::judged), comparison.judged())
+                (&comparison.fit.assessed, before.and_then(Comparison::judged), comparison.judged())
             }
         };
         let (joint, attribution) = (self.compared.joint, self.attribution);

@@ -4,7 +4,7 @@ use super::EstimatedJoint;
 use super::summary::{DelayRange, JointSummary};
 use crate::delay::{Bounds, DeadTime, Finding, InputStep};
 use crate::effect::{InputChange, Stage};
-use crate::fit::{Assessment, Status};
+use crate::fit::{AssessedModel, Status};
 use crate::model::Component;
 use crate::numerics::median;
 
@@ -15,7 +15,7 @@ const FEWEST: usize = 3;
 const BY_CHANCE: f64 = 3.0;
 
 /// Why a fitted delay is shorter than those measured: a step seems late by the lag behind it, too.
-fn why_shorter(of: &Assessment) -> String {
+fn why_shorter(of: &AssessedModel) -> String {
     let is_lag = |component: &&Component| {
         matches!(component.effect().spec().stage, Stage::Spool | Stage::Dynamics)
     };
@@ -30,7 +30,7 @@ fn why_shorter(of: &Assessment) -> String {
 
 /// What is to be said of the delay of a model: that it was held, or that it lies outside the
 /// delays that were measured, and why a fit puts it there. Nothing of a law that was fitted.
-pub(super) fn model_delay(of: &Assessment, measured: EstimatedJoint<'_>) -> Option<String> {
+pub(super) fn model_delay(of: &AssessedModel, measured: EstimatedJoint<'_>) -> Option<String> {
     let is_law = |component: &&Component| component.effect().spec().stage == Stage::Transport;
     let laws: Vec<&Component> = of.model.components().iter().filter(is_law).collect();
     if let Some(found) = &measured.estimate.dead_time {
@@ -42,7 +42,11 @@ pub(super) fn model_delay(of: &Assessment, measured: EstimatedJoint<'_>) -> Opti
 }
 
 /// Of a law that was held: where it lies, and how near it comes to what was measured.
-fn held_law(of: &Assessment, laws: &[&Component], measured: EstimatedJoint<'_>) -> Option<String> {
+fn held_law(
+    of: &AssessedModel,
+    laws: &[&Component],
+    measured: EstimatedJoint<'_>,
+) -> Option<String> {
     let parameters = laws.iter().flat_map(|law| law.parameters());
     if !of.model.delay.fixed || parameters.into_iter().any(|parameter| !parameter.fixed) {
         return None;
@@ -84,7 +88,7 @@ fn accepted(measured: EstimatedJoint<'_>) -> Vec<(InputChange, f64)> {
 
 /// Of a constant delay beside the dead time of an input that moves all the time, where it lies
 /// outside the interval of that.
-fn over_the_record(of: &Assessment, found: &DeadTime) -> Option<String> {
+fn over_the_record(of: &AssessedModel, found: &DeadTime) -> Option<String> {
     let (Finding::Known(Bounds { low_s, high_s, .. })
     | Finding::LagOnly(Bounds { low_s, high_s, .. })) = found.finding
     else {
@@ -106,7 +110,7 @@ fn over_the_record(of: &Assessment, found: &DeadTime) -> Option<String> {
     }
 }
 
-fn constant(of: &Assessment, measured: DelayRange) -> Option<String> {
+fn constant(of: &AssessedModel, measured: DelayRange) -> Option<String> {
     let delay = of.parameters.iter().find(|parameter| parameter.name == "delay")?;
     let (value, leeway) = (delay.value, BY_CHANCE * delay.std_error.unwrap_or(0.0));
     let DelayRange { min, median, max } = measured;

@@ -3,7 +3,7 @@
 use crate::diagnosis::Comparison;
 use crate::effect::Stage;
 use crate::experiment::{Joint, Trial};
-use crate::fit::{Assessment, Parameter, Status, starts_s};
+use crate::fit::{AssessedModel, Parameter, Status, starts_s};
 use crate::model::{Commands, Component, JointModel};
 use crate::wording::{parameter_units, parameter_value, rounded};
 
@@ -71,7 +71,7 @@ pub(crate) fn delay_of_steps(joint: &Joint, model: &JointModel) -> Option<String
 /// nothing.
 pub(crate) fn telling_parameters<'a>(
     joint: &Joint,
-    fit: &'a Assessment,
+    fit: &'a AssessedModel,
 ) -> impl Iterator<Item = (&'a Parameter, String)> + use<'a> {
     let units = parameter_units(joint, &fit.model);
     let known = fit.parameters.iter().zip(units).zip(neutrals(&fit.model));

@@ -11,7 +11,7 @@ use crate::delay::{EstimateError, level_tolerance};
 use crate::design::{FreeRunError, Suspects, SuspectsError, Uncertain};
 use crate::diagnosis::{Comparison, compare, compare_unfitted, floor_of};
 use crate::effect::Effect;
-use crate::experiment::{Joint, Other, Trial, activity};
+use crate::experiment::{Joint, Other, Supply, Trial};
 use crate::explain::{AddError, Addition, Explanation, Improvement, Options, Revision, Workers};
 use crate::explain::{add, explain, improve};
 use crate::fit::{Fit, FitError, FitRecord, Horizon, Split};
@@ -23,7 +23,7 @@ pub type OfJoints<T> = Vec<Option<Result<T, FitError>>>;
 /// Compares each joint with its model: `None` where it has none.
 ///
 /// The other `joints`, and those [beside](Watched::beside) them, are the ones that share the
-/// supply with a joint: see [`activity`].
+/// supply with a joint: see [`Supply`].
 /// `models` gives the model of a joint; it is not asked for plain integrators.
 pub fn compare_joints<'a>(
     joints: &[Joint],
@@ -154,7 +154,7 @@ fn improved(
     let judged = FitRecord::new(&part, Split::of(&part), horizon);
     let start = best_fit(&judged, std::slice::from_ref(plain))?.ok()?;
     let improvement = improve(&judged, start, &options, workers, |_| true);
-    let last = improvement.revisions.into_iter().last()?.comparison.fit.model;
+    let last = improvement.revisions.into_iter().last()?.comparison.fit.assessed.model;
     let fit = best_fit(record, &[last])?.ok()?;
     Some((FreeRunError::of(joint, &fit.model), fit))
 }
@@ -239,15 +239,12 @@ fn for_each_joint<P, T: Send>(
 ) -> OfJoints<T> {
     let Protocol { mode, split, horizon } = protocol;
     watch.more(joints.len());
-    let sharing: Vec<Other<'_>> = others_of(joints, estimates);
+    let supply = Supply::of(others_of(joints, estimates).into_iter().chain(others.iter().copied()));
     let pairs: Vec<_> = joints.iter().zip(estimates).enumerate().collect();
     let one_joint = |(index, (joint, estimate)): &(usize, (&Joint, &Result<JointEstimate, _>))| {
         let estimated: Vec<_> = estimate.iter().flat_map(JointEstimate::estimated).collect();
         let split = split.unwrap_or_else(|| Split::of(joint));
-        let sharing = sharing.iter().enumerate().filter(|(other, _)| other != index);
-        let sharing: Vec<Other<'_>> =
-            sharing.map(|(_, other)| other).chain(others).copied().collect();
-        let record = FitRecord::new(joint, split, horizon).with_others(activity(joint, &sharing));
+        let record = FitRecord::new(joint, split, horizon).with_others(supply.beside(*index));
         let starts = starts(mode, joint, &estimated, &models)?;
         let prepared = prepare(&record, &starts);
         watch.done();

@@ -144,6 +144,7 @@ impl Args {
         Ok(Options {
             max_effects: self.max_effects,
             keeps_refinements: self.refine,
+            keeps_series: self.output.is_recorded(),
             ..self.effects.options(file.candidates())?
         })
     }

@@ -41,7 +41,10 @@ pub(super) fn evidence(improved: &ImprovedJoint<'_>) -> Evidence {
         let own = laws.get(at).cloned().unwrap_or_default();
         let proposed = improved.proposed(at);
         let next = proposed.map_or_else(Vec::new, |candidate| still.law(&candidate.fit.model));
-        if let Some(candidate) = proposed.filter(|_| are_alike(&own, &next)) {
+        let only_moving = proposed.filter(|_| are_alike(&own, &next));
+        let simulated =
+            only_moving.and_then(|candidate| Some((candidate, candidate.fit.evaluation()?)));
+        if let Some(candidate) = simulated {
             figures.push(residual::figure(joint, &step.comparison, number, candidate));
             continue;
         }

@@ -23,14 +23,15 @@ struct Sample {
     explained: f64,
 }
 
-/// The residual of revision `number` of `joint`, and the part of it that `candidate` explains.
+/// The residual of revision `number` of `joint`, and the part of it that `candidate` explains, whose
+/// series are `next`.
 pub(super) fn figure(
     joint: &Joint,
     comparison: &Comparison,
     number: u32,
-    candidate: &Candidate,
+    (candidate, next): (&Candidate, &Evaluation),
 ) -> Figure {
-    let of_each = variables(joint, &comparison.fit.evaluation, &candidate.fit.evaluation);
+    let of_each = variables(joint, &comparison.fit.evaluation, next);
     let binned = of_each.map(|(name, samples)| (name, bins(samples)));
     let clearest = binned.into_iter().max_by(|a, b| followed(&a.1).total_cmp(&followed(&b.1)));
     let (name, bins) = clearest.unwrap_or_default();

@@ -3,7 +3,7 @@
 use super::figures::ABOVE_NOISE;
 use super::{Passage, Topic};
 use crate::explain::Candidate;
-use crate::fit::{Fit, Status, makes_first_order};
+use crate::fit::{AssessedModel, Status, makes_first_order};
 use crate::model::Component;
 use crate::report::equation::filled_in;
 use crate::report::finding::{Finding, added, specs};
@@ -114,7 +114,7 @@ impl Finding<'_> {
 
     /// `upper = 0.612 ± 0.021 V` for each of the parameters that start with `prefix`; those that were
     /// not fitted say nothing of the joint.
-    fn parameters(&self, fit: &Fit, prefix: &str) -> String {
+    fn parameters(&self, fit: &AssessedModel, prefix: &str) -> String {
         let units = parameter_units(self.joint(), &fit.model);
         let own = fit.parameters.iter().zip(units);
         let own = own.filter(|(parameter, _)| parameter.status != Status::Fixed);

@@ -9,7 +9,7 @@ use super::misfit::{
 };
 use crate::diagnosis::Comparison;
 use crate::experiment::Joint;
-use crate::fit::{Assessment, Parameter, Status};
+use crate::fit::{AssessedModel, Parameter, Status};
 use crate::report::compare::ComparedJoint;
 use crate::wording::{effect_ids, parameter_units};
 
@@ -80,7 +80,7 @@ impl ErrorJson {
 }
 
 /// Parameters by name, with their standard errors and units.
-pub(super) fn parameters(joint: &Joint, fit: &Assessment) -> Map<String, Value> {
+pub(super) fn parameters(joint: &Joint, fit: &AssessedModel) -> Map<String, Value> {
     let parameter = |(parameter, unit): (&Parameter, String)| {
         let Parameter { name, value, std_error, status } = parameter;
         let status = status_id(*status);

@@ -13,5 +13,6 @@ mod columns;
 mod v5;
 mod v73;
 mod variable;
+mod watched;
 
 pub(super) use columns::open;

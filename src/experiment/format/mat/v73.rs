@@ -1,13 +1,14 @@
 //! MATLAB 7.3 (`save -v7.3`): HDF5, with a class on every object.
 //!
 //! The crate hdf5-pure 0.47 follows hard links in circles and takes memory for what a dataset
-//! says of its size, so both are checked before it is asked.
+//! says of its size, so both are checked before it is asked; [`open`] bounds what it reads for one object.
 
 use std::path::Path;
 
-use hdf5_pure::{AttrValue, Chunk, Dataset, Error, File, Group};
+use hdf5_pure::{AttrValue, Chunk, Dataset, Error, Group};
 
 use super::variable::{Content, Numbers, Variable, damaged};
+use super::watched::{Reads, open};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::{Budget, TooLarge};
 
@@ -68,17 +69,21 @@ struct Listing<'a> {
     budget: &'a Budget,
     /// Objects that may still be looked at.
     objects: u64,
+    /// What may still be read for one of them.
+    reads: Reads,
     found: Vec<Variable>,
 }
 
 /// The variables of a file, their numbers still stored.
 pub(super) fn variables(path: &Path, budget: &Budget) -> Result<Vec<Variable>, ReadError> {
     let list = || {
-        let file = File::open_streaming(path)?;
+        let (file, reads) = open(path)?;
         let size = file.file_size();
         let objects = size / OBJECT_SIZE + FEW_OBJECTS;
-        let mut listing = Listing { size, budget, objects, found: Vec::new() };
+        let mut listing = Listing { size, budget, objects, reads, found: Vec::new() };
+        listing.reads.begin();
         listing.group(&file.root(), "", 0)?;
+        listing.reads.end();
         Ok(listing.found)
     };
     list().map_err(|fault: Fault| fault.refuse(path))
@@ -141,12 +146,14 @@ impl Listing<'_> {
         groups.sort_by(|a, b| a.0.cmp(&b.0));
         self.count(prefix, datasets.iter().chain(groups.iter().map(|(name, _)| name)))?;
         for name in datasets {
+            self.reads.begin();
             let found = self.variable(format!("{prefix}{name}"), group.dataset(&name)?)?;
             self.found.push(found);
         }
         // A name with a number sign is MATLAB's own: what cells refer to.
         groups.retain(|(name, _)| !name.starts_with('#'));
         for (name, group) in groups.iter().filter(|_| depth < DEEPEST) {
+            self.reads.begin();
             self.group(group, &format!("{prefix}{name}."), depth + 1)?;
         }
         Ok(())

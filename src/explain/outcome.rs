@@ -1,0 +1,63 @@
+//! What a fit came to, without the series that it was judged by.
+
+use std::ops::Deref;
+use std::sync::Arc;
+
+use super::misfit::Errors;
+use crate::fit::{AssessedModel, Assessment, Evaluation, Fit, FitRecord, Termination};
+
+/// A fitted model and its errors, without what it simulates.
+///
+/// The series of a model are four times as long as the record. Of the many models that are tried
+/// few are looked at again, and what these simulate is found again from them.
+#[derive(Clone, Debug)]
+pub struct FitOutcome {
+    /// The model at the fitted values.
+    pub assessed: AssessedModel,
+    /// The sum of squared errors that was minimised: see [`Fit::cost`].
+    pub cost: f64,
+    /// Why it stopped.
+    pub termination: Termination,
+    pub(super) errors: Errors,
+    evaluation: Option<Arc<Evaluation>>,
+}
+
+impl Deref for FitOutcome {
+    type Target = AssessedModel;
+
+    fn deref(&self) -> &AssessedModel {
+        &self.assessed
+    }
+}
+
+impl FitOutcome {
+    /// What `fit` came to on `record`.
+    pub(super) fn of(record: &FitRecord<'_>, fit: Fit) -> Self {
+        let errors = Errors::of(record, &fit);
+        let Fit { assessment: Assessment { assessed, .. }, cost, termination } = fit;
+        Self { assessed, cost, termination, errors, evaluation: None }
+    }
+
+    /// The fit with its series on `record`, the one to which it was fitted.
+    pub(super) fn on(&self, record: &FitRecord<'_>) -> Fit {
+        let kept = self.evaluation.as_ref().map(Arc::clone);
+        let evaluation = kept.unwrap_or_else(|| Arc::new(record.evaluate(&self.model)));
+        let assessment = Assessment { assessed: self.assessed.clone(), evaluation };
+        Fit { assessment, cost: self.cost, termination: self.termination }
+    }
+
+    /// Keeps the series on `record`, for who looks at this model beside the one before.
+    pub(super) fn keep_series(&mut self, record: &FitRecord<'_>) {
+        self.evaluation = Some(self.on(record).assessment.evaluation);
+    }
+
+    /// Keeps them no longer.
+    pub(super) fn drop_series(&mut self) {
+        self.evaluation = None;
+    }
+
+    /// The series, of the candidate that is proposed or was taken.
+    pub fn evaluation(&self) -> Option<&Evaluation> {
+        self.evaluation.as_deref()
+    }
+}
