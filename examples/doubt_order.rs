@@ -144,19 +144,20 @@ fn main() -> anyhow::Result<()> {
     METHODS.into_iter().try_for_each(|method| areas(method, records, first_seed).map(drop))
 }
 
-/// What no order gives is 0.5. Of the seeds below the least area of all plants together is 0.87 with
-/// either method, of ten records each 0.91: the limit leaves room for other seeds, and is
-/// missed by the order of the second-best breakpoint.
+/// The least area of all plants together. What no order gives is 0.5. Of one record per plant the
+/// area is at least 0.893 with `two-line` and 0.832 with `hinge` for the seeds below, and by the
+/// second-best breakpoint at most 0.698 and 0.547: the limits leave room for other seeds, and
+/// the order of the second-best misses them.
 #[cfg(test)]
-const LEAST: f64 = 0.83;
+const LEAST: [f64; 2] = [0.85, 0.78];
 
 #[test]
 fn the_doubtful_decisions_are_the_wrong_ones() -> anyhow::Result<()> {
-    for method in METHODS {
+    for (method, least) in METHODS.into_iter().zip(LEAST) {
         for first_seed in [FIRST_SEED, 7000, 9000] {
             let areas = areas(method, 1, first_seed)?;
             let all = areas.last().copied().unwrap_or_default();
-            assert!(all > LEAST, "{method}, seeds from {first_seed}: {areas:?}");
+            assert!(all > least, "{method}, seeds from {first_seed}: {areas:?}");
         }
     }
     Ok(())

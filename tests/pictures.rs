@@ -292,7 +292,7 @@ fn no_view_is_empty() {
     }
 }
 
-/// The part of a view that is drawn on where there is something: the emptiest has four times as much.
+/// The part of a view that is drawn on where there is anything, at least.
 const LEAST: f64 = 0.004;
 
 #[test]

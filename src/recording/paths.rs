@@ -162,7 +162,7 @@ pub(crate) mod drawing {
 /// The record on one sheet, on which the segment under the cursor is framed.
 pub(crate) mod map {
     pub(crate) const ROOT: &str = "map";
-    /// The same with the delays, on a page of its own.
+    /// A large one with the delays, on a page of its own.
     pub(crate) const LARGE: &str = "map_of_record";
     pub(crate) use crate::recording::paths::GRID;
     pub(crate) const TICKS: &str = "ticks";
