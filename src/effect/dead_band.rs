@@ -21,6 +21,7 @@
 //! Sensor Nonlinearities; Merritt, H. E., 1967, Hydraulic Control Systems (overlapped
 //! valves).
 
+use super::band::shifted;
 use super::{
     CoulombFriction, Dimension, Effect, Equations, Moment, Parameter, RecordRange, Spec, Stage,
     UNLIMITED,
@@ -82,11 +83,6 @@ impl Effect for DeadBand {
             _ => None,
         }
     }
-}
-
-/// `signal` less the band from `lower` to `upper`.
-pub(super) fn shifted(signal: f64, lower: f64, upper: f64) -> f64 {
-    (signal - upper).max(0.0) + (signal - lower).min(0.0)
 }
 
 #[cfg(test)]

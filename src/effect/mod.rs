@@ -19,6 +19,7 @@ pub mod actuator_lag;
 pub mod asymmetric_friction;
 pub mod asymmetric_saturation;
 pub mod backlash;
+mod band;
 pub mod contract;
 pub mod coulomb_friction;
 pub mod dead_band;

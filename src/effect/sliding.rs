@@ -14,7 +14,7 @@
 //! t_stop = T/c · ln(1 + c |v(0)| / |in ∓ level|)      ∫v dt = ((in ∓ level) · t − T · Δv) / c
 //! ```
 
-use super::dead_band::shifted;
+use super::band::shifted;
 use super::decay::{DECAY_MEMORY, Decay};
 use super::moment::Moment;
 
