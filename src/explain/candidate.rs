@@ -1,11 +1,11 @@
 //! A model with one effect more, beside the measurement, and when it is worth a name.
 
-use super::determined::{is_determined, is_reached};
+use super::determined::{BESIDE_ITS_LIKE, DISTINCT, is_determined, is_distinct, is_reached};
 use super::extension::components_of;
+use super::likeness::is_beside_its_like;
 use super::outcome::FitOutcome;
 use super::separation::Separation;
 use crate::diagnosis::ErrorFigures;
-use crate::effect::{Parameter, Spec};
 use crate::fit::{AssessedModel, Status};
 use crate::model::Component;
 
@@ -108,20 +108,15 @@ impl Candidate {
         determined(&self.fit) >= determined(base)
     }
 
-    /// Whether a value of what it adds is known to be another than that at which it does nothing:
-    /// by two standard errors, where there are any.
+    /// Whether a value of what it adds is known to be another than that at which it does nothing.
     pub(super) fn is_distinct(&self) -> bool {
-        let distance = |spec: &'static Spec, parameter: &Parameter| {
-            let name = format!("{}.{}", spec.id, parameter.name);
-            let fitted = self.fit.parameters.iter().find(|fitted| fitted.name == name)?;
-            Some((fitted.value - parameter.neutral).abs() / fitted.std_error?)
-        };
-        let of = |component: &Component| component.effect().spec();
-        let mut known = self.added().map(of).flat_map(|spec| {
-            spec.parameters.iter().filter_map(move |parameter| distance(spec, parameter))
-        });
-        let first = known.next();
-        first.is_none_or(|first| first > 2.0 || known.any(|other| other > 2.0))
+        self.added().any(|effect| is_distinct(&self.fit, effect, DISTINCT))
+    }
+
+    /// Whether it can be told from what is fitted beside it and looks like it, where anything does.
+    pub(super) fn is_told_from_its_like(&self) -> bool {
+        !is_beside_its_like(&self.fit.model, &self.effects)
+            || self.added().any(|effect| is_distinct(&self.fit, effect, BESIDE_ITS_LIKE))
     }
 
     /// Whether it is needed even where the model passes for adequate.

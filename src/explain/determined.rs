@@ -10,17 +10,39 @@ use crate::model::Component;
 /// Whether the record of `fit` determines at least one parameter of an effect of its model, or, with
 /// nothing to fit, does not have to.
 ///
-/// A level at which an effect switches between two that the input had, or a limit between two places
-/// of the joint, is nowhere else than between them, which is enough.
+/// A level between two that the input had, or a limit between two places of the joint, is nowhere
+/// else than between them, which is enough.
 pub(super) fn is_determined(fit: &AssessedModel, component: &Component) -> bool {
     let mut free = free_parameters(fit, component).peekable();
     free.peek().is_none()
         || free.any(|(parameter, status)| match status {
             Status::Fitted => true,
+            Status::Undetermined => is_limit(component.effect(), parameter),
             // Of a value that changes nothing nearby no bound can be far.
-            Status::Undetermined | Status::AtBound => switches_at(component.effect(), parameter),
+            Status::AtBound => switches_at(component.effect(), parameter),
             Status::BeyondReach | Status::Fixed => false,
         })
+}
+
+/// Standard errors by which a value is another than that at which its effect does nothing.
+pub(super) const DISTINCT: f64 = 2.0;
+
+/// Standard errors by which it is beside an effect that looks like it: two frictions and an overlap
+/// together follow many a curve that is none of them. Chosen: on a measured boom each value of a
+/// friction beside the overlap is known to 2.4 at most.
+pub(super) const BESIDE_ITS_LIKE: f64 = 3.0;
+
+/// Whether a value of an effect is known to be another than that at which it does nothing, by
+/// `errors` standard errors, where there are any.
+pub(super) fn is_distinct(fit: &AssessedModel, component: &Component, errors: f64) -> bool {
+    let spec = component.effect().spec();
+    let distances = spec.parameters.iter().filter_map(|parameter| {
+        let name = format!("{}.{}", spec.id, parameter.name);
+        let fitted = fit.parameters.iter().find(|fitted| fitted.name == name)?;
+        Some((fitted.value - parameter.neutral).abs() / fitted.std_error?)
+    });
+    let mut known = distances.peekable();
+    known.peek().is_none() || known.any(|distance| distance > errors)
 }
 
 /// Whether an effect acts within what the record of `fit` reaches: not one of which all levels or

@@ -1,11 +1,11 @@
 //! What can be removed from a model, or exchanged, after an effect was added.
 
 use super::candidate::ALIKE;
-use super::determined::is_determined;
+use super::determined::{BESIDE_ITS_LIKE, is_determined, is_distinct};
 use super::eligible::{could_be_missing, is_due, signal_range};
 use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
-use super::likeness::{least_share, looks_like};
+use super::likeness::{is_beside_its_like, looks_like};
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::outcome::FitOutcome;
@@ -109,17 +109,17 @@ impl Removal<'_> {
             let does_harm = of_whole.is_nearer_over_windows(&evidence, HARM)
                 || !self.misfit.generalizes(own, fit.errors);
             // More parameters in the place of an effect are worth as much as a further effect.
-            let new: Vec<&str> = change.new_effects().collect();
-            let least = least_share(&fit.model, &new);
             let is_worth_it = fit.parameters.len() <= whole.parameters.len()
                 || self.options.keeps_refinements
-                || self.misfit.share(own, fit.errors) >= least;
+                || self.misfit.has_consequence(own, fit.errors);
             let behind = evidence.criterion() - of_whole.criterion();
             let leaves_less = !change.is_unusual() || fit.cost < LESS * whole.cost;
             let hurdle = if change.is_unusual() { ALIKE } else { 0.0 };
-            let is_known = change
-                .new_effects()
-                .all(|new| components_of(&fit.model, &[new]).all(|one| is_determined(&fit, one)));
+            let new: Vec<&str> = change.new_effects().collect();
+            let is_beside = is_beside_its_like(&fit.model, &new);
+            let is_told_apart = |one| !is_beside || is_distinct(&fit, one, BESIDE_ITS_LIKE);
+            let is_known = components_of(&fit.model, &new)
+                .all(|one| is_determined(&fit, one) && is_told_apart(one));
             (behind < -hurdle && leaves_less && !does_harm && is_worth_it && is_known)
                 .then_some((behind, (change, fit)))
         });

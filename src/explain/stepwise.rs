@@ -11,7 +11,6 @@ use std::ops::ControlFlow;
 use super::candidate::Candidate;
 use super::eligible::signal_range;
 use super::extension::ids;
-use super::likeness::least_share;
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::ranking::{Scope, rank};
@@ -119,13 +118,15 @@ pub(super) fn add_stepwise(
         }
         let own = Errors::of(record, &step.fit);
         let has_consequence = |candidate: &Candidate| {
-            let least = least_share(&candidate.fit.model, &candidate.effects);
-            options.keeps_refinements || misfit.share(own, candidate.fit.errors) >= least
+            options.keeps_refinements || misfit.has_consequence(own, candidate.fit.errors)
         };
         let is_sound = |candidate: &&Candidate| {
             let is_known = !matched_by_many
                 || candidate.determines_as_much_as(&step.fit) && candidate.is_distinct();
-            candidate.is_significant() && is_known && misfit.generalizes(own, candidate.fit.errors)
+            candidate.is_significant()
+                && is_known
+                && candidate.is_told_from_its_like()
+                && misfit.generalizes(own, candidate.fit.errors)
         };
         let counts = |candidate: &Candidate| is_sound(&candidate) && has_consequence(candidate);
         let found = step.ranking.iter().position(counts);
