@@ -3,7 +3,7 @@
 //! An effect none of whose parameters is determined may lower the error all the same: at the bound of
 //! its exponent or level it is another shape than its name says. That is no reason to name it.
 
-use crate::effect::{Dimension, Effect, Parameter, Stage};
+use crate::effect::{Dimension, Effect, Parameter, Stage, by_id};
 use crate::fit::{AssessedModel, Status};
 use crate::model::Component;
 
@@ -34,9 +34,16 @@ pub(super) const BESIDE_ITS_LIKE: f64 = 3.0;
 
 /// Whether a value of an effect is known to be another than that at which it does nothing, by
 /// `errors` standard errors, where there are any.
+///
+/// What an effect that it contains has as well, as a lag its time constant, does not count: that
+/// could be there without the rest.
 pub(super) fn is_distinct(fit: &AssessedModel, component: &Component, errors: f64) -> bool {
     let spec = component.effect().spec();
-    let distances = spec.parameters.iter().filter_map(|parameter| {
+    let contained = spec.absorbs.iter().filter_map(|id| by_id(id));
+    let theirs: Vec<&str> =
+        contained.flat_map(|effect| effect.spec().parameters).map(|one| one.name).collect();
+    let own = spec.parameters.iter().filter(|parameter| !theirs.contains(&parameter.name));
+    let distances = own.filter_map(|parameter| {
         let name = format!("{}.{}", spec.id, parameter.name);
         let fitted = fit.parameters.iter().find(|fitted| fitted.name == name)?;
         Some((fitted.value - parameter.neutral).abs() / fitted.std_error?)
