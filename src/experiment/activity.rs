@@ -135,17 +135,19 @@ impl<'a> Draw<'a> {
         if self.most <= 0.0 {
             return;
         }
-        for part in self.at_the_time_of(trial.label()) {
-            for (value, sample) in sum.iter_mut().zip(1..) {
-                let input = held(part, trial.logged_time_s(sample) - self.other.delay_s);
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "a part of the steps of all"
-                )]
-                let drawn = (input.abs() / self.most * steps) as u64;
-                *value += drawn;
-            }
+        let parts = self.at_the_time_of(trial.label());
+        for (value, sample) in sum.iter_mut().zip(1..) {
+            let time_s = trial.logged_time_s(sample) - self.other.delay_s;
+            let input: f64 = parts.iter().map(|part| held(part, time_s).abs()).sum();
+            // Trials of one label may overlap; a joint draws no more than all it can.
+            let share = (input / self.most).min(1.0);
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a part of the steps of all"
+            )]
+            let drawn = (share * steps) as u64;
+            *value += drawn;
         }
     }
 }

@@ -13,7 +13,12 @@ use crate::model::Commands;
 /// The changes of the input of each of `trials`, with those from and to `neutral` that are in no log.
 /// Where the output follows the input itself, no level is one of rest.
 pub(super) fn commands(trials: &[Trial], neutral: f64) -> Vec<Commands> {
-    if followed(trials).is_some() {
+    let has_rest = |trial: &Trial| {
+        let gaps = trial.unlogged().iter().map(|gap| gap.end);
+        gaps.chain([0]).any(|from| rests(trial, from, neutral))
+    };
+    // What the output follows takes a look at the whole record.
+    if !trials.iter().any(has_rest) || followed(trials).is_some() {
         return trials.iter().map(logged).collect();
     }
     trials.iter().map(|trial| with_rests(trial, neutral)).collect()
@@ -24,13 +29,17 @@ fn logged(trial: &Trial) -> Commands {
 }
 
 fn with_rests(trial: &Trial, neutral: f64) -> Commands {
-    let rests = |from: usize| is_away(trial, from, neutral) && rests_first(trial, from);
     let mut commands = logged(trial);
-    for gap in trial.unlogged().iter().filter(|gap| rests(gap.end)) {
+    for gap in trial.unlogged().iter().filter(|gap| rests(trial, gap.end, neutral)) {
         let from_s = gap.start as f64 * trial.period().seconds();
         commands = commands.with_rest_at(neutral, from_s);
     }
-    if rests(0) { commands.begun_at(neutral) } else { commands }
+    if rests(trial, 0, neutral) { commands.begun_at(neutral) } else { commands }
+}
+
+/// Whether the joint rests at a sample though the input is not `neutral` there.
+fn rests(trial: &Trial, sample: usize, neutral: f64) -> bool {
+    is_away(trial, sample, neutral) && rests_first(trial, sample)
 }
 
 /// Whether the input is not `neutral` at a sample.
