@@ -1,8 +1,8 @@
 //! A model with one effect more, beside the measurement, and when it is worth a name.
 
-use super::determined::{BESIDE_ITS_LIKE, DISTINCT, is_determined, is_distinct, is_reached};
+use super::determined::{DISTINCT, is_determined, is_distinct, is_reached};
 use super::extension::components_of;
-use super::likeness::is_beside_its_like;
+use super::likeness::are_told_apart;
 use super::outcome::FitOutcome;
 use super::separation::Separation;
 use crate::diagnosis::ErrorFigures;
@@ -113,10 +113,10 @@ impl Candidate {
         self.added().any(|effect| is_distinct(&self.fit, effect, DISTINCT))
     }
 
-    /// Whether it can be told from what is fitted beside it and looks like it, where anything does.
-    pub(super) fn is_told_from_its_like(&self) -> bool {
-        !is_beside_its_like(&self.fit.model, &self.effects)
-            || self.added().any(|effect| is_distinct(&self.fit, effect, BESIDE_ITS_LIKE))
+    /// Whether each effect that it adds can be told from what is fitted beside it and looks like it,
+    /// and what could be in the model of `base` still can.
+    pub(super) fn is_told_from_its_like(&self, base: &AssessedModel) -> bool {
+        are_told_apart(&self.fit, base, &self.effects)
     }
 
     /// Whether it is needed even where the model passes for adequate.

@@ -1,11 +1,11 @@
 //! What can be removed from a model, or exchanged, after an effect was added.
 
 use super::candidate::ALIKE;
-use super::determined::{BESIDE_ITS_LIKE, is_determined, is_distinct};
+use super::determined::is_determined;
 use super::eligible::{could_be_missing, is_due, signal_range};
 use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
-use super::likeness::{is_beside_its_like, looks_like};
+use super::likeness::{are_told_apart, looks_like};
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::outcome::FitOutcome;
@@ -116,10 +116,8 @@ impl Removal<'_> {
             let leaves_less = !change.is_unusual() || fit.cost < LESS * whole.cost;
             let hurdle = if change.is_unusual() { ALIKE } else { 0.0 };
             let new: Vec<&str> = change.new_effects().collect();
-            let is_beside = is_beside_its_like(&fit.model, &new);
-            let is_told_apart = |one| !is_beside || is_distinct(&fit, one, BESIDE_ITS_LIKE);
-            let is_known = components_of(&fit.model, &new)
-                .all(|one| is_determined(&fit, one) && is_told_apart(one));
+            let is_known = components_of(&fit.model, &new).all(|one| is_determined(&fit, one))
+                && are_told_apart(&fit, whole, &new);
             (behind < -hurdle && leaves_less && !does_harm && is_worth_it && is_known)
                 .then_some((behind, (change, fit)))
         });
