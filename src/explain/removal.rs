@@ -112,13 +112,14 @@ impl Removal<'_> {
             let is_worth_it = fit.parameters.len() <= whole.parameters.len()
                 || self.options.keeps_refinements
                 || self.misfit.has_consequence(own, fit.errors);
-            let behind = evidence.criterion() - of_whole.criterion();
             let leaves_less = !change.is_unusual() || fit.cost < LESS * whole.cost;
+            // Two in the place of one have to be ahead of the one, too.
             let hurdle = if change.is_unusual() { ALIKE } else { 0.0 };
+            let behind = evidence.criterion() - of_whole.criterion() + hurdle;
             let new: Vec<&str> = change.new_effects().collect();
             let is_known = components_of(&fit.model, &new).all(|one| is_determined(&fit, one))
                 && are_told_apart(&fit, whole, &new);
-            (behind < -hurdle && leaves_less && !does_harm && is_worth_it && is_known)
+            (behind < 0.0 && leaves_less && !does_harm && is_worth_it && is_known)
                 .then_some((behind, (change, fit)))
         });
         let (_, better) = judged.min_by(|a, b| a.0.total_cmp(&b.0))?;
