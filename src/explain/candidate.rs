@@ -113,10 +113,9 @@ impl Candidate {
         self.added().any(|effect| is_distinct(&self.fit, effect, DISTINCT))
     }
 
-    /// Whether each effect that it adds can be told from what is fitted beside it and looks like it,
-    /// and what could be in the model of `base` still can.
-    pub(super) fn is_told_from_its_like(&self, base: &AssessedModel) -> bool {
-        are_told_apart(&self.fit, base, &self.effects)
+    /// Whether each effect that it adds can be told from what is fitted beside it and looks like it.
+    pub(super) fn is_told_from_its_like(&self) -> bool {
+        are_told_apart(&self.fit, &self.effects)
     }
 
     /// Whether it is needed even where the model passes for adequate.

@@ -14,24 +14,17 @@ pub(super) fn looks_like(one: &str, other: &str) -> bool {
     one != other && (near(one, other) || near(other, one))
 }
 
-/// Whether each of the effects `new` of a fitted model is told from what looks like it beside it, and
-/// whatever was told before, in the model of `base`, still is.
-pub(super) fn are_told_apart(fit: &AssessedModel, base: &AssessedModel, new: &[&str]) -> bool {
+/// Whether each of the effects `new` of a fitted model is told from what looks like it beside it.
+///
+/// What was there before may no longer be: that is for a removal to judge.
+pub(super) fn are_told_apart(fit: &AssessedModel, new: &[&str]) -> bool {
     let is_fitted = |component: &&Component| component.parameters().iter().any(|p| !p.fixed);
     let fitted: Vec<&Component> = fit.model.components().iter().filter(is_fitted).collect();
     let id = |component: &Component| component.effect().spec().id;
-    let is_confused = |one: &Component, other: &Component| {
-        let concerns_new = new.contains(&id(one)) || new.contains(&id(other));
-        concerns_new && looks_like(id(one), id(other))
-    };
-    let is_known = |fit, one: &Component| is_distinct(fit, one, BESIDE_ITS_LIKE);
-    let was_known = |one: &Component| {
-        let before = base.model.components().iter().find(|before| id(before) == id(one));
-        before.is_none_or(|before| is_known(base, before))
-    };
-    let beside = fitted.iter().filter(|one| fitted.iter().any(|other| is_confused(one, other)));
-    let mut lost = beside.filter(|one| !is_known(fit, one) && was_known(one));
-    lost.next().is_none()
+    let is_beside_its_like =
+        |one: &Component| fitted.iter().any(|other| looks_like(id(one), id(other)));
+    let mut added = fitted.iter().filter(|one| new.contains(&id(one)));
+    added.all(|one| !is_beside_its_like(one) || is_distinct(fit, one, BESIDE_ITS_LIKE))
 }
 
 #[cfg(test)]
@@ -60,28 +53,18 @@ mod tests {
 
     #[test]
     fn beside_an_overlap_a_friction_is_told_by_three_standard_errors() {
-        let base = fitted(&[(&DeadBand, 9.0)]);
         let with = |friction| fitted(&[(&DeadBand, 9.0), (&CoulombFriction, friction)]);
-        assert!(are_told_apart(&with(4.0), &base, &["coulomb_friction"]));
-        assert!(!are_told_apart(&with(2.5), &base, &["coulomb_friction"]));
+        assert!(are_told_apart(&with(4.0), &["coulomb_friction"]));
+        assert!(!are_told_apart(&with(2.5), &["coulomb_friction"]));
+        assert!(!are_told_apart(&with(2.5), &["dead_band", "coulomb_friction"]), "each of both");
+        assert!(are_told_apart(&with(2.5), &["dead_band"]));
         // Not beside it, less will do here.
-        let alone = fitted(&[(&CoulombFriction, 2.5)]);
-        assert!(are_told_apart(&alone, &fitted(&[]), &["coulomb_friction"]));
+        let mut alone = fitted(&[(&CoulombFriction, 2.5)]);
+        assert!(are_told_apart(&alone, &["coulomb_friction"]));
         // A neutral that is known is no friction.
-        let mut beside_known = fitted(&[(&CoulombFriction, 2.5)]);
         let mut offset = Component::neutral(&InputOffset).parameters().to_vec();
         offset[0].fixed = true;
-        let known = Component::new(&InputOffset, offset).unwrap();
-        beside_known.model = beside_known.model.with(known);
-        assert!(are_told_apart(&beside_known, &fitted(&[]), &["coulomb_friction"]));
-    }
-
-    #[test]
-    fn what_was_told_before_has_to_be_told_still() {
-        let with = |overlap| fitted(&[(&DeadBand, overlap), (&CoulombFriction, 4.0)]);
-        let new = ["coulomb_friction"];
-        assert!(!are_told_apart(&with(2.5), &fitted(&[(&DeadBand, 9.0)]), &new));
-        // What was not is for a removal to judge.
-        assert!(are_told_apart(&with(2.5), &fitted(&[(&DeadBand, 2.6)]), &new));
+        alone.model = alone.model.with(Component::new(&InputOffset, offset).unwrap());
+        assert!(are_told_apart(&alone, &["coulomb_friction"]));
     }
 }

@@ -118,7 +118,7 @@ impl Removal<'_> {
             let behind = evidence.criterion() - of_whole.criterion() + hurdle;
             let new: Vec<&str> = change.new_effects().collect();
             let is_known = components_of(&fit.model, &new).all(|one| is_determined(&fit, one))
-                && are_told_apart(&fit, whole, &new);
+                && are_told_apart(&fit, &new);
             (behind < 0.0 && leaves_less && !does_harm && is_worth_it && is_known)
                 .then_some((behind, (change, fit)))
         });
