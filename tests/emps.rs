@@ -71,13 +71,15 @@ fn physical(fit: &AssessedModel) -> [f64; 4] {
 /// Gautier and Brunot, 2019, Data Set and Reference Models of EMPS.
 const PUBLISHED: [f64; 4] = [95.1089, 203.5034, 20.3935, -3.1648];
 
+/// Runs of 0.2 s.
+const SHORT: Horizon = Horizon::Seconds(0.2);
+
 #[test]
 fn published_parameters_are_found_within_five_percent_and_the_offset_within_ten() {
     let Some(joint) = joint("emps_train.csv") else { return };
     // The friction of this drive differs by direction in a way that the model cannot have.
-    // The shorter the windows, the nearer is their error to one of the force, as published;
-    // those of an input that is never held are 200 samples, 0.2 s.
-    let fit = fitted(&joint, Horizon::Steps);
+    // The shorter the windows, the nearer is their error to one of the force, as published.
+    let fit = fitted(&joint, SHORT);
     let found = physical(&fit);
     // The offset is the small difference of the two friction levels, where that lack shows most:
     // plain least squares of the position have -3.39 N, those of the force -3.16 N.
@@ -86,7 +88,7 @@ fn published_parameters_are_found_within_five_percent_and_the_offset_within_ten(
     }
     let Some(pulses) = self::joint("emps_test_pulses.csv") else { return };
     // The published model errs 1.47 times as much there, in the force.
-    let error = |joint| error_m(joint, &fit.model, Horizon::Steps);
+    let error = |joint| error_m(joint, &fit.model, SHORT);
     let (own, other) = (error(&joint), error(&pulses));
     assert!(own < 1e-4 && other < 1.5 * own, "{own} m, {other} m");
     // 25 s without a restart, of a way of a quarter metre.

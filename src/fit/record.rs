@@ -218,7 +218,13 @@ impl<'a> FitRecord<'a> {
     /// models are worth a fit.
     pub(crate) fn thinned(&self) -> Self {
         let training = self.for_training();
-        Self { windows: thinned(&training.windows), ..training }
+        // In the order of the labels: that of the rows says nothing of a joint.
+        let places = places(&self.joint.trials);
+        let mut windows = training.windows.clone();
+        windows.sort_by_key(|window| places[window.trial]);
+        let mut windows = thinned(&windows);
+        windows.sort_by_key(|window| (window.trial, window.start));
+        Self { windows, ..training }
     }
 
     /// This record with training windows of no more than a few steps of the input.

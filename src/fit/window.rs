@@ -2,6 +2,7 @@
 
 use super::first_order::follows_input;
 use crate::experiment::{Joint, Trial};
+use crate::units::SamplePeriod;
 
 /// How long a simulation runs before its angle is set to the measured one again.
 ///
@@ -15,8 +16,8 @@ pub enum Horizon {
     /// Never: each part of a trial is one run.
     #[default]
     FreeRun,
-    /// At every step of the input, and in between so that no run is longer than 200 samples;
-    /// every 200 samples where the input is not held between steps.
+    /// At every step of the input, and in between so that no run is longer than 2 s, or 40 samples
+    /// where these are longer; every 2 s where the input is not held between steps.
     Steps,
     /// Every so many seconds.
     Seconds(f64),
@@ -38,9 +39,7 @@ impl std::fmt::Display for Horizon {
         match self {
             Self::Auto => f.write_str("restarted as the record asks for"),
             Self::FreeRun => f.write_str("free run"),
-            Self::Steps => {
-                f.write_str("restarted at every step of the input and every 200 samples")
-            }
+            Self::Steps => f.write_str("restarted at every step of the input and in long holds"),
             Self::Seconds(seconds) => write!(f, "restarted every {seconds} s"),
         }
     }
@@ -126,9 +125,11 @@ pub(super) fn cut(trial: &Trial, index: usize, share: f64, horizon: Horizon) -> 
         Horizon::FreeRun => {}
         Horizon::Auto | Horizon::Steps if is_held(trial.input()) => {
             borders.extend(changes(trial.input()));
-            borders = divided(borders);
+            borders = divided(borders, longest_run(trial.period()));
         }
-        Horizon::Auto | Horizon::Steps => borders.extend((0..samples).step_by(LONGEST_STEP)),
+        Horizon::Auto | Horizon::Steps => {
+            borders.extend((0..samples).step_by(longest_run(trial.period())));
+        }
         Horizon::Seconds(seconds) => {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 1")]
             let every = (seconds / trial.period().seconds()).round().max(1.0) as usize;
@@ -151,14 +152,25 @@ pub(super) fn cut(trial: &Trial, index: usize, share: f64, horizon: Horizon) -> 
 
 /// Samples of a window between steps of the input, at most: a small error of the speed would
 /// else grow with the square of a long hold, and the longest holds alone decide a fit.
-const LONGEST_STEP: usize = 200;
+///
+/// A time and not a number of samples, so that a log says the same at any rate.
+fn longest_run(period: SamplePeriod) -> usize {
+    /// A multiple of what a hydraulic joint takes to start, 0.8 s at most.
+    const LONGEST_S: f64 = 2.0;
+    /// Of a slow log: enough to see a motion beside its noise.
+    const FEWEST: usize = 40;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
+    let samples = (LONGEST_S / period.seconds()).round() as usize;
+    samples.max(FEWEST)
+}
 
-/// `borders`, and between those that are far apart further ones at equal distances.
-fn divided(mut borders: Vec<usize>) -> Vec<usize> {
+/// `borders`, and between those that are far apart further ones at equal distances, of at most
+/// `longest` samples.
+fn divided(mut borders: Vec<usize>, longest: usize) -> Vec<usize> {
     borders.sort_unstable();
     let between = borders.windows(2).flat_map(|pair| {
         let &[start, end] = pair else { return Vec::new() };
-        let parts = (end - start).div_ceil(LONGEST_STEP);
+        let parts = (end - start).div_ceil(longest);
         (1..parts).map(|part| start + (end - start) * part / parts).collect()
     });
     let between: Vec<usize> = between.collect();
@@ -197,7 +209,6 @@ pub(super) fn changes(input: &[f64]) -> impl Iterator<Item = usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::units::SamplePeriod;
 
     #[test]
     fn steps_of_an_input_that_is_never_held_are_no_windows() {
@@ -217,6 +228,13 @@ mod tests {
         assert_eq!(of(&["b-20", "a-100", "b-3", "a-100"]), [2, 0, 3, 1]);
         assert_eq!(of(&["10", "9", "1"]), [2, 1, 0]);
         assert!((Split::Trials.of_trial(2)).abs() < 1e-15 && Split::Trials.of_trial(3) > 0.5);
+    }
+
+    #[test]
+    fn a_run_is_as_long_at_any_rate() {
+        let longest = |period_s| longest_run(SamplePeriod::from_seconds(period_s).unwrap());
+        assert_eq!([0.001, 0.01, 0.05].map(longest), [2000, 200, 40]);
+        assert_eq!(longest(9.0), 40, "of a furnace");
     }
 
     #[test]

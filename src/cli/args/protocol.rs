@@ -9,7 +9,7 @@ use crate::study::{Mode, Protocol};
 #[derive(Args, Debug)]
 pub(crate) struct ProtocolArgs {
     /// How long a simulation runs before its angle is set to the measured one: `free`
-    /// (never), `steps` (at every step of the input, in long holds every 200 samples), seconds, or
+    /// (never), `steps` (at every step of the input, in long holds every 2 s), seconds, or
     /// `auto`: free where the output follows its input, as a speed or a pressure does, else steps,
     /// where an error counts where it is made [default: free to compare, else auto]
     #[arg(long, value_name = "auto|free|steps|SECONDS", value_parser = horizon, help_heading = "Model")]
