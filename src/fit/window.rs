@@ -16,7 +16,7 @@ pub enum Horizon {
     /// Never: each part of a trial is one run.
     #[default]
     FreeRun,
-    /// At every step of the input, and in between so that no run is longer than 2 s, or 40 samples
+    /// At every step of the input, and in between so that no run is longer than 2 s, or 20 samples
     /// where these are longer; every 2 s where the input is not held between steps.
     Steps,
     /// Every so many seconds.
@@ -158,7 +158,7 @@ fn longest_run(period: SamplePeriod) -> usize {
     /// A multiple of what a hydraulic joint takes to start, 0.8 s at most.
     const LONGEST_S: f64 = 2.0;
     /// Of a slow log: enough to see a motion beside its noise.
-    const FEWEST: usize = 40;
+    const FEWEST: usize = 20;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
     let samples = (LONGEST_S / period.seconds()).round() as usize;
     samples.max(FEWEST)
@@ -234,7 +234,7 @@ mod tests {
     fn a_run_is_as_long_at_any_rate() {
         let longest = |period_s| longest_run(SamplePeriod::from_seconds(period_s).unwrap());
         assert_eq!([0.001, 0.01, 0.05].map(longest), [2000, 200, 40]);
-        assert_eq!(longest(9.0), 40, "of a furnace");
+        assert_eq!(longest(9.0), 20, "of a furnace");
     }
 
     #[test]

@@ -5,7 +5,7 @@ and on it one usual effect after the other.
     low <= y <= high          where the output stays in between
 
 Windows as tauscope's default: simulated from the measured output, restarted where a held input
-changes and at least every 2 s or 40 samples; what a window is off on average is taken off. Every third
+changes and at least every 2 s or 20 samples; what a window is off on average is taken off. Every third
 trial is left out for validation where there are six or more, else the last 30 % of each.
 """
 import csv
@@ -18,7 +18,7 @@ TRIALS = ("test", "run", "trial", "stroke")
 TIMES = ("t_s", "time_s", "t")
 # Of logs that tell none, seconds.
 PERIOD = 0.004
-LONGEST_S, FEWEST = 2.0, 40
+LONGEST_S, FEWEST = 2.0, 20
 SHORTEST = 10
 LADDER = ["integrator", "dead_band", "input_saturation", "direction_gain", "end_stop"]
 
