@@ -5,7 +5,7 @@
 //! does. A word that comes with a level or a direction alone says nothing more; nor does a number,
 //! which counts trials or names a level.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use super::Trial;
 
@@ -26,7 +26,8 @@ fn words(label: &str) -> impl Iterator<Item = &str> {
 }
 
 /// The words of the labels that say what differs between trials of the same input, in the order
-/// in which they appear; of several that say the same, the first.
+/// of the alphabet, so that the order of the trials says nothing; of several that say the same, the
+/// first.
 ///
 /// # Examples
 /// ```
@@ -44,22 +45,18 @@ fn words(label: &str) -> impl Iterator<Item = &str> {
 pub fn conditions(trials: &[Trial]) -> Vec<String> {
     /// Words that are tried, at most: each costs fits.
     const MOST: usize = 4;
-    let mut order: Vec<&str> = Vec::new();
-    let mut labelled: HashMap<&str, Vec<usize>> = HashMap::new();
+    let mut labelled: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (index, trial) in trials.iter().enumerate() {
         for word in words(trial.label()).filter(|word| !is_number(word)) {
-            let with = labelled.entry(word).or_insert_with(|| {
-                order.push(word);
-                Vec::new()
-            });
+            let with = labelled.entry(word).or_default();
             if with.last() != Some(&index) {
                 with.push(index);
             }
         }
     }
     let mut found: Vec<(&str, &[usize])> = Vec::new();
-    for word in order {
-        let with = labelled[word].as_slice();
+    for (word, with) in &labelled {
+        let with = with.as_slice();
         let says_the_same = found.iter().any(|(_, other)| *other == with);
         let is_condition = is_balanced(with.len(), trials.len()) && !says_the_same;
         if is_condition && crosses_input(trials, with) {

@@ -118,22 +118,37 @@ fn rough<'p, 'r>(
         search.slopes.take_if(|_| !keeps_slopes);
         search
     };
+    let given = plain(model);
+    let search = |start| descended(Search::new(short, model, space, start));
     let mut starts = starts(model, range);
     let mut searches: Vec<_> = if starts.len() == 1 {
-        let search = |start| descended(Search::new(short, model, space, start));
-        starts.into_iter().map(search).collect()
+        starts.iter().cloned().map(search).collect()
     } else {
-        let beginning = Beginning::of(short, model, space, (plain(model), &starts));
+        let beginning = Beginning::of(short, model, space, (given.clone(), &starts));
         if starts.len() > FOLLOWED {
             let mut ranked: Vec<_> = beginning.expected(&starts).into_iter().zip(starts).collect();
             ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
             starts = ranked.into_iter().take(FOLLOWED).map(|(_, start)| start).collect();
         }
-        starts.into_iter().map(|start| descended(beginning.search(start))).collect()
+        starts.iter().cloned().map(|start| descended(beginning.search(start))).collect()
     };
+    let least = searches.iter().map(|search| search.cost).fold(f64::INFINITY, f64::min);
+    let of_given = || Search::new(short, model, space, given.clone()).problem.cost();
+    if starts.iter().any(|start| *start != given) && least > of_given() {
+        searches.extend(starts.iter().map(|start| search(nearer(&given, start))));
+    }
     searches.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     searches.truncate(FINALISTS);
     searches
+}
+
+/// A start that is nearer to the values `given`: from one that is too far a descent may end in a valley
+/// of its own, above where it would be without the effect.
+fn nearer(given: &[f64], start: &[f64]) -> Vec<f64> {
+    /// Part of the way. Chosen: of a level that is half of what the input reaches an eighth is left,
+    /// which acts still.
+    const PART: f64 = 0.25;
+    given.iter().zip(start).map(|(given, start)| given + PART * (start - given)).collect()
 }
 
 /// Surveys the free parameters of `model`, from the same starts as [`fit`].
