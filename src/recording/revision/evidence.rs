@@ -115,7 +115,7 @@ impl Evidence {
             let x_ticks = plot.x_span().ticks(5.0);
             let y_ticks: Vec<_> = ticks(plot.y_span().ticks(4.0)).collect();
             drawn.outline(&plot, &x_ticks, &y_ticks);
-            drawn.put(figure.title_place(), figure.title.clone());
+            drawn.put(Figure::title_place(), figure.title.clone());
             for (x, text) in ticks(x_ticks) {
                 drawn.put(plot.below(x, 2.0), text);
             }

@@ -64,7 +64,7 @@ impl Figure {
     }
 
     /// Where the title stands.
-    pub(super) fn title_place(&self) -> Vec2D {
+    pub(super) fn title_place() -> Vec2D {
         let ((left, right), _) = PLACE;
         Vec2D::new(f32::midpoint(left, right), TITLE - NAME)
     }
@@ -173,7 +173,7 @@ mod tests {
         ]);
         let without = figure([Some("revision 0"), None, Some("with dead_band"), None]);
         for figure in [long, without] {
-            let of = |which| (figure.names[which].as_deref(), figure.legend(which).places);
+            let of = |which: usize| (figure.names[which].as_deref(), figure.legend(which).places);
             let boxes: Vec<[f32; 3]> = (0..4)
                 .filter_map(|which| match of(which) {
                     (Some(name), places) => {

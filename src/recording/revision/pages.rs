@@ -148,9 +148,9 @@ impl Steps<'_> {
         layout: &JointLayout<'_>,
         improved: &ImprovedJoint<'_>,
     ) -> Result<(), RecordError> {
+        type Page = fn(&JointLayout<'_>, &ImprovedJoint<'_>, usize) -> String;
         let last = improved.revisions.len().checked_sub(1).filter(|_| self.opens_on_last);
         let shown: Vec<_> = last.into_iter().chain(0..improved.revisions.len()).collect();
-        type Page = fn(&JointLayout<'_>, &ImprovedJoint<'_>, usize) -> String;
         let pages: [(&str, Page); 2] =
             [(paths::WORDS, words::page), (paths::PARAMETERS, words::parameters)];
         for (path, page) in pages {

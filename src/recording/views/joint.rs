@@ -257,7 +257,7 @@ impl Views<'_, '_> {
         let right = [page, list, verdict];
         let builder = &mut *self.builder;
         let right =
-            builder.container(ContainerKind::Vertical, "Lists", &right, &[3.0, 3.2, 3.8])?;
+            builder.container(ContainerKind::Vertical, "Lists", &right, &[2.3, 2.7, 5.0])?;
         let left = [sheet, drawing];
         let left = builder.container(ContainerKind::Vertical, "Steps", &left, &[3.6, 6.4])?;
         let columns = [left, right];
@@ -417,7 +417,7 @@ impl Views<'_, '_> {
         let mut pages = Vec::new();
         for (name, path) in [
             ("Models", paths::MODEL_PAGE),
-            ("Worst segments", paths::MODEL_WORST),
+            ("Worst", paths::MODEL_WORST),
             ("Parameters", paths::MODEL_PARAMETERS),
         ] {
             pages.push(self.view(View::new("TextDocument", name, &[self.path(path)]))?);
