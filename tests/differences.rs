@@ -200,7 +200,7 @@ mod recorded {
         let page = page(&back, "/boom/difference");
         assert!(page.contains("**boom against earlier** (two-line"), "{page}");
         let all = back.numbers("/boom/decision/table", "sse");
-        let shown = back.rows("/boom/decision/table", "3_squared_error", |cell| {
+        let shown = back.rows("/boom/decision/table", "4_sse", |cell| {
             cell.as_primitive::<Float32Type>().value(0)
         });
         assert_eq!(shown.len(), all.len());
@@ -253,7 +253,7 @@ mod recorded {
             let file = format!("x_{}.rrd", (number - 1) / 8 + 1);
             let row = |line: &&str| line.starts_with(&format!("| joint_{number:02} "));
             let row = joints.lines().find(row).unwrap_or_default();
-            assert!(row.contains(&file), "{row} has no {file}");
+            assert!(row.contains(&format!("](<{file}>)")), "{row} has no link to {file}");
             let back = ReadBack::of(&bytes(&format!("x_{}.rrd", (number - 1) / 8 + 1)));
             assert!(back.chunks.contains_key(&format!("/joint_{number:02}/output/raw")));
         }

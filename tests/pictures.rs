@@ -61,7 +61,7 @@ const LOOKS: [(&str, &[Look]); 3] = [
             views: &[
                 ("ladder and evidence", 5..910, 135..330),
                 ("whole record", 5..910, 400..680),
-                ("words", 945..1270, 400..680),
+                ("words", 945..1270, 110..400),
             ],
         }],
     ),
@@ -70,7 +70,7 @@ const LOOKS: [(&str, &[Look]); 3] = [
 const MODELS: [View; 3] = [
     ("whole record", 5..910, 170..480),
     ("residual", 5..910, 560..680),
-    ("words", 930..1270, 400..680),
+    ("words", 930..1270, 110..400),
 ];
 
 /// A picture that is taken behind some steps.
@@ -86,6 +86,8 @@ enum Step {
     Time(&'static str, i64),
     /// A column, and the row of the tabs in viewers before 0.41 and from it on.
     Click(u32, [u32; 2]),
+    /// A key.
+    Key(&'static str),
 }
 
 /// A picture, a brightness from 0 to 255 for each pixel: that of its brightest colour.
@@ -123,6 +125,21 @@ impl Picture {
         };
         let all = of(columns).len() * of(rows).len();
         of(rows).map(bright).sum::<usize>() as f64 / all as f64
+    }
+
+    /// The part of a view's pixels that is seen to be another one in `other`.
+    fn differs(&self, other: &Self, (_, columns, rows): &View) -> f64 {
+        const SEEN: u8 = 40;
+        let of = |points: &Range<usize>| points.start * self.scale..points.end * self.scale;
+        let line = |picture: &Self, row: usize| {
+            picture.brightness[row * self.width..][of(columns)].to_vec()
+        };
+        let changed = |row: usize| {
+            let pairs = line(self, row).into_iter().zip(line(other, row));
+            pairs.filter(|(a, b)| a.abs_diff(*b) > SEEN).count()
+        };
+        let all = of(columns).len() * of(rows).len();
+        of(rows).map(changed).sum::<usize>() as f64 / all as f64
     }
 }
 
@@ -250,6 +267,9 @@ impl Viewer {
                 let y = rows[usize::from(self.is_new)];
                 self.tool(["click"; 2], &json!({"pos": {"x": x, "y": y}}));
             }
+            Step::Key(key) => {
+                self.tool(["press_key"; 2], &json!({"key": key}));
+            }
         }
         self.frames(3);
     }
@@ -289,6 +309,26 @@ fn no_view_is_empty() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn the_first_arrow_leads_from_the_last_revision_to_the_first() {
+    let desk = Desk::with(vec![banded("boom")]);
+    let command = "improve log.csv --effects dead_band -o page.rrd --quiet";
+    assert!(desk.run(command).status.success());
+    let mut ports = 40_000 + std::process::id() % 20_000..;
+    for (program, port) in viewers().iter().zip(&mut ports) {
+        let mut viewer = Viewer::open(program, &desk.folder.path().join("page.rrd"), port);
+        let opened = viewer.picture();
+        viewer.go(&Step::Key("ArrowRight"));
+        let first = viewer.picture();
+        viewer.go(&Step::Key("ArrowRight"));
+        let last = viewer.picture();
+        let ladder_and_words = ("", 5..1270, 110..680);
+        let changed = |other: &Picture| opened.differs(other, &ladder_and_words);
+        assert!(changed(&first) > LEAST, "{program}: the arrow only paused");
+        assert!(changed(&last) < 0.1 * changed(&first), "{program}: {}", changed(&last));
     }
 }
 

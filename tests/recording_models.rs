@@ -110,7 +110,10 @@ fn the_error_falls_along_the_revisions_as_in_the_report() {
     let pages = back.texts("/boom/revision/words", "TextDocument:text");
     let parts: Vec<_> =
         pages.iter().filter_map(|(_, page)| page.split_once("## Revision")).collect();
-    assert_eq!(parts.len(), revisions.len());
+    // The one that it opens on is the last, and before the first.
+    assert_eq!(parts.len(), revisions.len() + 1);
+    assert_eq!(parts.first(), parts.last());
+    let parts = &parts[1..];
     assert!(parts.iter().all(|(answer, _)| answer.contains("no missing effect found")));
     assert!(parts.iter().all(|(answer, _)| *answer == parts[0].0));
     let next = parts.iter().filter(|(_, page)| page.contains("is missing; with it"));
@@ -132,7 +135,10 @@ fn every_drawing_changes_with_the_revision_and_is_on_every_timeline() {
         ("sheet/ladder", "LineStrips2D:colors"),
     ] {
         let rows = back.rows(&format!("/boom/revision/{part}"), component, |cell| cell.to_data());
-        assert_eq!(rows.len(), count, "{part}");
+        // The first tick shows the last revision: the right arrow begins with the first.
+        assert_eq!(rows.len(), count + 1, "{part}");
+        assert_eq!((rows[0].0["revision"], &rows[0].1), (-1, &rows[count].1), "{part}");
+        let rows = &rows[1..];
         assert!(rows.windows(2).all(|pair| pair[0].1 != pair[1].1), "{part}");
         for ((times, _), revision) in rows.iter().zip(0..) {
             assert_eq!((times["revision"], times["sample"]), (revision, 1));
@@ -140,7 +146,7 @@ fn every_drawing_changes_with_the_revision_and_is_on_every_timeline() {
     }
     // A bar more than there are candidates, each of as many lines as the others.
     let lines = back.rows("/boom/revision/sheet/ranking", strips, |cell| cell.len());
-    for ((_, lines), revision) in lines.iter().zip(&improvements[0].revisions) {
+    for ((_, lines), revision) in lines.iter().skip(1).zip(&improvements[0].revisions) {
         assert_eq!(lines % (1 + revision.ranking.len()), 0);
     }
     // What comes next is drawn through the points, but where nothing does.
@@ -150,7 +156,7 @@ fn every_drawing_changes_with_the_revision_and_is_on_every_timeline() {
     let titles = back.rows("/boom/revision/sheet/texts", "Points2D:labels", |cell| {
         cell.as_string::<i32>().iter().flatten().collect::<Vec<_>>().join("\n")
     });
-    for ((_, titles), revision) in titles.iter().zip(improvements[0].revisions.windows(2)) {
+    for ((_, titles), revision) in titles.iter().skip(1).zip(improvements[0].revisions.windows(2)) {
         let title = match revision[1].change {
             Change::Added("actuator_lag") => "against the time since a step",
             _ => "at held input",
@@ -158,7 +164,7 @@ fn every_drawing_changes_with_the_revision_and_is_on_every_timeline() {
         assert!(titles.contains(title), "{titles}");
     }
     let words = back.texts("/boom/revision/words", "TextDocument:text");
-    for ((_, text), pair) in words.iter().zip(improvements[0].revisions.windows(2)) {
+    for ((_, text), pair) in words.iter().skip(1).zip(improvements[0].revisions.windows(2)) {
         let Change::Added(id) = pair[1].change else { panic!("{:?}", pair[1].change) };
         assert!(text.contains(&format!("{id} is missing")), "{text}");
     }

@@ -27,7 +27,11 @@ impl<'a> Recording<'a> {
         let starts = TrialStarts::of(self.joints.iter().map(|joint| joint.joint));
         let numbers = || self.revisions.iter().flat_map(ImprovedJoint::numbered);
         let numbers = || numbers().map(|(number, _)| i64::from(number));
+        // Of several a tick before the first one shows the last: it is opened on, and the right
+        // arrow begins with the first.
+        let before = |first, last| if last > first { first - 1 } else { first };
         let revisions = numbers().min().zip(numbers().max());
+        let revisions = revisions.map(|(first, last)| (before(first, last), last));
         // Which one is the first is not known when the decisions are sent, and they are sent once.
         let revisions = revisions.filter(|_| growth == Growth::Finished);
         let layout =

@@ -155,6 +155,17 @@ impl Labels {
         self.texts.push(text.into());
     }
 
+    /// Leaves out each text, one below another so far, that would lie on the one above it.
+    pub(super) fn keep_apart(&mut self, height: f32) {
+        let mut all: Vec<_> = self.places.drain(..).zip(self.texts.drain(..)).collect();
+        all.sort_by(|(a, _), (b, _)| a.y().total_cmp(&b.y()));
+        for (place, text) in all {
+            if self.places.last().is_none_or(|above| place.y() - above.y() >= height) {
+                self.put(place, text);
+            }
+        }
+    }
+
     /// Puts a text there, or as near as it can be without being cut at a side of the sheet.
     pub(super) fn put_whole(&mut self, Vec2D([x, y]): Vec2D, text: impl Into<String>) {
         let text = text.into();
@@ -214,6 +225,16 @@ mod tests {
         labels.put_whole(Vec2D::new(SHEET.0 - 15.0, 4.0), "end = 12000");
         labels.put_whole(Vec2D::new(800.0, 4.0), "end = 12000");
         assert_eq!(labels.places, [Vec2D::new(SHEET.0 - 91.0, 4.0), Vec2D::new(800.0, 4.0)]);
+    }
+
+    #[test]
+    fn a_text_on_another_is_left_out() {
+        let mut labels = Labels::default();
+        for (y, text) in [(40.0, "0"), (10.0, "10"), (52.0, "-10"), (80.0, "-20")] {
+            labels.put(Vec2D::new(65.0, y), text);
+        }
+        labels.keep_apart(30.0);
+        assert_eq!(labels.texts, ["10", "0", "-20"]);
     }
 
     #[test]

@@ -42,7 +42,7 @@ pub(super) struct Index {
 /// What a recording opens on, beside its decisions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Opening {
-    /// The first revision of any model.
+    /// The first revision of any model, or of several the tick before it.
     pub(super) revision: Option<i64>,
     /// Whether there are other results to compare with.
     pub(super) is_compared: bool,

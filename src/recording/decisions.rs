@@ -48,8 +48,8 @@ fn add_page(
 fn page_header(joint: &Joint) -> String {
     let unit = plain(joint.output_unit.as_deref().unwrap_or("unit"));
     format!(
-        "| trial | i | verdict | δ, s | δ | p | q | SSE, {unit}² | slope before, {unit}/sample | \
-         slope after | doubt |\n|---|---|---|---|---|---|---|---|---|---|---|"
+        "| trial | i | verdict | doubt | δ, s | δ | p | q | SSE, {unit}² | slopes, {unit}/sample |\n\
+         |---|---|---|---|---|---|---|---|---|---|"
     )
 }
 
@@ -64,16 +64,20 @@ fn page_row(trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
         plain(trial.trial.label()),
         decision.number.to_string(),
         format!("{mark} {}", decision.verdict()),
+        doubt_percent(&segment.doubt),
         of(delay.map(|delay| delay * period_s)),
         of(delay),
         decision.input_step.sample.to_string(),
         segment.place().unwrap_or_default(),
         of(best.map(|best| best.sse)),
-        of(best.map(|best| best.before.slope)),
-        of(best.map(|best| best.after.slope)),
-        doubt_percent(&segment.doubt),
+        best.map_or_else(String::new, slopes),
     ];
     format!("| {} |", cells.join(" | "))
+}
+
+/// The slopes of both lines: in one column, since two are wider than a small window.
+fn slopes(best: Candidate) -> String {
+    format!("{} → {}", number(best.before.slope), number(best.after.slope))
 }
 
 /// SSE at each candidate's tick; empty at the first and last tick of a segment.
@@ -171,13 +175,8 @@ impl Table {
     const WHOLE: [&str; 8] = ["i", "p", "r", "end", "f", "j", "q", "delta"];
     const REAL: [&str; 3] = ["sse", "slope_before", "slope_after"];
     /// A viewer orders columns by their names: the most telling ones come first.
-    const SHOWN: [&str; 5] = [
-        "2_delay_s",
-        "3_squared_error",
-        "4_times_least",
-        "slope_before_shown",
-        "slope_after_shown",
-    ];
+    const SHOWN: [&str; 5] =
+        ["3_delay_s", "4_sse", "5_times_least", "slope_before_shown", "slope_after_shown"];
 
     /// The numbers of `candidate`, of which so many have a smaller error; `j` is its number, empty on
     /// the row of the verdict.
@@ -261,8 +260,13 @@ fn add_table(
     let real = Table::REAL.iter().zip(&table.real).map(|(name, values)| numbers(name, values));
     let rounded = Table::SHOWN.iter().zip(&table.shown).map(|(name, values)| shown(name, values));
     let [trials, verdicts] = &table.words;
-    let words = [texts("trial", trials), texts("verdict", verdicts), texts("5_verdict", verdicts)];
-    let accepted = [integers("accepted", &table.accepted), integers("1_rank", &table.rank)];
+    let words = [texts("trial", trials), texts("verdict", verdicts), texts("6_verdict", verdicts)];
+    let [.., breakpoints, _] = &table.whole;
+    let accepted = [
+        integers("accepted", &table.accepted),
+        integers("1_rank", &table.rank),
+        integers("2_q", breakpoints),
+    ];
     let fine = fine_columns(&table.fine);
     let columns: Vec<_> =
         whole.chain(real).chain(rounded).chain(accepted).chain(words).chain(fine).collect();

@@ -54,9 +54,15 @@ pub(super) fn add(
         figures(chunks, &model, compared.comparison)?;
     }
     band(chunks, root, layout, sensor_noise(&judged.joint.trials))?;
-    let page = page(layout, models, judged).unwrap_or_default();
-    let document = TextDocument::from_markdown(page);
-    chunks.push_static(at(root, paths::MODEL_PAGE), &document)?;
+    // Each on a page of its own: below one another the last is off a small window.
+    for (path, page) in [
+        (paths::MODEL_PAGE, page(models, judged)),
+        (paths::MODEL_WORST, worst_segments(layout, judged)),
+        (paths::MODEL_PARAMETERS, parameters(judged.joint, &told(models, judged))),
+    ] {
+        let document = TextDocument::from_markdown(page.unwrap_or_default());
+        chunks.push_static(at(root, path), &document)?;
+    }
     scatter::add(chunks, &at(root, paths::scatter::ROOT), models, judged)?;
     error_share::add(chunks, &at(root, paths::error_share::ROOT), models)?;
     correlogram::add(chunks, &at(root, paths::correlation::ROOT), models)?;
@@ -153,9 +159,17 @@ fn band(
     Ok(())
 }
 
+/// The models of which what is wrong is said: of the revisions of one model the last one, of models
+/// side by side each.
+fn told<'m, 'c>(
+    models: &[&'m ComparedJoint<'c>],
+    judged: &'m ComparedJoint<'c>,
+) -> Vec<&'m ComparedJoint<'c>> {
+    if is_first(models, judged) { models.to_vec() } else { vec![judged] }
+}
+
 /// All figures of all models of the joint.
 fn page(
-    layout: &JointLayout<'_>,
     models: &[&ComparedJoint<'_>],
     judged: &ComparedJoint<'_>,
 ) -> Result<String, std::fmt::Error> {
@@ -173,15 +187,13 @@ fn page(
          error over the standard deviation of the output."
     )?;
     if let Some(noise) = sensor_noise(&joint.trials) {
-        writeln!(page, "Noise of the sensor: {} {unit}.", number(noise))?;
+        let noise = measure(noise, joint.output_unit.as_deref());
+        writeln!(page, "Noise of the sensor: {noise}.")?;
     }
     if is_first(models, judged) {
         against(&mut page, models)?;
     }
-    // Of the revisions of one model, what is wrong with the last; of models side by side, with each.
-    let judged_alone = std::slice::from_ref(judged);
-    let told: Vec<&ComparedJoint<'_>> =
-        if is_first(models, judged) { models.to_vec() } else { judged_alone.iter().collect() };
+    let told = told(models, judged);
     for compared in &told {
         let units = misfit_units(compared.joint);
         let found = compared.comparison.failure.iter().flat_map(|failure| &failure.fails_where);
@@ -198,8 +210,6 @@ fn page(
         }
     }
     reconciled(&mut page, &told)?;
-    worst_segments(&mut page, layout, judged)?;
-    parameters(&mut page, joint, &told)?;
     Ok(page)
 }
 
@@ -242,15 +252,17 @@ fn errors(page: &mut String, unit: &str, models: &[&ComparedJoint<'_>]) -> std::
 
 /// Where the judged model is worst.
 fn worst_segments(
-    page: &mut String,
     layout: &JointLayout<'_>,
     judged: &ComparedJoint<'_>,
-) -> std::fmt::Result {
-    let Some(failure) = &judged.comparison.failure else { return Ok(()) };
+) -> Result<String, std::fmt::Error> {
+    let mut page = String::new();
+    let Some(failure) = &judged.comparison.failure else {
+        return Ok("No segment stands out.".to_owned());
+    };
     let horizon = judged.comparison.fit.evaluation.horizon;
     writeln!(
         page,
-        "\nWhere the output of {} is farthest off, {horizon}: the segments with the largest sums of \
+        "Where the output of {} is farthest off, {horizon}: the segments with the largest sums of \
          squares, and the one with the largest residual of all (bold). The output keeps each error \
          of the speed until the next restart, so that this need not be where it arises:",
         judged.model
@@ -273,7 +285,7 @@ fn worst_segments(
         let largest = if height(worst) < highest { largest } else { format!("**{largest}**") };
         writeln!(page, "| {rank} | {place} | {share:.0} % | {largest} | {on_timeline} |")?;
     }
-    Ok(())
+    Ok(page)
 }
 
 /// Whether models are compared with the first one; revisions of a model are shown by their ladder.
@@ -295,12 +307,13 @@ fn against(page: &mut String, models: &[&ComparedJoint<'_>]) -> std::fmt::Result
 }
 
 /// The parameters of each model.
-fn parameters(page: &mut String, joint: &Joint, models: &[&ComparedJoint<'_>]) -> std::fmt::Result {
+fn parameters(joint: &Joint, models: &[&ComparedJoint<'_>]) -> Result<String, std::fmt::Error> {
+    let mut page = String::new();
     for compared in models {
         writeln!(page, "\n**{}**\n", compared.model)?;
-        parameter_table(page, joint, &compared.comparison.fit)?;
+        parameter_table(&mut page, joint, &compared.comparison.fit)?;
     }
-    Ok(())
+    Ok(page)
 }
 
 /// Where `worst` begins on the timeline `sample`; of several trials, which have one clock each, on that

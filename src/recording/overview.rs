@@ -179,6 +179,9 @@ struct Map {
 /// Height of the small map on its sheet.
 pub(super) const MAP_HEIGHT: f32 = 182.0;
 
+/// Height of a tick on the small one, in a window of 720 points.
+const TICK_HEIGHT: f32 = 36.0;
+
 /// Height of the large one.
 pub(super) const LARGE_HEIGHT: f32 = 680.0;
 
@@ -198,13 +201,13 @@ impl Map {
     /// A page of its own, which is there on timelines that have no samples.
     fn large(layout: &JointLayout<'_>, joint: &Joint) -> Self {
         let [x, output, input] = spans(layout);
-        let delays = delays(layout).map(|(_, delay_s, _)| delay_s).chain([0.0]);
-        let delay = Span::around(delays, 0.08);
-        let (output_plot, delay_plot, input_plot) = (
-            Plot::new(64.0..=318.0, x, output),
-            Plot::new(398.0..=486.0, x, delay),
-            Plot::new(566.0..=634.0, x, input),
-        );
+        let known: Vec<f64> = delays(layout).map(|(_, delay_s, _)| delay_s).collect();
+        let delay = Span::around(known.iter().copied().chain([0.0]), 0.08);
+        // Where no delay is known, the output has its room.
+        let delay_plot = (!known.is_empty()).then(|| Plot::new(398.0..=486.0, x, delay));
+        let output_rows = if delay_plot.is_some() { 64.0..=318.0 } else { 64.0..=486.0 };
+        let output_plot = Plot::new(output_rows, x, output);
+        let input_plot = Plot::new(566.0..=634.0, x, input);
         let middle = f64::midpoint(x.low, x.high);
         let unit = |name: &str, unit: &Option<String>| bracketed(name, unit.as_deref());
         let output = unit("output", &joint.output_unit);
@@ -218,15 +221,17 @@ impl Map {
         };
         let [output, delay] = titles;
         let titles = [
-            (&output_plot, output),
-            (&delay_plot, delay),
-            (&input_plot, unit("input", &joint.input_unit)),
+            (Some(&output_plot), output),
+            (delay_plot.as_ref(), delay),
+            (Some(&input_plot), unit("input", &joint.input_unit)),
         ];
-        let titles = titles.map(|(plot, title)| (plot.above(middle, TITLE), title)).into();
+        let titles = titles.into_iter();
+        let titles = titles.filter_map(|(plot, title)| Some((plot?.above(middle, TITLE), title)));
+        let titles = titles.collect();
         Self {
             output: output_plot,
             input: input_plot,
-            delay: Some(delay_plot),
+            delay: delay_plot,
             titles,
             rows: (60.0, 638.0),
         }
@@ -245,6 +250,10 @@ impl Map {
         let x_ticks = self.output.x_span().ticks(12.0);
         let mut grid = self.output.grid(&x_ticks, &named(self.output.y_span(), 3.0), &mut labels);
         grid.extend(self.input.grid(&x_ticks, &named(self.input.y_span(), 1.5), &mut labels));
+        // Beside the drawing of a segment the plots are so low that ticks would cover each other.
+        if self.titles.is_empty() {
+            labels.keep_apart(TICK_HEIGHT);
+        }
         if let Some(plot) = &self.delay {
             grid.extend(plot.grid(&x_ticks, &named(plot.y_span(), 2.0), &mut labels));
         }

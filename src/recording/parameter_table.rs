@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::markdown::plain;
 use crate::experiment::Joint;
 use crate::fit::AssessedModel;
-use crate::report::{DELAY_OF_STEPS, delay_of_steps, telling_parameters};
+use crate::report::{delay_of_steps, telling_parameters};
 use crate::wording::parameter_value;
 
 /// Writes what was fitted to `joint`, a row for each parameter.
@@ -18,11 +18,12 @@ pub(super) fn parameter_table(
     let delays = delay_of_steps(joint, &fit.model);
     for (parameter, unit) in telling_parameters(joint, fit) {
         let (name, value) = (plain(&parameter.name), parameter_value(parameter, &unit));
-        // Beside a law it is that of a step of no size, which may be none of the record.
+        // Beside a law it is that of a step of no size, which may be none of the record. In short
+        // words: the values are beside the widest name in a narrow panel.
         let delays = delays.as_ref().filter(|_| name == "delay");
-        let of = if delays.is_some() { ", of a step of no size" } else { "" };
+        let of = if delays.is_some() { ", step of size 0" } else { "" };
         if let Some(delays) = delays {
-            writeln!(page, "| {DELAY_OF_STEPS} | {delays} |")?;
+            writeln!(page, "| delay of the steps | {delays} |")?;
         }
         writeln!(page, "| {name}{of} | {} |", plain(&value))?;
     }

@@ -75,6 +75,8 @@ pub(crate) const REGIONS: &str = "regions";
 pub(crate) const WHITENESS: &str = "whiteness";
 pub(crate) const INPUT_CORRELATION: &str = "input_correlation";
 pub(crate) const MODEL_PAGE: &str = "model_page";
+pub(crate) const MODEL_WORST: &str = "model_worst";
+pub(crate) const MODEL_PARAMETERS: &str = "model_parameters";
 /// The judged model beside the measurement, on one sheet: the parts of [`revision::record`].
 pub(crate) const MODEL_MAP: &str = "model_map";
 pub(crate) const NOISE_UPPER: &str = "noise/upper";
@@ -230,6 +232,7 @@ pub(crate) mod revision {
     pub(crate) const REMOVED: &str = "removed";
     pub(crate) const EVIDENCE: &str = "evidence";
     pub(crate) const WORDS: &str = "words";
+    pub(crate) const PARAMETERS: &str = "parameters";
 
     /// Ladder, evidence and ranking.
     pub(crate) mod sheet {

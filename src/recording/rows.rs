@@ -19,17 +19,33 @@ pub(super) struct Rows<'c> {
     index: Index,
     /// Where the next lines are drawn: behind those that follow, where it matters.
     order: Option<f32>,
+    /// Whether the index has a moment before all rows, at which the last one is seen.
+    opens_on_last: bool,
 }
 
 impl<'c> Rows<'c> {
     /// Rows at the moments of `index`.
     pub(super) fn new(chunks: &'c mut Chunks, root: EntityPath, index: Index) -> Self {
-        Self { chunks, root, index, order: None }
+        Self { chunks, root, index, order: None, opens_on_last: false }
     }
 
     /// These rows, what is pushed first being drawn behind the rest.
     pub(super) fn back_to_front(self) -> Self {
         Self { order: Some(1.0), ..self }
+    }
+
+    /// These rows behind a copy of the last one, for which `index` has a moment of its own.
+    pub(super) fn opening_on_last(self) -> Self {
+        Self { opens_on_last: true, ..self }
+    }
+
+    /// All rows, with the one that is opened on.
+    fn opened<T: Clone>(&self, rows: impl Iterator<Item = T>) -> Vec<T> {
+        let mut rows: Vec<T> = rows.collect();
+        if let Some(last) = rows.last().filter(|_| self.opens_on_last).cloned() {
+            rows.insert(0, last);
+        }
+        rows
     }
 
     pub(super) fn strips(
@@ -39,7 +55,7 @@ impl<'c> Rows<'c> {
         radius: f32,
         rows: impl Iterator<Item = Vec<Vec<Vec2D>>>,
     ) -> Result<(), RecordError> {
-        let (strips, lengths) = flattened(rows);
+        let (strips, lengths) = flattened(self.opened(rows));
         let style = LineStrips2D::update_fields().with_colors([color(rgb)]).with_radii([radius]);
         self.lines(path, style, LineStrips2D::update_fields().with_strips(strips), lengths)
     }
@@ -51,7 +67,7 @@ impl<'c> Rows<'c> {
         radius: f32,
         rows: impl Iterator<Item = Vec<(Vec<Vec2D>, Color)>>,
     ) -> Result<(), RecordError> {
-        let (strips, lengths) = flattened(rows);
+        let (strips, lengths) = flattened(self.opened(rows));
         let (strips, colors): (Vec<_>, Vec<_>) = strips.into_iter().unzip();
         let lines = LineStrips2D::update_fields().with_strips(strips).with_colors(colors);
         let style = LineStrips2D::update_fields().with_radii([radius]);
@@ -66,10 +82,10 @@ impl<'c> Rows<'c> {
         radius: f32,
         rows: impl Iterator<Item = Vec<Vec<Vec2D>>>,
     ) -> Result<(), RecordError> {
-        let (strips, lengths) = flattened(rows);
+        let (strips, lengths) = flattened(self.opened(rows));
         let style = LineStrips2D::update_fields().with_radii([radius]);
         self.lines(path, style, LineStrips2D::update_fields().with_strips(strips), lengths)?;
-        let colors = LineStrips2D::update_fields().with_colors(rgbs.iter().map(|rgb| color(*rgb)));
+        let colors = LineStrips2D::update_fields().with_colors(self.colors(rgbs));
         self.color(path, colors.columns_of_unit_batches()?)
     }
 
@@ -82,7 +98,7 @@ impl<'c> Rows<'c> {
         rows: impl Iterator<Item = Vec<Vec2D>>,
     ) -> Result<(), RecordError> {
         self.points(path, None, radius, rows)?;
-        let colors = Points2D::update_fields().with_colors(rgbs.iter().map(|rgb| color(*rgb)));
+        let colors = Points2D::update_fields().with_colors(self.colors(rgbs));
         self.color(path, colors.columns_of_unit_batches()?)
     }
 
@@ -94,8 +110,12 @@ impl<'c> Rows<'c> {
         rows: impl Iterator<Item = Labels>,
     ) -> Result<(), RecordError> {
         self.texts(path, None, rows)?;
-        let colors = Points2D::update_fields().with_colors(rgbs.iter().map(|rgb| color(*rgb)));
+        let colors = Points2D::update_fields().with_colors(self.colors(rgbs));
         self.color(path, colors.columns_of_unit_batches()?)
+    }
+
+    fn colors(&self, rgbs: &[Rgb]) -> Vec<Color> {
+        self.opened(rgbs.iter().map(|rgb| color(*rgb)))
     }
 
     fn color(
@@ -129,7 +149,7 @@ impl<'c> Rows<'c> {
         rows: impl Iterator<Item = Vec<Vec2D>>,
     ) -> Result<(), RecordError> {
         let entity = at(&self.root, path);
-        let (points, lengths) = flattened(rows);
+        let (points, lengths) = flattened(self.opened(rows));
         let mut style = Points2D::update_fields().with_radii([radius]);
         if let Some(rgb) = rgb.into() {
             style = style.with_colors([color(rgb)]);
@@ -155,7 +175,7 @@ impl<'c> Rows<'c> {
         }
         self.chunks.push_static(entity.clone(), &style.with_show_labels(true))?;
         let (mut places, mut texts, mut lengths) = (Vec::new(), Vec::new(), Vec::new());
-        for labels in rows {
+        for labels in self.opened(rows) {
             lengths.push(labels.places.len());
             places.extend(labels.places);
             texts.extend(labels.texts);
@@ -171,7 +191,7 @@ impl<'c> Rows<'c> {
     }
 }
 
-fn flattened<T>(rows: impl Iterator<Item = Vec<T>>) -> (Vec<T>, Vec<usize>) {
+fn flattened<T>(rows: Vec<Vec<T>>) -> (Vec<T>, Vec<usize>) {
     let (mut all, mut lengths) = (Vec::new(), Vec::new());
     for row in rows {
         lengths.push(row.len());

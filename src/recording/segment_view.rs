@@ -316,7 +316,8 @@ impl<'l, 'a> Drawing<'l, 'a> {
         /// Both rows, below the plot.
         const ROWS: [f32; 2] = [2.0, 42.0];
         let decision = self.segment.decision;
-        let half = |text: &str| HALF_LETTER * (text.chars().count() + 2) as f32;
+        // With room between two of them: that of a letter was not seen in 0.41.0.
+        let half = |text: &str| HALF_LETTER * (text.chars().count() + 3) as f32;
         let p = decision.input_step.sample as f64;
         let step = format!("p = {}", decision.input_step.sample);
         let mut names = vec![(self.output.x(p), step)];

@@ -1,5 +1,7 @@
 //! Each verdict in words, with every number that was compared.
 
+use std::iter::once;
+
 use rerun::{Color, EntityPath, StateChange, StateConfiguration, TextDocument, TextLog};
 
 use super::beside::{Other, decided_row, row};
@@ -44,7 +46,12 @@ pub(super) fn add(
         let name = plain(&joint.name);
         let text = match dead_time_sentences(&estimated).as_slice() {
             [] => format!("### {name}\n## nothing to decide: the input never changes\n"),
-            sentences => format!("### {name}\n- {}\n", sentences.join("\n- ")),
+            // What was found comes first, then why there are no steps.
+            [moves, finding, rest @ ..] => {
+                let others = once(moves).chain(rest).map(|sentence| format!("- {sentence}\n"));
+                format!("### {name}\n## {finding}\n\n{}", others.collect::<String>())
+            }
+            [moves] => format!("### {name}\n- {moves}\n"),
         };
         chunks.push_static(entity.clone(), &TextDocument::from_markdown(text))?;
     }
@@ -57,11 +64,11 @@ pub(super) fn add(
 
 fn lane_colors() -> StateConfiguration {
     let conditions = || Condition::ALL.into_iter().chain([Condition::Reviewer]);
-    let values = std::iter::once("accepted").chain(conditions().map(Condition::id));
+    let values = once("accepted").chain(conditions().map(Condition::id));
     let labels = conditions().map(|condition| format!("rejected: {condition}"));
-    let labels = std::iter::once("accepted".to_owned()).chain(labels);
+    let labels = once("accepted".to_owned()).chain(labels);
     let rejected = conditions().map(|_| color(palette::REJECTED));
-    let colors: Vec<Color> = std::iter::once(color(palette::ACCEPTED)).chain(rejected).collect();
+    let colors: Vec<Color> = once(color(palette::ACCEPTED)).chain(rejected).collect();
     StateConfiguration::new().with_values(values).with_labels(labels).with_colors(colors)
 }
 

@@ -86,7 +86,7 @@ pub(crate) use json::{
 pub(crate) use lookup::{Language, Lookup};
 pub(crate) use page::{Document, Heading, RecordingFile, Report, report_text};
 #[cfg(feature = "rrd")]
-pub(crate) use parameters::{DELAY_OF_STEPS, delay_of_steps, telling_parameters};
+pub(crate) use parameters::{delay_of_steps, telling_parameters};
 pub(crate) use review::{Words, write_review_sheet};
 pub(crate) use settings::settings_in_short;
 #[cfg(feature = "rrd")]

@@ -38,7 +38,7 @@ pub(super) fn model_text(joint: &Joint, comparison: &Comparison, called: Option<
 }
 
 /// What [`delay_of_steps`] is.
-pub(crate) const DELAY_OF_STEPS: &str = "delay of the steps in the record";
+const DELAY_OF_STEPS: &str = "delay of the steps in the record";
 
 /// Which delays a law gives to the steps of the record: those of its parameters are of a step of
 /// no size.

@@ -49,6 +49,10 @@ with sync_playwright() as playwright:
         page.keyboard.press("Escape")
         assert "rejected" in page.inner_text("#verdict")
         page.keyboard.press("ArrowRight")
+        assert "decision 2 of" in page.inner_text("#progress"), "the first arrow moves"
+        # The verdict and the buttons stay where they are: only the list scrolls.
+        assert page.evaluate("scrollY") == 0
+        assert page.evaluate("document.documentElement.scrollHeight <= innerHeight")
         page.keyboard.press("a")
         before = page.inner_text("#break")
         page.keyboard.press("]")

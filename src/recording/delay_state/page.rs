@@ -150,8 +150,8 @@ impl<'f> Page<'f> {
             }
             self.delay_ticks(place, plot, &mut ticks);
             let middle = f64::midpoint(plot.x_span().low, plot.x_span().high);
-            titles.put(plot.above(middle, 46.0), clipped(&quantity.title));
-            titles.put(plot.above(middle, 25.0), quantity.finding());
+            titles.put(plot.above(middle, 56.0), clipped(&quantity.title));
+            titles.put(plot.above(middle, 28.0), quantity.finding());
             let shade = if quantity.depends { palette::BORDER } else { palette::RAW };
             shades.extend([color(shade); 2]);
         }
@@ -276,7 +276,7 @@ impl<'f> Page<'f> {
 }
 
 /// Row of the legend on the sheet.
-const LEGEND: f32 = 24.0;
+const LEGEND: f32 = 28.0;
 
 /// Ticks of the delay, about.
 const DELAY_TICKS: f64 = 6.0;
@@ -303,8 +303,8 @@ fn place_of(quantity: &Quantity, plot: &Plot, number: usize, step: &StepState) -
 fn plot(place: usize, (columns, rows): (usize, usize), x: Span, y: Span) -> Plot {
     let part = |of: usize, low: f32, high: f32, n: usize| low + (high - low) * n as f32 / of as f32;
     let column = |n| part(columns, 80.0, SHEET.0 - 30.0, n);
-    let row = |n| part(rows, 50.0, HEIGHT, n);
+    let row = |n| part(rows, 60.0, HEIGHT, n);
     let (across, down) = (place % columns, place / columns);
-    let rows = row(down) + 48.0..=row(down + 1) - 30.0;
+    let rows = row(down) + 58.0..=row(down + 1) - 30.0;
     Plot::within((column(across), column(across + 1) - 30.0), rows, x, y)
 }

@@ -99,6 +99,8 @@ impl Quantity {
     /// Values with a grid line, and what is written below it.
     pub(super) fn x_ticks(&self) -> Vec<(f64, String)> {
         match self.axis {
+            // An axis without a point would have ticks of nothing.
+            Axis::Number if self.values.iter().flatten().next().is_none() => Vec::new(),
             Axis::Number => self.x_span().ticks(5.0).into_iter().map(|x| (x, number(x))).collect(),
             Axis::Direction => Way::BOTH.map(|way| (place_of(way), way.word().to_owned())).to_vec(),
         }

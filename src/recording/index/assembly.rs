@@ -13,7 +13,7 @@ use crate::recording::chunk::Chunks;
 use crate::recording::content::{Content, Growth, Tab, hashed, name_of};
 use crate::recording::error::RecordError;
 use crate::recording::layout::{JointLayout, TrialStarts};
-use crate::recording::markdown::plain;
+use crate::recording::markdown::{link, plain};
 use crate::recording::paths::{drawing, index};
 use crate::report::{JointSummary, SUMMARY_HEADER, summary_cells};
 
@@ -73,8 +73,7 @@ fn page(
     let mut page = String::new();
     let joints = recording.all.joints;
     let (count, files) = (joints.len(), recording.volumes.len());
-    writeln!(page, "### {count} joints in {files} files\n")?;
-    writeln!(page, "Open the file of a joint beside this one.\n")?;
+    writeln!(page, "**{count} joints in {files} files.** {HOW}\n")?;
     let header = SUMMARY_HEADER.get(1..).unwrap_or_default().join(" | ");
     writeln!(page, "| joint | file | highest doubt | {header} |")?;
     writeln!(page, "|---|---|---|{}", "---|".repeat(SUMMARY_HEADER.len() - 1))?;
@@ -84,8 +83,10 @@ fn page(
         let doubts = layout.segments().map(|(_, segment)| segment.doubt.value());
         let doubt = doubts.max_by(f64::total_cmp);
         let doubt = doubt.map_or_else(|| "-".to_owned(), |doubt| format!("{:.0} %", 100.0 * doubt));
-        let file = recording.file_of(number);
-        writeln!(page, "| {name} | {} | {doubt} | {} |", plain(file), cells.join(" | "))?;
+        let file = link(recording.file_of(number));
+        writeln!(page, "| {name} | {file} | {doubt} | {} |", cells.join(" | "))?;
     }
     Ok(page)
 }
+
+const HOW: &str = "A click on one opens it, in a viewer that was started in their folder.";

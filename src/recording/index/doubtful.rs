@@ -6,7 +6,7 @@ use super::recorded::IndexRecording;
 use crate::recording::chunk::{Chunks, Index};
 use crate::recording::error::RecordError;
 use crate::recording::layout::{JointLayout, SegmentLayout, TrialLayout};
-use crate::recording::markdown::plain;
+use crate::recording::markdown::link;
 use crate::recording::paths::{at, drawing, index};
 use crate::recording::rows::Rows;
 use crate::recording::segment_view::{self, Drawing};
@@ -64,7 +64,7 @@ pub(super) fn add(
 impl Doubted<'_, '_> {
     /// The verdict as it is beside the drawing in the joint's file.
     fn page(&self) -> String {
-        let place = format!("**{}** · segment {}", plain(self.file), self.segment.number);
+        let place = format!("**{}** · segment {}", link(self.file), self.segment.number);
         let page = verdict::page(self.joint, self.trial, self.segment);
         format!("{place}\n\n{page}")
     }

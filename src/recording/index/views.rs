@@ -34,7 +34,7 @@ pub(super) fn messages(
     let left = [list, drawing];
     let left = builder.container(ContainerKind::Vertical, "Decisions", &left, &[3.2, 6.8])?;
     let right = [joints, verdict];
-    let right = builder.container(ContainerKind::Vertical, "Words", &right, &[4.5, 5.5])?;
+    let right = builder.container(ContainerKind::Vertical, "Words", &right, &[4.0, 6.0])?;
     let columns = [left, right];
     let name = "Joints and doubtful decisions";
     let page = builder.container(ContainerKind::Horizontal, name, &columns, &[6.2, 3.8])?;

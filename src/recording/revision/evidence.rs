@@ -114,7 +114,8 @@ impl Evidence {
             let ticks = |ticks: Vec<f64>| ticks.into_iter().map(|tick| (tick, short(tick)));
             let x_ticks = plot.x_span().ticks(5.0);
             let y_ticks: Vec<_> = ticks(plot.y_span().ticks(4.0)).collect();
-            drawn.frame(&plot, &x_ticks, &y_ticks, &figure.title);
+            drawn.outline(&plot, &x_ticks, &y_ticks);
+            drawn.put(Figure::title_place(), figure.title.clone());
             for (x, text) in ticks(x_ticks) {
                 drawn.put(plot.below(x, 2.0), text);
             }

@@ -3,11 +3,18 @@
 use rerun::datatypes::Vec2D;
 
 use crate::diagnosis::sensor_noise;
-use crate::recording::canvas::{Labels, Plot, Span, Strips};
+use crate::recording::canvas::{HALF_LETTER, Labels, Plot, Span, Strips};
 use crate::report::ImprovedJoint;
 
-/// Columns and rows of the plot on the sheet.
-const PLACE: ((f32, f32), (f32, f32)) = ((760.0, 1235.0), (48.0, 450.0));
+/// Left, right and lower end of the plot on the sheet.
+const PLACE: ((f32, f32), f32) = ((760.0, 1235.0), 450.0);
+
+/// The columns between ladder and ranking, in which names stand above the plot.
+const NAMES: (f32, f32) = (660.0, 1270.0);
+
+/// Lower end of the title, and the height of a row of names.
+const TITLE: f32 = 42.0;
+const NAME: f32 = 42.0;
 
 /// Points that are drawn; more hide one another.
 const POINTS: usize = 1500;
@@ -50,8 +57,16 @@ pub(super) struct Figure {
 
 impl Figure {
     pub(super) fn plot(&self) -> Plot {
-        let (columns, (top, bottom)) = PLACE;
+        let (columns, bottom) = PLACE;
+        let rows = self.rows().iter().map(|(row, _)| row + 1).max().unwrap_or(0);
+        let top = TITLE + 10.0 + NAME * rows as f32;
         Plot::within(columns, top..=bottom, self.x, self.y)
+    }
+
+    /// Where the title stands.
+    pub(super) fn title_place() -> Vec2D {
+        let ((left, right), _) = PLACE;
+        Vec2D::new(f32::midpoint(left, right), TITLE - NAME)
     }
 
     pub(super) fn curve(&self, which: usize) -> Strips {
@@ -94,22 +109,92 @@ impl Figure {
         self.drawn().map(reach).collect()
     }
 
-    /// The name of a law, in the corner that a rising one leaves free, or in the other one.
+    /// Row and middle of each name: above the plot, where they cover no point, as many beside each
+    /// other as there is room for.
+    fn rows(&self) -> Vec<(usize, f32)> {
+        let (left, right) = NAMES;
+        let mut rows: Vec<Vec<f32>> = vec![Vec::new()];
+        for width in self.names.iter().map(|name| name.as_deref().map_or(0.0, width)) {
+            match rows.last_mut() {
+                Some(row) if row.iter().sum::<f32>() + width <= right - left => row.push(width),
+                _ => rows.push(vec![width]),
+            }
+        }
+        let in_row = |(row, widths): (usize, Vec<f32>)| {
+            let start = f32::midpoint(left, right) - 0.5 * widths.iter().sum::<f32>();
+            let middles = widths.into_iter().scan(start, move |end, width| {
+                *end += width;
+                Some((row, *end - 0.5 * width))
+            });
+            middles.collect::<Vec<_>>()
+        };
+        rows.into_iter().enumerate().flat_map(in_row).collect()
+    }
+
+    /// The name of a law.
     pub(super) fn legend(&self, which: usize) -> Labels {
         let mut labels = Labels::default();
-        let line = self.names.iter().take(which).flatten().count();
-        if let Some(name) = self.names.get(which).and_then(Option::as_ref) {
-            let half = 7.0 * (name.chars().count() + 2) as f32;
-            let ((left, right), (top, _)) = PLACE;
-            let x = if self.falls() { right - half - 6.0 } else { left + half + 6.0 };
-            labels.put(Vec2D::new(x, top + 22.0 + 36.0 * line as f32), name.clone());
+        let name = self.names.get(which).and_then(Option::as_ref);
+        if let (Some(name), Some((row, middle))) = (name, self.rows().get(which)) {
+            labels.put(Vec2D::new(*middle, TITLE + NAME * *row as f32), name.clone());
         }
         labels
     }
+}
 
-    fn falls(&self) -> bool {
-        let law = self.laws.iter().rev().find(|law| !law.is_empty());
-        let ends = law.and_then(|law| law.first().zip(law.last()));
-        ends.is_some_and(|(first, last)| first.1 > last.1)
+/// Width of a name with the room beside it, on the sheet in a window of 1280 points.
+fn width(name: &str) -> f32 {
+    2.0 * HALF_LETTER * (name.chars().count() + 2) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn figure(names: [Option<&str>; 4]) -> Figure {
+        let span = Span::new(0.0, 1.0);
+        Figure {
+            title: String::new(),
+            x: span,
+            y: span,
+            points: Vec::new(),
+            laws: Default::default(),
+            names: names.map(|name| name.map(str::to_owned)),
+        }
+    }
+
+    #[test]
+    fn names_stand_above_the_plot_and_none_on_another() {
+        let long = figure([
+            Some("revision 9 (line: at -95.3 deg)"),
+            Some("revision 8"),
+            Some("with viscous_friction"),
+            Some("input fell"),
+        ]);
+        let without = figure([Some("revision 0"), None, Some("with dead_band"), None]);
+        for figure in [long, without] {
+            let of = |which: usize| (figure.names[which].as_deref(), figure.legend(which).places);
+            let boxes: Vec<[f32; 3]> = (0..4)
+                .filter_map(|which| match of(which) {
+                    (Some(name), places) => {
+                        let [x, y] = places.first()?.0;
+                        Some([x - 0.5 * width(name), x + 0.5 * width(name), y])
+                    }
+                    (None, places) => {
+                        assert!(places.is_empty());
+                        None
+                    }
+                })
+                .collect();
+            assert_eq!(boxes.len(), figure.names.iter().flatten().count());
+            for (place, [left, right, y]) in boxes.iter().enumerate() {
+                assert!(*left >= NAMES.0 && *right <= NAMES.1);
+                assert!(y + NAME <= figure.plot().top);
+                let beside = |[l, r, other]: &[f32; 3]| {
+                    right <= &(l + 0.5) || r <= &(left + 0.5) || (other - y).abs() >= NAME
+                };
+                assert!(boxes.iter().skip(place + 1).all(beside), "{boxes:?}");
+            }
+        }
     }
 }

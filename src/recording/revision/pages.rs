@@ -25,6 +25,8 @@ struct Steps<'c> {
     root: EntityPath,
     numbers: Vec<i64>,
     index: Index,
+    /// Whether the index begins with a tick that shows the last revision.
+    opens_on_last: bool,
 }
 
 /// Adds everything on the revisions of `improved` below `root`/revision.
@@ -40,9 +42,12 @@ pub(in crate::recording) fn add(
     let moment = Moment { decision: 0, ..start };
     let numbers: Vec<i64> = improved.numbered().map(|(number, _)| i64::from(number)).collect();
     let rank = layout.segments().next().map(|_| 1);
-    let index = Index::of_revisions(numbers.clone(), moment, rank);
+    let opening = layout.first.revision.filter(|tick| numbers.iter().all(|number| number > tick));
+    let ticks = opening.into_iter().chain(numbers.iter().copied()).collect();
+    let index = Index::of_revisions(ticks, moment, rank);
     let root = at(root, paths::ROOT);
-    let mut steps = Steps { chunks, root, numbers, index };
+    let opens_on_last = opening.is_some();
+    let mut steps = Steps { chunks, root, numbers, index, opens_on_last };
     steps.figures(improved)?;
     steps.words(layout, improved)?;
     let models: Vec<_> = improved.revisions.iter().map(|revision| &revision.comparison).collect();
@@ -85,7 +90,8 @@ fn around(
 impl Steps<'_> {
     fn rows(&mut self, path: &str) -> Rows<'_> {
         let root = at(&self.root, path);
-        Rows::new(self.chunks, root, self.index.clone()).back_to_front()
+        let rows = Rows::new(self.chunks, root, self.index.clone()).back_to_front();
+        if self.opens_on_last { rows.opening_on_last() } else { rows }
     }
 
     /// Errors and what was added, for programs.
@@ -142,13 +148,20 @@ impl Steps<'_> {
         layout: &JointLayout<'_>,
         improved: &ImprovedJoint<'_>,
     ) -> Result<(), RecordError> {
-        let pages = (0..improved.revisions.len()).map(|at| words::page(layout, improved, at));
-        let columns = TextDocument::update_fields()
-            .with_many_text(pages.collect::<Vec<_>>())
-            .with_many_media_type(vec![rerun::MediaType::markdown(); self.numbers.len()])
-            .columns_of_unit_batches()?;
-        let entity = at(&self.root, paths::WORDS);
-        self.chunks.push(entity, self.index.clone(), columns)
+        type Page = fn(&JointLayout<'_>, &ImprovedJoint<'_>, usize) -> String;
+        let last = improved.revisions.len().checked_sub(1).filter(|_| self.opens_on_last);
+        let shown: Vec<_> = last.into_iter().chain(0..improved.revisions.len()).collect();
+        let pages: [(&str, Page); 2] =
+            [(paths::WORDS, words::page), (paths::PARAMETERS, words::parameters)];
+        for (path, page) in pages {
+            let texts: Vec<_> = shown.iter().map(|at| page(layout, improved, *at)).collect();
+            let columns = TextDocument::update_fields()
+                .with_many_text(texts)
+                .with_many_media_type(vec![rerun::MediaType::markdown(); shown.len()])
+                .columns_of_unit_batches()?;
+            self.chunks.push(at(&self.root, path), self.index.clone(), columns)?;
+        }
+        Ok(())
     }
 
     /// Where the error of each revision is.

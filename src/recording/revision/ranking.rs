@@ -10,7 +10,7 @@ use crate::figure::ladder::judged;
 use crate::recording::canvas::{Labels, Strips};
 use crate::recording::error::RecordError;
 use crate::recording::error_share::{HATCH, short};
-use crate::recording::palette::{self, color};
+use crate::recording::palette::{self, Rgb, color};
 use crate::recording::paths::revision::sheet;
 use crate::recording::rows::Rows;
 use crate::report::{ImprovedJoint, change_in_words};
@@ -26,7 +26,11 @@ pub(super) fn add(rows: &mut Rows<'_>, improved: &ImprovedJoint<'_>) -> Result<(
             .iter()
             .map(|one| (one.error, if one.is_taken { palette::PROPOSED } else { palette::RAW }));
         let own = std::iter::once((judged(&revision.comparison), palette::model(at)));
-        let bar = |(row, (error, rgb))| bars.bar(row, error, color(rgb));
+        // One that diverges has no bar.
+        let bar = |(row, (error, rgb)): (usize, (f64, Rgb))| {
+            let length = error.is_finite().then_some(error);
+            length.map_or_else(Vec::new, |length| bars.bar(row, length, color(rgb)))
+        };
         let all: Vec<(Vec<Vec2D>, Color)> =
             own.chain(candidates).enumerate().flat_map(bar).collect();
         all
@@ -60,7 +64,11 @@ pub(super) fn around(
     let candidates = all.into_iter().map(|one| (one.name, one.error));
     for (row, (name, error)) in std::iter::once(own).chain(candidates).enumerate() {
         bars.name(labels, row, &name);
-        bars.value(labels, row, error, format!("{} {unit}", short(error)));
+        if error.is_finite() {
+            bars.value(labels, row, error, format!("{} {unit}", short(error)));
+        } else {
+            bars.value(labels, row, 0.0, "diverges".to_owned());
+        }
     }
     let Some(noise) = noise(improved) else { return Vec::new() };
     bars.below(floor, noise, format!("noise {} {unit}", short(noise)));
@@ -96,7 +104,8 @@ fn tried(improved: &ImprovedJoint<'_>, at: usize) -> Vec<Tried> {
 }
 
 fn bars_of(revision: &Revision, all: &[Tried]) -> Bars {
-    let most = all.iter().map(|one| one.error).fold(judged(&revision.comparison), f64::max);
+    let errors = all.iter().map(|one| one.error).filter(|error| error.is_finite());
+    let most = errors.fold(judged(&revision.comparison), f64::max);
     let longest = all.iter().map(|one| one.name.chars().count()).max().unwrap_or(0);
     Bars::new(COLUMNS, (1 + all.len(), longest), most)
 }

@@ -186,7 +186,7 @@ impl<'l, 'a> Drawing<'l, 'a> {
     /// one's.
     fn residual_plot(&self, comparison: &Comparison) -> Plot {
         let residuals = comparison.fit.evaluation.residuals.iter().flatten().copied();
-        Plot::new(446.0..=644.0, self.x, Span::around(residuals, 0.05))
+        Plot::new(452.0..=644.0, self.x, Span::around(residuals, 0.05))
     }
 
     fn sheet(
@@ -233,14 +233,14 @@ impl<'l, 'a> Drawing<'l, 'a> {
         // Its title lies above the bars of the worst segments, not on them.
         sheet.outline(residual_plot, &x_ticks, &ticks(residual_plot));
         // Two rows: one of all of it is wider than a small window.
-        sheet.put(residual_plot.above(middle(residual_plot), 112.0), residual);
-        sheet.put(residual_plot.above(middle(residual_plot), 78.0), key.join(" · "));
+        sheet.put(residual_plot.above(middle(residual_plot), 118.0), residual);
+        sheet.put(residual_plot.above(middle(residual_plot), 80.0), key.join(" · "));
         for x in x_ticks {
             sheet.put(residual_plot.below(x, 2.0), short(x));
         }
-        for (rank, (_, ends)) in (1..).zip(spans) {
-            let middle = f64::midpoint(ends[0], ends[1]);
-            sheet.put(residual_plot.above(middle, RANKS), rank.to_string());
+        let middles = spans.iter().map(|(_, ends)| f64::midpoint(ends[0], ends[1]));
+        for (place, ranks) in side_by_side(middles.map(|x| residual_plot.x(x)).zip(1..).collect()) {
+            sheet.put(Vec2D::new(place, residual_plot.top - RANKS), ranks);
         }
         sheet
     }
@@ -311,6 +311,32 @@ pub(super) fn worst_spans<'c>(
     worst.filter_map(of_plots).collect()
 }
 
+/// The ranks at these places of the sheet: those that would cover each other in one text.
+fn side_by_side(mut ranks: Vec<(f32, usize)>) -> Vec<(f32, String)> {
+    /// Width of a rank and of its frame, in a window of 1280 points.
+    const DIGIT: f32 = 24.0;
+    const FRAME: f32 = 20.0;
+    ranks.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // The middle of the first and of the last one in a text, and the ranks.
+    let mut texts: Vec<(f32, f32, Vec<String>)> = Vec::new();
+    for (place, rank) in ranks {
+        match texts.last_mut() {
+            Some((first, last, before))
+                if place - f32::midpoint(*first, *last)
+                    < FRAME + DIGIT * 0.5 * (before.len() + 1) as f32 =>
+            {
+                *last = place;
+                before.push(rank.to_string());
+            }
+            _ => texts.push((place, place, vec![rank.to_string()])),
+        }
+    }
+    let text = |(first, last, ranks): (f32, f32, Vec<String>)| {
+        (f32::midpoint(first, last), ranks.join(" "))
+    };
+    texts.into_iter().map(text).collect()
+}
+
 /// A bar above each of the worst segments.
 fn worst(layout: &JointLayout<'_>, comparison: &Comparison, plot: &Plot) -> Strips {
     let bar = |ends: [f64; 2]| ends.map(|time_s| plot.above(time_s, -12.0)).to_vec();
@@ -373,6 +399,14 @@ fn seconds(trial: &TrialLayout<'_>, sample: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn ranks_that_would_cover_each_other_are_one_text() {
+        let found = side_by_side(vec![(900.0, 1), (300.0, 2), (920.0, 3), (310.0, 4), (600.0, 5)]);
+        let text = |(place, text): &(f32, &str)| (*place, (*text).to_owned());
+        let expected = [(305.0, "2 4"), (600.0, "5"), (910.0, "1 3")];
+        assert_eq!(found, expected.iter().map(text).collect::<Vec<_>>());
+    }
 
     #[test]
     fn the_window_is_where_the_residual_is_largest_and_within_a_trial() {

@@ -51,9 +51,24 @@ fn written(
     for command in conclusion.commands.iter().filter(|_| is_last) {
         writeln!(page, "    {command}\n")?;
     }
-    parameter_table(&mut page, improved.finding.compared.joint, &step.comparison.fit)?;
-    writeln!(page, "\n{HOW}")?;
+    let several = if improved.revisions.len() > 1 { SEVERAL } else { "" };
+    writeln!(page, "*{several}{HOW}*")?;
     Ok(page)
+}
+
+/// The parameters of the revision at `place`: on a page of their own, since below the words they
+/// are off a small window.
+pub(super) fn parameters(
+    _layout: &JointLayout<'_>,
+    improved: &ImprovedJoint<'_>,
+    place: usize,
+) -> String {
+    let mut page = String::new();
+    let Some((revision, step)) = improved.numbered().nth(place) else { return page };
+    let joint = improved.finding.compared.joint;
+    let written = writeln!(page, "**Revision {revision}**\n")
+        .and_then(|()| parameter_table(&mut page, joint, &step.comparison.fit));
+    written.map(|()| page).unwrap_or_default()
 }
 
 /// A line for each condition, which stands out, and the worst segments.
@@ -105,9 +120,11 @@ fn in_the_plots(layout: &JointLayout<'_>, comparison: &Comparison) -> String {
     format!(" In the plots, whose time goes through all trials: {}.", spans.join(", "))
 }
 
-const HOW: &str = "\
-*Right and left arrow go from revision to revision: timeline `revision`. The pages behind this \
-one follow `decision`, `sample` or `time`: choose it at the bottom.*";
+const SEVERAL: &str = "This opens on the last revision; the right arrow begins with the first one, on \
+the timeline `revision`. ";
+
+const HOW: &str = "The pages behind this one follow `decision`, `sample` or `time`: choose it at the \
+bottom.";
 
 /// What the error is, and what it was before.
 fn fall(improved: &ImprovedJoint<'_>, place: usize) -> String {

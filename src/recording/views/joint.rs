@@ -151,12 +151,12 @@ struct Views<'b, 'i> {
 /// Columns of the table of candidates, in the order in which a viewer shows them.
 const CANDIDATE_COLUMNS: [&str; 9] = [
     "1_rank",
-    "2_delay_s",
-    "3_squared_error",
-    "4_times_least",
-    "5_verdict",
+    "2_q",
+    "3_delay_s",
+    "4_sse",
+    "5_times_least",
+    "6_verdict",
     "i",
-    "q",
     "slope_after_shown",
     "slope_before_shown",
 ];
@@ -257,7 +257,7 @@ impl Views<'_, '_> {
         let right = [page, list, verdict];
         let builder = &mut *self.builder;
         let right =
-            builder.container(ContainerKind::Vertical, "Lists", &right, &[3.0, 3.2, 3.8])?;
+            builder.container(ContainerKind::Vertical, "Lists", &right, &[2.3, 2.7, 5.0])?;
         let left = [sheet, drawing];
         let left = builder.container(ContainerKind::Vertical, "Steps", &left, &[3.6, 6.4])?;
         let columns = [left, right];
@@ -353,13 +353,16 @@ impl Views<'_, '_> {
         let record = drawing(name, record::ROOT, &record::PARTS, revision::RECORD_SIZE);
         let words = [at(&root, paths::revision::WORDS).to_string()];
         let words = self.view(View::new("TextDocument", "In words", &words))?;
+        let parameters = [at(&root, paths::revision::PARAMETERS).to_string()];
+        let parameters = self.view(View::new("TextDocument", "Parameters", &parameters))?;
         let tabs = [self.view(sheet)?, self.view(share)?];
         let record = self.view(record)?;
         let builder = &mut *self.builder;
         let tabs = builder.container(ContainerKind::Tabs, "Ladder", &tabs, &[])?;
         let left = [tabs, record];
         let left = builder.container(ContainerKind::Vertical, "Drawings", &left, &[4.4, 5.6])?;
-        let columns = [left, words];
+        let right = builder.container(ContainerKind::Tabs, "Texts", &[words, parameters], &[])?;
+        let columns = [left, right];
         builder.container(ContainerKind::Horizontal, "Revisions", &columns, &[7.3, 2.7])
     }
 
@@ -411,9 +414,16 @@ impl Views<'_, '_> {
         ];
         let builder = &mut *self.builder;
         let plots = builder.container(ContainerKind::Vertical, "Plots", &rows, &[1.3, 7.2, 3.5])?;
-        let page = [self.path(paths::MODEL_PAGE)];
-        let page = self.view(View::new("TextDocument", "Models", &page))?;
-        let columns = [plots, page];
+        let mut pages = Vec::new();
+        for (name, path) in [
+            ("Models", paths::MODEL_PAGE),
+            ("Worst", paths::MODEL_WORST),
+            ("Parameters", paths::MODEL_PARAMETERS),
+        ] {
+            pages.push(self.view(View::new("TextDocument", name, &[self.path(path)]))?);
+        }
+        let pages = self.builder.container(ContainerKind::Tabs, "Texts", &pages, &[])?;
+        let columns = [plots, pages];
         self.builder.container(ContainerKind::Horizontal, "Models", &columns, &[7.2, 2.8])
     }
 
@@ -523,7 +533,7 @@ impl Views<'_, '_> {
         let candidates = candidates.with("DataframeQuery", query(&CANDIDATE_COLUMNS));
         let candidates = self.view(candidates)?;
         let rows = [decisions, candidates];
-        self.builder.container(ContainerKind::Horizontal, "Table", &rows, &[1.2, 0.8])
+        self.builder.container(ContainerKind::Horizontal, "Table", &rows, &[1.15, 0.85])
     }
 }
 

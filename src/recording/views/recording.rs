@@ -51,7 +51,8 @@ pub(in crate::recording) fn messages(
     let has_steps = recording.joints.iter().any(|joint| joint.estimate.dead_time.is_none());
     let opening = match growth {
         Growth::Growing => ("revision", PlayState::Following),
-        Growth::Finished if is_ladder => ("revision", PlayState::Following),
+        // Paused, so that the first arrow moves the cursor: at the tick that shows the last one.
+        Growth::Finished if is_ladder => ("revision", PlayState::Paused),
         Growth::Finished if !recording.also.is_empty() => ("difference", PlayState::Paused),
         // A model is seen along its record.
         Growth::Finished if !has_steps || !recording.models.is_empty() => {

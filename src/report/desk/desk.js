@@ -190,8 +190,15 @@ function show() {
     button.textContent = `${Math.round(100 * of.doubt)} % ${of.joint} ${of.trial}/${of.i} ${of.program_verdict === "accepted" ? "✓" : "✗"}${word ? " → " + (word.verdict === "accepted" ? "✓" : "✗") : ""} ${word && isNumber(word.delay_s) ? number(word.delay_s) + " s" : of.program_verdict === "accepted" ? number(of.program_delay_s) + " s" : of.program_verdict}`;
   });
   const current = list.children[at];
-  if (current) current.scrollIntoView({ block: "nearest" });
+  if (current) keepInView(list, current);
   draw();
+}
+
+// In the list alone: the page itself would scroll away from the verdict.
+function keepInView(list, item) {
+  const top = item.offsetTop - list.offsetTop, bottom = top + item.offsetHeight;
+  if (top < list.scrollTop) list.scrollTop = top;
+  else if (bottom > list.scrollTop + list.clientHeight) list.scrollTop = bottom - list.clientHeight;
 }
 
 function go(index) {
