@@ -14,6 +14,11 @@ const FAR: f64 = 1e9;
 /// can tell.
 const ON_BOUND: f64 = 0.02;
 
+/// The part of the way between two bounds by which a value may miss one, whatever its standard
+/// error: no record determines it so well, but the slope at a corner may look as if it did. Of a
+/// delay 5 µs.
+const NEAREST: f64 = 1e-6;
+
 impl Bounds {
     fn is_bounded(self) -> bool {
         self.low > -FAR && self.high < FAR && self.low < self.high
@@ -62,7 +67,7 @@ impl Bounds {
 
     /// Whether `value` lies on a bound, as far as its standard error allows to say.
     pub(super) fn is_at(self, value: f64, std_error: f64) -> bool {
-        let room = (ON_BOUND * std_error).max(f64::EPSILON * (self.high - self.low));
+        let room = (ON_BOUND * std_error).max(NEAREST * (self.high - self.low));
         self.is_bounded() && self.distance(value) <= room
     }
 

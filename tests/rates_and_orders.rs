@@ -1,0 +1,101 @@
+//! What is named of a joint does not depend on the rate of its log, the order of its trials or which of
+//! them are held back.
+#![expect(clippy::unwrap_used, reason = "a test may fail loudly")]
+
+use std::fmt::Write as _;
+use std::process::Command;
+
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use serde_json::Value;
+
+const DELAY_S: f64 = 0.2;
+/// The same in samples.
+const DELAY: usize = 20;
+const GAIN: f64 = 4.0;
+/// Half of the overlap, V.
+const BAND: f64 = 0.4;
+/// Down it is faster.
+const FACTOR: f64 = 1.3;
+const TRIALS: u32 = 7;
+const PERIOD_S: f64 = 0.01;
+
+/// The flow of an overlapped valve with rounded corners: `√(x² + r²)` in the place of `|x|`.
+fn flow(input: f64) -> f64 {
+    const ROUND: f64 = 0.02;
+    let ramp = |x: f64| 0.5 * (x + x.hypot(ROUND));
+    ramp(input - BAND) - FACTOR * ramp(-input - BAND)
+}
+
+/// Rows of each trial at 100 Hz: random steps of 0.5 to 1.5 s, on which the joint drifts and is noisy.
+fn trials() -> Vec<Vec<String>> {
+    let mut random = ChaCha8Rng::seed_from_u64(20);
+    let trial = |trial: u32| {
+        let (mut place, mut level, mut left) = (0.0, 0.0, 100_u32);
+        let mut inputs: Vec<f64> = Vec::new();
+        let row = |sample: u32| {
+            if left == 0 {
+                left = random.random_range(50..150);
+                // Back towards the middle, as who drives it does.
+                let back: f64 = if place > 0.0 { -1.0 } else { 1.0 };
+                level = (back * random.random_range(0.0..2.5_f64) * 20.0).round() / 20.0;
+            }
+            left -= 1;
+            inputs.push(level);
+            let measured = place + 0.02 * random.random_range(-1.0..1.0);
+            let late = inputs.len().checked_sub(DELAY);
+            place += PERIOD_S * GAIN * flow(late.map_or(0.0, |index| inputs[index]));
+            format!("{trial},{:.2},{level},{measured:.4}", PERIOD_S * f64::from(sample))
+        };
+        (0..2500).map(row).collect()
+    };
+    (0..TRIALS).map(trial).collect()
+}
+
+/// What `improve` names in a log of `trials`, every so manyth row of each, sorted; and the delay.
+fn named(trials: &[Vec<String>], every: usize, options: &[&str]) -> (Vec<String>, f64) {
+    let folder = tempfile::tempdir().unwrap();
+    let (data, model) = (folder.path().join("log.csv"), folder.path().join("model.toml"));
+    let mut text = "trial,t_s,boom.input,boom.output\n".to_owned();
+    for row in trials.iter().flat_map(|rows| rows.iter().step_by(every)) {
+        writeln!(text, "{row}").unwrap();
+    }
+    std::fs::write(&data, text).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tauscope"));
+    command.args(["improve", "--quiet", "--format", "json", "--write"]).args([&model, &data]);
+    let output = command.args(options).output().unwrap();
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let joint = &found["joints"][0];
+    let named = joint["conclusion"]["found"].as_array().unwrap().iter();
+    let mut named: Vec<_> = named.map(|one| one["effect"].as_str().unwrap().to_owned()).collect();
+    named.sort_unstable();
+    (named, joint["parameters"]["delay"]["value"].as_f64().unwrap())
+}
+
+fn assert_finds_both((named, delay_s): &(Vec<String>, f64), within_s: f64) {
+    assert_eq!(named, &["dead_band", "direction_gain"]);
+    assert!((delay_s - DELAY_S).abs() < within_s, "{delay_s} s");
+}
+
+#[test]
+fn the_same_is_named_at_100_50_and_20_hz() {
+    let trials = trials();
+    // A step of the input is logged up to a sample late.
+    for (every, within_s) in [(1, 0.012), (2, 0.025), (5, 0.055)] {
+        assert_finds_both(&named(&trials, every, &[]), within_s);
+    }
+}
+
+#[test]
+fn the_order_of_the_trials_and_what_is_held_back_change_no_name() {
+    let mut trials = trials();
+    let as_logged = named(&trials, 2, &[]);
+    assert_finds_both(&as_logged, 0.025);
+    assert_finds_both(&named(&trials, 2, &["--split", "0.6"]), 0.025);
+    trials.rotate_left(3);
+    trials.swap(0, 4);
+    let reordered = named(&trials, 2, &[]);
+    assert_eq!(as_logged.0, reordered.0);
+    // The same trials are held back: the same fit but for rounding.
+    assert!((as_logged.1 - reordered.1).abs() < 1e-5, "{} s, {} s", as_logged.1, reordered.1);
+}
