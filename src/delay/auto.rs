@@ -207,6 +207,7 @@ impl<'a> Record<'a> {
         let ends = places.iter().skip(1).copied().chain([output.len()]);
         let mut slope_before = None;
         for (place, end) in places.iter().zip(ends) {
+            // In the later half a lag has died away.
             let start = place.midpoint(end);
             let Some((slope, left)) = output.get(start..end).and_then(without_line) else {
                 slope_before = None;
@@ -279,7 +280,9 @@ impl<'a> Record<'a> {
         let bends: Vec<f64> = self.bends.iter().map(|bend| bend * bend).collect();
         let Some(bend) = median(&bends).filter(|bend| *bend > 0.0) else { return 1 };
         // What a line over many samples sees of noise with a memory.
+        // The spectrum of noise at ω = 0: s²/(1 − Σ a_i)².
         let noise = self.innovations / self.noise.level.powi(2);
+        // d = (6 σ²/c²)^(1/3).
         ceil_to_index((6.0 * noise / bend).cbrt().round()).clamp(1, MOST)
     }
 
@@ -294,6 +297,7 @@ impl<'a> Record<'a> {
             let last = ceil_to_index(bin as f64 * up).min(noise.len().saturating_sub(1));
             let sum = |values: &[f64]| values.get(bin..=last).map_or(0.0, |v| v.iter().sum());
             let (all, own): (f64, f64) = (sum(&spectrum.power), sum(&noise));
+            // P ≤ 2 N, over the band.
             all <= 2.0 * own
         };
         let bin = (1..noise.len()).find(|bin| band(*bin, 1.26) && band(*bin, 2.0))?;
@@ -303,6 +307,7 @@ impl<'a> Record<'a> {
 
 /// The spectrum of the second difference of `noise`, for innovations of power 1.
 fn gain(noise: &NoiseModel, omega: f64) -> f64 {
+    // N(ω)/s².
     (2.0 * (0.5 * omega).sin()).powi(4) / noise.memory_gain(omega)
 }
 
@@ -351,6 +356,7 @@ impl Spectrum {
         let windows = outputs.iter().flat_map(|output| {
             let last = output.len().saturating_sub(length + 2);
             let fits = output.len() >= length + 2;
+            // Welch: windows that overlap by half.
             let starts = (0..=last).step_by(length / 2).filter(move |_| fits);
             starts.filter_map(|start| output.get(start..start + length + 2))
         });

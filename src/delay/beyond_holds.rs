@@ -104,6 +104,7 @@ fn unexplained(blocks: &[Blocks], skipped: usize, lag: Option<usize>) -> f64 {
     let long = || blocks.iter().filter(|of| of.increments.len() > skipped);
     let target: Vec<Vec<f64>> = long().map(|of| of.increments[skipped..].to_vec()).collect();
     let constant: Vec<Vec<f64>> = target.iter().map(|rows| vec![1.0; rows.len()]).collect();
+    // Every lag over the same blocks.
     let column = |part: fn(&Blocks) -> &Vec<f64>, lag: usize| -> Vec<Vec<f64>> {
         long().map(|of| part(of)[skipped - lag..of.increments.len() - lag].to_vec()).collect()
     };

@@ -176,6 +176,7 @@ impl Decision {
             xy += x * y;
             yy += y * y;
         }
+        // What one line leaves of both: Σ(ŷ − ȳ)² less what its slope explains.
         let bend = (yy - xy * xy / xx.max(f64::MIN_POSITIVE)).max(0.0);
         let one_line = best.sse + bend;
         if one_line > 0.0 { bend / one_line } else { 0.0 }
@@ -191,6 +192,7 @@ impl Decision {
             .map_or(best.breakpoint as f64, |fine| self.input_step.sample as f64 + fine.delay);
         let jump = (best.after.at(q) - best.before.at(q)).abs();
         let turn = best.slope_change().abs();
+        // The lines close by the change of slope at every sample.
         if turn > 0.0 { jump / turn } else { self.hold as f64 }
     }
 

@@ -204,6 +204,7 @@ pub(super) fn tolerance(input: &[f64]) -> f64 {
     }
     let usual = crate::numerics::quantile(&taken_back, 0.95).unwrap_or(0.0);
     let largest = taken_back.iter().copied().fold(0.0, f64::max);
+    // Of few changes the quantile is uncertain, of many the largest is an outlier: the smaller.
     let tolerance = (TIMES_USUAL * usual).min(TIMES_LARGEST * largest);
     let (low, high) = range(input);
     let is_small = tolerance < OF_RANGE * (high - low);
@@ -291,6 +292,7 @@ fn travel(input: &[f64], tolerance: f64) -> f64 {
     let mut at = input.first().copied().unwrap_or(0.0);
     let mut travel = 0.0;
     for value in input {
+        // The shortest way that stays within the noise of every sample.
         let next = at.clamp(value - tolerance, value + tolerance);
         travel += (next - at).abs();
         at = next;

@@ -94,6 +94,7 @@ impl Tracking {
         let gain = uy / uu;
         let offset = output - gain * level;
         let off = |rest: &RestingHold| (rest.output - offset - gain * rest.level).powi(2);
+        // Two parameters: n − 2 degrees of freedom.
         let off = (rests.iter().map(off).sum::<f64>() / (n - 2.0)).sqrt();
         let ends = |of: fn(f64, f64) -> f64, start| rests.iter().map(|r| r.output).fold(start, of);
         let travel = ends(f64::max, f64::MIN) - ends(f64::min, f64::MAX);

@@ -151,6 +151,7 @@ fn rank(count: usize) -> usize {
         if sum > tail {
             break;
         }
+        // C(n, k + 1) = C(n, k)·(n − k)/(k + 1).
         log_ways += ((count - heads) as f64 / (heads + 1) as f64).ln();
         heads += 1;
     }

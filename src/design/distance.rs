@@ -20,6 +20,7 @@ pub(super) fn expected(
 ) -> Option<Expected> {
     let clean = rig.output(model, schedule);
     let carrier: Vec<f64> = (0..clean.len()).map(|k| carrier(k, suspects.noise)).collect();
+    // Without noise robust weights would take every misfit for a spike.
     let output = clean.iter().zip(&carrier).map(|(y, c)| y + c).collect();
     let joint = rig.log(schedule, output)?;
     let record = FitRecord::new(&joint, Split::of(&joint), Horizon::Steps);
@@ -71,6 +72,7 @@ fn distance(record: &FitRecord<'_>, fit: &Fit, carrier: &[f64], noise: f64) -> D
             let all = fit.evaluation.residuals.get(window.trial).map_or(&[][..], Vec::as_slice);
             let own = all.get(window.start..window.end).unwrap_or_default();
             let noise = carrier.get(window.start..window.end).unwrap_or_default();
+            // λ counts what the model cannot follow, not the carrier.
             own.iter().zip(noise).map(|(own, noise)| (own - noise).powi(2)).sum::<f64>()
         });
         squares.sum::<f64>() / (noise * noise)

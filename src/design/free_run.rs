@@ -147,6 +147,7 @@ impl Growth {
         let end = self.width * self.largest.len() as f64;
         let last = self.largest.last().copied().unwrap_or(0.0);
         if place >= end {
+            // In proportion: an error with increments of one kind grows no faster.
             return last * place / end;
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 0")]

@@ -70,8 +70,10 @@ impl LinearScreen {
         let slopes: Vec<f64> = self.slopes.iter().flat_map(column).collect();
         let length = column(&self.here).len();
         let basis = Basis::of(&slopes, length, rank::COARSELY_DIFFERENCED);
+        // d − J(JᵀJ)⁻¹Jᵀd, by an orthonormal basis of J.
         let residual = |difference| basis.residual(&column(difference));
         let differences = self.differences.iter().map(residual);
+        // λ = |…|²/σ².
         differences.map(|residual| dot(&residual, &residual) / (noise * noise)).collect()
     }
 }
@@ -90,6 +92,7 @@ fn moved(model: &JointModel, index: usize) -> JointModel {
     /// In parts of the value, or of one.
     const PART: f64 = 1e-4;
     let mut values: Vec<f64> = model.values().iter().map(|value| value.value).collect();
+    // A value at zero is moved, too.
     values[index] += PART * values[index].abs().max(0.01);
     model.with_values(&values)
 }

@@ -171,6 +171,7 @@ fn side(levels: impl Iterator<Item = f64>, edge: f64) -> Vec<f64> {
     if highest <= edge {
         return Vec::new();
     }
+    // As far from the band as from the highest: what bends in between shows most.
     let middle = 0.5 * (edge + highest);
     let others = levels
         .into_iter()

@@ -98,10 +98,12 @@ impl TestRig {
             }
         };
         for model in uncertain.draws.iter().take(likely) {
+            // The mean square about the prediction.
             add(model, 1.0 / likely as f64);
         }
         let off = uncertain.deviations.iter().enumerate();
         for (place, _) in off.filter(|(_, off)| **off > 0.0 && likely == 0) {
+            // Independent deviations: variances add up.
             add(&uncertain.with_off(place, 1.0), 1.0);
         }
         let mut margin: Vec<f64> =

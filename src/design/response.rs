@@ -28,6 +28,7 @@ pub fn resting_band(model: &JointModel, rig: &TestRig, largest: f64) -> Option<(
     const LEAST: f64 = 0.01;
     let model = driven(model);
     let edge = |largest: f64| edge(&model, rig, largest);
+    // The edge of each direction by itself: a band need not lie about zero.
     let (lower, upper) = (-edge(-largest), edge(largest));
     (upper - lower > LEAST * largest).then_some((lower, upper))
 }

@@ -73,6 +73,7 @@ pub(super) fn local_misfit(windows: &[Vec<f64>], floor: Option<f64>) -> Option<L
             (shapes, variances)
         });
         let products = [0, 1].map(|d| dot(&shapes[d], stretch).powi(2));
+        // e = ½ Σ_d (p_d·r)²/v_d.
         let energy = 0.5 * (products[0] / variances[0] + products[1] / variances[1]);
         if energy > largest.0 {
             largest = (energy, (products[0] + products[1]) / stretch.len() as f64);
@@ -80,8 +81,10 @@ pub(super) fn local_misfit(windows: &[Vec<f64>], floor: Option<f64>) -> Option<L
         energies.push(energy);
     }
     let (_, median, _) = energies.select_nth_unstable_by(stretches.len() / 2, f64::total_cmp);
+    // P(e > ln 2) = ½.
     let scale = *median / std::f64::consts::LN_2;
     let (energy, mean_square) = largest;
+    // n·exp(−x).
     let p_value = (stretches.len() as f64 * (-energy / scale).exp()).min(1.0);
     let times_noise = floor.map(|floor| mean_square.sqrt() / floor).filter(|t| t.is_finite());
     (scale > 0.0).then_some(LocalMisfit { p_value, times_noise })
@@ -115,6 +118,7 @@ fn shapes(count: usize) -> Shapes {
 fn variance(shape: &[f64], correlations: &[f64]) -> f64 {
     let lagged = |lag: usize| dot(shape, shape.get(lag..).unwrap_or_default());
     let beyond = correlations.iter().enumerate().skip(1);
+    // v = Σ_h c_h Σ_k p(k)·p(k + h), h to either side.
     lagged(0) + 2.0 * beyond.map(|(lag, correlation)| correlation * lagged(lag)).sum::<f64>()
 }
 

@@ -123,6 +123,7 @@ fn diebold_mariano(differences: &[f64]) -> Option<DifferenceTest> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
     let lags = n.cbrt().floor() as usize;
     let own = covariance(0);
+    // Bartlett's weights 1 − h/(L + 1).
     let weighted = (1..=lags).map(|lag| (1.0 - lag as f64 / (lags as f64 + 1.0)) * covariance(lag));
     let variance = own + 2.0 * weighted.sum::<f64>();
     // A negative correlation of neighbours is no reason to be surer than without any.
@@ -130,7 +131,9 @@ fn diebold_mariano(differences: &[f64]) -> Option<DifferenceTest> {
     if variance <= 0.0 {
         return None;
     }
+    // Harvey, Leybourne and Newbold: √((n + 1 − 2h + h(h − 1)/n)/n) with h = 1.
     let statistic = mean / (variance / n).sqrt() * ((n - 1.0) / n).sqrt();
+    // The square of Student's t is F with 1 degree of freedom: both tails at once.
     let p_value = fisher_tail(statistic * statistic, 1, count - 1)?;
     Some(DifferenceTest { statistic, p_value })
 }

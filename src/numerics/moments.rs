@@ -44,6 +44,7 @@ pub(crate) fn dots(a: &[f64], others: [&[f64]; 4]) -> [f64; 4] {
             sums.iter_mut().zip(a).zip(other).for_each(|((sum, a), b)| *sum += a * b);
         }
     }
+    // What no full set of lanes is left for.
     let heads = length - length % LANES;
     let mut products = sums.map(|lanes| lanes.iter().sum::<f64>());
     for (product, other) in products.iter_mut().zip(others) {
@@ -70,6 +71,7 @@ pub(crate) fn moments(values: &[f64], offset: f64) -> (f64, f64, f64) {
         }
         first += LANES as f64;
     }
+    // Σ k·y = Σ first·y + Σ lane·y, since k = first + lane.
     let lanes = sums.iter().zip(0_u32..).map(|(sum, lane)| f64::from(lane) * sum);
     let mut moment = ramps.iter().sum::<f64>() + lanes.sum::<f64>();
     let (mut sum, mut square) = (sums.iter().sum::<f64>(), squares.iter().sum::<f64>());
@@ -112,6 +114,7 @@ pub(crate) fn autocovariances<W: AsRef<[f64]>>(windows: &[W], longest: usize) ->
     let samples: usize = windows().map(<[f64]>::len).sum();
     let covariance = |lag: usize| -> f64 {
         windows().map(|w| w.get(lag..).map_or(0.0, |later| dot(w, later))).sum::<f64>()
+            // Divided by all samples, not by the pairs: the covariances stay positive definite.
             / samples.max(1) as f64
     };
     (0..=longest).map(covariance).collect()

@@ -84,6 +84,8 @@ impl BrokenLine {
     /// About the standard error of the position in the median of so many samples: that of where
     /// two lines meet that are fitted apart.
     pub(crate) fn position_error(&self, samples: usize) -> f64 {
+        // With s² = SSE/n, the end of a line through n/2 samples is known to 2s/√(n/2), and so the
+        // gap between two to 4s/√n; it closes by the change of slope per sample.
         4.0 * self.sse.sqrt() / samples as f64 / (self.after.slope - self.before.slope).abs()
     }
 
@@ -128,9 +130,11 @@ impl<'a> Window<'a> {
         let kept = left.get_mut(order..).unwrap_or_default();
         let (sum, moment, _) = moments(kept, 0.0);
         let half = (rows - 1.0) / 2.0;
+        // Σ (k − half)·y/Σ (k − half)².
         let (mean, slope) = (sum / rows, (moment - half * sum) / spread);
         let power = take_off_line(kept, mean - slope * half, slope);
         let line = (offset + mean / noise.level, slope / noise.level);
+        // With W whitening, (W·level)·r = level·(Wᵀ·r): plain sums behind a break from here on.
         noise.pull(&mut left);
         Some(Self { noise, frame: Frame::of(noise, rows, line), pulled: left, power, rows })
     }
@@ -166,6 +170,7 @@ impl<'a> Window<'a> {
         let freedom = (self.rows - PARAMETERS as f64).max(1.0);
         let ends = |confidence: f64| {
             let t = student_quantile(f64::midpoint(1.0, confidence), freedom);
+            // SSE(τ) ≤ SSE + t²·s² with s² = SSE/ν, as what a break has to explain.
             let limit = self.power - line.sse * (1.0 + t * t / freedom);
             self.interval(&at, limit, line.position)
         };
@@ -210,6 +215,7 @@ impl<'a> Window<'a> {
             let (low, high) = at.piece(index, &self.frame).crossings(limit)?;
             Some((j as f64 + low, j as f64 + high))
         };
+        // The best break is inside, although the ends of its piece may not be.
         let piece_of_best = if position >= 0.0 { floor_to_index(position) } else { first };
         let lowest = at.gain.iter().position(good).map_or(piece_of_best + 1, |i| first + i);
         let low = match lowest.min(piece_of_best + 1) {
@@ -243,6 +249,7 @@ pub(crate) fn median(position: f64, (low, high): (f64, f64), t: f64) -> f64 {
     if !(wide > 0.0 && wide.is_finite()) {
         return position;
     }
+    // a/(a + b)·2·(1 − Φ(x)) = ½ on the wider side a: Φ(x) = ½ + (1 − b/a)/4.
     let odd = (after - before) / wide;
     // The quantile of a normal variable at ½ + odd/4, to a thousandth.
     position + wide / t * odd * (0.626_7 + 0.047_8 * odd * odd)
@@ -258,9 +265,12 @@ pub(crate) fn p_value(share: f64, dimensions: f64, samples: f64, (low, high): (f
     // The curve's ends are a sample from those of the window at least.
     let odds = |position: f64| (position.max(1.0) / (samples - position).max(1.0)).ln();
     let length = 0.75_f64.sqrt() * (odds(high) - odds(low)).max(0.0);
+    // Knowles and Siegmund: length/(2π)·(1 − r²)^((m − 2)/2), for a gain of either sign.
     let tube = length / PI * (1.0 - share).powf((dimensions - 2.0) / 2.0);
     let freedom = dimensions - 1.0;
     let statistic = freedom * share / (1.0 - share).max(f64::MIN_POSITIVE);
+    // The caps at both ends of the curve: together what one given direction gains, F with 1 and
+    // m − 1 degrees of freedom.
     let ends = fisher_tail(statistic, 1, floor_to_index(freedom)).unwrap_or(1.0);
     (tube + ends).min(1.0)
 }

@@ -71,6 +71,7 @@ impl Moments {
                 let values = column.get(first..last).unwrap_or_default();
                 self.with_changes[delay * columns + j] += dot(values, changes);
                 self.sums[delay * columns + j] += sum;
+                // A sample later the window gains one row in front and loses one behind.
                 sum += at(column, start, from + delay) - at(column, end, from + delay);
             }
         }
@@ -132,6 +133,7 @@ impl Moments {
                 let base = ((delay + m.min(l)) * NUMERATORS + m.abs_diff(l)) * columns * columns;
                 for i in 0..columns {
                     for j in i..columns {
+                        // Products were kept with the earlier column first.
                         let place = if m <= l { i * columns + j } else { j * columns + i };
                         products[i * size + j] += weight * self.products[base + place];
                     }
@@ -145,6 +147,7 @@ impl Moments {
         let sums: Vec<f64> = (0..columns).map(|i| weighted(&self.sums, i)).collect();
         for i in 0..columns {
             for j in i..columns {
+                // The constant is projected out: Σ(x − x̄)(z − z̄) = Σxz − ΣxΣz/n.
                 products[i * size + j] -= sums[i] * sums[j] / self.rows;
             }
             products[i * size + columns] =

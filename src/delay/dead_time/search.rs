@@ -145,10 +145,12 @@ fn least_of_parabola(middle: f64, around: [f64; 6]) -> (f64, f64) {
     let [right, left, up, down, lower_right, upper_left] = around;
     let (slope_a, slope_b) = (0.5 * (right - left), 0.5 * (up - down));
     let (bend_a, bend_b) = (right - 2.0 * middle + left, up - 2.0 * middle + down);
+    // f(1, −1) and f(−1, 1) contain −2·f_ab.
     let twist = 0.5 * (bend_a + bend_b - (lower_right - 2.0 * middle + upper_left));
     let alone = |slope: f64, bend: f64| if bend > 0.0 { -slope / bend } else { 0.0 };
     let determinant = bend_a * bend_b - twist * twist;
     let (a, b) = if bend_a > 0.0 && determinant > 1e-6 * bend_a * bend_b {
+        // Newton's step −H⁻¹g of the parabola.
         let a = (twist * slope_b - bend_b * slope_a) / determinant;
         (a, (twist * slope_a - bend_a * slope_b) / determinant)
     } else {

@@ -129,6 +129,7 @@ impl Known<'_> {
                 errors.get(next)?;
                 if likelihood(next) > self.threshold {
                     let (from, to) = (likelihood(inside).sqrt(), likelihood(next).sqrt());
+                    // About its least value n ln(SSE/SSE₀) is a parabola: its root is straight.
                     let part = (self.threshold.sqrt() - from) / (to - from);
                     let sign = if direction { part } else { -part };
                     return Some((inside as f64 + sign) / PER_SAMPLE as f64);
@@ -139,6 +140,7 @@ impl Known<'_> {
         let (low, high) = (end(false), end(true));
         let value = vertex(&errors, best) / PER_SAMPLE as f64;
         let without = sums.squared_change - sums.change * sums.change / sums.rows.max(1.0);
+        // Twice the logarithm of the likelihood ratio against a gain of 0.
         let evidence = sums.rows * (without / least).ln();
         let excites = evidence > EVIDENCE * self.threshold && fits[best].1 > 0.0;
         let bounds = high.map(|high| (value, low.unwrap_or(0.0), high));
@@ -216,6 +218,7 @@ pub(super) fn same_in_all(windows: &[Estimated], quantile: f64) -> Option<f64> {
     let known: Vec<(f64, f64)> = known.collect();
     let weight: f64 = known.iter().map(|(_, weight)| weight).sum();
     let mean = known.iter().map(|(value, weight)| value * weight).sum::<f64>() / weight;
+    // Cochran's Q: χ² with one degree of freedom less than windows.
     let spread = known.iter().map(|(value, weight)| weight * (value - mean).powi(2)).sum();
     chi_square_tail(spread, known.len().checked_sub(1).filter(|freedom| *freedom > 0)?)
 }

@@ -152,6 +152,7 @@ impl Window {
         }
         // Σ (k − middle)².
         let times = length * (length * length - 1.0) / 12.0;
+        // |h|² beside the line, whose columns 1 and k − middle are orthogonal.
         let own = square - sum * sum / length - with_time * with_time / times;
         if own <= f64::EPSILON * square {
             return (0.0, self.sse);
@@ -178,6 +179,7 @@ impl Shapes {
             let parts = 0..samples * FINENESS;
             parts.map(|part| shape(part as f64 / FINENESS as f64)).collect()
         };
+        // Longer ones are powers of the time, which have a table of their own.
         let longest = all as f64 / 2.0;
         let constants = std::iter::successors(Some(SHORTEST), |constant| Some(constant * RATIO));
         let constants: Vec<f64> = constants.take_while(|constant| *constant < longest).collect();
@@ -185,6 +187,7 @@ impl Shapes {
         for order in 1..=ORDERS {
             let lagged = |constant: &f64| table(&|time| lagged_ramp(time / constant, order));
             tables.extend(constants.iter().map(lagged));
+            // The limit of r for T much longer than the window: z^(n+1) up to a factor.
             tables.push(table(&|time| (time / longest).powi(order + 1)));
         }
         Self { tables }
@@ -202,6 +205,7 @@ impl Shapes {
 /// `r(z; n)`, the answer of `n` equal lags in a row to a ramp, over the time constant.
 fn lagged_ramp(z: f64, order: i32) -> f64 {
     let n = f64::from(order);
+    // r(z; n) = z·P(n, z) − n·P(n + 1, z).
     z * gamma_below(order, z) - n * gamma_below(order + 1, z)
 }
 
@@ -266,6 +270,7 @@ impl<'a> Profile<'a> {
             slope: self.window.line.slope - best.size * shape.line.slope,
             intercept: self.window.line.intercept - best.size * shape.line.intercept,
         };
+        // SSE(τ) ≤ SSE + t²·s²·g.
         let limit = best.sse + t * t * variance * memory(left);
         let good = |tried: &&Tried| tried.sse <= limit;
         // The ends lie between positions that were tried.

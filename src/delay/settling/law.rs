@@ -182,6 +182,7 @@ impl Law {
         let freedom = window.freedom(constants);
         let t = student_quantile(f64::midpoint(1.0, confidence), freedom);
         let own = t * window.standard_error(constants, (*onset, *sse));
+        // Delta method; independent of the onset's own noise.
         let shared = t * self.variance_along(slopes).sqrt();
         let side = |sign: f64| {
             let reach = window.reach(constants, (*onset, *sse), sign * own, t * t * sse / freedom);
@@ -220,6 +221,7 @@ fn slopes(
 ) -> Vec<f64> {
     /// Change of a logarithm to each side.
     const STEP: f64 = 1e-3;
+    // The onset moves so that the residual stays orthogonal to its slope: −g·Δr/(g·g).
     let along = found.window.onset_slope(&found.constants, found.onset);
     let square = dot(&along, &along);
     let slope = |parameter: usize| {
@@ -273,6 +275,7 @@ fn bounded(search: &Search<'_>) -> DMatrix<f64> {
         return covariance;
     }
     let error = variance.sqrt();
+    // (√(1 + 2·z·e) − 1)/(z·e): the standard error whose upper end is at T₂·√(1 + 2·z·e).
     let factor = ((1.0 + 2.0 * Z * error).sqrt() - 1.0) / (Z * error);
     covariance.row_mut(last).scale_mut(factor);
     covariance.column_mut(last).scale_mut(factor);

@@ -89,6 +89,7 @@ impl Constants {
 
     /// What a further lag makes of a decay of this time constant.
     fn gain(&self, time_constant: f64) -> f64 {
+        // T₂ y′ + y = e^(−t/T) is solved by T/(T − T₂)·e^(−t/T).
         time_constant / (time_constant - self.further)
     }
 

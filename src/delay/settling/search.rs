@@ -189,6 +189,7 @@ impl<'a> Search<'a> {
 
     /// Covariance of the parameters.
     pub(super) fn covariance(&self) -> DMatrix<f64> {
+        // Each sample was counted in as many windows.
         &self.inverse * (self.shared * self.variance())
     }
 
@@ -232,6 +233,7 @@ impl Member<'_> {
         }
         columns.extend(residual.iter().map(|value| -value));
         let mut equations = NormalEquations::of(&columns, self.window.len(), &[]);
+        // The onset is this window's own.
         equations.eliminate(0);
         Linearised { sse: dot(&residual, &residual), equations }
     }

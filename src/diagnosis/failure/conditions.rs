@@ -209,6 +209,7 @@ pub fn fails_where(record: &ResidualRecord) -> Vec<FailsWhere> {
             break;
         }
         let exact = grid.members(&choice.selections, record.rows());
+        // Covering: the next one is looked for in what is left.
         rows.retain(|row| new.binary_search(row).is_err());
         let (clauses, samples) = in_few_digits(record, &search, grid, choice, &exact);
         if found.iter().all(|other| overlap(&other.samples, &samples) <= SAME) {
@@ -255,6 +256,7 @@ fn in_few_digits(
         let selections = choice.selections.iter();
         selections.flat_map(|one| clauses(record, &grid.axes[one.axis], *one, digits)).collect()
     };
+    // Rounded bounds are another condition; one with as much gain says the same.
     let wanted = search.gain(exact);
     // One set of samples at a time: each may be as long as the log.
     let mut most: Option<(Vec<Clause>, Vec<Row>, f64)> = None;
