@@ -168,8 +168,7 @@ fn is_drawn_in_time_of_its_own(input: &[f64]) -> bool {
     #[expect(clippy::float_cmp, reason = "levels are exact")]
     let runs: Vec<&[f64]> = input.chunk_by(|a, b| a == b).collect();
     let lengths: Vec<f64> = runs.iter().map(|run| run.len() as f64).collect();
-    let level = |run: &[f64]| run.first().copied().unwrap_or_default();
-    let steps = runs.windows(2).map(|pair| (level(pair[1]) - level(pair[0])).abs());
+    let steps = runs.windows(2).map(|pair| (pair[1][0] - pair[0][0]).abs());
     let steps: Vec<f64> = steps.collect();
     let median = |values: &[f64]| crate::numerics::quantile(values, 0.5).unwrap_or_default();
     let (usual, (low, high)) = (median(&lengths), range(input));

@@ -42,14 +42,13 @@ pub fn delay_scan(input: &[f64], output: &[f64], longest: usize) -> Vec<f64> {
         return Vec::new();
     }
     let column = |value: &dyn Fn(usize) -> f64| (first..end).map(value).collect::<Vec<_>>();
-    let change = |k: usize| at(output, k) - at(output, k - 1);
+    let change = |k: usize| output[k] - output[k - 1];
     // About a value in the record, so that the column of y_(k−1) is not nearly constant.
-    let origin = at(output, first);
-    let past =
-        [column(&|_| 1.0), column(&|k| change(k - 1)), column(&|k| at(output, k - 1) - origin)];
+    let origin = output[first];
+    let past = [column(&|_| 1.0), column(&|k| change(k - 1)), column(&|k| output[k - 1] - origin)];
     let changes = column(&change);
     let error = |delay: usize| {
-        let inputs = (delay..delay + INPUTS).flat_map(|by| column(&|k| at(input, k - by)));
+        let inputs = (delay..delay + INPUTS).flat_map(|by| column(&|k| input[k - by]));
         let columns = past.iter().flatten().copied().chain(inputs).chain(changes.iter().copied());
         penalised(&columns.collect::<Vec<_>>(), samples)
     };
@@ -71,10 +70,6 @@ fn penalised(columns: &[f64], samples: usize) -> f64 {
         equations.error().max(rounding) * penalty
     };
     (PAST..PAST + INPUTS).map(error).fold(f64::INFINITY, f64::min)
-}
-
-fn at(values: &[f64], k: usize) -> f64 {
-    values.get(k).copied().unwrap_or_default()
 }
 
 #[cfg(test)]

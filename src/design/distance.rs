@@ -69,9 +69,9 @@ fn best(
 fn distance(record: &FitRecord<'_>, fit: &Fit, carrier: &[f64], noise: f64) -> Distance {
     let part = |part| {
         let squares = record.part(part).map(|window| {
-            let all = fit.evaluation.residuals.get(window.trial).map_or(&[][..], Vec::as_slice);
-            let own = all.get(window.start..window.end).unwrap_or_default();
-            let noise = carrier.get(window.start..window.end).unwrap_or_default();
+            let samples = window.start..window.end;
+            let own = &fit.evaluation.residuals[window.trial][samples.clone()];
+            let noise = &carrier[samples];
             // λ counts what the model cannot follow, not the carrier.
             own.iter().zip(noise).map(|(own, noise)| (own - noise).powi(2)).sum::<f64>()
         });

@@ -162,7 +162,7 @@ fn refitted(joint: &Joint, model: &JointModel, part: usize) -> Option<(JointMode
         [piece(trial, 0, from), piece(trial, to, trial.len())]
     });
     let trials: Vec<Trial> = pieces.flatten().collect();
-    let rest = Joint { trials, covariates: Vec::new(), ..joint.clone() };
+    let rest = joint.of_trials(trials);
     let record = FitRecord::new(&rest, Split::Time(1.0), Horizon::Auto);
     let levels = record.input_levels();
     let top = levels.last().copied().unwrap_or(1.0);

@@ -113,7 +113,7 @@ pub(super) fn windows(schedule: &Schedule, count: usize) -> Vec<(usize, usize)> 
 /// `values` in windows, each without its mean: a fit starts anew there.
 pub(super) fn centred(values: &[f64], windows: &[(usize, usize)]) -> Vec<f64> {
     let window = |(start, end): &(usize, usize)| {
-        let part = values.get(*start..*end).unwrap_or_default();
+        let part = &values[*start..*end];
         let mean = part.iter().sum::<f64>() / part.len().max(1) as f64;
         part.iter().map(|value| value - mean).collect::<Vec<_>>()
     };

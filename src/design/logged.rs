@@ -138,7 +138,7 @@ impl Logged {
         if trials.len() < centred.trials.len() {
             return centred;
         }
-        Joint { trials, covariates: Vec::new(), ..centred }
+        centred.of_trials(trials)
     }
 
     /// The largest magnitude of a level, as a difference to rest.
@@ -239,13 +239,7 @@ mod tests {
         });
         let output = output.collect();
         let period = SamplePeriod::from_seconds(0.02).unwrap();
-        Joint {
-            name: "boom".to_owned(),
-            input_unit: None,
-            output_unit: None,
-            covariates: Vec::new(),
-            trials: vec![Trial::new("1", 0.0, period, input, output).unwrap()],
-        }
+        Joint::new("boom", vec![Trial::new("1", 0.0, period, input, output).unwrap()])
     }
 
     fn steps(levels: &[f64]) -> Vec<f64> {

@@ -132,24 +132,14 @@ impl TestRig {
     /// The log of this joint, had it done `output`.
     pub(super) fn log(&self, schedule: &Schedule, output: Vec<f64>) -> Option<Joint> {
         let trial = Trial::new("1", 0.0, self.period, schedule.input(), output).ok()?;
-        Some(Joint {
-            name: self.name.clone(),
-            input_unit: self.input_unit.clone(),
-            output_unit: self.output_unit.clone(),
-            covariates: Vec::new(),
-            trials: vec![trial],
-        })
+        let (input_unit, output_unit) = (self.input_unit.clone(), self.output_unit.clone());
+        Some(Joint { input_unit, output_unit, ..Joint::new(self.name.clone(), vec![trial]) })
     }
 
     /// Radians in one unit of the output, as a fit takes them.
     fn radians(&self) -> f64 {
-        let joint = Joint {
-            name: String::new(),
-            input_unit: None,
-            output_unit: self.output_unit.clone(),
-            covariates: Vec::new(),
-            trials: Vec::new(),
-        };
+        let output_unit = self.output_unit.clone();
+        let joint = Joint { output_unit, ..Joint::new("", Vec::new()) };
         let record = FitRecord::new(&joint, Split::Time(1.0), Horizon::FreeRun);
         record.range(&[], 0.0).radians_per_output_unit
     }

@@ -35,12 +35,7 @@ pub(super) fn shapes(
         })
         .collect();
     let count = windows.first().map_or(0, Vec::len);
-    let column = |index: usize| {
-        windows
-            .iter_mut()
-            .map(|shapes| shapes.get_mut(index).map(take).unwrap_or_default())
-            .collect()
-    };
+    let column = |index: usize| windows.iter_mut().map(|shapes| take(&mut shapes[index])).collect();
     (0..count).map(column).collect()
 }
 

@@ -35,6 +35,7 @@ pub mod gravity_load;
 pub mod input_offset;
 pub mod input_saturation;
 mod interface;
+mod interned;
 pub mod leakage;
 mod moment;
 pub mod oil_column;

@@ -19,6 +19,26 @@ pub struct Joint {
     pub trials: Vec<Trial>,
 }
 
+impl Joint {
+    /// A joint without further signals, whose units are not known.
+    pub fn new(name: impl Into<String>, trials: Vec<Trial>) -> Self {
+        let (input_unit, output_unit, covariates) = (None, None, Vec::new());
+        Self { name: name.into(), input_unit, output_unit, covariates, trials }
+    }
+
+    /// This joint with the units of its input and of its output.
+    #[must_use]
+    pub fn with_units(self, input: impl Into<String>, output: impl Into<String>) -> Self {
+        Self { input_unit: Some(input.into()), output_unit: Some(output.into()), ..self }
+    }
+
+    /// Other `trials` of this joint, without its further signals.
+    pub(crate) fn of_trials(&self, trials: Vec<Trial>) -> Self {
+        let (input_unit, output_unit) = (self.input_unit.clone(), self.output_unit.clone());
+        Self { input_unit, output_unit, ..Self::new(self.name.clone(), trials) }
+    }
+}
+
 /// Name and unit of a further measured signal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Signal {

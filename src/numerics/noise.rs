@@ -230,11 +230,9 @@ impl NoiseModel {
             from += LANES;
         }
         for k in from..values.len() {
-            let (now, later) = values.split_at_mut(k + 1);
-            let expected: f64 = self.coefficients.iter().zip(later).map(|(a, y)| a * *y).sum();
-            if let Some(now) = now.last_mut() {
-                *now -= expected;
-            }
+            let later = &values[k + 1..];
+            let expected: f64 = self.coefficients.iter().zip(later).map(|(a, y)| a * y).sum();
+            values[k] -= expected;
         }
     }
 
@@ -253,19 +251,17 @@ impl NoiseModel {
             for (a, past) in self.coefficients.iter().zip(past) {
                 sums.iter_mut().zip(past).for_each(|(sum, y)| *sum += a * y);
             }
-            block.iter_mut().skip(order).zip(sums).for_each(|(y, sum)| *y -= sum);
+            block[order..].iter_mut().zip(sums).for_each(|(y, sum)| *y -= sum);
             end -= LANES;
         }
         for k in (order..end).rev() {
-            let (past, now) = values.split_at_mut(k);
-            let recent = past.iter().rev();
+            let recent = values[..k].iter().rev();
             let expected: f64 = self.coefficients.iter().zip(recent).map(|(a, y)| a * y).sum();
-            if let Some(now) = now.first_mut() {
-                *now -= expected;
-            }
+            values[k] -= expected;
         }
         // They have no full past.
-        values.iter_mut().take(order).for_each(|value| *value = 0.0);
+        let without_past = order.min(values.len());
+        values[..without_past].fill(0.0);
     }
 
     /// Each of the `windows` whitened, without its first samples, which have no past, and

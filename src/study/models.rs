@@ -187,7 +187,7 @@ fn part_of(joint: &Joint) -> Joint {
     let piece =
         |(trial, from, to): &(usize, usize, usize)| joint.trials.get(*trial)?.part(*from, *to);
     let trials: Vec<Trial> = blocks.iter().filter_map(piece).collect();
-    Joint { trials, covariates: Vec::new(), ..joint.clone() }
+    joint.of_trials(trials)
 }
 
 /// How often the input of `joint` changes from one sample to the next.

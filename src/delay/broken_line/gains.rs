@@ -32,7 +32,7 @@ impl BreakGains {
         let ramp_sum = level_sum + moment;
         let mut ramp_y = vec![ramp_sum; count + 1];
         let searched = searched.get(first + 1..).unwrap_or_default();
-        let ramps = ramp_y.get_mut(..count).unwrap_or_default();
+        let ramps = &mut ramp_y[..count];
         let (mut ramps, values) =
             (ramps.rchunks_exact_mut(TOGETHER), searched.rchunks_exact(TOGETHER));
         let first_values = values.remainder();
@@ -81,8 +81,7 @@ impl BreakGains {
             larger(a * a, b * b) - most * (least - 0.25 * frame.most_level(reach))
         };
         let mut good = Vec::new();
-        let [next_ramps, next_sizes] =
-            [&self.ramp_y, &self.size].map(|values| values.get(1..).unwrap_or_default());
+        let [next_ramps, next_sizes] = [&self.ramp_y, &self.size].map(|values| &values[1..]);
         let ramps = self.ramp_y.chunks(BLOCK).zip(next_ramps.chunks(BLOCK));
         let sizes = self.size.chunks(BLOCK).zip(next_sizes.chunks(BLOCK));
         for (index, ((a, b), (size, next))) in ramps.zip(sizes).enumerate() {
@@ -109,9 +108,8 @@ impl BreakGains {
 
     /// The piece behind the position of an index.
     pub(super) fn piece(&self, index: usize, frame: &Frame) -> Piece {
-        let of = |index: usize| self.ramp_y.get(index).copied().unwrap_or_default();
         // A ramp less the one that begins a sample later is the level between.
-        let (here, next) = (of(index), of(index + 1));
+        let (here, next) = (self.ramp_y[index], self.ramp_y[index + 1]);
         frame.piece(self.first + index, here - next, here)
     }
 }

@@ -127,7 +127,7 @@ impl<'a> Window<'a> {
         noise.whiten(&mut left);
         let rows = rows as f64;
         let spread = rows * (rows * rows - 1.0) / 12.0;
-        let kept = left.get_mut(order..).unwrap_or_default();
+        let kept = &mut left[order..];
         let (sum, moment, _) = moments(kept, 0.0);
         let half = (rows - 1.0) / 2.0;
         // Σ (k − half)·y/Σ (k − half)².

@@ -61,8 +61,7 @@ fn regressors(trials: &[Whitened], fitted: Fitted) -> Vec<Rows> {
 /// The changes of the output.
 fn target(trials: &[Whitened]) -> Rows {
     let of_trial = |trial: &Whitened| {
-        let rows = trial.rows.iter().map(|rows| trial.changes.get(rows.clone()));
-        rows.map(|rows| rows.unwrap_or_default().to_vec()).collect::<Rows>()
+        trial.rows.iter().map(|rows| trial.changes[rows.clone()].to_vec()).collect::<Rows>()
     };
     trials.iter().flat_map(of_trial).collect()
 }

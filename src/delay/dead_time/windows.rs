@@ -68,7 +68,7 @@ impl Known<'_> {
             (0..parts).map(|p| self.sums(trial, &prediction, border(p), border(p + 1))).collect();
         let starts = (0..=parts - PARTS).step_by(HOP);
         let window = |start: usize| {
-            let sum = Sums::total(sums.get(start..start + PARTS).unwrap_or_default());
+            let sum = Sums::total(&sums[start..start + PARTS]);
             let (curve, alone) = self.estimate(&sum, samples.period_s);
             let averaged = samples.averaged;
             let (first, last) = (border(start) * averaged + 1, border(start + PARTS) * averaged);
@@ -89,7 +89,7 @@ impl Known<'_> {
     }
 
     fn sums(&self, trial: &Whitened, prediction: &[f64], start: usize, end: usize) -> Sums {
-        let changes = trial.changes.get(start..end).unwrap_or_default();
+        let changes = &trial.changes[start..end];
         let of_delay = |k: usize| {
             let delay = k as f64 / PER_SAMPLE as f64;
             let numerators = Numerators::of(self.best.structure, delay, self.best.lags);

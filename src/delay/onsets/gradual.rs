@@ -197,7 +197,7 @@ impl Shapes {
     fn behind(&self, number: usize, position: f64) -> (usize, impl Iterator<Item = f64>) {
         let first = ceil_to_index(position);
         let part = ((first as f64 - position) * FINENESS as f64).round();
-        let table = self.tables.get(number).map(Vec::as_slice).unwrap_or_default();
+        let table = &self.tables[number];
         (first, table.iter().skip(ceil_to_index(part)).step_by(FINENESS).copied())
     }
 }
@@ -298,8 +298,8 @@ impl<'a> Profile<'a> {
 fn memory(left: Vec<f64>) -> f64 {
     let lags = left.len() / 3;
     let covariances = autocovariances(&[left], lags);
-    let power = covariances.first().copied().unwrap_or_default();
-    let positive = covariances.iter().skip(1).take_while(|covariance| **covariance > 0.0);
+    let power = covariances[0];
+    let positive = covariances[1..].iter().take_while(|covariance| **covariance > 0.0);
     let sum: f64 = positive.sum();
     if power > 0.0 { 1.0 + 2.0 * sum / power } else { 1.0 }
 }
