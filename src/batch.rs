@@ -46,7 +46,7 @@ fn threads_of_environment() -> usize {
 ///
 /// # Errors
 /// When the threads cannot be started.
-pub fn with_prepared_threads<T: Send>(
+pub(crate) fn with_prepared_threads<T: Send>(
     threads: Option<usize>,
     run: impl Fn(&mut (dyn FnMut() + Send)) + Send + Sync + 'static,
     work: impl FnOnce() -> T + Send,

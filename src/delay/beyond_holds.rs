@@ -37,7 +37,7 @@ const UNEXPLAINED: f64 = 0.5;
 
 /// The delay over the record of `trials` in seconds, where it is longer than most holds of the input
 /// and not to be mistaken for a short one; none elsewhere. `motion` is that of their input.
-pub fn delay_beyond_holds(trials: &[Trial], motion: &InputMotion) -> Option<f64> {
+pub(crate) fn delay_beyond_holds(trials: &[Trial], motion: &InputMotion) -> Option<f64> {
     if motion.is_continuous() || are_strokes(trials) {
         return None;
     }

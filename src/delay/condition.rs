@@ -63,7 +63,7 @@ impl Condition {
     }
 
     /// What is wrong when it fails, in words.
-    pub fn meaning(self) -> &'static str {
+    pub(crate) fn meaning(self) -> &'static str {
         match self {
             Self::FirstOrLast => "first or last step of the trial",
             Self::OutputLimit => "output touches a limit",

@@ -48,7 +48,7 @@ impl Flag {
     }
 
     /// What it says, in words.
-    pub fn meaning(self) -> &'static str {
+    pub(crate) fn meaning(self) -> &'static str {
         match self {
             Self::Edge => "breakpoint at the edge of the segment",
             Self::Jump => "lines jump apart at the breakpoint",
@@ -114,7 +114,7 @@ impl Doubt {
 
     /// Margins of the break itself: what it explains, how surely it is placed, how well the
     /// lines meet.
-    pub fn margins(&self) -> [f64; 3] {
+    pub(crate) fn margins(&self) -> [f64; 3] {
         let part = |samples: f64| 1.0 - (samples / self.hold.max(1.0)).min(1.0);
         [self.explained, part(self.spread), part(self.crossing)]
     }

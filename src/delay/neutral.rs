@@ -36,7 +36,7 @@ impl Neutral {
     /// becomes neutral, and one that is driven against a stop has moved before.
     ///
     /// The band reaches to those held levels that do not move the joint from rest, and beyond
-    /// them by the [tolerance](super::level_tolerance) of levels.
+    /// them by the tolerance of levels: a part of the input's range, or what its noise takes.
     pub fn of(trials: &[Trial]) -> Option<Self> {
         Self::within(trials, level_tolerance(trials))
     }

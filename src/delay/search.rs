@@ -103,7 +103,12 @@ impl Candidates {
     /// Fits every pair of lines, the best of those that break by the sample `latest`.
     ///
     /// Later ones are evidence only. See [`search`](Self::search).
-    pub fn search_until(values: &[f64], first_sample: usize, beta: usize, latest: usize) -> Self {
+    pub(crate) fn search_until(
+        values: &[f64],
+        first_sample: usize,
+        beta: usize,
+        latest: usize,
+    ) -> Self {
         let beta = beta.max(1);
         let rows = values.len() / beta;
         let values = values.get(..rows * beta).unwrap_or_default();

@@ -102,7 +102,7 @@ impl Logged {
 
     /// `joint` with its input as difference to where it rests.
     #[must_use]
-    pub fn centred(&self, joint: &Joint) -> Joint {
+    pub(crate) fn centred(&self, joint: &Joint) -> Joint {
         let centred = |trial: &Trial| {
             let input = trial.input().iter().map(|input| input - self.rest).collect();
             let (start_s, output) = (trial.time_s(1), trial.output().to_vec());

@@ -177,7 +177,7 @@ impl Prediction {
     }
 
     /// The largest margin.
-    pub fn largest_margin(&self) -> f64 {
+    pub(crate) fn largest_margin(&self) -> f64 {
         self.margin.iter().copied().fold(0.0, f64::max)
     }
 
@@ -189,7 +189,7 @@ impl Prediction {
     }
 
     /// Samples until the joint may leave `range`; `None` where it does not.
-    pub fn kept_until(&self, (low, high): (f64, f64)) -> Option<usize> {
+    pub(crate) fn kept_until(&self, (low, high): (f64, f64)) -> Option<usize> {
         /// What rounding may add.
         const ROUNDING: f64 = 1e-9;
         let slack = ROUNDING * (high - low);

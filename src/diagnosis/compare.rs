@@ -67,7 +67,7 @@ pub fn compare(record: &FitRecord<'_>, fit: Fit) -> Comparison {
 }
 
 /// All figures of a model that was not fitted.
-pub fn compare_unfitted(record: &FitRecord<'_>, model: Assessment) -> Comparison {
+pub(crate) fn compare_unfitted(record: &FitRecord<'_>, model: Assessment) -> Comparison {
     let lack_of_fit = lack_of(record, &model);
     figures(record, model, Termination::NothingToFit, lack_of_fit)
 }

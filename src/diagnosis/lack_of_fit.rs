@@ -162,7 +162,7 @@ impl LackOfFit {
     }
 
     /// Whether the residual is hardly more than the noise.
-    pub fn is_near_noise(&self) -> bool {
+    pub(crate) fn is_near_noise(&self) -> bool {
         is_near_noise(self.times_noise)
     }
 }

@@ -35,7 +35,7 @@ pub struct LocalMisfit {
 
 impl LocalMisfit {
     /// Whether it is no noise, and large enough to matter.
-    pub fn is_shown(&self) -> bool {
+    pub(crate) fn is_shown(&self) -> bool {
         /// Far below what a test of one record needs: noise is not quite Gaussian, and a
         /// model that is right not quite the plant.
         const SIGNIFICANCE: f64 = 1e-6;

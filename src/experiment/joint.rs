@@ -149,7 +149,7 @@ impl Trial {
 
     /// Samples that were filled in while nothing was logged, in order: what the input was there is
     /// not known.
-    pub fn unlogged(&self) -> &[Range<usize>] {
+    pub(crate) fn unlogged(&self) -> &[Range<usize>] {
         &self.unlogged
     }
 
@@ -163,7 +163,7 @@ impl Trial {
 
     /// The first `samples` of it; none where there would be no sample.
     #[must_use]
-    pub fn beginning(&self, samples: usize) -> Option<Self> {
+    pub(crate) fn beginning(&self, samples: usize) -> Option<Self> {
         let cut = |signal: &[f64]| signal.iter().copied().take(samples).collect::<Vec<_>>();
         let covariates = self.covariates.iter().map(|signal| cut(signal)).collect();
         let (input, output) = (cut(&self.input), cut(&self.output));

@@ -105,12 +105,12 @@ impl SweptStep {
     }
 
     /// Combinations whose delay is another than most say.
-    pub fn disagreeing(&self) -> usize {
+    pub(crate) fn disagreeing(&self) -> usize {
         self.accepted - self.agreement.map_or(0, |agreement| agreement.combinations)
     }
 
     /// What most say, where most combinations do.
-    pub fn majority(&self) -> Option<Agreement> {
+    pub(crate) fn majority(&self) -> Option<Agreement> {
         let most = |agreement: &Agreement| agreement.combinations as f64 > MOST * self.tried as f64;
         self.agreement.filter(most)
     }

@@ -90,7 +90,7 @@ impl Clause {
     }
 
     /// With the unit, as people read it.
-    pub fn with_unit(&self, units: &Units) -> String {
+    pub(crate) fn with_unit(&self, units: &Units) -> String {
         let unit = self.feature.unit(units).map_or_else(String::new, |unit| format!(" {unit}"));
         let Self { feature, relation, bound } = self;
         format!("{} {relation} {bound}{unit}", feature.in_words())

@@ -11,7 +11,7 @@ use super::signals::{POSITION, of_change, of_moment, signals};
 use super::tree::{Name, Node, Scope};
 
 /// The word for it in a model file.
-pub const KIND: &str = "expression";
+pub(crate) const KIND: &str = "expression";
 
 /// An effect that computes an expression.
 #[derive(Debug)]
