@@ -64,7 +64,7 @@ pub(crate) fn with_prepared_threads<T: Send>(
     let result = catch_unwind(AssertUnwindSafe(|| pool.install(work)));
     drop(pool);
     for thread in started {
-        // One that has panicked has told the pool.
+        // One that has panicked has informed the pool.
         thread.join().unwrap_or_default();
     }
     Ok(result.unwrap_or_else(|panic| resume_unwind(panic)))

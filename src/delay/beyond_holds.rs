@@ -2,7 +2,7 @@
 //!
 //! The search for a breakpoint looks at one step at a time. Where a joint answers later than the
 //! next step, what moves in a segment answers an earlier step, and its delay to the step of the
-//! segment is a number without meaning. Over the record the two are told apart: with the increments
+//! segment is a number without meaning. Over the record the two are separable: with the increments
 //! of the output over blocks of a tenth of a hold, regressed on the input of `lag` blocks before,
 //!
 //! ```text
@@ -51,11 +51,11 @@ pub(crate) fn delay_beyond_holds(trials: &[Trial], motion: &InputMotion) -> Opti
         return None;
     }
     let total = unexplained(&blocks, longest, None);
-    let left: Vec<f64> =
+    let shares: Vec<f64> =
         (0..=longest).map(|lag| unexplained(&blocks, longest, Some(lag)) / total).collect();
     let in_holds = |lag: usize| (lag * block) as f64 / hold;
-    let (lag, least) = left.iter().copied().enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let short = (0..=longest).filter(|lag| in_holds(*lag) <= SHORT).map(|lag| left[lag]);
+    let (lag, least) = shares.iter().copied().enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let short = (0..=longest).filter(|lag| in_holds(*lag) <= SHORT).map(|lag| shares[lag]);
     let is_long = in_holds(lag) > LONG && least < EXPLAINED;
     let period_s = trials.first()?.period().seconds();
     (is_long && short.fold(f64::INFINITY, f64::min) > UNEXPLAINED)

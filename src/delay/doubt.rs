@@ -153,7 +153,7 @@ impl Decision {
     }
 
     /// `1 − SSE₂ / SSE₁`. The residuals of both lines are orthogonal to every line through
-    /// either part, so that one line leaves SSE₂ and what it leaves of the two lines.
+    /// either part, so that the squared error of one line is SSE₂ and its own about the two lines.
     fn explained(&self, best: &Candidate) -> f64 {
         if let Some(response) = &self.response {
             return response.explained();
@@ -176,7 +176,7 @@ impl Decision {
             xy += x * y;
             yy += y * y;
         }
-        // What one line leaves of both: Σ(ŷ − ȳ)² less what its slope explains.
+        // The squared error of one line through both: Σ(ŷ − ȳ)² less what its slope explains.
         let bend = (yy - xy * xy / xx.max(f64::MIN_POSITIVE)).max(0.0);
         let one_line = best.sse + bend;
         if one_line > 0.0 { bend / one_line } else { 0.0 }

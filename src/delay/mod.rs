@@ -4,7 +4,7 @@
 //! segment, every pair of regression lines through it is a candidate, the pair with the
 //! least squared error wins, and [conditions](Condition) decide whether its breakpoint counts:
 //! the paper's six, one for segments without a candidate, and two for joints at rest.
-//! Two more [methods](Method) find it between samples and tell how well it is known.
+//! Two more [methods](Method) find it between samples, with an interval.
 //!
 //! - [`steps`](InputStep): where the input changes
 //! - [`Neutral`], [`Transition`]: the level at which a joint rests, and what kind of step

@@ -13,7 +13,7 @@
 //! |v| + 2e ≤ REST · v_max      or      |v| ≤ 2e ≤ SLOW · v_max
 //! ```
 //!
-//! A joint that turns leaves more about a line than its noise: the second holds only where `s` is
+//! A joint that turns has larger residuals about a line than its noise: the second holds only where `s` is
 //! what the differences of neighbours say of the noise.
 //!
 //! It has *departed* once the output stays beyond that line by more than `6·s`, by more than the
@@ -276,8 +276,8 @@ impl Hold<'_> {
     }
 }
 
-/// Times the noise of neighbours that a joint leaves about a line which does not turn: more than
-/// white noise does in one of a thousand windows of eight.
+/// Times the noise of neighbours that the residuals about a line have, of a joint that does not
+/// turn: more than white noise does in one of a thousand windows of eight.
 const TURNS: f64 = 1.5;
 
 /// Times as fast as before the step that a joint is plainly driven.
@@ -291,7 +291,7 @@ struct Quiet {
     speed: f64,
     /// Its value at the last sample.
     level: f64,
-    /// Standard deviation of what it leaves.
+    /// Standard deviation of the residuals.
     noise: f64,
     /// That of white noise with such differences between neighbours.
     rough: f64,

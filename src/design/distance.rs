@@ -65,7 +65,7 @@ fn best(
     fits.min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
-/// What `fit` leaves of the data, in variances of the noise.
+/// The squared residual of `fit`, in variances of the noise.
 fn distance(record: &FitRecord<'_>, fit: &Fit, carrier: &[f64], noise: f64) -> Distance {
     let part = |part| {
         let squares = record.part(part).map(|window| {

@@ -74,7 +74,7 @@ impl Uncertain {
 ///
 /// An ensemble of models moves along the lines between them (Goodman and Weare 2010), which
 /// needs no scale: it follows what only a combination of parameters determines, and crosses
-/// ranges in which nothing changes. Where the model cannot follow the record, what it leaves
+/// ranges in which nothing changes. Where the model cannot follow the record, its residual
 /// takes the place of the noise. The second is the best of all, where it is clearly better
 /// than the one that is known.
 fn likely(
@@ -174,10 +174,10 @@ fn values(model: &JointModel) -> Vec<f64> {
     model.values().iter().map(|value| value.value).collect()
 }
 
-/// What `model` leaves of the record, in variances of the noise.
+/// The squared residual of `model`, in variances of the noise.
 fn cost(record: &FitRecord<'_>, model: &JointModel, noise: f64) -> f64 {
-    let left = record.evaluate_residuals(model).residuals;
-    left.iter().flatten().map(|e| e * e).sum::<f64>() / (noise * noise)
+    let residuals = record.evaluate_residuals(model).residuals;
+    residuals.iter().flatten().map(|e| e * e).sum::<f64>() / (noise * noise)
 }
 
 /// Lowest and highest value of each parameter.

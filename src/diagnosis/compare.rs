@@ -32,7 +32,7 @@ pub struct Comparison {
     /// Standard deviation of the measurement noise, output units.
     pub noise_floor: Option<f64>,
     /// Whether the residual of the training part is more than noise; `None` where there
-    /// are too few samples to tell.
+    /// are too few samples.
     pub lack_of_fit: Option<LackOfFit>,
     /// How the residual of the training part is correlated with itself; `None` where there
     /// are too few samples, or trials are sampled at different rates.

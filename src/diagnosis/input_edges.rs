@@ -10,7 +10,7 @@
 //!
 //! and keeps it moved until the simulation restarts. The `ε` of each window are found by least
 //! squares. They are the logger's where they are spread evenly over one period and have nothing to
-//! do with the step: no sampled record can tell such a delay from that of the joint, and no
+//! do with the step: no sampled record separates such a delay from that of the joint, and no
 //! effect is missing for it.
 //!
 //! # References
@@ -85,7 +85,7 @@ fn subtract_edges(
     noise: f64,
 ) -> Option<Vec<Edge>> {
     /// Part of a period to which noise must leave the time of a step known: an even spread over
-    /// one period is then told from none.
+    /// one period is then distinguished from none.
     const KNOWN: f64 = 1.0 / 6.0;
     /// Steps of a window that are looked at together: work grows with the square of them.
     const MOST_TOGETHER: usize = 200;

@@ -53,7 +53,7 @@ pub struct LackOfFit {
     /// The root mean square residual of the part that was not fitted over that of the part
     /// that was.
     pub times_training: Option<f64>,
-    /// Where the residual stands out most; `None` where there are too few windows to tell.
+    /// Where the residual stands out most; `None` where there are too few windows.
     pub local: Option<LocalMisfit>,
     /// What shows it, where it is shown; the first of these that does.
     pub shown_by: Option<ShownBy>,

@@ -1,4 +1,4 @@
-//! Is what a model leaves as large in one part of a record as in another?
+//! Is the residual as large in one part of a record as in another?
 //!
 //! A misfit that is there for a few seconds, or at one level of the input, is little of the
 //! error of a whole record, and a test of all samples together may take it for noise with a
@@ -56,7 +56,7 @@ const FEWEST: usize = 10;
 type Shapes = [Vec<f64>; 2];
 
 /// The stretch of `windows` in which the residual stands out most, with the noise `floor`;
-/// `None` where there are too few to tell.
+/// `None` where there are too few of them.
 pub(super) fn local_misfit(windows: &[Vec<f64>], floor: Option<f64>) -> Option<LocalMisfit> {
     let stretches: Vec<&[f64]> = windows.iter().flat_map(|window| stretches(window)).collect();
     if stretches.len() < FEWEST {

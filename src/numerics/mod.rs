@@ -22,7 +22,7 @@ pub(crate) use autoregression::Autoregression;
 pub use filter::{FilterError, LowPass, MAX_ORDER};
 pub use line::Line;
 pub(crate) use line::RunningLine;
-pub(crate) use moments::{autocovariances, column_products, dot, moments, take_off_line};
+pub(crate) use moments::{autocovariances, column_products, dot, moments, subtract_line};
 pub(crate) use noise::NoiseModel;
 pub(crate) use normal_equations::NormalEquations;
 pub(crate) use projection::{Basis, Projection};

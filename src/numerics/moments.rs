@@ -87,7 +87,7 @@ pub(crate) fn moments(values: &[f64], offset: f64) -> (f64, f64, f64) {
 
 /// Subtracts the line `value + slope·k` from the `values`, `k` counted from 0; the sum of
 /// squares of the residual.
-pub(crate) fn take_off_line(values: &mut [f64], value: f64, slope: f64) -> f64 {
+pub(crate) fn subtract_line(values: &mut [f64], value: f64, slope: f64) -> f64 {
     const LANES: usize = 4;
     let lanes: [f64; LANES] = [0.0, 1.0, 2.0, 3.0].map(|lane| value + slope * lane);
     let mut squares = [0.0; LANES];
@@ -151,7 +151,7 @@ mod tests {
     fn a_line_is_taken_off() {
         let mut values: Vec<f64> = (0..11).map(|k| 3.0 - 0.5 * f64::from(k)).collect();
         values[9] += 2.0;
-        let power = take_off_line(&mut values, 3.0, -0.5);
+        let power = subtract_line(&mut values, 3.0, -0.5);
         assert!((power - 4.0).abs() < 1e-12 && (values[9] - 2.0).abs() < 1e-12);
         assert!(values[..9].iter().chain(&values[10..]).all(|y| y.abs() < 1e-12));
     }

@@ -99,7 +99,7 @@ impl NoiseModel {
     }
 
     /// The noise in the residuals of regressions of short windows.
-    pub(crate) fn left_by(projections: &[Projection]) -> Self {
+    pub(crate) fn of_projections(projections: &[Projection]) -> Self {
         let usual = without_misfits(projections, Projection::power);
         let samples: usize = usual.iter().map(|projection| projection.samples()).sum();
         let longest = LONGEST_MEMORY.min(samples / 10);

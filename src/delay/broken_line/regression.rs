@@ -148,7 +148,7 @@ fn regression(points: &[(f64, f64)], position: f64) -> Option<BrokenRegression> 
     let row = |x: f64| columns(x, change);
     let (_, covariance, _) = solved(points, row)?;
     let residual = |(x, y): &(f64, f64)| y - row(*x).dot(&Vector4::new(value, slope, change, 0.0));
-    let sse: f64 = points.iter().map(residual).map(|left| left * left).sum();
+    let sse: f64 = points.iter().map(residual).map(|r| r * r).sum();
     // A, b, c and ψ.
     let freedom = points.len() - 4;
     let variance = sse / freedom as f64;

@@ -28,7 +28,7 @@ use std::ops::RangeInclusive;
 use super::frame::{Bends, Frame};
 use super::gains::BreakGains;
 use super::piece::Piece;
-use crate::numerics::{Line, NoiseModel, fisher_tail, moments, student_quantile, take_off_line};
+use crate::numerics::{Line, NoiseModel, fisher_tail, moments, student_quantile, subtract_line};
 use crate::units::floor_to_index;
 
 /// Fewest samples beside those that the noise remembers.
@@ -37,7 +37,7 @@ pub(crate) const FEWEST: usize = 8;
 /// Parameters of a broken line.
 pub(crate) const PARAMETERS: usize = 4;
 
-/// The interval whose sides tell the median of what is likely, and the end of its upper half.
+/// The interval whose sides give the median of what is likely, and the end of its upper half.
 const USUAL: f64 = 0.95;
 const UPPER: f64 = 0.975;
 
@@ -46,7 +46,7 @@ const UPPER: f64 = 0.975;
 pub struct BrokenLine {
     /// Where it breaks.
     pub position: f64,
-    /// The first position that is as good as the data can tell.
+    /// The first position that the data do not exclude.
     pub low: f64,
     /// The last of them.
     pub high: f64,
@@ -89,7 +89,7 @@ impl BrokenLine {
         4.0 * self.sse.sqrt() / samples as f64 / (self.after.slope - self.before.slope).abs()
     }
 
-    /// What it leaves of the window's output.
+    /// Residuals of the window's output.
     pub(crate) fn residuals(&self, values: &[f64]) -> Vec<f64> {
         let fitted = |k: f64| if k < self.position { self.before.at(k) } else { self.after.at(k) };
         values.iter().enumerate().map(|(k, y)| y - fitted(k as f64)).collect()
@@ -104,12 +104,12 @@ pub(crate) struct Evidence {
     pub(crate) bends: Bends,
 }
 
-/// A window's output, whitened, and what one line leaves of it.
+/// A window's output, whitened, and its residuals about one line.
 #[derive(Clone, Debug)]
 pub(crate) struct Window<'a> {
     noise: &'a NoiseModel,
     frame: Frame,
-    /// What one line leaves, whitened once more backwards: sums of it behind a sample are what
+    /// The residuals about one line, whitened once more backwards: sums of it behind a sample are what
     /// a whitened level has for inner product with the residual.
     pulled: Vec<f64>,
     /// The squared error of one line.
@@ -123,20 +123,20 @@ impl<'a> Window<'a> {
         let order = noise.order();
         let rows = values.len().checked_sub(order).filter(|rows| *rows >= FEWEST)?;
         let offset = *values.first()?;
-        let mut left: Vec<f64> = values.iter().map(|y| y - offset).collect();
-        noise.whiten(&mut left);
+        let mut residuals: Vec<f64> = values.iter().map(|y| y - offset).collect();
+        noise.whiten(&mut residuals);
         let rows = rows as f64;
         let spread = rows * (rows * rows - 1.0) / 12.0;
-        let kept = &mut left[order..];
+        let kept = &mut residuals[order..];
         let (sum, moment, _) = moments(kept, 0.0);
         let half = (rows - 1.0) / 2.0;
         // Σ (k − half)·y/Σ (k − half)².
         let (mean, slope) = (sum / rows, (moment - half * sum) / spread);
-        let power = take_off_line(kept, mean - slope * half, slope);
+        let power = subtract_line(kept, mean - slope * half, slope);
         let line = (offset + mean / noise.level, slope / noise.level);
         // With W whitening, (W·level)·r = level·(Wᵀ·r): plain sums behind a break from here on.
-        noise.pull(&mut left);
-        Some(Self { noise, frame: Frame::of(noise, rows, line), pulled: left, power, rows })
+        noise.pull(&mut residuals);
+        Some(Self { noise, frame: Frame::of(noise, rows, line), pulled: residuals, power, rows })
     }
 
     /// Positions at which a break leaves enough samples on both sides.

@@ -9,7 +9,7 @@ const LAGS: usize = 20;
 /// Longest memory of the input, samples.
 const MEMORY: usize = 20;
 
-/// Of `errors`, what a fit leaves of the output, and the `inputs` of the same samples.
+/// Of `errors`, the residuals of a fit of the output, and the `inputs` of the same samples.
 ///
 /// With `r_l` the correlation of an error with what is new in the input `l` samples later,
 /// `n Σ r_l²` is `χ²` distributed where there is no feedback.

@@ -184,10 +184,10 @@ fn noise(record: &Record, rows: &[Vec<Range<usize>>]) -> (Vec<f64>, Option<Fitte
             .filter_map(|profile| least(profile))
             .min_by(|a, b| a.error.total_cmp(&b.error));
         let Some(best) = best.filter(|best| best.error.is_finite()) else { break };
-        let left = errors(&plain, best);
-        let samples: usize = left.iter().map(Vec::len).sum();
+        let residuals = errors(&plain, best);
+        let samples: usize = residuals.iter().map(Vec::len).sum();
         let memory = MEMORY.min(samples / 20);
-        let memory = Autoregression::of(&autocovariances(&left, memory), samples);
+        let memory = Autoregression::of(&autocovariances(&residuals, memory), samples);
         // w_k = e_k − Σ a_i e_(k−i).
         filter = std::iter::once(1.0).chain(memory.coefficients.iter().map(|a| -a)).collect();
     }
@@ -222,7 +222,7 @@ impl Solved<'_> {
         let threshold = quantile * quantile * assessed.widened;
         // n ln(SSE/SSE₀) = t²·widened.
         let limit = least.error * (threshold / rows).exp();
-        // What the record cannot tell apart, as an input that is held between samples from one
+        // What the record cannot distinguish, as an input that is held between samples from one
         // that moves there, makes the dead time no better known.
         let alike = refined.iter_mut().filter(|(best, _)| best.error <= limit);
         let ends: Vec<_> = alike.map(|(best, profile)| profile.ends(*best, limit)).collect();
@@ -233,7 +233,7 @@ impl Solved<'_> {
         let explained = self.explained(best);
         let finding =
             self.finding(best, (low, high), rows * -(1.0 - explained).ln() / assessed.widened);
-        // A lag that is as long as any may be cannot be told from an integrator.
+        // A lag that is as long as any may be is not distinguishable from an integrator.
         // 1/(1 + as) goes over into 1/(as) as a grows.
         let only_integrates = !best.structure.integrates && best.lags.slow > 0.9 * longest_lag;
         let lag = if only_integrates { best.lags.fast } else { best.lags.mean() };
@@ -284,7 +284,7 @@ impl Solved<'_> {
     /// What a dead time with these ends is; `evidence` is twice the logarithm of the likelihood
     /// that the input has to do with the output.
     fn finding(&self, best: Fitted, ends: (Option<f64>, Option<f64>), evidence: f64) -> Finding {
-        /// Part of a sample that no record can tell from nothing.
+        /// Part of a sample that no record distinguishes from zero.
         const NOTHING: f64 = 0.02;
         /// Evidence of an input that has nothing to do with the output, with ten parameters and
         /// hundreds of dead times to choose from: seen once in a thousand such logs.

@@ -49,7 +49,7 @@ pub(super) struct Lags {
     pub(super) fast: f64,
 }
 
-/// The shortest time constant, samples: no lag, for all that samples can tell.
+/// The shortest time constant, samples: no lag, as far as samples show.
 pub(super) const NO_LAG: f64 = 0.02;
 
 impl Lags {

@@ -29,7 +29,7 @@ pub struct DeadTime {
 pub enum Finding {
     /// There is one.
     Known(Bounds),
-    /// None can be told from the lag behind it: the interval holds 0.
+    /// None is distinguishable from the lag behind it: the interval holds 0.
     LagOnly(Bounds),
     /// It cannot be estimated.
     Unknown(Unknown),

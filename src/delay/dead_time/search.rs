@@ -4,7 +4,7 @@ use super::moments::{Moments, error_of};
 use super::record::Whitened;
 use super::response::{Lags, NO_LAG, Numerators, Structure};
 
-/// A structure with its dead time and lags, in samples, and the error that it leaves.
+/// A structure with its dead time and lags, in samples, and its squared error.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fitted {
     pub(super) structure: Structure,
@@ -77,13 +77,13 @@ pub(super) fn with_best_lags(
     start: Start,
 ) -> Fitted {
     /// Distances of neighbours, in logarithms of the sum of both lags: lags that are off by a
-    /// twentieth move the dead time by as much of them, which good records tell.
+    /// twentieth move the dead time by as much of them, which good records show.
     const STEPS: [f64; 3] = [0.24, 0.06, 0.015];
     /// Most parabolas of a distance.
     const MOST: usize = 8;
     /// What shows of the faster lag by itself goes with its square.
     const COARSER: f64 = 4.0;
-    // A record tells the sum of the lags far better than how it is shared.
+    // A record determines the sum of the lags far better than how it is shared.
     let near = |best: Fitted, sum: f64, fast: f64| {
         let sum = best.lags.mean() * sum.exp();
         let fast = (best.lags.fast * (COARSER * fast).exp()).min(0.5 * sum).max(NO_LAG);

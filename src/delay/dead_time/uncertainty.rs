@@ -30,7 +30,7 @@ type Rows = Vec<Vec<f64>>;
 pub(super) struct Assessed {
     /// Coefficients of the curve's columns.
     pub(super) coefficients: Vec<f64>,
-    /// What it leaves, by rows.
+    /// Residuals, by rows.
     pub(super) errors: Rows,
     /// How much the threshold of the likelihood is widened.
     pub(super) widened: f64,
@@ -70,7 +70,7 @@ fn ones(like: &Rows) -> Rows {
     like.iter().map(|rows| vec![1.0; rows.len()]).collect()
 }
 
-/// What a fit leaves of the changes of the output.
+/// Residuals of a fit to the changes of the output.
 pub(super) fn errors(trials: &[Whitened], fitted: Fitted) -> Rows {
     let target = target(trials);
     let constant = ones(&target);

@@ -268,7 +268,7 @@ impl<'a> LagSearch<'a> {
         const ENOUGH: usize = 50;
         let some = self.windows.iter().step_by(self.windows.len().div_ceil(ENOUGH).max(1));
         let projections = some.map(|window| window.projection(&self.model));
-        NoiseModel::left_by(&projections.collect::<Vec<_>>())
+        NoiseModel::of_projections(&projections.collect::<Vec<_>>())
     }
 
     /// The best lag: no poles, a real one, a pair, or all three.

@@ -80,7 +80,7 @@ impl<'a> Refinement<'a> {
             onset.counts = p_value <= doubtful && !onset.at_rest;
             onset.error = found.position_error();
         }
-        NoiseModel::left_by(&projections)
+        NoiseModel::of_projections(&projections)
     }
 
     /// The onset of step `index`, with its neighbours where they are near, after a step of no

@@ -18,7 +18,7 @@ use crate::units::floor_to_index;
 /// by a speed 0.36 and less.
 const FOLLOWS: f64 = 0.7;
 
-/// Pairs that are enough to tell a squared correlation of [`FAR`] from [`FOLLOWS`]: with a tenth of
+/// Pairs that are enough to distinguish a squared correlation of [`FAR`] from [`FOLLOWS`]: with a tenth of
 /// them independent, its standard deviation at 0.7 is 0.02.
 const ENOUGH: usize = 5000;
 const FAR: f64 = 0.5;

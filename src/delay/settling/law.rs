@@ -43,7 +43,7 @@ struct Law {
 /// Windows that can show a time constant.
 const FEWEST: usize = 3;
 
-/// Samples from which a further lag is told from an onset between two of them (chosen).
+/// Samples from which a further lag is distinguished from an onset between two of them (chosen).
 const SEEN: f64 = 2.0;
 
 /// Samples of the shortest time constant that samples show: behind a shorter one an output goes to
@@ -317,12 +317,12 @@ fn with_further<'a>(search: &Search<'a>, least: f64) -> Option<Search<'a>> {
     PARTS.into_iter().map(started).min_by(|a, b| a.sse.total_cmp(&b.sse))
 }
 
-/// Whether the law explains the output better than straight lines do, and leaves little more than
-/// its noise.
+/// Whether the law explains the output better than straight lines do, and its residual is little more
+/// than noise.
 fn is_exponential(search: &Search<'_>, trials: &[&Prepared<'_>]) -> bool {
-    /// Part of the squared error about lines that the law leaves at most (chosen).
+    /// Largest squared error of the law, as a part of that about lines (chosen).
     const PART: f64 = 0.7;
-    /// Times the noise, and part of the output's range, that the law leaves at most (chosen).
+    /// Largest residual of the law: times the noise, and part of the output's range (chosen).
     const TIMES: f64 = 2.0;
     const LITTLE: f64 = 0.01;
     let outputs = || trials.iter().flat_map(|trial| trial.raw.iter());

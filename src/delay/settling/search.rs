@@ -154,7 +154,7 @@ impl<'a> Search<'a> {
             Some(member.window.projection(&constants, member.onset))
         };
         let some = self.members.iter().step_by(every);
-        NoiseModel::left_by(&some.filter_map(projection).collect::<Vec<_>>())
+        NoiseModel::of_projections(&some.filter_map(projection).collect::<Vec<_>>())
     }
 
     /// Twice the logarithm of the likelihood ratio of another law.
@@ -179,7 +179,7 @@ impl<'a> Search<'a> {
         next
     }
 
-    /// Variance of what the law leaves.
+    /// Variance of the residuals of the law.
     pub(super) fn variance(&self) -> f64 {
         /// Parameters of a window.
         const LINEAR: f64 = 5.0;

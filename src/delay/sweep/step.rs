@@ -99,7 +99,7 @@ impl SweptStep {
         }
     }
 
-    /// Whether all settings that accept it tell the same, and all or none do.
+    /// Whether all settings that accept it agree, and all or none do.
     pub fn is_unanimous(&self) -> bool {
         self.disagreeing() == 0 && (self.accepted == self.tried || self.accepted == 0)
     }

@@ -30,7 +30,7 @@ const LEVEL: f64 = 0.01;
 /// Shuffles whose best condition may be as good.
 const ALLOWED: u32 = 1;
 
-/// Blocks below which there are too few orders to tell.
+/// Blocks below which there are too few orders for a p-value.
 const MIN_BLOCKS: usize = 8;
 
 /// A block lasts this many correlation times, if that leaves [`MERGED`] blocks.
@@ -180,7 +180,7 @@ impl<'a> Shuffler<'a> {
     }
 
     /// The best scores of all shuffled records, if a condition of `family` that scores
-    /// `score` stands out from them; none either when there are too few blocks to tell.
+    /// `score` stands out from them; none either when there are too few blocks.
     pub(super) fn stands_out(&self, family: Family, score: f64) -> Option<Chance> {
         if self.blocks.len() < MIN_BLOCKS {
             return None;
