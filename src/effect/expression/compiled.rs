@@ -238,19 +238,12 @@ fn samples() -> impl Iterator<Item = Moment> {
     let signals = sizes.into_iter().flat_map(|size| [size, -size]);
     let states = [(0.0, 0.0, 0.0, 0.0), (30.0, -2.0, 12.0, 0.4), (-170.0, 25.0, 3600.0, 1.0)];
     signals.flat_map(move |signal| {
-        states.map(|(position, velocity, time_s, others)| {
-            let radians_per_output_unit = 1_f64.to_radians();
-            let (dt_s, measured) = (0.01, f64::NAN);
-            Moment {
-                signal,
-                position,
-                velocity,
-                time_s,
-                dt_s,
-                others,
-                measured,
-                radians_per_output_unit,
-            }
+        states.map(|(position, velocity, time_s, others)| Moment {
+            position,
+            velocity,
+            time_s,
+            others,
+            ..Moment::of(signal)
         })
     })
 }
