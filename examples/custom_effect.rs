@@ -64,13 +64,8 @@ fn record(model: &JointModel) -> anyhow::Result<Joint> {
     let made = simulate_input(model, &input, PERIOD_S, 0.0, &Surroundings::default());
     let noise = Normal::new(0.0, 0.05)?;
     let output = made.output.iter().map(|angle| angle + noise.sample(&mut random)).collect();
-    Ok(Joint {
-        name: "slew".to_owned(),
-        input_unit: Some("V".to_owned()),
-        output_unit: Some("deg".to_owned()),
-        covariates: Vec::new(),
-        trials: vec![Trial::new("made", 0.0, period, input, output)?],
-    })
+    let trial = Trial::new("made", 0.0, period, input, output)?;
+    Ok(Joint::new("slew", vec![trial]).with_units("V", "deg"))
 }
 
 /// A fitted model, and its error on the part of the record that it was not fitted to.

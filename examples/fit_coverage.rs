@@ -92,13 +92,7 @@ fn make(model: &JointModel, seed: u64) -> anyhow::Result<Made> {
         trials.push(trial(start_s, input, output)?);
         others.push(activity);
     }
-    let joint = Joint {
-        name: "joint".to_owned(),
-        input_unit: Some("V".to_owned()),
-        output_unit: Some("deg".to_owned()),
-        covariates: Vec::new(),
-        trials,
-    };
+    let joint = Joint::new("joint", trials).with_units("V", "deg");
     Ok(Made { joint, others })
 }
 

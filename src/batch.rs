@@ -46,7 +46,7 @@ fn threads_of_environment() -> usize {
 ///
 /// # Errors
 /// When the threads cannot be started.
-pub fn with_prepared_threads<T: Send>(
+pub(crate) fn with_prepared_threads<T: Send>(
     threads: Option<usize>,
     run: impl Fn(&mut (dyn FnMut() + Send)) + Send + Sync + 'static,
     work: impl FnOnce() -> T + Send,
@@ -64,7 +64,7 @@ pub fn with_prepared_threads<T: Send>(
     let result = catch_unwind(AssertUnwindSafe(|| pool.install(work)));
     drop(pool);
     for thread in started {
-        // One that has panicked has told the pool.
+        // One that has panicked has informed the pool.
         thread.join().unwrap_or_default();
     }
     Ok(result.unwrap_or_else(|panic| resume_unwind(panic)))

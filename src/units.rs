@@ -21,7 +21,7 @@ pub struct SamplePeriod(f64);
 
 impl SamplePeriod {
     /// One second.
-    pub const ONE_SECOND: Self = Self(1.0);
+    pub(crate) const ONE_SECOND: Self = Self(1.0);
 
     /// The period of `seconds`, or `None` unless it is finite and positive.
     pub fn from_seconds(seconds: f64) -> Option<Self> {
@@ -34,7 +34,7 @@ impl SamplePeriod {
     }
 
     /// Half the sample rate in Hz: nothing above it can be distinguished.
-    pub fn nyquist_hz(self) -> f64 {
+    pub(crate) fn nyquist_hz(self) -> f64 {
         0.5 / self.0
     }
 }

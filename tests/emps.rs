@@ -27,13 +27,8 @@ fn joint(name: &str) -> Option<Joint> {
         output.push(row[position].parse().unwrap());
     }
     let period = SamplePeriod::from_seconds(0.001).unwrap();
-    Some(Joint {
-        name: "emps".to_owned(),
-        input_unit: Some("N".to_owned()),
-        output_unit: Some("m".to_owned()),
-        covariates: Vec::new(),
-        trials: vec![Trial::new("run", 0.0, period, input, output).unwrap()],
-    })
+    let trial = Trial::new("run", 0.0, period, input, output).unwrap();
+    Some(Joint::new("emps", vec![trial]).with_units("N", "m"))
 }
 
 /// Gain, inertia and friction; the offset is the difference of the two friction levels,

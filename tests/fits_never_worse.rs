@@ -81,13 +81,7 @@ fn measured((file, trial, [time, input, output], _): Log, every: usize) -> Optio
 }
 
 fn joint(trials: Vec<Trial>) -> Joint {
-    Joint {
-        name: "joint".to_owned(),
-        input_unit: None,
-        output_unit: None,
-        covariates: Vec::new(),
-        trials,
-    }
+    Joint::new("joint", trials)
 }
 
 /// A joint with a dead band, a lag and spikes of its sensor, and one that a cylinder moves.

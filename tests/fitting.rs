@@ -66,13 +66,7 @@ fn joint(model: &JointModel, starts_s: &[f64], seed: u64) -> Joint {
         let output = simulated.output.iter().map(|y| y + NOISE * 3f64.sqrt() * random.next());
         Trial::new(format!("at {start_s}"), *start_s, period, input, output.collect()).unwrap()
     };
-    Joint {
-        name: "joint".to_owned(),
-        input_unit: None,
-        output_unit: None,
-        covariates: Vec::new(),
-        trials: starts_s.iter().map(trial).collect(),
-    }
+    Joint::new("joint", starts_s.iter().map(trial).collect())
 }
 
 fn record(joint: &Joint, horizon: Horizon) -> FitRecord<'_> {

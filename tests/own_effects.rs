@@ -125,13 +125,7 @@ fn the_parameters_of_an_expression_are_fitted() {
     let noise = |k: usize| 0.02 * ((k * 7919 % 1009) as f64 / 504.5 - 1.0);
     let output = simulated(&truth).iter().enumerate().map(|(k, y)| y + noise(k)).collect();
     let trial = Trial::new("made", 0.0, made.period(), made.input().to_vec(), output).unwrap();
-    let joint = Joint {
-        name: "boom".to_owned(),
-        input_unit: None,
-        output_unit: None,
-        covariates: Vec::new(),
-        trials: vec![trial],
-    };
+    let joint = Joint::new("boom", vec![trial]);
     let start =
         "start = { value = 0.7, min = 0.0, max = 5.0 }, slope = { value = 1.0, neutral = 1.0 }";
     let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::FreeRun);
@@ -158,13 +152,8 @@ fn an_effect_on_the_input_may_depend_on_the_angle() {
     let mut output = simulated(&truth);
     output[0] += 0.5;
     let trial = Trial::new("made", 0.0, made.period(), made.input().to_vec(), output).unwrap();
-    let joint = Joint {
-        name: "boom".to_owned(),
-        input_unit: None,
-        output_unit: Some("rad".to_owned()),
-        covariates: Vec::new(),
-        trials: vec![trial],
-    };
+    let output_unit = Some("rad".to_owned());
+    let joint = Joint { output_unit, ..Joint::new("boom", vec![trial]) };
     let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::FreeRun);
     let residuals = record.evaluate(&truth).residuals;
     let largest =

@@ -141,9 +141,7 @@ fn a_model_of_strokes_has_the_measured_delay_and_gets_the_usual_effects_first() 
         finer.iter().filter_map(|found| found.decisions[0].accepted_delay()).collect();
     delays.sort_by(f64::total_cmp);
     let between = delays[3] * PERIOD_S..=delays[4] * PERIOD_S;
-    let (input_unit, output_unit) = (Some("V".to_owned()), Some("deg".to_owned()));
-    let joint =
-        Joint { name: "boom".to_owned(), input_unit, output_unit, covariates: Vec::new(), trials };
+    let joint = Joint::new("boom", trials).with_units("V", "deg");
     let [start] = &integrators(&joint, &found.iter().collect::<Vec<_>>())[..] else {
         panic!("a measured delay is one start")
     };

@@ -70,10 +70,7 @@ pub(crate) fn log(machine: &Machine, source: Source, chance: &mut Chance) -> any
         Source::Steps => vec![steps(machine, chance)?],
         Source::FirstOrder => vec![first_order(machine, chance)?],
     };
-    let unit = |unit: &str| Some(unit.to_owned());
-    let (input_unit, output_unit) = (unit("V"), unit("deg"));
-    let name = "boom".to_owned();
-    Ok(Joint { name, input_unit, output_unit, covariates: Vec::new(), trials })
+    Ok(Joint::new("boom", trials).with_units("V", "deg"))
 }
 
 fn trial(

@@ -21,7 +21,7 @@ pub(crate) struct Named {
     pub(crate) verdict: Verdict,
     /// The first of the ranking: `dead_band`.
     pub(crate) first: String,
-    /// What it cannot be told from.
+    /// What it is indistinguishable from.
     pub(crate) equals: Vec<&'static str>,
 }
 

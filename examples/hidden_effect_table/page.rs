@@ -60,7 +60,7 @@ else is said, each from a seed of its own. The plant that makes them shares no e
 integrator and have the whole catalogue; both restart at every step of the input.
 
 *Named first*: the first of the ranking, with the verdict `missing_effect`; half where it is
-only among what the first cannot be told from. *Exactly*: after `improve` the model has what is
+only among what the first is indistinguishable from. *Exactly*: after `improve` the model has what is
 hidden and nothing else. *Or an alternative*: each effect that is hidden is in the model or among
 the alternatives that are given to one of its effects, and each effect of the model is hidden or
 has an alternative that is. *Not there*: effects of the model that are neither. *Soft valve*: its
@@ -307,7 +307,8 @@ fn outside(pairs: &[Pair<'_>]) -> String {
         return String::new();
     }
     let mut text = "\n## Outside the catalogue\n".to_owned();
-    text += "\n*Points at it*: where the integrator fails is told by what the effect depends on.\n";
+    text +=
+        "\n*Points at it*: where the integrator fails is shown by what the effect depends on.\n";
     text += &header(&[
         "hidden",
         "strength",

@@ -94,7 +94,7 @@ fn joint_of(
         trial.map_err(|error| refused(&name, &error))
     };
     let trials = trials.into_iter().map(trial).collect::<PyResult<_>>()?;
-    Ok(Joint { name, input_unit, output_unit, covariates: Vec::new(), trials })
+    Ok(Joint { input_unit, output_unit, ..Joint::new(name, trials) })
 }
 
 fn refused(joint: &str, error: &TrialError) -> PyErr {

@@ -215,19 +215,8 @@ impl Called {
         [0.0, 0.01, -0.7, 3.0, -45.0, 1000.0].into_iter().zip(1..).all(|(signal, k)| {
             let (position, time_s) = (17.0 * f64::from(k) - 50.0, 3.0 * f64::from(k));
             let velocity = 0.5 * signal;
-            let (dt_s, others, measured) = (0.01, 0.2, f64::NAN);
-            let radians_per_output_unit = 1_f64.to_radians();
-            let at = Moment {
-                signal,
-                position,
-                velocity,
-                time_s,
-                dt_s,
-                others,
-                measured,
-                radians_per_output_unit,
-            };
-            let change = InputChange { before: position, after: signal, held_s: dt_s, time_s };
+            let at = Moment { position, velocity, time_s, others: 0.2, ..Moment::of(signal) };
+            let change = InputChange { before: position, after: signal, held_s: at.dt_s, time_s };
             let (expected, found) = match self.spec.stage {
                 Stage::Transport => (0.0, self.extra_delay_s(&neutral, &change)),
                 _ => (signal, self.step(&neutral, &mut [], &at)),

@@ -110,7 +110,7 @@ pub struct AgainstOfKind {
     /// Steps up against steps down.
     pub direction: Direction,
     /// Pairs of variables on each of which the delay depends, and which go with one another: the
-    /// record does not tell which of them it is.
+    /// record does not show which of them it is.
     pub confounded: Vec<[String; 2]>,
 }
 

@@ -13,7 +13,7 @@
 //! frequency at which motion is no stronger than noise, `P(ω) ≤ 2 N(ω)`: where Wiener's
 //! filter passes one half, as the low-pass does at its cutoff. It is not below one over a
 //! usual hold, since neighbouring reactions would be mixed. Where noise is nowhere stronger,
-//! nothing is smoothed. Noise is what lines leave of the later halves of the times between
+//! nothing is smoothed. Noise is the residual about lines of the later halves of the times between
 //! two reactions, where a lag has died away. Methods that look at the output as it was
 //! measured stay so: smoothing would take from noise what intervals are made of.
 //!
@@ -21,7 +21,7 @@
 //! delay takes. These samples belong to the line, and the first ones of the next reaction do
 //! not: α is a delay that nine of ten exceed, of those that the broken line knows best.
 //!
-//! **β.** Candidates a sample apart tell the delay most finely. Only two lines that need not
+//! **β.** Candidates a sample apart resolve the delay most finely. Only two lines that need not
 //! meet, through an output that is not smoothed, cannot use that: their squared error grows
 //! by `c²d³/3` when they meet `d` samples beside a change of slope `c`, which shows above the
 //! noise `σ²` of two parameters from
@@ -94,7 +94,7 @@ pub struct Chosen {
 }
 
 /// `settings` with those that are `automatic` chosen from the trials of a joint, and from
-/// what. What the record does not tell stays as it is in `settings`.
+/// what. What the record does not show stays as it is in `settings`.
 ///
 /// # Examples
 /// ```
@@ -132,14 +132,14 @@ pub fn choose(trials: &[Trial], settings: &Settings, automatic: Automatic) -> (S
     (chosen, Chosen { automatic, grounds })
 }
 
-/// What broken lines tell of a joint.
+/// What broken lines show of a joint.
 struct Record<'a> {
     /// Trials of the first one's sample period.
     outputs: Vec<&'a [f64]>,
     period_s: f64,
     delays: Vec<FineDelay>,
     holds: Vec<f64>,
-    /// What lines leave of the times when nothing happens.
+    /// Residuals about lines of the times when nothing happens.
     quiet: Vec<Vec<f64>>,
     /// Changes of slope at reactions.
     bends: Vec<f64>,
@@ -207,14 +207,15 @@ impl<'a> Record<'a> {
         let ends = places.iter().skip(1).copied().chain([output.len()]);
         let mut slope_before = None;
         for (place, end) in places.iter().zip(ends) {
+            // In the later half a lag has died away.
             let start = place.midpoint(end);
-            let Some((slope, left)) = output.get(start..end).and_then(without_line) else {
+            let Some((slope, residuals)) = output.get(start..end).and_then(without_line) else {
                 slope_before = None;
                 continue;
             };
             self.bends.extend(slope_before.map(|before| slope - before));
             slope_before = Some(slope);
-            self.quiet.push(left);
+            self.quiet.push(residuals);
         }
     }
 
@@ -229,14 +230,14 @@ impl<'a> Record<'a> {
         quantile(&known.map(|fine| fine.delay).collect::<Vec<_>>(), SHORT)
     }
 
-    /// The power of what whitening leaves.
+    /// The power of the whitened residuals.
     fn innovations(&self) -> f64 {
         let order = self.noise.order();
-        let whitened = |left: &Vec<f64>| {
-            let mut left = left.clone();
-            self.noise.whiten(&mut left);
-            let rows = left.len().saturating_sub(order + LINE);
-            (left.iter().map(|value| value * value).sum::<f64>(), rows as f64)
+        let whitened = |residuals: &Vec<f64>| {
+            let mut residuals = residuals.clone();
+            self.noise.whiten(&mut residuals);
+            let rows = residuals.len().saturating_sub(order + LINE);
+            (residuals.iter().map(|value| value * value).sum::<f64>(), rows as f64)
         };
         let all = self.quiet.iter().map(whitened).filter(|(_, rows)| *rows > 0.0);
         // The median, so that the rest of a slow lag counts for nothing.
@@ -246,10 +247,11 @@ impl<'a> Record<'a> {
 
     fn grounds(&self) -> Grounds {
         let samples: usize = self.quiet.iter().map(Vec::len).sum();
-        let left = autocovariances(&self.quiet, 1);
-        let correlation = left.first().zip(left.get(1)).map(|(power, next)| next / power);
+        let covariances = autocovariances(&self.quiet, 1);
+        let correlation =
+            covariances.first().zip(covariances.get(1)).map(|(power, next)| next / power);
         let freedom = samples.saturating_sub(LINE * self.quiet.len());
-        let sum = left.first().map(|power| power * samples as f64);
+        let sum = covariances.first().map(|power| power * samples as f64);
         let known = freedom > 0;
         Grounds {
             short_delay: self.short_delay(),
@@ -279,7 +281,9 @@ impl<'a> Record<'a> {
         let bends: Vec<f64> = self.bends.iter().map(|bend| bend * bend).collect();
         let Some(bend) = median(&bends).filter(|bend| *bend > 0.0) else { return 1 };
         // What a line over many samples sees of noise with a memory.
+        // The spectrum of noise at ω = 0: s²/(1 − Σ a_i)².
         let noise = self.innovations / self.noise.level.powi(2);
+        // d = (6 σ²/c²)^(1/3).
         ceil_to_index((6.0 * noise / bend).cbrt().round()).clamp(1, MOST)
     }
 
@@ -294,6 +298,7 @@ impl<'a> Record<'a> {
             let last = ceil_to_index(bin as f64 * up).min(noise.len().saturating_sub(1));
             let sum = |values: &[f64]| values.get(bin..=last).map_or(0.0, |v| v.iter().sum());
             let (all, own): (f64, f64) = (sum(&spectrum.power), sum(&noise));
+            // P ≤ 2 N, over the band.
             all <= 2.0 * own
         };
         let bin = (1..noise.len()).find(|bin| band(*bin, 1.26) && band(*bin, 2.0))?;
@@ -303,10 +308,11 @@ impl<'a> Record<'a> {
 
 /// The spectrum of the second difference of `noise`, for innovations of power 1.
 fn gain(noise: &NoiseModel, omega: f64) -> f64 {
+    // N(ω)/s².
     (2.0 * (0.5 * omega).sin()).powi(4) / noise.memory_gain(omega)
 }
 
-/// What a line leaves of `values`, and its slope; `None` for too few of them.
+/// The slope of the line through `values`, and their residuals; `None` for too few of them.
 fn without_line(values: &[f64]) -> Option<(f64, Vec<f64>)> {
     /// Samples from which on noise can be distinguished from a line.
     const FEWEST: usize = 8;
@@ -317,8 +323,8 @@ fn without_line(values: &[f64]) -> Option<(f64, Vec<f64>)> {
     }
     let (slope, mean) = (line.slope(), line.mean() + offset);
     let middle = 0.5 * (values.len() - 1) as f64;
-    let left = values.iter().enumerate();
-    Some((slope, left.map(|(k, value)| value - mean - slope * (k as f64 - middle)).collect()))
+    let samples = values.iter().enumerate();
+    Some((slope, samples.map(|(k, value)| value - mean - slope * (k as f64 - middle)).collect()))
 }
 
 /// `value` to two digits, so that it can be said and typed.
@@ -351,6 +357,7 @@ impl Spectrum {
         let windows = outputs.iter().flat_map(|output| {
             let last = output.len().saturating_sub(length + 2);
             let fits = output.len() >= length + 2;
+            // Welch: windows that overlap by half.
             let starts = (0..=last).step_by(length / 2).filter(move |_| fits);
             starts.filter_map(|start| output.get(start..start + length + 2))
         });

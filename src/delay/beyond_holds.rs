@@ -2,7 +2,7 @@
 //!
 //! The search for a breakpoint looks at one step at a time. Where a joint answers later than the
 //! next step, what moves in a segment answers an earlier step, and its delay to the step of the
-//! segment is a number without meaning. Over the record the two are told apart: with the increments
+//! segment is a number without meaning. Over the record the two are separable: with the increments
 //! of the output over blocks of a tenth of a hold, regressed on the input of `lag` blocks before,
 //!
 //! ```text
@@ -37,7 +37,7 @@ const UNEXPLAINED: f64 = 0.5;
 
 /// The delay over the record of `trials` in seconds, where it is longer than most holds of the input
 /// and not to be mistaken for a short one; none elsewhere. `motion` is that of their input.
-pub fn delay_beyond_holds(trials: &[Trial], motion: &InputMotion) -> Option<f64> {
+pub(crate) fn delay_beyond_holds(trials: &[Trial], motion: &InputMotion) -> Option<f64> {
     if motion.is_continuous() || are_strokes(trials) {
         return None;
     }
@@ -51,11 +51,11 @@ pub fn delay_beyond_holds(trials: &[Trial], motion: &InputMotion) -> Option<f64>
         return None;
     }
     let total = unexplained(&blocks, longest, None);
-    let left: Vec<f64> =
+    let shares: Vec<f64> =
         (0..=longest).map(|lag| unexplained(&blocks, longest, Some(lag)) / total).collect();
     let in_holds = |lag: usize| (lag * block) as f64 / hold;
-    let (lag, least) = left.iter().copied().enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let short = (0..=longest).filter(|lag| in_holds(*lag) <= SHORT).map(|lag| left[lag]);
+    let (lag, least) = shares.iter().copied().enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let short = (0..=longest).filter(|lag| in_holds(*lag) <= SHORT).map(|lag| shares[lag]);
     let is_long = in_holds(lag) > LONG && least < EXPLAINED;
     let period_s = trials.first()?.period().seconds();
     (is_long && short.fold(f64::INFINITY, f64::min) > UNEXPLAINED)
@@ -104,6 +104,7 @@ fn unexplained(blocks: &[Blocks], skipped: usize, lag: Option<usize>) -> f64 {
     let long = || blocks.iter().filter(|of| of.increments.len() > skipped);
     let target: Vec<Vec<f64>> = long().map(|of| of.increments[skipped..].to_vec()).collect();
     let constant: Vec<Vec<f64>> = target.iter().map(|rows| vec![1.0; rows.len()]).collect();
+    // Every lag over the same blocks.
     let column = |part: fn(&Blocks) -> &Vec<f64>, lag: usize| -> Vec<Vec<f64>> {
         long().map(|of| part(of)[skipped - lag..of.increments.len() - lag].to_vec()).collect()
     };

@@ -63,7 +63,7 @@ impl Condition {
     }
 
     /// What is wrong when it fails, in words.
-    pub fn meaning(self) -> &'static str {
+    pub(crate) fn meaning(self) -> &'static str {
         match self {
             Self::FirstOrLast => "first or last step of the trial",
             Self::OutputLimit => "output touches a limit",
@@ -220,6 +220,7 @@ impl Facts<'_> {
     /// at a stop.
     fn in_motion(&self) -> &[f64] {
         let rest = self.motion.filter(|motion| motion.rest.is_some());
+        // Up to the departure; what comes behind it is the reaction.
         let resting = rest.map_or(0, |motion| (motion.latest + 1).saturating_sub(self.first));
         self.output.get(resting..).unwrap_or_default()
     }

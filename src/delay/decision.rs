@@ -72,7 +72,7 @@ impl Decision {
     }
 
     /// `p_(i+1)`: the sample of the next step, or the one behind the trial's last.
-    pub fn next_sample(&self) -> usize {
+    pub(crate) fn next_sample(&self) -> usize {
         self.input_step.sample + self.hold
     }
 
@@ -115,14 +115,14 @@ impl Decision {
 
     /// The delay that the program found, in samples, where a reviewer says another one.
     #[expect(clippy::float_cmp, reason = "another number is another delay")]
-    pub fn delay_before_review(&self) -> Option<f64> {
+    pub(crate) fn delay_before_review(&self) -> Option<f64> {
         let said = self.word.as_ref().and_then(|word| word.delay)?;
         self.program_delay().filter(|found| *found != said)
     }
 
     /// The candidate that is shown: the best one, or the nearest one to where a reviewer put the
     /// breakpoint.
-    pub fn shown_candidate(&self) -> Option<Candidate> {
+    pub(crate) fn shown_candidate(&self) -> Option<Candidate> {
         let best = self.candidates.best();
         if self.delay_before_review().is_none() {
             return best;

@@ -48,7 +48,7 @@ impl Flag {
     }
 
     /// What it says, in words.
-    pub fn meaning(self) -> &'static str {
+    pub(crate) fn meaning(self) -> &'static str {
         match self {
             Self::Edge => "breakpoint at the edge of the segment",
             Self::Jump => "lines jump apart at the breakpoint",
@@ -114,7 +114,7 @@ impl Doubt {
 
     /// Margins of the break itself: what it explains, how surely it is placed, how well the
     /// lines meet.
-    pub fn margins(&self) -> [f64; 3] {
+    pub(crate) fn margins(&self) -> [f64; 3] {
         let part = |samples: f64| 1.0 - (samples / self.hold.max(1.0)).min(1.0);
         [self.explained, part(self.spread), part(self.crossing)]
     }
@@ -153,7 +153,7 @@ impl Decision {
     }
 
     /// `1 − SSE₂ / SSE₁`. The residuals of both lines are orthogonal to every line through
-    /// either part, so that one line leaves SSE₂ and what it leaves of the two lines.
+    /// either part, so that the squared error of one line is SSE₂ and its own about the two lines.
     fn explained(&self, best: &Candidate) -> f64 {
         if let Some(response) = &self.response {
             return response.explained();
@@ -176,6 +176,7 @@ impl Decision {
             xy += x * y;
             yy += y * y;
         }
+        // The squared error of one line through both: Σ(ŷ − ȳ)² less what its slope explains.
         let bend = (yy - xy * xy / xx.max(f64::MIN_POSITIVE)).max(0.0);
         let one_line = best.sse + bend;
         if one_line > 0.0 { bend / one_line } else { 0.0 }
@@ -191,6 +192,7 @@ impl Decision {
             .map_or(best.breakpoint as f64, |fine| self.input_step.sample as f64 + fine.delay);
         let jump = (best.after.at(q) - best.before.at(q)).abs();
         let turn = best.slope_change().abs();
+        // The lines close by the change of slope at every sample.
         if turn > 0.0 { jump / turn } else { self.hold as f64 }
     }
 

@@ -38,7 +38,7 @@ pub fn estimate_joint(
 }
 
 /// Estimates the trials of a joint, which share what the method finds out from all of them.
-pub struct Estimator {
+pub(crate) struct Estimator {
     /// Those that were asked for, with what the input is taken for.
     settings: Settings,
     method: &'static dyn DelayMethod,
@@ -51,7 +51,7 @@ impl Estimator {
     ///
     /// # Errors
     /// [`EstimateError::Settings`] when the settings make no sense.
-    pub fn of(trials: &[Trial], settings: &Settings) -> Result<Self, EstimateError> {
+    pub(crate) fn of(trials: &[Trial], settings: &Settings) -> Result<Self, EstimateError> {
         settings.check()?;
         let mut settings = settings.with_input_of(trials);
         if settings.input == InputKind::Continuous {
@@ -78,7 +78,7 @@ impl Estimator {
     ///
     /// # Errors
     /// [`EstimateError::Filter`] when the filter does not fit this trial.
-    pub fn estimate(&self, trial: &Trial) -> Result<TrialEstimate, EstimateError> {
+    pub(crate) fn estimate(&self, trial: &Trial) -> Result<TrialEstimate, EstimateError> {
         let settings = self.settings.at(trial.period());
         let mut prepared = match self.rest.settling() {
             Some(_) => Prepared::of(trial, &settings)?,

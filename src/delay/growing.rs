@@ -29,7 +29,7 @@ pub enum Growing {
 ///
 /// # Errors
 /// [`Growing`] when they depend on the whole record.
-pub fn check_growing(settings: &Settings) -> Result<(), Growing> {
+pub(crate) fn check_growing(settings: &Settings) -> Result<(), Growing> {
     if settings.method.spec().scope != Scope::Segment {
         return Err(Growing::Method { method: settings.method.id() });
     }
@@ -44,7 +44,7 @@ pub fn check_growing(settings: &Settings) -> Result<(), Growing> {
 ///
 /// # Errors
 /// [`EstimateError::Filter`] when the filter does not fit this trial.
-pub fn final_part(
+pub(crate) fn final_part(
     trial: &Trial,
     estimate: &TrialEstimate,
     settings: &Settings,

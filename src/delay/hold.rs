@@ -37,7 +37,7 @@ pub(super) struct Hold {
 ///
 /// Noise is measured by the differences of neighbouring samples; a commanded input holds its
 /// levels exactly, so that most of them are zero.
-pub fn level_tolerance(trials: &[Trial]) -> f64 {
+pub(crate) fn level_tolerance(trials: &[Trial]) -> f64 {
     /// Parts of the samples beyond which a level is a glitch.
     const GLITCHES: f64 = 1e-3;
     let inputs = trials.iter().flat_map(Trial::input).copied();

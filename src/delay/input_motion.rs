@@ -168,8 +168,7 @@ fn is_drawn_in_time_of_its_own(input: &[f64]) -> bool {
     #[expect(clippy::float_cmp, reason = "levels are exact")]
     let runs: Vec<&[f64]> = input.chunk_by(|a, b| a == b).collect();
     let lengths: Vec<f64> = runs.iter().map(|run| run.len() as f64).collect();
-    let level = |run: &[f64]| run.first().copied().unwrap_or_default();
-    let steps = runs.windows(2).map(|pair| (level(pair[1]) - level(pair[0])).abs());
+    let steps = runs.windows(2).map(|pair| (pair[1][0] - pair[0][0]).abs());
     let steps: Vec<f64> = steps.collect();
     let median = |values: &[f64]| crate::numerics::quantile(values, 0.5).unwrap_or_default();
     let (usual, (low, high)) = (median(&lengths), range(input));
@@ -204,6 +203,7 @@ pub(super) fn tolerance(input: &[f64]) -> f64 {
     }
     let usual = crate::numerics::quantile(&taken_back, 0.95).unwrap_or(0.0);
     let largest = taken_back.iter().copied().fold(0.0, f64::max);
+    // Of few changes the quantile is uncertain, of many the largest is an outlier: the smaller.
     let tolerance = (TIMES_USUAL * usual).min(TIMES_LARGEST * largest);
     let (low, high) = range(input);
     let is_small = tolerance < OF_RANGE * (high - low);
@@ -291,6 +291,7 @@ fn travel(input: &[f64], tolerance: f64) -> f64 {
     let mut at = input.first().copied().unwrap_or(0.0);
     let mut travel = 0.0;
     for value in input {
+        // The shortest way that stays within the noise of every sample.
         let next = at.clamp(value - tolerance, value + tolerance);
         travel += (next - at).abs();
         at = next;

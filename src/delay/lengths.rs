@@ -59,22 +59,22 @@ impl Settings {
     }
 
     /// α as it was given.
-    pub fn alpha_length(&self) -> Length {
+    pub(crate) fn alpha_length(&self) -> Length {
         length(self.in_seconds.alpha, self.alpha)
     }
 
     /// β as it was given.
-    pub fn beta_length(&self) -> Length {
+    pub(crate) fn beta_length(&self) -> Length {
         length(self.in_seconds.beta, self.beta)
     }
 
     /// `τ_min` as it was given.
-    pub fn min_delay_length(&self) -> Length {
+    pub(crate) fn min_delay_length(&self) -> Length {
         length(self.in_seconds.min_delay, self.min_delay)
     }
 
     /// The longest delay as it was given.
-    pub fn max_delay_length(&self) -> Option<Length> {
+    pub(crate) fn max_delay_length(&self) -> Option<Length> {
         let given = self.in_seconds.max_delay.map(Length::Seconds);
         given.or(self.max_delay.map(Length::Samples))
     }
@@ -95,7 +95,7 @@ impl Settings {
 
     /// These settings in samples where all of `trials` have one period; else as they are.
     #[must_use]
-    pub fn in_samples<'a>(&self, trials: impl IntoIterator<Item = &'a Trial>) -> Self {
+    pub(crate) fn in_samples<'a>(&self, trials: impl IntoIterator<Item = &'a Trial>) -> Self {
         common_period(trials).map_or_else(|| self.clone(), |period| self.at(period))
     }
 }

@@ -7,7 +7,7 @@ use super::settings::Settings;
 /// The smallest change of a setting with which one condition would have been met, all else
 /// being as it was.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Remedy {
+pub(crate) enum Remedy {
     /// The first and the last step are judged like the others.
     KeepFirstLast,
     /// Wider limits of the output: the lower and the upper one.
@@ -41,7 +41,7 @@ pub struct RunnerUp {
 impl Decision {
     /// What would have accepted this step: one remedy for each condition that failed, none
     /// for an accepted step. `output` is what the method looked at.
-    pub fn remedies(&self, settings: &Settings, output: &[f64]) -> Vec<Remedy> {
+    pub(crate) fn remedies(&self, settings: &Settings, output: &[f64]) -> Vec<Remedy> {
         self.checks.failed().map(|check| self.remedy(&check, settings, output)).collect()
     }
 

@@ -4,7 +4,7 @@
 //! segment, every pair of regression lines through it is a candidate, the pair with the
 //! least squared error wins, and [conditions](Condition) decide whether its breakpoint counts:
 //! the paper's six, one for segments without a candidate, and two for joints at rest.
-//! Two more [methods](Method) find it between samples and tell how well it is known.
+//! Two more [methods](Method) find it between samples, with an interval.
 //!
 //! - [`steps`](InputStep): where the input changes
 //! - [`Neutral`], [`Transition`]: the level at which a joint rests, and what kind of step
@@ -20,12 +20,11 @@
 //!   both ends of a stroke
 //! - [`dead_time`]: one dead time of a joint whose input moves all the time
 //! - [`delay_scan`]: one delay for a whole record
-//! - [`Remedy`], [`RunnerUp`]: how near a verdict was
+//! - [`RunnerUp`]: how near a verdict was
 //! - [`Doubt`]: how doubtful a decision is, from its own evidence
 //! - [`Word`]: what a reviewer says instead
 //! - [`step_delays`]: the delays alone, by the best method
 //! - [`DelayProfile`]: the delay of every sample
-//! - [`final_part`]: the part of a growing trial that more samples cannot change
 //! - [`DelayTable`]: the delays by kind of step and level
 //! - [`AgainstState`]: what the delay may depend on
 //! - [`choose`]: α, β and the passband from a joint's own record
@@ -79,7 +78,7 @@ mod word;
 pub use crate::numerics::Line;
 pub use against::{AgainstOfKind, AgainstState, Correlation, Direction, StepState};
 pub use auto::{Automatic, Chosen, Grounds, choose};
-pub use beyond_holds::delay_beyond_holds;
+pub(crate) use beyond_holds::delay_beyond_holds;
 pub use broken_line::{
     BrokenLine, BrokenRegression, Stroke, broken_line, broken_regression, stroke,
 };
@@ -88,14 +87,17 @@ pub use condition::{Check, Condition, Outcome};
 pub use dead_time::{Bounds, DeadTime, ErrorPoint, Feedback, Finding, Unknown, Window, dead_time};
 pub use decision::{Breakpoint, Decision, Verdict};
 pub use doubt::{Doubt, Flag, doubts};
-pub use estimate::{Estimator, estimate, estimate_joint};
-pub use growing::{Growing, check_growing, final_part};
-pub use hold::level_tolerance;
+pub(crate) use estimate::Estimator;
+pub use estimate::{estimate, estimate_joint};
+pub use growing::Growing;
+pub(crate) use growing::{check_growing, final_part};
+pub(crate) use hold::level_tolerance;
 pub use in_seconds::InSeconds;
 pub use input_motion::{InputKind, InputMotion};
 pub use interval::FineDelay;
 pub use lag::{Lag, LagPart};
-pub use margin::{Remedy, RunnerUp};
+pub(crate) use margin::Remedy;
+pub use margin::RunnerUp;
 pub(crate) use method::end_at_the_next_step;
 pub use neutral::Neutral;
 pub use profile::DelayProfile;
@@ -108,7 +110,8 @@ pub(crate) use settling::{FirstOrder, followed};
 pub use settling::{Response, Settling};
 pub use spec::{Method, MethodSpec, Scope};
 pub use step_delay::{StepDelay, step_delays};
-pub use steps::{InputStep, input_steps, joint_steps};
+pub use steps::InputStep;
+pub(crate) use steps::joint_steps;
 pub(crate) use strokes::are_strokes;
 pub use table::{CurvePoint, DelayCurve, DelayRow, DelayTable, KindDelay};
 pub use tracking::Tracking;

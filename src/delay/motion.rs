@@ -13,7 +13,7 @@
 //! |v| + 2e ≤ REST · v_max      or      |v| ≤ 2e ≤ SLOW · v_max
 //! ```
 //!
-//! A joint that turns leaves more about a line than its noise: the second holds only where `s` is
+//! A joint that turns has larger residuals about a line than its noise: the second holds only where `s` is
 //! what the differences of neighbours say of the noise.
 //!
 //! It has *departed* once the output stays beyond that line by more than `6·s`, by more than the
@@ -276,8 +276,8 @@ impl Hold<'_> {
     }
 }
 
-/// Times the noise of neighbours that a joint leaves about a line which does not turn: more than
-/// white noise does in one of a thousand windows of eight.
+/// Times the noise of neighbours that the residuals about a line have, of a joint that does not
+/// turn: more than white noise does in one of a thousand windows of eight.
 const TURNS: f64 = 1.5;
 
 /// Times as fast as before the step that a joint is plainly driven.
@@ -291,7 +291,7 @@ struct Quiet {
     speed: f64,
     /// Its value at the last sample.
     level: f64,
-    /// Standard deviation of what it leaves.
+    /// Standard deviation of the residuals.
     noise: f64,
     /// That of white noise with such differences between neighbours.
     rough: f64,
@@ -310,11 +310,13 @@ impl Quiet {
         let level = origin + line.mean() + line.slope() * (samples - 1.0) / 2.0;
         let noise = (line.sse() / (samples - 2.0)).sqrt();
         let differences = values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum::<f64>();
+        // Differences of white noise have twice its variance.
         let rough = (differences / (2.0 * (samples - 1.0))).sqrt();
         Some(Self { samples, speed: line.slope(), level, noise, rough })
     }
 
     fn rests(&self, so_far: &SoFar) -> bool {
+        // 2e, with e = s·√(12/n³).
         let uncertain = 2.0 * self.noise * (12.0 / self.samples.powi(3)).sqrt();
         let is_shown = self.speed.abs() + uncertain <= REST * so_far.fastest;
         let shows_none = self.speed.abs() <= uncertain
@@ -335,6 +337,7 @@ impl Quiet {
         let ways = [1, 2, 3].map(|n| (at(n + 1) - at(n)).abs());
         let most = ways.iter().copied().fold(0.0, f64::max);
         let least = ways.iter().copied().fold(f64::INFINITY, f64::min);
+        // n·Δv/(8·v) ≤ delay, times v.
         let off = moving.len() as f64 / 8.0 * (most - least - BEYOND_NOISE * self.noise);
         off <= delay as f64 * most.midpoint(least)
     }
@@ -345,6 +348,7 @@ impl Quiet {
         let side = |(k, y): (usize, &f64)| {
             let ahead = (k + 1) as f64;
             let away = y - self.level - self.speed * ahead;
+            // The drift may be as large again as it was.
             let beyond = away.abs() > plain + self.speed.abs() * ahead;
             if beyond { away.signum() } else { 0.0 }
         };

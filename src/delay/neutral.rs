@@ -36,7 +36,7 @@ impl Neutral {
     /// becomes neutral, and one that is driven against a stop has moved before.
     ///
     /// The band reaches to those held levels that do not move the joint from rest, and beyond
-    /// them by the [tolerance](super::level_tolerance) of levels.
+    /// them by the tolerance of levels: a part of the input's range, or what its noise takes.
     pub fn of(trials: &[Trial]) -> Option<Self> {
         Self::within(trials, level_tolerance(trials))
     }
@@ -111,6 +111,7 @@ impl Level {
         const LATE: f64 = 0.25;
         let others_s = all.seconds - self.seconds;
         let elsewhere = (all.travel - self.travel) / others_s;
+        // The second halves are half of the time.
         let late_elsewhere = 2.0 * (all.late_travel - self.late_travel) / others_s;
         let is_compared = others_s > 0.0 && elsewhere > 0.0;
         let comes_to_rest = 2.0 * self.late_travel / self.seconds <= LATE * elsewhere;
@@ -167,6 +168,7 @@ fn dead_band(held: &[Vec<Hold>], level: f64, tolerance: f64) -> (f64, f64) {
     let all = || held.iter().flatten();
     let sum = |value: fn(&Hold) -> f64| all().map(value).sum::<f64>();
     let (seconds, travel) = (sum(|hold| hold.seconds), sum(|hold| hold.travel.abs()));
+    // Σ s²/Σ s: the mean hold of a sample.
     let long_s = 0.5 * sum(|hold| hold.seconds * hold.seconds) / seconds;
     let mean = travel / all().count() as f64;
     let most = |hold: &Hold| STILL * mean.min(travel / seconds * hold.seconds);
@@ -179,6 +181,7 @@ fn dead_band(held: &[Vec<Hold>], level: f64, tolerance: f64) -> (f64, f64) {
         let here = || after.iter().map(|(away, still)| (side * away, *still));
         let here = || here().filter(|(away, _)| *away > 0.0);
         let moving = here().filter(|(_, still)| !still).map(|(away, _)| away);
+        // A level that moves the joint bounds the band, even where one beyond it does not.
         let least = moving.fold(f64::INFINITY, f64::min) - tolerance;
         let still = here().filter(|(away, still)| *still && *away < least);
         side * still.map(|(away, _)| away).fold(0.0, f64::max)

@@ -34,6 +34,7 @@ const ROUNDING: f64 = 1e-12;
 /// for the values of the input that it takes; empty for a record that is too short. The least
 /// one is the delay.
 pub fn delay_scan(input: &[f64], output: &[f64], longest: usize) -> Vec<f64> {
+    // All delays are compared over the same samples: those that the longest one leaves.
     let first = longest + INPUTS;
     let end = input.len().min(output.len()).min(first + ENOUGH);
     let samples = end.saturating_sub(first);
@@ -41,13 +42,13 @@ pub fn delay_scan(input: &[f64], output: &[f64], longest: usize) -> Vec<f64> {
         return Vec::new();
     }
     let column = |value: &dyn Fn(usize) -> f64| (first..end).map(value).collect::<Vec<_>>();
-    let change = |k: usize| at(output, k) - at(output, k - 1);
-    let origin = at(output, first);
-    let past =
-        [column(&|_| 1.0), column(&|k| change(k - 1)), column(&|k| at(output, k - 1) - origin)];
+    let change = |k: usize| output[k] - output[k - 1];
+    // About a value in the record, so that the column of y_(k−1) is not nearly constant.
+    let origin = output[first];
+    let past = [column(&|_| 1.0), column(&|k| change(k - 1)), column(&|k| output[k - 1] - origin)];
     let changes = column(&change);
     let error = |delay: usize| {
-        let inputs = (delay..delay + INPUTS).flat_map(|by| column(&|k| at(input, k - by)));
+        let inputs = (delay..delay + INPUTS).flat_map(|by| column(&|k| input[k - by]));
         let columns = past.iter().flatten().copied().chain(inputs).chain(changes.iter().copied());
         penalised(&columns.collect::<Vec<_>>(), samples)
     };
@@ -57,8 +58,10 @@ pub fn delay_scan(input: &[f64], output: &[f64], longest: usize) -> Vec<f64> {
 /// The least squared error with one value of the input or more, with its penalty.
 fn penalised(columns: &[f64], samples: usize) -> f64 {
     let mut equations = NormalEquations::of(columns, samples, &[]);
+    // The past of the output is known whatever the delay.
     (0..PAST).for_each(|column| equations.eliminate(column));
     let rounding = ROUNDING * equations.error();
+    // n ln SSE + p ln n = n ln (SSE · n^(p/n)): the criterion as a factor of the squared error.
     let per_value = ((samples as f64).ln() / samples as f64).exp();
     let mut penalty = 1.0;
     let error = |column: usize| {
@@ -67,10 +70,6 @@ fn penalised(columns: &[f64], samples: usize) -> f64 {
         equations.error().max(rounding) * penalty
     };
     (PAST..PAST + INPUTS).map(error).fold(f64::INFINITY, f64::min)
-}
-
-fn at(values: &[f64], k: usize) -> f64 {
-    values.get(k).copied().unwrap_or_default()
 }
 
 #[cfg(test)]

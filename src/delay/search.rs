@@ -103,7 +103,12 @@ impl Candidates {
     /// Fits every pair of lines, the best of those that break by the sample `latest`.
     ///
     /// Later ones are evidence only. See [`search`](Self::search).
-    pub fn search_until(values: &[f64], first_sample: usize, beta: usize, latest: usize) -> Self {
+    pub(crate) fn search_until(
+        values: &[f64],
+        first_sample: usize,
+        beta: usize,
+        latest: usize,
+    ) -> Self {
         let beta = beta.max(1);
         let rows = values.len() / beta;
         let values = values.get(..rows * beta).unwrap_or_default();
@@ -114,9 +119,12 @@ impl Candidates {
         if rows < 2 {
             return found;
         }
+        // Equations are in Σ y and Σ k·y about the first sample: a joint far from zero keeps its
+        // digits.
         let scale = Scale::of(values, offset);
         let before = found.fit_before(values, scale);
         found.lines = Lines::Apart(before, found.fit_after(values, scale));
+        // Algorithm 1: q_i is where SSE_f is least.
         found.best = found.lowest(TIE * sum_of_squares(values, scale), latest);
         for sse in &mut found.sse {
             *sse *= scale.unit * scale.unit;
@@ -172,6 +180,7 @@ impl Candidates {
             for y in row {
                 line.push(scale.apply(*y));
             }
+            // The regression line goes through the mean, in the middle of its f·β samples.
             let middle = self.first_sample as f64 + ((f * self.beta) as f64 - 1.0) / 2.0;
             self.sse.push(line.sse());
             lines.push(scale.line(middle, line.mean(), line.slope()));
@@ -191,7 +200,9 @@ impl Candidates {
                 line.push(scale.apply(*y));
             }
             let middle = last - ((count * self.beta) as f64 - 1.0) / 2.0;
+            // Grown towards the front: its own slope has the other sign.
             *after = scale.line(middle, line.mean(), -line.slope());
+            // SSE_f = SSE of rows 1 … f + SSE of rows f+1 … M.
             *sse += line.sse();
         }
         lines
@@ -199,6 +210,7 @@ impl Candidates {
 
     /// The first candidate within `tie` of the lowest squared error up to `latest`.
     fn lowest(&self, tie: f64, latest: usize) -> Option<usize> {
+        // Candidate f breaks at q = r + f·β ≤ latest.
         let in_time = latest.saturating_sub(self.first_sample) / self.beta;
         let sse = self.sse.get(..in_time).unwrap_or(&self.sse);
         let lowest = sse.iter().copied().fold(f64::INFINITY, f64::min);
@@ -280,6 +292,7 @@ impl Candidates {
         let (mut weights, mut squares) = (0.0, 0.0);
         for candidate in self.iter() {
             let ratio = if candidate.sse > 0.0 { best.sse / candidate.sse } else { 1.0 };
+            // The likelihood of independent normal residuals is SSE^(−n/2); see POWER.
             let weight = ratio.min(1.0).powf(POWER);
             let distance = candidate.breakpoint as f64 - best.breakpoint as f64;
             weights += weight;

@@ -37,7 +37,7 @@ impl FirstLast {
     pub(super) const FEW: usize = 3;
 
     /// Whether they are judged in a trial of so many steps.
-    pub fn are_judged(self, steps: usize) -> bool {
+    pub(crate) fn are_judged(self, steps: usize) -> bool {
         match self {
             Self::Auto => steps <= Self::FEW,
             Self::Reject => false,
@@ -189,14 +189,14 @@ pub enum SettingsError {
 
 impl Settings {
     /// The low-pass of a trial that is sampled every `period`.
-    pub fn low_pass_at(&self, period: SamplePeriod) -> Option<LowPass> {
+    pub(crate) fn low_pass_at(&self, period: SamplePeriod) -> Option<LowPass> {
         let fits = |low_pass: &LowPass| low_pass.cutoff_hz < period.nyquist_hz();
         self.low_pass.filter(|low_pass| self.low_pass_required || fits(low_pass))
     }
 
     /// Whether the input of these `trials` of a joint is taken as moving all the time. One whose
     /// smallest step is given has steps.
-    pub fn takes_as_continuous(&self, trials: &[Trial]) -> bool {
+    pub(crate) fn takes_as_continuous(&self, trials: &[Trial]) -> bool {
         let has_steps = self.input == InputKind::Auto && self.min_step > 0.0;
         !has_steps && self.input.is_continuous(trials)
     }

@@ -26,7 +26,7 @@ pub struct InputStep {
 ///
 /// With `min_step` above zero (input units) a change counts once the input is more than
 /// that away from the level of the last step; it is for inputs that were measured.
-pub fn input_steps(input: &[f64], min_step: f64) -> Vec<InputStep> {
+pub(crate) fn input_steps(input: &[f64], min_step: f64) -> Vec<InputStep> {
     let mut samples = input.iter().zip(1..);
     let Some((&first, _)) = samples.next() else {
         return Vec::new();
@@ -54,7 +54,7 @@ pub(super) fn hold_ranges(
 
 /// The steps of each of the `trials` of a joint, as `settings` ask for: none of an input that
 /// moves all the time.
-pub fn joint_steps(trials: &[Trial], settings: &Settings) -> Vec<Vec<InputStep>> {
+pub(crate) fn joint_steps(trials: &[Trial], settings: &Settings) -> Vec<Vec<InputStep>> {
     if settings.takes_as_continuous(trials) {
         return trials.iter().map(|_| Vec::new()).collect();
     }

@@ -54,6 +54,7 @@ impl Stops {
             return None;
         }
         let noise = noise_of_differences(trials.iter().map(Trial::output));
+        // Four standard deviations: of normal noise one sample in 16 000 is beyond them.
         let tolerance = (4.0 * noise).max(THERE * (high - low));
         // Ends of holds that are only by chance at the end of the range are apart.
         let stop = |levels: &[f64]| {

@@ -263,6 +263,7 @@ fn bins(steps: &[KindStep], most: usize, size: fn(&KindStep) -> f64) -> Vec<&[Ki
     for number in 1..=count {
         let end = steps.len() * number / count;
         let last = end.checked_sub(1).and_then(|last| steps.get(last)).map_or(0.0, size);
+        // A size is never split between two bins.
         let end = steps.partition_point(|step| size(step) <= last);
         bins.extend(steps.get(done..end).filter(|bin| !bin.is_empty()));
         done = done.max(end);

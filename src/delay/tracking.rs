@@ -94,12 +94,13 @@ impl Tracking {
         let gain = uy / uu;
         let offset = output - gain * level;
         let off = |rest: &RestingHold| (rest.output - offset - gain * rest.level).powi(2);
+        // Two parameters: n − 2 degrees of freedom.
         let off = (rests.iter().map(off).sum::<f64>() / (n - 2.0)).sqrt();
         let ends = |of: fn(f64, f64) -> f64, start| rests.iter().map(|r| r.output).fold(start, of);
         let travel = ends(f64::max, f64::MIN) - ends(f64::min, f64::MAX);
         let tolerance = (3.0 * off).max(4.0 * noise).max(0.005 * travel);
         let is_near = gain.is_finite() && gain != 0.0 && off <= OFF * travel;
-        // Of the variation about the mean, what the line leaves.
+        // The residual about the line, as a part of the variation about the mean.
         let square = |rest: &RestingHold| (rest.output - output).powi(2);
         let r_squared = 1.0 - (n - 2.0) * off * off / rests.iter().map(square).sum::<f64>();
         is_near.then_some(Self { offset, gain, tolerance, r_squared })

@@ -17,7 +17,7 @@ const ORDERED: usize = 6;
 pub struct TypicalDelay {
     /// The median.
     pub median_s: f64,
-    /// The interval that holds the median of such steps at 95 %; none where nothing tells.
+    /// The interval that holds the median of such steps at 95 %; none where nothing shows it.
     pub interval_s: Option<(f64, f64)>,
     /// The least delay.
     pub min_s: f64,
@@ -151,6 +151,7 @@ fn rank(count: usize) -> usize {
         if sum > tail {
             break;
         }
+        // C(n, k + 1) = C(n, k)·(n − k)/(k + 1).
         log_ways += ((count - heads) as f64 / (heads + 1) as f64).ln();
         heads += 1;
     }

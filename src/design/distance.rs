@@ -20,6 +20,7 @@ pub(super) fn expected(
 ) -> Option<Expected> {
     let clean = rig.output(model, schedule);
     let carrier: Vec<f64> = (0..clean.len()).map(|k| carrier(k, suspects.noise)).collect();
+    // Without noise robust weights would take every misfit for a spike.
     let output = clean.iter().zip(&carrier).map(|(y, c)| y + c).collect();
     let joint = rig.log(schedule, output)?;
     let record = FitRecord::new(&joint, Split::of(&joint), Horizon::Steps);
@@ -64,13 +65,14 @@ fn best(
     fits.min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
-/// What `fit` leaves of the data, in variances of the noise.
+/// The squared residual of `fit`, in variances of the noise.
 fn distance(record: &FitRecord<'_>, fit: &Fit, carrier: &[f64], noise: f64) -> Distance {
     let part = |part| {
         let squares = record.part(part).map(|window| {
-            let all = fit.evaluation.residuals.get(window.trial).map_or(&[][..], Vec::as_slice);
-            let own = all.get(window.start..window.end).unwrap_or_default();
-            let noise = carrier.get(window.start..window.end).unwrap_or_default();
+            let samples = window.start..window.end;
+            let own = &fit.evaluation.residuals[window.trial][samples.clone()];
+            let noise = &carrier[samples];
+            // λ counts what the model cannot follow, not the carrier.
             own.iter().zip(noise).map(|(own, noise)| (own - noise).powi(2)).sum::<f64>()
         });
         squares.sum::<f64>() / (noise * noise)

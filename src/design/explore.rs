@@ -96,6 +96,7 @@ fn holds(
     /// So far beyond both ends the levels reach.
     const BEYOND: f64 = 1.1;
     let (low, high) = (low / BEYOND, (BEYOND * high).min(limits.largest));
+    // Levels in a geometric series: a threshold is found to the same part wherever it lies.
     let ratio = (high / low).powf(1.0 / f64::from(count - 1));
     let level = |k: u32| two_digits(low * ratio.powf(k.into())).min(limits.largest);
     let levels: Vec<f64> = (0..count).map(level).collect();

@@ -55,6 +55,7 @@ pub(super) fn holds_s(suspects: &Suspects, rig: &TestRig, limits: &Limits) -> Ve
         let least = least.max(response);
         (least, (WINDOW * period_s).max(2.0 * least))
     });
+    // A geometric series from the shortest to the longest hold.
     let ratio = (highest / lowest).max(1.0);
     let hold = |k: i32| two_digits(lowest * ratio.powf(f64::from(k) / f64::from(COUNT - 1)));
     let mut holds: Vec<f64> = (0..COUNT).map(hold).collect();
@@ -73,6 +74,7 @@ fn sets(suspects: &Suspects, largest: f64) -> Vec<(Vec<f64>, &'static [Pattern])
     let mut thresholds = thresholds(suspects, largest);
     let mut sets = level_sets((LEAST * largest, largest), &thresholds);
     thresholds.sort_by(f64::total_cmp);
+    // Between two thresholds only one of the effects is at work.
     let between = thresholds.windows(2).map(|pair| pair.iter().sum::<f64>() / 2.0);
     let near = thresholds.iter().flat_map(|t| [0.7 * t, 1.3 * t]);
     let known = [0.25, 0.5].map(|part| part * largest);

@@ -83,18 +83,18 @@ impl FreeRunError {
     }
 
     /// How many times the errors so far a margin is.
-    pub fn reserve(&self) -> f64 {
+    pub(crate) fn reserve(&self) -> f64 {
         if self.trend.is_some() { UNSEEN * RESERVE } else { RESERVE }
     }
 
     /// How long a prediction may be for which the margin stands, seconds: beyond the longest run it
     /// is an extrapolation.
-    pub fn trusted_s(&self) -> f64 {
+    pub(crate) fn trusted_s(&self) -> f64 {
         if self.is_bounded { f64::INFINITY } else { EXTRAPOLATED * self.longest_s() }
     }
 
     /// Whether the error of a prediction does not grow with its length.
-    pub fn is_bounded(&self) -> bool {
+    pub(crate) fn is_bounded(&self) -> bool {
         self.is_bounded
     }
 
@@ -147,6 +147,7 @@ impl Growth {
         let end = self.width * self.largest.len() as f64;
         let last = self.largest.last().copied().unwrap_or(0.0);
         if place >= end {
+            // In proportion: an error with increments of one kind grows no faster.
             return last * place / end;
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≥ 0")]

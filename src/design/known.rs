@@ -74,7 +74,7 @@ impl Uncertain {
 ///
 /// An ensemble of models moves along the lines between them (Goodman and Weare 2010), which
 /// needs no scale: it follows what only a combination of parameters determines, and crosses
-/// ranges in which nothing changes. Where the model cannot follow the record, what it leaves
+/// ranges in which nothing changes. Where the model cannot follow the record, its residual
 /// takes the place of the noise. The second is the best of all, where it is clearly better
 /// than the one that is known.
 fn likely(
@@ -99,9 +99,11 @@ fn likely(
     let mut walkers: Vec<Walker> = (0..WALKERS).map(walker).collect();
     let free = known.deviations.iter().filter(|deviation| **deviation > 0.0).count();
     let limits = limits(&known.model);
+    // Better than what is known by two standard deviations.
     let mut best = Walker { cost: least / scale - DEVIATIONS * DEVIATIONS, values: Vec::new() };
     for _ in 0..sweeps(samples, WALKERS) {
         for place in 0..WALKERS {
+            // Any other, with equal probability: the move is symmetric but for z.
             let other = (place + random.random_range(1..WALKERS)) % WALKERS;
             let stretch = stretch(random.random());
             let Some((old, new)) = stretched(&walkers, place, other, stretch, &limits) else {
@@ -111,6 +113,7 @@ fn likely(
             if new.cost < best.cost {
                 best = new.clone();
             }
+            // Goodman and Weare: accepted with the probability min(1, z^(k−1)·p(new)/p(old)).
             let gain = 0.5 * (old - new.cost) + (free.max(1) - 1) as f64 * stretch.ln();
             if gain >= random.random::<f64>().ln()
                 && let Some(walker) = walkers.get_mut(place)
@@ -143,6 +146,7 @@ fn sweeps(samples: usize, walkers: usize) -> usize {
 /// the distance to twice, with a density of one over the root.
 fn stretch(random: f64) -> f64 {
     const MOST: f64 = 2.0;
+    // The inverse of the distribution of z on [1/a, a] with the density ∝ 1/√z.
     ((MOST - 1.0) * random + 1.0).powi(2) / MOST
 }
 
@@ -158,6 +162,7 @@ fn stretched(
     let (here, from) = (walkers.get(place)?, walkers.get(other)?);
     let moved = from.values.iter().zip(&here.values).map(|(from, here)| {
         // What is fixed stays as it is, digit for digit.
+        // x_j + z·(x_k − x_j).
         from + stretch * (here - from)
     });
     let moved: Vec<f64> = moved.collect();
@@ -169,10 +174,10 @@ fn values(model: &JointModel) -> Vec<f64> {
     model.values().iter().map(|value| value.value).collect()
 }
 
-/// What `model` leaves of the record, in variances of the noise.
+/// The squared residual of `model`, in variances of the noise.
 fn cost(record: &FitRecord<'_>, model: &JointModel, noise: f64) -> f64 {
-    let left = record.evaluate_residuals(model).residuals;
-    left.iter().flatten().map(|e| e * e).sum::<f64>() / (noise * noise)
+    let residuals = record.evaluate_residuals(model).residuals;
+    residuals.iter().flatten().map(|e| e * e).sum::<f64>() / (noise * noise)
 }
 
 /// Lowest and highest value of each parameter.

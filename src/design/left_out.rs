@@ -93,6 +93,7 @@ impl<'a> LeftOut<'a> {
     /// How far each piece went, and by how much a run over it was off at its end.
     pub(super) fn motions(&self) -> Vec<(Travel, f64)> {
         let motions = self.parts.iter().flat_map(|(model, pieces)| {
+            // A stop would hide by how much a run is off.
             let model = freed(model);
             let ends =
                 pieces.iter().map(move |piece| run(&model, *piece, piece.from, &self.around));
@@ -161,7 +162,7 @@ fn refitted(joint: &Joint, model: &JointModel, part: usize) -> Option<(JointMode
         [piece(trial, 0, from), piece(trial, to, trial.len())]
     });
     let trials: Vec<Trial> = pieces.flatten().collect();
-    let rest = Joint { trials, covariates: Vec::new(), ..joint.clone() };
+    let rest = joint.of_trials(trials);
     let record = FitRecord::new(&rest, Split::Time(1.0), Horizon::Auto);
     let levels = record.input_levels();
     let top = levels.last().copied().unwrap_or(1.0);
@@ -189,6 +190,7 @@ fn forgets(model: &JointModel, pieces: &[Piece<'_>], around: &Surroundings<'_>) 
     let arrivals = Commands::new(&rest, period_s).arriving(model, 0.0, None);
     let (low, high) = extent(trial.output());
     let end = |start: f64| {
+        // From both ends of where it has been: the farthest that two starts can be apart.
         let restart = [Restart { sample: 0, output: start, speed: None }];
         let output = simulate(model, &arrivals, samples, period_s, &restart, around).output;
         output.last().copied().unwrap_or(start)
@@ -237,6 +239,7 @@ fn in_orders<'a>(pieces: &[Piece<'a>]) -> Vec<Vec<Piece<'a>>> {
     let count = if pieces.len() > 2 { ORDERS } else { 1 };
     let next = |_| {
         let this = order.clone();
+        // A plan plays the motions in an order of its own: so the errors add up in several.
         order.shuffle(&mut random);
         this
     };

@@ -19,7 +19,7 @@ const LARGEST: f64 = 2.0;
 
 /// The largest level for a joint: three times the end of its dead band, and no less than for a
 /// joint of which nothing is known.
-pub fn default_largest(model: Option<&JointModel>, rig: &TestRig) -> f64 {
+pub(crate) fn default_largest(model: Option<&JointModel>, rig: &TestRig) -> f64 {
     const TIMES_EDGE: f64 = 3.0;
     let band = model.and_then(|model| resting_band(model, rig, 2.0 * LARGEST));
     let edge = band.map_or(0.0, |(lower, upper)| upper.max(-lower));
@@ -28,7 +28,7 @@ pub fn default_largest(model: Option<&JointModel>, rig: &TestRig) -> f64 {
 
 /// Rest, a full and a middle level of either sign: with a model the middle lies between the end
 /// of its dead band and the full level.
-pub fn default_levels(model: Option<&JointModel>, rig: &TestRig, largest: f64) -> Vec<f64> {
+pub(crate) fn default_levels(model: Option<&JointModel>, rig: &TestRig, largest: f64) -> Vec<f64> {
     let band = model.and_then(|model| resting_band(model, rig, largest));
     let (lower, upper) = band.unwrap_or((0.0, 0.0));
     let middle = |edge: f64| two_digits(0.5 * (edge + largest));
@@ -50,7 +50,11 @@ pub(super) fn settling_hold_s(settling_s: f64) -> (f64, f64) {
 
 /// Shortest and longest hold: with a model longer than it takes the joint to respond, so that
 /// no level overtakes the one before and each is seen for as long again.
-pub fn default_hold_s(model: Option<&JointModel>, rig: &TestRig, largest: f64) -> (f64, f64) {
+pub(crate) fn default_hold_s(
+    model: Option<&JointModel>,
+    rig: &TestRig,
+    largest: f64,
+) -> (f64, f64) {
     let Some(model) = model else { return (1.0, LONGEST) };
     let shortest = two_digits((2.0 * response_s(model, rig, largest)).max(SHORTEST_S));
     (shortest, two_digits(LONGEST * shortest))
@@ -58,7 +62,7 @@ pub fn default_hold_s(model: Option<&JointModel>, rig: &TestRig, largest: f64) -
 
 impl Band {
     /// `levels` with one in the band, or without any.
-    pub fn applied(self, levels: &[f64]) -> Vec<f64> {
+    pub(crate) fn applied(self, levels: &[f64]) -> Vec<f64> {
         let is_inside = |level: &f64, lower: f64, upper: f64| *level >= lower && *level <= upper;
         let mut levels = levels.to_vec();
         match self {

@@ -70,8 +70,10 @@ impl LinearScreen {
         let slopes: Vec<f64> = self.slopes.iter().flat_map(column).collect();
         let length = column(&self.here).len();
         let basis = Basis::of(&slopes, length, rank::COARSELY_DIFFERENCED);
+        // d − J(JᵀJ)⁻¹Jᵀd, by an orthonormal basis of J.
         let residual = |difference| basis.residual(&column(difference));
         let differences = self.differences.iter().map(residual);
+        // λ = |…|²/σ².
         differences.map(|residual| dot(&residual, &residual) / (noise * noise)).collect()
     }
 }
@@ -90,6 +92,7 @@ fn moved(model: &JointModel, index: usize) -> JointModel {
     /// In parts of the value, or of one.
     const PART: f64 = 1e-4;
     let mut values: Vec<f64> = model.values().iter().map(|value| value.value).collect();
+    // A value at zero is moved, too.
     values[index] += PART * values[index].abs().max(0.01);
     model.with_values(&values)
 }
@@ -110,7 +113,7 @@ pub(super) fn windows(schedule: &Schedule, count: usize) -> Vec<(usize, usize)> 
 /// `values` in windows, each without its mean: a fit starts anew there.
 pub(super) fn centred(values: &[f64], windows: &[(usize, usize)]) -> Vec<f64> {
     let window = |(start, end): &(usize, usize)| {
-        let part = values.get(*start..*end).unwrap_or_default();
+        let part = &values[*start..*end];
         let mean = part.iter().sum::<f64>() / part.len().max(1) as f64;
         part.iter().map(|value| value - mean).collect::<Vec<_>>()
     };

@@ -102,7 +102,7 @@ impl Logged {
 
     /// `joint` with its input as difference to where it rests.
     #[must_use]
-    pub fn centred(&self, joint: &Joint) -> Joint {
+    pub(crate) fn centred(&self, joint: &Joint) -> Joint {
         let centred = |trial: &Trial| {
             let input = trial.input().iter().map(|input| input - self.rest).collect();
             let (start_s, output) = (trial.time_s(1), trial.output().to_vec());
@@ -138,7 +138,7 @@ impl Logged {
         if trials.len() < centred.trials.len() {
             return centred;
         }
-        Joint { trials, covariates: Vec::new(), ..centred }
+        centred.of_trials(trials)
     }
 
     /// The largest magnitude of a level, as a difference to rest.
@@ -171,6 +171,7 @@ fn side(levels: impl Iterator<Item = f64>, edge: f64) -> Vec<f64> {
     if highest <= edge {
         return Vec::new();
     }
+    // As far from the band as from the highest: what bends in between shows most.
     let middle = 0.5 * (edge + highest);
     let others = levels
         .into_iter()
@@ -238,13 +239,7 @@ mod tests {
         });
         let output = output.collect();
         let period = SamplePeriod::from_seconds(0.02).unwrap();
-        Joint {
-            name: "boom".to_owned(),
-            input_unit: None,
-            output_unit: None,
-            covariates: Vec::new(),
-            trials: vec![Trial::new("1", 0.0, period, input, output).unwrap()],
-        }
+        Joint::new("boom", vec![Trial::new("1", 0.0, period, input, output).unwrap()])
     }
 
     fn steps(levels: &[f64]) -> Vec<f64> {

@@ -42,7 +42,8 @@ mod within_range;
 
 pub use difference::{Apart, HoldApart, apart};
 pub use free_run::{FreeRunError, RESERVE};
-pub use levels::{Band, default_hold_s, default_largest, default_levels};
+pub use levels::Band;
+pub(crate) use levels::{default_hold_s, default_largest, default_levels};
 pub use limits::Limits;
 pub use logged::{Logged, Settling};
 pub(crate) use plan::DURATION_S;
@@ -53,7 +54,7 @@ pub use predict::{Prediction, TestRig, Uncertain};
 pub use random::{RandomSteps, random_steps, transitions};
 pub(crate) use refusal::rounded;
 pub use refusal::{NotKept, PlanError};
-pub use response::{response_s, resting_band};
+pub(crate) use response::{response_s, resting_band};
 pub use result::{Design, DesignError, OpenThreshold, Order, Rehearsal, Side};
 pub use schedule::{Hold, Schedule};
 pub use search::shortest;

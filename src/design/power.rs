@@ -88,8 +88,10 @@ impl Expected {
         let (own, rival) = (self.own.parameters, self.rival.parameters);
         let common = self.neither.parameters;
         let added = own.saturating_sub(common) + rival.saturating_sub(common);
+        // Schwarz's penalty for each parameter more.
         let handicap = (own as f64 - rival as f64) * (n.max(2) as f64).ln();
         let needed = ALIKE.max(handicap);
+        // 2 (k₁ + k₂).
         (mean - needed) / (variance + 2.0 * added as f64).sqrt().max(1.0)
     }
 
@@ -97,8 +99,11 @@ impl Expected {
     /// than beyond doubt.
     fn fails(&self) -> f64 {
         let (n, m) = self.samples;
+        // Where an effect removes the part p of the error, the squares without it are larger by
+        // 1/(1 − p)² − 1, in parts of n.
         let square = (1.0 - BEYOND_DOUBT_PERCENT / 100.0).powi(-2) - 1.0;
         let exceeds = |noncentrality: f64, needed: f64| {
+            // About normal with mean λ and variance 4 λ.
             (noncentrality - needed) / (4.0 * noncentrality).sqrt().max(1.0)
         };
         let mut shows = exceeds(self.neither.training, square * n as f64);
@@ -114,6 +119,7 @@ impl Expected {
 /// Expected `n ln(1 + λ/n)`.
 fn gain(samples: usize, noncentrality: f64) -> f64 {
     let n = samples.max(1) as f64;
+    // E D, which keeps its digits where λ ≪ n.
     n * (noncentrality / n).ln_1p()
 }
 
@@ -132,6 +138,7 @@ fn critical(added: usize, freedom: usize) -> f64 {
     for _ in 0..HALVINGS {
         let middle = 0.5 * (below + above);
         let tail = fisher_tail(middle / added as f64, added, freedom).unwrap_or(0.0);
+        // The tail falls as λ grows: halving.
         if tail > BEYOND_DOUBT { below = middle } else { above = middle }
     }
     above

@@ -98,10 +98,12 @@ impl TestRig {
             }
         };
         for model in uncertain.draws.iter().take(likely) {
+            // The mean square about the prediction.
             add(model, 1.0 / likely as f64);
         }
         let off = uncertain.deviations.iter().enumerate();
         for (place, _) in off.filter(|(_, off)| **off > 0.0 && likely == 0) {
+            // Independent deviations: variances add up.
             add(&uncertain.with_off(place, 1.0), 1.0);
         }
         let mut margin: Vec<f64> =
@@ -130,24 +132,14 @@ impl TestRig {
     /// The log of this joint, had it done `output`.
     pub(super) fn log(&self, schedule: &Schedule, output: Vec<f64>) -> Option<Joint> {
         let trial = Trial::new("1", 0.0, self.period, schedule.input(), output).ok()?;
-        Some(Joint {
-            name: self.name.clone(),
-            input_unit: self.input_unit.clone(),
-            output_unit: self.output_unit.clone(),
-            covariates: Vec::new(),
-            trials: vec![trial],
-        })
+        let (input_unit, output_unit) = (self.input_unit.clone(), self.output_unit.clone());
+        Some(Joint { input_unit, output_unit, ..Joint::new(self.name.clone(), vec![trial]) })
     }
 
     /// Radians in one unit of the output, as a fit takes them.
     fn radians(&self) -> f64 {
-        let joint = Joint {
-            name: String::new(),
-            input_unit: None,
-            output_unit: self.output_unit.clone(),
-            covariates: Vec::new(),
-            trials: Vec::new(),
-        };
+        let output_unit = self.output_unit.clone();
+        let joint = Joint { output_unit, ..Joint::new("", Vec::new()) };
         let record = FitRecord::new(&joint, Split::Time(1.0), Horizon::FreeRun);
         record.range(&[], 0.0).radians_per_output_unit
     }
@@ -185,7 +177,7 @@ impl Prediction {
     }
 
     /// The largest margin.
-    pub fn largest_margin(&self) -> f64 {
+    pub(crate) fn largest_margin(&self) -> f64 {
         self.margin.iter().copied().fold(0.0, f64::max)
     }
 
@@ -197,7 +189,7 @@ impl Prediction {
     }
 
     /// Samples until the joint may leave `range`; `None` where it does not.
-    pub fn kept_until(&self, (low, high): (f64, f64)) -> Option<usize> {
+    pub(crate) fn kept_until(&self, (low, high): (f64, f64)) -> Option<usize> {
         /// What rounding may add.
         const ROUNDING: f64 = 1e-9;
         let slack = ROUNDING * (high - low);

@@ -116,6 +116,7 @@ impl<'a> Drawing<'a> {
         index: usize,
     ) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(steps.seed);
+        // Joints of one seed draw from streams of their own.
         random.set_stream(index as u64);
         let samples = samples_in(steps.duration_s, rig.period);
         let levels = steps.levels.iter();
@@ -202,6 +203,7 @@ impl<'a> Drawing<'a> {
 
     /// Where the joint comes to by `hold` when it rests after it, until that acts.
     fn leading(&self, hold: Hold, model: &Uncertain, range: (f64, f64)) -> Leading {
+        // As long as the hold may act on.
         let rest = samples_in(self.settling_s.max(2.0 * self.steps.hold_s.0), self.rig.period);
         let mut holds = self.holds.clone();
         let from = holds.iter().map(|hold| hold.samples).sum();
@@ -229,6 +231,7 @@ impl<'a> Drawing<'a> {
             let (transitions, visits) = self.counts(now, *level);
             ranked.push((transitions, visits, self.random.random(), *level));
         }
+        // Transition, then level, then by lot.
         ranked.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
         ranked.into_iter().map(|(_, _, _, level)| level).collect()
     }

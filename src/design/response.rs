@@ -12,7 +12,7 @@ const SETTLED_S: f64 = 3.0;
 /// what it comes to, the delay included.
 ///
 /// Effects of load and output, which change the speed as the joint moves, are left out.
-pub fn response_s(model: &JointModel, rig: &TestRig, level: f64) -> f64 {
+pub(crate) fn response_s(model: &JointModel, rig: &TestRig, level: f64) -> f64 {
     /// A speed that is as near is settled.
     const NEAR: f64 = 0.05;
     let speeds = speeds(&driven(model), rig, level);
@@ -23,11 +23,12 @@ pub fn response_s(model: &JointModel, rig: &TestRig, level: f64) -> f64 {
 }
 
 /// The inputs between which the joint rests, where that is more than `largest / 100` wide.
-pub fn resting_band(model: &JointModel, rig: &TestRig, largest: f64) -> Option<(f64, f64)> {
+pub(crate) fn resting_band(model: &JointModel, rig: &TestRig, largest: f64) -> Option<(f64, f64)> {
     /// A narrower band is none.
     const LEAST: f64 = 0.01;
     let model = driven(model);
     let edge = |largest: f64| edge(&model, rig, largest);
+    // The edge of each direction by itself: a band need not lie about zero.
     let (lower, upper) = (-edge(-largest), edge(largest));
     (upper - lower > LEAST * largest).then_some((lower, upper))
 }

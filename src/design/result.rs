@@ -111,7 +111,7 @@ impl Design {
     }
 
     /// The share of its rehearsals that succeeded, of the suspect with the least.
-    pub fn share_of_successes(&self) -> f64 {
+    pub(crate) fn share_of_successes(&self) -> f64 {
         let rehearsals = self.sides.iter().filter_map(|side| side.rehearsal);
         let share = |found: Rehearsal| found.successes as f64 / found.runs.max(1) as f64;
         rehearsals.map(share).fold(1.0, f64::min)

@@ -41,7 +41,7 @@ impl Schedule {
     pub fn trials(&self) -> Vec<Self> {
         let from = std::iter::once(0).chain(self.borders.iter().copied());
         let to = self.borders.iter().copied().chain(std::iter::once(self.holds.len()));
-        let holds = from.zip(to).map(|(from, to)| self.holds.get(from..to).unwrap_or_default());
+        let holds = from.zip(to).map(|(from, to)| &self.holds[from..to]);
         holds.map(|holds| Self::new(self.period, holds.to_vec())).collect()
     }
 

@@ -64,6 +64,7 @@ pub fn shortest(
         if let Some(design) = search.first_to_pass(targets, from_s, workers) {
             return Ok(design);
         }
+        // Shorter inputs have been searched.
         from_s = problem.limits.longest_s;
     }
     let problem = problem(1.0);

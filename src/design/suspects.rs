@@ -27,7 +27,7 @@ pub struct Suspects {
     pub excluded: [bool; 2],
 }
 
-/// Why there is nothing to tell apart.
+/// Why there is nothing to separate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SuspectsError {

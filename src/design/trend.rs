@@ -56,6 +56,7 @@ impl Trend {
         let mut products = nalgebra::Matrix3::zeros();
         let mut with = Vector3::zeros();
         for (row, (_, error)) in rows.zip(motions) {
+            // Columns of length one: seconds and ways have no common unit.
             let row = row.component_div(&lengths);
             products += row * row.transpose();
             with += row * *error;
@@ -67,6 +68,7 @@ impl Trend {
         }
         let (scaled, explained) = inverse.solve(&DVector::from_column_slice(with.as_slice()));
         let total: f64 = motions.iter().map(|(_, error)| error * error).sum();
+        // Three coefficients.
         let variance = (total - explained).max(0.0) / (motions.len() - 3) as f64;
         let scaled = Vector3::from_column_slice(scaled.as_slice());
         let inverse = nalgebra::Matrix3::from_column_slice(inverse.matrix().as_slice());
@@ -78,6 +80,7 @@ impl Trend {
     /// By how much a prediction is off after `travel`, and a standard deviation more.
     pub(super) fn at(&self, travel: Travel) -> f64 {
         let travel = travel.vector();
+        // xᵀCx.
         let variance = travel.dot(&(self.covariance * travel));
         self.coefficients.dot(&travel).abs() + variance.max(0.0).sqrt()
     }

@@ -83,6 +83,7 @@ impl Keeper<'_> {
         let divisions = self.divisions(&ways);
         let is_open = self.wishes.duration_s.is_none();
         let asked = |divisions: &[Division], range| self.divided(range, &ways, divisions);
+        // A length that nobody asked for may be shortened.
         let wanted = |division: &Division| is_open || self.is_whole(*division);
         let whole: Vec<Division> = divisions.iter().copied().filter(wanted).collect();
         if let Some(plan) = asked(&whole, range) {
@@ -215,6 +216,7 @@ impl Keeper<'_> {
         // At its end it is somewhere in the range, whatever is played.
         let free_run = self.known.free_run.as_ref();
         let least = free_run.map_or(0.0, |of| of.margin(at_rest(division.trial_s)));
+        // Even a joint at rest may be off by so much to either side.
         if 2.0 * least > range.1 - range.0 {
             return Vec::new();
         }

@@ -32,7 +32,7 @@ pub struct Comparison {
     /// Standard deviation of the measurement noise, output units.
     pub noise_floor: Option<f64>,
     /// Whether the residual of the training part is more than noise; `None` where there
-    /// are too few samples to tell.
+    /// are too few samples.
     pub lack_of_fit: Option<LackOfFit>,
     /// How the residual of the training part is correlated with itself; `None` where there
     /// are too few samples, or trials are sampled at different rates.
@@ -67,7 +67,7 @@ pub fn compare(record: &FitRecord<'_>, fit: Fit) -> Comparison {
 }
 
 /// All figures of a model that was not fitted.
-pub fn compare_unfitted(record: &FitRecord<'_>, model: Assessment) -> Comparison {
+pub(crate) fn compare_unfitted(record: &FitRecord<'_>, model: Assessment) -> Comparison {
     let lack_of_fit = lack_of(record, &model);
     figures(record, model, Termination::NothingToFit, lack_of_fit)
 }
@@ -134,6 +134,7 @@ pub(crate) fn floor_of(record: &FitRecord<'_>, fit: &Assessment) -> Option<f64> 
     let arriving: Vec<_> = arriving.collect();
     let arrived = || trials.iter().zip(&arriving);
     let shown = noise_floor(arrived())?;
+    // A swing that the model follows is motion, not noise.
     Some(shown * share_not_followed(arrived(), &fit.evaluation.simulated))
 }
 
@@ -148,6 +149,7 @@ pub(crate) fn lack_of(record: &FitRecord<'_>, fit: &Assessment) -> Option<LackOf
     let own = sensitivities(record, fit, &tested);
     let (test, own) = lack_in(record, &fit.evaluation, own, floor, &tested);
     let lacks = test.filter(|test| !test.adequate);
+    // Step 6 of `lack_of_fit`.
     let between = lacks.and_then(|_| without_edges(record, &fit.evaluation, floor?));
     let (Some(test), Some((edges, rest))) = (test, between) else { return test };
     let (without, _) = lack_in(record, &rest, own, floor, &tested);
@@ -247,6 +249,7 @@ fn residual_record(
         if error == ErrorOf::Speed {
             samples.speed_error.extend(speed_error(&residual, &windows, period));
         }
+        // An input that moves all the time changes its level with every sample.
         let own = if levels.len() > windows.len().saturating_mul(20) { windows } else { levels };
         segments.extend(own.into_iter().map(|span| first + span.start..first + span.end));
         append(&mut samples.residual, residual, all);
@@ -291,6 +294,7 @@ fn sensitivities(record: &FitRecord<'_>, fit: &Assessment, tested: &Excerpt) -> 
     let record = record.for_training();
     let values: Vec<f64> = fit.model.values().iter().map(|value| value.value).collect();
     let column = |index: usize| {
+        // A value near zero would leave a step that rounding eats.
         let step = STEP * values[index].abs().max(0.1);
         let [above, below] = [step, -step].map(|shift| {
             let mut values = values.clone();

@@ -86,6 +86,7 @@ impl TrialSignals<'_> {
 
     /// Changes of the residual from block to block, both of one window; zero elsewhere.
     fn residual_changes(&self, block: usize) -> Vec<f64> {
+        // The first block of a window has no block before it that the model went on from.
         let inside = self.whole_blocks(block).map(|blocks| blocks.start + 1..blocks.end);
         kept(changes(means(self.residual, block)), inside)
     }
@@ -132,11 +133,13 @@ impl CrossCorrelation {
         let outside = correlation.iter().filter(|r| r.abs() > band).count();
         let by_size = |a: &(usize, &f64), b: &(usize, &f64)| a.1.abs().total_cmp(&b.1.abs());
         let (index, &peak) = correlation.iter().enumerate().max_by(by_size)?;
+        // r/σ is normal, its square χ² with one degree of freedom.
         let once = chi_square_tail((peak / deviation).powi(2), 1)?;
         Some(Self {
             share_outside: outside as f64 / correlation.len() as f64,
             peak,
             peak_lag_s: lags.seconds(index),
+            // Bonferroni, over all lags.
             p_value: (once * correlation.len() as f64).min(1.0),
             band,
             correlation,
@@ -149,6 +152,7 @@ fn deviation(residual: &Changes, input: &Changes, samples: usize) -> f64 {
     // var = 1/n (1 + 2 Σ w ρ_ee ρ_uu), and the standard error of the sum with white residuals.
     let n = samples.max(1) as f64;
     let reach = residual.covariance.len() as f64;
+    // Bartlett's triangular weights keep the sum positive.
     let weights = (1..).map(|lag: u32| 1.0 - f64::from(lag) / reach);
     let lags = weights.zip(residual.correlation().zip(input.correlation()));
     let (sum, squares) = lags.fold((1.0, 0.0), |(sum, squares), (weight, (e, u))| {

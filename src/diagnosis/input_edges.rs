@@ -10,7 +10,7 @@
 //!
 //! and keeps it moved until the simulation restarts. The `ε` of each window are found by least
 //! squares. They are the logger's where they are spread evenly over one period and have nothing to
-//! do with the step: no sampled record can tell such a delay from that of the joint, and no
+//! do with the step: no sampled record separates such a delay from that of the joint, and no
 //! effect is missing for it.
 //!
 //! # References
@@ -65,6 +65,7 @@ pub(super) fn without_edges(
         return None;
     }
     let late: Vec<f64> = known.iter().map(|edge| edge.late_s).collect();
+    // Steps at the edges of the window are spread by noise: the middle 80 %.
     let spread_s = quantile(&late, 0.9)? - quantile(&late, 0.1)?;
     let square = |of: &Evaluation| -> f64 {
         let own = |w: &Window| of.residuals.get(w.trial)?.get(w.start..w.end);
@@ -84,7 +85,7 @@ fn subtract_edges(
     noise: f64,
 ) -> Option<Vec<Edge>> {
     /// Part of a period to which noise must leave the time of a step known: an even spread over
-    /// one period is then told from none.
+    /// one period is then distinguished from none.
     const KNOWN: f64 = 1.0 / 6.0;
     /// Steps of a window that are looked at together: work grows with the square of them.
     const MOST_TOGETHER: usize = 200;
@@ -106,6 +107,7 @@ fn subtract_edges(
     let found = Regression::of(&[residual.to_vec()], &shapes.iter().collect::<Vec<_>>());
     let edge = |((&at, shape), late_s): ((&usize, &Vec<Vec<f64>>), &f64)| {
         let length = shape.iter().map(|window| dot(window, window)).sum::<f64>().sqrt();
+        // The standard error of ε is σ/|shape|.
         let is_known = noise < KNOWN * period_s * length;
         Edge { late_s: *late_s, period_s, before: acting[at - 1], after: acting[at], is_known }
     };

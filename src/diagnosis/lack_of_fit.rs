@@ -53,7 +53,7 @@ pub struct LackOfFit {
     /// The root mean square residual of the part that was not fitted over that of the part
     /// that was.
     pub times_training: Option<f64>,
-    /// Where the residual stands out most; `None` where there are too few windows to tell.
+    /// Where the residual stands out most; `None` where there are too few windows.
     pub local: Option<LocalMisfit>,
     /// What shows it, where it is shown; the first of these that does.
     pub shown_by: Option<ShownBy>,
@@ -102,14 +102,17 @@ pub fn lack_of_fit(columns: &TestColumns, shapes: impl Fn() -> Vec<Column>) -> O
     let after_shapes = residuals_of(&columns.residuals, &all)?;
     let [whole, rest] = [&before_shapes, &after_shapes].map(|r| square(r));
     let misfit_share = if whole > 0.0 { (1.0 - rest / whole).max(0.0) } else { 0.0 };
+    // Step 2: the noise without the shapes, and, where it may be, with what they took of it.
     let mut judged = vec![test(columns, made, &NoiseModel::of_centred(&after_shapes))?];
     let is_small = columns.size.times_noise.is_none_or(|times| times <= BEYOND_NOISE);
     if is_small && misfit_share <= most_by_chance(columns, count) {
         judged.push(test(columns, shapes(), &NoiseModel::of_centred(&before_shapes))?);
     }
+    // Step 3: of two noises the one that makes less of the residual.
     let (statistic, p_value) = judged.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let by_shapes = p_value < SIGNIFICANCE && misfit_share >= NEGLIGIBLE;
     let noise_is_known = is_noise(columns.size.times_noise, misfit_share);
+    // Step 4, and then step 5.
     let as_a_whole = match columns.size.verdict() {
         Some(Says::Misfit(shown_by)) => Some(shown_by),
         Some(Says::Noise) if noise_is_known => None,
@@ -159,7 +162,7 @@ impl LackOfFit {
     }
 
     /// Whether the residual is hardly more than the noise.
-    pub fn is_near_noise(&self) -> bool {
+    pub(crate) fn is_near_noise(&self) -> bool {
         is_near_noise(self.times_noise)
     }
 }
@@ -181,8 +184,10 @@ fn test(columns: &TestColumns, shapes: Vec<Column>, noise: &NoiseModel) -> Optio
     let restricted = Regression::of(&residuals, &own);
     let full = Regression::of(&residuals, &every);
     let windows = residuals.iter().filter(|window| !window.is_empty()).count();
+    // Each window has lost its mean as well.
     let freedom = samples.checked_sub(full.rank + windows).filter(|freedom| *freedom > 0)?;
     let added = full.rank.checked_sub(restricted.rank).filter(|added| *added > 0)?;
+    // (R₀ − R₁)/q.
     let explained = (restricted.error - full.error).max(0.0) / added as f64;
     let statistic = explained / (full.error / freedom as f64).max(f64::MIN_POSITIVE);
     Some((statistic, fisher_tail(statistic, added, freedom)?))

@@ -1,4 +1,4 @@
-//! Is what a model leaves as large in one part of a record as in another?
+//! Is the residual as large in one part of a record as in another?
 //!
 //! A misfit that is there for a few seconds, or at one level of the input, is little of the
 //! error of a whole record, and a test of all samples together may take it for noise with a
@@ -35,7 +35,7 @@ pub struct LocalMisfit {
 
 impl LocalMisfit {
     /// Whether it is no noise, and large enough to matter.
-    pub fn is_shown(&self) -> bool {
+    pub(crate) fn is_shown(&self) -> bool {
         /// Far below what a test of one record needs: noise is not quite Gaussian, and a
         /// model that is right not quite the plant.
         const SIGNIFICANCE: f64 = 1e-6;
@@ -56,7 +56,7 @@ const FEWEST: usize = 10;
 type Shapes = [Vec<f64>; 2];
 
 /// The stretch of `windows` in which the residual stands out most, with the noise `floor`;
-/// `None` where there are too few to tell.
+/// `None` where there are too few of them.
 pub(super) fn local_misfit(windows: &[Vec<f64>], floor: Option<f64>) -> Option<LocalMisfit> {
     let stretches: Vec<&[f64]> = windows.iter().flat_map(|window| stretches(window)).collect();
     if stretches.len() < FEWEST {
@@ -73,6 +73,7 @@ pub(super) fn local_misfit(windows: &[Vec<f64>], floor: Option<f64>) -> Option<L
             (shapes, variances)
         });
         let products = [0, 1].map(|d| dot(&shapes[d], stretch).powi(2));
+        // e = ½ Σ_d (p_d·r)²/v_d.
         let energy = 0.5 * (products[0] / variances[0] + products[1] / variances[1]);
         if energy > largest.0 {
             largest = (energy, (products[0] + products[1]) / stretch.len() as f64);
@@ -80,8 +81,10 @@ pub(super) fn local_misfit(windows: &[Vec<f64>], floor: Option<f64>) -> Option<L
         energies.push(energy);
     }
     let (_, median, _) = energies.select_nth_unstable_by(stretches.len() / 2, f64::total_cmp);
+    // P(e > ln 2) = ½.
     let scale = *median / std::f64::consts::LN_2;
     let (energy, mean_square) = largest;
+    // n·exp(−x).
     let p_value = (stretches.len() as f64 * (-energy / scale).exp()).min(1.0);
     let times_noise = floor.map(|floor| mean_square.sqrt() / floor).filter(|t| t.is_finite());
     (scale > 0.0).then_some(LocalMisfit { p_value, times_noise })
@@ -115,6 +118,7 @@ fn shapes(count: usize) -> Shapes {
 fn variance(shape: &[f64], correlations: &[f64]) -> f64 {
     let lagged = |lag: usize| dot(shape, shape.get(lag..).unwrap_or_default());
     let beyond = correlations.iter().enumerate().skip(1);
+    // v = Σ_h c_h Σ_k p(k)·p(k + h), h to either side.
     lagged(0) + 2.0 * beyond.map(|(lag, correlation)| correlation * lagged(lag)).sum::<f64>()
 }
 

@@ -7,7 +7,6 @@
 //! - [`whiteness()`], [`input_correlation()`]: how the residual is correlated, with itself and
 //!   with the input
 //! - [`failure`]: where the error is
-//! - [`ModelDifference`]: two models of one record
 
 mod compare;
 mod error;
@@ -26,7 +25,8 @@ mod speed_error;
 mod step_error;
 mod whiteness;
 
-pub use compare::{Comparison, compare, compare_unfitted};
+pub(crate) use compare::compare_unfitted;
+pub use compare::{Comparison, compare};
 pub(crate) use compare::{compare_knowing, floor_of, lack_of};
 pub use error::ErrorFigures;
 pub use input_correlation::{CrossCorrelation, InputCorrelation, input_correlation};
@@ -34,7 +34,7 @@ pub use input_edges::InputEdges;
 pub use lack_of_fit::{Column, LackOfFit, NEGLIGIBLE, SIGNIFICANCE, TestColumns, lack_of_fit};
 pub use lags::{CONFIDENCE, TrialSignals};
 pub use local_misfit::LocalMisfit;
-pub use model_difference::{DifferenceTest, ModelDifference, RegionPair};
+pub(crate) use model_difference::{ModelDifference, RegionPair};
 pub use noise::{noise_floor, sensor_noise};
 pub use residual_size::ResidualSize;
 pub(crate) use residual_size::{BEYOND_NOISE, NEAR_NOISE};

@@ -8,7 +8,7 @@ use crate::numerics::fisher_tail;
 
 /// One model beside another one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ModelDifference {
+pub(crate) struct ModelDifference {
     /// Steps that both are judged on: those of the validation part, where there is one.
     pub steps: usize,
     /// Whether they are of the validation part.
@@ -31,7 +31,7 @@ pub struct ModelDifference {
 
 /// Diebold and Mariano's test of the root mean square of each step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DifferenceTest {
+pub(crate) struct DifferenceTest {
     /// Mean difference of the root mean squares of the steps by its standard error; negative where
     /// this model is better. Squares themselves would leave the word to the few largest steps.
     pub statistic: f64,
@@ -41,12 +41,12 @@ pub struct DifferenceTest {
 
 impl DifferenceTest {
     /// p-value up to which a difference is more than chance.
-    pub const LEVEL: f64 = 0.05;
+    pub(crate) const LEVEL: f64 = 0.05;
 }
 
 /// A part of the record as both models have it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RegionPair {
+pub(crate) struct RegionPair {
     /// With the error of this model.
     pub region: Region,
     /// Root mean square of the other model's residual there, output units.
@@ -55,17 +55,17 @@ pub struct RegionPair {
 
 impl ModelDifference {
     /// Steps that the test needs: it estimates a variance and its correlation from them.
-    pub const FEWEST: usize = 10;
+    pub(crate) const FEWEST: usize = 10;
 
     /// Whether the model with the smaller error is better by more than chance; none without a test.
-    pub fn is_significant(&self) -> Option<bool> {
+    pub(crate) fn is_significant(&self) -> Option<bool> {
         let test = self.test?;
         let is_better = self.rmse < self.other_rmse;
         Some(test.p_value <= DifferenceTest::LEVEL && (test.statistic < 0.0) == is_better)
     }
 
     /// `model` beside `other`, which is one of the same record; none where they share no step.
-    pub fn of(model: &Comparison, other: &Comparison) -> Option<Self> {
+    pub(crate) fn of(model: &Comparison, other: &Comparison) -> Option<Self> {
         let known = |step: &StepError| {
             let same = |it: &&StepError| {
                 (it.trial, it.start, it.samples) == (step.trial, step.start, step.samples)
@@ -123,6 +123,7 @@ fn diebold_mariano(differences: &[f64]) -> Option<DifferenceTest> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
     let lags = n.cbrt().floor() as usize;
     let own = covariance(0);
+    // Bartlett's weights 1 − h/(L + 1).
     let weighted = (1..=lags).map(|lag| (1.0 - lag as f64 / (lags as f64 + 1.0)) * covariance(lag));
     let variance = own + 2.0 * weighted.sum::<f64>();
     // A negative correlation of neighbours is no reason to be surer than without any.
@@ -130,7 +131,9 @@ fn diebold_mariano(differences: &[f64]) -> Option<DifferenceTest> {
     if variance <= 0.0 {
         return None;
     }
+    // Harvey, Leybourne and Newbold: √((n + 1 − 2h + h(h − 1)/n)/n) with h = 1.
     let statistic = mean / (variance / n).sqrt() * ((n - 1.0) / n).sqrt();
+    // The square of Student's t is F with 1 degree of freedom: both tails at once.
     let p_value = fisher_tail(statistic * statistic, 1, count - 1)?;
     Some(DifferenceTest { statistic, p_value })
 }

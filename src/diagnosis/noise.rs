@@ -50,6 +50,7 @@ pub fn sensor_noise(trials: &[Trial]) -> Option<f64> {
     });
     let variances: Vec<f64> =
         windows.map(about_parabola).filter(|variance| variance.is_finite()).collect();
+    // Windows in which the joint starts or stops leave more; they are the fewer.
     let seen = median(&variances)?.sqrt();
     Some(seen.max(rounding(trials)))
 }
@@ -67,6 +68,7 @@ fn rounding(trials: &[Trial]) -> f64 {
     let least = changes().fold(f64::INFINITY, f64::min);
     let is_multiple = |change: f64| (change / least - (change / least).round()).abs() < OFF;
     let is_step = least.is_finite() && changes().all(is_multiple);
+    // Rounding is even over ±q/2: q²/12.
     if is_step { least / 12.0_f64.sqrt() } else { 0.0 }
 }
 

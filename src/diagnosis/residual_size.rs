@@ -75,6 +75,7 @@ impl ResidualSize {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
         let freedom = |samples: usize| independent(samples) as usize;
         let (fitted, unseen) = (freedom(self.samples.0), freedom(self.samples.1));
+        // The ratio of two variances of independent noise.
         let p_value = fisher_tail(training * training, unseen, fitted);
         noise * training > NEAR_NOISE && p_value.is_some_and(|p| p < SIGNIFICANCE)
     }
@@ -107,6 +108,7 @@ pub(super) fn clipped(windows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     const SPIKE: f64 = 6.0;
     const LONGEST: usize = 2;
     let distances: Vec<f64> = windows.iter().flatten().map(|r| r.abs()).collect();
+    // A spike must not widen the limit that it is measured by.
     let limit = SPIKE * robust_scale(&distances);
     let clip = |window: &Vec<f64>| -> Vec<f64> {
         let runs = window.chunk_by(|a, b| (a.abs() > limit) == (b.abs() > limit));

@@ -35,12 +35,7 @@ pub(super) fn shapes(
         })
         .collect();
     let count = windows.first().map_or(0, Vec::len);
-    let column = |index: usize| {
-        windows
-            .iter_mut()
-            .map(|shapes| shapes.get_mut(index).map(take).unwrap_or_default())
-            .collect()
-    };
+    let column = |index: usize| windows.iter_mut().map(|shapes| take(&mut shapes[index])).collect();
     (0..count).map(column).collect()
 }
 
@@ -70,6 +65,7 @@ impl Scales {
         Self {
             levels: edges,
             middle: f64::midpoint(low, high),
+            // So that products of angle and speed are of the size of the speed.
             half_span: ((high - low) / 2.0).max(f64::MIN_POSITIVE),
             duration_s: ends.fold(f64::MIN_POSITIVE, f64::max),
         }
@@ -165,6 +161,7 @@ fn transients(acting: &[f64], period: f64) -> Vec<Vec<f64>> {
         let mut before = acting.first().copied().unwrap_or_default();
         let mut value = 0.0;
         let step = |u: &f64| {
+            // The exact decay of a first order over a sample.
             value = value * keep + (u - before);
             before = *u;
             value

@@ -26,10 +26,12 @@ pub(super) fn speed_error(residual: &[f64], windows: &[Range<usize>], period_s: 
         let Some(slots) = slopes.get_mut(window.clone()) else { continue };
         let length = longest.min(values.len());
         let usual = spread(longest).max(f64::MIN_POSITIVE);
+        // σ(slope) ∝ 1/√spread.
         let noise = (spread(length) / usual).sqrt() / period_s;
         for (index, slot) in slots.iter_mut().enumerate() {
+            // At the ends of a window its first or last stretch: none reaches over a restart.
             let start = index.saturating_sub(length / 2).min(values.len() - length);
-            let near = values.get(start..start + length).unwrap_or_default();
+            let near = &values[start..start + length];
             *slot = noise * slope(near);
         }
     }

@@ -58,6 +58,7 @@ pub fn whiteness(trials: &[TrialSignals<'_>], period_s: f64) -> Option<Whiteness
         n * (n + 2.0) * r * r / pairs as f64
     };
     let statistic: f64 = correlation.iter().zip(1..).map(portion).sum();
+    // The correlation of white noise has the variance 1/n.
     let band = BAND / n.sqrt();
     let outside = correlation.iter().take_while(|r| r.abs() > band).count();
     Some(Whiteness {
@@ -78,6 +79,7 @@ fn centred_autocorrelation(windows: &[Vec<f64>], lags: usize) -> Option<Vec<f64>
     let (&power, covariance) = covariance.split_first().filter(|(power, _)| **power > 0.0)?;
     let samples: usize = windows.iter().map(Vec::len).sum();
     let freedom = samples.checked_sub(windows.len()).filter(|freedom| *freedom > 0)? as f64;
+    // E Σ (r_k − r̄)(r_(k+h) − r̄) = −σ²·(1 − h/L) in a window of L samples of white noise.
     let lost = |lag: usize| -> f64 {
         windows.iter().map(|w| (1.0 - lag as f64 / w.len() as f64).max(0.0)).sum()
     };

@@ -381,17 +381,8 @@ mod tests {
         let one = (signal(), signal(), signal(), time, 0.0..=1.0, 1e-3..1.0);
         let moment =
             one.prop_map(|(signal, position, velocity, (time_s, dt_s), others, radians)| {
-                let (measured, radians_per_output_unit) = (f64::NAN, radians);
-                Moment {
-                    signal,
-                    position,
-                    velocity,
-                    time_s,
-                    dt_s,
-                    others,
-                    measured,
-                    radians_per_output_unit,
-                }
+                let seen = Moment { position, velocity, time_s, others, ..Moment::of(signal) };
+                Moment { dt_s, radians_per_output_unit: radians, ..seen }
             });
         prop::collection::vec(moment, 1..12)
     }

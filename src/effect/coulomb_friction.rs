@@ -24,7 +24,7 @@
 //! closed form (`sliding.rs`).
 //!
 //! A spool that lags before its overlap makes a joint start late and stop early, too: a
-//! [dead band](super::DeadBand) with a [`SpoolLag`](super::SpoolLag) is told from a friction with
+//! [dead band](super::DeadBand) with a [`SpoolLag`](super::SpoolLag) is distinguished from a friction with
 //! inertia by how it starts.
 //!
 //! The direction of motion is that of the effect's own speed. Loads that follow it in the

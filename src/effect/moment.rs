@@ -22,6 +22,23 @@ pub struct Moment {
     pub radians_per_output_unit: f64,
 }
 
+impl Moment {
+    /// A signal over 10 ms at the start of a record, of a joint that rests at zero and is measured
+    /// in degrees, beside others at rest.
+    pub fn of(signal: f64) -> Self {
+        Self {
+            signal,
+            position: 0.0,
+            velocity: 0.0,
+            time_s: 0.0,
+            dt_s: 0.01,
+            others: 0.0,
+            measured: f64::NAN,
+            radians_per_output_unit: 1_f64.to_radians(),
+        }
+    }
+}
+
 /// A change of the input, as the transport stage sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InputChange {

@@ -71,7 +71,7 @@ pub fn find(id: &str) -> Result<&'static dyn Effect, UnknownEffect> {
 ///
 /// # Errors
 /// [`UnknownEffect`] when none has it.
-pub fn find_among(
+pub(crate) fn find_among(
     id: &str,
     others: &[&'static dyn Effect],
 ) -> Result<&'static dyn Effect, UnknownEffect> {

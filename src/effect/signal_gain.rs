@@ -16,8 +16,7 @@
 //! # References
 //! Merritt, H. E., 1967, Hydraulic Control Systems, section 5.2 (flow gain and load pressure).
 
-use std::sync::{Mutex, PoisonError};
-
+use super::interned::{Interned, part_of_interned, text_of_interned};
 use super::{Dimension, Effect, Moment, Parameter, RecordRange, Spec, Stage};
 
 /// Of any signal: without a name it is not in the catalogue.
@@ -57,15 +56,8 @@ struct SignalGain {
 /// assert_eq!(supply.measured_signal(), Some("supply_pressure"));
 /// ```
 pub fn signal_gain(signal: &str) -> &'static dyn Effect {
-    /// As those of an expression: never freed, but each is there once.
-    static KNOWN: Mutex<Vec<&'static SignalGain>> = Mutex::new(Vec::new());
-    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(same) = known.iter().find(|one| one.signal == signal) {
-        return *same;
-    }
-    let new: &'static SignalGain = Box::leak(Box::new(SignalGain::new(signal)));
-    known.push(new);
-    new
+    static KNOWN: Interned<SignalGain> = Interned::none();
+    KNOWN.get_or_make(signal, |one, signal| one.signal == *signal, SignalGain::new)
 }
 
 /// Whether `id` is that of the effect without its signal.
@@ -75,13 +67,12 @@ pub(super) fn is_signal_gain(id: &str) -> bool {
 
 impl SignalGain {
     fn new(signal: &str) -> Self {
-        let leaked = |text: String| -> &'static str { Box::leak(text.into_boxed_str()) };
         let spec = Spec {
-            id: leaked(format!("{}[{signal}]", SPEC.id)),
-            summary: leaked(format!("the gain depends on the measured `{signal}`")),
+            id: text_of_interned(format!("{}[{signal}]", SPEC.id)),
+            summary: text_of_interned(format!("the gain depends on the measured `{signal}`")),
             ..SPEC.clone()
         };
-        Self { signal: signal.to_owned(), spec: Box::leak(Box::new(spec)) }
+        Self { signal: signal.to_owned(), spec: part_of_interned(spec) }
     }
 }
 

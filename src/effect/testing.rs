@@ -4,16 +4,7 @@ use super::{Effect, Moment};
 
 /// A signal at angle 0, over 10 ms, of a joint measured in degrees.
 pub(super) fn moment(signal: f64) -> Moment {
-    Moment {
-        signal,
-        position: 0.0,
-        velocity: 0.0,
-        time_s: 0.0,
-        dt_s: 0.01,
-        others: 0.0,
-        measured: f64::NAN,
-        radians_per_output_unit: 1_f64.to_radians(),
-    }
+    Moment::of(signal)
 }
 
 /// The outputs of `effect` for `signals` one after the other, from fresh memory.

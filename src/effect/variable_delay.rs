@@ -146,7 +146,7 @@ impl Effect for VariableDelay {
         let mut bounds: Vec<_> = SPEC.parameters.iter().map(|each| each.bounds(record)).collect();
         let scales = typical_scales(record);
         let (low, high) = FITTED_SCALES;
-        for (bounds, scale) in bounds.iter_mut().rev().skip(1).zip(scales.into_iter().rev()) {
+        for (bounds, scale) in bounds[SCALES].iter_mut().zip(scales) {
             *bounds = (low * scale, high * scale);
         }
         bounds
@@ -155,12 +155,15 @@ impl Effect for VariableDelay {
     fn guesses(&self, record: &RecordRange<'_>) -> Vec<Vec<f64>> {
         let mut start: Vec<_> = SPEC.parameters.iter().map(|each| each.start(record)).collect();
         let scales = typical_scales(record);
-        for (start, scale) in start.iter_mut().rev().skip(1).zip(scales.into_iter().rev()) {
+        for (start, scale) in start[SCALES].iter_mut().zip(scales) {
             *start = 2.0 * scale;
         }
         vec![start]
     }
 }
+
+/// Places of the three scales among the parameters.
+const SCALES: std::ops::Range<usize> = 4..7;
 
 /// The last parameter.
 const PER_STEP: &str = "per_step";
@@ -192,6 +195,13 @@ pub(crate) fn saturated(x: f64, scale: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn scales_are_where_bounds_and_guesses_take_them_to_be() {
+        assert!(SPEC.parameters[SCALES].iter().all(|p| p.name.ends_with("_scale")));
+        let others = SPEC.parameters[..SCALES.start].iter().chain(&SPEC.parameters[SCALES.end..]);
+        assert!(others.clone().all(|p| !p.name.ends_with("_scale")));
+    }
 
     #[test]
     fn size_direction_dwell_and_time_each_add_their_part() {

@@ -11,8 +11,8 @@
 //! of its own.
 
 use std::borrow::Cow;
-use std::sync::{Mutex, PoisonError};
 
+use super::interned::{Interned, part_of_interned, text_of_interned};
 use super::{
     DeadBand, Dimension, Effect, Equations, GravityLoad, InputChange, Moment, Parameter,
     PositionGain, RecordRange, Spec, Stage, WithinTrials,
@@ -91,33 +91,26 @@ struct Restricted {
 /// assert_eq!(heavy.within_trials().unwrap().word, "H");
 /// ```
 pub fn within_trials(effect: &'static dyn Effect, word: &str) -> &'static dyn Effect {
-    /// As those of an expression: never freed, but each is there once.
-    static KNOWN: Mutex<Vec<&'static Restricted>> = Mutex::new(Vec::new());
-    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    let is_it =
-        |one: &&&Restricted| one.word == word && std::ptr::eq(one.effect.spec(), effect.spec());
-    if let Some(same) = known.iter().find(is_it) {
-        return *same;
-    }
-    let new: &'static Restricted = Box::leak(Box::new(Restricted::new(effect, word)));
-    known.push(new);
-    new
+    static KNOWN: Interned<Restricted> = Interned::none();
+    let is_of = |one: &Restricted, (effect, word): &(&'static dyn Effect, &str)| {
+        one.word == *word && std::ptr::eq(one.effect.spec(), effect.spec())
+    };
+    KNOWN.get_or_make((effect, word), is_of, |(effect, word)| Restricted::new(effect, word))
 }
 
 impl Restricted {
     fn new(effect: &'static dyn Effect, word: &str) -> Self {
-        let leaked = |text: String| -> &'static str { Box::leak(text.into_boxed_str()) };
         let inner = effect.spec();
         let spec = Spec {
-            id: leaked(format!("{}[{word}]", inner.id)),
-            summary: leaked(format!("{}, in trials `{word}`", inner.summary)),
+            id: text_of_interned(format!("{}[{word}]", inner.id)),
+            summary: text_of_interned(format!("{}, in trials `{word}`", inner.summary)),
             confused_with: &[],
             absorbs: &[],
             looks_like_both: &[],
             refines: None,
             ..inner.clone()
         };
-        Self { effect, word: word.to_owned(), spec: Box::leak(Box::new(spec)) }
+        Self { effect, word: word.to_owned(), spec: part_of_interned(spec) }
     }
 }
 

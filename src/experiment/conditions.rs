@@ -15,7 +15,7 @@ pub(crate) fn are_opposites(trials: &[Trial], [one, other]: [&str; 2]) -> bool {
 }
 
 /// Whether `label` has `word`, between what is no letter and no digit.
-pub fn has_word(label: &str, word: &str) -> bool {
+pub(crate) fn has_word(label: &str, word: &str) -> bool {
     words(label).any(|other| other == word)
 }
 

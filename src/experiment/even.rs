@@ -190,7 +190,7 @@ impl Findings<'_> {
         let kind = |index: usize| {
             let (clock, period) = (self.clocks.get(index)?, self.periods.get(index)?);
             let uniform = self.uniform.get(index).copied().unwrap_or_default();
-            // A clock that is only cut is told of where it is cut.
+            // A clock that is only cut is reported where it is cut.
             let even = clock.jitter < 1e-3 && clock.evenness == Evenness::Jitters;
             (!uniform && !even).then_some((clock.evenness, *period))
         };

@@ -74,14 +74,7 @@ mod tests {
     }
 
     fn gap(trials: Vec<Trial>) -> Option<f64> {
-        let joint = Joint {
-            name: "boom".to_owned(),
-            input_unit: None,
-            output_unit: None,
-            covariates: Vec::new(),
-            trials,
-        };
-        gap_with_all_steps_s(&joint)
+        gap_with_all_steps_s(&Joint::new("boom", trials))
     }
 
     #[test]

@@ -19,6 +19,26 @@ pub struct Joint {
     pub trials: Vec<Trial>,
 }
 
+impl Joint {
+    /// A joint without further signals, whose units are not known.
+    pub fn new(name: impl Into<String>, trials: Vec<Trial>) -> Self {
+        let (input_unit, output_unit, covariates) = (None, None, Vec::new());
+        Self { name: name.into(), input_unit, output_unit, covariates, trials }
+    }
+
+    /// This joint with the units of its input and of its output.
+    #[must_use]
+    pub fn with_units(self, input: impl Into<String>, output: impl Into<String>) -> Self {
+        Self { input_unit: Some(input.into()), output_unit: Some(output.into()), ..self }
+    }
+
+    /// Other `trials` of this joint, without its further signals.
+    pub(crate) fn of_trials(&self, trials: Vec<Trial>) -> Self {
+        let (input_unit, output_unit) = (self.input_unit.clone(), self.output_unit.clone());
+        Self { input_unit, output_unit, ..Self::new(self.name.clone(), trials) }
+    }
+}
+
 /// Name and unit of a further measured signal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Signal {
@@ -129,7 +149,7 @@ impl Trial {
 
     /// Samples that were filled in while nothing was logged, in order: what the input was there is
     /// not known.
-    pub fn unlogged(&self) -> &[Range<usize>] {
+    pub(crate) fn unlogged(&self) -> &[Range<usize>] {
         &self.unlogged
     }
 
@@ -143,7 +163,7 @@ impl Trial {
 
     /// The first `samples` of it; none where there would be no sample.
     #[must_use]
-    pub fn beginning(&self, samples: usize) -> Option<Self> {
+    pub(crate) fn beginning(&self, samples: usize) -> Option<Self> {
         let cut = |signal: &[f64]| signal.iter().copied().take(samples).collect::<Vec<_>>();
         let covariates = self.covariates.iter().map(|signal| cut(signal)).collect();
         let (input, output) = (cut(&self.input), cut(&self.output));

@@ -90,7 +90,7 @@ impl Log<'_> {
         self.first_time(column).and_then(since_1970).map_or(1.0, |(scale, _)| scale)
     }
 
-    /// What is said of times whose unit was told by their size, or that are counted anew.
+    /// What is said of times whose unit was inferred from their size, or that are counted anew.
     fn origin_note(&self, time: TimeSource) -> Option<String> {
         let TimeSource::Times(column, scale) = time else { return None };
         let origin_s = self.origin_s(time);
@@ -111,7 +111,7 @@ impl Log<'_> {
         /// No joint is logged so seldom as every quarter of an hour, and nothing that moves once a day.
         const SELDOM_S: (f64, f64) = (900.0, 86_400.0);
         let TimeSource::Times(column, scale) = time else { return Ok(()) };
-        // The size of times since 1970 tells their unit, and so does a date.
+        // The size of times since 1970 shows their unit, and so does a date.
         let is_known = scale.is_some() || self.first_time(column).and_then(since_1970).is_some();
         let most = if is_known { SELDOM_S.1 } else { SELDOM_S.0 };
         let mut periods = grids.iter().map(|grid| grid.period().seconds());

@@ -13,7 +13,7 @@ pub(super) fn origin_s(first_s: f64) -> f64 {
     if first_s.is_finite() && first_s.abs() >= LATE_S { first_s.floor() } else { 0.0 }
 }
 
-/// The unit of times since 1970, told by their size: its seconds and its name.
+/// The unit of times since 1970, known by their size: its seconds and its name.
 pub(super) fn since_1970(first: f64) -> Option<(f64, &'static str)> {
     match first {
         // From the year 2001 to 2128 in each unit.

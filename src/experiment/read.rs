@@ -162,7 +162,7 @@ fn unique_stem(path: &Path, taken: &[String]) -> String {
     format!("{stem}~{number}")
 }
 
-/// Files as they are; of a folder its logs, told by their endings (`.csv`, `.xlsx`, `.parquet`,
+/// Files as they are; of a folder its logs, known by their endings (`.csv`, `.xlsx`, `.parquet`,
 /// `.mat`, `.mcap` and others), sorted by name.
 ///
 /// Truth files (`*.truth.csv`) are no logs and are left out: of a folder, and beside logs, as

@@ -334,7 +334,7 @@ fn interpolate(values: &mut [f64]) {
         };
         if let Some((from, start)) = last.filter(|(from, _)| index - from > 1) {
             let slope = (value - start) / (index - from) as f64;
-            for (offset, slot) in values.iter_mut().take(index).skip(from).enumerate() {
+            for (offset, slot) in values[from..index].iter_mut().enumerate() {
                 *slot = start + slope * offset as f64;
             }
         }

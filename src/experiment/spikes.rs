@@ -109,10 +109,10 @@ fn is_spike(output: &[f64], place: Range<usize>, noise: f64) -> bool {
     if jump.abs() <= BEYOND * noise {
         return false;
     }
-    let before = output.get(place.start - SIDE..place.start).unwrap_or_default();
-    let behind = output.get(place.end..place.end + SIDE).unwrap_or_default();
+    let before = &output[place.start - SIDE..place.start];
+    let behind = &output[place.end..place.end + SIDE];
     let mut around: Vec<f64> = before.iter().chain(behind).copied().collect();
-    let suspects = output.get(place).unwrap_or_default();
+    let suspects = &output[place];
     // One of the neighbours may be another spike.
     around.sort_by(f64::total_cmp);
     let (without_low, without_high) = (around.get(1..), around.get(..around.len() - 1));

@@ -40,7 +40,7 @@ impl Start {
     }
 }
 
-/// Starts of which a law can be told.
+/// Starts that determine a law.
 const FEWEST: usize = 8;
 
 /// Starts of each direction from which the two may differ.

@@ -153,7 +153,7 @@ impl JointModel {
     }
 
     /// Names of the measured signals on which its effects depend.
-    pub fn measured_signals(&self) -> impl Iterator<Item = &str> {
+    pub(crate) fn measured_signals(&self) -> impl Iterator<Item = &str> {
         self.components.iter().filter_map(|component| component.effect.measured_signal())
     }
 

@@ -85,6 +85,8 @@ impl LowPass {
             return Ok(Vec::new());
         };
         let samples = signal.len();
+        // As in `sosfiltfilt`: odd extension, forward from the steady state, backward, and the
+        // extension off again.
         let pad = padding(&sections).min(samples - 1);
         sosfilt_zi_dyn::<_, _, Sos<f64>>(sections.iter_mut());
         let mut smoothed = extend_odd(signal, pad, offset);
@@ -115,6 +117,7 @@ impl LowPass {
         let sections = self.design(period)?;
         let slowest = sections.iter().map(pole_radius).fold(0.0, f64::max);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "above zero")]
+        // |p|^n = LEFT, with p the slowest pole.
         let samples = (LEFT.ln() / slowest.max(f64::MIN_POSITIVE).ln()).ceil() as usize;
         Ok(samples + padding(&sections))
     }

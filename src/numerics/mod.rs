@@ -2,9 +2,7 @@
 //!
 //! - [`LowPass`]: zero-phase smoothing
 //! - [`median`], [`quantile`]: of samples
-//! - [`mann_whitney`], [`spearman`], [`holm`]: rank tests
-//! - [`chi_square_tail`], [`fisher_tail`], [`normal_below`], [`student_quantile`]:
-//!   distributions
+//! - [`mann_whitney`], [`spearman`]: rank tests
 //! - [`Line`]: a regression line
 
 mod autoregression;
@@ -24,14 +22,12 @@ pub(crate) use autoregression::Autoregression;
 pub use filter::{FilterError, LowPass, MAX_ORDER};
 pub use line::Line;
 pub(crate) use line::RunningLine;
-pub(crate) use moments::{autocovariances, column_products, dot, moments, take_off_line};
+pub(crate) use moments::{autocovariances, column_products, dot, moments, subtract_line};
 pub(crate) use noise::NoiseModel;
 pub(crate) use normal_equations::NormalEquations;
 pub(crate) use projection::{Basis, Projection};
 pub(crate) use rank::{PseudoInverse, REGRESSORS};
 pub(crate) use regression::{Regression, residuals_of};
-pub use statistics::{
-    RankTest, chi_square_tail, fisher_tail, holm, mann_whitney, median, normal_below, quantile,
-    ranks, spearman, student_quantile,
-};
+pub use statistics::{RankTest, mann_whitney, median, quantile, ranks, spearman};
+pub(crate) use statistics::{chi_square_tail, fisher_tail, holm, normal_below, student_quantile};
 pub(crate) use statistics::{noise_of_differences, quantile_of, robust_scale};

@@ -44,6 +44,7 @@ pub(crate) fn dots(a: &[f64], others: [&[f64]; 4]) -> [f64; 4] {
             sums.iter_mut().zip(a).zip(other).for_each(|((sum, a), b)| *sum += a * b);
         }
     }
+    // What no full set of lanes is left for.
     let heads = length - length % LANES;
     let mut products = sums.map(|lanes| lanes.iter().sum::<f64>());
     for (product, other) in products.iter_mut().zip(others) {
@@ -70,6 +71,7 @@ pub(crate) fn moments(values: &[f64], offset: f64) -> (f64, f64, f64) {
         }
         first += LANES as f64;
     }
+    // Σ k·y = Σ first·y + Σ lane·y, since k = first + lane.
     let lanes = sums.iter().zip(0_u32..).map(|(sum, lane)| f64::from(lane) * sum);
     let mut moment = ramps.iter().sum::<f64>() + lanes.sum::<f64>();
     let (mut sum, mut square) = (sums.iter().sum::<f64>(), squares.iter().sum::<f64>());
@@ -85,7 +87,7 @@ pub(crate) fn moments(values: &[f64], offset: f64) -> (f64, f64, f64) {
 
 /// Subtracts the line `value + slope·k` from the `values`, `k` counted from 0; the sum of
 /// squares of the residual.
-pub(crate) fn take_off_line(values: &mut [f64], value: f64, slope: f64) -> f64 {
+pub(crate) fn subtract_line(values: &mut [f64], value: f64, slope: f64) -> f64 {
     const LANES: usize = 4;
     let lanes: [f64; LANES] = [0.0, 1.0, 2.0, 3.0].map(|lane| value + slope * lane);
     let mut squares = [0.0; LANES];
@@ -112,6 +114,7 @@ pub(crate) fn autocovariances<W: AsRef<[f64]>>(windows: &[W], longest: usize) ->
     let samples: usize = windows().map(<[f64]>::len).sum();
     let covariance = |lag: usize| -> f64 {
         windows().map(|w| w.get(lag..).map_or(0.0, |later| dot(w, later))).sum::<f64>()
+            // Divided by all samples, not by the pairs: the covariances stay positive definite.
             / samples.max(1) as f64
     };
     (0..=longest).map(covariance).collect()
@@ -148,7 +151,7 @@ mod tests {
     fn a_line_is_taken_off() {
         let mut values: Vec<f64> = (0..11).map(|k| 3.0 - 0.5 * f64::from(k)).collect();
         values[9] += 2.0;
-        let power = take_off_line(&mut values, 3.0, -0.5);
+        let power = subtract_line(&mut values, 3.0, -0.5);
         assert!((power - 4.0).abs() < 1e-12 && (values[9] - 2.0).abs() < 1e-12);
         assert!(values[..9].iter().chain(&values[10..]).all(|y| y.abs() < 1e-12));
     }

@@ -47,6 +47,7 @@ impl NoiseModel {
     /// Noise about a line, which does not wander.
     fn about_line(mut coefficients: Vec<f64>) -> Self {
         let sum: f64 = coefficients.iter().sum();
+        // With Σ a_i = 1, whitening would remove the level of the line itself.
         if sum > LARGEST_SUM {
             for a in &mut coefficients {
                 *a *= LARGEST_SUM / sum;
@@ -57,6 +58,7 @@ impl NoiseModel {
 
     /// Noise about a line; white where its memory is negligible.
     fn of_found(found: Autoregression) -> Self {
+        // A first-order autoregression explains the square of its correlation.
         let is_white = found.explained <= LEAST * LEAST;
         if is_white { Self::white() } else { Self::about_line(found.coefficients) }
     }
@@ -76,6 +78,7 @@ impl NoiseModel {
         const ROUNDS: usize = 3;
         let all: Vec<LaggedProducts> =
             residuals.into_iter().map(|values| LaggedProducts::of(values.as_ref())).collect();
+        // Whatever moves a few windows would be taken for the memory of all.
         let usual = without_misfits(&all, LaggedProducts::power);
         let samples: usize = usual.iter().map(|found| found.samples).sum();
         let length = samples as f64 / usual.len().max(1) as f64;
@@ -96,7 +99,7 @@ impl NoiseModel {
     }
 
     /// The noise in the residuals of regressions of short windows.
-    pub(crate) fn left_by(projections: &[Projection]) -> Self {
+    pub(crate) fn of_projections(projections: &[Projection]) -> Self {
         let usual = without_misfits(projections, Projection::power);
         let samples: usize = usual.iter().map(|projection| projection.samples()).sum();
         let longest = LONGEST_MEMORY.min(samples / 10);
@@ -167,6 +170,8 @@ impl NoiseModel {
         // Running sums over the lags, so that each length costs nothing more.
         let (mut plain, mut weighted) = (vec![0.0], vec![0.0]);
         let (mut sum, mut lagged) = (0.0, 0.0);
+        // `plain[h] = Σ r_h` and `weighted[h] = Σ h r_h`, so that Σ (1 − h/L) r_h is their
+        // difference.
         for (lag, correlation) in self.correlations(longest).iter().enumerate().skip(1) {
             sum += correlation;
             lagged += lag as f64 * correlation;
@@ -181,6 +186,7 @@ impl NoiseModel {
         let filled = windows.iter().map(Vec::len).filter(|length| *length > 0);
         let share = filled.map(|length| length as f64 * part(length)).sum::<f64>();
         let share = (share / samples.max(1) as f64).clamp(0.0, LARGEST);
+        // `c₀ m`, with `c₀ = power / (1 − m)`.
         power * share / (1.0 - share)
     }
 
@@ -196,6 +202,7 @@ impl NoiseModel {
         while response.len() < LONGEST && small <= self.order() {
             let past = response.iter().rev();
             let next: f64 = self.coefficients.iter().zip(past).map(|(a, x)| a * x).sum();
+            // As many small values as the noise has memory: all that follow are small, too.
             small = if next.abs() < OVER { small + 1 } else { 0 };
             response.push(next);
         }
@@ -223,11 +230,9 @@ impl NoiseModel {
             from += LANES;
         }
         for k in from..values.len() {
-            let (now, later) = values.split_at_mut(k + 1);
-            let expected: f64 = self.coefficients.iter().zip(later).map(|(a, y)| a * *y).sum();
-            if let Some(now) = now.last_mut() {
-                *now -= expected;
-            }
+            let later = &values[k + 1..];
+            let expected: f64 = self.coefficients.iter().zip(later).map(|(a, y)| a * y).sum();
+            values[k] -= expected;
         }
     }
 
@@ -246,18 +251,17 @@ impl NoiseModel {
             for (a, past) in self.coefficients.iter().zip(past) {
                 sums.iter_mut().zip(past).for_each(|(sum, y)| *sum += a * y);
             }
-            block.iter_mut().skip(order).zip(sums).for_each(|(y, sum)| *y -= sum);
+            block[order..].iter_mut().zip(sums).for_each(|(y, sum)| *y -= sum);
             end -= LANES;
         }
         for k in (order..end).rev() {
-            let (past, now) = values.split_at_mut(k);
-            let recent = past.iter().rev();
+            let recent = values[..k].iter().rev();
             let expected: f64 = self.coefficients.iter().zip(recent).map(|(a, y)| a * y).sum();
-            if let Some(now) = now.first_mut() {
-                *now -= expected;
-            }
+            values[k] -= expected;
         }
-        values.iter_mut().take(order).for_each(|value| *value = 0.0);
+        // They have no full past.
+        let without_past = order.min(values.len());
+        values[..without_past].fill(0.0);
     }
 
     /// Each of the `windows` whitened, without its first samples, which have no past, and

@@ -28,6 +28,7 @@ impl<'a> Column<'a> {
     /// Puts its products with the `others` into `slots`.
     fn multiply(&self, others: &[Self], slots: &mut [f64]) {
         let first = others.iter().map(|other| other.start).min().unwrap_or(0).max(self.start);
+        // Four products in one pass read the column once.
         if let [a, b, c, d] = others {
             slots.copy_from_slice(&dots(self.from(first), [a, b, c, d].map(|o| o.from(first))));
         } else {
@@ -116,6 +117,7 @@ impl NormalEquations {
     pub(crate) fn coefficients(&self, count: usize, behind: &[(usize, f64)]) -> Vec<f64> {
         let target = self.size.saturating_sub(1);
         let mut found = vec![0.0; count];
+        // Back substitution: x_r = (A_ry − Σ_c>r A_rc x_c) / A_rr.
         for row in (0..count).rev() {
             if !self.stands_alone(row) {
                 continue;

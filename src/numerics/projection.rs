@@ -39,6 +39,7 @@ impl Basis {
         for column in columns.chunks_exact(length.max(1)) {
             let size = dot(column, column).sqrt();
             let distant = basis.residual(column);
+            // q = (1 − QQᵀ) a / |(1 − QQᵀ) a|.
             let distance = dot(&distant, &distant).sqrt();
             if distance > tolerance * size {
                 basis.columns.extend(distant.iter().map(|value| value / distance));
@@ -142,6 +143,7 @@ pub(crate) fn autocovariances(projections: &[&Projection], longest: usize) -> Ve
     let mut kept = DMatrix::zeros(longest + 1, longest + 1);
     let mut samples = 0;
     for projection in projections.iter().step_by(projections.len().div_ceil(ENOUGH).max(1)) {
+        // Windows of one joint are about as long: an even selection has their mean.
         kept += projection.kept(longest);
         samples += projection.samples();
     }
@@ -151,6 +153,7 @@ pub(crate) fn autocovariances(projections: &[&Projection], longest: usize) -> Ve
     };
     let measured =
         DVector::from_fn(longest + 1, |lag, _| product(lag) * samples as f64 / all.max(1) as f64);
+    // Σ_l kept_hl γ_l = E Σ r_k r_(k+h), solved for γ.
     kept.lu().solve(&measured).map_or_else(Vec::new, |found| found.iter().copied().collect())
 }
 

@@ -56,6 +56,7 @@ impl PseudoInverse {
     /// The solution `x` of least length, and `bᵀ x`.
     pub(crate) fn solve(&self, b: &DVector<f64>) -> (DVector<f64>, f64) {
         let rotated = self.vectors.tr_mul(b);
+        // With products VΛVᵀ: bᵀx = Σ (vᵢᵀb)² / λᵢ.
         let explained = rotated.component_mul(&rotated).dot(&self.inverses);
         (&self.vectors * rotated.component_mul(&self.inverses), explained)
     }

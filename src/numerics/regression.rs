@@ -38,7 +38,9 @@ impl Regression {
         let inverse = PseudoInverse::of(products, REGRESSORS);
         let (scaled, explained) = inverse.solve(&with);
         Self {
+            // Of the columns as they are, no longer of length one.
             coefficients: scaled.component_div(&DVector::from_vec(lengths)),
+            // yᵀy − bᵀβ, which rounding may leave below zero.
             error: (total - explained).max(0.0),
             rank: inverse.rank(),
         }

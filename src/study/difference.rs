@@ -51,7 +51,7 @@ impl StepResult {
     }
 
     /// Whether its delay counts.
-    pub fn is_accepted(&self) -> bool {
+    pub(crate) fn is_accepted(&self) -> bool {
         self.verdict == Verdict::Accepted
     }
 }
@@ -159,7 +159,7 @@ impl StepPair {
     }
 
     /// How far both delays are apart, seconds; 0 where one is missing.
-    pub fn size_s(&self) -> f64 {
+    pub(crate) fn size_s(&self) -> f64 {
         self.difference_s().map_or(0.0, f64::abs)
     }
 
@@ -251,7 +251,7 @@ impl JointDifferences {
     }
 
     /// The steps on which the results differ, the most different first.
-    pub fn differing(&self) -> impl Iterator<Item = &StepPair> {
+    pub(crate) fn differing(&self) -> impl Iterator<Item = &StepPair> {
         self.pairs.iter().filter(|pair| pair.differs())
     }
 
@@ -266,7 +266,7 @@ impl JointDifferences {
     }
 
     /// The largest of these distances, seconds.
-    pub fn largest_s(&self) -> Option<f64> {
+    pub(crate) fn largest_s(&self) -> Option<f64> {
         self.sizes_s().into_iter().max_by(f64::total_cmp)
     }
 

@@ -50,7 +50,7 @@ pub fn estimate_joints(
 
 /// Estimates every trial of every joint with settings of which some are chosen for each joint
 /// from its own record: see [`choose`].
-pub fn estimate_joints_with(
+pub(crate) fn estimate_joints_with(
     joints: &[Joint],
     settings: &Settings,
     automatic: Automatic,
@@ -61,7 +61,7 @@ pub fn estimate_joints_with(
 }
 
 /// Estimates every trial of every joint with what is `asked` for of that joint.
-pub fn estimate_each(
+pub(crate) fn estimate_each(
     joints: &[Joint],
     asked: impl Fn(&Joint) -> (Settings, Automatic) + Sync,
     done: impl Fn() + Sync,

@@ -22,11 +22,14 @@ mod sweep;
 
 pub use difference::{JointDifferences, JointResult, OtherResult, StepPair, StepResult, Verdicts};
 pub use earlier::EarlierError;
-pub use estimate::{JointEstimate, estimate_each, estimate_joints, estimate_joints_with};
+pub(crate) use estimate::estimate_each;
+pub use estimate::{JointEstimate, estimate_joints};
+pub(crate) use models::{OfJoints, others_of};
 pub use models::{
-    OfJoints, add_to_joints, compare_joints, explain_joints, improve_joints, know_joints,
-    others_of, suspect_joints,
+    add_to_joints, compare_joints, explain_joints, improve_joints, know_joints, suspect_joints,
 };
-pub use protocol::{Mode, Protocol, Watch, Watched};
+pub(crate) use protocol::Watch;
+pub use protocol::{Mode, Protocol, Watched};
 pub use review::{Review, ReviewError, ReviewNote, Why};
-pub use sweep::{SweptJoint, sweep_each, sweep_joints};
+pub(crate) use sweep::sweep_each;
+pub use sweep::{SweptJoint, sweep_joints};

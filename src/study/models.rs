@@ -18,7 +18,7 @@ use crate::fit::{Fit, FitError, FitRecord, Horizon, Split};
 use crate::model::JointModel;
 
 /// What came of each joint: `None` where it has no model.
-pub type OfJoints<T> = Vec<Option<Result<T, FitError>>>;
+pub(crate) type OfJoints<T> = Vec<Option<Result<T, FitError>>>;
 
 /// Compares each joint with its model: `None` where it has none.
 ///
@@ -187,7 +187,7 @@ fn part_of(joint: &Joint) -> Joint {
     let piece =
         |(trial, from, to): &(usize, usize, usize)| joint.trials.get(*trial)?.part(*from, *to);
     let trials: Vec<Trial> = blocks.iter().filter_map(piece).collect();
-    Joint { trials, covariates: Vec::new(), ..joint.clone() }
+    joint.of_trials(trials)
 }
 
 /// How often the input of `joint` changes from one sample to the next.
@@ -218,7 +218,7 @@ pub fn suspect_joints(
 }
 
 /// These joints as others see them, with their typical delays.
-pub fn others_of<'a>(
+pub(crate) fn others_of<'a>(
     joints: &'a [Joint],
     estimates: &[Result<JointEstimate, EstimateError>],
 ) -> Vec<Other<'a>> {

@@ -18,7 +18,7 @@ pub enum Mode {
 }
 
 /// Who sees how much work there is, and each time that a piece of it is done.
-pub trait Watch: Sync {
+pub(crate) trait Watch: Sync {
     /// So many pieces of work have come up.
     fn more(&self, pieces: usize);
 
@@ -70,7 +70,7 @@ impl From<Protocol> for Watched<'_> {
 impl Protocol {
     /// This protocol, the work being watched. A piece is a fit, or a pair of candidates that
     /// is separated; more pieces come up as the work goes on.
-    pub fn watched(self, watch: &dyn Watch) -> Watched<'_> {
+    pub(crate) fn watched(self, watch: &dyn Watch) -> Watched<'_> {
         Watched { protocol: self, watch, others: &[] }
     }
 }

@@ -31,7 +31,7 @@ pub fn sweep_joints(
 }
 
 /// Estimates every joint with all settings of a grid of its own.
-pub fn sweep_each(
+pub(crate) fn sweep_each(
     joints: &[Joint],
     of_joint: impl Fn(&Joint) -> Grid + Sync,
     tolerance: f64,

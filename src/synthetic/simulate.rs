@@ -57,13 +57,8 @@ fn recorded(
 ) -> Result<Joint, PlantError> {
     let trial = Trial::new(TRIAL, 0.0, clock.period(), input, output)
         .map_err(|source| PlantError::Trial { place: Place::joint(&spec.name), source })?;
-    Ok(Joint {
-        name: spec.name.clone(),
-        input_unit: Some(spec.input_unit.clone()),
-        output_unit: Some(spec.output_unit.clone()),
-        covariates: Vec::new(),
-        trials: vec![trial],
-    })
+    let joint = Joint::new(spec.name.clone(), vec![trial]);
+    Ok(joint.with_units(spec.input_unit.clone(), spec.output_unit.clone()))
 }
 
 #[cfg(test)]

@@ -72,6 +72,7 @@ impl Frame {
     /// its slope.
     pub(super) fn of(noise: &NoiseModel, rows: f64, (value, slope): (f64, f64)) -> Self {
         let order = noise.order() as f64;
+        // Σ (k − middle)² over consecutive k.
         let spread = rows * (rows * rows - 1.0) / 12.0;
         let (last, middle) = (rows + order - 1.0, order + (rows - 1.0) / 2.0);
         let (per_level, per_slope) = (rows.sqrt().recip(), spread.sqrt().recip());
@@ -119,6 +120,7 @@ impl Frame {
     pub(super) fn ramp(&self, reach: f64) -> Ramp {
         let [square, a, b] =
             self.ramps.map(|[p, q, r, s]| p + reach * (q + reach * (r + reach * s)));
+        // |h|² − (h·q₀)² − (h·q₁)², with the orthonormal constant q₀ and slope q₁.
         Ramp { square: square - a * a - b * b, line: [a, b] }
     }
 
@@ -136,11 +138,13 @@ impl Frame {
         let Self { order, level, shift, onset, .. } = *self;
         let reach = self.behind(j);
         let count = reach - order;
+        // Σ d over d = order + 1 … reach.
         let sum = (reach * (reach + 1.0) - order * (order + 1.0)) * 0.5;
         let (with_count, with_sum) = (level * count, level * sum);
         let level_line @ [a, b] =
             self.along(reach, onset.level + with_count, onset.level_d + with_sum);
         let level_level = onset.level_level + level * with_count;
+        // There w_d = level and h_d = level·d + shift.
         let level_ramp = onset.level_ramp + level * (with_sum + shift * count);
         let Ramp { square, line } = self.ramp(reach);
         Piece {
@@ -157,6 +161,8 @@ impl Frame {
     /// No level that begins before `reach` samples has a larger square beside the line.
     #[inline]
     pub(super) fn most_level(&self, reach: f64) -> f64 {
+        // Beside a constant, a level over m of n samples has the square m (n − m)/n: at most the
+        // smaller of both.
         let (behind, before) = (reach - self.order, self.last - reach + 1.0);
         let count = if behind < before { behind } else { before };
         self.onset.level_level + self.level * self.level * count
@@ -166,6 +172,7 @@ impl Frame {
     pub(super) fn lines(&self, piece: &Piece, j: f64, s: f64, number: f64) -> (Line, Line) {
         let change = piece.change(s);
         let [[ramp, ramp_slope], [level, level_slope]] = [piece.ramp_line, piece.level_line];
+        // The break's column is h − s·w.
         let along = [change * (ramp - s * level), change * (ramp_slope - s * level_slope)];
         self.lines_of(along, j + s, change, number)
     }
@@ -176,8 +183,10 @@ impl Frame {
         let [along_level, along_slope] = along.map(|part| part * self.per_noise_level);
         let slope = self.slope - along_slope * self.per_slope;
         let value = self.value - along_level * self.per_level;
+        // Whitening makes level·(c + v·(k + shift/level)) of c + v·k.
         let at = number + self.middle + self.shift * self.per_noise_level;
         let before = Line { slope, intercept: value - slope * at };
+        // Both lines meet at the break.
         let intercept = before.intercept - change * (position + number);
         (before, Line { slope: slope + change, intercept })
     }

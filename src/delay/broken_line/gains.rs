@@ -28,10 +28,11 @@ impl BreakGains {
             (*positions.start(), (positions.end() + 1).saturating_sub(*positions.start()));
         let (searched, rest) = pulled.split_at((first + 1 + count).min(pulled.len()));
         let (level_sum, moment, _) = moments(rest, 0.0);
+        // Behind the last position the ramp is d = k + 1: Σ (k + 1)·y.
         let ramp_sum = level_sum + moment;
         let mut ramp_y = vec![ramp_sum; count + 1];
         let searched = searched.get(first + 1..).unwrap_or_default();
-        let ramps = ramp_y.get_mut(..count).unwrap_or_default();
+        let ramps = &mut ramp_y[..count];
         let (mut ramps, values) =
             (ramps.rchunks_exact_mut(TOGETHER), searched.rchunks_exact(TOGETHER));
         let first_values = values.remainder();
@@ -45,6 +46,7 @@ impl BreakGains {
         let slots = size.iter_mut().zip(&mut gain).zip(&ramp_y);
         for (((size, gain), ramp_y), reach) in slots.zip(frame.reaches(first)) {
             *size = frame.ramp(reach).square;
+            // (h·y)²/|h|², of residuals.
             let taken = ramp_y * ramp_y / *size;
             *gain = if *size > 0.0 { taken } else { 0.0 };
         }
@@ -74,12 +76,12 @@ impl BreakGains {
         const BLOCK: usize = 8;
         let most = SLACK * self.gain.iter().copied().fold(0.0, larger);
         let spare = |[a, b]: [f64; 2], [size, next]: [f64; 2], reach: f64| {
+            // |h − s·w|² bends by |w|²: between its ends it is s·(1 − s)·|w|² below their chord.
             let least = if size < next { size } else { next };
             larger(a * a, b * b) - most * (least - 0.25 * frame.most_level(reach))
         };
         let mut good = Vec::new();
-        let [next_ramps, next_sizes] =
-            [&self.ramp_y, &self.size].map(|values| values.get(1..).unwrap_or_default());
+        let [next_ramps, next_sizes] = [&self.ramp_y, &self.size].map(|values| &values[1..]);
         let ramps = self.ramp_y.chunks(BLOCK).zip(next_ramps.chunks(BLOCK));
         let sizes = self.size.chunks(BLOCK).zip(next_sizes.chunks(BLOCK));
         for (index, ((a, b), (size, next))) in ramps.zip(sizes).enumerate() {
@@ -106,8 +108,8 @@ impl BreakGains {
 
     /// The piece behind the position of an index.
     pub(super) fn piece(&self, index: usize, frame: &Frame) -> Piece {
-        let of = |index: usize| self.ramp_y.get(index).copied().unwrap_or_default();
-        let (here, next) = (of(index), of(index + 1));
+        // A ramp less the one that begins a sample later is the level between.
+        let (here, next) = (self.ramp_y[index], self.ramp_y[index + 1]);
         frame.piece(self.first + index, here - next, here)
     }
 }
@@ -121,6 +123,7 @@ fn add_up([ramp_sum, level_sum]: [f64; 2], ramps: &mut [f64], values: &[f64]) ->
         level += y;
         ramp += level;
         behind += level_sum;
+        // Each ramp that begins a sample earlier is larger by 1 at every sample behind.
         *slot = ramp_sum + (behind + ramp);
     }
     [ramp_sum + (behind + ramp), level_sum + level]

@@ -18,6 +18,7 @@ impl Piece {
     /// How much of the squared error a break at `s` takes away.
     #[inline]
     fn gain(&self, s: f64) -> f64 {
+        // ((h − s·w)·y)²/|h − s·w|².
         let with = self.ramp_y - s * self.level_y;
         let size = self.size(s);
         if size > 0.0 { with * with / size } else { 0.0 }
@@ -38,6 +39,8 @@ impl Piece {
     /// The best break within the piece, 0 to 1, and what it takes away.
     #[inline]
     pub(super) fn best(&self) -> (f64, f64) {
+        // The gain's derivative is 0 where s·(wy·wh − hy·ww) = wy·hh − hy·wh, with wy for w·y and
+        // so on.
         let below = self.level_y * self.level_ramp - self.ramp_y * self.level_level;
         let above = self.level_y * self.ramp_ramp - self.ramp_y * self.level_ramp;
         // Most pieces have nothing inside: they cost no division.
@@ -48,6 +51,7 @@ impl Piece {
 
     /// Where the gain crosses `limit` between 0 and 1: the first time, and the last.
     pub(super) fn crossings(&self, limit: f64) -> Option<(f64, f64)> {
+        // (hy − s·wy)² = limit·(hh − 2s·wh + s²·ww), that is a·s² − 2b·s + c = 0.
         let a = self.level_y * self.level_y - limit * self.level_level;
         let b = self.ramp_y * self.level_y - limit * self.level_ramp;
         let c = self.ramp_y * self.ramp_y - limit * self.ramp_ramp;

@@ -96,6 +96,7 @@ fn best_position(points: &[(f64, f64)]) -> Option<f64> {
         let ((x, _), (next, y)) = (about(before), about(after));
         behind.add(next, y);
         let width = next - x;
+        // One slope on each side takes two points.
         if width <= 0.0 || behind.n < 2.0 || whole.n - behind.n < 2.0 {
             continue;
         }
@@ -111,6 +112,7 @@ fn best_position(points: &[(f64, f64)]) -> Option<f64> {
 /// line through the `whole` can do.
 fn piece(whole: &Sums, behind: &Sums, x: f64, width: f64) -> Piece {
     let Sums { n, x: sum, xx, y, xy } = *behind;
+    // Σ (x_i − x)/width over the points behind, and its products likewise.
     let ramp = (sum - x * n) / width;
     let ramp_x = (xx - x * sum) / width;
     let ramp_ramp = (xx - 2.0 * x * sum + x * x * n) / (width * width);
@@ -146,7 +148,8 @@ fn regression(points: &[(f64, f64)], position: f64) -> Option<BrokenRegression> 
     let row = |x: f64| columns(x, change);
     let (_, covariance, _) = solved(points, row)?;
     let residual = |(x, y): &(f64, f64)| y - row(*x).dot(&Vector4::new(value, slope, change, 0.0));
-    let sse: f64 = points.iter().map(residual).map(|left| left * left).sum();
+    let sse: f64 = points.iter().map(residual).map(|r| r * r).sum();
+    // A, b, c and ψ.
     let freedom = points.len() - 4;
     let variance = sse / freedom as f64;
     let part = |value: f64, along: Vector4<f64>| {
@@ -156,6 +159,7 @@ fn regression(points: &[(f64, f64)], position: f64) -> Option<BrokenRegression> 
     Some(BrokenRegression {
         position: part(position, Vector4::w()),
         slope_before: part(slope, Vector4::y()),
+        // Their variances and twice their covariance.
         slope_after: part(slope + change, Vector4::y() + Vector4::z()),
         intercept: value - slope * position,
         sse,
@@ -177,6 +181,7 @@ fn solved(
     }
     let empty = products[(3, 3)] == 0.0;
     if empty {
+        // A column of zeros stands alone: the inverse of the others stays what it is.
         products[(3, 3)] = 1.0;
     }
     let inverse = products.try_inverse()?;

@@ -41,6 +41,7 @@ pub struct Stroke {
 pub fn stroke(values: &[f64], confidence: f64) -> Option<Stroke> {
     let (first, last) = (values.first()?, values.last()?);
     let (half, way) = (f64::midpoint(*first, *last), last - first);
+    // Half of the way is behind the onset and before the stop.
     let middle = values.iter().position(|value| (value - half) * way > 0.0)?;
     let near = |low: usize, high: usize| {
         let mut found = placed(values, low, high, confidence)?;

@@ -28,7 +28,7 @@ use std::ops::RangeInclusive;
 use super::frame::{Bends, Frame};
 use super::gains::BreakGains;
 use super::piece::Piece;
-use crate::numerics::{Line, NoiseModel, fisher_tail, moments, student_quantile, take_off_line};
+use crate::numerics::{Line, NoiseModel, fisher_tail, moments, student_quantile, subtract_line};
 use crate::units::floor_to_index;
 
 /// Fewest samples beside those that the noise remembers.
@@ -37,7 +37,7 @@ pub(crate) const FEWEST: usize = 8;
 /// Parameters of a broken line.
 pub(crate) const PARAMETERS: usize = 4;
 
-/// The interval whose sides tell the median of what is likely, and the end of its upper half.
+/// The interval whose sides give the median of what is likely, and the end of its upper half.
 const USUAL: f64 = 0.95;
 const UPPER: f64 = 0.975;
 
@@ -46,7 +46,7 @@ const UPPER: f64 = 0.975;
 pub struct BrokenLine {
     /// Where it breaks.
     pub position: f64,
-    /// The first position that is as good as the data can tell.
+    /// The first position that the data do not exclude.
     pub low: f64,
     /// The last of them.
     pub high: f64,
@@ -84,10 +84,12 @@ impl BrokenLine {
     /// About the standard error of the position in the median of so many samples: that of where
     /// two lines meet that are fitted apart.
     pub(crate) fn position_error(&self, samples: usize) -> f64 {
+        // With s² = SSE/n, the end of a line through n/2 samples is known to 2s/√(n/2), and so the
+        // gap between two to 4s/√n; it closes by the change of slope per sample.
         4.0 * self.sse.sqrt() / samples as f64 / (self.after.slope - self.before.slope).abs()
     }
 
-    /// What it leaves of the window's output.
+    /// Residuals of the window's output.
     pub(crate) fn residuals(&self, values: &[f64]) -> Vec<f64> {
         let fitted = |k: f64| if k < self.position { self.before.at(k) } else { self.after.at(k) };
         values.iter().enumerate().map(|(k, y)| y - fitted(k as f64)).collect()
@@ -102,12 +104,12 @@ pub(crate) struct Evidence {
     pub(crate) bends: Bends,
 }
 
-/// A window's output, whitened, and what one line leaves of it.
+/// A window's output, whitened, and its residuals about one line.
 #[derive(Clone, Debug)]
 pub(crate) struct Window<'a> {
     noise: &'a NoiseModel,
     frame: Frame,
-    /// What one line leaves, whitened once more backwards: sums of it behind a sample are what
+    /// The residuals about one line, whitened once more backwards: sums of it behind a sample are what
     /// a whitened level has for inner product with the residual.
     pulled: Vec<f64>,
     /// The squared error of one line.
@@ -121,18 +123,20 @@ impl<'a> Window<'a> {
         let order = noise.order();
         let rows = values.len().checked_sub(order).filter(|rows| *rows >= FEWEST)?;
         let offset = *values.first()?;
-        let mut left: Vec<f64> = values.iter().map(|y| y - offset).collect();
-        noise.whiten(&mut left);
+        let mut residuals: Vec<f64> = values.iter().map(|y| y - offset).collect();
+        noise.whiten(&mut residuals);
         let rows = rows as f64;
         let spread = rows * (rows * rows - 1.0) / 12.0;
-        let kept = left.get_mut(order..).unwrap_or_default();
+        let kept = &mut residuals[order..];
         let (sum, moment, _) = moments(kept, 0.0);
         let half = (rows - 1.0) / 2.0;
+        // Σ (k − half)·y/Σ (k − half)².
         let (mean, slope) = (sum / rows, (moment - half * sum) / spread);
-        let power = take_off_line(kept, mean - slope * half, slope);
+        let power = subtract_line(kept, mean - slope * half, slope);
         let line = (offset + mean / noise.level, slope / noise.level);
-        noise.pull(&mut left);
-        Some(Self { noise, frame: Frame::of(noise, rows, line), pulled: left, power, rows })
+        // With W whitening, (W·level)·r = level·(Wᵀ·r): plain sums behind a break from here on.
+        noise.pull(&mut residuals);
+        Some(Self { noise, frame: Frame::of(noise, rows, line), pulled: residuals, power, rows })
     }
 
     /// Positions at which a break leaves enough samples on both sides.
@@ -166,6 +170,7 @@ impl<'a> Window<'a> {
         let freedom = (self.rows - PARAMETERS as f64).max(1.0);
         let ends = |confidence: f64| {
             let t = student_quantile(f64::midpoint(1.0, confidence), freedom);
+            // SSE(τ) ≤ SSE + t²·s² with s² = SSE/ν, as what a break has to explain.
             let limit = self.power - line.sse * (1.0 + t * t / freedom);
             self.interval(&at, limit, line.position)
         };
@@ -210,6 +215,7 @@ impl<'a> Window<'a> {
             let (low, high) = at.piece(index, &self.frame).crossings(limit)?;
             Some((j as f64 + low, j as f64 + high))
         };
+        // The best break is inside, although the ends of its piece may not be.
         let piece_of_best = if position >= 0.0 { floor_to_index(position) } else { first };
         let lowest = at.gain.iter().position(good).map_or(piece_of_best + 1, |i| first + i);
         let low = match lowest.min(piece_of_best + 1) {
@@ -243,6 +249,7 @@ pub(crate) fn median(position: f64, (low, high): (f64, f64), t: f64) -> f64 {
     if !(wide > 0.0 && wide.is_finite()) {
         return position;
     }
+    // a/(a + b)·2·(1 − Φ(x)) = ½ on the wider side a: Φ(x) = ½ + (1 − b/a)/4.
     let odd = (after - before) / wide;
     // The quantile of a normal variable at ½ + odd/4, to a thousandth.
     position + wide / t * odd * (0.626_7 + 0.047_8 * odd * odd)
@@ -258,9 +265,12 @@ pub(crate) fn p_value(share: f64, dimensions: f64, samples: f64, (low, high): (f
     // The curve's ends are a sample from those of the window at least.
     let odds = |position: f64| (position.max(1.0) / (samples - position).max(1.0)).ln();
     let length = 0.75_f64.sqrt() * (odds(high) - odds(low)).max(0.0);
+    // Knowles and Siegmund: length/(2π)·(1 − r²)^((m − 2)/2), for a gain of either sign.
     let tube = length / PI * (1.0 - share).powf((dimensions - 2.0) / 2.0);
     let freedom = dimensions - 1.0;
     let statistic = freedom * share / (1.0 - share).max(f64::MIN_POSITIVE);
+    // The caps at both ends of the curve: together what one given direction gains, F with 1 and
+    // m − 1 degrees of freedom.
     let ends = fisher_tail(statistic, 1, floor_to_index(freedom)).unwrap_or(1.0);
     (tube + ends).min(1.0)
 }

@@ -9,7 +9,7 @@ const LAGS: usize = 20;
 /// Longest memory of the input, samples.
 const MEMORY: usize = 20;
 
-/// Of `errors`, what a fit leaves of the output, and the `inputs` of the same samples.
+/// Of `errors`, the residuals of a fit of the output, and the `inputs` of the same samples.
 ///
 /// With `r_l` the correlation of an error with what is new in the input `l` samples later,
 /// `n Σ r_l²` is `χ²` distributed where there is no feedback.
@@ -18,6 +18,7 @@ pub(super) fn feedback(errors: &[Vec<f64>], inputs: &[Vec<f64>]) -> Feedback {
     let power = |all: &[Vec<f64>]| all.iter().flatten().map(|x| x * x).sum::<f64>();
     let scale = (power(errors) * power(&news)).sqrt();
     let samples: usize = errors.iter().map(Vec::len).sum();
+    // Of e_k with w_(k+l), l > 0: an input that follows the output answers its errors.
     let correlation = |lag: usize| {
         let products = errors.iter().zip(&news).map(|(errors, news)| {
             errors.iter().zip(news.iter().skip(lag)).map(|(e, w)| e * w).sum::<f64>()

@@ -73,6 +73,7 @@ impl Record {
 
     /// The rows of each trial that no dead time reaches beyond, `enough` of them in all.
     fn rows(&self, enough: usize) -> Vec<Vec<Range<usize>>> {
+        // No row's input or noise reaches back before the first sample.
         let skipped = (self.longest + NUMERATORS + 1).max(MEMORY + 2);
         let all = self.samples.iter().map(|(_, samples)| skipped..samples.output.len());
         let all: Vec<Range<usize>> = all.collect();
@@ -183,10 +184,11 @@ fn noise(record: &Record, rows: &[Vec<Range<usize>>]) -> (Vec<f64>, Option<Fitte
             .filter_map(|profile| least(profile))
             .min_by(|a, b| a.error.total_cmp(&b.error));
         let Some(best) = best.filter(|best| best.error.is_finite()) else { break };
-        let left = errors(&plain, best);
-        let samples: usize = left.iter().map(Vec::len).sum();
+        let residuals = errors(&plain, best);
+        let samples: usize = residuals.iter().map(Vec::len).sum();
         let memory = MEMORY.min(samples / 20);
-        let memory = Autoregression::of(&autocovariances(&left, memory), samples);
+        let memory = Autoregression::of(&autocovariances(&residuals, memory), samples);
+        // w_k = e_k − Σ a_i e_(k−i).
         filter = std::iter::once(1.0).chain(memory.coefficients.iter().map(|a| -a)).collect();
     }
     (filter, best.filter(|best| best.error.is_finite()))
@@ -218,8 +220,9 @@ impl Solved<'_> {
         let rows: f64 = assessed.errors.iter().map(|rows| rows.len() as f64).sum();
         let quantile = student_quantile(0.5 + 0.5 * confidence, (PARTS - 1) as f64);
         let threshold = quantile * quantile * assessed.widened;
+        // n ln(SSE/SSE₀) = t²·widened.
         let limit = least.error * (threshold / rows).exp();
-        // What the record cannot tell apart, as an input that is held between samples from one
+        // What the record cannot distinguish, as an input that is held between samples from one
         // that moves there, makes the dead time no better known.
         let alike = refined.iter_mut().filter(|(best, _)| best.error <= limit);
         let ends: Vec<_> = alike.map(|(best, profile)| profile.ends(*best, limit)).collect();
@@ -230,7 +233,8 @@ impl Solved<'_> {
         let explained = self.explained(best);
         let finding =
             self.finding(best, (low, high), rows * -(1.0 - explained).ln() / assessed.widened);
-        // A lag that is as long as any may be cannot be told from an integrator.
+        // A lag that is as long as any may be is not distinguishable from an integrator.
+        // 1/(1 + as) goes over into 1/(as) as a grows.
         let only_integrates = !best.structure.integrates && best.lags.slow > 0.9 * longest_lag;
         let lag = if only_integrates { best.lags.fast } else { best.lags.mean() };
         let mut found = DeadTime {
@@ -246,6 +250,7 @@ impl Solved<'_> {
             let samples = |seconds: f64| seconds / record.period_s;
             let half = samples(0.5 * (bounds.high_s - bounds.low_s));
             let alone = quantile * assessed.deviation;
+            // Variances add up: what the lags leave uncertain is the rest of the interval.
             let by_lags = (half * half - alone * alone).max(0.0).sqrt();
             let widest = f64::max(1.0, 0.25 * best.delay);
             let rows = self.window_rows(rows * (alone / widest).powi(2), best);
@@ -272,13 +277,14 @@ impl Solved<'_> {
         let rows: usize =
             self.trials.iter().flat_map(|trial| &trial.rows).map(ExactSizeIterator::len).sum();
         let rows = rows as f64;
+        // n ln SSE + p ln n, with one parameter less.
         if rows * (one.error / best.error).ln() < rows.ln() { one } else { best }
     }
 
     /// What a dead time with these ends is; `evidence` is twice the logarithm of the likelihood
     /// that the input has to do with the output.
     fn finding(&self, best: Fitted, ends: (Option<f64>, Option<f64>), evidence: f64) -> Finding {
-        /// Part of a sample that no record can tell from nothing.
+        /// Part of a sample that no record distinguishes from zero.
         const NOTHING: f64 = 0.02;
         /// Evidence of an input that has nothing to do with the output, with ten parameters and
         /// hundreds of dead times to choose from: seen once in a thousand such logs.

@@ -51,7 +51,7 @@ impl Moments {
     }
 
     fn add(&mut self, lagged: &[Vec<f64>], changes: &[f64], start: usize, end: usize) {
-        let Some(changes) = changes.get(start..end) else { return };
+        let changes = &changes[start..end];
         self.rows += changes.len() as f64;
         self.change += changes.iter().sum::<f64>();
         self.squared_change += dot(changes, changes);
@@ -65,12 +65,13 @@ impl Moments {
         };
         for (j, column) in lagged.iter().enumerate() {
             let (first, last) = late(column, from);
-            let mut sum: f64 = column.get(first..last).unwrap_or_default().iter().sum();
+            let mut sum: f64 = column[first..last].iter().sum();
             for delay in 0..delays {
                 let (first, last) = late(column, from + delay);
-                let values = column.get(first..last).unwrap_or_default();
+                let values = &column[first..last];
                 self.with_changes[delay * columns + j] += dot(values, changes);
                 self.sums[delay * columns + j] += sum;
+                // A sample later the window gains one row in front and loses one behind.
                 sum += at(column, start, from + delay) - at(column, end, from + delay);
             }
         }
@@ -98,8 +99,7 @@ impl Moments {
             (start.saturating_sub(by), end.saturating_sub(by).min(values.len()))
         };
         let ((a, b), (c, d)) = (first(one, from), first(other, from + further));
-        let (values, later) = (one.get(a..b), other.get(c..d));
-        let mut product = dot(values.unwrap_or_default(), later.unwrap_or_default());
+        let mut product = dot(&one[a..b], &other[c..d]);
         let at = |values: &[f64], k: usize, by: usize| {
             k.checked_sub(1 + by).and_then(|k| values.get(k)).copied().unwrap_or(0.0)
         };
@@ -132,6 +132,7 @@ impl Moments {
                 let base = ((delay + m.min(l)) * NUMERATORS + m.abs_diff(l)) * columns * columns;
                 for i in 0..columns {
                     for j in i..columns {
+                        // Products were kept with the earlier column first.
                         let place = if m <= l { i * columns + j } else { j * columns + i };
                         products[i * size + j] += weight * self.products[base + place];
                     }
@@ -145,6 +146,7 @@ impl Moments {
         let sums: Vec<f64> = (0..columns).map(|i| weighted(&self.sums, i)).collect();
         for i in 0..columns {
             for j in i..columns {
+                // The constant is projected out: Σ(x − x̄)(z − z̄) = Σxz − ΣxΣz/n.
                 products[i * size + j] -= sums[i] * sums[j] / self.rows;
             }
             products[i * size + columns] =
@@ -176,7 +178,7 @@ pub(super) fn error_of(trials: &[Whitened], numerators: &Numerators, lags: Lags)
         }
     }
     for (trial, _, rows) in rows() {
-        all.extend(trial.changes.get(rows.clone()).unwrap_or_default());
+        all.extend(&trial.changes[rows.clone()]);
     }
     let mut equations = NormalEquations::of(&all, samples, &[]);
     (0..=columns).for_each(|column| equations.eliminate(column));

@@ -77,6 +77,7 @@ impl<'a> Profile<'a> {
         let others = self.coarse.iter().filter(|one| one.error <= limit).map(|one| one.delay);
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         others.for_each(|delay| (least, most) = (least.min(delay), most.max(delay)));
+        // Beyond the longest dead time that is tried it may fit still.
         let high = high.filter(|_| most < self.longest);
         (Some(low.unwrap_or(0.0).min(least)), high.map(|high| high.max(most)))
     }

@@ -79,6 +79,7 @@ impl Whitened {
     /// The columns behind the poles of `lags`: `v_k = x_k + (a + b) v_(k−1) − a b v_(k−2)`.
     pub(super) fn lagged(&self, lags: Lags) -> Vec<Vec<f64>> {
         let [a, b] = lags.poles();
+        // The fixed point of the recursion for an input that was held before.
         let steady = ((1.0 - a) * (1.0 - b)).recip();
         let lag = |column: &Vec<f64>| {
             let start = steady * column.first().copied().unwrap_or(0.0);

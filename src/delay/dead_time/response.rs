@@ -49,7 +49,7 @@ pub(super) struct Lags {
     pub(super) fast: f64,
 }
 
-/// The shortest time constant, samples: no lag, for all that samples can tell.
+/// The shortest time constant, samples: no lag, as far as samples show.
 pub(super) const NO_LAG: f64 = 0.02;
 
 impl Lags {
@@ -109,6 +109,7 @@ impl Numerators {
         };
         let numerator = |m: usize| {
             let before = |back: usize| if m < back { 0.0 } else { at(m, back) };
+            // (1 − a q)(1 − b q) R, differenced: what remains is finitely long.
             at(m, 0) - (a + b) * before(1) + a * b * before(2)
         };
         let mut values = [0.0; NUMERATORS];
@@ -129,6 +130,7 @@ fn step_response(time: f64, integrals: i32, lags: Lags) -> f64 {
         return 0.0;
     }
     let Lags { slow: a, fast: b } = lags;
+    // 1/((1 + as)(1 + bs)) = 1 − (a + b)·s + (a² + ab + b²)·s² − …
     let series = [1.0, -(a + b), a * a + a * b + b * b];
     let mut power = 1.0;
     let mut sum = 0.0;
@@ -138,6 +140,7 @@ fn step_response(time: f64, integrals: i32, lags: Lags) -> f64 {
         power *= time / f64::from(degree + 1);
     }
     let sign = if integrals % 2 == 0 { -1.0 } else { 1.0 };
+    // The residue at s = −1/own.
     let pole = |own: f64, other: f64| own.powi(integrals + 1) / (own - other) * (-time / own).exp();
     sum + sign * (pole(a, b) + pole(b, a))
 }

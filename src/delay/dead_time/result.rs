@@ -29,7 +29,7 @@ pub struct DeadTime {
 pub enum Finding {
     /// There is one.
     Known(Bounds),
-    /// None can be told from the lag behind it: the interval holds 0.
+    /// None is distinguishable from the lag behind it: the interval holds 0.
     LagOnly(Bounds),
     /// It cannot be estimated.
     Unknown(Unknown),
@@ -73,7 +73,7 @@ pub struct Feedback {
 
 impl Feedback {
     /// Whether there is enough of it to bias a dead time.
-    pub fn is_present(&self) -> bool {
+    pub(crate) fn is_present(&self) -> bool {
         /// A test at one in ten thousand: logs are long.
         const P_VALUE: f64 = 1e-4;
         /// A correlation with consequence: less explains 1 % of the input.

@@ -4,7 +4,7 @@ use super::moments::{Moments, error_of};
 use super::record::Whitened;
 use super::response::{Lags, NO_LAG, Numerators, Structure};
 
-/// A structure with its dead time and lags, in samples, and the error that it leaves.
+/// A structure with its dead time and lags, in samples, and its squared error.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fitted {
     pub(super) structure: Structure,
@@ -77,13 +77,13 @@ pub(super) fn with_best_lags(
     start: Start,
 ) -> Fitted {
     /// Distances of neighbours, in logarithms of the sum of both lags: lags that are off by a
-    /// twentieth move the dead time by as much of them, which good records tell.
+    /// twentieth move the dead time by as much of them, which good records show.
     const STEPS: [f64; 3] = [0.24, 0.06, 0.015];
     /// Most parabolas of a distance.
     const MOST: usize = 8;
     /// What shows of the faster lag by itself goes with its square.
     const COARSER: f64 = 4.0;
-    // A record tells the sum of the lags far better than how it is shared.
+    // A record determines the sum of the lags far better than how it is shared.
     let near = |best: Fitted, sum: f64, fast: f64| {
         let sum = best.lags.mean() * sum.exp();
         let fast = (best.lags.fast * (COARSER * fast).exp()).min(0.5 * sum).max(NO_LAG);
@@ -145,10 +145,12 @@ fn least_of_parabola(middle: f64, around: [f64; 6]) -> (f64, f64) {
     let [right, left, up, down, lower_right, upper_left] = around;
     let (slope_a, slope_b) = (0.5 * (right - left), 0.5 * (up - down));
     let (bend_a, bend_b) = (right - 2.0 * middle + left, up - 2.0 * middle + down);
+    // f(1, −1) and f(−1, 1) contain −2·f_ab.
     let twist = 0.5 * (bend_a + bend_b - (lower_right - 2.0 * middle + upper_left));
     let alone = |slope: f64, bend: f64| if bend > 0.0 { -slope / bend } else { 0.0 };
     let determinant = bend_a * bend_b - twist * twist;
     let (a, b) = if bend_a > 0.0 && determinant > 1e-6 * bend_a * bend_b {
+        // Newton's step −H⁻¹g of the parabola.
         let a = (twist * slope_b - bend_b * slope_a) / determinant;
         (a, (twist * slope_a - bend_a * slope_b) / determinant)
     } else {

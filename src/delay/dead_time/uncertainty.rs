@@ -30,7 +30,7 @@ type Rows = Vec<Vec<f64>>;
 pub(super) struct Assessed {
     /// Coefficients of the curve's columns.
     pub(super) coefficients: Vec<f64>,
-    /// What it leaves, by rows.
+    /// Residuals, by rows.
     pub(super) errors: Rows,
     /// How much the threshold of the likelihood is widened.
     pub(super) widened: f64,
@@ -61,8 +61,7 @@ fn regressors(trials: &[Whitened], fitted: Fitted) -> Vec<Rows> {
 /// The changes of the output.
 fn target(trials: &[Whitened]) -> Rows {
     let of_trial = |trial: &Whitened| {
-        let rows = trial.rows.iter().map(|rows| trial.changes.get(rows.clone()));
-        rows.map(|rows| rows.unwrap_or_default().to_vec()).collect::<Rows>()
+        trial.rows.iter().map(|rows| trial.changes[rows.clone()].to_vec()).collect::<Rows>()
     };
     trials.iter().flat_map(of_trial).collect()
 }
@@ -71,7 +70,7 @@ fn ones(like: &Rows) -> Rows {
     like.iter().map(|rows| vec![1.0; rows.len()]).collect()
 }
 
-/// What a fit leaves of the changes of the output.
+/// Residuals of a fit to the changes of the output.
 pub(super) fn errors(trials: &[Whitened], fitted: Fitted) -> Rows {
     let target = target(trials);
     let constant = ones(&target);
@@ -99,11 +98,13 @@ impl Assessed {
         by_delay.iter_mut().flatten().for_each(|value| *value /= APART);
         let alone = residuals_of(&by_delay, &own).unwrap_or_default();
         let others: Vec<&Rows> = own.iter().copied().chain([&slow, &fast]).collect();
+        // g: what neither curve nor lags can take over.
         let free = residuals_of(&by_delay, &others).unwrap_or_default();
         let rows: usize = target.iter().map(Vec::len).sum();
         let freedom = rows.saturating_sub(others.len() + 1).max(1) as f64;
         let variance = sum_of_squares(&errors) / freedom;
         let widened = widened(&errors, &free, variance);
+        // σ²·widened/Σ g², with the lags known.
         let deviation = (variance * widened / sum_of_squares(&alone)).sqrt();
         Self { coefficients, errors, widened, deviation }
     }
@@ -146,6 +147,7 @@ fn widened(errors: &Rows, derivative: &Rows, variance: f64) -> f64 {
     let scores = errors.iter().flatten().zip(derivative.iter().flatten()).map(|(e, g)| e * g);
     let scores: Vec<f64> = scores.collect();
     let part = scores.len().div_ceil(PARTS).max(1);
+    // s_b², one of each part.
     let sums = scores.chunks(part).map(|part| part.iter().sum::<f64>().powi(2));
     let found = sums.sum::<f64>() / (variance * sum_of_squares(derivative));
     if found.is_finite() { found.max(1.0) } else { 1.0 }

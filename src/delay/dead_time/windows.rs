@@ -68,7 +68,7 @@ impl Known<'_> {
             (0..parts).map(|p| self.sums(trial, &prediction, border(p), border(p + 1))).collect();
         let starts = (0..=parts - PARTS).step_by(HOP);
         let window = |start: usize| {
-            let sum = Sums::total(sums.get(start..start + PARTS).unwrap_or_default());
+            let sum = Sums::total(&sums[start..start + PARTS]);
             let (curve, alone) = self.estimate(&sum, samples.period_s);
             let averaged = samples.averaged;
             let (first, last) = (border(start) * averaged + 1, border(start + PARTS) * averaged);
@@ -89,7 +89,7 @@ impl Known<'_> {
     }
 
     fn sums(&self, trial: &Whitened, prediction: &[f64], start: usize, end: usize) -> Sums {
-        let changes = trial.changes.get(start..end).unwrap_or_default();
+        let changes = &trial.changes[start..end];
         let of_delay = |k: usize| {
             let delay = k as f64 / PER_SAMPLE as f64;
             let numerators = Numerators::of(self.best.structure, delay, self.best.lags);
@@ -129,6 +129,7 @@ impl Known<'_> {
                 errors.get(next)?;
                 if likelihood(next) > self.threshold {
                     let (from, to) = (likelihood(inside).sqrt(), likelihood(next).sqrt());
+                    // About its least value n ln(SSE/SSE₀) is a parabola: its root is straight.
                     let part = (self.threshold.sqrt() - from) / (to - from);
                     let sign = if direction { part } else { -part };
                     return Some((inside as f64 + sign) / PER_SAMPLE as f64);
@@ -139,6 +140,7 @@ impl Known<'_> {
         let (low, high) = (end(false), end(true));
         let value = vertex(&errors, best) / PER_SAMPLE as f64;
         let without = sums.squared_change - sums.change * sums.change / sums.rows.max(1.0);
+        // Twice the logarithm of the likelihood ratio against a gain of 0.
         let evidence = sums.rows * (without / least).ln();
         let excites = evidence > EVIDENCE * self.threshold && fits[best].1 > 0.0;
         let bounds = high.map(|high| (value, low.unwrap_or(0.0), high));
@@ -216,6 +218,7 @@ pub(super) fn same_in_all(windows: &[Estimated], quantile: f64) -> Option<f64> {
     let known: Vec<(f64, f64)> = known.collect();
     let weight: f64 = known.iter().map(|(_, weight)| weight).sum();
     let mean = known.iter().map(|(value, weight)| value * weight).sum::<f64>() / weight;
+    // Cochran's Q: χ² with one degree of freedom less than windows.
     let spread = known.iter().map(|(value, weight)| weight * (value - mean).powi(2)).sum();
     chi_square_tail(spread, known.len().checked_sub(1).filter(|freedom| *freedom > 0)?)
 }

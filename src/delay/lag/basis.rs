@@ -65,12 +65,12 @@ impl Basis {
     /// The products over `values`, less `offset`.
     pub(crate) fn products(&self, values: &[f64], offset: f64) -> Products {
         let (sum, moment, square) = moments(values, offset);
-        let mut with = [sum, moment, 0.0, 0.0, 0.0];
         let mut felt = [0.0; MAX_PARAMETERS];
         for (y, row) in values.iter().zip(&self.modes) {
             felt.iter_mut().zip(row).for_each(|(sum, mode)| *sum += (y - offset) * mode);
         }
-        with.iter_mut().skip(LINE).zip(felt).for_each(|(slot, sum)| *slot = sum);
+        let [r, s, t] = felt;
+        let with = [sum, moment, r, s, t];
         Products { motions: self.motions(values.len()), with, square }
     }
 
@@ -86,7 +86,7 @@ impl Basis {
         motions[0] = [n, ramp, r, s, t];
         motions[1] = [ramp, ramp * (2.0 * n - 1.0) / 3.0, kr, ks, kt];
         let modes = sums.ones.iter().zip(sums.ramps).zip(sums.products);
-        for (row, ((one, ramp), [r, s, t])) in motions.iter_mut().skip(LINE).zip(modes) {
+        for (row, ((one, ramp), [r, s, t])) in motions[LINE..].iter_mut().zip(modes) {
             *row = [*one, ramp, r, s, t];
         }
         motions

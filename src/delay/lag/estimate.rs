@@ -58,6 +58,7 @@ impl Lag {
     /// Time constant of the first-order part, seconds.
     pub fn time_constant_s(&self) -> Option<LagPart> {
         let value = self.model.time_constant()? * self.period.seconds();
+        // The parameter is ln T: σ(T) = T·σ(ln T).
         Some(LagPart { value, std_error: value * self.error_of(0) })
     }
 
@@ -76,6 +77,7 @@ impl Lag {
 
     /// How late a steady motion is behind the dead time, seconds.
     pub fn mean_s(&self) -> LagPart {
+        // The delta method: g' C g with g the slopes of the mean.
         let slope = self.model.slopes(|model| Response::of(model).mean);
         let std_error = self.variance_along(&slope).sqrt() * self.period.seconds();
         LagPart { value: Response::of(&self.model).mean * self.period.seconds(), std_error }

@@ -158,6 +158,7 @@ impl<'a> FitWindow<'a> {
         let length = self.values.len();
         let response = Response::of(model);
         let (modes, reactions) = (response.modes(), self.onsets.len());
+        // Without coefficients nearby nothing is known of how the output changes with the lag.
         let order = if parts.is_some() { model.order() } else { 0 };
         let size = LINE + modes + 2 * reactions + order + 1;
         let mut columns = vec![0.0; size * length];
@@ -227,6 +228,7 @@ impl<'a> FitWindow<'a> {
         self.fill_linear(&response, &mut changed, &mut []);
         let pairs = changed.chunks_exact(length).zip(linear.chunks_exact(length));
         for ((after, before), part) in pairs.zip(parts).skip(LINE) {
+            // ∂y/∂θ = Σ part·∂column/∂θ, by a forward difference.
             let scale = part / LagModel::nudge();
             for ((slot, after), before) in column.iter_mut().zip(after).zip(before) {
                 *slot += scale * (after - before);
@@ -261,6 +263,7 @@ impl<'a> FitWindow<'a> {
     /// Limits halfway to the neighbours, whatever the order of the onsets.
     pub(crate) fn halfway(&self) -> Vec<(f64, f64)> {
         let end = self.values.len() as f64 - 2.0;
+        // Onsets that pass each other would change steps.
         let limits = |onset: &f64| {
             let others = || self.onsets.iter();
             let below = others().filter(|other| *other < onset).fold(-end, |a, b| a.max(*b));
@@ -301,12 +304,14 @@ impl<'a> FitWindow<'a> {
             let there = Self { onsets, ..*self };
             let found = there.at(basis, noise);
             if found.sse > best.sse {
+                // Gauss and Newton's step descends, but may be too long.
                 factor *= SHORTENED;
                 if largest < fine {
                     break;
                 }
                 continue;
             }
+            // Linearised anew where the error is smaller.
             (self.onsets, best, factor) = (there.onsets, found, 1.0);
             if largest < fine {
                 break;

@@ -105,8 +105,9 @@ impl Factors {
                 continue;
             }
             factors.per_square[column] = pivot.recip();
-            let later = residual.iter_mut().zip(&mut factors.lower).skip(column + 1);
-            for (row, lower) in later {
+            let later = column + 1..;
+            let rows = residual[later.clone()].iter_mut().zip(&mut factors.lower[later]);
+            for (row, lower) in rows {
                 let multiple = row[column] / pivot;
                 row.iter_mut().zip(&pivot_row).for_each(|(slot, value)| *slot -= multiple * value);
                 lower[column] = multiple;
@@ -123,7 +124,8 @@ impl Factors {
         for column in 0..COLUMNS {
             let value = residual[column];
             explained += value * value * self.per_square[column];
-            for (slot, lower) in residual.iter_mut().zip(&self.lower).skip(column + 1) {
+            let later = column + 1..;
+            for (slot, lower) in residual[later.clone()].iter_mut().zip(&self.lower[later]) {
                 *slot -= lower[column] * value;
             }
         }

@@ -20,6 +20,7 @@ impl Information {
         /// Marquardt's damping, just enough that parameters which do the same can be solved for.
         const DAMPING: f64 = 1e-9;
         Matrix3::from_fn(|i, j| match (i < order && j < order, i == j) {
+            // Marquardt: JᵀJ + λ·diag(JᵀJ).
             (true, _) => self.products[i][j] * if i == j { 1.0 + DAMPING } else { 1.0 },
             (false, diagonal) => f64::from(u8::from(diagonal)),
         })

@@ -41,6 +41,7 @@ impl Linearised {
         let last = linear - 1;
         let others = (0..last).chain(linear..linear + self.reactions - 1);
         let order: Vec<usize> = others.chain([last, self.whole.size() - 1]).collect();
+        // The last reaction behind all others and their moves: what it explains then is its own.
         let mut equations = self.whole.reordered(&order);
         let count = order.len() - 2;
         (0..count).for_each(|column| equations.eliminate(column));
@@ -92,6 +93,7 @@ impl Linearised {
         if !self.equations.stands_alone(column) {
             return f64::INFINITY;
         }
+        // σ²(τ) = σ²/(|∂y/∂τ|² c²), the column beside all linear ones being ∂y/∂τ per unit of c.
         1.0 / (self.equations.at(column, column) * change * change)
     }
 
@@ -101,6 +103,7 @@ impl Linearised {
         let pivot = self.equations.at(column, column) * self.change();
         let mut slopes = [0.0; MAX_PARAMETERS];
         for (index, slope) in slopes[..self.order()].iter_mut().enumerate() {
+            // ∂τ/∂θ of the least error: −(g_τ·g_θ)/(g_τ·g_τ).
             *slope = -self.equations.at(column, column + 1 + index) / pivot;
         }
         slopes

@@ -134,7 +134,7 @@ impl LagModel {
     pub(super) fn slopes(&self, value: impl Fn(&Self) -> f64) -> [f64; MAX_PARAMETERS] {
         let at = value(self);
         let mut slopes = [0.0; MAX_PARAMETERS];
-        for (index, slope) in slopes.iter_mut().enumerate().take(self.order()) {
+        for (index, slope) in slopes[..self.order()].iter_mut().enumerate() {
             *slope = (value(&self.nudged(index)) - at) / STEP;
         }
         slopes

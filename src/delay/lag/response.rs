@@ -51,6 +51,7 @@ impl Pair {
     fn modes(&self, t: f64) -> (f64, f64) {
         let Self { sigma, q, .. } = *self;
         let root = q.abs().sqrt();
+        // Critically damped, or nearly: the series, since sin(x)/x loses its digits.
         if root * t < 1e-4 {
             let decay = (-sigma * t).exp();
             return (decay * (1.0 - q * t * t / 2.0), decay * t * (1.0 - q * t * t / 6.0));
@@ -60,6 +61,7 @@ impl Pair {
             let (sine, cosine) = (root * t).sin_cos();
             return (decay * cosine, decay * sine / root);
         }
+        // e^(−σt) inside the hyperbolic functions, whose own would overflow.
         let (slow, fast) = ((-(sigma - root) * t).exp(), (-(sigma + root) * t).exp());
         (f64::midpoint(slow, fast), (slow - fast) / (2.0 * root))
     }
@@ -70,16 +72,19 @@ impl Response {
         let rate = model.time_constant().map(|time| 1.0 / time);
         let poles = model.pair().map(|(omega, zeta)| (omega, zeta * omega));
         let mean = rate.map_or(0.0, |rate| 1.0 / rate)
+            // −H′(0): T + 2ζ/ω.
             + poles.map_or(0.0, |(omega, sigma)| 2.0 * sigma / (omega * omega));
         let part = match (rate, poles) {
             (None, _) => 0.0,
             (Some(rate), None) => 1.0 / rate,
             (Some(rate), Some((omega, sigma))) => {
                 let square = omega * omega;
+                // The residue of H(s)/s² at the real pole.
                 square / (rate * (rate * rate - 2.0 * sigma * rate + square))
             }
         };
         let pair = poles.map(|(omega, sigma)| {
+            // G and dG/dt are 0 at t = 0.
             let cosine = mean - part;
             let sine = part * rate.unwrap_or(0.0) - 1.0 + sigma * cosine;
             Pair { sigma, q: omega * omega - sigma * sigma, cosine, sine }
@@ -94,6 +99,7 @@ impl Response {
 
     /// Samples until its slowest mode is down to a twentieth.
     pub(crate) fn settling_time(&self) -> f64 {
+        // The real part of the slower pole of the pair.
         let slow = |pair: Pair| pair.sigma - (-pair.q).max(0.0).sqrt();
         let rates = [self.real.map(|real| real.rate), self.pair.map(slow)];
         rates.into_iter().flatten().map(|rate| 3.0 / rate).fold(0.0, f64::max)
@@ -109,11 +115,13 @@ impl Response {
     pub(crate) fn motions(&self, t: f64) -> (Motion, Motion) {
         let Running { real: [real, _], rate, pair, now: (c, s), .. } = Running::at(self, t);
         let Pair { sigma, q, cosine, sine } = pair;
+        // C(t + k) = C(t)·C(k) − q·S(t)·S(k), S(t + k) = S(t)·C(k) + C(t)·S(k).
         let ahead = |a: f64, b: f64| [a * c + b * s, b * c - q * a * s];
         let step_response = self.in_order(real, ahead(cosine, sine));
         let slope =
             self.in_order(-rate * real, ahead(sine - sigma * cosine, -sigma * sine - q * cosine));
         let [a, b, c] = step_response;
+        // ∂G(t − τ)/∂τ = −dG/dt.
         let derivative = slope.map(|part| -part);
         ([t - self.mean, 1.0, a, b, c], [-1.0, 0.0, derivative[0], derivative[1], derivative[2]])
     }
@@ -158,6 +166,7 @@ impl Response {
         let over = floor_to_index(self.over()).min(active.len());
         let (moving, steady) = active.split_at_mut(over);
         for (slot, k) in steady.iter_mut().zip(0_u32..) {
+            // Behind the transient G is a line.
             *slot = t + over as f64 + f64::from(k) - self.mean;
         }
         if let Some(steady) = speeds.get_mut(over..) {
@@ -193,6 +202,7 @@ impl Response {
             let (step_c, step_s) = pair.modes(1.0);
             for (cosine, sine) in cosines.iter_mut().zip(sines) {
                 (*cosine, *sine) = (c, s);
+                // Turned by a sample, cheaper than a sine and exponential each.
                 (c, s) = (c * step_c - pair.q * s * step_s, s * step_c + c * step_s);
             }
         }
@@ -228,6 +238,7 @@ impl Running {
     fn transient(&self) -> (f64, f64) {
         let Pair { sigma, q, cosine, sine } = self.pair;
         let ((c, s), [real, _]) = (self.now, self.real);
+        // d/dt of e^(−σt)·(b·C + d·S), with C′ = −q·S and S′ = C.
         let slope = (sine - sigma * cosine) * c - (sigma * sine + q * cosine) * s;
         (real + cosine * c + sine * s, slope - self.rate * real)
     }

@@ -119,6 +119,7 @@ impl<'a> LagSearch<'a> {
     /// Behind another lag, with the onsets where the output would begin as late as before.
     fn shift_onsets(&self, model: LagModel) -> Self {
         let mut joint = Self { model, ..self.clone() };
+        // G is late by its mean: as much is taken off the dead time.
         let earlier = Response::of(&model).mean - Response::of(&self.model).mean;
         for onset in joint.windows.iter_mut().flat_map(|window| &mut window.onsets) {
             *onset -= earlier;
@@ -193,6 +194,7 @@ impl<'a> LagSearch<'a> {
         for one in &found {
             one.inform(&mut information);
         }
+        // All windows share the lag; their onsets follow from its step.
         let change = information.solve(self.model.order());
         (found.iter().map(|one| one.moves(&change)).collect(), change, information)
     }
@@ -243,6 +245,7 @@ impl<'a> LagSearch<'a> {
     /// freedom, in `σ²`: it is no part of the lag that is chosen.
     fn criterion(&self) -> f64 {
         let samples = self.samples();
+        // An exact output would have ln 0.
         let sse = self.sse().max(ROUNDING * self.power).max(f64::MIN_POSITIVE);
         let own: usize = self.found.iter().map(Linearised::parameters).sum();
         let freedom = (samples - own as f64).max(1.0);
@@ -255,6 +258,7 @@ impl<'a> LagSearch<'a> {
         let used: usize = self.found.iter().map(Linearised::parameters).sum();
         let freedom = (self.samples() - (used + self.model.order()) as f64).max(1.0);
         let inverse = information.inverse(self.model.order());
+        // σ² = SSE/(n − p).
         inverse.map(|row| row.map(|value| value * self.sse() / freedom))
     }
 
@@ -264,7 +268,7 @@ impl<'a> LagSearch<'a> {
         const ENOUGH: usize = 50;
         let some = self.windows.iter().step_by(self.windows.len().div_ceil(ENOUGH).max(1));
         let projections = some.map(|window| window.projection(&self.model));
-        NoiseModel::left_by(&projections.collect::<Vec<_>>())
+        NoiseModel::of_projections(&projections.collect::<Vec<_>>())
     }
 
     /// The best lag: no poles, a real one, a pair, or all three.
@@ -272,8 +276,10 @@ impl<'a> LagSearch<'a> {
         let mut white = self.of_each_order();
         let usual = richest(&white).map(Self::trim_outliers);
         if let Some(usual) = usual.filter(|usual| usual.windows.len() < self.windows.len()) {
+            // Each order was searched with the outliers among the windows.
             white = usual.with_lag(LagModel::NONE).of_each_order();
         }
+        // What a lag lacks would pass for memory: the richest one lacks least.
         let noise = richest(&white).map_or_else(NoiseModel::white, Self::residual_noise);
         let all = if noise.order() > 0 {
             white.iter().map(|joint| joint.whitened(noise.clone()).minimise(STEPS)).collect()
@@ -294,6 +300,7 @@ impl<'a> LagSearch<'a> {
         let found = rivals.iter().map(|rival| rival.whitened(noise.clone()).minimise(STEPS));
         let all: Vec<_> = found.collect();
         let least = all.iter().map(Self::criterion).fold(f64::INFINITY, f64::min);
+        // n ln((1 + caution) SSE) ≈ n ln SSE + caution·n.
         let enough = least + caution * usual.samples();
         let simplest = all.into_iter().find(|joint| joint.criterion() <= enough);
         simplest.unwrap_or(usual)

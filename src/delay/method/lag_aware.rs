@@ -195,6 +195,7 @@ fn gradual_candidates(found: &GradualOnset, values: &[f64], start: usize) -> Can
     let before = Line { intercept: before.intercept - before.slope * number(0), ..before };
     let lines = (found.first..found.first + found.sse.len()).map(|index| {
         let level = before.at(number(index));
+        // The chord: how the speed behind the onset grows is no line's.
         let slope = (values[last] - level) / (last.max(index + 1) - index) as f64;
         (before, Line { slope, intercept: level - slope * number(index) })
     });
@@ -272,7 +273,9 @@ fn fine(
     let freedom = (rows as f64 - found.fit.parameters() as f64).max(1.0);
     let variance = found.fit.sse / freedom;
     let t = student_quantile(f64::midpoint(1.0, confidence), freedom);
+    // t·σ(τ) with the lag taken for known.
     let own = t * (variance * found.fit.onset_variance()).sqrt();
+    // Delta method: √(g'·C·g), g being how far the onset moves with each parameter of the lag.
     let shared = t * lag.variance_along(&with_lag.onset_slopes()).sqrt();
     let side = |sign: f64| {
         let reach = found.reach(sign * own, variance * t * t, basis, noise);

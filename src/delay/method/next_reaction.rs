@@ -19,7 +19,7 @@ use crate::delay::decision::Decision;
 const FEWEST: usize = 3;
 
 /// By how much more of the changes of slope the next steps must explain. Levels that alternate leave
-/// both alike. Chosen: records of three levels and more are told apart by far more.
+/// both alike. Chosen: records of three levels and more differ by far more.
 const MORE: f64 = 0.1;
 
 /// Whether the breakpoints of `decisions` that lie about or behind the next step, in rows of `beta`

@@ -28,6 +28,7 @@ pub(super) fn judge(decisions: &mut [Decision], trial: &Prepared<'_>, confidence
         let values = window(decision, trial);
         Some(best(&values, &white)?.residuals(&values))
     };
+    // About the broken lines: about one line each reaction would pass for noise with a long memory.
     let noise = NoiseModel::of(decisions.iter().filter_map(residuals), PARAMETERS);
     for decision in decisions {
         let line = best(&window(decision, trial), &noise);

@@ -140,6 +140,7 @@ fn decide(context: &StepContext<'_>, before: Option<&Decision>, beyond: usize) -
     // none of its business where its own reaction is bounded.
     let first = breakpoint.map_or(before_step, |breakpoint| breakpoint.max(from));
     let next = context.next_sample();
+    // p_(i+1) + α.
     let end = if beyond == 0 { next.saturating_sub(1) } else { next.saturating_add(beyond) };
     let last = end.min(until);
     let segment = Segment::clipped(first, last, output.len());

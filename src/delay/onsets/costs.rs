@@ -35,6 +35,7 @@ fn second_difference_noise(output: &[f64]) -> f64 {
     }
     let middle = bends.len() / 2;
     let median = *bends.select_nth_unstable_by(middle, f64::total_cmp).1;
+    // 1² + 2² + 1² = 6 times the variance of white noise.
     (median / MEDIAN).powi(2) / 6.0
 }
 
@@ -89,6 +90,7 @@ impl Mark {
         let middle = self.count + (n - 1.0) / 2.0;
         let moment = ky - middle * y;
         let spread = n * n - 1.0;
+        // SSE = Σy² − (Σy)²/n − 12·(Σ(k − middle)·y)²/(n(n² − 1)).
         (yy - (y * y * spread + 12.0 * moment * moment) / (n * spread)).max(0.0)
     }
 }

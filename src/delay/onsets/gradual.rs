@@ -123,8 +123,8 @@ impl GradualOnset {
 #[derive(Clone, Debug)]
 struct Window {
     line: Line,
-    /// What it leaves.
-    left: Vec<f64>,
+    /// Of the values, about the line.
+    residuals: Vec<f64>,
     sse: f64,
 }
 
@@ -135,23 +135,24 @@ impl Window {
         let times = || (0..values.len()).map(|k| k as f64 - middle);
         let with: f64 = times().zip(values).map(|(x, y)| x * (y - mean)).sum();
         let slope = with / times().map(|x| x * x).sum::<f64>();
-        let left: Vec<f64> = times().zip(values).map(|(x, y)| y - mean - slope * x).collect();
-        let sse = left.iter().map(|r| r * r).sum();
-        Self { line: Line { slope, intercept: mean - slope * middle }, left, sse }
+        let residuals: Vec<f64> = times().zip(values).map(|(x, y)| y - mean - slope * x).collect();
+        let sse = residuals.iter().map(|r| r * r).sum();
+        Self { line: Line { slope, intercept: mean - slope * middle }, residuals, sse }
     }
 
     /// The size of `shape`, which is zero before `first`, beside the line, and the squared error.
     fn with(&self, first: usize, shape: impl Iterator<Item = f64>) -> (f64, f64) {
-        let (middle, length) = (middle(self.left.len()), self.left.len() as f64);
+        let (middle, length) = (middle(self.residuals.len()), self.residuals.len() as f64);
         let (mut sum, mut with_time, mut square, mut product) = (0.0, 0.0, 0.0, 0.0);
-        for ((k, left), h) in self.left.iter().enumerate().skip(first).zip(shape) {
+        for ((k, residual), h) in self.residuals.iter().enumerate().skip(first).zip(shape) {
             sum += h;
             with_time += h * (k as f64 - middle);
             square += h * h;
-            product += h * left;
+            product += h * residual;
         }
         // Σ (k − middle)².
         let times = length * (length * length - 1.0) / 12.0;
+        // |h|² beside the line, whose columns 1 and k − middle are orthogonal.
         let own = square - sum * sum / length - with_time * with_time / times;
         if own <= f64::EPSILON * square {
             return (0.0, self.sse);
@@ -178,6 +179,7 @@ impl Shapes {
             let parts = 0..samples * FINENESS;
             parts.map(|part| shape(part as f64 / FINENESS as f64)).collect()
         };
+        // Longer ones are powers of the time, which have a table of their own.
         let longest = all as f64 / 2.0;
         let constants = std::iter::successors(Some(SHORTEST), |constant| Some(constant * RATIO));
         let constants: Vec<f64> = constants.take_while(|constant| *constant < longest).collect();
@@ -185,6 +187,7 @@ impl Shapes {
         for order in 1..=ORDERS {
             let lagged = |constant: &f64| table(&|time| lagged_ramp(time / constant, order));
             tables.extend(constants.iter().map(lagged));
+            // The limit of r for T much longer than the window: z^(n+1) up to a factor.
             tables.push(table(&|time| (time / longest).powi(order + 1)));
         }
         Self { tables }
@@ -194,7 +197,7 @@ impl Shapes {
     fn behind(&self, number: usize, position: f64) -> (usize, impl Iterator<Item = f64>) {
         let first = ceil_to_index(position);
         let part = ((first as f64 - position) * FINENESS as f64).round();
-        let table = self.tables.get(number).map(Vec::as_slice).unwrap_or_default();
+        let table = &self.tables[number];
         (first, table.iter().skip(ceil_to_index(part)).step_by(FINENESS).copied())
     }
 }
@@ -202,6 +205,7 @@ impl Shapes {
 /// `r(z; n)`, the answer of `n` equal lags in a row to a ramp, over the time constant.
 fn lagged_ramp(z: f64, order: i32) -> f64 {
     let n = f64::from(order);
+    // r(z; n) = z·P(n, z) − n·P(n + 1, z).
     z * gamma_below(order, z) - n * gamma_below(order + 1, z)
 }
 
@@ -214,7 +218,7 @@ fn gamma_below(n: i32, z: f64) -> f64 {
     1.0 - (-z).exp() * (1.0 + terms.sum::<f64>())
 }
 
-/// One onset with its best shape: what it leaves.
+/// One onset with its best shape, and the squared error.
 #[derive(Clone, Copy, Debug)]
 struct Tried {
     position: f64,
@@ -255,18 +259,20 @@ impl<'a> Profile<'a> {
     /// The best with its interval, where noise has at least this `variance`.
     fn onset(&self, variance: f64, confidence: f64) -> Option<GradualOnset> {
         let best = self.best()?;
-        let samples = self.window.left.len();
+        let samples = self.window.residuals.len();
         let freedom = (samples as f64 - PARAMETERS as f64).max(1.0);
         let t = student_quantile(f64::midpoint(1.0, confidence), freedom);
         let variance = variance.max(best.sse / freedom);
         let shape = self.shape(&best);
-        let left = self.window.left.iter().zip(&shape.left).map(|(y, h)| y - best.size * h);
-        let left: Vec<f64> = left.collect();
+        let residuals =
+            self.window.residuals.iter().zip(&shape.residuals).map(|(y, h)| y - best.size * h);
+        let residuals: Vec<f64> = residuals.collect();
         let before = Line {
             slope: self.window.line.slope - best.size * shape.line.slope,
             intercept: self.window.line.intercept - best.size * shape.line.intercept,
         };
-        let limit = best.sse + t * t * variance * memory(left);
+        // SSE(τ) ≤ SSE + t²·s²·g.
+        let limit = best.sse + t * t * variance * memory(residuals);
         let good = |tried: &&Tried| tried.sse <= limit;
         // The ends lie between positions that were tried.
         let between = 1.0 / FINENESS as f64;
@@ -285,16 +291,16 @@ impl<'a> Profile<'a> {
     fn shape(&self, tried: &Tried) -> Window {
         let (first, behind) = self.shapes.behind(tried.shape, tried.position);
         let values = std::iter::repeat_n(0.0, first).chain(behind);
-        Window::of(&values.take(self.window.left.len()).collect::<Vec<_>>())
+        Window::of(&values.take(self.window.residuals.len()).collect::<Vec<_>>())
     }
 }
 
 /// `1 + 2·Σ ρ_j` of residuals, up to the first correlation that is not positive.
-fn memory(left: Vec<f64>) -> f64 {
-    let lags = left.len() / 3;
-    let covariances = autocovariances(&[left], lags);
-    let power = covariances.first().copied().unwrap_or_default();
-    let positive = covariances.iter().skip(1).take_while(|covariance| **covariance > 0.0);
+fn memory(residuals: Vec<f64>) -> f64 {
+    let lags = residuals.len() / 3;
+    let covariances = autocovariances(&[residuals], lags);
+    let power = covariances[0];
+    let positive = covariances[1..].iter().take_while(|covariance| **covariance > 0.0);
     let sum: f64 = positive.sum();
     if power > 0.0 { 1.0 + 2.0 * sum / power } else { 1.0 }
 }

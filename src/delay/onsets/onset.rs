@@ -64,6 +64,7 @@ impl Onset {
     pub(crate) fn last_position(&self) -> usize {
         /// Samples by which it may come later than it was found.
         const SLACK: usize = 3;
+        // A reaction that came before the next step is not looked for behind the next one's.
         let own = ceil_to_index(self.position) + SLACK;
         if self.position < self.next as f64 {
             own.max(self.next).min(self.latest)

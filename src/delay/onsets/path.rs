@@ -184,6 +184,7 @@ impl OnsetPath {
 fn onsets(samples: usize, steps: &[InputStep], settings: &Settings) -> Vec<Onset> {
     let nexts = steps.iter().skip(1).map(|next| next.sample - 1).chain([samples]);
     let holds = steps.iter().zip(nexts.clone()).map(|(step, next)| next + 1 - step.sample);
+    // One long pause must not widen where every onset may be.
     let longest = usual_longest(holds.collect());
     let onset = |(step, next): (&InputStep, usize)| {
         let origin = step.sample - 1;
@@ -246,6 +247,8 @@ fn cheapest(
         let errors = errors.chunks_exact(positions.len().max(1));
         for (way, (errors, cost)) in errors.zip(costs).enumerate() {
             for (best, error) in best.iter_mut().zip(errors) {
+                // Bellman: the cheapest way to a position goes on from the cheapest ways to those
+                // before it.
                 if cost + error < best.0 {
                     *best = (cost + error, way);
                 }

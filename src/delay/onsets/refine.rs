@@ -80,7 +80,7 @@ impl<'a> Refinement<'a> {
             onset.counts = p_value <= doubtful && !onset.at_rest;
             onset.error = found.position_error();
         }
-        NoiseModel::left_by(&projections)
+        NoiseModel::of_projections(&projections)
     }
 
     /// The onset of step `index`, with its neighbours where they are near, after a step of no
@@ -101,6 +101,7 @@ impl<'a> Refinement<'a> {
         }
         let mut window = FitWindow::alone(values, onsets);
         let mut fit = window.minimise(&self.basis, &self.noise, &limits, fine);
+        // Gauss and Newton find the nearest valley only.
         if members.len() > 1 || is_vague(&fit, values.len()) {
             self.look_around(&mut window, &mut fit, &limits, fine);
         }
@@ -158,6 +159,7 @@ impl<'a> Refinement<'a> {
     /// How often noise alone looks as much like this reaction.
     pub(crate) fn p_value(&self, index: usize, found: &RefinedOnset<'_>) -> f64 {
         let ends = self.limits(index, &found.range);
+        // All but the onset and its change of speed, which are what noise may gain with.
         let others = found.fit.parameters() - 2;
         let rows = found.range.len().saturating_sub(self.noise.order()) as f64;
         let (dimensions, samples) = (rows - others as f64, found.range.len() as f64);

@@ -73,6 +73,7 @@ impl TimeConstants {
     /// These with each logarithm changed, in the order of the fields.
     pub(super) fn moved(&self, by: &[f64]) -> Self {
         let mut by = by.iter().copied();
+        // ln T + by: a time constant stays positive.
         let mut next = |value: f64| value * by.next().unwrap_or(0.0).exp();
         let rising = next(self.rising);
         let falling = self.falling.map(&mut next);

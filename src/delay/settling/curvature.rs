@@ -23,6 +23,7 @@ pub(super) fn is_curved(trials: &[&Prepared<'_>]) -> bool {
     let hold = mean_hold(trials);
     [4, 2].into_iter().any(|part| {
         let pieces: Vec<&[f64]> = trials.iter().flat_map(|trial| late_parts(trial, part)).collect();
+        // The level of each hold is its own, the time constant is shared.
         let total = |column: &dyn Fn(f64) -> f64| -> f64 {
             pieces.iter().map(|values| squared_error(values, column)).sum()
         };

@@ -18,7 +18,7 @@ use crate::units::floor_to_index;
 /// by a speed 0.36 and less.
 const FOLLOWS: f64 = 0.7;
 
-/// Pairs that are enough to tell a squared correlation of [`FAR`] from [`FOLLOWS`]: with a tenth of
+/// Pairs that are enough to distinguish a squared correlation of [`FAR`] from [`FOLLOWS`]: with a tenth of
 /// them independent, its standard deviation at 0.7 is 0.02.
 const ENOUGH: usize = 5000;
 const FAR: f64 = 0.5;
@@ -49,6 +49,7 @@ pub(crate) fn followed(trials: &[Trial]) -> Option<(usize, f64)> {
     let best = |of| best(of, 1);
     let least = if samples < ENOUGH_SAMPLES { FOLLOWS_CLOSELY } else { FOLLOWS };
     let follows = best(|input| input).filter(|(_, squared)| *squared >= least)?;
+    // A joint that runs into its stops follows the sign of its input just as well.
     (follows.1 > best(sign)?.1).then_some(follows)
 }
 
@@ -196,6 +197,7 @@ fn lagging(trials: &[Trial], time_s: f64, dead: usize, of: fn(f64) -> f64) -> Mo
         let behind = trial.output().get(dead..).unwrap_or_default();
         for (input, output) in trial.input().iter().zip(behind) {
             sums.push(state, *output);
+            // The exact step of T y′ + y = u for an input held over the sample.
             state = of(*input) + (state - of(*input)) * left;
         }
     }

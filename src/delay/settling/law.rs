@@ -43,7 +43,7 @@ struct Law {
 /// Windows that can show a time constant.
 const FEWEST: usize = 3;
 
-/// Samples from which a further lag is told from an onset between two of them (chosen).
+/// Samples from which a further lag is distinguished from an onset between two of them (chosen).
 const SEEN: f64 = 2.0;
 
 /// Samples of the shortest time constant that samples show: behind a shorter one an output goes to
@@ -182,6 +182,7 @@ impl Law {
         let freedom = window.freedom(constants);
         let t = student_quantile(f64::midpoint(1.0, confidence), freedom);
         let own = t * window.standard_error(constants, (*onset, *sse));
+        // Delta method; independent of the onset's own noise.
         let shared = t * self.variance_along(slopes).sqrt();
         let side = |sign: f64| {
             let reach = window.reach(constants, (*onset, *sse), sign * own, t * t * sse / freedom);
@@ -220,6 +221,7 @@ fn slopes(
 ) -> Vec<f64> {
     /// Change of a logarithm to each side.
     const STEP: f64 = 1e-3;
+    // The onset moves so that the residual stays orthogonal to its slope: −g·Δr/(g·g).
     let along = found.window.onset_slope(&found.constants, found.onset);
     let square = dot(&along, &along);
     let slope = |parameter: usize| {
@@ -273,6 +275,7 @@ fn bounded(search: &Search<'_>) -> DMatrix<f64> {
         return covariance;
     }
     let error = variance.sqrt();
+    // (√(1 + 2·z·e) − 1)/(z·e): the standard error whose upper end is at T₂·√(1 + 2·z·e).
     let factor = ((1.0 + 2.0 * Z * error).sqrt() - 1.0) / (Z * error);
     covariance.row_mut(last).scale_mut(factor);
     covariance.column_mut(last).scale_mut(factor);
@@ -314,12 +317,12 @@ fn with_further<'a>(search: &Search<'a>, least: f64) -> Option<Search<'a>> {
     PARTS.into_iter().map(started).min_by(|a, b| a.sse.total_cmp(&b.sse))
 }
 
-/// Whether the law explains the output better than straight lines do, and leaves little more than
-/// its noise.
+/// Whether the law explains the output better than straight lines do, and its residual is little more
+/// than noise.
 fn is_exponential(search: &Search<'_>, trials: &[&Prepared<'_>]) -> bool {
-    /// Part of the squared error about lines that the law leaves at most (chosen).
+    /// Largest squared error of the law, as a part of that about lines (chosen).
     const PART: f64 = 0.7;
-    /// Times the noise, and part of the output's range, that the law leaves at most (chosen).
+    /// Largest residual of the law: times the noise, and part of the output's range (chosen).
     const TIMES: f64 = 2.0;
     const LITTLE: f64 = 0.01;
     let outputs = || trials.iter().flat_map(|trial| trial.raw.iter());

@@ -49,8 +49,8 @@ impl Response {
 /// The sum of columns of `length` samples, each times its part.
 pub(super) fn combined(columns: &[f64], length: usize, parts: &[f64]) -> Vec<f64> {
     let value = |k: usize| {
-        let row = columns.iter().skip(k).step_by(length);
-        row.zip(parts).map(|(value, part)| value * part).sum()
+        let columns = columns.chunks_exact(length).zip(parts);
+        columns.map(|(column, part)| column[k] * part).sum()
     };
     (0..length).map(value).collect()
 }
@@ -81,14 +81,16 @@ impl Constants {
         for k in 0..length {
             let time = k as f64;
             let row = if time <= onset { self.before(time) } else { self.behind(time, onset) };
-            let slots = columns.iter_mut().skip(k).step_by(length.max(1));
-            slots.zip(row).for_each(|(slot, value)| *slot = value);
+            for (column, value) in columns.chunks_exact_mut(length).zip(row) {
+                column[k] = value;
+            }
         }
         columns
     }
 
     /// What a further lag makes of a decay of this time constant.
     fn gain(&self, time_constant: f64) -> f64 {
+        // T₂ y′ + y = e^(−t/T) is solved by T/(T − T₂)·e^(−t/T).
         time_constant / (time_constant - self.further)
     }
 

@@ -154,7 +154,7 @@ impl<'a> Search<'a> {
             Some(member.window.projection(&constants, member.onset))
         };
         let some = self.members.iter().step_by(every);
-        NoiseModel::left_by(&some.filter_map(projection).collect::<Vec<_>>())
+        NoiseModel::of_projections(&some.filter_map(projection).collect::<Vec<_>>())
     }
 
     /// Twice the logarithm of the likelihood ratio of another law.
@@ -179,7 +179,7 @@ impl<'a> Search<'a> {
         next
     }
 
-    /// Variance of what the law leaves.
+    /// Variance of the residuals of the law.
     pub(super) fn variance(&self) -> f64 {
         /// Parameters of a window.
         const LINEAR: f64 = 5.0;
@@ -189,6 +189,7 @@ impl<'a> Search<'a> {
 
     /// Covariance of the parameters.
     pub(super) fn covariance(&self) -> DMatrix<f64> {
+        // Each sample was counted in as many windows.
         &self.inverse * (self.shared * self.variance())
     }
 
@@ -232,6 +233,7 @@ impl Member<'_> {
         }
         columns.extend(residual.iter().map(|value| -value));
         let mut equations = NormalEquations::of(&columns, self.window.len(), &[]);
+        // The onset is this window's own.
         equations.eliminate(0);
         Linearised { sse: dot(&residual, &residual), equations }
     }

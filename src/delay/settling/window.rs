@@ -130,6 +130,7 @@ impl<'a> StepWindow<'a> {
         while high - low > FINE {
             if inner[0].1 <= inner[1].1 {
                 high = inner[1].0;
+                // One of the two inner points stays, since GOLDEN² = 1 − GOLDEN.
                 inner = [at(high - GOLDEN * (high - low)), inner[0]];
             } else {
                 low = inner[0].0;
@@ -164,6 +165,7 @@ impl<'a> StepWindow<'a> {
         for _ in 0..CORRECTIONS {
             let there = (onset + reach).clamp(0.0, last);
             let grown = self.sse(constants, there) - sse;
+            // The error grows with the square of the distance.
             let ratio = (growth / grown.max(f64::MIN_POSITIVE)).sqrt();
             reach *= ratio.clamp(MOST.recip(), MOST);
         }

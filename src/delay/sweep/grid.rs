@@ -98,7 +98,7 @@ impl Grid {
 
     /// These combinations with other settings that are not varied.
     #[must_use]
-    pub fn with_settings(&self, of: impl Fn(&Settings) -> Settings) -> Self {
+    pub(crate) fn with_settings(&self, of: impl Fn(&Settings) -> Settings) -> Self {
         let base = |base: &Base| Base { settings: of(&base.settings), ..base.clone() };
         let bases = self.bases.iter().map(base).collect();
         let (passbands, alphas, betas) = (&self.passbands, &self.alphas, &self.betas);
@@ -107,7 +107,7 @@ impl Grid {
 
     /// This grid with other low-passes.
     #[must_use]
-    pub fn with_passbands(&self, passbands: Vec<Option<LowPass>>) -> Self {
+    pub(crate) fn with_passbands(&self, passbands: Vec<Option<LowPass>>) -> Self {
         let (alphas, betas) = (self.alphas.iter().copied(), self.betas.iter().copied());
         Self::new(self.bases.clone(), passbands, alphas, betas)
     }
@@ -116,7 +116,7 @@ impl Grid {
     ///
     /// Lengths that are then equal are tried once.
     #[must_use]
-    pub fn in_samples<'a>(&self, trials: impl Iterator<Item = &'a Trial>) -> Self {
+    pub(crate) fn in_samples<'a>(&self, trials: impl Iterator<Item = &'a Trial>) -> Self {
         let Some(period) = common_period(trials) else { return self.clone() };
         let each = |lengths: &[Length]| {
             let mut found: Vec<Length> = Vec::new();

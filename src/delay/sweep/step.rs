@@ -99,18 +99,18 @@ impl SweptStep {
         }
     }
 
-    /// Whether all settings that accept it tell the same, and all or none do.
+    /// Whether all settings that accept it agree, and all or none do.
     pub fn is_unanimous(&self) -> bool {
         self.disagreeing() == 0 && (self.accepted == self.tried || self.accepted == 0)
     }
 
     /// Combinations whose delay is another than most say.
-    pub fn disagreeing(&self) -> usize {
+    pub(crate) fn disagreeing(&self) -> usize {
         self.accepted - self.agreement.map_or(0, |agreement| agreement.combinations)
     }
 
     /// What most say, where most combinations do.
-    pub fn majority(&self) -> Option<Agreement> {
+    pub(crate) fn majority(&self) -> Option<Agreement> {
         let most = |agreement: &Agreement| agreement.combinations as f64 > MOST * self.tried as f64;
         self.agreement.filter(most)
     }

@@ -90,7 +90,7 @@ impl Clause {
     }
 
     /// With the unit, as people read it.
-    pub fn with_unit(&self, units: &Units) -> String {
+    pub(crate) fn with_unit(&self, units: &Units) -> String {
         let unit = self.feature.unit(units).map_or_else(String::new, |unit| format!(" {unit}"));
         let Self { feature, relation, bound } = self;
         format!("{} {relation} {bound}{unit}", feature.in_words())
@@ -177,7 +177,8 @@ fn percent(share: f64) -> String {
 /// All conditions of one clause, of an interval, and of one clause each on two features
 /// are scored. Thresholds part the levels of a feature, or are near 32 quantiles; those
 /// of the best are then moved between the next ones, if that adds 0.01. The best one is
-/// compared with shuffled records, which keep the residual's correlation; its second clause is so among the samples of the first. A condition that chance would
+/// compared with shuffled records, which keep the residual's correlation; its second clause is so
+/// among the samples of the first. A condition that chance would
 /// match in more than 1 % of them is dropped: of a white or a correlated residual of
 /// even size no condition is found. The next condition is looked for in the samples
 /// that those before it do not hold, so that each shows another failure; one that
@@ -209,6 +210,7 @@ pub fn fails_where(record: &ResidualRecord) -> Vec<FailsWhere> {
             break;
         }
         let exact = grid.members(&choice.selections, record.rows());
+        // Covering: the next one is looked for in the remaining samples.
         rows.retain(|row| new.binary_search(row).is_err());
         let (clauses, samples) = in_few_digits(record, &search, grid, choice, &exact);
         if found.iter().all(|other| overlap(&other.samples, &samples) <= SAME) {
@@ -255,6 +257,7 @@ fn in_few_digits(
         let selections = choice.selections.iter();
         selections.flat_map(|one| clauses(record, &grid.axes[one.axis], *one, digits)).collect()
     };
+    // Rounded bounds are another condition; one with as much gain says the same.
     let wanted = search.gain(exact);
     // One set of samples at a time: each may be as long as the log.
     let mut most: Option<(Vec<Clause>, Vec<Row>, f64)> = None;

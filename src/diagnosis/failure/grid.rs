@@ -206,6 +206,7 @@ impl Grid {
         for &span in self.spans[first].iter().filter(|span| span.clauses == 1) {
             let (from, to) = (usize::from(span.from) * width, usize::from(span.to) * width);
             let rows = table[to..to + width].iter().zip(&table[from..from + width]);
+            // Cumulative over the second axis, within the span of the first.
             inside.iter_mut().zip(rows).for_each(|(slot, (to, from))| *slot = to - from);
             for &other in self.spans[second].iter().filter(|span| span.clauses == 1) {
                 let score = other.of(&inside) - cost;
@@ -244,6 +245,7 @@ impl Grid {
         }
         for index in width..table.len() {
             if index % width > 0 {
+                // S(j, k) = a(j, k) + S(j, k − 1) + S(j − 1, k) − S(j − 1, k − 1).
                 table[index] += table[index - 1] + table[index - width] - table[index - width - 1];
             }
         }

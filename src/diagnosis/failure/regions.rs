@@ -104,6 +104,7 @@ fn region(record: &ResidualRecord, axis: &Axis, part: usize, sums: Sums, squares
     let below = part.checked_sub(1).and_then(|before| axis.cuts.get(before)).copied();
     let above = axis.cuts.get(part).copied();
     let level = axis.levels.as_ref().and_then(|levels| levels.get(part)).copied();
+    // The outermost parts have no cut: what was measured there.
     let from = level.or(below).unwrap_or(sums.low);
     let to = level.or(above).unwrap_or(sums.high);
     Region {

@@ -71,6 +71,7 @@ impl Search {
             let excess = Excess::new(&self.shares, &inside)?;
             let shuffler = Shuffler::new(&self.grid, &inside, &excess, &self.block_of);
             let chance = shuffler.stands_out(Family::OneClause, gain)?;
+            // Both clauses must stand out: the larger of the two.
             Some(alone.max(chance.p_value(Family::OneClause, gain)?))
         };
         orders.into_iter().find_map(p_value)
@@ -96,11 +97,13 @@ impl Search {
 
     /// Share of the squared error in the samples `rows`.
     pub(super) fn share(&self, rows: &[Row]) -> f64 {
+        // Σ_S e²/Σ e².
         rows.iter().map(|row| of_row(&self.shares, *row)).sum()
     }
 
     /// Share of the squared error minus share of the time, of the whole record.
     pub(super) fn gain(&self, rows: &[Row]) -> f64 {
+        // J(S).
         self.share(rows) - rows.len() as f64 / self.shares.len() as f64
     }
 

@@ -46,6 +46,7 @@ pub fn worst_segments(
     let mut worst: Vec<_> =
         segments.iter().filter(|it| is_above_even(record, it)).take(count).cloned().collect();
     if !worst.is_empty() && !worst.iter().any(is_spike) {
+        // The spike takes the last place.
         worst.truncate(count - 1);
         worst.extend(segments.into_iter().find(is_spike));
     }

@@ -30,7 +30,7 @@ const LEVEL: f64 = 0.01;
 /// Shuffles whose best condition may be as good.
 const ALLOWED: u32 = 1;
 
-/// Blocks below which there are too few orders to tell.
+/// Blocks below which there are too few orders for a p-value.
 const MIN_BLOCKS: usize = 8;
 
 /// A block lasts this many correlation times, if that leaves [`MERGED`] blocks.
@@ -55,6 +55,7 @@ const SEED: u64 = 0x7A05_C09E;
 pub(super) fn blocks(record: &ResidualRecord) -> Vec<u32> {
     let samples = record.len();
     let enough = (samples / MERGED).max(1);
+    // Within a block the correlation stays as it is.
     let shortest = correlation_time(&record.samples().residual, enough);
     let shortest = shortest.min(enough);
     let longest = (samples / PARTED).max(1);
@@ -109,6 +110,7 @@ fn correlation_time(residual: &[f64], most: usize) -> usize {
         if correlation < INDEPENDENT {
             break;
         }
+        // 1 + 2 Σ ρ_k.
         time += 2.0 * correlation;
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "few samples")]
@@ -178,7 +180,7 @@ impl<'a> Shuffler<'a> {
     }
 
     /// The best scores of all shuffled records, if a condition of `family` that scores
-    /// `score` stands out from them; none either when there are too few blocks to tell.
+    /// `score` stands out from them; none either when there are too few blocks.
     pub(super) fn stands_out(&self, family: Family, score: f64) -> Option<Chance> {
         if self.blocks.len() < MIN_BLOCKS {
             return None;
@@ -192,6 +194,7 @@ impl<'a> Shuffler<'a> {
             self.shuffle(&mut order, &mut random, &mut cumulative);
             let scores = self.grid.best_scores(&self.part_sums(&cumulative));
             as_good += u32::from(scores.of(family) >= score);
+            // Two of 199 as good: p = 3/200 > LEVEL, whatever follows.
             if as_good > ALLOWED {
                 return None;
             }
@@ -203,6 +206,7 @@ impl<'a> Shuffler<'a> {
     /// Cumulative sums of the excess in a new order.
     fn shuffle(&self, order: &mut [usize], random: &mut ChaCha8Rng, cumulative: &mut Vec<f64>) {
         for last in (1..order.len()).rev() {
+            // Fisher and Yates.
             order.swap(last, below(random, last + 1));
         }
         let mut sum = 0.0;
@@ -210,6 +214,7 @@ impl<'a> Shuffler<'a> {
         cumulative.push(sum);
         for &block in order.iter() {
             let block = &self.excess[self.blocks[block].clone()];
+            // Turned round within itself.
             let (front, back) = block.split_at(below(random, block.len()));
             for part in [back, front] {
                 cumulative.extend(part.iter().map(|excess| {

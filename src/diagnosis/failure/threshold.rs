@@ -48,6 +48,7 @@ fn between_levels(levels: &[f64]) -> Vec<f64> {
 fn near_quantiles(values: &[f64], parts: usize) -> Vec<f64> {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
+    // A quarter of a part.
     let margin = sorted.len() / (4 * parts);
     let cut = |part: usize| {
         let rank = part * sorted.len() / parts;

@@ -1,7 +1,6 @@
 //! An expression as an effect.
 
-use std::sync::{Mutex, PoisonError};
-
+use super::super::interned::{Interned, part_of_interned, text_of_interned};
 use super::super::{
     Definition, Effect, Equations, InputChange, Moment, OwnParameter, Parameter, RecordRange, Spec,
     Stage, UNLIMITED, by_id, contract,
@@ -12,7 +11,7 @@ use super::signals::{POSITION, of_change, of_moment, signals};
 use super::tree::{Name, Node, Scope};
 
 /// The word for it in a model file.
-pub const KIND: &str = "expression";
+pub(crate) const KIND: &str = "expression";
 
 /// An effect that computes an expression.
 #[derive(Debug)]
@@ -46,17 +45,10 @@ struct Expression {
 /// # Ok::<(), tauscope::effect::expression::DefinitionError>(())
 /// ```
 pub fn define(definition: Definition) -> Result<&'static dyn Effect, DefinitionError> {
-    /// Effects are `'static`, those of the catalogue being constants, and a model may go
-    /// wherever it likes. Those of users are never freed either, but the same definition
-    /// is the same effect: reading a file again costs nothing.
-    static DEFINED: Mutex<Vec<&'static Expression>> = Mutex::new(Vec::new());
-    let mut defined = DEFINED.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(known) = defined.iter().find(|known| known.definition == definition) {
-        return Ok(*known);
-    }
-    let new: &'static Expression = Box::leak(Box::new(Expression::new(definition)?));
-    defined.push(new);
-    Ok(new)
+    static DEFINED: Interned<Expression> = Interned::none();
+    let effect =
+        DEFINED.get_or_try(definition, |one, of| one.definition == *of, Expression::new)?;
+    Ok(effect)
 }
 
 impl Expression {
@@ -75,7 +67,7 @@ impl Expression {
         if let Some((_, name)) = (0..).zip(&parameters).find(|(index, _)| is_unused(*index)) {
             return Err(DefinitionError::Unused { parameter: (*name).to_owned() });
         }
-        let spec = Box::leak(Box::new(specified(&definition)));
+        let spec = part_of_interned(specified(&definition));
         let mut new = Self { definition, spec, node, nests: true };
         if let Some(fault) = new.neutral_fault() {
             if new.definition.parameters.iter().any(|parameter| parameter.neutral.is_some()) {
@@ -189,7 +181,11 @@ impl OwnParameter {
             min: min.min(neutral),
             max: max.max(neutral),
             fitted: !self.fixed,
-            ..Parameter::new(leaked(&self.name), "a number in the expression", self.dimension)
+            ..Parameter::new(
+                text_of_interned(self.name.as_str()),
+                "a number in the expression",
+                self.dimension,
+            )
         }
     }
 
@@ -203,11 +199,6 @@ impl OwnParameter {
         let parameter = self.name.clone();
         (!holds).then_some(DefinitionError::Range { parameter, value, min, max, neutral })
     }
-}
-
-/// A text that lives as long as the program.
-fn leaked(text: &str) -> &'static str {
-    Box::leak(text.to_owned().into_boxed_str())
 }
 
 fn check_names(definition: &Definition, signals: &[&str]) -> Result<(), DefinitionError> {
@@ -233,10 +224,11 @@ fn specified(definition: &Definition) -> Spec {
     let behind = if definition.stage == Stage::Transport { "extra delay" } else { "out" };
     let parameters: Vec<_> = definition.parameters.iter().map(OwnParameter::specified).collect();
     let summary = definition.summary.as_deref().unwrap_or("an effect of one's own");
-    Spec::new(leaked(&definition.id), definition.stage, leaked(summary))
-        .equation(leaked(&format!("{behind} = {}", definition.expression)))
+    let text = text_of_interned;
+    Spec::new(text(definition.id.as_str()), definition.stage, text(summary))
+        .equation(text_of_interned(format!("{behind} = {}", definition.expression)))
         .source("the model file")
-        .parameters(parameters.leak())
+        .parameters(part_of_interned(parameters))
 }
 
 /// Moments at which an effect without an effect is seen to have one: signals of either
@@ -246,19 +238,12 @@ fn samples() -> impl Iterator<Item = Moment> {
     let signals = sizes.into_iter().flat_map(|size| [size, -size]);
     let states = [(0.0, 0.0, 0.0, 0.0), (30.0, -2.0, 12.0, 0.4), (-170.0, 25.0, 3600.0, 1.0)];
     signals.flat_map(move |signal| {
-        states.map(|(position, velocity, time_s, others)| {
-            let radians_per_output_unit = 1_f64.to_radians();
-            let (dt_s, measured) = (0.01, f64::NAN);
-            Moment {
-                signal,
-                position,
-                velocity,
-                time_s,
-                dt_s,
-                others,
-                measured,
-                radians_per_output_unit,
-            }
+        states.map(|(position, velocity, time_s, others)| Moment {
+            position,
+            velocity,
+            time_s,
+            others,
+            ..Moment::of(signal)
         })
     })
 }

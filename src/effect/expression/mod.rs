@@ -32,7 +32,8 @@ mod program;
 mod signals;
 mod tree;
 
-pub use compiled::{KIND, define};
+pub(crate) use compiled::KIND;
+pub use compiled::define;
 pub use error::DefinitionError;
 pub use grammar::{Problem, SyntaxError};
 pub(crate) use program::{Line, Program};

@@ -13,7 +13,7 @@ pub(super) struct Spelling {
     pub(super) preamble: (usize, u64),
 }
 
-/// Lines that are looked at to tell the table from what stands before it.
+/// Lines that are looked at to separate the table from what precedes it.
 const LINES: usize = 200;
 
 impl Spelling {

@@ -196,7 +196,7 @@ fn text_of(range: &Range<Data>) -> std::io::Result<Vec<u8>> {
 const DAYS_TO_1970: f64 = 25_569.0;
 
 /// Days since 1970 of a date: books count from 1900 or, those of older Macintoshes, from 1904, which
-/// only its day in the calendar tells.
+/// only its day in the calendar shows.
 fn days_of(time: &ExcelDateTime) -> f64 {
     const DAYS_FROM_1900_TO_1904: f64 = 1462.0;
     let from_1900 = time.as_f64() - DAYS_TO_1970;

@@ -87,7 +87,7 @@ impl Columns<'_> {
     }
 
     /// The pairs of an input and an output that share words, with these; none where there are so many
-    /// that their names tell nothing.
+    /// that their names say nothing.
     fn sharing(
         &self,
         inputs: &[usize],

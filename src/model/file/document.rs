@@ -54,7 +54,10 @@ impl ModelFile {
     ///
     /// # Errors
     /// As [`read`](Self::read).
-    pub fn read_with(path: &Path, others: &[&'static dyn Effect]) -> Result<Self, ModelError> {
+    pub(crate) fn read_with(
+        path: &Path,
+        others: &[&'static dyn Effect],
+    ) -> Result<Self, ModelError> {
         let text =
             read_text(path).map_err(|source| ModelError::Read { path: path.to_owned(), source })?;
         Self::parse_with(&text, path, others)

@@ -7,7 +7,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF as _};
 ///
 /// With one degree it is the probability that a normal variable is at least as far from
 /// zero as the root of `statistic`.
-pub fn chi_square_tail(statistic: f64, freedom: usize) -> Option<f64> {
+pub(crate) fn chi_square_tail(statistic: f64, freedom: usize) -> Option<f64> {
     let chi_square = ChiSquared::new(freedom as f64).ok()?;
     Some(chi_square.sf(statistic))
 }

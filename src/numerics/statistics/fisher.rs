@@ -4,7 +4,7 @@ use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 
 /// The probability of `statistic` or more, with these degrees of freedom above and below
 /// the line; `None` where a number of them is zero, or the statistic is not a number.
-pub fn fisher_tail(statistic: f64, above: usize, below: usize) -> Option<f64> {
+pub(crate) fn fisher_tail(statistic: f64, above: usize, below: usize) -> Option<f64> {
     /// Beyond this the tail is zero in any number, and the library's sum fails.
     const BEYOND: f64 = 1e12;
     let fisher = FisherSnedecor::new(above as f64, below as f64).ok()?;

@@ -3,7 +3,7 @@
 use statrs::distribution::{ContinuousCDF as _, Normal};
 
 /// The probability that a standard normal variable is below `value`.
-pub fn normal_below(value: f64) -> f64 {
+pub(crate) fn normal_below(value: f64) -> f64 {
     Normal::standard().cdf(value)
 }
 

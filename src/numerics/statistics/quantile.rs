@@ -7,6 +7,7 @@ pub fn quantile(values: &[f64], part: f64) -> Option<f64> {
     let place = part.clamp(0.0, 1.0) * values.len().checked_sub(1)? as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index")]
     let index = place as usize;
+    // Quickselect: linear time, where sorting takes n log n.
     let (_, lower, above) = values.select_nth_unstable_by(index, f64::total_cmp);
     let lower = *lower;
     let upper = above.iter().copied().min_by(f64::total_cmp).unwrap_or(lower);
@@ -59,6 +60,7 @@ fn nth(values: &(impl Iterator<Item = f64> + Clone), mut rank: usize) -> f64 {
         }
         known = (known << DIGIT) | digit;
     }
+    // The inverse of `ordered`.
     let bits = if known & SIGN == 0 { !known } else { known ^ SIGN };
     f64::from_bits(bits)
 }
@@ -67,6 +69,7 @@ fn nth(values: &(impl Iterator<Item = f64> + Clone), mut rank: usize) -> f64 {
 fn next(values: &(impl Iterator<Item = f64> + Clone), value: f64, index: usize) -> f64 {
     let this = ordered(value);
     let up_to = values.clone().filter(|other| ordered(*other) <= this).count();
+    // Others equal it: the next in the order is one of them.
     if up_to > index + 1 {
         return value;
     }

@@ -112,7 +112,10 @@ fn all_orders(x: &[f64], mut y: Vec<f64>, limit: f64) -> f64 {
     let mut at = 1;
     while at < x.len() {
         if turns[at] < at {
+            // Heap's rule: the exchange partner is the first for an even index, the counter for an
+            // odd one.
             let other = if at % 2 == 0 { 0 } else { turns[at] };
+            // Σ x y changes by −(x_i − x_j)(y_i − y_j) when y_i and y_j change places.
             sum -= (x[at] - x[other]) * (y[at] - y[other]);
             y.swap(at, other);
             count(sum);
@@ -178,6 +181,7 @@ fn all_groupings(ranks: &[f64], size: usize, sum: f64) -> f64 {
     let mut ways = vec![vec![0.0; largest + 1]; size + 1];
     ways[0][0] = 1.0;
     for &rank in &doubled {
+        // From the largest down, so that no rank is chosen twice.
         for chosen in (1..=size).rev() {
             let (fewer, more) = ways.split_at_mut(chosen);
             let from = &fewer[chosen - 1][..=largest - rank];
@@ -210,6 +214,7 @@ fn normal_p(ranks: &[f64], size: usize, sum: f64) -> f64 {
     let squares: f64 = ranks.iter().map(|rank| (rank - mean) * (rank - mean)).sum();
     let groups = size as f64 * (n - size as f64);
     let deviation = (groups * squares / (n * (n - 1.0))).sqrt();
+    // Half a step off, for continuity.
     let distance = (sum - mean_sum(ranks.len(), size)).abs() - 0.5;
     erfc(distance.max(0.0) / deviation / std::f64::consts::SQRT_2)
 }
@@ -222,13 +227,14 @@ fn normal_p(ranks: &[f64], size: usize, sum: f64) -> f64 {
 /// # References
 /// S. Holm, "A simple sequentially rejective multiple test procedure", Scandinavian
 /// Journal of Statistics 6 (1979), 65-70.
-pub fn holm(p_values: &[f64]) -> Vec<f64> {
+pub(crate) fn holm(p_values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..p_values.len()).collect();
     order.sort_by(|&a, &b| p_values[a].total_cmp(&p_values[b]));
     let mut corrected = vec![1.0; p_values.len()];
     let mut largest: f64 = 0.0;
     for (done, index) in order.into_iter().enumerate() {
         let left = (p_values.len() - done) as f64;
+        // p'_(k) = max over j ≤ k of (m − j + 1) p_(j), at most 1.
         largest = largest.max((left * p_values[index]).min(1.0));
         corrected[index] = largest;
     }

@@ -9,7 +9,7 @@ const SERIES_FREEDOM: f64 = 40.0;
 /// NaN where there is no such distribution.
 ///
 /// From 40 degrees on by Cornish and Fisher's series, which is much faster.
-pub fn student_quantile(probability: f64, freedom: f64) -> f64 {
+pub(crate) fn student_quantile(probability: f64, freedom: f64) -> f64 {
     if freedom < SERIES_FREEDOM {
         let student = StudentsT::new(0.0, 1.0, freedom);
         return student.map_or(f64::NAN, |student| student.inverse_cdf(probability));

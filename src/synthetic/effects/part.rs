@@ -12,7 +12,8 @@ pub(in super::super) fn with_part<T: Serialize + DeserializeOwned>(
     name: &'static str,
     numbers: &[(String, f64)],
 ) -> Result<T, PlantError> {
-    let mut table = toml::Table::try_from(group).unwrap_or_default();
+    let mut table = toml::Table::try_from(group)
+        .map_err(|source| PlantError::Write { source: Box::new(source) })?;
     let part = numbers.iter().map(|(key, number)| (key.clone(), (*number).into()));
     table.insert(name.to_owned(), toml::Value::Table(part.collect()));
     let group = table.try_into();
