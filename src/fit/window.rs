@@ -16,8 +16,8 @@ pub enum Horizon {
     /// Never: each part of a trial is one run.
     #[default]
     FreeRun,
-    /// At every step of the input, and in between so that no run is longer than 2 s, or 20 samples
-    /// where these are longer; every 2 s where the input is not held between steps.
+    /// At every step of the input, and in between so that no run is longer than 2 s, or 200 samples
+    /// of a log slower than 10 Hz; every 2 s where the input is not held between steps.
     Steps,
     /// Every so many seconds.
     Seconds(f64),
@@ -153,15 +153,18 @@ pub(super) fn cut(trial: &Trial, index: usize, share: f64, horizon: Horizon) -> 
 /// Samples of a window between steps of the input, at most: a small error of the speed would
 /// else grow with the square of a long hold, and the longest holds alone decide a fit.
 ///
-/// A time and not a number of samples, so that a log says the same at any rate.
+/// A time and not a number of samples, so that a log says the same at any rate; but of a process
+/// that is logged so slowly that few samples are in it, a number of samples.
 fn longest_run(period: SamplePeriod) -> usize {
     /// A multiple of what a hydraulic joint takes to start, 0.8 s at most.
     const LONGEST_S: f64 = 2.0;
-    /// Of a slow log: enough to see a motion beside its noise.
+    /// Enough to see a motion beside its noise.
     const FEWEST: usize = 20;
+    /// Of a slow process, a tank's level each 4 s: in 20 samples it does not show where it goes.
+    const OF_SLOW: usize = 200;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
     let samples = (LONGEST_S / period.seconds()).round() as usize;
-    samples.max(FEWEST)
+    if samples < FEWEST { OF_SLOW } else { samples }
 }
 
 /// `borders`, and between those that are far apart further ones at equal distances, of at most
@@ -234,7 +237,7 @@ mod tests {
     fn a_run_is_as_long_at_any_rate() {
         let longest = |period_s| longest_run(SamplePeriod::from_seconds(period_s).unwrap());
         assert_eq!([0.001, 0.01, 0.05].map(longest), [2000, 200, 40]);
-        assert_eq!(longest(9.0), 20, "of a furnace");
+        assert_eq!(longest(9.0), 200, "of a furnace");
     }
 
     #[test]

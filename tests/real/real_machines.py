@@ -263,7 +263,7 @@ def main():
     print("more, each with its share and with what leaves as little in its place, the delay of the model, and")
     print("the error from revision to revision, on what was not fitted. Then what SciPy leaves with an")
     print(f"engineer's ladder ({', '.join(LADDER).replace('_', ' ')}; `tests/real/scipy_ladder.py`), and its delay.")
-    print("Both restart where the input changes and at least every 2 s or 20 samples, but `improve` not where the")
+    print("Both restart where the input changes and at least every 2 s (200 samples of a slow log), but `improve` not where the")
     print("output follows its input itself. Processor time on one core of two; SciPy looks for five fixed")
     print("models, `improve` for what is missing among all effects.\n")
     print("| log | joint | effects | delay | error | time | SciPy | time |\n|---|---|---|---|---|---|---|---|")

@@ -5,7 +5,7 @@ and on it one usual effect after the other.
     low <= y <= high          where the output stays in between
 
 Windows as tauscope's default: simulated from the measured output, restarted where a held input
-changes and at least every 2 s or 20 samples; what a window is off on average is taken off. Every third
+changes and at least every 2 s (200 samples below 10 Hz); what a window is off on average is taken off. Every third
 trial is left out for validation where there are six or more, else the last 30 % of each.
 """
 import csv
@@ -18,7 +18,7 @@ TRIALS = ("test", "run", "trial", "stroke")
 TIMES = ("t_s", "time_s", "t")
 # Of logs that tell none, seconds.
 PERIOD = 0.004
-LONGEST_S, FEWEST = 2.0, 20
+LONGEST_S, FEWEST, OF_SLOW = 2.0, 20, 200
 SHORTEST = 10
 LADDER = ["integrator", "dead_band", "input_saturation", "direction_gain", "end_stop"]
 
@@ -46,7 +46,8 @@ def windows(path, u_name, y_name):
         border = (0 if number % 3 == 2 else len(t)) if whole else int(0.7 * len(t))
         ends = {0, border, len(t)} | (set(changes) if 20 * len(changes) < len(t) else set())
         cut = sorted(ends)
-        longest = max(round(LONGEST_S / period), FEWEST)
+        longest = round(LONGEST_S / period)
+        longest = longest if longest >= FEWEST else OF_SLOW
         finer = [k for a, b in zip(cut, cut[1:]) for k in np.linspace(a, b, -(-(b - a) // longest), endpoint=False).astype(int)]
         edges = finer + [len(t)]
         for a, b in zip(edges, edges[1:]):
