@@ -145,6 +145,7 @@ fn sweeps(samples: usize, walkers: usize) -> usize {
 /// How far a model moves on the line from another, of a random number from 0 to 1: from half
 /// the distance to twice, with a density of one over the root.
 fn stretch(random: f64) -> f64 {
+    /// Goodman and Weare's `a`, for which they take 2.
     const MOST: f64 = 2.0;
     // The inverse of the distribution of z on [1/a, a] with the density ∝ 1/√z.
     ((MOST - 1.0) * random + 1.0).powi(2) / MOST

@@ -150,7 +150,7 @@ mod tests {
     #[test]
     fn a_word_that_crosses_the_levels_is_a_condition() {
         assert_eq!(conditions(&strokes(&["H", "L"])), ["H", "L"]);
-        assert_eq!(conditions(&strokes(&["cold", "warm", "hot"])), ["cold", "warm", "hot"]);
+        assert_eq!(conditions(&strokes(&["cold", "warm", "hot"])), ["cold", "hot", "warm"]);
     }
 
     #[test]

@@ -285,7 +285,8 @@ fn bounded(search: &Search<'_>) -> DMatrix<f64> {
 /// The law with the parameters that the record asks for; and one with a further lag, or without,
 /// that it does not exclude.
 fn selected(search: Search<'_>) -> (Search<'_>, Option<Search<'_>>) {
-    /// Twice the logarithm of a likelihood ratio that excludes the law that is less likely.
+    /// Twice the logarithm of a likelihood ratio that excludes the law that is less likely: χ² of
+    /// one degree of freedom is beyond it once in 22 times.
     const EXCLUDED: f64 = 4.0;
     let falling = search.started_at(search.constants.with_falling(), 0.0).descended();
     let penalty = search.penalty();

@@ -181,7 +181,7 @@ impl<'a> Search<'a> {
 
     /// Variance of the residuals of the law.
     pub(super) fn variance(&self) -> f64 {
-        /// Parameters of a window.
+        /// Parameters of a window: two levels, two decays and the onset.
         const LINEAR: f64 = 5.0;
         let freedom: f64 = self.members.iter().map(|it| it.window.rows() - LINEAR).sum();
         self.sse / freedom.max(1.0)

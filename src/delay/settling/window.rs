@@ -114,7 +114,7 @@ impl<'a> StepWindow<'a> {
 
     /// The best onset from `low` to `high`, and its squared error; none where there is no room.
     pub(super) fn best(&self, constants: &Constants, low: f64, high: f64) -> Option<(f64, f64)> {
-        /// The part of a golden section.
+        /// The part of a golden section: (√5 − 1)/2.
         const GOLDEN: f64 = 0.618_033_988_749_895;
         if low.is_nan() || high.is_nan() || low > high {
             return None;

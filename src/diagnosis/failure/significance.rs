@@ -27,7 +27,7 @@ const SHUFFLES: u32 = 199;
 /// The largest p-value that counts.
 const LEVEL: f64 = 0.01;
 
-/// Shuffles whose best condition may be as good.
+/// Shuffles whose best condition may be as good: p is then (1 + 1)/(1 + 199), the level.
 const ALLOWED: u32 = 1;
 
 /// Blocks below which there are too few orders for a p-value.
