@@ -143,7 +143,7 @@ fn the_published_parameters_explain_the_force_as_published() {
 #[test]
 fn coulomb_friction_is_named_first_and_the_force_error_falls_as_published() {
     let Some(joint) = joint("emps_train.csv") else { return };
-    let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::Steps);
+    let record = FitRecord::new(&joint, Split::Time(0.7), SHORT);
     let mut viscous = JointModel::integrator(0.005, 0.0);
     viscous.delay.fixed = true;
     let viscous = viscous.with(Component::neutral(find("actuator_lag").unwrap()));
@@ -178,7 +178,7 @@ fn friction_that_differs_by_direction_comes_after_coulomb_friction_and_explains_
     let (inertia, friction) = PUBLISHED_BY_DIRECTION;
     let published = force_error_by_direction_percent(&joint, inertia, friction);
     assert!((published - 3.11).abs() < 0.15, "{published} %");
-    let record = FitRecord::new(&joint, Split::Time(0.7), Horizon::Steps);
+    let record = FitRecord::new(&joint, Split::Time(0.7), SHORT);
     let levels = record.input_levels();
     let base = fit(&record, &start(), &record.range(&levels, 0.5)).unwrap();
     let coulomb = force_error_percent(&joint, physical(&base));
