@@ -29,7 +29,7 @@ fn flow(input: f64) -> f64 {
     opening(input) - opening(-input)
 }
 
-/// Rows of each trial at 100 Hz: random steps of 0.5 to 1.5 s, on which the joint drifts and is noisy.
+/// Rows of each trial at 100 Hz: random steps of 0.5 to 1.5 s; the sensor is noisy.
 fn trials() -> Vec<Vec<String>> {
     let mut random = ChaCha8Rng::seed_from_u64(20);
     let trial = |trial: u32| {
@@ -55,7 +55,7 @@ fn trials() -> Vec<Vec<String>> {
     (0..TRIALS).map(trial).collect()
 }
 
-/// What `improve` names in a log of `trials`, every so manyth row of each, sorted; and the delay.
+/// What `improve` names in a log of each `every`-th row of `trials`, sorted; and the delay.
 fn named(trials: &[Vec<String>], every: usize, options: &[&str]) -> (Vec<String>, f64) {
     let folder = tempfile::tempdir().unwrap();
     let (data, model) = (folder.path().join("log.csv"), folder.path().join("model.toml"));
@@ -75,17 +75,14 @@ fn named(trials: &[Vec<String>], every: usize, options: &[&str]) -> (Vec<String>
     (named, joint["parameters"]["delay"]["value"].as_f64().unwrap())
 }
 
-/// The effect that is named; `dead_band` of a friction that is said to look like one here.
+/// The effect that is named; `dead_band` also where it is the alternative of a friction: without
+/// inertia they are one, and rounded corners look like less inertia than a sample shows.
 fn name(found: &Value) -> String {
     let alternatives = found["alternatives"].as_array().unwrap();
-    let is_an_overlap = |one: &Value| one.to_string().contains("dead_band");
-    let is_friction = found["effect"] == "coulomb_friction";
-    let name = if is_friction && alternatives.iter().any(is_an_overlap) {
-        "dead_band"
-    } else {
-        found["effect"].as_str().unwrap()
-    };
-    name.to_owned()
+    let is_an_overlap =
+        found["effect"] == "coulomb_friction" && alternatives.iter().any(|one| one == "dead_band");
+    let named = found["effect"].as_str().unwrap();
+    if is_an_overlap { "dead_band" } else { named }.to_owned()
 }
 
 fn assert_finds_both((named, delay_s): &(Vec<String>, f64), within_s: f64) {

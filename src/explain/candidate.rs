@@ -2,7 +2,7 @@
 
 use super::determined::{DISTINCT, is_determined, is_distinct, is_reached};
 use super::extension::components_of;
-use super::likeness::are_told_apart;
+use super::likeness::are_distinguished;
 use super::outcome::FitOutcome;
 use super::separation::Separation;
 use crate::diagnosis::ErrorFigures;
@@ -113,9 +113,9 @@ impl Candidate {
         self.added().any(|effect| is_distinct(&self.fit, effect, DISTINCT))
     }
 
-    /// Whether each effect that it adds can be told from what is fitted beside it and looks like it.
-    pub(super) fn is_told_from_its_like(&self) -> bool {
-        are_told_apart(&self.fit, &self.effects)
+    /// Whether each effect that it adds can be distinguished from what is fitted beside it and looks like it.
+    pub(super) fn is_distinguished_from_its_like(&self) -> bool {
+        are_distinguished(&self.fit, &self.effects)
     }
 
     /// Whether it is needed even where the model passes for adequate.

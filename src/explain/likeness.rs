@@ -14,10 +14,11 @@ pub(super) fn looks_like(one: &str, other: &str) -> bool {
     one != other && (near(one, other) || near(other, one))
 }
 
-/// Whether each of the effects `new` of a fitted model is told from what looks like it beside it.
+/// Whether each of the effects `new` of a fitted model is distinguished from what looks like it beside
+/// it.
 ///
 /// What was there before may no longer be: that is for a removal to judge.
-pub(super) fn are_told_apart(fit: &AssessedModel, new: &[&str]) -> bool {
+pub(super) fn are_distinguished(fit: &AssessedModel, new: &[&str]) -> bool {
     let is_fitted = |component: &&Component| component.parameters().iter().any(|p| !p.fixed);
     let fitted: Vec<&Component> = fit.model.components().iter().filter(is_fitted).collect();
     let id = |component: &Component| component.effect().spec().id;
@@ -52,19 +53,19 @@ mod tests {
     }
 
     #[test]
-    fn beside_an_overlap_a_friction_is_told_by_three_standard_errors() {
+    fn beside_an_overlap_a_friction_is_distinguished_by_three_standard_errors() {
         let with = |friction| fitted(&[(&DeadBand, 9.0), (&CoulombFriction, friction)]);
-        assert!(are_told_apart(&with(4.0), &["coulomb_friction"]));
-        assert!(!are_told_apart(&with(2.5), &["coulomb_friction"]));
-        assert!(!are_told_apart(&with(2.5), &["dead_band", "coulomb_friction"]), "each of both");
-        assert!(are_told_apart(&with(2.5), &["dead_band"]));
+        assert!(are_distinguished(&with(4.0), &["coulomb_friction"]));
+        assert!(!are_distinguished(&with(2.5), &["coulomb_friction"]));
+        assert!(!are_distinguished(&with(2.5), &["dead_band", "coulomb_friction"]), "each of both");
+        assert!(are_distinguished(&with(2.5), &["dead_band"]));
         // Not beside it, less will do here.
         let mut alone = fitted(&[(&CoulombFriction, 2.5)]);
-        assert!(are_told_apart(&alone, &["coulomb_friction"]));
+        assert!(are_distinguished(&alone, &["coulomb_friction"]));
         // A neutral that is known is no friction.
         let mut offset = Component::neutral(&InputOffset).parameters().to_vec();
         offset[0].fixed = true;
         alone.model = alone.model.with(Component::new(&InputOffset, offset).unwrap());
-        assert!(are_told_apart(&alone, &["coulomb_friction"]));
+        assert!(are_distinguished(&alone, &["coulomb_friction"]));
     }
 }

@@ -5,7 +5,7 @@ use super::determined::is_determined;
 use super::eligible::{could_be_missing, is_due, signal_range};
 use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
-use super::likeness::{are_told_apart, looks_like};
+use super::likeness::{are_distinguished, looks_like};
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::outcome::FitOutcome;
@@ -118,7 +118,7 @@ impl Removal<'_> {
             let behind = evidence.criterion() - of_whole.criterion() + hurdle;
             let new: Vec<&str> = change.new_effects().collect();
             let is_known = components_of(&fit.model, &new).all(|one| is_determined(&fit, one))
-                && are_told_apart(&fit, &new);
+                && are_distinguished(&fit, &new);
             (behind < 0.0 && leaves_less && !does_harm && is_worth_it && is_known)
                 .then_some((behind, (change, fit)))
         });

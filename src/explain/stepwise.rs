@@ -125,7 +125,7 @@ pub(super) fn add_stepwise(
                 || candidate.determines_as_much_as(&step.fit) && candidate.is_distinct();
             candidate.is_significant()
                 && is_known
-                && candidate.is_told_from_its_like()
+                && candidate.is_distinguished_from_its_like()
                 && misfit.generalizes(own, candidate.fit.errors)
         };
         let counts = |candidate: &Candidate| is_sound(&candidate) && has_consequence(candidate);

@@ -14,6 +14,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::problem::cost_of;
 use super::record::FitRecord;
 use super::search::Search;
 use super::space::Space;
@@ -55,8 +56,23 @@ impl<'p, 'r> Beginning<'p, 'r> {
         Self { search, residuals, own, slopes }
     }
 
+    /// The sum of squares without a start.
+    pub(super) fn cost(&self) -> f64 {
+        cost_of(&self.residuals)
+    }
+
+    /// So many of `starts` at most: those from which fits would leave least.
+    pub(super) fn most_promising(&self, starts: Vec<Vec<f64>>, most: usize) -> Vec<Vec<f64>> {
+        if starts.len() <= most {
+            return starts;
+        }
+        let mut ranked: Vec<_> = self.expected(&starts).into_iter().zip(starts).collect();
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        ranked.into_iter().take(most).map(|(_, start)| start).collect()
+    }
+
     /// The sums of squares that fits from `starts` would leave, to first order.
-    pub(super) fn expected(&self, starts: &[Vec<f64>]) -> Vec<f64> {
+    fn expected(&self, starts: &[Vec<f64>]) -> Vec<f64> {
         let problem = &self.search.problem;
         let model = |start: &Vec<f64>| {
             let there = problem.space.within(start);

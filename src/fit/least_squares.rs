@@ -120,21 +120,20 @@ fn rough<'p, 'r>(
     };
     let given = plain(model);
     let search = |start| descended(Search::new(short, model, space, start));
-    let mut starts = starts(model, range);
-    let mut searches: Vec<_> = if starts.len() == 1 {
-        starts.iter().cloned().map(search).collect()
+    let starts = starts(model, range);
+    let (starts, mut searches, cost_of_given) = if let [start] = starts.as_slice() {
+        let cost = || Search::new(short, model, space, given.clone()).problem.cost();
+        let cost_of_given = (*start != given).then(cost);
+        let found = vec![search(start.clone())];
+        (starts, found, cost_of_given)
     } else {
         let beginning = Beginning::of(short, model, space, (given.clone(), &starts));
-        if starts.len() > FOLLOWED {
-            let mut ranked: Vec<_> = beginning.expected(&starts).into_iter().zip(starts).collect();
-            ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-            starts = ranked.into_iter().take(FOLLOWED).map(|(_, start)| start).collect();
-        }
-        starts.iter().cloned().map(|start| descended(beginning.search(start))).collect()
+        let starts = beginning.most_promising(starts, FOLLOWED);
+        let found = starts.iter().map(|start| descended(beginning.search(start.clone()))).collect();
+        (starts, found, Some(beginning.cost()))
     };
-    let least = searches.iter().map(|search| search.cost).fold(f64::INFINITY, f64::min);
-    let of_given = || Search::new(short, model, space, given.clone()).problem.cost();
-    if starts.iter().any(|start| *start != given) && least > of_given() {
+    let is_above = |given: f64| searches.iter().all(|search: &Search<'_, '_>| search.cost > given);
+    if cost_of_given.is_some_and(is_above) {
         searches.extend(starts.iter().map(|start| search(nearer(&given, start))));
     }
     searches.sort_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -145,8 +144,8 @@ fn rough<'p, 'r>(
 /// A start that is nearer to the values `given`: from one that is too far a descent may end in a valley
 /// of its own, above where it would be without the effect.
 fn nearer(given: &[f64], start: &[f64]) -> Vec<f64> {
-    /// Part of the way. Chosen: of a level that is half of what the input reaches an eighth is left,
-    /// which acts still.
+    /// Part of the way. Chosen: on an excavator's bucket a friction, a stiction and a dead band by
+    /// condition then end at a thirtieth of the squared error at which they had ended, or less.
     const PART: f64 = 0.25;
     given.iter().zip(start).map(|(given, start)| given + PART * (start - given)).collect()
 }

@@ -58,7 +58,7 @@ pub(super) fn add(
     for (path, page) in [
         (paths::MODEL_PAGE, page(models, judged)),
         (paths::MODEL_WORST, worst_segments(layout, judged)),
-        (paths::MODEL_PARAMETERS, parameters(judged.joint, &told(models, judged))),
+        (paths::MODEL_PARAMETERS, parameters(judged.joint, &reported(models, judged))),
     ] {
         let document = TextDocument::from_markdown(page.unwrap_or_default());
         chunks.push_static(at(root, path), &document)?;
@@ -161,7 +161,7 @@ fn band(
 
 /// The models of which what is wrong is said: of the revisions of one model the last one, of models
 /// side by side each.
-fn told<'m, 'c>(
+fn reported<'m, 'c>(
     models: &[&'m ComparedJoint<'c>],
     judged: &'m ComparedJoint<'c>,
 ) -> Vec<&'m ComparedJoint<'c>> {
@@ -193,8 +193,8 @@ fn page(
     if is_first(models, judged) {
         against(&mut page, models)?;
     }
-    let told = told(models, judged);
-    for compared in &told {
+    let reported = reported(models, judged);
+    for compared in &reported {
         let units = misfit_units(compared.joint);
         let found = compared.comparison.failure.iter().flat_map(|failure| &failure.fails_where);
         for found in found {
@@ -203,13 +203,13 @@ fn page(
             writeln!(page, "\n**{errs} when {when}** ({}): {weight}", compared.model)?;
         }
     }
-    for compared in &told {
+    for compared in &reported {
         let residual = correlation_sentences(compared.comparison).join("; ");
         if !residual.is_empty() {
             writeln!(page, "\n**Residual** ({}): {}", compared.model, plain(&residual))?;
         }
     }
-    reconciled(&mut page, &told)?;
+    reconciled(&mut page, &reported)?;
     Ok(page)
 }
 
