@@ -38,29 +38,33 @@ impl Covariance {
     ) -> Self {
         let residuals = record.training(&here.residuals);
         let values: Vec<f64> = model.values().iter().map(|value| value.value).collect();
-        let column = |(index, bounds): (&usize, &Bounds)| {
+        let mut jacobian = DMatrix::zeros(residuals.len(), free.len());
+        for ((index, bounds), mut column) in free.iter().zip(bounds).zip(jacobian.column_iter_mut())
+        {
             let (low, high) = bounds.around(values[*index]);
+            if high <= low {
+                continue;
+            }
             let at = |there: f64| {
                 let mut values = values.clone();
                 values[*index] = there;
                 model.with_values(&values)
             };
-            let held = || DVector::zeros(residuals.len());
-            if high <= low {
-                return held();
+            if let [low_residuals, high_residuals] =
+                record.training_near(&[at(low), at(high)], here).as_slice()
+            {
+                low_residuals.sub_to(high_residuals, &mut column);
+                column /= high - low;
             }
-            match record.training_near(&[at(low), at(high)], here).as_slice() {
-                [low_residuals, high_residuals] => (low_residuals - high_residuals) / (high - low),
-                _ => held(),
-            }
-        };
-        let columns: Vec<DVector<f64>> = free.iter().zip(bounds).map(column).collect();
+        }
         let noise = residuals.norm() / (residuals.len() as f64).sqrt();
-        let at_bound = free.iter().zip(bounds).zip(&columns).map(|((index, bounds), column)| {
-            bounds.is_at(values[*index], noise / column.norm().max(f64::MIN_POSITIVE))
+        let sums = Sums::of(jacobian, &residuals);
+        let at_bound = free.iter().zip(bounds).zip(&sums.lengths);
+        let at_bound = at_bound.map(|((index, bounds), length)| {
+            bounds.is_at(values[*index], noise / length.max(f64::MIN_POSITIVE))
         });
         let at_bound: Vec<bool> = at_bound.collect();
-        Self { std_errors: with_bounds(&columns, &residuals, &at_bound), at_bound }
+        Self { std_errors: with_bounds(&sums, &at_bound), at_bound }
     }
 
     /// Whether a parameter has come to lie on a bound.
@@ -75,48 +79,63 @@ impl Covariance {
 
 /// Standard errors; those of parameters inside their bounds are as if the others were known
 /// to lie where they do.
-fn with_bounds(
-    columns: &[DVector<f64>],
-    residuals: &DVector<f64>,
-    at_bound: &[bool],
-) -> Vec<Option<f64>> {
-    let all = std_errors(&columns.iter().collect::<Vec<_>>(), residuals);
-    if !at_bound.contains(&true) {
-        return all;
+fn with_bounds(sums: &Sums, at_bound: &[bool]) -> Vec<Option<f64>> {
+    let columns: Vec<usize> = (0..at_bound.len()).collect();
+    let mut errors = sums.std_errors(&columns);
+    if at_bound.contains(&true) {
+        let inside: Vec<usize> = columns.into_iter().filter(|k| !at_bound[*k]).collect();
+        for (k, error) in inside.iter().zip(sums.std_errors(&inside)) {
+            errors[*k] = error;
+        }
     }
-    let inside = columns.iter().zip(at_bound).filter(|(_, at_bound)| !**at_bound);
-    let inside: Vec<&DVector<f64>> = inside.map(|(column, _)| column).collect();
-    let mut inside = std_errors(&inside, residuals).into_iter();
-    let pairs = all.into_iter().zip(at_bound);
-    pairs.map(|(all, at_bound)| if *at_bound { all } else { inside.next().flatten() }).collect()
+    errors
 }
 
 /// The part of a parameter, squared, that may lie in undetermined directions.
 const UNDETERMINED: f64 = 1e-3;
 
-fn std_errors(columns: &[&DVector<f64>], residuals: &DVector<f64>) -> Vec<Option<f64>> {
-    if columns.is_empty() {
-        return Vec::new();
+/// What of the Jacobian the covariance takes: sums over all samples, of columns of length one, so
+/// that units do not matter to the rank.
+struct Sums {
+    samples: usize,
+    /// Of each column.
+    lengths: Vec<f64>,
+    /// `JᵀJ`.
+    products: DMatrix<f64>,
+    /// `S`.
+    long_run: DMatrix<f64>,
+}
+
+impl Sums {
+    fn of(mut jacobian: DMatrix<f64>, residuals: &DVector<f64>) -> Self {
+        let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
+        for (mut column, length) in jacobian.column_iter_mut().zip(&lengths) {
+            column /= if *length > 0.0 { *length } else { 1.0 };
+        }
+        let products = column_products(&jacobian);
+        let long_run = long_run(&jacobian, residuals);
+        Self { samples: residuals.len(), lengths, products, long_run }
     }
-    // Columns of length one, so that units do not matter to the rank.
-    let lengths: Vec<f64> = columns.iter().map(|column| column.norm()).collect();
-    let scale = |length: f64| if length > 0.0 { length } else { 1.0 };
-    let jacobian = DMatrix::from_fn(residuals.len(), columns.len(), |row, column| {
-        columns[column][row] / scale(lengths[column])
-    });
-    let pseudo_inverse = PseudoInverse::of(column_products(&jacobian), rank::SENSITIVITIES);
-    // (JᵀJ)⁻¹ S (JᵀJ)⁻¹.
-    let inverse = pseudo_inverse.matrix();
-    let covariance = &inverse * long_run(&jacobian, residuals) * &inverse;
-    let freedom = residuals.len().saturating_sub(columns.len()).max(1);
-    let correction = residuals.len() as f64 / freedom as f64;
-    let error = |(index, length): (usize, &f64)| {
-        let variance = covariance[(index, index)] * correction;
-        let error = variance.max(0.0).sqrt() / length;
-        let is_determined = pseudo_inverse.undetermined(index) < UNDETERMINED;
-        (is_determined && error.is_finite()).then_some(error)
-    };
-    lengths.iter().enumerate().map(error).collect()
+
+    /// Of these parameters, the others being known: `(JᵀJ)⁻¹ S (JᵀJ)⁻¹`.
+    fn std_errors(&self, of: &[usize]) -> Vec<Option<f64>> {
+        if of.is_empty() {
+            return Vec::new();
+        }
+        let some = |all: &DMatrix<f64>| all.select_rows(of).select_columns(of);
+        let pseudo_inverse = PseudoInverse::of(some(&self.products), rank::SENSITIVITIES);
+        let inverse = pseudo_inverse.matrix();
+        let covariance = &inverse * some(&self.long_run) * &inverse;
+        let freedom = self.samples.saturating_sub(of.len()).max(1);
+        let correction = self.samples as f64 / freedom as f64;
+        let error = |(index, column): (usize, &usize)| {
+            let variance = covariance[(index, index)] * correction;
+            let error = variance.max(0.0).sqrt() / self.lengths[*column];
+            let is_determined = pseudo_inverse.undetermined(index) < UNDETERMINED;
+            (is_determined && error.is_finite()).then_some(error)
+        };
+        of.iter().enumerate().map(error).collect()
+    }
 }
 
 /// The long-run covariance of `g_k = J_k r_k`, by sums over all spans of `L + 1` samples, of which
@@ -172,12 +191,17 @@ mod tests {
         testing::noise(3, 0.0, count)
     }
 
+    fn std_errors(columns: &[DVector<f64>], residuals: &DVector<f64>) -> Vec<Option<f64>> {
+        let sums = Sums::of(DMatrix::from_columns(columns), residuals);
+        with_bounds(&sums, &vec![false; columns.len()])
+    }
+
     #[test]
     fn on_white_residuals_it_is_the_usual_standard_error() {
         let n = 20_000;
         let residuals = DVector::from_vec(noise(n));
         let ones = DVector::from_element(n, 1.0);
-        let error = std_errors(&[&ones], &residuals)[0].unwrap();
+        let error = std_errors(&[ones], &residuals)[0].unwrap();
         let usual = 1.0 / (n as f64).sqrt();
         assert!((error / usual - 1.0).abs() < 0.15, "{error} {usual}");
     }
@@ -192,7 +216,7 @@ mod tests {
             value
         };
         let residuals = DVector::from_vec(noise(n).into_iter().map(filter).collect());
-        let error = std_errors(&[&DVector::from_element(n, 1.0)], &residuals)[0].unwrap();
+        let error = std_errors(&[DVector::from_element(n, 1.0)], &residuals)[0].unwrap();
         let expected = (19.0 / n as f64).sqrt();
         assert!((error / expected - 1.0).abs() < 0.2, "{error} {expected}");
     }
@@ -223,7 +247,23 @@ mod tests {
         let n = 1000;
         let residuals = DVector::from_vec(noise(n));
         let ramp = DVector::from_fn(n, |k, _| k as f64);
-        let errors = std_errors(&[&ramp, &(&ramp * 2.0), &DVector::zeros(n)], &residuals);
+        let twice = &ramp * 2.0;
+        let errors = std_errors(&[ramp, twice, DVector::zeros(n)], &residuals);
         assert_eq!(errors, [None, None, None]);
+    }
+
+    #[test]
+    fn what_lies_at_a_bound_is_known_to_the_others() {
+        let n = 1000;
+        let residuals = DVector::from_vec(noise(n));
+        let ones = DVector::from_element(n, 1.0);
+        let ramp = DVector::from_fn(n, |k, _| k as f64);
+        let alone = std_errors(std::slice::from_ref(&ones), &residuals)[0].unwrap();
+        let sums = Sums::of(DMatrix::from_columns(&[ones, ramp]), &residuals);
+        let both = with_bounds(&sums, &[false, false]);
+        let held = with_bounds(&sums, &[false, true]);
+        assert!((held[0].unwrap() / alone - 1.0).abs() < 0.01, "{held:?} {alone}");
+        assert!(both[0].unwrap() > 1.5 * alone, "{both:?} {alone}");
+        assert_eq!(held[1], both[1]);
     }
 }

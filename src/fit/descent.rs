@@ -31,6 +31,7 @@ use nalgebra::{DMatrix, DVector};
 use super::bounds::Bounds;
 use super::problem::{Problem, cost_of};
 use super::result::Termination;
+use super::turn;
 use crate::numerics::column_products;
 
 /// How far a descent goes.
@@ -120,6 +121,11 @@ struct Anchor {
     growth: f64,
 }
 
+/// `slopes`, to go back to; of a very long record they are differenced again in that case.
+fn kept(slopes: &Rc<DMatrix<f64>>) -> Option<Rc<DMatrix<f64>>> {
+    (!turn::is_large(slopes.len())).then(|| Rc::clone(slopes))
+}
+
 impl<'d, 'p, 'r> Descent<'d, 'p, 'r> {
     fn new(problem: &'d mut Problem<'p, 'r>, slopes: Option<DMatrix<f64>>) -> Self {
         let (at, residuals) = (problem.free.clone(), Rc::new(problem.residuals()));
@@ -130,7 +136,7 @@ impl<'d, 'p, 'r> Descent<'d, 'p, 'r> {
         let anchor = Anchor {
             at: at.clone(),
             residuals: Rc::clone(&residuals),
-            slopes: fresh.then(|| Rc::clone(&slopes)),
+            slopes: if fresh { kept(&slopes) } else { None },
             cost: normal.cost,
             damping,
             growth,
@@ -229,7 +235,7 @@ impl<'d, 'p, 'r> Descent<'d, 'p, 'r> {
         self.anchor = Anchor {
             at: self.at.clone(),
             residuals: Rc::clone(&self.residuals),
-            slopes: Some(Rc::clone(&self.slopes)),
+            slopes: kept(&self.slopes),
             cost: self.normal.cost,
             damping: self.damping,
             growth: self.growth,

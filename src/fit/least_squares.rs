@@ -11,6 +11,7 @@ use super::result::{AssessedModel, Assessment, Fit, FitError, Parameter, Status,
 use super::search::{ROUGH, Search, comparing, whole};
 use super::space::Space;
 use super::starts::starts;
+use super::turn;
 use super::window::Part;
 use crate::effect::RecordRange;
 use crate::model::JointModel;
@@ -87,6 +88,8 @@ fn fit_to(
 ) -> Result<Fit, FitError> {
     let space = Space::of(model, range);
     check_size(record, &space)?;
+    let slopes = record.training_samples() * space.free.len();
+    let _turn = turn::wait_for(slopes);
     let (training, short) = (record.for_training(), record.shortened());
     let searches = rough(&short, Some(&training), model, &space, range).into_iter();
     let finished = searches.map(|s| s.across_flats().onto(&training).descended(limits));
@@ -112,7 +115,11 @@ fn rough<'p, 'r>(
     space: &'p Space,
     range: &RecordRange<'_>,
 ) -> Vec<Search<'p, 'r>> {
-    let keeps_slopes = next.is_some_and(|next| next.windows() == short.windows());
+    let is_kept = |next: &FitRecord<'_>| {
+        let slopes = short.training_samples() * space.free.len();
+        !turn::is_large(slopes) && next.windows() == short.windows()
+    };
+    let keeps_slopes = next.is_some_and(is_kept);
     let descended = |search: Search<'p, 'r>| {
         let mut search = search.descended(ROUGH);
         search.slopes.take_if(|_| !keeps_slopes);

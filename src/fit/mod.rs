@@ -24,6 +24,7 @@ mod space;
 mod speed;
 mod starts;
 mod thin;
+mod turn;
 mod unlogged;
 mod window;
 

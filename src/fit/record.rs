@@ -377,6 +377,7 @@ impl<'a> FitRecord<'a> {
         let mut levels: Vec<f64> = inputs.map(|input| (input - self.neutral).abs()).collect();
         levels.sort_by(f64::total_cmp);
         levels.dedup();
+        levels.shrink_to_fit();
         levels
     }
 }

@@ -8,8 +8,8 @@ use super::speed;
 use super::window::Window;
 use crate::experiment::Trial;
 use crate::model::{
-    Arrivals, Driven, JointModel, Restart, Signals, Simulated, Surroundings, outputs_together,
-    simulate_together,
+    Arrivals, BESIDE, Driven, JointModel, Restart, Signals, Simulated, Surroundings,
+    outputs_together, simulate_together,
 };
 
 /// How stretches are simulated: as a whole, or the output alone.
@@ -37,8 +37,8 @@ impl Run<'_> {
         self.windows.iter().map(start).collect()
     }
 
-    /// What is `simulated`, less what its starts are wrong by, and its residuals.
-    fn shifted(&self, mut simulated: Simulated, slope: Option<&[f64]>) -> (Simulated, Vec<f64>) {
+    /// What is `simulated`, less what its starts are wrong by.
+    fn shifted(&self, mut simulated: Simulated, slope: Option<&[f64]>) -> Simulated {
         let shifts = self.shifts(&simulated.output, slope);
         for (window, shift) in self.windows.iter().zip(shifts) {
             let values = &mut simulated.output[window.start..window.end];
@@ -46,9 +46,19 @@ impl Run<'_> {
                 *value += shift * slope.map_or(1.0, |g| g[index]);
             }
         }
+        simulated
+    }
+
+    fn residual(&self, simulated: &Simulated) -> Vec<f64> {
         let pairs = self.trial.output().iter().zip(&simulated.output);
-        let residuals = pairs.map(|(y, s)| y - s).collect();
-        (simulated, residuals)
+        pairs.map(|(y, s)| y - s).collect()
+    }
+
+    /// The residuals in the place of what is `simulated`.
+    fn residual_in_place(&self, simulated: Simulated) -> Vec<f64> {
+        let mut values = simulated.output;
+        values.iter_mut().zip(self.trial.output()).for_each(|(value, y)| *value = y - *value);
+        values
     }
 
     /// A small part of what the output spans.
@@ -92,6 +102,13 @@ impl Run<'_> {
             Piece { of: index, stretch, arrivals, restarts }
         };
         stretches.into_iter().map(piece).collect()
+    }
+
+    /// What is simulated before it is, with room for outputs where they come in parts.
+    fn nothing_yet(&self) -> Simulated {
+        let is_whole = matches!(stretches(&self.windows).as_slice(), [only] if only.start == 0);
+        let samples = self.windows.last().map_or(0, |window| window.end);
+        Simulated::with_room_for(if is_whole { 0 } else { samples })
     }
 
     fn driven<'p>(&'p self, piece: &'p Piece) -> Driven<'p> {
@@ -172,7 +189,12 @@ pub(super) fn simulated_from<'r>(
     let begun: Vec<_> = begun.collect();
     let outputs: Vec<_> = begun.iter().map(|(run, from)| (*run, from.outputs.as_slice())).collect();
     let all = simulated(&outputs, simulate_together).into_iter().zip(begun);
-    all.map(|(simulated, (run, starts))| run.shifted(simulated, starts.slope.as_deref())).collect()
+    let found = all.map(|(simulated, (run, starts))| {
+        let simulated = run.shifted(simulated, starts.slope.as_deref());
+        let residual = run.residual(&simulated);
+        (simulated, residual)
+    });
+    found.collect()
 }
 
 /// The residuals of each run from its starts, as [`simulated_from`] has them, without the outputs.
@@ -182,8 +204,10 @@ pub(super) fn residuals_from<'r>(
     let begun: Vec<_> = begun.collect();
     let outputs: Vec<_> = begun.iter().map(|(run, from)| (*run, from.outputs.as_slice())).collect();
     let all = simulated(&outputs, outputs_together).into_iter().zip(begun);
-    all.map(|(simulated, (run, starts))| run.shifted(simulated, starts.slope.as_deref()).1)
-        .collect()
+    let found = all.map(|(simulated, (run, starts))| {
+        run.residual_in_place(run.shifted(simulated, starts.slope.as_deref()))
+    });
+    found.collect()
 }
 
 /// The simulations of the windows of each run, from their starts; not a number where there is none.
@@ -191,13 +215,15 @@ fn simulated(begun: &[(&Run<'_>, &[f64])], simulate: Simulate) -> Vec<Simulated>
     let pieces = begun.iter().enumerate();
     let pieces = pieces.flat_map(|(index, (run, starts))| run.pieces(index, starts));
     let pieces: Vec<Piece> = pieces.collect();
-    let driven = pieces.iter().filter_map(|piece| Some(begun.get(piece.of)?.0.driven(piece)));
-    let parts = simulate(&driven.collect::<Vec<_>>());
-    let mut whole = vec![Simulated::default(); begun.len()];
-    for (piece, part) in pieces.iter().zip(parts) {
-        if let Some(whole) = whole.get_mut(piece.of) {
-            whole.resume_at(piece.stretch.start);
-            whole.append(part);
+    let mut whole: Vec<Simulated> = begun.iter().map(|(run, _)| run.nothing_yet()).collect();
+    // So many at a time, lest all stretches are held twice.
+    for some in pieces.chunks(BESIDE) {
+        let driven = some.iter().filter_map(|piece| Some(begun.get(piece.of)?.0.driven(piece)));
+        let parts = simulate(&driven.collect::<Vec<_>>());
+        for (piece, part) in some.iter().zip(parts) {
+            if let Some(whole) = whole.get_mut(piece.of) {
+                whole.append_at(piece.stretch.start, part);
+            }
         }
     }
     whole

@@ -167,22 +167,23 @@ pub fn simulate_input(
 }
 
 impl Simulated {
-    /// Fills up to sample `sample` with what is not a number.
-    pub(crate) fn resume_at(&mut self, sample: usize) {
-        for values in [&mut self.output, &mut self.velocity, &mut self.acting] {
-            values.resize(sample, f64::NAN);
+    /// Adds what comes from sample `sample` on; up to there it is filled with what is not a number.
+    pub(crate) fn append_at(&mut self, sample: usize, next: Self) {
+        let Self { output, velocity, acting } = next;
+        let own = [&mut self.output, &mut self.velocity, &mut self.acting];
+        for (own, mut next) in own.into_iter().zip([output, velocity, acting]) {
+            if sample == 0 && own.capacity() < next.len() {
+                *own = next;
+            } else if !next.is_empty() {
+                own.resize(sample, f64::NAN);
+                own.append(&mut next);
+            }
         }
     }
 
-    /// Adds what comes behind.
-    pub(crate) fn append(&mut self, mut next: Self) {
-        if self.output.is_empty() {
-            *self = next;
-            return;
-        }
-        self.output.append(&mut next.output);
-        self.velocity.append(&mut next.velocity);
-        self.acting.append(&mut next.acting);
+    /// Nothing yet, with room for the outputs of so many samples.
+    pub(crate) fn with_room_for(samples: usize) -> Self {
+        Self::with_capacity(samples, 0)
     }
 
     fn with_capacity(samples: usize, others: usize) -> Self {
