@@ -511,6 +511,35 @@ fn the_header_is_written_with_the_source_and_says_each_parameter() {
 }
 
 #[test]
+fn words_of_a_model_file_stay_in_the_comment_that_quotes_them() {
+    const HOSTILE: &str = r#"schema = "tauscope/model/1"
+[joint."/ int run(void){return 42;} /"]
+structure = "integrator"
+parameters = { gain = 7.0, delay = 0.2 }
+[[joint."/ int run(void){return 42;} /".effect]]
+kind = "expression"
+id = "knee"
+summary = "*@JOINT@* @ORIGIN@ @EFFECTS@ @NAME@"
+stage = "input"
+expression = "signal + off"
+parameters.off = { value = 0.1 }
+"#;
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("hostile.toml"), HOSTILE).unwrap();
+    for name in ["words.c", "words.m", "words.py"] {
+        let done = Command::new(env!("CARGO_BIN_EXE_tauscope"))
+            .args(["export", "hostile.toml", name])
+            .current_dir(folder.path())
+            .status()
+            .unwrap();
+        assert!(done.success());
+        let text = fs::read_to_string(folder.path().join(name)).unwrap();
+        assert!(text.contains("*@JOINT@* @ORIGIN@ @EFFECTS@"), "{text}");
+        assert!(!text.contains("*/ int"), "{text}");
+    }
+}
+
+#[test]
 fn an_fmu_without_a_compiler_says_so() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("model.toml"), MODEL).unwrap();

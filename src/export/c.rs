@@ -49,9 +49,11 @@ pub(super) fn sources(export: &Export, name: &str) -> (String, String) {
         ("HELPERS", if uses_sign { SIGN } else { "" }.to_owned()),
         ("ORIGIN", commentable(&export.commented(" * "))),
         ("OTHERS", others.to_owned()),
+        ("JOINT", commentable(&export.joint)),
     ]);
-    let (joint, upper) = (commentable(&export.joint), name.to_uppercase());
-    let named = [("JOINT", joint.as_str()), ("FILE", name), ("UPPER", &upper), ("NAME", name)];
+    // These are identifiers: where a text of the user's names them, nothing but a word changes.
+    let upper = name.to_uppercase();
+    let named = [("FILE", name), ("UPPER", &upper), ("NAME", name)];
     let all = |template: &str| filled(&filled(template, &places), &named);
     (all(SOURCE), all(HEADER))
 }
