@@ -7,7 +7,6 @@ use std::path::Path;
 
 use super::spelling::{
     DecimalMarks, Spelling, are_units, bare_unit, is_over_lines, is_remark, parse_cell, parse_time,
-    sniff_delimiter,
 };
 use super::text::{Bytes, SNIFFED_BYTES};
 use crate::experiment::error::ReadError;
@@ -286,38 +285,85 @@ impl Gathered {
 /// The rows of a text that still grows: each is parsed once, when it has come whole.
 pub(in crate::experiment) struct GrowingRows {
     budget: Budget,
-    delimiter: u8,
+    /// What came first, by which the spelling is known: all that came, until it is full.
+    start: Vec<u8>,
+    spelling: Spelling,
     /// What was not parsed yet.
     text: Vec<u8>,
     /// Lines before it.
     lines: u64,
+    /// The header, once a whole row stands below it.
+    head: Option<Head>,
     gathered: Option<Gathered>,
+}
+
+/// What became of a record that has come whole.
+enum Taken {
+    /// It is done with.
+    Done,
+    /// It stays, until another one is done with.
+    Held,
 }
 
 impl GrowingRows {
     /// Nothing has come yet.
     pub(in crate::experiment) fn new(budget: Budget) -> Self {
-        Self { budget, delimiter: b',', text: Vec::new(), lines: 0, gathered: None }
+        let (spelling, text) = (Spelling::of(b""), Vec::new());
+        let start = Vec::new();
+        Self { budget, start, spelling, text, lines: 0, head: None, gathered: None }
     }
 
     /// Adds whole lines.
     pub(in crate::experiment) fn push(&mut self, lines: &[u8]) {
         self.text.extend_from_slice(lines);
+        let room = SNIFFED_BYTES - self.start.len();
+        if room == 0 {
+            return;
+        }
+        let (sniffed, others) = lines.split_at(lines.len().min(room));
+        self.start.extend_from_slice(sniffed);
+        let spelling = Spelling::of(&self.start);
+        if spelling != self.spelling {
+            // What was a table so far stands before it, or its cells are parted otherwise.
+            let all = [self.start.as_slice(), others].concat();
+            let (before, lines) = spelling.preamble;
+            let text = all.get(before..).unwrap_or_default().to_vec();
+            let (start, budget) = (std::mem::take(&mut self.start), self.budget.rest());
+            *self = Self { start, spelling, text, lines, ..Self::new(budget) };
+        }
     }
 
-    /// Bytes that were not parsed yet: of a row that is not whole, or that is wrong.
+    /// Bytes that were not parsed yet: of a row that is not whole, or that is wrong, and of
+    /// words that may stand below the table.
     pub(in crate::experiment) fn waiting(&self) -> usize {
         self.text.len()
     }
 
-    /// The header, which is taken off the text; `None` as long as it has not come.
+    /// The header; `None` as long as it has not come.
     pub(in crate::experiment) fn head(&mut self, path: &Path) -> Result<Option<Head>, ReadError> {
-        self.delimiter = sniff_delimiter(self.text.get(..SNIFFED_BYTES).unwrap_or(&self.text));
-        let mut found = None;
-        self.each(path, |record, place| {
-            found = Some(head(path, record, place.row)?);
-            Ok(ControlFlow::Break(()))
-        })?;
+        if self.head.is_some() {
+            return Ok(self.head.clone());
+        }
+        let (mut found, mut below) = (None, false);
+        let mut sought = |record: &csv::ByteRecord, place: &Place| {
+            let Some(head) = &mut found else {
+                check_header_size(path, record.len(), &self.budget)?;
+                found = Some(head(path, record, place.row)?);
+                return Ok(ControlFlow::Continue(Taken::Done));
+            };
+            below = true;
+            check_parted(head, record)?;
+            if !are_units(record) {
+                return Ok(ControlFlow::Break(Taken::Held));
+            }
+            add_units(head, record);
+            Ok(ControlFlow::Break(Taken::Done))
+        };
+        let taken = each(&self.text, self.spelling.delimiter, self.lines, path, &mut sought)?;
+        if below {
+            self.drop_parsed(taken);
+            self.head.clone_from(&found);
+        }
         Ok(found)
     }
 
@@ -327,44 +373,72 @@ impl GrowingRows {
         wanted: &Wanted<'_>,
         source: Source,
     ) -> Result<&Table, ReadError> {
+        let (delimiter, budget) = (self.spelling.delimiter, self.budget.rest());
         let gathered = self.gathered.take();
-        let budget = || self.budget.rest();
-        let mut gathered =
-            gathered.unwrap_or_else(|| Gathered::new(wanted, self.delimiter, budget()));
-        let result = self.each(wanted.path(), |record, place| {
-            gathered.take(record, place, wanted).map(ControlFlow::Continue)
-        });
+        let mut gathered = gathered.unwrap_or_else(|| Gathered::new(wanted, delimiter, budget));
+        let mut remarks: Vec<(csv::ByteRecord, Place)> = Vec::new();
+        let mut failure = None;
+        let mut gather = |record: &csv::ByteRecord, place: &Place| {
+            if remarks.len() < MOST_REMARKS && gathered.may_end_with(record) {
+                remarks.push((record.clone(), *place));
+                return Ok(ControlFlow::Continue(Taken::Held));
+            }
+            let held =
+                remarks.iter().try_for_each(|(remark, at)| gathered.take(remark, at, wanted));
+            remarks.clear();
+            Ok(match held.and_then(|()| gathered.take(record, place, wanted)) {
+                Ok(()) => ControlFlow::Continue(Taken::Done),
+                Err(error) => {
+                    failure = Some(error);
+                    ControlFlow::Break(Taken::Held)
+                }
+            })
+        };
+        // Until a row stands below it, the header is found anew each time.
+        if self.head.is_some() {
+            let taken = each(&self.text, delimiter, self.lines, wanted.path(), &mut gather)?;
+            self.drop_parsed(taken);
+        }
         let gathered = self.gathered.insert(gathered);
-        result.map(|()| gathered.table_of(source))
+        failure.map_or_else(|| Ok(gathered.table_of(source)), Err)
     }
 
-    /// Hands on the records that are whole, and takes them off the text. One that is wrong
-    /// stays, and is as wrong the next time.
-    fn each(
-        &mut self,
-        path: &Path,
-        mut take: impl FnMut(&csv::ByteRecord, &Place) -> Result<ControlFlow<()>, ReadError>,
-    ) -> Result<(), ReadError> {
-        let mut reader = reader(self.delimiter, LineEnds::after(self.text.as_slice(), self.lines));
-        let mut record = csv::ByteRecord::new();
-        let (mut taken, mut result) = (0, Ok(ControlFlow::Continue(())));
-        while let Ok(ControlFlow::Continue(())) = result {
-            if !next(&mut reader, &mut record, path)? {
-                taken = self.text.len();
-                break;
-            }
-            let end = usize::try_from(reader.position().byte()).unwrap_or(usize::MAX);
-            // The line end behind the text is part of a quotation that still goes on.
-            if end > self.text.len() {
-                break;
-            }
-            let place = place_just_read(&mut reader, &record);
-            result = take(&record, &place);
-            taken = if result.is_ok() { end } else { taken };
-        }
-        let lines = self.text.drain(..taken).filter(|byte| *byte == b'\n');
+    fn drop_parsed(&mut self, bytes: usize) {
+        let lines = self.text.drain(..bytes).filter(|byte| *byte == b'\n');
         self.lines += lines.fold(0, |count, _| count + 1);
-        result.map(drop)
+    }
+}
+
+/// Hands on the records of `text` that are whole, and says how many bytes are done with.
+fn each(
+    text: &[u8],
+    delimiter: u8,
+    lines: u64,
+    path: &Path,
+    take: &mut impl FnMut(&csv::ByteRecord, &Place) -> Result<ControlFlow<Taken, Taken>, ReadError>,
+) -> Result<usize, ReadError> {
+    let mut reader = reader(delimiter, LineEnds::after(text, lines));
+    let mut record = csv::ByteRecord::new();
+    let mut done = 0;
+    let mut holds = false;
+    loop {
+        if !next(&mut reader, &mut record, path)? {
+            // Remarks and empty lines stand behind the last record.
+            return Ok(if holds { done } else { text.len() });
+        }
+        let end = usize::try_from(reader.position().byte()).unwrap_or(usize::MAX);
+        // The line end behind the text is part of a quotation that still goes on.
+        if end > text.len() {
+            return Ok(done);
+        }
+        let place = place_just_read(&mut reader, &record);
+        let step = take(&record, &place)?;
+        let (ControlFlow::Break(taken) | ControlFlow::Continue(taken)) = &step;
+        holds = matches!(taken, Taken::Held);
+        done = if holds { done } else { end };
+        if step.is_break() {
+            return Ok(done);
+        }
     }
 }
 
@@ -378,6 +452,7 @@ fn check_width(wanted: &Wanted<'_>, place: &Place, found: usize) -> Result<(), R
 }
 
 /// Where a record is in the file.
+#[derive(Clone, Copy)]
 struct Place {
     /// Its first line, counted from 1.
     row: u64,
