@@ -41,7 +41,7 @@ impl Columns<'_> {
         {
             let follower = self.follower(*input, &outputs);
             let is_sure = follower.is_some() || outputs.len() == 1;
-            let is_sure = is_sure && !self.is_bare(*input);
+            let is_sure = is_sure && (!self.is_bare(*input) || self.are_the_only(*input, &outputs));
             let output = follower.or(outputs.first().copied());
             let joint = |output| FoundJoint { is_sure, ..self.joint(None, *input, output) };
             joints.extend(output.map(joint));
@@ -137,6 +137,14 @@ impl Columns<'_> {
     fn is_bare(&self, column: usize) -> bool {
         const BARE: [&str; 5] = ["u", "in", "input", "control", "signal"];
         matches!(self.words(column).as_slice(), [word] if BARE.contains(&word.as_str()))
+    }
+
+    /// Whether the input and the one output are all that moves beside the time: then what else
+    /// could be meant?
+    fn are_the_only(&self, input: usize, outputs: &[usize]) -> bool {
+        let moving = (0..self.head.headers.len()).filter(|column| self.signal(*column).is_some());
+        let others: Vec<usize> = moving.filter(|column| *column != input).collect();
+        others.as_slice() == outputs && outputs.len() == 1
     }
 
     /// Whether nothing but the little word `in` says that a joint's input is one: neither another

@@ -232,6 +232,31 @@ mod tests {
     }
 
     #[test]
+    fn a_bare_input_beside_one_output_and_nothing_else_is_a_joint() {
+        for (header, is_sure) in
+            [("t_s,u,y", true), ("time,input,angle", true), ("t_s,u,y,x", false)]
+        {
+            let columns = header.split(',').count();
+            let mut text = format!("{header}\n");
+            let mut angle = 0.0;
+            for k in 0..400 {
+                let input = f64::from(k / 40 * 7 % 5) - 2.0;
+                angle += 0.1 * input;
+                let row = [f64::from(k) / 100.0, input, angle, angle.sin()];
+                let cells: Vec<String> = row[..columns].iter().map(f64::to_string).collect();
+                writeln!(text, "{}", cells.join(",")).unwrap();
+            }
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("log.csv");
+            std::fs::write(&path, text).unwrap();
+            let survey = Survey::of(&path, MemoryLimit::default()).unwrap();
+            let names: Vec<&str> = header.split(',').collect();
+            assert_eq!(survey.map.joints, [JointColumns::new("joint", names[1], names[2])]);
+            assert_eq!(survey.is_sure, is_sure, "{header}");
+        }
+    }
+
+    #[test]
     fn what_cannot_be_found_is_said() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log.csv");
