@@ -33,7 +33,22 @@ pub(super) fn in_proportion(error: ErrorFigures, noise: Option<f64>) -> String {
     const MANY: f64 = 20.0;
     match noise.map(|noise| error.rmse / noise) {
         Some(times) if times < MANY => format!("{} times the noise", rounded(times)),
-        _ => format!("{} of the motion", percent(1.0 - error.fit_percent / 100.0)),
+        _ => match 1.0 - error.fit_percent / 100.0 {
+            part if part < MANY => format!("{} of the motion", percent(part)),
+            // A model that runs away, or an output that hardly moves.
+            _ => format!("more than {MANY} times the motion"),
+        },
+    }
+}
+
+/// `3.2 times as large`, where that many times can be said.
+pub(super) fn times_as_large(times: f64) -> String {
+    /// Beyond it the error that is compared with is all but 0.
+    const SAID: f64 = 1e6;
+    if times < SAID {
+        format!("{} times as large", rounded(times))
+    } else {
+        "far larger".to_owned()
     }
 }
 

@@ -5,6 +5,7 @@ use super::{Passage, Topic};
 use crate::diagnosis::{LackOfFit, NEGLIGIBLE, SIGNIFICANCE};
 use crate::experiment::Trial;
 use crate::fit::Status;
+use crate::report::consequence::times_as_large;
 use crate::report::finding::Finding;
 use crate::wording::{measure, p_text, percent, rounded};
 
@@ -72,8 +73,8 @@ impl Finding<'_> {
         is_worse.then(|| {
             format!(
                 "The test covers the part that was fitted; on the other part, which says what to \
-                 expect of new data, the error is {} times as large.",
-                rounded(times)
+                 expect of new data, the error is {}.",
+                times_as_large(times)
             )
         })
     }

@@ -3,7 +3,7 @@
 use super::{Passage, Topic};
 use crate::diagnosis::ShownBy;
 use crate::diagnosis::failure::WorstSegment;
-use crate::report::consequence::in_proportion;
+use crate::report::consequence::{in_proportion, times_as_large};
 use crate::report::finding::Finding;
 use crate::wording::{capitalized, failure_sentences, percent, rounded, worst_segment_text};
 
@@ -30,8 +30,8 @@ impl Finding<'_> {
         let test = self.comparison().lack_of_fit?;
         match test.shown_by? {
             ShownBy::UnseenPart => {
-                let times = rounded(test.times_training?);
-                Some(format!("On the part that was not fitted it is {times} times as large."))
+                let times = times_as_large(test.times_training?);
+                Some(format!("On the part that was not fitted it is {times}."))
             }
             ShownBy::FewWindows => {
                 let times = rounded(test.local?.times_noise?);
