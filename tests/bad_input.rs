@@ -270,8 +270,8 @@ fn a_log_without_time_is_refused_with_both_remedies() {
 
 #[test]
 fn a_log_without_joints_is_refused_with_its_columns() {
-    let log = boom().renamed("boom.input", "u").renamed("boom.output", "y");
-    let says = ["log.csv", "row 1", "no joint", "time_s, u, y", "`--joint NAME="];
+    let log = boom().renamed("boom.input", "left").renamed("boom.output", "right");
+    let says = ["log.csv", "row 1", "no joint", "time_s, left, right", "`--joint NAME="];
     Workspace::new().with_log(&log).estimate("log.csv").is_refused().says(&says);
 }
 

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use proptest::prelude::*;
 use tauscope::effect::{
-    ActuatorLag, AsymmetricFriction, CoulombFriction, Effect, Moment, OilColumn, RateLimit,
-    Resonance,
+    ActuatorLag, AsymmetricFriction, CoulombFriction, DeadBand, DirectionGain, Effect,
+    LimitingCase, Moment, OilColumn, RateLimit, Resonance,
 };
 
 /// Small steps in an interval.
@@ -68,7 +68,36 @@ fn agree(found: &[f64], expected: &[f64], tolerance: f64) -> Result<(), TestCase
     Ok(())
 }
 
+/// `holds` behind `effect`.
+fn behind(effect: &dyn Effect, parameters: &[f64], holds: &[Hold]) -> Vec<Hold> {
+    let outputs = means(effect, parameters, holds);
+    outputs.into_iter().zip(holds).map(|(output, (_, dt_s))| (output, *dt_s)).collect()
+}
+
+#[test]
+fn frictions_say_what_they_are_without_inertia() {
+    let parameter = "time_constant";
+    let case = |effects| Some(LimitingCase { parameter, effects });
+    assert_eq!(CoulombFriction.spec().limiting_case, case(&["dead_band"]));
+    let asymmetric = AsymmetricFriction.spec().limiting_case;
+    assert_eq!(asymmetric, case(&["dead_band", "direction_gain"]));
+}
+
 proptest! {
+    #[test]
+    fn without_inertia_a_friction_is_its_limiting_case(
+        holds in holds(),
+        (positive, negative) in (0.0_f64..0.5, 0.0_f64..0.5),
+        negative_viscous in 0.3_f64..3.0,
+    ) {
+        let overlap = behind(&DeadBand, &[-negative, positive], &holds);
+        let outputs: Vec<f64> = overlap.iter().map(|(output, _)| *output).collect();
+        agree(&means(&CoulombFriction, &[positive, negative, 0.0], &holds), &outputs, 1e-12)?;
+        let by_direction = means(&DirectionGain, &[1.0 / negative_viscous], &overlap);
+        let friction = [positive, negative, 0.0, negative_viscous];
+        agree(&means(&AsymmetricFriction, &friction, &holds), &by_direction, 1e-12)?;
+    }
+
     #[test]
     fn lag(holds in holds(), constant in 0.5_f64..100.0) {
         let expected = integrated(&holds, |x, input, h| {

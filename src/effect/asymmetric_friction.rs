@@ -66,7 +66,8 @@ static SPEC: Spec = Spec::new(
 .memory(SLIDING_MEMORY)
 .confused_with(&["coulomb_friction", "direction_gain"])
 .absorbing(&["coulomb_friction", "actuator_lag"])
-.refining("coulomb_friction");
+.refining("coulomb_friction")
+.limiting_case("time_constant", &["dead_band", "direction_gain"]);
 
 impl Effect for AsymmetricFriction {
     fn spec(&self) -> &'static Spec {

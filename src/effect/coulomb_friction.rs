@@ -64,6 +64,7 @@ static SPEC: Spec = Spec::new(
 .memory(SLIDING_MEMORY)
 .confused_with(&["dead_band", "stiction", "input_offset"])
 .absorbing(&["actuator_lag"])
+.limiting_case("time_constant", &["dead_band"])
 .looking_like_both(&[["dead_band", "spool_lag"], ["dead_band", "actuator_lag"]]);
 
 /// Parameters that the asymmetric form has, too.

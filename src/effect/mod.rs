@@ -89,7 +89,7 @@ pub(crate) use registry::find_among;
 pub use registry::{REGISTRY, UnknownEffect, by_id, find};
 pub use resonance::Resonance;
 pub use signal_gain::signal_gain;
-pub use spec::Spec;
+pub use spec::{LimitingCase, Spec};
 pub use spool_lag::SpoolLag;
 pub use stage::Stage;
 pub use stiction::Stiction;

@@ -45,9 +45,21 @@ pub struct Spec {
     /// Id of an effect of which it is a finer form: where that is looked for, too, this one is
     /// only in models that have that.
     pub refines: Option<&'static str>,
+    /// What it is, exactly, where one of its parameters is 0: a record that does not show that parameter
+    /// shows no more than this.
+    pub limiting_case: Option<LimitingCase>,
     /// Whether an effect on the output changes where the joint is, and not only what
     /// is measured of it.
     pub acts_on_state: bool,
+}
+
+/// What an effect is where one of its parameters is 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LimitingCase {
+    /// The name of the parameter.
+    pub parameter: &'static str,
+    /// Ids of the effects that are the same together.
+    pub effects: &'static [&'static str],
 }
 
 impl Spec {
@@ -67,6 +79,7 @@ impl Spec {
             looks_like_both: &[],
             upstream_of: &[],
             refines: None,
+            limiting_case: None,
             acts_on_state: false,
         }
     }
@@ -129,6 +142,16 @@ impl Spec {
     #[must_use]
     pub const fn refining(self, coarser: &'static str) -> Self {
         Self { refines: Some(coarser), ..self }
+    }
+
+    /// Where `parameter` is 0 it is all of these `effects` [together](Self::limiting_case).
+    #[must_use]
+    pub const fn limiting_case(
+        self,
+        parameter: &'static str,
+        effects: &'static [&'static str],
+    ) -> Self {
+        Self { limiting_case: Some(LimitingCase { parameter, effects }), ..self }
     }
 
     /// It [acts on the state](Self::acts_on_state).

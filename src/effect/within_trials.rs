@@ -108,6 +108,7 @@ impl Restricted {
             absorbs: &[],
             looks_like_both: &[],
             refines: None,
+            limiting_case: None,
             ..inner.clone()
         };
         Self { effect, word: word.to_owned(), spec: part_of_interned(spec) }

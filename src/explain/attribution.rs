@@ -23,7 +23,8 @@ use super::contribution::{Attribution, Contribution};
 use super::determined::is_determined;
 use super::eligible::signal_range;
 use super::evidence::NoiseMemory;
-use super::extension::ids;
+use super::extension::{components_of, ids};
+use super::limiting_case::limiting_case;
 use super::misfit::{CONSEQUENCE, Errors, Misfit};
 use super::options::Options;
 use super::outcome::FitOutcome;
@@ -117,12 +118,21 @@ impl Grown<'_, '_> {
         let own = Errors::of(self.record, self.whole);
         let count = |fit: &AssessedModel| fit.parameters.len();
         let fewer = exchanged.iter().filter(|(_, fit)| count(fit) < count(self.whole));
-        let as_little = fewer.filter(|(_, fit)| {
+        let as_little = fewer.filter(|(change, fit)| {
             self.leaves_as_little(fit)
                 && self.misfit.generalizes(own, fit.errors)
-                && is_as_likely(fit)
+                && (is_as_likely(fit) || self.is_to_limiting_case(*change))
         });
         as_little.min_by_key(|(_, fit)| count(fit))
+    }
+
+    /// Whether an exchange is that for the limiting case of which the record shows no more.
+    fn is_to_limiting_case(&self, change: Change) -> bool {
+        let Change::Replaced { old, new } = change else { return false };
+        let case = |old| limiting_case(self.record, self.whole, old, self.options);
+        let old = [old];
+        let mut cases = components_of(&self.whole.model, &old).filter_map(case);
+        cases.any(|case| case.effects == [new])
     }
 
     /// What is attributed to which effect, given what each leaves behind, what was `exchanged` for

@@ -43,11 +43,14 @@ pub(super) fn is_distinct(fit: &AssessedModel, component: &Component, errors: f6
     let theirs: Vec<&str> =
         contained.flat_map(|effect| effect.spec().parameters).map(|one| one.name).collect();
     let own = fitted(fit, component).filter(|(parameter, _)| !theirs.contains(&parameter.name));
-    let distances = own.filter_map(|(parameter, fitted)| {
-        Some((fitted.value - parameter.neutral).abs() / fitted.std_error?)
-    });
+    let distances = own.filter_map(|(parameter, fitted)| distance_from_neutral(parameter, fitted));
     let mut known = distances.peekable();
     known.peek().is_none() || known.any(|distance| distance > errors)
+}
+
+/// How many standard errors a value is from the one at which it does nothing, where there are any.
+pub(super) fn distance_from_neutral(parameter: &Parameter, fitted: &fit::Parameter) -> Option<f64> {
+    Some((fitted.value - parameter.neutral).abs() / fitted.std_error?)
 }
 
 /// Whether an effect acts within what the record of `fit` reaches: not one of which all levels or
@@ -86,7 +89,7 @@ fn free_parameters<'a>(
 }
 
 /// The parameters of an effect beside those of `fit`.
-fn fitted<'a>(
+pub(super) fn fitted<'a>(
     fit: &'a AssessedModel,
     component: &'a Component,
 ) -> impl Iterator<Item = (&'static Parameter, &'a fit::Parameter)> + 'a {

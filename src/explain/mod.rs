@@ -35,6 +35,7 @@ mod improve;
 mod judge;
 mod ladder;
 mod likeness;
+mod limiting_case;
 mod measured_signals;
 mod misfit;
 mod options;

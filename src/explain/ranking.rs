@@ -4,6 +4,7 @@ use super::candidate::Candidate;
 use super::comparison::{MUCH_LESS, compared};
 use super::eligible::{eligible, signal_range, steady_refinements};
 use super::extension::Extension;
+use super::limiting_case::put_limiting_cases_first;
 use super::options::Options;
 use super::outcome::FitOutcome;
 use super::pairs::pairs;
@@ -58,6 +59,7 @@ pub(super) fn rank(
         noise_floor,
         effects: &effects,
         refinements: &refinements,
+        options,
         range: &range,
     };
     let [thinned, training] = [record.thinned(), record.for_training()];
@@ -85,6 +87,7 @@ struct Search<'a, 'r> {
     effects: &'a [&'static dyn Effect],
     /// Finer forms of some of the effects.
     refinements: &'a [&'static dyn Effect],
+    options: &'a Options,
     range: &'a RecordRange<'a>,
 }
 
@@ -190,6 +193,8 @@ impl Search<'_, '_> {
     }
 
     fn compared(&self, extensions: Vec<Extension>) -> Vec<Candidate> {
-        compared(self.record, self.base, self.noise_floor, extensions)
+        let mut candidates = compared(self.record, self.base, self.noise_floor, extensions);
+        put_limiting_cases_first(self.record, &mut candidates, self.options);
+        candidates
     }
 }

@@ -6,6 +6,7 @@ use super::eligible::{could_be_missing, is_due, signal_range};
 use super::evidence::NoiseMemory;
 use super::extension::{components_of, ids};
 use super::likeness::{are_distinguished, looks_like};
+use super::limiting_case::is_one_its_limiting_case;
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::outcome::FitOutcome;
@@ -118,7 +119,8 @@ impl Removal<'_> {
             let behind = evidence.criterion() - of_whole.criterion() + hurdle;
             let new: Vec<&str> = change.new_effects().collect();
             let is_known = components_of(&fit.model, &new).all(|one| is_determined(&fit, one))
-                && are_distinguished(&fit, &new);
+                && are_distinguished(&fit, &new)
+                && !is_one_its_limiting_case(record, &fit, &new, self.options);
             (behind < 0.0 && leaves_less && !does_harm && is_worth_it && is_known)
                 .then_some((behind, (change, fit)))
         });

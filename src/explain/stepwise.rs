@@ -11,6 +11,7 @@ use std::ops::ControlFlow;
 use super::candidate::Candidate;
 use super::eligible::signal_range;
 use super::extension::ids;
+use super::limiting_case::is_one_its_limiting_case;
 use super::misfit::{Errors, Misfit};
 use super::options::Options;
 use super::ranking::{Scope, rank};
@@ -126,6 +127,7 @@ pub(super) fn add_stepwise(
             candidate.is_significant()
                 && is_known
                 && candidate.is_distinguished_from_its_like()
+                && !is_one_its_limiting_case(record, &candidate.fit, &candidate.effects, options)
                 && misfit.generalizes(own, candidate.fit.errors)
         };
         let counts = |candidate: &Candidate| is_sound(&candidate) && has_consequence(candidate);
