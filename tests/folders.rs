@@ -276,6 +276,18 @@ fn what_makes_no_sense_is_refused_with_the_remedy() {
 
 #[test]
 #[cfg(unix)]
+fn a_log_that_can_be_read_once_is_refused_beside_the_others() {
+    let workspace = Workspace::with_logs(1);
+    let pipe = workspace.path("pipe.csv");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let found = workspace.run("estimate pipe.csv logs/run_00.csv --results kept --summary all.csv");
+    assert_eq!(found.status, Some(1));
+    found.says("pipe.csv: a pipe or a device can be read once");
+    assert_eq!(workspace.read("all.csv").lines().count(), 1 + 2);
+}
+
+#[test]
+#[cfg(unix)]
 fn a_pipe_under_the_name_of_a_result_is_not_waited_for() {
     let workspace = Workspace::with_logs(2);
     workspace.run("estimate logs --results kept").is_whole();

@@ -81,6 +81,11 @@ impl Budget {
         Self { limit: self.limit, taken: self.taken.clone() }
     }
 
+    /// Bytes that are left.
+    pub(super) fn left(&self) -> u64 {
+        self.limit.saturating_sub(self.taken.get())
+    }
+
     /// Takes `bytes`, before they are allocated.
     pub(super) fn take(&self, bytes: u64) -> Result<(), TooLarge> {
         self.check(bytes)?;

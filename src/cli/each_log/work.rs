@@ -122,6 +122,14 @@ impl Work<'_> {
 
     /// Stands for all that the result of a log depends on.
     fn key(&self, log: &Path) -> anyhow::Result<String> {
+        // It is read twice: for its hash, and by the program that works on it.
+        if log.metadata().is_ok_and(|found| !found.is_file()) {
+            bail!(
+                "{}: a pipe or a device can be read once, and `--results` reads a log twice; write it \
+                 to a file, or leave out `--results`",
+                log.display()
+            );
+        }
         let mut hash = Sha256::new();
         for part in [env!("CARGO_PKG_VERSION"), self.each.command] {
             hash.update(part);

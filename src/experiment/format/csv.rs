@@ -25,6 +25,9 @@ type Lines<R> = io::Chain<LineEnds<R>, &'static [u8]>;
 /// or a quotation that is never closed.
 const LONGEST_ROW: u64 = 1 << 24;
 
+/// Memory that is taken for a byte of a row while it grows, if all cells are empty (measured: 26).
+const ROW_SIZE: u64 = 32;
+
 /// Lines of the same.
 const MOST_LINES: usize = 1 << 20;
 
@@ -59,7 +62,8 @@ pub(super) fn table(
     let io_error = |source| ReadError::Io { path: path.to_owned(), source };
     let Spelling { delimiter, preamble: (before, lines) } = Spelling::of(start);
     io::copy(&mut bytes.by_ref().take(before as u64), &mut io::sink()).map_err(io_error)?;
-    let mut reader = reader(delimiter, LineEnds::after(bytes, lines));
+    let lines = LineEnds::after(bytes, lines).within(&budget);
+    let mut reader = reader(delimiter, lines);
     let mut record = csv::ByteRecord::new();
     if !next(&mut reader, &mut record, path)? {
         return Err(ReadError::Empty { path: path.to_owned() });
@@ -486,12 +490,20 @@ struct LineEnds<R> {
     passed: u64,
     /// The end of the last row.
     row_end: u64,
+    /// Bytes that a row may have.
+    longest: u64,
 }
 
 impl<R: Read> LineEnds<R> {
     /// Bytes that come after so many `lines`.
     fn after(inner: R, lines: u64) -> Self {
-        Self { inner, bytes: 0, last: b'\n', ends: VecDeque::new(), passed: lines, row_end: 0 }
+        let (ends, longest) = (VecDeque::new(), LONGEST_ROW);
+        Self { inner, bytes: 0, last: b'\n', ends, passed: lines, row_end: 0, longest }
+    }
+
+    /// With rows for which there is memory.
+    fn within(self, budget: &Budget) -> Self {
+        Self { longest: LONGEST_ROW.min(budget.left() / ROW_SIZE), ..self }
     }
 
     /// Number of line ends before the byte `place`, which never goes back.
@@ -507,12 +519,16 @@ impl<R: Read> LineEnds<R> {
 impl<R: Read> Read for LineEnds<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let waiting = self.bytes.saturating_sub(self.row_end);
-        if waiting > LONGEST_ROW || self.ends.len() > MOST_LINES {
+        if waiting > self.longest || self.ends.len() > MOST_LINES {
+            let or_memory = if self.longest < LONGEST_ROW {
+                " A longer row needs a larger `--max-memory`."
+            } else {
+                ""
+            };
             return Err(io::Error::other(format!(
-                "the row behind line {} does not end within {} MB and {MOST_LINES} lines; is a \
-                 quotation mark never closed?",
-                self.passed,
-                LONGEST_ROW >> 20
+                "the row behind line {} does not end within {} bytes and {MOST_LINES} lines; is a \
+                 quotation mark never closed?{or_memory}",
+                self.passed, self.longest
             )));
         }
         let count = self.inner.read(buffer)?;
