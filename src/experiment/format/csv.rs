@@ -25,11 +25,11 @@ type Lines<R> = io::Chain<LineEnds<R>, &'static [u8]>;
 /// or a quotation that is never closed.
 const LONGEST_ROW: u64 = 1 << 24;
 
-/// Memory that is taken for a byte of a row while it grows, if all cells are empty (measured: 26).
-const ROW_SIZE: u64 = 32;
-
 /// Lines of the same.
 const MOST_LINES: usize = 1 << 20;
+
+/// Memory that is taken for a byte of a row while it grows, if all cells are empty (measured: 26).
+const ROW_SIZE: u64 = 32;
 
 /// Rows of words that may stand below a table.
 const MOST_REMARKS: usize = 20;
