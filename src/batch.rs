@@ -3,12 +3,14 @@
 //! Each piece is done by one thread alone and results come back in the order of the pieces, so
 //! that they are the same bit for bit on any number of threads.
 
+use std::num::NonZero;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::thread;
 
 use rayon::prelude::*;
 
+use crate::experiment::address_space;
 use crate::explain::Workers;
 
 /// The threads of the pool that the caller runs in: see [`with_threads`].
@@ -42,6 +44,21 @@ fn threads_of_environment() -> usize {
     asked.and_then(|text| text.parse().ok()).unwrap_or(0).min(MOST_THREADS)
 }
 
+/// As many of `threads` as the addresses that this program may have leave room for, where they are
+/// limited; 0 stands for one for each processor.
+fn as_many_as_fit(threads: usize) -> usize {
+    /// Addresses of a thread: its stack, and what the C library sets aside for what it allocates
+    /// (64 MiB with glibc, twice as many while they are aligned).
+    const OF_THREAD: u64 = 256 << 20;
+    let Some(addresses) = address_space() else { return threads };
+    let room = usize::try_from(addresses / OF_THREAD).unwrap_or(usize::MAX).max(1);
+    let asked = match threads {
+        0 => thread::available_parallelism().map_or(1, NonZero::get),
+        threads => threads,
+    };
+    asked.min(room)
+}
+
 /// Runs `work` as [`with_threads`] does; `run` runs each thread, and all have ended behind it.
 ///
 /// # Errors
@@ -53,7 +70,7 @@ pub(crate) fn with_prepared_threads<T: Send>(
 ) -> Result<T, rayon::ThreadPoolBuildError> {
     let (run, mut started) = (Arc::new(run), Vec::new());
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.unwrap_or_else(threads_of_environment))
+        .num_threads(as_many_as_fit(threads.unwrap_or_else(threads_of_environment)))
         .spawn_handler(|thread| {
             let (run, mut thread) = (Arc::clone(&run), Some(thread));
             let mut once = move || thread.take().into_iter().for_each(rayon::ThreadBuilder::run);

@@ -98,15 +98,41 @@ fn a_text_of_a_model_file_becomes_no_code() {
 #[test]
 fn a_model_that_gives_no_finite_numbers_is_refused_and_nothing_is_written() {
     let folder = TempDir::new().unwrap();
-    let model = described("x").replace("7.5", "1e308");
-    fs::write(folder.path().join("model.toml"), model).unwrap();
     let add = ["add", "gravity_load", LOG, "--joint", "boom", "-m", "model.toml", "-w", "new.toml"];
     let compare = ["compare", LOG, "--joint", "boom", "-m", "model.toml"];
-    for arguments in [&add[..], &compare] {
-        let said = refused(folder.path(), arguments);
-        assert!(said.contains("no finite numbers"), "{said}");
+    // Squares of the outputs leave double precision with the first, the outputs with the second.
+    for gain in ["1e155", "1e308"] {
+        let model = described("x").replace("7.5", gain);
+        fs::write(folder.path().join("model.toml"), model).unwrap();
+        for arguments in [&add[..], &compare] {
+            let said = refused(folder.path(), arguments);
+            assert!(said.contains("beyond what double precision can square"), "{said}");
+        }
+        let levels = "--levels=-1,0,1";
+        let said = refused(folder.path(), &["design", "-m", "model.toml", levels]);
+        assert!(said.contains("joint `boom` has a gain of 1.0e"), "{said}");
     }
     assert!(!folder.path().join("new.toml").exists());
+}
+
+#[test]
+fn an_output_that_never_moves_is_said_without_dividing_by_its_error() {
+    let folder = TempDir::new().unwrap();
+    let row = |k: i32| format!("{}.{:02},{},1.5\n", k / 100, k % 100, k / 150 % 3 - 1);
+    let rows: String = (0..6000).map(row).collect();
+    fs::write(folder.path().join("still.csv"), format!("time_s,a.input,a.output\n{rows}")).unwrap();
+    for format in ["text", "json"] {
+        let name = format!("{format}.toml");
+        let arguments = ["add", "dead_band", "still.csv", "--format", format, "-w", &name];
+        let ended = tauscope(folder.path(), &arguments);
+        let text = String::from_utf8(ended.stdout).unwrap();
+        assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+        assert!(format == "json" || text.contains("stays 0"), "{text}");
+        assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+    }
+    let ended = tauscope(folder.path(), &["explain", "still.csv"]);
+    let text = String::from_utf8(ended.stdout).unwrap();
+    assert!(text.contains("no more than rounding"), "{text}");
 }
 
 #[test]

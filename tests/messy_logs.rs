@@ -389,6 +389,51 @@ fn texts() -> Vec<Messy> {
     ]
 }
 
+/// Texts as loggers and programs write them.
+fn programs() -> Vec<Messy> {
+    let rows = clean();
+    let all = plain(&rows);
+    let trailing = |text: &str| text.replace('\n', ",\n");
+    let (_, below) = all.split_once('\n').unwrap();
+    let quoted = |x: f64| format!("\"{}\"", format!("{x:.6}").replace('.', ","));
+    let labview = "LabVIEW Measurement\t\nSeparator\tTab\nDecimal_Separator\t.\n\
+                   ***End_of_Header***\t\n\t\nChannels\t2\t\t\nSamples\t1800\t1800\t\n\
+                   Delta_X\t0.01\t0.01\t\n***End_of_Header***\t\t\t\n";
+    let labview_header = "X_Value\tboom.input\tboom.output\tComment";
+    let days = |origin: f64| timed(move |k| origin + PERIOD * k as f64 / 86_400.0);
+    let dated =
+        |rows: &[Row]| table("time,boom.input,boom.output", rows, ",", |x| format!("{x:.11}"));
+    vec![
+        messy("marks_behind_rows.csv", format!("{HEADER}\n{}", trailing(below)), SAME),
+        messy("mark_behind_header.csv", all.replacen('\n', ",\n", 1), SAME),
+        messy("marks_behind_all.csv", trailing(&all), SAME),
+        messy("quoted_commas.csv", table(HEADER, &rows, ",", quoted), SAME),
+        messy(
+            "thousands.csv",
+            cell(&all, 617, 2, "here").replace("here", "\"1,234\""),
+            Expected::Refused(&["row 617", "`boom.output`", "1,234"]),
+        ),
+        messy(
+            "types_below_units.csv",
+            all.replacen('\n', "\ns,V,deg\nfloat,float,float\n", 1),
+            read(1e-6, "row 3, below the header, is left out"),
+        ),
+        messy("bars.txt", all.replace(',', "|"), SAME),
+        messy(
+            "labview.lvm",
+            format!("{labview}{}", table(labview_header, &rows, "\t", |x| format!("{x:.6}"))),
+            SAME,
+        ),
+        messy("days_of_a_sheet.csv", dated(&days(45_658.0)), read(1e-3, "as spreadsheets count")),
+        messy("datenum.csv", dated(&days(739_618.0)), read(1e-3, "MATLAB's datenum")),
+        messy(
+            "two_clocks.csv",
+            trailing(&all).replace(",\n", ",0\n").replacen(",0\n", ",time_s\n", 1),
+            Expected::Refused(&["two columns are named `time_s`", "rename one"]),
+        ),
+    ]
+}
+
 /// What no number can be made of.
 fn broken() -> Vec<Messy> {
     let all = plain(&clean());
@@ -463,6 +508,7 @@ fn every_messy_log_is_read_as_the_clean_one_or_refused_with_the_remedy() {
         .chain(names_alone())
         .chain(units_and_names())
         .chain(texts())
+        .chain(programs())
         .chain(broken())
         .collect();
     assert!(logs.len() >= 30);

@@ -196,6 +196,22 @@ fn results_that_find_no_room_are_no_success() {
         let said = String::from_utf8_lossy(&ended.stderr);
         assert!(said.contains("standard output cannot be written"), "{said}");
     }
+    for asked in ["--help", "--version"] {
+        let full = File::options().write(true).open("/dev/full").unwrap();
+        let ended = tauscope(folder.path()).arg(asked).stdout(full).output().unwrap();
+        assert_eq!(ended.status.code(), Some(2), "{asked}");
+    }
+}
+
+#[test]
+fn a_dash_is_no_name_of_an_output() {
+    let folder = folder();
+    for words in ["columns log.csv -w -", "estimate log.csv --decisions -"] {
+        let ended = tauscope(folder.path()).args(words.split(' ')).output().unwrap();
+        let said = String::from_utf8_lossy(&ended.stderr);
+        assert!(ended.status.code() == Some(2) && said.contains("/dev/stdout"), "{words}: {said}");
+    }
+    assert!(!folder.path().join("-").exists());
 }
 
 #[test]

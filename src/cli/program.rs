@@ -6,6 +6,7 @@ use std::panic::AssertUnwindSafe;
 use std::process::ExitCode;
 use std::sync::Arc;
 
+use anyhow::Context as _;
 use clap::{CommandFactory as _, Parser, Subcommand};
 
 use crate::cli::args::DataArgs;
@@ -54,7 +55,14 @@ enum Command {
 pub fn run() -> ExitCode {
     end_with_parent();
     meet_file_limits();
-    let outcome = perform(Cli::parse().command);
+    let outcome = match Cli::try_parse() {
+        Ok(cli) => perform(cli.command),
+        Err(fault) if fault.use_stderr() => fault.exit(),
+        // Help and the version are results, which may be lost like others.
+        Err(asked) => {
+            asked.print().context("standard output cannot be written").map(|()| Completion::Whole)
+        }
+    };
     match outcome {
         Ok(Completion::Whole) => ExitCode::SUCCESS,
         Ok(Completion::Partial) => ExitCode::from(1),

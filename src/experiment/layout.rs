@@ -14,7 +14,7 @@ use crate::units::SamplePeriod;
 /// Names of a time column, the preferred first.
 const TIME_NAMES: [&str; 4] = ["time_s", "t_s", "time", "t"];
 /// Further names of a column of times, in lower case, without the unit they may end in.
-const FURTHER_TIME_NAMES: [&str; 22] = [
+const FURTHER_TIME_NAMES: [&str; 29] = [
     "time",
     "t",
     "timestamp",
@@ -37,6 +37,13 @@ const FURTHER_TIME_NAMES: [&str; 22] = [
     "rosbagtimestamp",
     "zeit",
     "zeitstempel",
+    "temps",
+    "tiempo",
+    "tempo",
+    "tid",
+    "時間",
+    "时间",
+    "x_value",
 ];
 /// Name of a column of sample numbers.
 const SAMPLE_NAME: &str = "sample";
@@ -300,13 +307,15 @@ fn find_time(
             (found, _) => found.and_then(|column| times(head, column, None)),
         };
     }
-    let numbers = find_any(head, &[SAMPLE_NAME]);
-    match (period, numbers, find_time_column(head)) {
-        // A period that was asked for stands above a time column: the user knows why.
-        (Some(period), Some(column), _) => Ok(TimeSource::SampleNumbers(column, period)),
-        (Some(period), None, _) => Ok(TimeSource::Rows(period)),
-        (None, _, Some(column)) => times(head, column, None),
-        (None, _, None) => Err(ReadError::NoTime { path: head.path.clone(), row: head.header_row }),
+    // A period that was asked for stands above a time column: the user knows why.
+    match (period, find_any(head, &[SAMPLE_NAME])) {
+        (Some(period), Some(column)) => return Ok(TimeSource::SampleNumbers(column, period)),
+        (Some(period), None) => return Ok(TimeSource::Rows(period)),
+        (None, _) => {}
+    }
+    match one_time_column(columns)? {
+        Some(column) => times(head, column, None),
+        None => Err(ReadError::NoTime { path: head.path.clone(), row: head.header_row }),
     }
 }
 
@@ -404,6 +413,13 @@ impl<'a> Columns<'a> {
 /// The column that a name such as `trial` says names the trials.
 pub(super) fn find_trial(head: &Head) -> Option<usize> {
     find_any(head, &TRIAL_NAMES)
+}
+
+/// The one time column: of two of a name it is not known which is meant.
+fn one_time_column(columns: &Columns<'_>) -> Result<Option<usize>, ReadError> {
+    let Some(index) = find_time_column(columns.head) else { return Ok(None) };
+    let text = columns.head.headers.get(index).map_or("", |header| &header.text);
+    columns.find(text).map(Some)
 }
 
 fn find_any(head: &Head, wanted: &[&str]) -> Option<usize> {

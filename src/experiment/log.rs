@@ -9,7 +9,7 @@ use super::gaps::{gap_with_all_steps_s, unlogged};
 use super::joint::{Joint, Signal, Trial};
 use super::layout::{JointLayout, TimeSource};
 use super::memory::Budget;
-use super::origin::{origin_s, since_1970};
+use super::origin::{Counting, origin_s};
 use super::period::is_period;
 use super::sampling::{Fault, Grid, Piece, Repair, Signals};
 use super::table::{BadCell, Coarse, Column, Head, Table, TrialRows};
@@ -82,12 +82,26 @@ impl Log<'_> {
     fn origin_s(&self, time: TimeSource) -> f64 {
         let TimeSource::Times(column, scale) = time else { return 0.0 };
         let first = self.first_time(column).unwrap_or_default();
-        origin_s(first * scale.unwrap_or_else(|| self.scale(column)))
+        origin_s(self.seconds_of(column, scale)(first))
     }
 
-    /// Seconds of the unit of times that do not name it.
-    fn scale(&self, column: usize) -> f64 {
-        self.first_time(column).and_then(since_1970).map_or(1.0, |(scale, _)| scale)
+    /// From a time of a column to seconds; `scale` is those of its unit, where it is named.
+    fn seconds_of(&self, column: usize, scale: Option<f64>) -> impl Fn(f64) -> f64 {
+        let counting = scale.is_none().then(|| self.counting(column));
+        move |value| match (scale, counting) {
+            (Some(scale), _) => value * scale,
+            (None, Some(counting)) => counting.seconds_of(value),
+            (None, None) => value,
+        }
+    }
+
+    /// How times count that do not name their unit.
+    fn counting(&self, column: usize) -> Counting {
+        let values = self.column(column).map_or(&[][..], |column| &column.values);
+        let mut known = values.iter().copied().filter(|value| !value.is_nan());
+        let first = known.next().unwrap_or(f64::NAN);
+        let later = known.find(|value| *value > first).unwrap_or(f64::NAN);
+        Counting::of(first, later - first)
     }
 
     /// What is said of times whose unit was inferred from their size, or that are counted anew.
@@ -98,10 +112,11 @@ impl Log<'_> {
             Some(date) => format!("times count from {date} ({origin_s} s of its clock)"),
             None => format!("times count from {origin_s} s of its clock"),
         });
-        let unit = self.first_time(column).and_then(since_1970);
-        let unit = unit.filter(|(seconds, _)| scale.is_none() && *seconds < 1.0);
+        let counting = self.counting(column);
+        #[expect(clippy::float_cmp, reason = "seconds are 1 as it was written")]
+        let unit = (scale.is_none() && counting.seconds != 1.0).then_some(counting.name);
         let name = self.header(column);
-        let unit = unit.map(|(_, unit)| format!("`{name}` is taken for {unit} since 1970"));
+        let unit = unit.map(|unit| format!("`{name}` is taken for {unit}"));
         let said: Vec<String> = unit.into_iter().chain(counted).collect();
         (!said.is_empty()).then(|| said.join("; "))
     }
@@ -112,7 +127,7 @@ impl Log<'_> {
         const SELDOM_S: (f64, f64) = (900.0, 86_400.0);
         let TimeSource::Times(column, scale) = time else { return Ok(()) };
         // The size of times since 1970 shows their unit, and so does a date.
-        let is_known = scale.is_some() || self.first_time(column).and_then(since_1970).is_some();
+        let is_known = scale.is_some() || self.counting(column).is_recognized();
         let most = if is_known { SELDOM_S.1 } else { SELDOM_S.0 };
         let mut periods = grids.iter().map(|grid| grid.period().seconds());
         match periods.find(|period| *period > most) {
@@ -205,8 +220,8 @@ impl Log<'_> {
             TimeSource::Rows(period) => return Ok(Clock::Rows(period)),
         };
         let values = self.column(column).map_or(&[][..], |column| &column.values);
-        let scale = scale.unwrap_or_else(|| self.scale(column));
-        let times: Vec<f64> = values.iter().map(|value| value * scale).collect();
+        let seconds = self.seconds_of(column, scale);
+        let times: Vec<f64> = values.iter().map(|value| seconds(*value)).collect();
         self.check_times(column, &times)?;
         Ok(Clock::Stamps(times))
     }

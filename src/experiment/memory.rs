@@ -47,12 +47,12 @@ impl Default for MemoryLimit {
 
 /// The addresses that this program may have, where they are limited.
 #[cfg(unix)]
-fn address_space() -> Option<u64> {
+pub(crate) fn address_space() -> Option<u64> {
     rustix::process::getrlimit(rustix::process::Resource::As).current
 }
 
 #[cfg(not(unix))]
-fn address_space() -> Option<u64> {
+pub(crate) fn address_space() -> Option<u64> {
     None
 }
 
@@ -91,6 +91,12 @@ impl Budget {
         self.check(bytes)?;
         self.taken.set(self.taken.get() + bytes);
         Ok(())
+    }
+
+    /// Gives back bytes that were taken and are free again.
+    #[cfg(any(feature = "mat", feature = "xlsx"))]
+    pub(super) fn give_back(&self, bytes: u64) {
+        self.taken.set(self.taken.get().saturating_sub(bytes));
     }
 
     /// Takes the memory of `count` values of `size` bytes each.

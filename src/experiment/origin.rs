@@ -13,14 +13,63 @@ pub(super) fn origin_s(first_s: f64) -> f64 {
     if first_s.is_finite() && first_s.abs() >= LATE_S { first_s.floor() } else { 0.0 }
 }
 
-/// The unit of times since 1970, known by their size: its seconds and its name.
-pub(super) fn since_1970(first: f64) -> Option<(f64, &'static str)> {
+/// How a clock counts whose times do not name their unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Counting {
+    /// Seconds of its unit.
+    pub(super) seconds: f64,
+    /// What it shows in 1970; 0 of a clock that does not know the date.
+    pub(super) in_1970: f64,
+    /// Its name in words; empty of plain seconds.
+    pub(super) name: &'static str,
+}
+
+impl Counting {
+    /// Seconds from where nobody knows.
+    const PLAIN: Self = Self { seconds: 1.0, in_1970: 0.0, name: "" };
+
+    /// The time that the clock shows as `value`, in seconds.
+    pub(super) fn seconds_of(self, value: f64) -> f64 {
+        (value - self.in_1970) * self.seconds
+    }
+
+    /// Whether the size of its times says what they are.
+    pub(super) fn is_recognized(self) -> bool {
+        self != Self::PLAIN
+    }
+
+    /// How the times of a log count that are `first` in its first row and then `step` apart.
+    pub(super) fn of(first: f64, step: f64) -> Self {
+        since_1970(first).or_else(|| in_days(first, step)).unwrap_or(Self::PLAIN)
+    }
+}
+
+/// The unit of times since 1970, known by their size.
+fn since_1970(first: f64) -> Option<Counting> {
+    let of = |seconds, name| Some(Counting { seconds, in_1970: 0.0, name });
     match first {
         // From the year 2001 to 2128 in each unit.
-        1e9..5e9 => Some((1.0, "seconds")),
-        1e12..5e12 => Some((1e-3, "milliseconds")),
-        1e15..5e15 => Some((1e-6, "microseconds")),
-        1e18..5e18 => Some((1e-9, "nanoseconds")),
+        1e9..5e9 => of(1.0, "seconds since 1970"),
+        1e12..5e12 => of(1e-3, "milliseconds since 1970"),
+        1e15..5e15 => of(1e-6, "microseconds since 1970"),
+        1e18..5e18 => of(1e-9, "nanoseconds since 1970"),
+        _ => None,
+    }
+}
+
+/// Dates as numbers of days: of spreadsheets, from the end of 1899 on, and those of MATLAB's
+/// `datenum`, from the year 0. No log in seconds has samples so near to one another.
+fn in_days(first: f64, step: f64) -> Option<Counting> {
+    /// Days between two samples, at most: a sixth of a second.
+    const MOST: f64 = 2e-6;
+    let of = |in_1970, name| Some(Counting { seconds: 86_400.0, in_1970, name });
+    if !(step > 0.0 && step < MOST) {
+        return None;
+    }
+    match first {
+        // The years 1990 to 2099.
+        32_874.0..73_051.0 => of(25_569.0, "days as spreadsheets count them"),
+        726_834.0..767_011.0 => of(719_529.0, "days as MATLAB's datenum counts them"),
         _ => None,
     }
 }
@@ -36,8 +85,21 @@ mod tests {
     }
 
     #[test]
+    fn numbers_of_days_are_told_by_their_size_and_their_steps() {
+        let step = 0.01 / 86_400.0;
+        // Noon of the first of January 2025.
+        for first in [45_658.5, 739_618.5] {
+            let days = Counting::of(first, step);
+            assert!((days.seconds_of(first) - 1_735_732_800.0).abs() < 1e-3, "{days:?}");
+        }
+        // A machine that has been on for half a day, logged at 100 Hz.
+        assert!(!Counting::of(45_658.5, 0.01).is_recognized());
+    }
+
+    #[test]
     fn the_unit_of_times_since_1970_is_told_by_their_size() {
-        assert_eq!(since_1970(1.7e15), Some((1e-6, "microseconds")));
-        assert_eq!(since_1970(86_400.0), None);
+        let micros = Counting::of(1.7e15, 1e4);
+        assert_eq!((micros.seconds, micros.in_1970), (1e-6, 0.0));
+        assert!(micros.is_recognized() && !Counting::of(86_400.0, 0.01).is_recognized());
     }
 }

@@ -316,7 +316,7 @@ pub(super) enum BadCell {
 }
 
 /// The largest number of a log: products of squares of ten million of them are still numbers.
-const LARGEST: f64 = 1e75;
+pub(crate) const LARGEST: f64 = 1e75;
 
 /// What the largest number of a signal must reach: products of squares of smaller ones, and of
 /// what is left of them by a model, are lost to zero.

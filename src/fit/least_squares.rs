@@ -14,6 +14,7 @@ use super::starts::starts;
 use super::turn;
 use super::window::Part;
 use crate::effect::RecordRange;
+use crate::experiment::LARGEST;
 use crate::model::JointModel;
 
 /// Fits the free parameters of `model` to the training windows of `record`.
@@ -47,10 +48,12 @@ pub fn fit(
     Ok(fit)
 }
 
-/// Whether a model gives numbers on the whole record.
+/// Whether a model gives numbers on the whole record that double precision can compute with.
 fn check_numbers(assessment: &Assessment) -> Result<(), FitError> {
     let mut residuals = assessment.evaluation.residuals.iter().flatten();
-    if residuals.all(|residual| residual.is_finite()) { Ok(()) } else { Err(FitError::NotFinite) }
+    // What is no number is not in the range.
+    let is_usable = residuals.all(|residual| (-LARGEST..=LARGEST).contains(residual));
+    if is_usable { Ok(()) } else { Err(FitError::NotFinite) }
 }
 
 /// Fits as [`fit`] does, but stops when the cost can fall by too little to change a comparison

@@ -33,7 +33,7 @@ pub(crate) use excerpt::Excerpt;
 pub(crate) use first_order::{follows_input, makes_first_order, time_constant_s};
 pub use least_squares::{assess, fit, fit_to_compare, fit_to_compare_beside, survey};
 pub use record::FitRecord;
-pub(crate) use record::starts_s;
+pub(crate) use record::{is_rounding, starts_s};
 pub use result::{
     AssessedModel, Assessment, Fit, FitError, Parameter, Status, Survey, Termination,
 };

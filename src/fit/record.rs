@@ -53,6 +53,15 @@ pub struct FitRecord<'a> {
 /// Delay of each change of the input in seconds, per trial, where it is known.
 type Delays = Vec<Vec<Option<f64>>>;
 
+/// Whether a residual of `size` is no more than what the outputs of `joint` are rounded by.
+pub(crate) fn is_rounding(joint: &Joint, size: f64) -> bool {
+    /// Part of the largest output, some thousand times what a double is rounded by (chosen).
+    const ROUNDING: f64 = 1e-12;
+    let outputs = joint.trials.iter().flat_map(|trial| trial.output().iter());
+    let largest = outputs.fold(0.0_f64, |largest, output| largest.max(output.abs()));
+    size <= ROUNDING * largest
+}
+
 impl<'a> FitRecord<'a> {
     /// The trials of `joint`, cut by `split` and `horizon`.
     ///
@@ -356,13 +365,9 @@ impl<'a> FitRecord<'a> {
 
     /// Whether the residuals of `evaluation` are no more than rounding: there is nothing to explain.
     pub(crate) fn is_exact(&self, evaluation: &Evaluation) -> bool {
-        /// Part of the largest output, some thousand times what a double is rounded by (chosen).
-        const ROUNDING: f64 = 1e-12;
-        let outputs = self.joint.trials.iter().flat_map(|trial| trial.output().iter());
-        let largest = outputs.fold(0.0_f64, |largest, output| largest.max(output.abs()));
         let residuals = evaluation.residuals.iter().flatten();
         let most = residuals.fold(0.0_f64, |most, residual| most.max(residual.abs()));
-        most <= ROUNDING * largest
+        is_rounding(self.joint, most)
     }
 
     /// How the output follows the input, where it does or is likely to follow the input itself.

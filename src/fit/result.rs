@@ -123,10 +123,10 @@ pub enum FitError {
         /// Parameters to fit.
         parameters: usize,
     },
-    /// What the model says is no number, or beyond what a number can be.
+    /// What the model says is no number, or beyond what double precision can square.
     #[error(
-        "its model gives outputs that are no finite numbers; check its parameters and the unit of \
-         the log"
+        "its model gives outputs that are no numbers, or beyond what double precision can square; \
+         check its parameters and the unit of the log"
     )]
     NotFinite,
 }

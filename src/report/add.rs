@@ -69,21 +69,29 @@ impl<'a> AddedJoint<'a> {
         let error =
             |comparison: &Comparison| comparison.judged().map_or(f64::NAN, |error| error.rmse);
         let (before, after) = (error(&self.addition.before), error(&self.addition.after));
-        let taken = 100.0 * (1.0 - after / before);
         let unit = self.joint.output_unit.as_deref();
-        let falls = if taken >= 0.0 { "falls" } else { "rises" };
-        let (from, to) = (number(before), with_unit(after, unit));
         let p_value = self.addition.p_value.map_or_else(String::new, |p| {
             let verdict = if p < 0.01 { "" } else { ": not significant" };
             format!(" ({}{verdict})", p_text(p))
         });
-        let share = (10.0 * taken.abs()).round() / 10.0;
         let Self { joint, effect, .. } = self;
-        format!(
-            "{}: with {effect} the error {falls} from {from} to {to}, by {share} %{p_value}",
-            joint.name
-        )
+        format!("{}: with {effect} the error {}{p_value}", joint.name, change(before, after, unit))
     }
+}
+
+/// `falls from 2.9 to 0.4 deg, by 87 %`; `stays 0 deg` where there is nothing to divide by.
+fn change(before: f64, after: f64, unit: Option<&str>) -> String {
+    let (from, to) = (number(before), with_unit(after, unit));
+    let taken = 100.0 * (1.0 - after / before);
+    if before.total_cmp(&after).is_eq() {
+        return format!("stays {to}");
+    }
+    let falls = if after < before { "falls" } else { "rises" };
+    if !taken.is_finite() {
+        return format!("{falls} from {from} to {to}");
+    }
+    let share = (10.0 * taken.abs()).round() / 10.0;
+    format!("{falls} from {from} to {to}, by {share} %")
 }
 
 /// Each joint's model before and after, and what it means.

@@ -1,6 +1,7 @@
 //! Decisions of an earlier run, read from its JSON or from its table of decisions.
 
 use std::io::ErrorKind;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
@@ -45,6 +46,23 @@ pub enum EarlierError {
         /// What is wrong with it.
         source: csv::Error,
     },
+    /// A delay that is none.
+    #[error(
+        "{path}: joint `{joint}`, trial {trial}, step {i}: a delay of {got:e} s is none; expected \
+         at most 1e8 s"
+    )]
+    Delay {
+        /// The file.
+        path: PathBuf,
+        /// The joint.
+        joint: String,
+        /// The trial.
+        trial: String,
+        /// Number of the step.
+        i: usize,
+        /// What is there.
+        got: f64,
+    },
     /// A verdict that there is not.
     #[error("{path}: joint `{joint}`, trial {trial}, step {i}: there is no verdict `{got}`")]
     Verdict {
@@ -66,6 +84,9 @@ const SCHEMA: &str = "tauscope/estimate/1";
 
 /// What a file is known by that has a table of decisions.
 const COLUMNS: [&str; 6] = ["joint", "trial", "i", "p", "verdict", "failed"];
+
+/// Delays that there may be, s: a log is sampled at least once in so many seconds.
+const DELAYS_S: RangeInclusive<f64> = -1e8..=1e8;
 
 #[derive(Debug, Deserialize)]
 struct Document {
@@ -201,6 +222,10 @@ impl Row {
             let Self { joint, trial, i, verdict: got, .. } = self;
             return Err(EarlierError::Verdict { path: path.to_owned(), joint, trial, i, got });
         };
+        if let Some(got) = self.delta_s.filter(|delay| !DELAYS_S.contains(delay)) {
+            let Self { joint, trial, i, .. } = self;
+            return Err(EarlierError::Delay { path: path.to_owned(), joint, trial, i, got });
+        }
         let line = |slope: Option<f64>, intercept: Option<f64>| {
             Some(Line { slope: slope?, intercept: intercept? })
         };
@@ -270,6 +295,9 @@ mod tests {
         let unknown = "boom,1,1,89,79,126,8,5,104,15,0.15,1.5,0,2,0.1,-8,perhaps,\n";
         let error = parse(&format!("{HEADER}\n{unknown}"));
         assert!(matches!(error, Err(EarlierError::Verdict { i: 1, .. })));
+        let endless = "boom,1,1,89,79,126,8,5,104,15,1e308,1.5,0,2,0.1,-8,accepted,\n";
+        let error = parse(&format!("{HEADER}\n{endless}"));
+        assert!(matches!(error, Err(EarlierError::Delay { i: 1, .. })));
         let ragged = parse(&format!("{HEADER}\nboom,1\n"));
         assert!(matches!(ragged, Err(EarlierError::Table { .. })));
     }

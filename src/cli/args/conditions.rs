@@ -155,7 +155,7 @@ pub(super) fn confidence(text: &str) -> Result<Confidence, String> {
 }
 
 pub(super) fn limits(text: &str) -> Result<(f64, f64), String> {
-    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| !x.is_nan());
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite());
     let pair = text.split_once(',').and_then(|(low, high)| Some((number(low)?, number(high)?)));
     match pair {
         Some((low, high)) if low < high => Ok((low, high)),

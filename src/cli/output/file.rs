@@ -105,6 +105,9 @@ impl OutputFile {
 
     /// Opens a file for `path`.
     pub(crate) fn create(path: &Path) -> anyhow::Result<Self> {
+        if path.as_os_str() == "-" {
+            bail!("-: give the output a name: /dev/stdout, or ./- for a file that is called so");
+        }
         let target = target_of(path);
         let opened = Self::open(&target);
         let opened = opened.with_context(|| format!("{}: cannot be written", path.display()))?;

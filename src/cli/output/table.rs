@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use crate::experiment::is_control;
 use crate::report::DataTable;
 
 use super::file::{OutputFile, write_file};
@@ -77,7 +78,8 @@ pub(crate) fn write_csv(
     Ok(copy_safe(&table, file)?)
 }
 
-/// Copies CSV, texts that begin like a formula with an apostrophe before them.
+/// Copies CSV, texts that begin like a formula with an apostrophe before them, and without control
+/// characters, which names of files may have.
 fn copy_safe(table: &[u8], out: impl Write) -> csv::Result<()> {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(table);
     let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(out);
@@ -85,12 +87,10 @@ fn copy_safe(table: &[u8], out: impl Write) -> csv::Result<()> {
         for cell in &record? {
             let is_formula =
                 matches!(cell.first(), Some(b'=' | b'+' | b'-' | b'@' | b'\t' | b'\r'));
-            let is_number = std::str::from_utf8(cell).is_ok_and(|text| text.parse::<f64>().is_ok());
-            if is_formula && !is_number {
-                writer.write_field([b"'", cell].concat())?;
-            } else {
-                writer.write_field(cell)?;
-            }
+            let text = String::from_utf8_lossy(cell);
+            let is_number = text.parse::<f64>().is_ok();
+            let mark = if is_formula && !is_number { "'" } else { "" };
+            writer.write_field(format!("{mark}{}", text.replace(is_control, "\u{fffd}")))?;
         }
         writer.write_record(None::<&[u8]>)?;
     }

@@ -48,6 +48,12 @@ fn other(
     if let Some(result) = OtherResult::read(path)? {
         return Ok(result);
     }
+    // A log is read again from its beginning.
+    if path.metadata().is_ok_and(|found| !found.is_file()) {
+        bail!(
+            "a log in a pipe can be read once, and was read for a result; write it to a file first"
+        );
+    }
     let experiment = data.read_other(path)?;
     let estimates =
         session.in_threads(|| session.estimates_of(&experiment.joints, (settings, automatic)))?;

@@ -108,7 +108,7 @@ const FORMATS: [Format; 8] = [
     },
     Format {
         name: "CSV",
-        endings: &[".csv", ".tsv", ".txt", ".csv.gz", ".tsv.gz", ".txt.gz"],
+        endings: &[".csv", ".tsv", ".txt", ".lvm", ".csv.gz", ".tsv.gz", ".txt.gz"],
         starts: |_| true,
         remedy: "write it as text",
         open: csv::open,

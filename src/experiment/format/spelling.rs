@@ -13,13 +13,25 @@ pub(super) struct Spelling {
     pub(super) preamble: (usize, u64),
 }
 
+/// Marks that part cells, the least likely first: the comma is taken where none is found.
+const DELIMITERS: [u8; 4] = [b'|', b'\t', b';', b','];
+
+/// What ends the lines before a table of LabVIEW (`.lvm`): once for the file, once for the table.
+const LABVIEW: (&[u8], &[u8]) = (b"LabVIEW Measurement", b"***End_of_Header***");
+
 /// Lines that are looked at to separate the table from what precedes it.
 const LINES: usize = 200;
 
 impl Spelling {
     /// How a text is written that starts so.
     pub(super) fn of(start: &[u8]) -> Self {
-        Self::by_widths(start).past_padding(start)
+        match behind_labview(start) {
+            Some((behind, lines)) => {
+                let below = start.get(behind..).unwrap_or_default();
+                Self { delimiter: sniff_delimiter(below), preamble: (behind, lines) }
+            }
+            None => Self::by_widths(start).past_padding(start),
+        }
     }
 
     /// The table as rows of one width, with what is shorter or longer before it.
@@ -30,17 +42,18 @@ impl Spelling {
         let whole = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
         let lines: Vec<&[u8]> = rows(text.get(..whole).unwrap_or_default()).take(LINES).collect();
         let counts = |delimiter: u8| -> Vec<usize> {
-            lines.iter().map(|line| cells(line, delimiter)).collect()
+            let is_trailing = ends_unevenly(&lines, delimiter);
+            let own = |line: &&[u8]| usize::from(is_trailing && ends_with(line, delimiter));
+            lines.iter().map(|line| cells(line, delimiter) - own(line)).collect()
         };
         let agreeing = |delimiter: u8| {
             let counts = counts(delimiter);
             let width = usual(&counts);
             (counts.iter().filter(|count| **count == width && width > 1).count(), width)
         };
-        let first =
-            lines.iter().find(|line| is_row(line)).map_or(0, |line| cells(line, plain.delimiter));
+        let first = counts(plain.delimiter).into_iter().find(|count| *count > 0).unwrap_or(0);
         let (own, own_width) = agreeing(plain.delimiter);
-        let best = [b'\t', b';', b','].map(|delimiter| (agreeing(delimiter), delimiter));
+        let best = DELIMITERS.map(|delimiter| (agreeing(delimiter), delimiter));
         let Some(&((agree, width), delimiter)) =
             best.iter().max_by_key(|((agree, width), _)| (*agree, *width))
         else {
@@ -92,6 +105,18 @@ impl Spelling {
         }
         self
     }
+}
+
+/// Where the table of a log of LabVIEW begins, in bytes and in lines.
+fn behind_labview(start: &[u8]) -> Option<(usize, u64)> {
+    let (first, end) = LABVIEW;
+    let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
+    let lines: Vec<&[u8]> = rows(text).collect();
+    lines.first().filter(|line| line.starts_with(first))?;
+    let last = lines.iter().rposition(|line| line.starts_with(end))?;
+    let before = lines.get(..=last)?;
+    let bytes: usize = before.iter().map(|line| line.len()).sum();
+    Some((start.len() - text.len() + bytes, line_ends(before)))
 }
 
 /// The lines of a text; those that one quoted cell goes over are one. A quotation mark that nothing
@@ -171,11 +196,10 @@ impl DecimalMarks {
     pub(super) fn agreed(
         &mut self,
         cell: &[u8],
-        delimiter: u8,
         parsed: Result<f64, BadCell>,
     ) -> Result<f64, BadCell> {
-        // A time of day has a mark of its own, and a comma between cells is none.
-        if delimiter == b',' || parsed.is_err() || cell.contains(&b':') {
+        // A time of day has a mark of its own.
+        if parsed.is_err() || cell.contains(&b':') {
             return parsed;
         }
         self.point |= cell.contains(&b'.');
@@ -194,6 +218,26 @@ fn is_row(line: &[u8]) -> bool {
 /// Cells of a line, as long as no quotation goes over it; 0 of a line that is no row.
 fn cells(line: &[u8], delimiter: u8) -> usize {
     if is_row(line) { 1 + count(line, delimiter) } else { 0 }
+}
+
+/// Whether a mark between cells is the last of a line.
+fn ends_with(line: &[u8], delimiter: u8) -> bool {
+    let line = line.strip_suffix(b"\n").unwrap_or(line);
+    line.strip_suffix(b"\r").unwrap_or(line).ends_with(&[delimiter])
+}
+
+/// Whether a mark stands behind the last cell of each row below the header and not of the header, or
+/// the other way round: it makes no cell.
+fn ends_unevenly(lines: &[&[u8]], delimiter: u8) -> bool {
+    let rows = lines.iter().filter(|line| cells(line, delimiter) > 1);
+    let ends = rows.map(|line| (ends_with(line, delimiter), cells(line, delimiter)));
+    let ends: Vec<(bool, usize)> = ends.collect();
+    let Some((last, _)) = ends.last() else { return false };
+    let Some(header) = ends.iter().rposition(|(ends, _)| ends != last) else { return false };
+    let width = |(ends, cells): &(bool, usize)| cells - usize::from(*ends);
+    let below = ends.get(header + 1..).unwrap_or_default();
+    below.len() > 1
+        && below.iter().all(|row| ends.get(header).is_some_and(|it| width(it) == width(row)))
 }
 
 /// The count that most rows have.
@@ -223,7 +267,7 @@ fn count(line: &[u8], delimiter: u8) -> usize {
 pub(super) fn sniff_delimiter(start: &[u8]) -> u8 {
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
     let line = text.split(|&byte| byte == b'\n').find(|line| is_row(line)).unwrap_or_default();
-    let counts = [b'\t', b';', b','].map(|delimiter| (delimiter, count(line, delimiter)));
+    let counts = DELIMITERS.map(|delimiter| (delimiter, count(line, delimiter)));
     // The comma is last, so that it wins when nothing is found.
     counts.into_iter().max_by_key(|(_, count)| *count).map_or(b',', |(delimiter, _)| delimiter)
 }
@@ -261,15 +305,29 @@ pub(super) fn parse_cell(cell: &[u8], delimiter: u8) -> Result<f64, BadCell> {
     }
     let number = text.and_then(|text| text.parse::<f64>().ok());
     let with_comma = || {
-        let text = text.filter(|text| delimiter != b',' && text.matches(',').count() == 1)?;
-        let text = (!text.contains('.')).then(|| text.replace(',', "."))?;
-        text.parse::<f64>().ok()
+        let text = text.filter(|text| text.matches(',').count() == 1 && !text.contains('.'))?;
+        // Between quotation marks, where commas part the cells, `1,200` may be a thousand and more.
+        let is_thousands = delimiter == b',' && are_thousands(text);
+        (!is_thousands).then(|| text.replace(',', ".").parse::<f64>().ok())?
     };
     match number.or_else(with_comma) {
         Some(value) if value.is_infinite() => Err(BadCell::Infinite),
         Some(value) => Ok(value),
         None => Err(BadCell::Text(String::from_utf8_lossy(cell).into_owned())),
     }
+}
+
+/// Whether a comma of a number may stand between its thousands: three digits follow it, and one to
+/// three that are no zero are before it.
+fn are_thousands(text: &str) -> bool {
+    let Some((whole, rest)) = text.split_once(',') else { return false };
+    let whole = whole.trim_start_matches(['-', '+']);
+    let are_digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
+    (1..=3).contains(&whole.len())
+        && !whole.starts_with('0')
+        && rest.len() == 3
+        && are_digits(whole)
+        && are_digits(rest)
 }
 
 /// The time in a cell: a number, or a date and time of ISO 8601 as seconds since 1970, or a
@@ -306,6 +364,27 @@ mod tests {
     }
 
     #[test]
+    fn a_mark_behind_the_last_cell_makes_no_cell() {
+        let rows = "0,1,2\n0.1,1,2\n0.2,1,2\n";
+        let trailing = rows.replace('\n', ",\n");
+        for (header, rows) in [("t,u,y\n", trailing.as_str()), ("t,u,y,\r\n", rows)] {
+            let plain = Spelling { delimiter: b',', preamble: (0, 0) };
+            assert_eq!(Spelling::of(format!("{header}{rows}").as_bytes()), plain);
+            let found = Spelling::of(format!("Logger 3\n\n{header}{rows}").as_bytes());
+            assert_eq!(found, Spelling { delimiter: b',', preamble: (10, 2) });
+        }
+    }
+
+    #[test]
+    fn the_table_of_labview_begins_behind_two_headers() {
+        let before = "LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\n\t\n\
+                      Channels\t2\t\nX0\t0\t0\n***End_of_Header***\t\t\n";
+        let log = format!("{before}X_Value\tu\ty\tComment\n0\t1\t2\n0.1\t1\t2\n");
+        let found = Spelling::of(log.as_bytes());
+        assert_eq!(found, Spelling { delimiter: b'\t', preamble: (before.len(), 7) });
+    }
+
+    #[test]
     fn lines_padded_to_the_width_of_the_table_do_not_hide_the_header() {
         let table = "t;u;y\n0,0;1,5;2\n0,1;1;2\n0,2;1;2\n";
         for preamble in ["\"Run 7\";;\nDate;01.03.2026;\n;;\n", "Rig 3;;\r\nBy:;me;\r\n\r\n"] {
@@ -332,8 +411,12 @@ mod tests {
             assert!(parse(word.as_bytes()).unwrap().is_nan(), "{word}");
         }
         assert_eq!(parse(b"#REF!"), Err(BadCell::Text("#REF!".to_owned())));
-        assert_eq!(parse(b"1,5"), Err(BadCell::Text("1,5".to_owned())));
         assert_eq!(parse_cell(b"-1,5", b';'), Ok(-1.5));
+        assert_eq!(parse_cell(b"1,200", b';'), Ok(1.2));
+        for (text, number) in [("1,5", 1.5), ("0,125", 0.125), ("-0,5e2", -50.0)] {
+            assert_eq!(parse(text.as_bytes()), Ok(number));
+        }
+        assert!(parse(b"1,200").is_err() && parse(b"1,5,2").is_err());
         assert!(parse_cell(b"1.000,5", b';').is_err());
     }
 

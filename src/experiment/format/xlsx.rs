@@ -23,7 +23,9 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
         reason,
         remedy: "save it again as .xlsx, or as CSV",
     };
-    check_unpacked(path, &budget).map_err(|error| error.refuse(path))?;
+    let texts = check_unpacked(path, &budget).map_err(|error| error.refuse(path))?;
+    // They stay while cells are read that share them.
+    budget.take(texts).map_err(|error| error.refuse(path))?;
     let mut workbook: Xlsx<_> =
         open_workbook(path).map_err(|error: XlsxError| damaged(error.to_string()))?;
     let names = workbook.sheet_names();
@@ -38,12 +40,17 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
         let range = workbook.worksheet_range(&name).map_err(|error| damaged(error.to_string()))?;
         if range.height() > 1 {
             let text = text_of(&range).map_err(|error| damaged(error.to_string()))?;
+            drop((range, workbook));
+            budget.give_back(texts);
             let (bytes, start) = Bytes::made(text, path);
             return table(path, bytes, &start, budget);
         }
     }
     Err(damaged("no sheet has a header and a row".to_owned()))
 }
+
+/// Memory of a text that cells share beside its letters: itself, and what the allocator adds.
+const TEXT_SIZE: u64 = size_of::<String>() as u64 + 32;
 
 /// Sheets of a workbook, at most: those before that of the log are read in vain.
 const MOST_SHEETS: usize = 100;
@@ -80,10 +87,11 @@ fn ids_of_parts(sheets: &[u8]) -> impl Iterator<Item = &[u8]> {
 }
 
 /// Asks for as much memory as all of the workbook takes unpacked: a text, or what is blank, is read
-/// into memory whole. What each part says of its size is not trusted.
-fn check_unpacked(path: &Path, budget: &Budget) -> Result<(), TooLarge> {
-    let Some(mut archive) = archive(path) else { return Ok(()) };
-    let (mut unpacked, mut piece) = (0, vec![0; PIECE]);
+/// into memory whole. What each part says of its size is not trusted. Returns the memory of the texts
+/// that cells share.
+fn check_unpacked(path: &Path, budget: &Budget) -> Result<u64, TooLarge> {
+    let Some(mut archive) = archive(path) else { return Ok(0) };
+    let (mut unpacked, mut piece, mut texts) = (0, vec![0; PIECE], 0);
     for index in 0..archive.len() {
         let Ok(mut part) = archive.by_index(index) else { continue };
         let name = part.name().map(|name| name.to_ascii_lowercase()).unwrap_or_default();
@@ -98,13 +106,15 @@ fn check_unpacked(path: &Path, budget: &Budget) -> Result<(), TooLarge> {
             }
         }
         if is_texts {
-            budget.check(stated_texts(&kept).saturating_mul(size_of::<String>() as u64))?;
+            let listed = stated_texts(&kept).saturating_mul(TEXT_SIZE);
+            texts = listed.saturating_add(kept.len() as u64);
+            budget.check(texts)?;
         }
         if is_styles {
             budget.check(size_of_styles(&kept))?;
         }
     }
-    Ok(())
+    Ok(texts)
 }
 
 /// How many texts their list says that there are (`count`, `uniqueCount`): calamine 0.38 takes memory

@@ -2,9 +2,9 @@
 
 use super::figures::ABOVE_NOISE;
 use super::{Passage, Topic};
-use crate::diagnosis::{LackOfFit, NEGLIGIBLE, SIGNIFICANCE};
+use crate::diagnosis::{Comparison, LackOfFit, NEGLIGIBLE, SIGNIFICANCE};
 use crate::experiment::Trial;
-use crate::fit::Status;
+use crate::fit::{Status, is_rounding};
 use crate::report::consequence::times_as_large;
 use crate::report::finding::Finding;
 use crate::wording::{measure, p_text, percent, rounded};
@@ -61,8 +61,18 @@ impl Finding<'_> {
                     "A pattern is left in {share} % of the squared residual ({p_value}), {rest}."
                 )
             }
+            None if self.is_exact() => {
+                "What is left is no more than rounding: there is nothing to test.".to_owned()
+            }
             None => "There are too few samples to test it.".to_owned(),
         }
+    }
+
+    /// Whether no residual of either part is more than rounding.
+    fn is_exact(&self) -> bool {
+        let Comparison { training, validation, .. } = self.comparison();
+        let largest = training.iter().chain(validation).map(|error| error.max);
+        is_rounding(self.joint(), largest.fold(0.0, f64::max))
     }
 
     /// A warning where the part that was not fitted is worse than noise, and than the other one.

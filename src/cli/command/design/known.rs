@@ -3,6 +3,7 @@
 use crate::batch::Threads;
 use crate::delay::Settings;
 use crate::design::{DURATION_S, Logged, TestRig, reach};
+use crate::effect::UNLIMITED;
 use crate::experiment::{Experiment, Joint, Trial};
 use crate::fit::{Horizon, Split};
 use crate::model::{JointModel, ModelFile};
@@ -53,6 +54,7 @@ impl Known {
         let period = given.transpose()?.or(logged).unwrap_or(usual);
         let names = names(args, &file, experiment.as_ref())?;
         check_length(args, (&file, &names), period)?;
+        check_gains(&file, &names)?;
         let read = experiment.iter().flat_map(|experiment| &experiment.joints);
         let centred = |joint: &Joint| {
             let logged = Logged::of(joint);
@@ -148,6 +150,19 @@ fn check_length(
         }
     }
     Ok(())
+}
+
+/// Refuses a gain with which outputs leave double precision.
+fn check_gains(file: &ModelFile, names: &[String]) -> anyhow::Result<()> {
+    let gain = |name: &String| file.joint(name).map_or(0.0, |model| model.gain.value);
+    match names.iter().find(|name| gain(name).abs() > UNLIMITED) {
+        Some(name) => bail!(
+            "--model: joint `{name}` has a gain of {:.1e}, with which outputs cannot be planned; \
+             correct it, or write it in other units, up to {UNLIMITED:.0e}",
+            gain(name)
+        ),
+        None => Ok(()),
+    }
 }
 
 /// `logged`, or ten milliseconds where it is shorter: no level is held for less than half a second.

@@ -28,6 +28,10 @@ const LONGEST_NAME: usize = 255;
 /// Memory of a number: itself, and its copy as a column.
 const NUMBER_SIZE: usize = 2 * size_of::<f64>();
 
+/// Memory of an array within another: itself twice, as a list that grows is copied to one of twice its
+/// size, and its name and its lengths with what the allocator adds to each.
+const ARRAY_SIZE: usize = 2 * size_of::<Array>() + 2 * 48;
+
 /// The variables of a file, their numbers read.
 pub(super) fn variables(path: &Path, budget: &Budget) -> Result<Vec<Variable>, ReadError> {
     let file =
@@ -93,17 +97,23 @@ fn read(mut file: impl Read, budget: &Budget) -> Result<Vec<Variable>, Fault> {
         let (kind, size) = (tag.u32()?, u64::from(tag.u32()?));
         let mut data = Vec::new();
         file.by_ref().take(size).read_to_end(&mut data)?;
+        let held = data.capacity() as u64;
+        budget.take(held)?;
         if (data.len() as u64) < size {
             return Err(Fault::Damaged(format!("the file ends in {place}")));
         }
         let within = |fault: Fault| fault.within(&format!("in {place}"));
         if kind == COMPRESSED {
             let inside = unpacked(&data, budget).map_err(within)?;
+            let held = inside.capacity() as u64;
+            budget.take(held)?;
             let (kind, data) = Bytes { data: &inside, big, budget }.element().map_err(within)?;
             add(kind, Bytes { data, big, budget }, &mut variables).map_err(within)?;
+            budget.give_back(held);
         } else {
             add(kind, Bytes { data: &data, big, budget }, &mut variables).map_err(within)?;
         }
+        budget.give_back(held);
     }
     Ok(variables)
 }
@@ -368,7 +378,7 @@ impl Value {
         }
         let budget = data.budget;
         let mut element = |_| {
-            budget.take_values(names.len(), 2 * size_of::<Array>() + LONGEST_NAME)?;
+            budget.take_values(names.len(), size_of::<Array>() + LONGEST_NAME)?;
             let field = |name: &String| Ok((name.clone(), data.array(depth)?));
             names.iter().map(field).collect::<Result<Vec<_>, Fault>>()
         };
@@ -386,7 +396,7 @@ impl Bytes<'_> {
         if kind != MATRIX {
             return fault("an array is missing");
         }
-        self.budget.take_values(1, size_of::<Array>())?;
+        self.budget.take_values(1, ARRAY_SIZE)?;
         Array::read(Self { data, ..*self }, depth + 1)
     }
 }

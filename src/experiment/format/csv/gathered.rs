@@ -1,0 +1,171 @@
+//! Rows of a table of text as they come, and the words below it.
+
+use super::super::spelling::{DecimalMarks, are_units, is_remark, parse_cell, parse_time};
+use super::lines::Place;
+use crate::experiment::error::ReadError;
+use crate::experiment::memory::Budget;
+use crate::experiment::names::shown;
+use crate::experiment::source::Source;
+use crate::experiment::table::{Column, Header, Labels, RowNumbers, Table, Wanted};
+
+/// Rows of words that may stand below a table.
+const MOST_REMARKS: usize = 20;
+
+/// Rows of words that may stand between the header and the first row of numbers.
+const MOST_ABOVE: usize = 3;
+
+/// The last column of a log of LabVIEW, which rows without a comment do not have.
+const COMMENT: &str = "Comment";
+
+/// Memory of a number: itself, and what its vector has to spare.
+const NUMBER_SIZE: usize = 2 * size_of::<f64>();
+
+/// Rows as they come.
+pub(super) struct Gathered {
+    delimiter: u8,
+    marks: DecimalMarks,
+    pub(super) table: Table,
+    labels: Option<Labels>,
+    /// Rows of words, which belong to the table if rows of numbers follow.
+    held_back: Vec<(csv::ByteRecord, Place)>,
+    /// Rows of words between the header and the first row of numbers.
+    above: usize,
+    budget: Budget,
+}
+
+impl Gathered {
+    pub(super) fn new(wanted: &Wanted<'_>, delimiter: u8, budget: Budget) -> Self {
+        let path = wanted.path().to_owned();
+        let table = Table {
+            source: Source { path, sha256: String::new(), bytes: 0 },
+            rows: RowNumbers::default(),
+            columns: vec![Column::default(); wanted.numeric.len()],
+            trials: Vec::new(),
+            notes: Vec::new(),
+        };
+        let labels = wanted.label.map(|_| Labels::default());
+        let (marks, held_back) = (DecimalMarks::default(), Vec::new());
+        Self { delimiter, marks, table, labels, held_back, above: 0, budget }
+    }
+
+    pub(super) fn take(
+        &mut self,
+        record: &csv::ByteRecord,
+        place: &Place,
+        wanted: &Wanted<'_>,
+    ) -> Result<(), ReadError> {
+        check_width(wanted, place, record)?;
+        let row = place.row;
+        let cell = |index: usize| record.get(index).unwrap_or_default().trim_ascii();
+        if self.table.rows.is_empty() && self.stands_above(record) {
+            self.note_above(record, place, wanted);
+            return Ok(());
+        }
+        let label = wanted.label.map_or(&b""[..], cell);
+        let size = wanted.numeric.len() * NUMBER_SIZE + label.len();
+        self.budget.take_values(1, size).map_err(|error| error.refuse(wanted.path()))?;
+        self.table.rows.push(row);
+        for (column, index) in self.table.columns.iter_mut().zip(wanted.numeric) {
+            let is_time = wanted.time == Some(*index);
+            let parse = if is_time { parse_time } else { parse_cell };
+            let parsed = parse(cell(*index), self.delimiter);
+            column.push(self.marks.agreed(cell(*index), parsed), row);
+        }
+        if let Some(labels) = &mut self.labels {
+            let memory = (wanted.path(), &self.budget);
+            labels.push(&String::from_utf8_lossy(label), row, memory)?;
+        }
+        Ok(())
+    }
+
+    /// Whether a row of words stands between the header and the first row of numbers: its units, or
+    /// what else a logger says of its columns, as the types of their numbers.
+    fn stands_above(&self, record: &csv::ByteRecord) -> bool {
+        are_units(record) || self.above < MOST_ABOVE && is_remark(record, self.delimiter)
+    }
+
+    fn note_above(&mut self, record: &csv::ByteRecord, place: &Place, wanted: &Wanted<'_>) {
+        self.above += 1;
+        if !are_units(record) {
+            let (path, row) = (wanted.path().display(), place.row);
+            let says = says(record);
+            self.table.notes.push(format!(
+                "{path}: row {row}, below the header, is left out: it holds no number and no time \
+                 (`{says}`)"
+            ));
+        }
+    }
+
+    /// Holds a row back that may be words below the table; whether it does.
+    pub(super) fn holds_back(&mut self, record: &csv::ByteRecord, place: &Place) -> bool {
+        let is_held = !self.table.rows.is_empty()
+            && self.held_back.len() < MOST_REMARKS
+            && is_remark(record, self.delimiter);
+        if is_held {
+            self.held_back.push((record.clone(), *place));
+        }
+        is_held
+    }
+
+    /// Takes the rows that were held back, as more follows.
+    pub(super) fn release(&mut self, wanted: &Wanted<'_>) -> Result<(), ReadError> {
+        let held_back = std::mem::take(&mut self.held_back);
+        held_back.iter().try_for_each(|(record, place)| self.take(record, place, wanted))
+    }
+
+    /// Forgets the rows that were held back: they come again.
+    pub(super) fn forget_held_back(&mut self) {
+        self.held_back.clear();
+    }
+
+    /// Says that words below the table, which were held back, are no rows of it.
+    pub(super) fn leave_out(&mut self, wanted: &Wanted<'_>) {
+        let Some((first, place)) = self.held_back.first() else { return };
+        let rows = match self.held_back.len() {
+            1 => format!("the last row, {}, is left out: it holds", place.row),
+            count => {
+                format!("the last {count} rows, from {} on, are left out: they hold", place.row)
+            }
+        };
+        self.table.notes.push(format!(
+            "{}: {rows} no number and no time (`{}`)",
+            wanted.path().display(),
+            says(first)
+        ));
+    }
+
+    /// What came so far, of this much of the file.
+    pub(super) fn table_of(&mut self, source: Source) -> &Table {
+        self.table.source = source;
+        self.table.trials = self.labels.as_ref().map_or_else(Vec::new, Labels::runs);
+        &self.table
+    }
+}
+
+/// The first cell of a row that says something.
+fn says(record: &csv::ByteRecord) -> String {
+    let cells = record.iter().map(String::from_utf8_lossy);
+    let first = cells.map(|cell| cell.trim().to_owned()).find(|cell| !cell.is_empty());
+    shown(&first.unwrap_or_default())
+}
+
+/// Refuses a row of more or fewer cells than the header. A mark between cells behind the last one, of
+/// all rows or of the header alone, makes none.
+fn check_width(
+    wanted: &Wanted<'_>,
+    place: &Place,
+    record: &csv::ByteRecord,
+) -> Result<(), ReadError> {
+    let (headers, found) = (&wanted.head.headers, record.len());
+    let expected = headers.len();
+    let is_blank =
+        |index: usize| record.get(index).is_some_and(|cell| cell.trim_ascii().is_empty());
+    let is_optional = |header: &Header| ["", COMMENT].contains(&header.name.as_str());
+    let has_one_more = found == expected + 1 && is_blank(expected);
+    let has_one_less = found + 1 == expected && headers.last().is_some_and(is_optional);
+    if found == expected || has_one_more || has_one_less {
+        return Ok(());
+    }
+    let (path, row, lines) = (wanted.path().to_owned(), place.row, place.lines);
+    Err(ReadError::UnequalRow { path, row, found, expected, lines })
+}

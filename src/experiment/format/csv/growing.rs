@@ -1,0 +1,130 @@
+//! The rows of a text that still grows.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use super::super::spelling::{Spelling, are_units};
+use super::super::text::SNIFFED_BYTES;
+use super::gathered::Gathered;
+use super::header::{add_units, check_header_size, check_parted, head};
+use super::lines::{Place, Taken, each};
+use crate::experiment::error::ReadError;
+use crate::experiment::memory::Budget;
+use crate::experiment::source::Source;
+use crate::experiment::table::{Head, Table, Wanted};
+
+/// The rows of a text that still grows: each is parsed once, when it has come whole.
+pub(in crate::experiment) struct GrowingRows {
+    budget: Budget,
+    /// What came first, by which the spelling is known: all that came, until it is full.
+    start: Vec<u8>,
+    spelling: Spelling,
+    /// What was not parsed yet.
+    text: Vec<u8>,
+    /// Lines before it.
+    lines: u64,
+    /// The header, once a whole row stands below it.
+    head: Option<Head>,
+    gathered: Option<Gathered>,
+}
+
+impl GrowingRows {
+    /// Nothing has come yet.
+    pub(in crate::experiment) fn new(budget: Budget) -> Self {
+        let (spelling, text) = (Spelling::of(b""), Vec::new());
+        let start = Vec::new();
+        Self { budget, start, spelling, text, lines: 0, head: None, gathered: None }
+    }
+
+    /// Adds whole lines.
+    pub(in crate::experiment) fn push(&mut self, lines: &[u8]) {
+        self.text.extend_from_slice(lines);
+        let room = SNIFFED_BYTES - self.start.len();
+        if room == 0 {
+            return;
+        }
+        let (sniffed, others) = lines.split_at(lines.len().min(room));
+        self.start.extend_from_slice(sniffed);
+        let spelling = Spelling::of(&self.start);
+        if spelling != self.spelling {
+            // What was a table so far stands before it, or its cells are parted otherwise.
+            let all = [self.start.as_slice(), others].concat();
+            let (before, lines) = spelling.preamble;
+            let text = all.get(before..).unwrap_or_default().to_vec();
+            let (start, budget) = (std::mem::take(&mut self.start), self.budget.rest());
+            *self = Self { start, spelling, text, lines, ..Self::new(budget) };
+        }
+    }
+
+    /// Bytes that were not parsed yet: of a row that is not whole, or that is wrong, and of
+    /// words that may stand below the table.
+    pub(in crate::experiment) fn waiting(&self) -> usize {
+        self.text.len()
+    }
+
+    /// The header; `None` as long as it has not come.
+    pub(in crate::experiment) fn head(&mut self, path: &Path) -> Result<Option<Head>, ReadError> {
+        if self.head.is_some() {
+            return Ok(self.head.clone());
+        }
+        let (mut found, mut below) = (None, false);
+        let mut sought = |record: &csv::ByteRecord, place: &Place| {
+            let Some(head) = &mut found else {
+                check_header_size(path, record.len(), &self.budget)?;
+                found = Some(head(path, record, place.row)?);
+                return Ok(ControlFlow::Continue(Taken::Done));
+            };
+            below = true;
+            check_parted(head, record)?;
+            if !are_units(record) {
+                return Ok(ControlFlow::Break(Taken::Held));
+            }
+            add_units(head, record);
+            Ok(ControlFlow::Break(Taken::Done))
+        };
+        let taken = each(&self.text, self.spelling.delimiter, self.lines, path, &mut sought)?;
+        if below {
+            self.drop_parsed(taken);
+            self.head.clone_from(&found);
+        }
+        Ok(found)
+    }
+
+    /// All rows that have come whole, of this much of the file.
+    pub(in crate::experiment) fn read(
+        &mut self,
+        wanted: &Wanted<'_>,
+        source: Source,
+    ) -> Result<&Table, ReadError> {
+        let (delimiter, budget) = (self.spelling.delimiter, self.budget.rest());
+        let gathered = self.gathered.take();
+        let mut gathered = gathered.unwrap_or_else(|| Gathered::new(wanted, delimiter, budget));
+        gathered.forget_held_back();
+        let mut failure = None;
+        let mut gather = |record: &csv::ByteRecord, place: &Place| {
+            if gathered.holds_back(record, place) {
+                return Ok(ControlFlow::Continue(Taken::Held));
+            }
+            let released = gathered.release(wanted);
+            Ok(match released.and_then(|()| gathered.take(record, place, wanted)) {
+                Ok(()) => ControlFlow::Continue(Taken::Done),
+                Err(error) => {
+                    failure = Some(error);
+                    ControlFlow::Break(Taken::Held)
+                }
+            })
+        };
+        // Until a row stands below it, the header is found anew each time.
+        if self.head.is_some() {
+            let taken = each(&self.text, delimiter, self.lines, wanted.path(), &mut gather)?;
+            self.drop_parsed(taken);
+        }
+        let gathered = self.gathered.insert(gathered);
+        failure.map_or_else(|| Ok(gathered.table_of(source)), Err)
+    }
+
+    fn drop_parsed(&mut self, bytes: usize) {
+        let lines = self.text.drain(..bytes).filter(|byte| *byte == b'\n');
+        self.lines += lines.fold(0, |count, _| count + 1);
+    }
+}

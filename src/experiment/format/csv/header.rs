@@ -1,0 +1,69 @@
+//! The header of a table of text, and its units.
+
+use std::path::Path;
+
+use super::super::spelling::bare_unit;
+use crate::experiment::error::ReadError;
+use crate::experiment::memory::Budget;
+use crate::experiment::table::{Head, Header};
+
+/// Refuses a header of more cells than a log has columns, which a row of commas is, too.
+pub(super) fn check_header_size(
+    path: &Path,
+    cells: usize,
+    budget: &Budget,
+) -> Result<(), ReadError> {
+    /// Ten times as many as a large plant has signals (chosen).
+    const MOST: usize = 1_000_000;
+    /// Memory of a name, and of what is looked for in its column (measured: 180 to 250 bytes).
+    const HEADER_SIZE: usize = 256;
+    if cells > MOST {
+        return Err(ReadError::Format {
+            path: path.to_owned(),
+            format: "a table of text",
+            reason: format!("its header has {cells} cells, and {MOST} are the most"),
+            remedy: "leave out columns",
+        });
+    }
+    budget.take_values(cells, HEADER_SIZE).map_err(|error| error.refuse(path))
+}
+
+/// Refuses a table whose cells are parted by blanks, which would be one column.
+pub(super) fn check_parted(head: &Head, first: &csv::ByteRecord) -> Result<(), ReadError> {
+    let words = |cell: &[u8]| String::from_utf8_lossy(cell).split_whitespace().count();
+    let [header] = head.headers.as_slice() else { return Ok(()) };
+    let (names, values) = (words(header.text.as_bytes()), first.get(0).map_or(0, words));
+    if first.len() > 1 || names < 2 || names != values {
+        return Ok(());
+    }
+    Err(ReadError::Format {
+        path: head.path.clone(),
+        format: "a table of text",
+        reason: format!("its {names} cells are parted by blanks"),
+        remedy: "part them by commas, semicolons or tabs",
+    })
+}
+
+/// The units of a row below the header, where the header has none.
+pub(super) fn add_units(head: &mut Head, record: &csv::ByteRecord) {
+    for (header, cell) in head.headers.iter_mut().zip(record) {
+        let unit = bare_unit(&String::from_utf8_lossy(cell));
+        if header.unit.is_none() && !unit.is_empty() {
+            header.unit = Some(unit);
+        }
+    }
+}
+
+/// What the header says, which stands on the line `header_row`.
+pub(super) fn head(
+    path: &Path,
+    record: &csv::ByteRecord,
+    header_row: u64,
+) -> Result<Head, ReadError> {
+    let text = |(cell, column): (&[u8], usize)| {
+        let not_utf8 = |_| ReadError::NotUtf8 { path: path.to_owned(), row: header_row, column };
+        std::str::from_utf8(cell).map(Header::parse).map_err(not_utf8)
+    };
+    let headers = record.iter().zip(1..).map(text).collect::<Result<_, _>>()?;
+    Ok(Head { path: path.to_owned(), headers, header_row })
+}

@@ -1,0 +1,135 @@
+//! Tables of text: delimiter, cells, line numbers.
+
+mod gathered;
+mod growing;
+mod header;
+mod lines;
+
+use std::io::{self, Read as _};
+use std::path::Path;
+
+use super::spelling::{Spelling, are_units, is_over_lines};
+use super::text::Bytes;
+use crate::experiment::error::ReadError;
+use crate::experiment::memory::Budget;
+use crate::experiment::table::{OpenTable, Rows, Table, Wanted};
+use gathered::Gathered;
+use header::{add_units, check_header_size, check_parted, head};
+use lines::{LineEnds, Lines, Place, next, place_just_read, reader};
+
+pub(in crate::experiment) use growing::GrowingRows;
+
+/// What follows the header, still unread.
+struct Unread {
+    reader: csv::Reader<Lines<Bytes>>,
+    delimiter: u8,
+    /// The first row, where it had to be looked at.
+    first: Option<(csv::ByteRecord, Place)>,
+    budget: Budget,
+}
+
+/// Opens the log and reads its header.
+pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
+    let (bytes, start) = Bytes::open(path)?;
+    table(path, bytes, &start, budget)
+}
+
+/// Reads the header of a text that begins with `start`.
+pub(super) fn table(
+    path: &Path,
+    mut bytes: Bytes,
+    start: &[u8],
+    budget: Budget,
+) -> Result<OpenTable, ReadError> {
+    let io_error = |source| ReadError::Io { path: path.to_owned(), source };
+    let Spelling { delimiter, preamble: (before, lines) } = Spelling::of(start);
+    io::copy(&mut bytes.by_ref().take(before as u64), &mut io::sink()).map_err(io_error)?;
+    let lines = LineEnds::after(bytes, lines).within(&budget);
+    let mut reader = reader(delimiter, lines);
+    let mut record = csv::ByteRecord::new();
+    if !next(&mut reader, &mut record, path)? {
+        return Err(ReadError::Empty { path: path.to_owned() });
+    }
+    check_header_size(path, record.len(), &budget)?;
+    let mut head = head(path, &record, place_just_read(&mut reader, &record).row)?;
+    let mut first = None;
+    if next(&mut reader, &mut record, path)? {
+        check_parted(&head, &record)?;
+        if are_units(&record) {
+            add_units(&mut head, &record);
+        } else {
+            let place = place_just_read(&mut reader, &record);
+            first = Some((record, place));
+        }
+    }
+    Ok(OpenTable { head, rows: Box::new(Unread { reader, delimiter, first, budget }) })
+}
+
+impl Rows for Unread {
+    fn read(mut self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
+        let mut gathered = Gathered::new(wanted, self.delimiter, self.budget.rest());
+        if let Some((record, place)) = self.first.take() {
+            gathered.take(&record, &place, wanted)?;
+        }
+        let mut record = csv::ByteRecord::new();
+        while next(&mut self.reader, &mut record, wanted.path())? {
+            let place = place_just_read(&mut self.reader, &record);
+            if gathered.holds_back(&record, &place) {
+                continue;
+            }
+            gathered.release(wanted)?;
+            if let Err(error) = gathered.take(&record, &place, wanted) {
+                if !self.is_cut_off(&record, wanted)? {
+                    return Err(error);
+                }
+                gathered.table.notes.push(format!(
+                    "{}: the last row, {}, is cut off and left out",
+                    wanted.path().display(),
+                    place.row
+                ));
+            }
+        }
+        gathered.leave_out(wanted);
+        let bytes = self.reader.into_inner().into_inner().0.inner;
+        gathered.table_of(bytes.finish(wanted.path())?);
+        Ok(gathered.table)
+    }
+}
+
+impl Unread {
+    /// Whether the row just read is the last one, and was not written to its end.
+    fn is_cut_off(
+        &mut self,
+        record: &csv::ByteRecord,
+        wanted: &Wanted<'_>,
+    ) -> Result<bool, ReadError> {
+        let is_short = record.len() < wanted.head.headers.len() && !is_over_lines(record);
+        let is_last =
+            is_short && !next(&mut self.reader, &mut csv::ByteRecord::new(), wanted.path())?;
+        Ok(is_last && self.reader.get_mut().get_mut().0.last != b'\n')
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::MemoryLimit;
+    use crate::experiment::table::BadCell;
+
+    #[test]
+    fn rows_are_the_lines_of_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        let text = "# made by hand\nt,a\n0,1\n# pause\n\n1,2\n2,x";
+        let mixed = text.replacen('\n', "\r\n", 2);
+        for text in [text.to_owned(), format!("{text}\n"), text.replace('\n', "\r\n"), mixed] {
+            std::fs::write(&path, &text).unwrap();
+            let open = open(&path, Budget::new(MemoryLimit::default())).unwrap();
+            assert_eq!(open.head.header_row, 2, "{text:?}");
+            let table = open.read(&[0, 1], None, Some(0), 0).unwrap();
+            let rows = [0, 1, 2].map(|index| table.rows.number(index));
+            assert_eq!((table.rows.len(), rows), (3, [3, 6, 7]), "{text:?}");
+            assert_eq!(table.columns[1].error, Some((7, BadCell::Text("x".to_owned()))));
+        }
+    }
+}
