@@ -86,7 +86,7 @@ fn what_no_effect_explains_is_not_given_the_nearest_name() {
     for part in [
         "The simulated output is farthest off in ",
         &format!("nearest effect, {nearest}"),
-        "not to be trusted",
+        "too uncertain to be named",
     ] {
         assert!(words.contains(part), "no `{part}` in: {words}");
     }

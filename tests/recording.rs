@@ -479,6 +479,34 @@ fn a_recording_without_revisions_opens_on_the_decisions() {
 }
 
 #[test]
+fn a_joint_without_steps_says_why_and_has_no_empty_pages() {
+    let folder = tempfile::tempdir().unwrap();
+    let path: PathBuf = folder.path().join("levels.csv");
+    let mut text = String::from("trial,time_s,a.input,a.output\n");
+    for (trial, level) in [("first", 1.0), ("second", -1.0)] {
+        for k in 0..200 {
+            let (time, output) = (f64::from(k) / 100.0, level * f64::from(k));
+            writeln!(text, "{trial},{time},{level},{output}").unwrap();
+        }
+    }
+    std::fs::write(&path, text).unwrap();
+    let experiment = Experiment::read(&[path], &ReadOptions::default());
+    let settings = Settings::default();
+    let estimates: Vec<_> = estimate_joints(&experiment.joints, &settings, || (), &Threads);
+    let estimates = estimates.into_iter().map(Result::unwrap).collect();
+    let recorded = Recorded { experiment, estimates, settings };
+    let back = recorded.read_back(Detail::Full);
+    let why = back.fixed("/a/verdict", "TextDocument:text");
+    let why = why.as_string::<i32>().value(0);
+    assert!(why.contains("the input changes only between trials"), "{why}");
+    let blueprint = back.pages.join(", ");
+    for page in ["Decisions", "Delay", "Table"] {
+        assert!(!back.pages.iter().any(|name| name == page), "{page} in {blueprint}");
+    }
+    assert!(back.pages.iter().any(|name| name == "Record"), "{blueprint}");
+}
+
+#[test]
 fn a_disk_that_is_full_is_an_error() {
     struct Full(usize);
     impl Write for Full {

@@ -123,12 +123,12 @@ fn a_step_that_changed_is_said_and_a_review_that_is_none_names_its_place() {
     desk.write("review.csv", &sheet);
     let output = desk.run("estimate log.csv --review review.csv --beta 2");
     let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains("the word stands"), "{said}");
+    assert!(said.contains("the review still applies"), "{said}");
     let moved = "joint,trial,i,verdict,delay_s,note,reviewer,p\nboom,1,2,rejected,,,Ann,1\n";
     desk.write("moved.csv", moved);
     let output = desk.run("estimate log.csv --review moved.csv");
     let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains("the word is left out, review it again"), "{said}");
+    assert!(said.contains("the review is ignored, review it again"), "{said}");
     desk.write("wrong.csv", "joint,trial,i,verdict,delay_s,note,reviewer\nboom,1,2,maybe,,,\n");
     let output = desk.run("estimate log.csv --review wrong.csv");
     let said = String::from_utf8(output.stderr).unwrap();

@@ -167,10 +167,15 @@ impl Labels {
     }
 
     /// Puts a text there, or as near as it can be without being cut at a side of the sheet.
-    pub(super) fn put_whole(&mut self, Vec2D([x, y]): Vec2D, text: impl Into<String>) {
+    pub(super) fn put_whole(&mut self, place: Vec2D, text: impl Into<String>) {
+        self.put_within(SHEET.0, place, text);
+    }
+
+    /// Puts a text whole on a sheet of this width.
+    pub(super) fn put_within(&mut self, width: f32, Vec2D([x, y]): Vec2D, text: impl Into<String>) {
         let text = text.into();
         let half = HALF_LETTER * (text.chars().count() + 2) as f32;
-        self.put(Vec2D::new(x.min(SHEET.0 - half).max(half), y), text);
+        self.put(Vec2D::new(x.min(width - half).max(half), y), text);
     }
 }
 

@@ -29,7 +29,7 @@ pub(super) fn add(
     models: &[&ComparedJoint<'_>],
 ) -> Result<(), RecordError> {
     let of_each: Vec<_> = models.iter().map(|model| Correlogram::all(model.comparison)).collect();
-    let mut sheet = Sheet::default();
+    let mut sheet = Sheet::of_width(SIZE.0);
     let mut axes = Vec::new();
     let mut curves: Vec<Vec<Vec<Vec2D>>> = vec![Vec::new(); models.len()];
     let mut bands = curves.clone();

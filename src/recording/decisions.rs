@@ -1,20 +1,18 @@
 //! The numbers of every candidate and every decision.
 
-use rerun::components::MarkerShape;
-use rerun::{EntityPath, Scalars, SeriesLines, SeriesPoints, TextDocument};
+use rerun::{EntityPath, Scalars, SeriesLines, TextDocument};
 
 use super::chunk::{Chunks, Index, fine_columns, integers, numbers, shown, texts};
 use super::error::RecordError;
 use super::layout::{JointLayout, SegmentLayout, TrialLayout};
 use super::markdown::plain;
-use super::palette::{self, color};
 use super::paths::{self, at};
 use crate::delay::{Candidate, FineDelay, Verdict};
 use crate::experiment::Joint;
 use crate::units::signed;
 use crate::wording::{doubt_percent, number};
 
-/// Adds `/decision/sse`, its logarithm for the plot, and `/decision/table`.
+/// Adds `/decision/sse` and `/decision/table`.
 pub(super) fn add(
     chunks: &mut Chunks,
     root: &EntityPath,
@@ -22,7 +20,6 @@ pub(super) fn add(
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
     add_errors(chunks, root, layout)?;
-    add_minimum(chunks, root, layout)?;
     add_page(chunks, root, joint, layout)?;
     add_table(chunks, root, layout)
 }
@@ -86,73 +83,22 @@ fn add_errors(
     root: &EntityPath,
     layout: &JointLayout<'_>,
 ) -> Result<(), RecordError> {
-    let (mut index, mut within) = (Index::default(), Index::default());
-    let (mut errors, mut lengths) = (Vec::new(), Vec::new());
+    let (mut index, mut errors, mut lengths) = (Index::default(), Vec::new(), Vec::new());
     for (trial, segment) in layout.segments() {
-        let mut place = |moment| {
-            index.extend([moment]);
-            within.extend([trial.within(segment, moment)]);
-        };
-        place(trial.opening(segment));
+        index.extend([trial.opening(segment)]);
         lengths.push(0);
         for (moment, candidate) in trial.candidates(segment) {
-            place(moment);
+            index.extend([moment]);
             errors.push(candidate.sse);
             lengths.push(1);
         }
-        place(trial.verdict(segment));
+        index.extend([trial.verdict(segment)]);
         lengths.push(0);
     }
-    let logarithms: Vec<f64> = errors.iter().map(|sse| log10(*sse)).collect();
     let entity = at(root, paths::SSE);
     let name = SeriesLines::new().with_names(["SSE"]);
     chunks.push_static(entity.clone(), &name)?;
-    let columns = Scalars::new(errors).columns(lengths.clone())?;
-    chunks.push(entity, index, columns)?;
-    let entity = at(root, paths::LOG10_SSE);
-    let name = SeriesLines::new().with_names(["log10 SSE"]);
-    let name = name.with_colors([color(palette::ERROR)]).with_widths([2.0]);
-    chunks.push_static(entity.clone(), &name)?;
-    chunks.push(entity, within, Scalars::new(logarithms).columns(lengths)?)
-}
-
-/// Errors below this are drawn at it: the lines fit exactly.
-const SMALLEST_DRAWN: f64 = 1e-20;
-
-fn log10(sse: f64) -> f64 {
-    sse.max(SMALLEST_DRAWN).log10()
-}
-
-/// A mark at the minimum of each segment, where the plot has the best candidate.
-fn add_minimum(
-    chunks: &mut Chunks,
-    root: &EntityPath,
-    layout: &JointLayout<'_>,
-) -> Result<(), RecordError> {
-    for (path, rgb, accepted) in [
-        (paths::MINIMUM_ACCEPTED, palette::ACCEPTED, true),
-        (paths::MINIMUM_REJECTED, palette::REJECTED, false),
-    ] {
-        let mut index = Index::default();
-        let mut values = Vec::new();
-        for (trial, segment) in layout.segments() {
-            let is_accepted = segment.decision.verdict() == Verdict::Accepted;
-            let Some(best) = segment.decision.candidates.best().filter(|_| is_accepted == accepted)
-            else {
-                continue;
-            };
-            let mut ticks = trial.candidates(segment).filter(|(_, c)| c.f == best.f);
-            index.extend(ticks.next().map(|(moment, _)| trial.within(segment, moment)));
-            values.push(log10(best.sse));
-        }
-        let entity = at(root, path);
-        let name = if accepted { "accepted" } else { "rejected" };
-        let style = SeriesPoints::new().with_names([format!("minimum, {name}")]);
-        let style = style.with_colors([color(rgb)]).with_markers([MarkerShape::Circle]);
-        chunks.push_static(entity.clone(), &style.with_marker_sizes([4.0]))?;
-        chunks.push(entity, index, Scalars::new(values).columns_of_unit_batches()?)?;
-    }
-    Ok(())
+    chunks.push(entity, index, Scalars::new(errors).columns(lengths)?)
 }
 
 /// Rows of `/decision/table`, column by column.

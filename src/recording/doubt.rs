@@ -53,10 +53,11 @@ const LIKELY: f64 = 0.6;
 
 fn line(joint: &Joint, trial: &TrialLayout<'_>, segment: &SegmentLayout<'_>) -> String {
     let doubt = doubt_percent(&segment.doubt);
-    let not = if segment.doubt.is_doubtful() { "" } else { "not doubtful: " };
-    // A line is cut where its list ends: the delay is in the verdict, the reason is not.
+    let not = if segment.doubt.is_doubtful() { "" } else { " (not doubtful)" };
+    // A line is cut where its list ends: the delay is in the verdict, the whole reason on the page.
     let mark = if segment.decision.verdict() == Verdict::Accepted { '✓' } else { '✗' };
-    format!("{doubt:>5}  {not}{mark} {}: {}", step_of(joint, trial, segment), trial.reason(segment))
+    let (step, why) = (step_of(joint, trial, segment), trial.reason_in_short(segment));
+    format!("{doubt:>5} {mark} {step}: {why}{not}")
 }
 
 fn page(joint: &Joint, ranked: &[(&TrialLayout<'_>, &SegmentLayout<'_>)]) -> String {

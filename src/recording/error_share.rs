@@ -43,7 +43,7 @@ impl Drawing {
     /// the first model; a model that has another number of them, as its speeds may, has no
     /// bars there.
     pub(super) fn of(models: &[&ComparedJoint<'_>]) -> Self {
-        let mut sheet = Sheet::default();
+        let mut sheet = Sheet::of_width(SIZE.0);
         let mut bars = vec![Bars::default(); models.len()];
         let mut marks = Vec::new();
         let features = models.iter().take(1).flat_map(|first| {

@@ -21,7 +21,7 @@ use crate::delay::{Decision, Doubt, TrialEstimate, Verdict, doubts};
 use crate::experiment::{Joint, Trial};
 use crate::report::EstimatedJoint;
 use crate::units::signed;
-use crate::wording::{doubt_sentence, number};
+use crate::wording::{doubt_in_short, doubt_sentence, number};
 
 /// How many candidates of each segment are recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -340,6 +340,12 @@ impl<'a> TrialLayout<'a> {
     pub(super) fn reason(&self, segment: &SegmentLayout<'_>) -> String {
         let (decision, period) = (segment.decision, self.trial.period());
         doubt_sentence(&segment.doubt, decision.program_verdict(), period.seconds())
+    }
+
+    /// The first of it in a few words.
+    pub(super) fn reason_in_short(&self, segment: &SegmentLayout<'_>) -> String {
+        let (decision, period) = (segment.decision, self.trial.period());
+        doubt_in_short(&segment.doubt, decision.program_verdict(), period.seconds())
     }
 
     /// The opening tick, at the input step.

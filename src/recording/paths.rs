@@ -42,9 +42,6 @@ pub(crate) const DELAY_REJECTED: &str = "delay/rejected";
 pub(crate) const DELAY_STATE: &str = "delay/state";
 
 pub(crate) const SSE: &str = "decision/sse";
-pub(crate) const LOG10_SSE: &str = "decision/log10_sse";
-pub(crate) const MINIMUM_ACCEPTED: &str = "decision/minimum/accepted";
-pub(crate) const MINIMUM_REJECTED: &str = "decision/minimum/rejected";
 pub(crate) const DECISION_TABLE: &str = "decision/table";
 
 pub(crate) const VERDICT: &str = "verdict";

@@ -3,7 +3,7 @@
 use rerun::datatypes::Vec2D;
 use rerun::{Color, EntityPath, LineStrips2D, Points2D};
 
-use super::canvas::{Labels, Plot, Span};
+use super::canvas::{Labels, Plot, SHEET, Span};
 use super::chunk::Chunks;
 use super::error::RecordError;
 use super::palette::{self, Rgb, color};
@@ -15,19 +15,31 @@ use crate::wording::number;
 const TITLE: f32 = 44.0;
 
 /// What all plots of a drawing have behind and around their data.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Sheet {
+    width: f32,
     grid: Vec<Vec<Vec2D>>,
     labels: Labels,
 }
 
+impl Default for Sheet {
+    fn default() -> Self {
+        Self::of_width(SHEET.0)
+    }
+}
+
 impl Sheet {
+    /// An empty sheet.
+    pub(super) fn of_width(width: f32) -> Self {
+        Self { width, grid: Vec::new(), labels: Labels::default() }
+    }
+
     /// Frame, grid and ticks of `plot`, with about `x_ticks` of them below, and its title.
     pub(super) fn draw(&mut self, plot: &Plot, x_ticks: f64, title: &str) {
         let x_ticks = plot.x_span().ticks(x_ticks);
         self.frame(plot, &x_ticks, &numbered(plot.y_span().ticks(3.0)), title);
         for x in x_ticks {
-            self.labels.put_whole(plot.below(x, 2.0), number(x));
+            self.labels.put_within(self.width, plot.below(x, 2.0), number(x));
         }
     }
 

@@ -15,7 +15,7 @@ use crate::delay::{Check, Condition, Decision, FineDelay, Lag, LagPart, Outcome}
 use crate::delay::{Settings, Settling, Tracking, Verdict};
 use crate::experiment::Joint;
 use crate::numerics::quantile;
-use crate::report::{EstimatedJoint, dead_time_sentences};
+use crate::report::{EstimatedJoint, JointSummary, dead_time_sentences};
 use crate::wording::{counted, doubt_percent, number, remedy_text, rounded, samples_text};
 
 /// Adds `/verdict` (text, log line and lane), `/segment` and `/trial` (lanes).
@@ -45,7 +45,10 @@ pub(super) fn add(
     if segments.is_empty() {
         let name = plain(&joint.name);
         let text = match dead_time_sentences(&estimated).as_slice() {
-            [] => format!("### {name}\n## nothing to decide: the input never changes\n"),
+            [] => {
+                let why = JointSummary::of(estimated).without_steps();
+                format!("### {name}\n## no step to decide: {why}\n")
+            }
             // What was found comes first, then why there are no steps.
             [moves, finding, rest @ ..] => {
                 let others = once(moves).chain(rest).map(|sentence| format!("- {sentence}\n"));

@@ -27,16 +27,17 @@ pub(super) fn noise_of(joint: &Joint) -> Option<f64> {
     sensor_noise(&joint.trials).filter(|noise| *noise > 0.0)
 }
 
-/// `5.6 times the noise`; far above it, or where it is not known, `12 % of the motion`.
+/// Times the noise that say nothing to a person any more.
+pub(crate) const MANY_TIMES_NOISE: f64 = 20.0;
+
+/// `5.6 times the noise`; far above it, or where it is not known, `a fit of 88 %`.
 pub(super) fn in_proportion(error: ErrorFigures, noise: Option<f64>) -> String {
-    /// Times the noise that say nothing to a person any more.
-    const MANY: f64 = 20.0;
     match noise.map(|noise| error.rmse / noise) {
-        Some(times) if times < MANY => format!("{} times the noise", rounded(times)),
-        _ => match 1.0 - error.fit_percent / 100.0 {
-            part if part < MANY => format!("{} of the motion", percent(part)),
+        Some(times) if times < MANY_TIMES_NOISE => format!("{} times the noise", rounded(times)),
+        _ => match error.fit_percent / 100.0 {
+            fit if fit > 0.0 => format!("a fit of {}", percent(fit)),
             // A model that runs away, or an output that hardly moves.
-            _ => format!("more than {MANY} times the motion"),
+            _ => "no better than the mean of the output".to_owned(),
         },
     }
 }
@@ -67,8 +68,8 @@ impl Consequence<'_> {
         Some(self.after?.rmse / self.sensor_noise?)
     }
 
-    /// `0.28 deg remain, 5.6 times the noise`; far above it, as a part of the motion:
-    /// `0.88 deg remain, 12 % of the motion`.
+    /// `0.28 deg remain, 5.6 times the noise`; far above it, with the fit:
+    /// `0.88 deg remain, a fit of 88 %`.
     pub(super) fn remains(&self) -> String {
         let Some(after) = self.after else { return "an error remains".to_owned() };
         let error = measure(after.rmse, self.joint.output_unit.as_deref());

@@ -49,6 +49,8 @@ pub(crate) use compare::compare_text;
 pub(crate) use compare::model_differences;
 #[cfg(feature = "rrd")]
 pub(crate) use conclusion::{Passage, Topic};
+#[cfg(feature = "rrd")]
+pub(crate) use consequence::MANY_TIMES_NOISE;
 pub(crate) use dead_time::{dead_time_sentences, input_note};
 pub use decisions::DecisionRow;
 pub use decisions::decision_rows;

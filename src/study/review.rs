@@ -303,14 +303,14 @@ pub enum Why {
         /// From the step to the trial's end.
         left_s: f64,
     },
-    /// The program decides otherwise now; the word stands.
+    /// The program decides otherwise now; the review still applies.
     Verdict {
         /// Its verdict then.
         was: String,
         /// Its verdict now.
         is: String,
     },
-    /// The program finds another delay now; the word stands.
+    /// The program finds another delay now; the review still applies.
     Delay {
         /// Its delay then, seconds.
         was: f64,
@@ -326,30 +326,33 @@ impl fmt::Display for ReviewNote {
         let Self { joint, trial, i, why } = self;
         write!(f, "review of {joint}, trial {trial}, step {i}: ")?;
         match why {
-            Why::NoJoint => write!(f, "there is no such joint, and nobody hears the word"),
-            Why::NoTrial => write!(f, "there is no such trial, and nobody hears the word"),
+            Why::NoJoint => write!(f, "there is no such joint: it is ignored"),
+            Why::NoTrial => write!(f, "there is no such trial: it is ignored"),
             Why::NoStep(steps) => {
-                write!(f, "the trial has {steps} steps only, and nobody hears the word")
+                write!(f, "the trial has {steps} steps only: it is ignored")
             }
             Why::Moved { was, is } => write!(
                 f,
-                "the step was at sample {was} and is at {is} now; the word is left out, review \
+                "the step was at sample {was} and is at {is} now; the review is ignored, review \
                  it again"
             ),
             Why::Outside { delay_s, left_s } => write!(
                 f,
                 "a delay of {delay_s} s lies outside the {left_s:.2} s from the step to the trial's \
-                 end; the word is left out"
+                 end; the review is ignored"
             ),
             Why::Verdict { was, is } => write!(
                 f,
-                "the program said `{was}` then and says `{is}` now; the word stands, look again"
+                "the program said `{was}` then and says `{is}` now; the review still applies, look again"
             ),
             Why::Delay { was, is } => {
                 let is = is.map_or_else(|| "none".to_owned(), |is| format!("{is:.4} s"));
-                write!(f, "the program's delay was {was:.4} s and is {is} now; the word stands")
+                write!(
+                    f,
+                    "the program's delay was {was:.4} s and is {is} now; the review still applies"
+                )
             }
-            Why::Twice => write!(f, "there are two words that differ; the later one stands"),
+            Why::Twice => write!(f, "there are two reviews that differ; the later one applies"),
         }
     }
 }

@@ -10,14 +10,14 @@ use crate::study::{JointDifferences, StepPair, StepResult, Verdicts};
 const NAMED: usize = 5;
 
 /// A time to the tenth of a millisecond.
-fn milliseconds(seconds: f64) -> String {
+fn seconds_text(seconds: f64) -> String {
     format!("{} s", number((seconds * 1e4).round() / 1e4))
 }
 
 /// What a result says of a step: `✓ 0.15 s`, or `✗` and why.
 pub(crate) fn result_in_short(step: &StepResult) -> String {
     match (step.verdict, step.delay_s) {
-        (Verdict::Accepted, Some(delay)) => format!("✓ {}", milliseconds(delay)),
+        (Verdict::Accepted, Some(delay)) => format!("✓ {}", seconds_text(delay)),
         (Verdict::Accepted, None) => "✓".to_owned(),
         (Verdict::Rejected(condition), _) => format!("✗ {}", condition.meaning()),
     }
@@ -27,7 +27,7 @@ pub(crate) fn result_in_short(step: &StepResult) -> String {
 pub(crate) fn difference_in_short(pair: &StepPair) -> String {
     let delay = pair.difference_s().map_or_else(String::new, |difference| {
         let way = if difference < 0.0 { "earlier" } else { "later" };
-        format!("{} {way} here", milliseconds(difference.abs()))
+        format!("{} {way} here", seconds_text(difference.abs()))
     });
     match pair.verdicts() {
         Verdicts::OnlyHere => "accepted here only".to_owned(),
@@ -58,8 +58,8 @@ pub(crate) fn difference_sentences(found: &JointDifferences) -> Vec<String> {
         sentences.push(format!(
             "of the {both} accepted by both {moved} have another delay: median distance {}, \
              largest {}",
-            milliseconds(median),
-            milliseconds(largest)
+            seconds_text(median),
+            seconds_text(largest)
         ));
     }
     sentences.extend(missing_sentences(found));

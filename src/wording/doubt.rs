@@ -1,8 +1,8 @@
 //! The doubt of a decision in words.
 
-#[cfg(feature = "rrd")]
-use super::counted;
 use super::number;
+#[cfg(feature = "rrd")]
+use super::{counted, percent};
 use crate::delay::{Condition, Doubt, Flag, Verdict};
 
 /// Margin of a condition that failed up to which it failed by little.
@@ -38,6 +38,34 @@ pub(crate) fn doubt_sentence(doubt: &Doubt, verdict: Verdict, period_s: f64) -> 
     let flags = doubt.flags.iter().map(|flag: &Flag| flag.meaning().to_owned());
     let sentences = flags.chain(least.map(|(_, reason)| reason));
     sentences.collect::<Vec<_>>().join("; ")
+}
+
+/// What speaks most against a decision, as short as it can be said.
+#[cfg(feature = "rrd")]
+pub(crate) fn doubt_in_short(doubt: &Doubt, verdict: Verdict, period_s: f64) -> String {
+    let near = doubt.nearest.filter(|(_, margin)| *margin < 1.0);
+    if let Verdict::Rejected(_) = verdict {
+        return near.map_or_else(
+            || "no number near its limit".to_owned(),
+            |(condition, _)| format!("near the limit of {}", condition.id()),
+        );
+    }
+    match doubt.flags.first() {
+        Some(Flag::Edge) => return "edge of its segment".to_owned(),
+        Some(Flag::Jump) => return "lines jump apart".to_owned(),
+        Some(Flag::Stop) => return "output at its end".to_owned(),
+        None => {}
+    }
+    let seconds = |samples: f64| number((samples * period_s * 1e3).round() / 1e3);
+    let [explained, placed, meeting] = doubt.margins();
+    let mut reasons = vec![
+        (explained, format!("error left {}", percent(1.0 - explained))),
+        (placed, format!("± {} s fits alike", seconds(doubt.spread))),
+        (meeting, format!("lines cross {} s off", seconds(doubt.crossing))),
+    ];
+    reasons.extend(near.map(|(condition, margin)| (margin, format!("near {}", condition.id()))));
+    let least = reasons.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+    least.map_or_else(String::new, |(_, reason)| reason)
 }
 
 /// A condition that holds by little.

@@ -17,7 +17,8 @@ pub(crate) fn region_text(region: &Region) -> String {
     if is_level || matches!(region.feature, Feature::Direction | Feature::Trial) {
         return region.label.clone();
     }
-    format!("{} to {}", rounded(region.from), rounded(region.to))
+    let (from, to) = (rounded(region.from), rounded(region.to));
+    if from == to { from } else { format!("{from} to {to}") }
 }
 
 /// A part of a feature's range with its name and unit: `input 0.5 to 1 V`.

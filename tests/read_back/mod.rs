@@ -20,6 +20,8 @@ pub(crate) struct ReadBack {
     pub(crate) blueprint: usize,
     /// The timeline that is active when the viewer opens.
     pub(crate) opens_on: String,
+    /// What its pages and views are called.
+    pub(crate) pages: Vec<String>,
 }
 
 impl ReadBack {
@@ -32,7 +34,7 @@ impl ReadBack {
 
     pub(crate) fn of(bytes: &[u8]) -> Self {
         let mut chunks: BTreeMap<String, Vec<Chunk>> = BTreeMap::new();
-        let (mut blueprint, mut opens_on) = (0, String::new());
+        let (mut blueprint, mut opens_on, mut pages) = (0, String::new(), Vec::new());
         for message in DecoderApp::decode_lazy(Cursor::new(bytes)) {
             if let LogMsg::ArrowMsg(store, message) = message.unwrap() {
                 if store.is_blueprint() {
@@ -40,6 +42,11 @@ impl ReadBack {
                 }
                 let chunk = Chunk::from_arrow_msg(&message).unwrap();
                 if store.is_blueprint() {
+                    let names = ["ContainerBlueprint:display_name", "ViewBlueprint:display_name"];
+                    let names = names.map(|name| chunk.components().get_array(name.into()));
+                    for name in names.into_iter().flatten() {
+                        pages.push(name.value(0).as_string::<i32>().value(0).to_owned());
+                    }
                     let timeline = "TimePanelBlueprint:timeline".into();
                     if let Some(cell) = chunk.components().get_array(timeline) {
                         cell.value(0).as_string::<i32>().value(0).clone_into(&mut opens_on);
@@ -49,7 +56,7 @@ impl ReadBack {
                 chunks.entry(chunk.entity_path().to_string()).or_default().push(chunk);
             }
         }
-        Self { chunks, blueprint, opens_on }
+        Self { chunks, blueprint, opens_on, pages }
     }
 
     /// Each row of a component that has one value: its times and the value.

@@ -79,6 +79,7 @@ impl Feature {
     pub(super) fn in_words(self) -> &'static str {
         match self {
             Self::Time => "time in the trial",
+            Self::Hold => "length of the hold",
             _ => self.name(),
         }
     }

@@ -85,7 +85,7 @@ impl Bars {
             Some((came, gone)) if height >= 4.0 * HALF_LINE => {
                 (format!("{came}\n{gone}"), 2.0 * HALF_LINE)
             }
-            Some((came, _)) => (came.to_owned(), HALF_LINE),
+            Some((came, _)) => (format!("{came}, …"), HALF_LINE),
             None => (name.to_owned(), HALF_LINE),
         };
         labels.put(Vec2D::new(self.names, self.plot.y(self.middle(row)) - drop), name);

@@ -85,9 +85,11 @@ pub(super) fn add(rows: &mut Rows<'_>, evidence: &Evidence) -> Result<(), Record
     let before: Vec<_> = own.first().into_iter().chain(&own).take(own.len()).copied().collect();
     let proposed = vec![palette::PROPOSED; own.len()];
     let fallen = vec![palette::DOWN; own.len()];
-    for (name, which, rgbs, radius) in
-        [("before", 1, &before, 2.0), ("proposed", 2, &proposed, 2.0), ("law", 0, &own, 3.0)]
-    {
+    for (name, which, rgbs, radius) in [
+        (sheet::BEFORE, 1, &before, 2.0),
+        (sheet::PROPOSED, 2, &proposed, 2.0),
+        (sheet::LAW, 0, &own, 3.0),
+    ] {
         rows.strips_by_row(name, rgbs, radius, figures().map(|figure| figure.curve(which)))?;
     }
     rows.strips(sheet::UNCERTAIN, palette::MEASURED, 0.8, figures().map(Figure::uncertain))?;
@@ -95,9 +97,9 @@ pub(super) fn add(rows: &mut Rows<'_>, evidence: &Evidence) -> Result<(), Record
     rows.points(sheet::POINTS, palette::MEASURED, 4.0, figures().map(Figure::measured))?;
     rows.points(sheet::FALLEN, palette::DOWN, 4.0, figures().map(Figure::fallen))?;
     for (name, which, rgbs) in [
-        ("law_name", 0, &own),
-        ("before_name", 1, &before),
-        ("proposed_name", 2, &proposed),
+        (sheet::LAW_NAME, 0, &own),
+        (sheet::BEFORE_NAME, 1, &before),
+        (sheet::PROPOSED_NAME, 2, &proposed),
         (sheet::FALLEN_NAME, 3, &fallen),
     ] {
         rows.texts_by_row(name, rgbs, figures().map(|figure| figure.legend(which)))?;

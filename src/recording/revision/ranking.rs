@@ -55,7 +55,7 @@ pub(super) fn around(
         ([], _) => "nothing more was looked for",
         (_, []) => "error at the next revision",
         _ if is_last && improved.finding.verdict == Verdict::Unexplained => {
-            "with one effect more: none explains what remains"
+            "error with one effect more: none gains enough"
         }
         _ => "error with one effect more, likeliest first",
     };

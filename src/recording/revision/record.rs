@@ -17,6 +17,7 @@ use crate::recording::paths::revision::record;
 use crate::recording::rows::Rows;
 use crate::recording::shaded::{Spans, areas, condition, validation, where_it_fails};
 use crate::recording::sheet::Sheet;
+use crate::report::MANY_TIMES_NOISE;
 use crate::units::floor_to_index;
 use crate::wording::{bracketed, misfit_units, rounded};
 
@@ -216,8 +217,9 @@ impl<'l, 'a> Drawing<'l, 'a> {
             let Vec2D([x, y]) = close.plot.below(end, 2.0);
             sheet.put(Vec2D::new(x + inward, y), format!("{} s", short(end)));
         }
-        let times =
-            self.noise.map(|noise| format!(": {} × noise", rounded(judged(comparison) / noise)));
+        let times = self.noise.map(|noise| judged(comparison) / noise);
+        let times = times.filter(|times| *times < MANY_TIMES_NOISE);
+        let times = times.map(|times| format!(": {} times the noise", rounded(times)));
         let units = misfit_units(self.joint);
         let fails = condition(comparison).map(|condition| {
             let clauses: Vec<_> = condition.clauses.iter().map(|it| it.with_unit(&units)).collect();

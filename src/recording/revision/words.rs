@@ -6,12 +6,13 @@ use super::figure::noise;
 use super::record::worst_spans;
 use crate::diagnosis::Comparison;
 use crate::figure::ladder::judged;
+use crate::fit::Termination;
 use crate::model::Component;
 use crate::recording::error_share::short;
 use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
 use crate::recording::parameter_table::parameter_table;
-use crate::report::{ImprovedJoint, Passage, Topic, change_in_words};
+use crate::report::{ImprovedJoint, MANY_TIMES_NOISE, Passage, Topic, change_in_words};
 use crate::wording::{percent, rounded, unit_suffix};
 
 /// The page of the revision at `place`.
@@ -66,7 +67,11 @@ pub(super) fn parameters(
     let mut page = String::new();
     let Some((revision, step)) = improved.numbered().nth(place) else { return page };
     let joint = improved.finding.compared.joint;
-    let written = writeln!(page, "**Revision {revision}**\n")
+    let fit = match step.comparison.termination {
+        Termination::Converged | Termination::NothingToFit => String::new(),
+        stopped => format!("; its fit {stopped}"),
+    };
+    let written = writeln!(page, "**Revision {revision}**{fit}\n")
         .and_then(|()| parameter_table(&mut page, joint, &step.comparison.fit));
     written.map(|()| page).unwrap_or_default()
 }
@@ -96,6 +101,9 @@ fn what_was_found(page: &mut String, improved: &ImprovedJoint<'_>) -> std::fmt::
     let share = |component: &Component| share_of(id(component)).unwrap_or(f64::INFINITY);
     let mut components: Vec<&Component> = components.iter().collect();
     components.sort_by(|a, b| share(b).total_cmp(&share(a)));
+    if shares.len() > 1 {
+        writeln!(page, "Share of the first error that returns without each (shares overlap):\n")?;
+    }
     for component in components {
         let share = share_of(id(component));
         let share = share.map_or_else(String::new, |share| format!(" {}", percent(share)));
@@ -132,8 +140,9 @@ fn fall(improved: &ImprovedJoint<'_>, place: usize) -> String {
     let error = |place: usize| Some(judged(&improved.revisions.get(place)?.comparison));
     let Some(now) = error(place) else { return String::new() };
     let floor = noise(improved).filter(|noise| *noise > 0.0);
+    let times = floor.map(|noise| now / noise).filter(|times| *times < MANY_TIMES_NOISE);
     let times =
-        floor.map_or_else(String::new, |n| format!(", {} times the noise", rounded(now / n)));
+        times.map_or_else(String::new, |times| format!(", {} times the noise", rounded(times)));
     match place.checked_sub(1).and_then(error) {
         Some(before) => {
             format!("Error: {} → {}{unit}{times}", short(before), short(now))

@@ -53,7 +53,6 @@ pub(super) fn tab(
     revisions: usize,
     others: usize,
 ) -> Result<Node, RecordError> {
-    let is_continuous = estimate.dead_time.is_some();
     let mut decisions = estimate.estimated().flat_map(|trial| &trial.decisions);
     let fine = decisions.any(|decision| decision.fine.is_some());
     let doubts = by_doubt(EstimatedJoint { joint, estimate });
@@ -73,8 +72,9 @@ pub(super) fn tab(
     if others > 0 {
         pages.push(views.differences()?);
     }
-    if is_continuous {
-        pages.push(views.without_steps()?);
+    if doubts.is_empty() {
+        let title = if estimate.dead_time.is_some() { "Dead time" } else { "Decisions: none" };
+        pages.push(views.without_steps(title)?);
     } else {
         let delay = views.delay_state();
         let delay = views.view(delay)?;
@@ -324,11 +324,11 @@ impl Views<'_, '_> {
         self.builder.container(ContainerKind::Vertical, "Record", &rows, &[1.1, 8.9])
     }
 
-    /// The record of a joint whose input moves all the time, and its dead time in words.
-    fn without_steps(&mut self) -> Result<Node, RecordError> {
+    /// The record of a joint without steps, and in words why there are none, and its dead time.
+    fn without_steps(&mut self, title: &'static str) -> Result<Node, RecordError> {
         let record = self.record(Steps::None)?;
         let words = [self.path(paths::VERDICT)];
-        let words = self.view(View::new("TextDocument", "Dead time", &words))?;
+        let words = self.view(View::new("TextDocument", title, &words))?;
         let columns = [record, words];
         self.builder.container(ContainerKind::Horizontal, "Record", &columns, &[7.0, 3.0])
     }

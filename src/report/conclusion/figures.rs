@@ -36,15 +36,33 @@ impl Finding<'_> {
     /// `dead_band and end_stop explain 70 % of the error beyond the noise (2.89 to 0.88 deg)`.
     pub(super) fn explained(&self) -> Option<String> {
         let before = self.before?;
-        let mut gained = gained(&before.fit.model, &self.comparison().fit.model);
-        let last = gained.pop()?;
-        let (names, explain) = match gained.as_slice() {
-            [] => (last.to_owned(), "explains"),
-            others => (format!("{} and {last}", others.join(", ")), "explain"),
-        };
+        let names =
+            self.gained_in_words(gained(&before.fit.model, &self.comparison().fit.model))?;
+        let explain = if names.contains(' ') { "explain" } else { "explains" };
         let share = percent(self.consequence().explained()?);
         let (from, to) = (rounded(before.judged()?.rmse), self.output(self.error()));
         Some(format!("{names} {explain} {share} of the error beyond the noise ({from} to {to})"))
+    }
+
+    /// `dead_band and end_stop`; of many those that carry most: `dead_band, end_stop and 4 more`.
+    fn gained_in_words(&self, mut gained: Vec<&'static str>) -> Option<String> {
+        /// Names that a person takes in, and those that are said of more.
+        const MOST: usize = 4;
+        const FIRST: usize = 3;
+        let found = self.attribution.map_or(&[][..], |known| &known.found);
+        let share =
+            |id: &str| found.iter().find(|one| one.effect == id).map_or(0.0, |one| one.error_share);
+        if gained.len() > MOST {
+            gained.sort_by(|a, b| share(b).total_cmp(&share(a)));
+            let more = gained.len() - FIRST;
+            gained.truncate(FIRST);
+            return Some(format!("{} and {more} more", gained.join(", ")));
+        }
+        let last = gained.pop()?;
+        Some(match gained.as_slice() {
+            [] => last.to_owned(),
+            others => format!("{} and {last}", others.join(", ")),
+        })
     }
 
     /// What the model explains of the motion: `1 − e/d` with the standard deviation `d` of what

@@ -96,8 +96,8 @@ impl Finding<'_> {
             )
         } else {
             format!(
-                "The nearest effect, {name}, would explain {share} of the misfit and is not to be \
-                 trusted."
+                "The nearest effect, {name}, would explain {share} of the misfit: too little or too \
+                 uncertain to be named."
             )
         })
     }
