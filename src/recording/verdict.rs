@@ -68,8 +68,9 @@ pub(super) fn add(
 fn lane_colors() -> StateConfiguration {
     let conditions = || Condition::ALL.into_iter().chain([Condition::Reviewer]);
     let values = once("accepted").chain(conditions().map(Condition::id));
-    let labels = conditions().map(|condition| format!("rejected: {condition}"));
-    let labels = once("accepted".to_owned()).chain(labels);
+    // A mark is seen where there is no room for words.
+    let labels = conditions().map(|condition| format!("✗ {condition}"));
+    let labels = once("✓ accepted".to_owned()).chain(labels);
     let rejected = conditions().map(|_| color(palette::REJECTED));
     let colors: Vec<Color> = once(color(palette::ACCEPTED)).chain(rejected).collect();
     StateConfiguration::new().with_values(values).with_labels(labels).with_colors(colors)
@@ -164,7 +165,7 @@ fn add_lanes(
     opening: Index,
 ) -> Result<(), RecordError> {
     let names: Vec<_> =
-        segments.iter().map(|(_, segment)| format!("step {}", segment.decision.number)).collect();
+        segments.iter().map(|(_, segment)| segment.decision.number.to_string()).collect();
     // Two greys in turn: the border between two steps is seen, and nothing else shouts.
     let greys = (0..names.len()).map(|n| {
         if n % 2 == 0 { Color::from_rgb(72, 84, 96) } else { Color::from_rgb(98, 110, 122) }
@@ -177,7 +178,7 @@ fn add_lanes(
         opening,
         StateChange::new().with_state(names).columns_of_unit_batches()?,
     )?;
-    let hint = ["on `decision`, `segment`, `sample` or `time`: choose it at the bottom left"];
+    let hint = ["along decision, segment, sample or time: choose it at the bottom left"];
     let hint = StateChange::new().with_state(hint).columns_of_unit_batches()?;
     chunks.push(at(root, paths::SEGMENT), Index::before_all(layout.first), hint)?;
     let starts = layout.trials.iter().filter_map(|trial| trial.moments(1).next());

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::figure::noise;
 use super::record::worst_spans;
 use crate::diagnosis::Comparison;
+use crate::diagnosis::failure::WorstSegment;
 use crate::figure::ladder::judged;
 use crate::fit::Termination;
 use crate::model::Component;
@@ -13,7 +14,7 @@ use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
 use crate::recording::parameter_table::parameter_table;
 use crate::report::{ImprovedJoint, MANY_TIMES_NOISE, Passage, Topic, change_in_words};
-use crate::wording::{percent, rounded, unit_suffix};
+use crate::wording::{percent, rounded, unit_suffix, worst_segment_text};
 
 /// The page of the revision at `place`.
 pub(super) fn page(layout: &JointLayout<'_>, improved: &ImprovedJoint<'_>, place: usize) -> String {
@@ -44,7 +45,14 @@ fn written(
     }
     for passage in &conclusion.passages {
         if passage.topic == Topic::WhereItFails {
-            where_it_fails(&mut page, passage, &in_the_plots(layout, &step.comparison))?;
+            where_it_fails(&mut page, passage, &worst_segments(layout, &step.comparison))?;
+        } else if passage.topic == Topic::Shares && is_last {
+            // The shares stand beside the effects above.
+            let others = passage.sentences.get(usize::from(has_shares(improved))..);
+            let others = others.unwrap_or_default().join(" ");
+            if !others.is_empty() {
+                writeln!(page, "**{}:** {}\n", passage.topic.label(), prose(&others))?;
+            }
         } else {
             writeln!(page, "**{}:** {}\n", passage.topic.label(), prose(&passage.text()))?;
         }
@@ -76,16 +84,22 @@ pub(super) fn parameters(
     written.map(|()| page).unwrap_or_default()
 }
 
-/// A line for each condition, which stands out, and the worst segments.
-fn where_it_fails(page: &mut String, passage: &Passage, in_the_plots: &str) -> std::fmt::Result {
+/// A line for each condition, which stands out, and for each of the worst segments.
+fn where_it_fails(page: &mut String, passage: &Passage, worst: &str) -> std::fmt::Result {
     writeln!(page, "**{}:**\n", passage.topic.label())?;
     for sentence in &passage.sentences {
         match sentence.rsplit_once(": ") {
             Some((when, weight)) => writeln!(page, "- **{}**: {}", prose(when), prose(weight))?,
-            None => writeln!(page, "- {}{in_the_plots}", prose(sentence))?,
+            None if worst.is_empty() => writeln!(page, "- {}", prose(sentence))?,
+            None => page.push_str(worst),
         }
     }
     writeln!(page)
+}
+
+/// Whether the shares of several effects are known, which are named beside them.
+fn has_shares(improved: &ImprovedJoint<'_>) -> bool {
+    improved.finding.attribution.is_some_and(|known| known.found.len() > 1)
 }
 
 /// What each effect that was found is.
@@ -101,7 +115,7 @@ fn what_was_found(page: &mut String, improved: &ImprovedJoint<'_>) -> std::fmt::
     let share = |component: &Component| share_of(id(component)).unwrap_or(f64::INFINITY);
     let mut components: Vec<&Component> = components.iter().collect();
     components.sort_by(|a, b| share(b).total_cmp(&share(a)));
-    if shares.len() > 1 {
+    if has_shares(improved) {
         writeln!(page, "Share of the first error that returns without each (shares overlap):\n")?;
     }
     for component in components {
@@ -113,19 +127,23 @@ fn what_was_found(page: &mut String, improved: &ImprovedJoint<'_>) -> std::fmt::
     writeln!(page)
 }
 
-/// Where the worst segments of several trials lie in the plots.
-fn in_the_plots(layout: &JointLayout<'_>, comparison: &Comparison) -> String {
-    let spans = worst_spans(layout, comparison);
-    if layout.trials.len() < 2 || spans.is_empty() {
-        return String::new();
-    }
-    // As many as the sentence before it names.
-    let spans = (1..)
-        .zip(spans)
-        .take(3)
-        .map(|(rank, (_, [from, to]))| format!("**{rank}** at {} to {} s", short(from), short(to)));
-    let spans: Vec<String> = spans.collect();
-    format!(" In the plots, whose time goes through all trials: {}.", spans.join(", "))
+/// A line for each of the worst segments: where it is, also in the plots where these go through several
+/// trials, and its share of the error.
+fn worst_segments(layout: &JointLayout<'_>, comparison: &Comparison) -> String {
+    /// Segments that a person looks at.
+    const MOST: usize = 3;
+    let several = layout.trials.len() > 1;
+    let line = |(rank, (worst, [from, to])): (usize, (&WorstSegment, [f64; 2]))| {
+        let share = percent(worst.share_of_squared_error);
+        let (place, in_plots) = if several {
+            let in_plots = format!(" ({} to {} s in the plots)", short(from), short(to));
+            (format!("trial {}, {}", plain(&worst.trial), worst_segment_text(worst)), in_plots)
+        } else {
+            (worst_segment_text(worst), String::new())
+        };
+        format!("- worst segment **{rank}**: {place}{in_plots}, {share} of its squared error\n")
+    };
+    (1..).zip(worst_spans(layout, comparison)).take(MOST).map(line).collect()
 }
 
 const SEVERAL: &str = "This opens on the last revision; the right arrow begins with the first one, on \

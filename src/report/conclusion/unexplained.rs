@@ -52,11 +52,16 @@ impl Finding<'_> {
     fn shape(&self) -> Option<String> {
         /// Share of the squared residual from which it is worth a look.
         const WORTH: f64 = 0.1;
+        /// Share that is none.
+        const NOTHING: f64 = 0.01;
         let (parts, share) = most_followed(&self.comparison().regions)?;
         let by_mean = |a: &&Region, b: &&Region| a.mean_residual.total_cmp(&b.mean_residual);
         let (low, high) = (parts.iter().min_by(by_mean)?, parts.iter().max_by(by_mean)?);
         let (feature, share_said) = (low.feature, percent(share));
         let head = format!("Measured − simulated ({}) follows", self.comparison().arising);
+        if share < NOTHING {
+            return Some(format!("{head} none of its features."));
+        }
         if share < WORTH {
             return Some(format!(
                 "{head} none of its features much; `{feature}` most, with {share_said} of its \
