@@ -7,7 +7,7 @@ use super::super::spelling::{Spelling, are_units};
 use super::super::text::SNIFFED_BYTES;
 use super::gathered::Gathered;
 use super::header::{add_units, check_header_size, check_parted, head};
-use super::lines::{Place, Taken, each};
+use super::lines::{Piece, Place, Taken, each};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::source::Source;
@@ -82,7 +82,7 @@ impl GrowingRows {
             add_units(head, record);
             Ok(ControlFlow::Break(Taken::Done))
         };
-        let taken = each(&self.text, self.spelling.delimiter, self.lines, path, &mut sought)?;
+        let taken = each(self.piece(), self.spelling.delimiter, path, &mut sought)?;
         if below {
             self.drop_parsed(taken);
             self.head.clone_from(&found);
@@ -116,11 +116,16 @@ impl GrowingRows {
         };
         // Until a row stands below it, the header is found anew each time.
         if self.head.is_some() {
-            let taken = each(&self.text, delimiter, self.lines, wanted.path(), &mut gather)?;
+            let taken = each(self.piece(), delimiter, wanted.path(), &mut gather)?;
             self.drop_parsed(taken);
         }
         let gathered = self.gathered.insert(gathered);
         failure.map_or_else(|| Ok(gathered.table_of(source)), Err)
+    }
+
+    /// What was not parsed yet.
+    fn piece(&self) -> Piece<'_> {
+        Piece { text: &self.text, lines: self.lines, is_begun: self.head.is_some() }
     }
 
     fn drop_parsed(&mut self, bytes: usize) {

@@ -49,15 +49,28 @@ pub(super) enum Taken {
     Held,
 }
 
-/// Hands on the records of `text` that are whole, and says how many bytes are done with.
+/// A part of a table of text.
+#[derive(Clone, Copy)]
+pub(super) struct Piece<'t> {
+    pub(super) text: &'t [u8],
+    /// Lines of the file before it.
+    pub(super) lines: u64,
+    /// Whether the table begins before it.
+    pub(super) is_begun: bool,
+}
+
+/// Hands on the records of a piece that are whole, and says how many bytes are done with.
 pub(super) fn each(
-    text: &[u8],
+    Piece { text, lines, is_begun }: Piece<'_>,
     delimiter: u8,
-    lines: u64,
     path: &Path,
     take: &mut impl FnMut(&csv::ByteRecord, &Place) -> Result<ControlFlow<Taken, Taken>, ReadError>,
 ) -> Result<usize, ReadError> {
-    let mut reader = reader(delimiter, LineEnds::after(text, lines));
+    // At its beginning a reader drops a byte order mark, which is one there only: an empty line stands
+    // before what goes on.
+    let before = if is_begun && lines > 0 { 1 } else { 0 };
+    let all = b"\n".take(before).chain(text);
+    let mut reader = reader(delimiter, LineEnds::after(all, lines - before));
     let mut record = csv::ByteRecord::new();
     let mut done = 0;
     let mut holds = false;
@@ -66,7 +79,8 @@ pub(super) fn each(
             // Remarks and empty lines stand behind the last record.
             return Ok(if holds { done } else { text.len() });
         }
-        let end = usize::try_from(reader.position().byte()).unwrap_or(usize::MAX);
+        let end = reader.position().byte().saturating_sub(before);
+        let end = usize::try_from(end).unwrap_or(usize::MAX);
         // The line end behind the text is part of a quotation that still goes on.
         if end > text.len() {
             return Ok(done);
