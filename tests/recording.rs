@@ -503,7 +503,7 @@ fn a_joint_without_steps_says_why_and_has_no_empty_pages() {
     for page in ["Decisions", "Delay", "Table"] {
         assert!(!back.pages.iter().any(|name| name == page), "{page} in {blueprint}");
     }
-    assert!(back.pages.iter().any(|name| name == "Record"), "{blueprint}");
+    assert!(back.pages.iter().any(|name| name == "No steps"), "{blueprint}");
 }
 
 #[test]

@@ -114,7 +114,11 @@ fn the_error_falls_along_the_revisions_as_in_the_report() {
     assert_eq!(parts.len(), revisions.len() + 1);
     assert_eq!(parts.first(), parts.last());
     let parts = &parts[1..];
-    assert!(parts.iter().all(|(answer, _)| answer.contains("no missing effect found")));
+    for part in
+        ["**Found:** ", "dead_band", "actuator_lag", "**Unexplained:** nothing", "**Fails:** "]
+    {
+        assert!(parts[0].0.contains(part), "no `{part}` in {}", parts[0].0);
+    }
     assert!(parts.iter().all(|(answer, _)| *answer == parts[0].0));
     let next = parts.iter().filter(|(_, page)| page.contains("is missing; with it"));
     assert_eq!(next.count(), revisions.len() - 1);
@@ -168,7 +172,7 @@ fn every_drawing_changes_with_the_revision_and_is_on_every_timeline() {
         let Change::Added(id) = pair[1].change else { panic!("{:?}", pair[1].change) };
         assert!(text.contains(&format!("{id} is missing")), "{text}");
     }
-    assert!(words.last().unwrap().1.contains("no missing effect found"));
+    assert!(words.last().unwrap().1.contains("**Unexplained:** nothing"));
 }
 
 #[test]

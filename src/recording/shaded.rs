@@ -21,9 +21,9 @@ pub(super) fn validation(comparison: &Comparison) -> Spans {
     joined(steps.map(|step| (step.trial, step.start..step.start + step.samples)))
 }
 
-/// The first condition under which the model fails.
+/// The condition under which most of the error arises.
 pub(super) fn condition(comparison: &Comparison) -> Option<&FailsWhere> {
-    comparison.failure.as_ref()?.fails_where.first()
+    FailsWhere::strongest(&comparison.failure.as_ref()?.fails_where)
 }
 
 /// Where that condition holds.

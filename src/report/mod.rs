@@ -48,6 +48,8 @@ pub(crate) use compare::compare_text;
 #[cfg(feature = "rrd")]
 pub(crate) use compare::model_differences;
 #[cfg(feature = "rrd")]
+#[cfg(feature = "rrd")]
+pub(crate) use conclusion::FARTHEST_OFF;
 pub(crate) use conclusion::{Passage, Topic};
 #[cfg(feature = "rrd")]
 pub(crate) use consequence::MANY_TIMES_NOISE;

@@ -129,6 +129,12 @@ impl FailsWhere {
         format!("when {}: {}", self.condition(units), self.weight())
     }
 
+    /// The one of several that holds the largest share of the squared error.
+    #[cfg(feature = "rrd")]
+    pub(crate) fn strongest(all: &[Self]) -> Option<&Self> {
+        all.iter().max_by(|a, b| a.share_of_squared_error.total_cmp(&b.share_of_squared_error))
+    }
+
     /// The condition alone: `|input| < 1.2 V`.
     pub(crate) fn condition(&self, units: &Units) -> String {
         let clauses: Vec<_> = self.clauses.iter().map(|clause| clause.with_unit(units)).collect();

@@ -13,7 +13,9 @@ use crate::recording::error_share::short;
 use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
 use crate::recording::parameter_table::parameter_table;
-use crate::report::{ImprovedJoint, MANY_TIMES_NOISE, Passage, Topic, change_in_words};
+use crate::report::{
+    FARTHEST_OFF, ImprovedJoint, MANY_TIMES_NOISE, Passage, Topic, change_in_words,
+};
 use crate::wording::{percent, rounded, unit_suffix, worst_segment_text};
 
 /// The page of the revision at `place`.
@@ -32,7 +34,9 @@ fn written(
     // What an earlier revision lacks is in the next one: the answer is that of the last.
     let is_last = place + 1 == improved.revisions.len();
     let conclusion = improved.conclusion_at(place);
-    writeln!(page, "**{}**\n", prose(&improved.finding.conclusion().headline))?;
+    for (question, answer) in improved.finding.answers() {
+        writeln!(page, "**{question}:** {}\n", prose(&answer))?;
+    }
     writeln!(page, "## Revision {revision} of {last}: {}\n", plain(&change_in_words(step)))?;
     // Where nothing is missing that is said in the conclusion.
     if conclusion.passages.iter().all(|passage| passage.topic != Topic::Error) {
@@ -90,8 +94,8 @@ fn where_it_fails(page: &mut String, passage: &Passage, worst: &str) -> std::fmt
     for sentence in &passage.sentences {
         match sentence.rsplit_once(": ") {
             Some((when, weight)) => writeln!(page, "- **{}**: {}", prose(when), prose(weight))?,
-            None if worst.is_empty() => writeln!(page, "- {}", prose(sentence))?,
-            None => page.push_str(worst),
+            None if !worst.is_empty() && sentence.starts_with(FARTHEST_OFF) => page.push_str(worst),
+            None => writeln!(page, "- {}", prose(sentence))?,
         }
     }
     writeln!(page)

@@ -73,7 +73,7 @@ pub(super) fn tab(
         pages.push(views.differences()?);
     }
     if doubts.is_empty() {
-        let title = if estimate.dead_time.is_some() { "Dead time" } else { "Decisions: none" };
+        let title = if estimate.dead_time.is_some() { "Dead time" } else { "No steps" };
         pages.push(views.without_steps(title)?);
     } else {
         let delay = views.delay_state();
@@ -330,7 +330,7 @@ impl Views<'_, '_> {
         let words = [self.path(paths::VERDICT)];
         let words = self.view(View::new("TextDocument", title, &words))?;
         let columns = [record, words];
-        self.builder.container(ContainerKind::Horizontal, "Record", &columns, &[7.0, 3.0])
+        self.builder.container(ContainerKind::Horizontal, title, &columns, &[7.0, 3.0])
     }
 
     /// The delay against what it may depend on.

@@ -73,7 +73,14 @@ fn about(recording: &Recording<'_>, growth: Growth) -> String {
     match (recording.joints.len(), doubtful) {
         (0 | 1, _) => "About".to_owned(),
         (_, 0) if growth == Growth::Growing => "All joints".to_owned(),
+        (_, 0) if !recording.joints.iter().any(has_decisions) => {
+            "All joints: no decisions".to_owned()
+        }
         (_, 0) => "All joints: none doubtful".to_owned(),
         (_, doubtful) => format!("All joints: {doubtful} doubtful"),
     }
+}
+
+fn has_decisions(joint: &EstimatedJoint<'_>) -> bool {
+    joint.estimate.estimated().any(|trial| !trial.decisions.is_empty())
 }

@@ -32,7 +32,7 @@ impl Finding<'_> {
     }
 
     /// What the test of the lack of fit says of an adequate model.
-    fn test(&self) -> String {
+    pub(super) fn test(&self) -> String {
         match self.comparison().lack_of_fit {
             Some(LackOfFit { edges: Some(edges), .. }) => {
                 let (spread, share) = (measure(edges.spread_s, Some("s")), percent(edges.share));

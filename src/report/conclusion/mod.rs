@@ -1,6 +1,8 @@
 //! A verdict in words that an engineer can act on.
 
 mod adequate;
+#[cfg(feature = "rrd")]
+mod answers;
 mod figures;
 mod missing;
 mod passage;
@@ -8,6 +10,8 @@ mod place;
 mod unexplained;
 
 pub(crate) use passage::{Passage, Topic};
+#[cfg(feature = "rrd")]
+pub(crate) use place::FARTHEST_OFF;
 
 use super::EstimatedJoint;
 use super::finding::{Finding, added};

@@ -7,6 +7,9 @@ use crate::report::consequence::{in_proportion, times_as_large};
 use crate::report::finding::Finding;
 use crate::wording::{capitalized, failure_sentences, percent, rounded, worst_segment_text};
 
+/// How the sentence on the worst segments begins.
+pub(crate) const FARTHEST_OFF: &str = "The simulated output is farthest off in";
+
 impl Finding<'_> {
     /// How large the error is.
     pub(super) fn size(&self) -> String {
@@ -56,7 +59,7 @@ impl Finding<'_> {
             format!("{trial}{} ({share}{of})", worst_segment_text(worst))
         };
         let times: Vec<String> = worst.take(3).enumerate().map(time).collect();
-        let look = format!("The simulated output is farthest off in {}.", times.join(", "));
+        let look = format!("{FARTHEST_OFF} {}.", times.join(", "));
         let look = Some(look).filter(|_| !times.is_empty());
         let none = "No condition was found that holds most of the error.".to_owned();
         let none = Some(none).filter(|_| conditions.is_empty() && look.is_some());

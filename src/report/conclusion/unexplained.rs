@@ -18,7 +18,7 @@ impl Finding<'_> {
         format!("{}: {explained}; {rest}", self.joint().name)
     }
 
-    fn is_down_to_noise(&self) -> bool {
+    pub(super) fn is_down_to_noise(&self) -> bool {
         self.noise().is_some_and(|noise| self.error() <= ABOVE_NOISE * noise)
     }
 

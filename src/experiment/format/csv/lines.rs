@@ -68,7 +68,7 @@ pub(super) fn each(
 ) -> Result<usize, ReadError> {
     // At its beginning a reader drops a byte order mark, which is one there only: an empty line stands
     // before what goes on.
-    let before = if is_begun && lines > 0 { 1 } else { 0 };
+    let before = u64::from(is_begun && lines > 0);
     let all = b"\n".take(before).chain(text);
     let mut reader = reader(delimiter, LineEnds::after(all, lines - before));
     let mut record = csv::ByteRecord::new();
