@@ -400,6 +400,7 @@ fn programs() -> Vec<Messy> {
                    ***End_of_Header***\t\n\t\nChannels\t2\t\t\nSamples\t1800\t1800\t\n\
                    Delta_X\t0.01\t0.01\t\n***End_of_Header***\t\t\t\n";
     let labview_header = "X_Value\tboom.input\tboom.output\tComment";
+    let in_ms = plain(&timed(|k| 1e3 * PERIOD * k as f64)).replacen("time_s", "t", 1);
     let days = |origin: f64| timed(move |k| origin + PERIOD * k as f64 / 86_400.0);
     let dated =
         |rows: &[Row]| table("time,boom.input,boom.output", rows, ",", |x| format!("{x:.11}"));
@@ -417,6 +418,63 @@ fn programs() -> Vec<Messy> {
             "types_below_units.csv",
             all.replacen('\n', "\ns,V,deg\nfloat,float,float\n", 1),
             read(1e-6, "row 3, below the header, is left out"),
+        ),
+        messy(
+            "units_below_types.csv",
+            in_ms.replacen('\n', "\nDOUBLE,DOUBLE,DOUBLE\nms,V,deg\n", 1),
+            read(1e-6, "row 2, below the header, is left out"),
+        ),
+        messy(
+            "one_unit_among_words.csv",
+            in_ms.replacen('\n', "\nms,digits,Grad\n", 1),
+            read(1e-6, "row 2, below the header, is left out"),
+        ),
+        messy(
+            "described_below_padding.csv",
+            format!(
+                "Run 7,,\n{}",
+                in_ms.replacen("t,", "t [ms],", 1).replacen('\n', "\nclock,valve,angle\n", 1)
+            ),
+            read(1e-6, "row 3, below the header, is left out"),
+        ),
+        messy("UPPER_MS.csv", in_ms.replacen("t,", "TIME_MS,", 1), SAME),
+        messy("millis_itself.csv", in_ms.replacen("t,", "millis,", 1), SAME),
+        messy(
+            "temperature.csv",
+            {
+                let warm = |k: usize| 20.0 + 1e-3 * k as f64;
+                let mut text = String::from("T,timestamp,boom.input,boom.output\n");
+                for (k, row) in rows.iter().enumerate() {
+                    let Row { time, input, output } = row;
+                    writeln!(text, "{},{time:.6},{input:.6},{output:.6}", warm(k)).unwrap();
+                }
+                text
+            },
+            SAME,
+        ),
+        messy(
+            "lost_cell_between_marks.csv",
+            trailing(&all).replacen("\n5.000000,", "\n", 1),
+            Expected::Refused(&["row 502", "3 cells"]),
+        ),
+        messy(
+            "tail_of_thousands.csv",
+            format!("{all}\"1,000\",\"2,000\",\"3,000\"\n"),
+            Expected::Refused(&["row 1802", "1,000"]),
+        ),
+        messy(
+            "two_segments.lvm",
+            {
+                let table = table(labview_header, &rows, "\t", |x| format!("{x:.6}"));
+                let (_, below) = labview.split_once("***End_of_Header***\t\n").unwrap();
+                format!("{labview}{table}{below}{table}")
+            },
+            Expected::Refused(&["two_segments.lvm, row 1811"]),
+        ),
+        messy(
+            "preamble_of_another_mark.csv",
+            format!("Logger 4.2, boom test\n{}", all.replace(',', ";")),
+            SAME,
         ),
         messy("bars.txt", all.replace(',', "|"), SAME),
         messy(

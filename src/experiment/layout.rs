@@ -12,7 +12,7 @@ use super::unit;
 use crate::units::SamplePeriod;
 
 /// Names of a time column, the preferred first.
-const TIME_NAMES: [&str; 4] = ["time_s", "t_s", "time", "t"];
+const TIME_NAMES: [&str; 3] = ["time_s", "t_s", "time"];
 /// Further names of a column of times, in lower case, without the unit they may end in.
 const FURTHER_TIME_NAMES: [&str; 29] = [
     "time",
@@ -45,6 +45,8 @@ const FURTHER_TIME_NAMES: [&str; 29] = [
     "时间",
     "x_value",
 ];
+/// Those of them that are units themselves.
+const TIME_UNIT_NAMES: [&str; 3] = ["seconds", "sec", "millis"];
 /// Name of a column of sample numbers.
 const SAMPLE_NAME: &str = "sample";
 /// Names of a column that names the trial.
@@ -325,7 +327,10 @@ fn times(head: &Head, column: usize, given: Option<&str>) -> Result<TimeSource, 
     let header = head.headers.get(column);
     let name = header.map_or("", |header| header.name.as_str());
     let stated = given.or_else(|| header?.unit.as_deref());
-    let Some(unit) = stated.or_else(|| unit::of_time(name)) else {
+    let lower = name.to_lowercase();
+    let named = || unit::of_time(name).or_else(|| unit::of_time(&lower));
+    let is_itself = || Some(lower.as_str()).filter(|name| TIME_UNIT_NAMES.contains(name));
+    let Some(unit) = stated.or_else(named).or_else(is_itself) else {
         return Ok(TimeSource::Times(column, None));
     };
     let unknown = || ReadError::TimeUnit {
@@ -344,11 +349,17 @@ pub(super) fn find_time_column(head: &Head) -> Option<usize> {
         let name = header.name.to_lowercase();
         let bare = unit::of_time(&name).and_then(|unit| name.strip_suffix(unit));
         let bare = bare.map_or(name.as_str(), |bare| bare.trim_end_matches('_'));
-        FURTHER_TIME_NAMES.iter().position(|known| *known == bare)
+        let position = FURTHER_TIME_NAMES.iter().position(|known| *known == bare);
+        position.filter(|_| header.name != "T")
     };
     let named = head.headers.iter().enumerate();
     let named = named.filter_map(|(column, header)| Some((base(header)?, column)));
-    find_any(head, &TIME_NAMES).or_else(|| named.min().map(|(_, column)| column))
+    // `T` is a temperature, too.
+    let is_t = |header: &Header| header.name == "t";
+    find_any(head, &TIME_NAMES)
+        .or_else(|| head.headers.iter().position(is_t))
+        .or_else(|| named.min().map(|(_, column)| column))
+        .or_else(|| find_any(head, &["t"]))
 }
 
 /// Columns among which a name is looked for that is nearly the one that is missing: each joint

@@ -94,7 +94,6 @@ impl Budget {
     }
 
     /// Gives back bytes that were taken and are free again.
-    #[cfg(any(feature = "mat", feature = "xlsx"))]
     pub(super) fn give_back(&self, bytes: u64) {
         self.taken.set(self.taken.get().saturating_sub(bytes));
     }

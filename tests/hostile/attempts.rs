@@ -22,11 +22,13 @@ use tempfile::TempDir;
 /// More than any of the files that are changed needs to be read.
 const MEMORY: u64 = 100_000_000;
 
-/// Where the bytes are put for readers that take a file.
-static FOLDER: LazyLock<TempDir> = LazyLock::new(|| TempDir::new().unwrap());
+thread_local! {
+    /// Where the bytes are put for readers that take a file; tests run beside one another.
+    static FOLDER: TempDir = TempDir::new().unwrap();
+}
 
 fn file(name: &str, bytes: &[u8]) -> PathBuf {
-    let path = FOLDER.path().join(name);
+    let path = FOLDER.with(|folder| folder.path().join(name));
     fs::write(&path, bytes).unwrap();
     path
 }

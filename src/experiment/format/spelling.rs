@@ -36,6 +36,8 @@ impl Spelling {
 
     /// The table as rows of one width, with what is shorter or longer before it.
     fn by_widths(start: &[u8]) -> Self {
+        /// Rows that are not parted alike by chance.
+        const MANY: usize = 5;
         let plain = Self { delimiter: sniff_delimiter(start), preamble: (0, 0) };
         let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
         // The last line may be cut off.
@@ -59,8 +61,9 @@ impl Spelling {
         else {
             return plain;
         };
-        // A decimal comma parts some rows as evenly as what does part them, but not the header.
-        if own < 2 && first > 1 || first == own_width && own >= agree {
+        // A decimal comma parts some rows as evenly as what does part them, but not the header; where many
+        // rows agree on another mark, the first line belongs to no table.
+        if own < 2 && first > 1 && agree < MANY || first == own_width && own >= agree {
             return plain;
         }
         let counts = counts(delimiter);
@@ -77,7 +80,7 @@ impl Spelling {
     }
 
     /// The header below lines that are padded to the width of the table, as spreadsheet programs
-    /// write them: the row above the first one of numbers, and above its units.
+    /// write them: the first full row above those of numbers.
     fn past_padding(self, start: &[u8]) -> Self {
         let (bytes, before) = self.preamble;
         let lines: Vec<&[u8]> = rows(start.get(bytes..).unwrap_or_default()).take(LINES).collect();
@@ -88,17 +91,11 @@ impl Spelling {
                 above.push((index, record));
                 continue;
             }
-            if above.last().is_some_and(|(_, record)| are_units(record)) {
-                above.pop();
-            }
             let is_padded = above.first().is_some_and(|(_, first)| filled(first) < first.len());
-            let (Some(header), true) = (above.last().filter(|_| above.len() > 1), is_padded) else {
-                return self;
-            };
-            let (index, header) = header;
-            if filled(header) < header.len() {
-                return self;
-            }
+            let is_full = |record: &csv::ByteRecord| filled(record) == record.len();
+            // What is full below it says more of its columns.
+            let header = above.iter().find(|(_, record)| is_full(record) && !are_units(record));
+            let (Some((index, _)), true) = (header, is_padded) else { return self };
             let above = lines.get(..*index).unwrap_or_default();
             let skipped: usize = above.iter().map(|line| line.len()).sum();
             return Self { preamble: (bytes + skipped, before + line_ends(above)), ..self };
@@ -113,7 +110,9 @@ fn behind_labview(start: &[u8]) -> Option<(usize, u64)> {
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
     let lines: Vec<&[u8]> = rows(text).collect();
     lines.first().filter(|line| line.starts_with(first))?;
-    let last = lines.iter().rposition(|line| line.starts_with(end))?;
+    // One for the file and one for its first table: of more tables the next header is a row that is wrong.
+    let ends = lines.iter().enumerate().filter(|(_, line)| line.starts_with(end));
+    let (last, _) = ends.take(2).last()?;
     let before = lines.get(..=last)?;
     let bytes: usize = before.iter().map(|line| line.len()).sum();
     Some((start.len() - text.len() + bytes, line_ends(before)))
@@ -174,7 +173,12 @@ pub(super) fn is_remark(record: &csv::ByteRecord, delimiter: u8) -> bool {
     let mut cells = cells.peekable();
     cells.peek().is_some()
         && !is_over_lines(record)
-        && cells.all(|cell| parse_time(cell, delimiter).is_err())
+        && cells.all(|cell| parse_time(cell, delimiter).is_err() && !is_of_thousands(cell))
+}
+
+/// Whether a cell holds a number with a comma between its thousands.
+fn is_of_thousands(cell: &[u8]) -> bool {
+    std::str::from_utf8(cell).is_ok_and(are_thousands)
 }
 
 /// Whether a cell goes over several lines: behind a quotation mark that is never closed lies the

@@ -6,13 +6,10 @@ use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::names::shown;
 use crate::experiment::source::Source;
-use crate::experiment::table::{Column, Header, Labels, RowNumbers, Table, Wanted};
+use crate::experiment::table::{Column, Labels, RowNumbers, Table, Wanted};
 
 /// Rows of words that may stand below a table.
 const MOST_REMARKS: usize = 20;
-
-/// Rows of words that may stand between the header and the first row of numbers.
-const MOST_ABOVE: usize = 3;
 
 /// The last column of a log of LabVIEW, which rows without a comment do not have.
 const COMMENT: &str = "Comment";
@@ -28,8 +25,8 @@ pub(super) struct Gathered {
     labels: Option<Labels>,
     /// Rows of words, which belong to the table if rows of numbers follow.
     held_back: Vec<(csv::ByteRecord, Place)>,
-    /// Rows of words between the header and the first row of numbers.
-    above: usize,
+    /// Cells of each row, which the first one shows.
+    width: Option<usize>,
     budget: Budget,
 }
 
@@ -45,7 +42,7 @@ impl Gathered {
         };
         let labels = wanted.label.map(|_| Labels::default());
         let (marks, held_back) = (DecimalMarks::default(), Vec::new());
-        Self { delimiter, marks, table, labels, held_back, above: 0, budget }
+        Self { delimiter, marks, table, labels, held_back, width: None, budget }
     }
 
     pub(super) fn take(
@@ -54,13 +51,9 @@ impl Gathered {
         place: &Place,
         wanted: &Wanted<'_>,
     ) -> Result<(), ReadError> {
-        check_width(wanted, place, record)?;
+        self.check_width(wanted, place, record)?;
         let row = place.row;
         let cell = |index: usize| record.get(index).unwrap_or_default().trim_ascii();
-        if self.table.rows.is_empty() && self.stands_above(record) {
-            self.note_above(record, place, wanted);
-            return Ok(());
-        }
         let label = wanted.label.map_or(&b""[..], cell);
         let size = wanted.numeric.len() * NUMBER_SIZE + label.len();
         self.budget.take_values(1, size).map_err(|error| error.refuse(wanted.path()))?;
@@ -78,15 +71,34 @@ impl Gathered {
         Ok(())
     }
 
-    /// Whether a row of words stands between the header and the first row of numbers: its units, or
-    /// what else a logger says of its columns, as the types of their numbers.
-    fn stands_above(&self, record: &csv::ByteRecord) -> bool {
-        are_units(record) || self.above < MOST_ABOVE && is_remark(record, self.delimiter)
+    /// Refuses a row of more or fewer cells than the first one. That one may have a mark behind its last
+    /// cell which the header does not have, or the other way round; such a mark makes no cell.
+    fn check_width(
+        &mut self,
+        wanted: &Wanted<'_>,
+        place: &Place,
+        record: &csv::ByteRecord,
+    ) -> Result<(), ReadError> {
+        let (headers, found) = (&wanted.head.headers, record.len());
+        let expected = headers.len();
+        let last = headers.last().map(|header| header.name.as_str());
+        let ends_blank = record.iter().next_back().is_some_and(|cell| cell.trim_ascii().is_empty());
+        let has_one_more = found == expected + 1 && ends_blank;
+        let has_one_less = found + 1 == expected && last == Some("");
+        let is_odd = has_one_more || has_one_less;
+        let width = *self.width.get_or_insert(if is_odd { found } else { expected });
+        let is_as_wide = found == width && (width != expected + 1 || ends_blank);
+        let lacks_comment = found + 1 == expected && last == Some(COMMENT);
+        if is_as_wide || lacks_comment {
+            return Ok(());
+        }
+        let (path, row, lines) = (wanted.path().to_owned(), place.row, place.lines);
+        Err(ReadError::UnequalRow { path, row, found, expected: width, lines })
     }
 
-    fn note_above(&mut self, record: &csv::ByteRecord, place: &Place, wanted: &Wanted<'_>) {
-        self.above += 1;
-        if !are_units(record) {
+    /// Says which rows below the header were left out that are no units.
+    pub(super) fn note_above(&mut self, above: &[(csv::ByteRecord, Place)], wanted: &Wanted<'_>) {
+        for (record, place) in above.iter().filter(|(record, _)| !are_units(record)) {
             let (path, row) = (wanted.path().display(), place.row);
             let says = says(record);
             self.table.notes.push(format!(
@@ -97,25 +109,34 @@ impl Gathered {
     }
 
     /// Holds a row back that may be words below the table; whether it does.
-    pub(super) fn holds_back(&mut self, record: &csv::ByteRecord, place: &Place) -> bool {
+    pub(super) fn holds_back(
+        &mut self,
+        record: &csv::ByteRecord,
+        place: &Place,
+        wanted: &Wanted<'_>,
+    ) -> Result<bool, ReadError> {
         let is_held = !self.table.rows.is_empty()
             && self.held_back.len() < MOST_REMARKS
             && is_remark(record, self.delimiter);
         if is_held {
+            let memory = self.budget.take(memory_of(record));
+            memory.map_err(|error| error.refuse(wanted.path()))?;
             self.held_back.push((record.clone(), *place));
         }
-        is_held
+        Ok(is_held)
     }
 
     /// Takes the rows that were held back, as more follows.
     pub(super) fn release(&mut self, wanted: &Wanted<'_>) -> Result<(), ReadError> {
-        let held_back = std::mem::take(&mut self.held_back);
+        let held_back = self.forget_held_back();
         held_back.iter().try_for_each(|(record, place)| self.take(record, place, wanted))
     }
 
-    /// Forgets the rows that were held back: they come again.
-    pub(super) fn forget_held_back(&mut self) {
-        self.held_back.clear();
+    /// Gives the rows away that were held back.
+    pub(super) fn forget_held_back(&mut self) -> Vec<(csv::ByteRecord, Place)> {
+        let held_back = std::mem::take(&mut self.held_back);
+        self.budget.give_back(held_back.iter().map(|(record, _)| memory_of(record)).sum());
+        held_back
     }
 
     /// Says that words below the table, which were held back, are no rows of it.
@@ -149,23 +170,9 @@ fn says(record: &csv::ByteRecord) -> String {
     shown(&first.unwrap_or_default())
 }
 
-/// Refuses a row of more or fewer cells than the header. A mark between cells behind the last one, of
-/// all rows or of the header alone, makes none.
-fn check_width(
-    wanted: &Wanted<'_>,
-    place: &Place,
-    record: &csv::ByteRecord,
-) -> Result<(), ReadError> {
-    let (headers, found) = (&wanted.head.headers, record.len());
-    let expected = headers.len();
-    let is_blank =
-        |index: usize| record.get(index).is_some_and(|cell| cell.trim_ascii().is_empty());
-    let is_optional = |header: &Header| ["", COMMENT].contains(&header.name.as_str());
-    let has_one_more = found == expected + 1 && is_blank(expected);
-    let has_one_less = found + 1 == expected && headers.last().is_some_and(is_optional);
-    if found == expected || has_one_more || has_one_less {
-        return Ok(());
-    }
-    let (path, row, lines) = (wanted.path().to_owned(), place.row, place.lines);
-    Err(ReadError::UnequalRow { path, row, found, expected, lines })
+/// Memory of a row that is kept: its text, and the ends of its cells with what a list that grows has to
+/// spare.
+pub(super) fn memory_of(record: &csv::ByteRecord) -> u64 {
+    const CELL: u64 = 2 * size_of::<usize>() as u64;
+    record.as_slice().len() as u64 + CELL * record.len() as u64
 }

@@ -3,10 +3,10 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use super::super::spelling::{Spelling, are_units};
+use super::super::spelling::Spelling;
 use super::super::text::SNIFFED_BYTES;
 use super::gathered::Gathered;
-use super::header::{add_units, check_header_size, check_parted, head};
+use super::header::{check_header_size, check_parted, describes, head};
 use super::lines::{Piece, Place, Taken, each};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
@@ -25,6 +25,8 @@ pub(in crate::experiment) struct GrowingRows {
     lines: u64,
     /// The header, once a whole row stands below it.
     head: Option<Head>,
+    /// Rows of words between the header and that row.
+    above: Vec<(csv::ByteRecord, Place)>,
     gathered: Option<Gathered>,
 }
 
@@ -33,7 +35,16 @@ impl GrowingRows {
     pub(in crate::experiment) fn new(budget: Budget) -> Self {
         let (spelling, text) = (Spelling::of(b""), Vec::new());
         let start = Vec::new();
-        Self { budget, start, spelling, text, lines: 0, head: None, gathered: None }
+        Self {
+            budget,
+            start,
+            spelling,
+            text,
+            lines: 0,
+            head: None,
+            above: Vec::new(),
+            gathered: None,
+        }
     }
 
     /// Adds whole lines.
@@ -67,25 +78,29 @@ impl GrowingRows {
         if self.head.is_some() {
             return Ok(self.head.clone());
         }
-        let (mut found, mut below) = (None, false);
+        let (mut found, mut below, mut above) = (None, false, Vec::new());
+        let delimiter = self.spelling.delimiter;
         let mut sought = |record: &csv::ByteRecord, place: &Place| {
-            let Some(head) = &mut found else {
+            let Some(known) = &mut found else {
                 check_header_size(path, record.len(), &self.budget)?;
                 found = Some(head(path, record, place.row)?);
                 return Ok(ControlFlow::Continue(Taken::Done));
             };
-            below = true;
-            check_parted(head, record)?;
-            if !are_units(record) {
-                return Ok(ControlFlow::Break(Taken::Held));
+            if above.is_empty() {
+                check_parted(known, record)?;
             }
-            add_units(head, record);
-            Ok(ControlFlow::Break(Taken::Done))
+            if describes(known, record, delimiter, above.len()) {
+                above.push((record.clone(), *place));
+                return Ok(ControlFlow::Continue(Taken::Done));
+            }
+            below = true;
+            Ok(ControlFlow::Break(Taken::Held))
         };
-        let taken = each(self.piece(), self.spelling.delimiter, path, &mut sought)?;
+        let taken = each(self.piece(), delimiter, path, &mut sought)?;
         if below {
             self.drop_parsed(taken);
             self.head.clone_from(&found);
+            self.above = above;
         }
         Ok(found)
     }
@@ -98,11 +113,15 @@ impl GrowingRows {
     ) -> Result<&Table, ReadError> {
         let (delimiter, budget) = (self.spelling.delimiter, self.budget.rest());
         let gathered = self.gathered.take();
-        let mut gathered = gathered.unwrap_or_else(|| Gathered::new(wanted, delimiter, budget));
+        let mut gathered = gathered.unwrap_or_else(|| {
+            let mut gathered = Gathered::new(wanted, delimiter, budget);
+            gathered.note_above(&self.above, wanted);
+            gathered
+        });
         gathered.forget_held_back();
         let mut failure = None;
         let mut gather = |record: &csv::ByteRecord, place: &Place| {
-            if gathered.holds_back(record, place) {
+            if gathered.holds_back(record, place, wanted)? {
                 return Ok(ControlFlow::Continue(Taken::Held));
             }
             let released = gathered.release(wanted);

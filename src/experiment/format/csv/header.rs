@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use super::super::spelling::bare_unit;
+use super::super::spelling::{are_units, bare_unit, is_remark};
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::table::{Head, Header};
+use crate::experiment::unit::is_unit;
 
 /// Refuses a header of more cells than a log has columns, which a row of commas is, too.
 pub(super) fn check_header_size(
@@ -44,14 +45,30 @@ pub(super) fn check_parted(head: &Head, first: &csv::ByteRecord) -> Result<(), R
     })
 }
 
-/// The units of a row below the header, where the header has none.
-pub(super) fn add_units(head: &mut Head, record: &csv::ByteRecord) {
+/// Rows of words that may stand between the header and the first row of numbers.
+const MOST_ABOVE: usize = 3;
+
+/// Whether a row below the header, with so many `before` it, holds no numbers but its units, or what
+/// else a logger says of its columns, as the types of their numbers. The units in it are then those of
+/// the columns that have none.
+pub(super) fn describes(
+    head: &mut Head,
+    record: &csv::ByteRecord,
+    delimiter: u8,
+    before: usize,
+) -> bool {
+    let are_all_units = are_units(record);
+    if !are_all_units && (before >= MOST_ABOVE || !is_remark(record, delimiter)) {
+        return false;
+    }
     for (header, cell) in head.headers.iter_mut().zip(record) {
         let unit = bare_unit(&String::from_utf8_lossy(cell));
-        if header.unit.is_none() && !unit.is_empty() {
+        let is_meant = are_all_units && !unit.is_empty() || is_unit(&unit);
+        if header.unit.is_none() && is_meant {
             header.unit = Some(unit);
         }
     }
+    true
 }
 
 /// What the header says, which stands on the line `header_row`.

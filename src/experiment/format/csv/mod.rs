@@ -8,13 +8,13 @@ mod lines;
 use std::io::{self, Read as _};
 use std::path::Path;
 
-use super::spelling::{Spelling, are_units, is_over_lines};
+use super::spelling::{Spelling, is_over_lines};
 use super::text::Bytes;
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::table::{OpenTable, Rows, Table, Wanted};
-use gathered::Gathered;
-use header::{add_units, check_header_size, check_parted, head};
+use gathered::{Gathered, memory_of};
+use header::{check_header_size, check_parted, describes, head};
 use lines::{LineEnds, Lines, Place, next, place_just_read, reader};
 
 pub(in crate::experiment) use growing::GrowingRows;
@@ -23,7 +23,9 @@ pub(in crate::experiment) use growing::GrowingRows;
 struct Unread {
     reader: csv::Reader<Lines<Bytes>>,
     delimiter: u8,
-    /// The first row, where it had to be looked at.
+    /// Rows of words between the header and the first row.
+    above: Vec<(csv::ByteRecord, Place)>,
+    /// The first row.
     first: Option<(csv::ByteRecord, Place)>,
     budget: Budget,
 }
@@ -52,29 +54,33 @@ pub(super) fn table(
     }
     check_header_size(path, record.len(), &budget)?;
     let mut head = head(path, &record, place_just_read(&mut reader, &record).row)?;
-    let mut first = None;
-    if next(&mut reader, &mut record, path)? {
-        check_parted(&head, &record)?;
-        if are_units(&record) {
-            add_units(&mut head, &record);
+    let (mut above, mut first) = (Vec::new(), None);
+    while first.is_none() && next(&mut reader, &mut record, path)? {
+        if above.is_empty() {
+            check_parted(&head, &record)?;
+        }
+        budget.take(memory_of(&record)).map_err(|error| error.refuse(path))?;
+        let row = (record.clone(), place_just_read(&mut reader, &record));
+        if describes(&mut head, &record, delimiter, above.len()) {
+            above.push(row);
         } else {
-            let place = place_just_read(&mut reader, &record);
-            first = Some((record, place));
+            first = Some(row);
         }
     }
-    Ok(OpenTable { head, rows: Box::new(Unread { reader, delimiter, first, budget }) })
+    Ok(OpenTable { head, rows: Box::new(Unread { reader, delimiter, above, first, budget }) })
 }
 
 impl Rows for Unread {
     fn read(mut self: Box<Self>, wanted: &Wanted<'_>) -> Result<Table, ReadError> {
         let mut gathered = Gathered::new(wanted, self.delimiter, self.budget.rest());
+        gathered.note_above(&self.above, wanted);
         if let Some((record, place)) = self.first.take() {
             gathered.take(&record, &place, wanted)?;
         }
         let mut record = csv::ByteRecord::new();
         while next(&mut self.reader, &mut record, wanted.path())? {
             let place = place_just_read(&mut self.reader, &record);
-            if gathered.holds_back(&record, &place) {
+            if gathered.holds_back(&record, &place, wanted)? {
                 continue;
             }
             gathered.release(wanted)?;
