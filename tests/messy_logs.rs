@@ -437,6 +437,11 @@ fn programs() -> Vec<Messy> {
             ),
             read(1e-6, "row 3, below the header, is left out"),
         ),
+        messy(
+            "described_below_a_mark.csv",
+            in_ms.replacen("t,", "t [ms],", 1).replacen('\n', ",\nclock,valve,angle\n", 1),
+            read(1e-6, "row 2, below the header, is left out"),
+        ),
         messy("UPPER_MS.csv", in_ms.replacen("t,", "TIME_MS,", 1), SAME),
         messy("millis_itself.csv", in_ms.replacen("t,", "millis,", 1), SAME),
         messy(

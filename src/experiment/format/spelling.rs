@@ -91,8 +91,13 @@ impl Spelling {
                 above.push((index, record));
                 continue;
             }
-            let is_padded = above.first().is_some_and(|(_, first)| filled(first) < first.len());
-            let is_full = |record: &csv::ByteRecord| filled(record) == record.len();
+            // A mark behind the last cell makes none.
+            let width = record.len();
+            let is_full = |record: &csv::ByteRecord| {
+                let ends_with_mark = record.len() == width + 1;
+                filled(record) == record.len() - usize::from(ends_with_mark)
+            };
+            let is_padded = above.first().is_some_and(|(_, first)| !is_full(first));
             // What is full below it says more of its columns.
             let header = above.iter().find(|(_, record)| is_full(record) && !are_units(record));
             let (Some((index, _)), true) = (header, is_padded) else { return self };
