@@ -389,25 +389,61 @@ fn texts() -> Vec<Messy> {
     ]
 }
 
+/// The first lines of a log of LabVIEW, and the header of its table.
+const LABVIEW: (&str, &str) = (
+    "LabVIEW Measurement\t\nSeparator\tTab\nDecimal_Separator\t.\n***End_of_Header***\t\n\t\n\
+     Channels\t2\t\t\nSamples\t1800\t1800\t\nDelta_X\t0.01\t0.01\t\n***End_of_Header***\t\t\t\n",
+    "X_Value\tboom.input\tboom.output\tComment",
+);
+
+/// A mark between cells at the end of each line.
+fn trailing(text: &str) -> String {
+    text.replace('\n', ",\n")
+}
+
 /// Texts as loggers and programs write them.
 fn programs() -> Vec<Messy> {
     let rows = clean();
     let all = plain(&rows);
-    let trailing = |text: &str| text.replace('\n', ",\n");
-    let (_, below) = all.split_once('\n').unwrap();
-    let quoted = |x: f64| format!("\"{}\"", format!("{x:.6}").replace('.', ","));
-    let labview = "LabVIEW Measurement\t\nSeparator\tTab\nDecimal_Separator\t.\n\
-                   ***End_of_Header***\t\n\t\nChannels\t2\t\t\nSamples\t1800\t1800\t\n\
-                   Delta_X\t0.01\t0.01\t\n***End_of_Header***\t\t\t\n";
-    let labview_header = "X_Value\tboom.input\tboom.output\tComment";
-    let in_ms = plain(&timed(|k| 1e3 * PERIOD * k as f64)).replacen("time_s", "t", 1);
+    let (labview, header) = LABVIEW;
+    let table_of_labview = table(header, &rows, "\t", |x| format!("{x:.6}"));
+    let (_, next_segment) = labview.split_once("***End_of_Header***\t\n").unwrap();
     let days = |origin: f64| timed(move |k| origin + PERIOD * k as f64 / 86_400.0);
     let dated =
         |rows: &[Row]| table("time,boom.input,boom.output", rows, ",", |x| format!("{x:.11}"));
     vec![
+        messy("bars.txt", all.replace(',', "|"), SAME),
+        messy("labview.lvm", format!("{labview}{table_of_labview}"), SAME),
+        messy(
+            "two_segments.lvm",
+            format!("{labview}{table_of_labview}{next_segment}{table_of_labview}"),
+            Expected::Refused(&["two_segments.lvm, row 1811"]),
+        ),
+        messy("days_of_a_sheet.csv", dated(&days(45_658.0)), read(1e-3, "as spreadsheets count")),
+        messy("datenum.csv", dated(&days(739_618.0)), read(1e-3, "MATLAB's datenum")),
+        messy(
+            "preamble_of_another_mark.csv",
+            format!("Logger 4.2, boom test\n{}", all.replace(',', ";")),
+            SAME,
+        ),
+    ]
+}
+
+/// Marks between cells behind the last one, and within numbers.
+fn marks() -> Vec<Messy> {
+    let rows = clean();
+    let all = plain(&rows);
+    let (_, below) = all.split_once('\n').unwrap();
+    let quoted = |x: f64| format!("\"{}\"", format!("{x:.6}").replace('.', ","));
+    vec![
         messy("marks_behind_rows.csv", format!("{HEADER}\n{}", trailing(below)), SAME),
         messy("mark_behind_header.csv", all.replacen('\n', ",\n", 1), SAME),
         messy("marks_behind_all.csv", trailing(&all), SAME),
+        messy(
+            "lost_cell_between_marks.csv",
+            trailing(&all).replacen("\n5.000000,", "\n", 1),
+            Expected::Refused(&["row 502", "3 cells"]),
+        ),
         messy("quoted_commas.csv", table(HEADER, &rows, ",", quoted), SAME),
         messy(
             "thousands.csv",
@@ -415,80 +451,45 @@ fn programs() -> Vec<Messy> {
             Expected::Refused(&["row 617", "`boom.output`", "1,234"]),
         ),
         messy(
-            "types_below_units.csv",
-            all.replacen('\n', "\ns,V,deg\nfloat,float,float\n", 1),
-            read(1e-6, "row 3, below the header, is left out"),
-        ),
-        messy(
-            "units_below_types.csv",
-            in_ms.replacen('\n', "\nDOUBLE,DOUBLE,DOUBLE\nms,V,deg\n", 1),
-            read(1e-6, "row 2, below the header, is left out"),
-        ),
-        messy(
-            "one_unit_among_words.csv",
-            in_ms.replacen('\n', "\nms,digits,Grad\n", 1),
-            read(1e-6, "row 2, below the header, is left out"),
-        ),
-        messy(
-            "described_below_padding.csv",
-            format!(
-                "Run 7,,\n{}",
-                in_ms.replacen("t,", "t [ms],", 1).replacen('\n', "\nclock,valve,angle\n", 1)
-            ),
-            read(1e-6, "row 3, below the header, is left out"),
-        ),
-        messy(
-            "described_below_a_mark.csv",
-            in_ms.replacen("t,", "t [ms],", 1).replacen('\n', ",\nclock,valve,angle\n", 1),
-            read(1e-6, "row 2, below the header, is left out"),
-        ),
-        messy("UPPER_MS.csv", in_ms.replacen("t,", "TIME_MS,", 1), SAME),
-        messy("millis_itself.csv", in_ms.replacen("t,", "millis,", 1), SAME),
-        messy(
-            "temperature.csv",
-            {
-                let warm = |k: usize| 20.0 + 1e-3 * k as f64;
-                let mut text = String::from("T,timestamp,boom.input,boom.output\n");
-                for (k, row) in rows.iter().enumerate() {
-                    let Row { time, input, output } = row;
-                    writeln!(text, "{},{time:.6},{input:.6},{output:.6}", warm(k)).unwrap();
-                }
-                text
-            },
-            SAME,
-        ),
-        messy(
-            "lost_cell_between_marks.csv",
-            trailing(&all).replacen("\n5.000000,", "\n", 1),
-            Expected::Refused(&["row 502", "3 cells"]),
-        ),
-        messy(
             "tail_of_thousands.csv",
             format!("{all}\"1,000\",\"2,000\",\"3,000\"\n"),
             Expected::Refused(&["row 1802", "1,000"]),
         ),
+    ]
+}
+
+/// Rows of words below the header, and what names the time and its unit.
+fn words_below() -> Vec<Messy> {
+    let all = plain(&clean());
+    let in_ms = plain(&timed(|k| 1e3 * PERIOD * k as f64)).replacen("time_s", "t", 1);
+    let below = |log: &str, rows: &str| log.replacen('\n', rows, 1);
+    let left_out = |row: u32| match row {
+        2 => read(1e-6, "row 2, below the header, is left out"),
+        _ => read(1e-6, "row 3, below the header, is left out"),
+    };
+    let named = |time: &str| in_ms.replacen("t,", time, 1);
+    let warm = |(k, row): (usize, Row)| {
+        let Row { time, input, output } = row;
+        format!("{},{time:.6},{input:.6},{output:.6}\n", 20.0 + 1e-3 * k as f64)
+    };
+    let warm: String = clean().into_iter().enumerate().map(warm).collect();
+    vec![
+        messy("types.csv", below(&all, "\ns,V,deg\nfloat,float,float\n"), left_out(3)),
+        messy("units_below.csv", below(&in_ms, "\nDOUBLE,DOUBLE,DOUBLE\nms,V,deg\n"), left_out(2)),
+        messy("one_unit.csv", below(&in_ms, "\nms,digits,Grad\n"), left_out(2)),
         messy(
-            "two_segments.lvm",
-            {
-                let table = table(labview_header, &rows, "\t", |x| format!("{x:.6}"));
-                let (_, below) = labview.split_once("***End_of_Header***\t\n").unwrap();
-                format!("{labview}{table}{below}{table}")
-            },
-            Expected::Refused(&["two_segments.lvm, row 1811"]),
+            "described_below_padding.csv",
+            format!("Run 7,,\n{}", below(&named("t [ms],"), "\nclock,valve,angle\n")),
+            left_out(3),
         ),
         messy(
-            "preamble_of_another_mark.csv",
-            format!("Logger 4.2, boom test\n{}", all.replace(',', ";")),
-            SAME,
+            "described_below_a_mark.csv",
+            below(&named("t [ms],"), ",\nclock,valve,angle\n"),
+            left_out(2),
         ),
-        messy("bars.txt", all.replace(',', "|"), SAME),
-        messy(
-            "labview.lvm",
-            format!("{labview}{}", table(labview_header, &rows, "\t", |x| format!("{x:.6}"))),
-            SAME,
-        ),
-        messy("days_of_a_sheet.csv", dated(&days(45_658.0)), read(1e-3, "as spreadsheets count")),
-        messy("datenum.csv", dated(&days(739_618.0)), read(1e-3, "MATLAB's datenum")),
+        messy("UPPER_MS.csv", named("TIME_MS,"), SAME),
+        messy("millis_itself.csv", named("millis,"), SAME),
+        messy("temperature.csv", format!("T,timestamp,boom.input,boom.output\n{warm}"), SAME),
         messy(
             "two_clocks.csv",
             trailing(&all).replace(",\n", ",0\n").replacen(",0\n", ",time_s\n", 1),
@@ -572,6 +573,8 @@ fn every_messy_log_is_read_as_the_clean_one_or_refused_with_the_remedy() {
         .chain(units_and_names())
         .chain(texts())
         .chain(programs())
+        .chain(marks())
+        .chain(words_below())
         .chain(broken())
         .collect();
     assert!(logs.len() >= 30);

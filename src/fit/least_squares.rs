@@ -80,7 +80,9 @@ pub fn fit_to_compare_beside(
     other: &JointModel,
     range: &RecordRange<'_>,
 ) -> Result<Fit, FitError> {
-    fit_to(record, (model, other), range, comparing(record.training_samples()))
+    let fit = fit_to(record, (model, other), range, comparing(record.training_samples()))?;
+    check_numbers(&fit.assessment)?;
+    Ok(fit)
 }
 
 fn fit_to(
