@@ -49,9 +49,10 @@ pub(super) fn add(
                 let why = JointSummary::of(estimated).without_steps();
                 format!("### {name}\n## no step to decide: {why}\n")
             }
-            // What was found comes first, then why there are no steps.
+            // What was found comes first, then what makes it doubtful, then why there are no steps.
             [moves, finding, rest @ ..] => {
-                let others = once(moves).chain(rest).map(|sentence| format!("- {sentence}\n"));
+                let others = rest.iter().rev().chain(once(moves));
+                let others = others.map(|sentence| format!("- {sentence}\n"));
                 format!("### {name}\n## {finding}\n\n{}", others.collect::<String>())
             }
             [moves] => format!("### {name}\n- {moves}\n"),
