@@ -82,21 +82,15 @@ impl Log<'_> {
     fn origin_s(&self, time: TimeSource) -> f64 {
         let TimeSource::Times(column, scale) = time else { return 0.0 };
         let first = self.first_time(column).unwrap_or_default();
-        origin_s(self.seconds_of(column, scale)(first))
+        origin_s(self.counting(column, scale).seconds_of(first))
     }
 
-    /// From a time of a column to seconds; `scale` is those of its unit, where it is named.
-    fn seconds_of(&self, column: usize, scale: Option<f64>) -> impl Fn(f64) -> f64 {
-        let counting = scale.is_none().then(|| self.counting(column));
-        move |value| match (scale, counting) {
-            (Some(scale), _) => value * scale,
-            (None, Some(counting)) => counting.seconds_of(value),
-            (None, None) => value,
-        }
+    /// How times count: in the unit of `scale` seconds that is named, else as their size says.
+    fn counting(&self, column: usize, scale: Option<f64>) -> Counting {
+        scale.map_or_else(|| self.counting_by_size(column), Counting::in_unit)
     }
 
-    /// How times count that do not name their unit.
-    fn counting(&self, column: usize) -> Counting {
+    fn counting_by_size(&self, column: usize) -> Counting {
         let values = self.column(column).map_or(&[][..], |column| &column.values);
         let mut known = values.iter().copied().filter(|value| !value.is_nan());
         let first = known.next().unwrap_or(f64::NAN);
@@ -112,9 +106,7 @@ impl Log<'_> {
             Some(date) => format!("times count from {date} ({origin_s} s of its clock)"),
             None => format!("times count from {origin_s} s of its clock"),
         });
-        let counting = self.counting(column);
-        #[expect(clippy::float_cmp, reason = "seconds are 1 as it was written")]
-        let unit = (scale.is_none() && counting.seconds != 1.0).then_some(counting.name);
+        let unit = self.counting(column, scale).inferred_unit();
         let name = self.header(column);
         let unit = unit.map(|unit| format!("`{name}` is taken for {unit}"));
         let said: Vec<String> = unit.into_iter().chain(counted).collect();
@@ -127,7 +119,7 @@ impl Log<'_> {
         const SELDOM_S: (f64, f64) = (900.0, 86_400.0);
         let TimeSource::Times(column, scale) = time else { return Ok(()) };
         // The size of times since 1970 shows their unit, and so does a date.
-        let is_known = scale.is_some() || self.counting(column).is_recognized();
+        let is_known = scale.is_some() || self.counting(column, scale).is_recognized();
         let most = if is_known { SELDOM_S.1 } else { SELDOM_S.0 };
         let mut periods = grids.iter().map(|grid| grid.period().seconds());
         match periods.find(|period| *period > most) {
@@ -220,8 +212,8 @@ impl Log<'_> {
             TimeSource::Rows(period) => return Ok(Clock::Rows(period)),
         };
         let values = self.column(column).map_or(&[][..], |column| &column.values);
-        let seconds = self.seconds_of(column, scale);
-        let times: Vec<f64> = values.iter().map(|value| seconds(*value)).collect();
+        let counting = self.counting(column, scale);
+        let times: Vec<f64> = values.iter().map(|value| counting.seconds_of(*value)).collect();
         self.check_times(column, &times)?;
         Ok(Clock::Stamps(times))
     }

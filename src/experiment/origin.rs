@@ -28,6 +28,18 @@ impl Counting {
     /// Seconds from where nobody knows.
     const PLAIN: Self = Self { seconds: 1.0, in_1970: 0.0, name: "" };
 
+    /// In a unit of so many seconds, from where nobody knows.
+    pub(super) fn in_unit(seconds: f64) -> Self {
+        Self { seconds, ..Self::PLAIN }
+    }
+
+    /// The name of its unit, where that is known by the size of its times and is not the second.
+    pub(super) fn inferred_unit(self) -> Option<&'static str> {
+        #[expect(clippy::float_cmp, reason = "seconds are 1 as it was written")]
+        let is_second = self.seconds == 1.0;
+        (!is_second && !self.name.is_empty()).then_some(self.name)
+    }
+
     /// The time that the clock shows as `value`, in seconds.
     pub(super) fn seconds_of(self, value: f64) -> f64 {
         (value - self.in_1970) * self.seconds

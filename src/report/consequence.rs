@@ -78,19 +78,27 @@ impl Consequence<'_> {
 
     /// What each of several effects carries, and what could stand in its place.
     pub(super) fn sentences(&self) -> Vec<String> {
+        self.shares().into_iter().chain(self.beside_shares()).collect()
+    }
+
+    /// What each of several effects carries.
+    fn shares(&self) -> Option<String> {
+        let found = &self.attribution.filter(|known| known.found.len() > 1)?.found;
+        let share = |one: &Contribution| format!("{} {}", one.effect, percent(one.error_share));
+        let shares: Vec<String> = found.iter().map(share).collect();
+        let sum: f64 = found.iter().map(|one| one.error_share).sum();
+        let overlap = if sum > 1.0 { " (shares overlap and do not add up)" } else { "" };
+        Some(format!(
+            "The part of the first error that comes back when one is left out and the rest is \
+             fitted again: {}{overlap}.",
+            shares.join(", ")
+        ))
+    }
+
+    /// What could stand in the place of each effect, and what is of no consequence.
+    pub(super) fn beside_shares(&self) -> Vec<String> {
         let Some(Attribution { found, refinements }) = self.attribution else { return Vec::new() };
         let mut sentences = Vec::new();
-        if found.len() > 1 {
-            let share = |one: &Contribution| format!("{} {}", one.effect, percent(one.error_share));
-            let shares: Vec<String> = found.iter().map(share).collect();
-            let sum: f64 = found.iter().map(|one| one.error_share).sum();
-            let overlap = if sum > 1.0 { " (shares overlap and do not add up)" } else { "" };
-            sentences.push(format!(
-                "The part of the first error that comes back when one is left out and the rest is \
-                 fitted again: {}{overlap}.",
-                shares.join(", ")
-            ));
-        }
         for one in found.iter().filter(|one| !one.alternatives.is_empty()) {
             let others = one.alternatives.join(" or ");
             sentences.push(format!("In the place of {}, {others} leaves as little.", one.effect));

@@ -147,7 +147,7 @@ fn stated_texts(part: &[u8]) -> u64 {
 /// At most so many bytes that calamine 0.38 takes for the styles of cells, each of which has a copy of
 /// its format: as many as there are, of the longest one.
 fn size_of_styles(part: &[u8]) -> u64 {
-    let styles = part.windows(2).filter(|pair| pair == b"xf").count() as u64;
+    let styles = count_of(part, b"xf");
     let longest = part.split(|byte| *byte == b'"').map(<[u8]>::len).max().unwrap_or(0) as u64;
     styles.saturating_mul(longest)
 }

@@ -52,8 +52,7 @@ fn written(
             where_it_fails(&mut page, passage, &worst_segments(layout, &step.comparison))?;
         } else if passage.topic == Topic::Shares && is_last {
             // The shares stand beside the effects above.
-            let others = passage.sentences.get(usize::from(has_shares(improved))..);
-            let others = others.unwrap_or_default().join(" ");
+            let others = improved.finding.beside_shares();
             if !others.is_empty() {
                 writeln!(page, "**{}:** {}\n", passage.topic.label(), prose(&others))?;
             }

@@ -18,6 +18,11 @@ impl Finding<'_> {
         ]
     }
 
+    /// What is to be said of the effects where their shares stand beside them.
+    pub(crate) fn beside_shares(&self) -> String {
+        self.consequence().beside_shares().join(" ")
+    }
+
     /// The effects that were added, with what could stand in the place of each, and what they explain.
     fn found(&self) -> String {
         let found = self.attribution.map_or(&[][..], |known| &known.found);

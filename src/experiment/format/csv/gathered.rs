@@ -128,12 +128,12 @@ impl Gathered {
 
     /// Takes the rows that were held back, as more follows.
     pub(super) fn release(&mut self, wanted: &Wanted<'_>) -> Result<(), ReadError> {
-        let held_back = self.forget_held_back();
+        let held_back = self.take_held_back();
         held_back.iter().try_for_each(|(record, place)| self.take(record, place, wanted))
     }
 
-    /// Gives the rows away that were held back.
-    pub(super) fn forget_held_back(&mut self) -> Vec<(csv::ByteRecord, Place)> {
+    /// The rows that were held back, and are no longer.
+    pub(super) fn take_held_back(&mut self) -> Vec<(csv::ByteRecord, Place)> {
         let held_back = std::mem::take(&mut self.held_back);
         self.budget.give_back(held_back.iter().map(|(record, _)| memory_of(record)).sum());
         held_back

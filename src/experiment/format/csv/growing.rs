@@ -118,7 +118,7 @@ impl GrowingRows {
             gathered.note_above(&self.above, wanted);
             gathered
         });
-        gathered.forget_held_back();
+        gathered.take_held_back();
         let mut failure = None;
         let mut gather = |record: &csv::ByteRecord, place: &Place| {
             if gathered.holds_back(record, place, wanted)? {
