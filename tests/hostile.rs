@@ -194,23 +194,10 @@ fn a_text_that_many_cells_share_counts_in_each() {
 #[cfg(feature = "xlsx")]
 fn what_a_workbook_says_of_texts_and_styles_counts_before_they_are_read() {
     let folder = TempDir::new().unwrap();
-    let bytes = workbook::of_one_text(2, "x");
-    let with = |name: &str, content: &str| {
-        let mut whole = zip::ZipArchive::new(std::io::Cursor::new(&bytes)).unwrap();
-        let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
-        for index in 0..whole.len() {
-            let part = whole.by_index_raw(index).unwrap();
-            if part.name().unwrap() != name {
-                archive.raw_copy_file(part).unwrap();
-            }
-        }
-        archive.start_file(name, zip::write::SimpleFileOptions::default()).unwrap();
-        archive.write_all(content.as_bytes()).unwrap();
-        archive.finish().unwrap().into_inner()
-    };
     for count in ["144115188075855872", "1099511627776"] {
         let texts = format!("<?xml version=\"1.0\"?><sst uniqueCount=\"{count}\"><si/></sst>");
-        let path = file(&folder, "texts.xlsx", &with("xl/sharedStrings.xml", &texts));
+        let path =
+            file(&folder, "texts.xlsx", &workbook::with_part("xl/sharedStrings.xml", &texts));
         assert_says(&path, &[], "--max-memory");
     }
     let format = "y".repeat(2000);
@@ -219,8 +206,29 @@ fn what_a_workbook_says_of_texts_and_styles_counts_before_they_are_read() {
          </cellXfs></styleSheet>",
         "<xf numFmtId=\"3\"/>".repeat(200_000)
     );
-    let path = file(&folder, "styles.xlsx", &with("xl/styles.xml", &styles));
+    let path = file(&folder, "styles.xlsx", &workbook::with_part("xl/styles.xml", &styles));
     assert_says(&path, &["--max-memory", "100MB"], "--max-memory");
+}
+
+#[test]
+#[cfg(feature = "xlsx")]
+fn what_a_workbook_lists_beside_its_cells_counts_as_well() {
+    let folder = TempDir::new().unwrap();
+    let parts: String = (0..120_000)
+        .map(|id| format!("<Relationship Id=\"r{id}\" Type=\"x/worksheet\" Target=\"a{id}\"/>"))
+        .collect();
+    let content = format!("<Relationships>{parts}</Relationships>");
+    let bytes = workbook::with_part("xl/_rels/workbook.xml.rels", &content);
+    assert_says(&file(&folder, "lists.xlsx", &bytes), &["--max-memory", "50MB"], "--max-memory");
+}
+
+#[test]
+fn rows_of_words_that_are_held_back_count_as_well() {
+    let folder = TempDir::new().unwrap();
+    let words = "a,".repeat(100_000);
+    let log = format!("time_s,a.input,a.output\n0,1,2\n{}", format!("{words}\n").repeat(10));
+    let path = file(&folder, "words.csv", log.as_bytes());
+    assert_says(&path, &["--max-memory", "8MB"], "--max-memory");
 }
 
 #[test]

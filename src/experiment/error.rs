@@ -297,6 +297,22 @@ pub enum ReadError {
         /// What the cell holds.
         text: String,
     },
+    /// A number whose comma may stand between thousands.
+    #[error(
+        "{}, row {row}, column `{column}`: `{}` may be a thousand and more, beside whole numbers \
+         without a comma, or have three decimals; write decimals with a point, and nothing between \
+         thousands", path.display(), shown(text)
+    )]
+    Thousands {
+        /// The log.
+        path: PathBuf,
+        /// Line of the file.
+        row: u64,
+        /// The column.
+        column: String,
+        /// What the cell holds.
+        text: String,
+    },
     /// A cell holds text where a time belongs.
     #[error(
         "{}, row {row}, column `{column}`: `{}` is neither a number nor a date and time of ISO \
@@ -577,6 +593,7 @@ impl ReadError {
             | Self::NotANumber { row, .. }
             | Self::NotATime { row, .. }
             | Self::DecimalMarks { row, .. }
+            | Self::Thousands { row, .. }
             | Self::NoHeader { row, .. }
             | Self::Infinite { row, .. }
             | Self::BeyondPrecision { row, .. }
@@ -606,6 +623,7 @@ impl ReadError {
             | Self::NotANumber { column, .. }
             | Self::NotATime { column, .. }
             | Self::DecimalMarks { column, .. }
+            | Self::Thousands { column, .. }
             | Self::Infinite { column, .. }
             | Self::BeyondPrecision { column, .. }
             | Self::Missing { column, .. }

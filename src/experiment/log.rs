@@ -85,8 +85,11 @@ impl Log<'_> {
         origin_s(self.counting(column, scale).seconds_of(first))
     }
 
-    /// How times count: in the unit of `scale` seconds that is named, else as their size says.
+    /// How times count: dates in seconds, numbers in the unit of `scale` seconds that is named, else as
+    /// their size says.
     fn counting(&self, column: usize, scale: Option<f64>) -> Counting {
+        let are_dates = self.column(column).is_some_and(|column| column.are_dates);
+        let scale = scale.filter(|_| !are_dates);
         scale.map_or_else(|| self.counting_by_size(column), Counting::in_unit)
     }
 
@@ -596,6 +599,7 @@ impl Log<'_> {
         Some(match bad {
             BadCell::Kind(found) => ReadError::NotNumbers { path, column, found },
             BadCell::Text(text) => ReadError::NotANumber { path, row, column, text },
+            BadCell::Thousands(text) => ReadError::Thousands { path, row, column, text },
             BadCell::DecimalMark(text) => ReadError::DecimalMarks { path, row, column, text },
             BadCell::Infinite => ReadError::Infinite { path, row, column },
             BadCell::TooLarge(value) => ReadError::BeyondPrecision { path, row, column, value },

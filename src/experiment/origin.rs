@@ -70,10 +70,11 @@ fn since_1970(first: f64) -> Option<Counting> {
 }
 
 /// Dates as numbers of days: of spreadsheets, from the end of 1899 on, and those of MATLAB's
-/// `datenum`, from the year 0. No log in seconds has samples so near to one another.
+/// `datenum`, from the year 0. No log in seconds has samples so near to one another, so long after its
+/// clock began.
 fn in_days(first: f64, step: f64) -> Option<Counting> {
-    /// Days between two samples, at most: a sixth of a second.
-    const MOST: f64 = 2e-6;
+    /// Days between two samples, at most: two seconds.
+    const MOST: f64 = 2.5e-5;
     let of = |in_1970, name| Some(Counting { seconds: 86_400.0, in_1970, name });
     if !(step > 0.0 && step < MOST) {
         return None;
@@ -98,10 +99,9 @@ mod tests {
 
     #[test]
     fn numbers_of_days_are_told_by_their_size_and_their_steps() {
-        let step = 0.01 / 86_400.0;
         // Noon of the first of January 2025.
-        for first in [45_658.5, 739_618.5] {
-            let days = Counting::of(first, step);
+        for (first, period_s) in [(45_658.5, 0.01), (739_618.5, 0.01), (45_658.5, 1.0)] {
+            let days = Counting::of(first, period_s / 86_400.0);
             assert!((days.seconds_of(first) - 1_735_732_800.0).abs() < 1e-3, "{days:?}");
         }
         // A machine that has been on for half a day, logged at 100 Hz.

@@ -225,6 +225,8 @@ pub(super) struct TrialRows {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Column {
     pub(super) values: Vec<f64>,
+    /// Whether they are dates or times of day, in seconds whatever the unit of the column.
+    pub(super) are_dates: bool,
     /// The first bad cell and its row. The values end before it.
     pub(super) error: Option<(u64, BadCell)>,
 }
@@ -241,12 +243,12 @@ impl Column {
     /// A column that holds `kind`.
     #[cfg(any(feature = "mat", feature = "parquet"))]
     pub(super) fn not_numbers(kind: &str) -> Self {
-        Self { values: Vec::new(), error: Some((0, BadCell::Kind(kind.to_owned()))) }
+        Self { error: Some((0, BadCell::Kind(kind.to_owned()))), ..Self::default() }
     }
 
     /// Numbers in the order of their rows, counted from 1, as they are: none is copied.
     pub(super) fn checked(values: Vec<f64>) -> Self {
-        let mut column = Self { values, error: None };
+        let mut column = Self { values, ..Self::default() };
         let is_bad = |value: &f64| value.is_infinite() || value.abs() > LARGEST;
         if let Some(row) = column.values.iter().position(is_bad) {
             let value = column.values.get(row).copied().unwrap_or(f64::NAN);
@@ -279,7 +281,7 @@ impl Column {
 
     /// A column that holds texts.
     pub(super) fn text() -> Self {
-        Self { values: Vec::new(), error: Some((0, BadCell::Kind("text".to_owned()))) }
+        Self { error: Some((0, BadCell::Kind("text".to_owned()))), ..Self::default() }
     }
 
     /// Adds the number of the next row, counted from 1.
@@ -310,6 +312,8 @@ pub(super) enum BadCell {
     Text(String),
     /// A number with another decimal mark than cells before it.
     DecimalMark(String),
+    /// A number whose comma may stand between thousands, in a column of whole numbers.
+    Thousands(String),
     Infinite,
     /// Its squares, and sums of products of them, are beyond double precision.
     TooLarge(f64),

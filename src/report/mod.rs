@@ -48,7 +48,7 @@ pub(crate) use compare::compare_text;
 #[cfg(feature = "rrd")]
 pub(crate) use compare::model_differences;
 #[cfg(feature = "rrd")]
-pub(crate) use conclusion::{FARTHEST_OFF, Passage, Topic};
+pub(crate) use conclusion::{Passage, Topic};
 #[cfg(feature = "rrd")]
 pub(crate) use consequence::MANY_TIMES_NOISE;
 pub(crate) use dead_time::{dead_time_sentences, input_note};

@@ -56,9 +56,11 @@ pub(crate) fn fails_or_errs(comparison: &Comparison) -> &'static str {
     if explains_most { "errs most" } else { "fails" }
 }
 
-/// Where a model fails, a sentence for each condition.
+/// Where a model fails, a sentence for each condition, that with the most of the error first.
 pub(crate) fn failure_sentences(joint: &Joint, comparison: &Comparison) -> Vec<String> {
     let units = misfit_units(joint);
     let conditions = comparison.failure.iter().flat_map(|failure| &failure.fails_where);
-    conditions.map(|condition| condition.sentence(&units)).collect()
+    let mut conditions: Vec<_> = conditions.collect();
+    conditions.sort_by(|a, b| b.share_of_squared_error.total_cmp(&a.share_of_squared_error));
+    conditions.into_iter().map(|condition| condition.sentence(&units)).collect()
 }

@@ -3,6 +3,9 @@
 use std::fmt::Write as _;
 use std::io::{Cursor, Write as _};
 
+use zip::write::SimpleFileOptions;
+use zip::{ZipArchive, ZipWriter};
+
 const MAIN: &str = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
 const OF: &str = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
 const PACKAGE: &str = "http://schemas.openxmlformats.org/package/2006/relationships";
@@ -60,10 +63,25 @@ fn workbook(count: usize, rows: &str, text: &str) -> Vec<u8> {
             format!("<worksheet xmlns=\"{MAIN}\"><sheetData>{rows}</sheetData></worksheet>"),
         ),
     ];
-    let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     for (name, part) in parts {
-        archive.start_file(name, zip::write::SimpleFileOptions::default()).unwrap();
+        archive.start_file(name, SimpleFileOptions::default()).unwrap();
         archive.write_all(part.as_bytes()).unwrap();
     }
+    archive.finish().unwrap().into_inner()
+}
+
+/// A workbook one part of which says something else.
+pub(crate) fn with_part(name: &str, content: &str) -> Vec<u8> {
+    let mut whole = ZipArchive::new(Cursor::new(of_one_text(2, "x"))).unwrap();
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    for index in 0..whole.len() {
+        let part = whole.by_index_raw(index).unwrap();
+        if part.name().unwrap() != name {
+            archive.raw_copy_file(part).unwrap();
+        }
+    }
+    archive.start_file(name, SimpleFileOptions::default()).unwrap();
+    archive.write_all(content.as_bytes()).unwrap();
     archive.finish().unwrap().into_inner()
 }

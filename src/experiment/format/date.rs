@@ -3,9 +3,15 @@
 use jiff::Timestamp;
 use jiff::civil::{Date, DateTime, Time};
 
-/// Seconds since 1970 of a date and time of ISO 8601, or of a time of day since midnight.
+/// Seconds since 1970 of a date and time of ISO 8601, since midnight of a time of day, or of a time that
+/// has passed.
 pub(super) fn seconds_of_date(text: &str) -> Option<f64> {
-    let text = text.trim().trim_matches('"').replace(',', ".");
+    let text = text.trim().trim_matches('"');
+    // Most words are known at once to be no date.
+    if !text.starts_with(|first: char| first.is_ascii_digit() || "+-".contains(first)) {
+        return None;
+    }
+    let text = text.replace(',', ".");
     let seconds =
         |stamp: Timestamp| stamp.as_second() as f64 + f64::from(stamp.subsec_nanosecond()) * 1e-9;
     if let Ok(stamp) = text.parse::<Timestamp>() {
@@ -13,10 +19,60 @@ pub(super) fn seconds_of_date(text: &str) -> Option<f64> {
     }
     let midnight = Date::constant(1970, 1, 1);
     let civil = match text.parse::<Time>() {
-        Ok(time) if !text.contains('-') => midnight.to_datetime(time),
-        _ => text.parse::<DateTime>().ok()?,
+        Ok(time) if !text.contains('-') => Some(midnight.to_datetime(time)),
+        _ => text.parse::<DateTime>().ok(),
     };
-    civil.to_zoned(jiff::tz::TimeZone::UTC).ok().map(|zoned| seconds(zoned.timestamp()))
+    let zoned = civil.and_then(|civil| civil.to_zoned(jiff::tz::TimeZone::UTC).ok());
+    zoned.map_or_else(|| passed(&text), |zoned| Some(seconds(zoned.timestamp())))
+}
+
+/// Seconds of a time that has passed: `1 days 02:03:04.5` as pandas writes it, `26:03:04.5`, or `03:04.5`,
+/// minutes and seconds, as spreadsheet programs show it.
+fn passed(text: &str) -> Option<f64> {
+    let (days, clock) = match text.split_once(" day") {
+        Some((days, clock)) => {
+            // The comma of Python is a point by now.
+            (days.parse::<i32>().ok()?, clock.trim_start_matches(['s', '.', ' ', '+']))
+        }
+        None => (0, text),
+    };
+    let (before, seconds) = clock.rsplit_once(':')?;
+    let (hours, minutes) = match before.split_once(':') {
+        Some(parts) => parts,
+        // `12:30` may be hours and minutes.
+        None if seconds.contains('.') => ("0", before),
+        None => return None,
+    };
+    let number = |digits: &str| {
+        let is_number = digits.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
+        is_number.then(|| digits.parse::<f64>().ok())?
+    };
+    let (hours, minutes, seconds) = (number(hours)?, number(minutes)?, number(seconds)?);
+    let is_time =
+        hours.fract() == 0.0 && minutes.fract() == 0.0 && minutes < 60.0 && seconds < 60.0;
+    is_time.then(|| f64::from(days) * DAY + hours * 3600.0 + minutes * 60.0 + seconds)
+}
+
+/// Seconds of a day.
+const DAY: f64 = 86_400.0;
+
+/// A date as it stands in a text, `days` after the first of January 1970; none beyond the calendar.
+#[cfg(feature = "xlsx")]
+pub(super) fn date_of_days(days: f64) -> Option<String> {
+    let second = (days * DAY).floor();
+    #[expect(clippy::cast_possible_truncation, reason = "nanoseconds of a second, and checked")]
+    let (whole, part) = (second as i64, ((days * DAY - second) * 1e9) as i32);
+    Timestamp::new(whole, part).ok().map(|date| date.to_string())
+}
+
+/// A time that has passed, in days, as `26:03:04.5`; none of one that is less than none.
+#[cfg(feature = "xlsx")]
+pub(super) fn passed_of_days(days: f64) -> Option<String> {
+    let seconds = days * DAY;
+    let hours = (seconds / 3600.0).floor();
+    let minutes = ((seconds - hours * 3600.0) / 60.0).floor();
+    let rest = seconds - hours * 3600.0 - minutes * 60.0;
+    (0.0..1e9).contains(&seconds).then(|| format!("{hours}:{minutes:02}:{rest:09.6}"))
 }
 
 /// The date of a time in whole seconds since 1970, from 2001 on; none of other times.

@@ -1,8 +1,6 @@
-//! How the rows of a text are written: delimiter, lines before the header, units below it,
-//! numbers and times.
+//! How the rows of a text are written: delimiter, lines before the header, units below it.
 
-use super::date::seconds_of_date;
-use crate::experiment::table::BadCell;
+use super::cell::{Time, is_of_thousands, parse_time};
 use crate::experiment::unit::is_unit;
 
 /// What parts the cells, and what stands before the header.
@@ -23,22 +21,23 @@ const LABVIEW: (&[u8], &[u8]) = (b"LabVIEW Measurement", b"***End_of_Header***")
 const LINES: usize = 200;
 
 impl Spelling {
-    /// How a text is written that starts so.
-    pub(super) fn of(start: &[u8]) -> Self {
+    /// How a text is written that starts so, its cells parted by `delimiter` where that is known.
+    pub(super) fn of(start: &[u8], delimiter: Option<u8>) -> Self {
+        let marks = delimiter.map_or_else(|| DELIMITERS.to_vec(), |known| vec![known]);
         match behind_labview(start) {
             Some((behind, lines)) => {
                 let below = start.get(behind..).unwrap_or_default();
-                Self { delimiter: sniff_delimiter(below), preamble: (behind, lines) }
+                Self { delimiter: sniff_delimiter(below, &marks), preamble: (behind, lines) }
             }
-            None => Self::by_widths(start).past_padding(start),
+            None => Self::by_widths(start, &marks).past_padding(start),
         }
     }
 
-    /// The table as rows of one width, with what is shorter or longer before it.
-    fn by_widths(start: &[u8]) -> Self {
+    /// The table as rows of one width, with what is shorter or longer before it, parted by one of `marks`.
+    fn by_widths(start: &[u8], marks: &[u8]) -> Self {
         /// Rows that are not parted alike by chance.
         const MANY: usize = 5;
-        let plain = Self { delimiter: sniff_delimiter(start), preamble: (0, 0) };
+        let plain = Self { delimiter: sniff_delimiter(start, marks), preamble: (0, 0) };
         let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
         // The last line may be cut off.
         let whole = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
@@ -55,9 +54,9 @@ impl Spelling {
         };
         let first = counts(plain.delimiter).into_iter().find(|count| *count > 0).unwrap_or(0);
         let (own, own_width) = agreeing(plain.delimiter);
-        let best = DELIMITERS.map(|delimiter| (agreeing(delimiter), delimiter));
-        let Some(&((agree, width), delimiter)) =
-            best.iter().max_by_key(|((agree, width), _)| (*agree, *width))
+        let best = marks.iter().map(|delimiter| (agreeing(*delimiter), *delimiter));
+        let Some(((agree, width), delimiter)) =
+            best.max_by_key(|((agree, width), _)| (*agree, *width))
         else {
             return plain;
         };
@@ -167,7 +166,10 @@ fn filled(record: &csv::ByteRecord) -> usize {
 
 /// Whether most cells of a row are numbers or times, and two at least.
 fn holds_numbers(record: &csv::ByteRecord, delimiter: u8) -> bool {
-    let is_value = |cell: &[u8]| parse_time(cell.trim_ascii(), delimiter).is_ok_and(f64::is_finite);
+    let is_value = |cell: &[u8]| match parse_time(cell.trim_ascii(), delimiter) {
+        Ok(Time::Number(value) | Time::Written(value)) => value.is_finite(),
+        Err(_) => false,
+    };
     let values = record.iter().filter(|cell| is_value(cell)).count();
     values > 1 && 2 * values > record.len()
 }
@@ -181,43 +183,10 @@ pub(super) fn is_remark(record: &csv::ByteRecord, delimiter: u8) -> bool {
         && cells.all(|cell| parse_time(cell, delimiter).is_err() && !is_of_thousands(cell))
 }
 
-/// Whether a cell holds a number with a comma between its thousands.
-fn is_of_thousands(cell: &[u8]) -> bool {
-    std::str::from_utf8(cell).is_ok_and(are_thousands)
-}
-
 /// Whether a cell goes over several lines: behind a quotation mark that is never closed lies the
 /// rest of the table.
 pub(super) fn is_over_lines(record: &csv::ByteRecord) -> bool {
     record.iter().any(|cell| cell.trim_ascii().contains(&b'\n'))
-}
-
-/// Which marks stand between whole and decimal digits in the cells so far.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct DecimalMarks {
-    point: bool,
-    comma: bool,
-}
-
-impl DecimalMarks {
-    /// What was `parsed` of a cell, where its mark is that of the other cells: beside `3.98`, the
-    /// comma of `1,100` may as well be between thousands.
-    pub(super) fn agreed(
-        &mut self,
-        cell: &[u8],
-        parsed: Result<f64, BadCell>,
-    ) -> Result<f64, BadCell> {
-        // A time of day has a mark of its own.
-        if parsed.is_err() || cell.contains(&b':') {
-            return parsed;
-        }
-        self.point |= cell.contains(&b'.');
-        self.comma |= cell.contains(&b',');
-        if self.point && self.comma && cell.iter().any(|byte| b".,".contains(byte)) {
-            return Err(BadCell::DecimalMark(String::from_utf8_lossy(cell).into_owned()));
-        }
-        parsed
-    }
 }
 
 fn is_row(line: &[u8]) -> bool {
@@ -272,13 +241,13 @@ fn count(line: &[u8], delimiter: u8) -> usize {
     count
 }
 
-/// The delimiter that is most frequent in the first line that is no comment.
-pub(super) fn sniff_delimiter(start: &[u8]) -> u8 {
+/// The one of `marks` that is most frequent in the first line that is no comment.
+fn sniff_delimiter(start: &[u8], marks: &[u8]) -> u8 {
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
     let line = text.split(|&byte| byte == b'\n').find(|line| is_row(line)).unwrap_or_default();
-    let counts = DELIMITERS.map(|delimiter| (delimiter, count(line, delimiter)));
+    let counts = marks.iter().map(|delimiter| (*delimiter, count(line, *delimiter)));
     // The comma is last, so that it wins when nothing is found.
-    counts.into_iter().max_by_key(|(_, count)| *count).map_or(b',', |(delimiter, _)| delimiter)
+    counts.max_by_key(|(_, count)| *count).map_or(b',', |(delimiter, _)| delimiter)
 }
 
 /// Whether the cells below a header are its units: none is a number, and one at least is a unit.
@@ -298,78 +267,37 @@ pub(super) fn bare_unit(cell: &str) -> String {
     inner('[', ']').or_else(|| inner('(', ')')).unwrap_or(cell).trim().to_owned()
 }
 
-/// What programs write for a value that is missing, in lower case.
-const MISSING: [&str; 9] = ["na", "n/a", "#n/a", "#nv", "null", "none", "nan", "-", "--"];
-
-/// The number in a cell; NaN where there is none. A comma may stand for the point where it
-/// does not part the cells.
-pub(super) fn parse_cell(cell: &[u8], delimiter: u8) -> Result<f64, BadCell> {
-    if cell.is_empty() {
-        return Ok(f64::NAN);
-    }
-    let text = std::str::from_utf8(cell).ok();
-    let is_missing = |text: &str| MISSING.iter().any(|word| text.eq_ignore_ascii_case(word));
-    if text.is_some_and(is_missing) {
-        return Ok(f64::NAN);
-    }
-    let number = text.and_then(|text| text.parse::<f64>().ok());
-    let with_comma = || {
-        let text = text.filter(|text| text.matches(',').count() == 1 && !text.contains('.'))?;
-        // Between quotation marks, where commas part the cells, `1,200` may be a thousand and more.
-        let is_thousands = delimiter == b',' && are_thousands(text);
-        (!is_thousands).then(|| text.replace(',', ".").parse::<f64>().ok())?
-    };
-    match number.or_else(with_comma) {
-        Some(value) if value.is_infinite() => Err(BadCell::Infinite),
-        Some(value) => Ok(value),
-        None => Err(BadCell::Text(String::from_utf8_lossy(cell).into_owned())),
-    }
-}
-
-/// Whether a comma of a number may stand between its thousands: three digits follow it, and one to
-/// three that are no zero are before it.
-fn are_thousands(text: &str) -> bool {
-    let Some((whole, rest)) = text.split_once(',') else { return false };
-    let whole = whole.trim_start_matches(['-', '+']);
-    let are_digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
-    (1..=3).contains(&whole.len())
-        && !whole.starts_with('0')
-        && rest.len() == 3
-        && are_digits(whole)
-        && are_digits(rest)
-}
-
-/// The time in a cell: a number, or a date and time of ISO 8601 as seconds since 1970, or a
-/// time of day as seconds since midnight.
-pub(super) fn parse_time(cell: &[u8], delimiter: u8) -> Result<f64, BadCell> {
-    let number = parse_cell(cell, delimiter);
-    let Err(BadCell::Text(text)) = &number else { return number };
-    seconds_of_date(text).map_or(number.clone(), Ok)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn the_delimiter_is_told_from_the_header() {
-        assert_eq!(sniff_delimiter(b"# a, b, c\n\nt;a.input;a.output\n1;2;3"), b';');
-        assert_eq!(sniff_delimiter(b"t\ta,b\tc"), b'\t');
-        assert_eq!(sniff_delimiter(b"single"), b',');
-        assert_eq!(sniff_delimiter(b"\xef\xbb\xbf# a, b, c\nt;x;y"), b';');
-        assert_eq!(sniff_delimiter(b"t,x [a;b;c]"), b',');
+        assert_eq!(sniff_delimiter(b"# a, b, c\n\nt;a.input;a.output\n1;2;3", &DELIMITERS), b';');
+        assert_eq!(sniff_delimiter(b"t\ta,b\tc", &DELIMITERS), b'\t');
+        assert_eq!(sniff_delimiter(b"single", &DELIMITERS), b',');
+        assert_eq!(sniff_delimiter(b"\xef\xbb\xbf# a, b, c\nt;x;y", &DELIMITERS), b';');
+        assert_eq!(sniff_delimiter(b"t,x [a;b;c]", &DELIMITERS), b',');
     }
 
     #[test]
     fn what_stands_before_the_header_is_told_from_the_table() {
         let table = "t;u;y\n0,0;1,5;2\n0,1;1;2\n0,2;1;2\n";
         let plain = Spelling { delimiter: b';', preamble: (0, 0) };
-        assert_eq!(Spelling::of(table.as_bytes()), plain);
+        assert_eq!(Spelling::of(table.as_bytes(), None), plain);
         let preamble = "Logger 4.2, boom test\nOperator:;somebody\n\n";
-        let found = Spelling::of(format!("{preamble}{table}").as_bytes());
+        let found = Spelling::of(format!("{preamble}{table}").as_bytes(), None);
         assert_eq!(found, Spelling { delimiter: b';', preamble: (preamble.len(), 3) });
         // One row of another length is a fault of the row, and not of the header.
-        assert_eq!(Spelling::of(format!("{table}1;2\n").as_bytes()), plain);
+        assert_eq!(Spelling::of(format!("{table}1;2\n").as_bytes(), None), plain);
+    }
+
+    #[test]
+    fn a_delimiter_that_is_known_is_not_looked_for() {
+        let text = b"t,\"u; V\",\"y; deg\"\n0,1,2\n0.1,1,2\n";
+        let known = Spelling { delimiter: b',', preamble: (0, 0) };
+        assert_eq!(Spelling::of(text, Some(b',')), known);
+        assert_eq!(Spelling::of(b"a;b;c;d,e\n0,1\n", Some(b',')), known);
     }
 
     #[test]
@@ -378,8 +306,8 @@ mod tests {
         let trailing = rows.replace('\n', ",\n");
         for (header, rows) in [("t,u,y\n", trailing.as_str()), ("t,u,y,\r\n", rows)] {
             let plain = Spelling { delimiter: b',', preamble: (0, 0) };
-            assert_eq!(Spelling::of(format!("{header}{rows}").as_bytes()), plain);
-            let found = Spelling::of(format!("Logger 3\n\n{header}{rows}").as_bytes());
+            assert_eq!(Spelling::of(format!("{header}{rows}").as_bytes(), None), plain);
+            let found = Spelling::of(format!("Logger 3\n\n{header}{rows}").as_bytes(), None);
             assert_eq!(found, Spelling { delimiter: b',', preamble: (10, 2) });
         }
     }
@@ -389,7 +317,7 @@ mod tests {
         let before = "LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\n\t\n\
                       Channels\t2\t\nX0\t0\t0\n***End_of_Header***\t\t\n";
         let log = format!("{before}X_Value\tu\ty\tComment\n0\t1\t2\n0.1\t1\t2\n");
-        let found = Spelling::of(log.as_bytes());
+        let found = Spelling::of(log.as_bytes(), None);
         assert_eq!(found, Spelling { delimiter: b'\t', preamble: (before.len(), 7) });
     }
 
@@ -399,46 +327,13 @@ mod tests {
         for preamble in ["\"Run 7\";;\nDate;01.03.2026;\n;;\n", "Rig 3;;\r\nBy:;me;\r\n\r\n"] {
             for units in ["", "s;V;deg\n"] {
                 let table = table.replacen('\n', &format!("\n{units}"), 1);
-                let found = Spelling::of(format!("{preamble}{table}").as_bytes());
+                let found = Spelling::of(format!("{preamble}{table}").as_bytes(), None);
                 assert_eq!((found.delimiter, found.preamble), (b';', (preamble.len(), 3)));
             }
         }
         // An index without a name is a column all the same.
         let plain = Spelling { delimiter: b',', preamble: (0, 0) };
-        assert_eq!(Spelling::of(b",t,u,y\n0,0,1,2\n1,0.1,1,2\n"), plain);
-    }
-
-    #[test]
-    fn a_cell_is_a_number_or_missing_or_wrong() {
-        let parse = |cell: &[u8]| parse_cell(cell, b',');
-        assert_eq!(parse(b"-1.5e3"), Ok(-1500.0));
-        assert!(parse(b"").unwrap().is_nan());
-        assert!(parse(b"NaN").unwrap().is_nan());
-        assert_eq!(parse(b"inf"), Err(BadCell::Infinite));
-        assert_eq!(parse(b"1e999"), Err(BadCell::Infinite));
-        for word in ["NA", "n/a", "#N/A", "#NV", "NULL", "None", "-", "--"] {
-            assert!(parse(word.as_bytes()).unwrap().is_nan(), "{word}");
-        }
-        assert_eq!(parse(b"#REF!"), Err(BadCell::Text("#REF!".to_owned())));
-        assert_eq!(parse_cell(b"-1,5", b';'), Ok(-1.5));
-        assert_eq!(parse_cell(b"1,200", b';'), Ok(1.2));
-        for (text, number) in [("1,5", 1.5), ("0,125", 0.125), ("-0,5e2", -50.0)] {
-            assert_eq!(parse(text.as_bytes()), Ok(number));
-        }
-        assert!(parse(b"1,200").is_err() && parse(b"1,5,2").is_err());
-        assert!(parse_cell(b"1.000,5", b';').is_err());
-    }
-
-    #[test]
-    fn times_may_be_dates() {
-        let time = |text: &str| parse_time(text.as_bytes(), b';').unwrap();
-        for text in
-            ["2024-05-01T12:00:00.25Z", "2024-05-01 12:00:00,25", "2024-05-01T14:00:00.25+02:00"]
-        {
-            assert!((time(text) - 1_714_564_800.25).abs() < 1e-6, "{text}: {}", time(text));
-        }
-        assert!((time("12:00:00.5") - 43_200.5).abs() < 1e-9);
-        assert!(parse_time(b"noon", b';').is_err());
+        assert_eq!(Spelling::of(b",t,u,y\n0,0,1,2\n1,0.1,1,2\n", None), plain);
     }
 
     #[test]

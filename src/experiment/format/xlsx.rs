@@ -9,7 +9,7 @@ use calamine::{Data, DataRef, ExcelDateTime, Range, Reader as _, Xlsx, XlsxError
 use zip::ZipArchive;
 
 use super::csv::table;
-use super::date::days_since_1970;
+use super::date::{date_of_days, days_since_1970, passed_of_days};
 use super::text::Bytes;
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::{Budget, TooLarge};
@@ -43,7 +43,7 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> 
             drop((range, workbook));
             budget.give_back(texts);
             let (bytes, start) = Bytes::made(text, path);
-            return table(path, bytes, &start, budget);
+            return table(path, bytes, &start, Some(b','), budget);
         }
     }
     Err(damaged("no sheet has a header and a row".to_owned()))
@@ -228,9 +228,8 @@ fn days_of(time: &ExcelDateTime) -> f64 {
     from_1900 + DAYS_FROM_1900_TO_1904 * (apart / DAYS_FROM_1900_TO_1904).round()
 }
 
-/// A cell as text: numbers with all their digits, dates as seconds since 1970.
+/// A cell as text: numbers with all their digits, dates as text, which is no value of a signal.
 fn cell(data: &Data) -> String {
-    const SECONDS: f64 = 86_400.0;
     match data {
         Data::Empty => String::new(),
         // As `5e-324` where zeros would be hundreds of digits.
@@ -240,11 +239,21 @@ fn cell(data: &Data) -> String {
         Data::Float(value) => value.to_string(),
         Data::Int(value) => value.to_string(),
         Data::Bool(value) => u8::from(*value).to_string(),
-        Data::DateTime(time) if time.is_datetime() => (days_of(time) * SECONDS).to_string(),
-        Data::DateTime(time) => (time.as_f64() * SECONDS).to_string(),
-        // A line of the text is a row of the sheet.
-        other => other.to_string().replace(['\n', '\r'], " "),
+        Data::DateTime(time) => {
+            let text = if time.is_datetime() {
+                date_of_days(days_of(time))
+            } else {
+                passed_of_days(time.as_f64())
+            };
+            text.unwrap_or_else(|| one_line(data))
+        }
+        other => one_line(other),
     }
+}
+
+/// What a cell says: a line of the text is a row of the sheet.
+fn one_line(data: &Data) -> String {
+    data.to_string().replace(['\n', '\r'], " ")
 }
 
 #[cfg(test)]
@@ -266,5 +275,14 @@ mod tests {
             assert!((date(from_1900, false) - days).abs() < 1e-9);
             assert!((date(from_1900 - 1462.0, true) - days).abs() < 1e-9);
         }
+    }
+    #[test]
+    fn a_date_is_text_and_no_number() {
+        let text = |value, kind| cell(&Data::DateTime(ExcelDateTime::new(value, kind, false)));
+        let noon = 45_352.5 + 0.25 / 86_400.0;
+        let date = text(noon, ExcelDateTimeType::DateTime);
+        assert!(date.starts_with("2024-03-01T12:00:00.25"), "{date}");
+        assert_eq!(text(1.0 + 0.25 / 86_400.0, ExcelDateTimeType::TimeDelta), "24:00:00.250000");
+        assert_eq!(cell(&Data::Float(0.5)), "0.5");
     }
 }

@@ -54,6 +54,11 @@ impl Bars {
         Self { plot, rows, names: f32::midpoint(left, names), middle_of_all }
     }
 
+    /// How many there are.
+    pub(super) fn rows(&self) -> usize {
+        self.rows
+    }
+
     fn middle(&self, row: usize) -> f64 {
         self.rows as f64 - row as f64 - 0.5
     }

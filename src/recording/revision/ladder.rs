@@ -25,39 +25,70 @@ pub(super) fn add(rows: &mut Rows<'_>, improved: &ImprovedJoint<'_>) -> Result<(
     rows.strips(sheet::TRAINING, palette::BORDER, 1.6, (0..count).map(|_| marks.clone()))
 }
 
+/// Lines of names that there is room for, one below another.
+const MOST_LINES: usize = 14;
+
 /// The rungs and where they lie.
 struct Ladder<'r> {
     rungs: Vec<Rung<'r>>,
     bars: Bars,
+    /// The row of each rung: what left the model has a row of its own below what came.
+    rows: Vec<usize>,
 }
 
 impl<'r> Ladder<'r> {
     fn of(improved: &'r ImprovedJoint<'_>) -> Self {
         let rungs = ladder::rungs(improved.revisions);
-        let names = improved.revisions.iter().map(|step| change_in_words(step).chars().count());
+        let names: Vec<String> = improved.revisions.iter().map(change_in_words).collect();
+        let lines = |name: &String| name.split(", ").count();
+        let all: usize = names.iter().map(lines).sum();
+        let apart = all <= MOST_LINES;
+        let mut next = 0;
+        let row = |name: &String| {
+            let row = next;
+            next += if apart { lines(name) } else { 1 };
+            row
+        };
+        let rows: Vec<usize> = names.iter().map(row).collect();
         // Behind its number.
-        let longest = 3 + names.max().unwrap_or(0);
-        let bars = Bars::new(COLUMNS, (rungs.len(), longest), ladder::largest(&rungs));
-        Self { rungs, bars }
+        let longest =
+            3 + names.iter().flat_map(|name| name.split(", ")).map(str::len).max().unwrap_or(0);
+        let bars = Bars::new(COLUMNS, (next, longest), ladder::largest(&rungs));
+        Self { rungs, bars, rows }
+    }
+
+    /// Each rung with its row.
+    fn placed(&self) -> impl Iterator<Item = (usize, &Rung<'r>)> {
+        self.rows.iter().copied().zip(&self.rungs)
     }
 
     fn bars(&self, at: usize) -> Vec<(Vec<Vec2D>, Color)> {
-        let bar = |(row, rung): (usize, &Rung<'_>)| {
-            let rgb = palette::model(row);
-            let shade = if row == at { rgb } else { palette::dimmed(rgb) };
+        let bar = |(place, (row, rung)): (usize, (usize, &Rung<'_>))| {
+            let rgb = palette::model(place);
+            let shade = if place == at { rgb } else { palette::dimmed(rgb) };
             self.bars.bar(row, rung.error, color(shade))
         };
-        self.rungs.iter().enumerate().flat_map(bar).collect()
+        self.placed().enumerate().flat_map(bar).collect()
+    }
+
+    /// The name of the rung at `place`, what left the model below what came.
+    fn name(&self, labels: &mut Labels, place: usize, row: usize, name: &str) {
+        let next = self.rows.get(place + 1).copied().unwrap_or(self.bars.rows());
+        match name.split_once(", ") {
+            Some((came, gone)) if next > row + 1 => {
+                self.bars.name(labels, row, came);
+                self.bars.name(labels, row + 1, gone);
+            }
+            _ => self.bars.name(labels, row, name),
+        }
     }
 
     /// A mark at the training error of each revision.
     fn training(&self) -> Strips {
-        let rungs = self.rungs.iter().enumerate();
-        rungs
-            .filter_map(|(row, rung)| {
-                Some(self.bars.mark(row, rung.revision.comparison.training?.rmse))
-            })
-            .collect()
+        let mark = |(row, rung): (usize, &Rung<'_>)| {
+            Some(self.bars.mark(row, rung.revision.comparison.training?.rmse))
+        };
+        self.placed().filter_map(mark).collect()
     }
 }
 
@@ -68,13 +99,16 @@ pub(super) fn around(
     labels: &mut Labels,
     floor: &mut Labels,
 ) -> Strips {
-    let Ladder { rungs, bars } = Ladder::of(improved);
+    let ladder = Ladder::of(improved);
+    let bars = &ladder.bars;
     let unit = improved.finding.compared.joint.output_unit.as_deref().unwrap_or("");
     let title = "error of each revision: validation (bar), training (white)";
     bars.title(labels, title);
-    for (row, ((revision, step), rung)) in improved.numbered().zip(&rungs).enumerate() {
-        let here = if row == at { "▶ " } else { "" };
-        bars.name(labels, row, &format!("{here}{revision}: {}", change_in_words(step)));
+    let revisions = improved.numbered().zip(ladder.placed());
+    for (place, ((revision, step), (row, rung))) in revisions.enumerate() {
+        let here = if place == at { "▶ " } else { "" };
+        let name = format!("{here}{revision}: {}", change_in_words(step));
+        ladder.name(labels, place, row, &name);
         let training = step.comparison.training.map_or(0.0, |error| error.rmse);
         let end = training.max(rung.error);
         bars.value(labels, row, end, format!("{} {unit}", short(rung.error)));

@@ -55,7 +55,7 @@ pub(super) fn around(
         ([], _) => "nothing more was looked for",
         (_, []) => "error at the next revision",
         _ if is_last && improved.finding.verdict == Verdict::Unexplained => {
-            "error with one effect more: none gains enough"
+            "error with one effect more, likeliest first: none gains enough"
         }
         _ => "error with one effect more, likeliest first",
     };

@@ -13,9 +13,7 @@ use crate::recording::error_share::short;
 use crate::recording::layout::JointLayout;
 use crate::recording::markdown::{plain, prose};
 use crate::recording::parameter_table::parameter_table;
-use crate::report::{
-    FARTHEST_OFF, ImprovedJoint, MANY_TIMES_NOISE, Passage, Topic, change_in_words,
-};
+use crate::report::{ImprovedJoint, MANY_TIMES_NOISE, Passage, Topic, change_in_words};
 use crate::wording::{percent, rounded, unit_suffix, worst_segment_text};
 
 /// The page of the revision at `place`.
@@ -49,7 +47,10 @@ fn written(
     }
     for passage in &conclusion.passages {
         if passage.topic == Topic::WhereItFails {
-            where_it_fails(&mut page, passage, &worst_segments(layout, &step.comparison))?;
+            where_it_fails(&mut page, passage)?;
+        } else if passage.topic == Topic::WorstSegments {
+            let worst = worst_segments(layout, &step.comparison);
+            writeln!(page, "**{}:**\n\n{worst}", passage.topic.label())?;
         } else if passage.topic == Topic::Shares && is_last {
             // The shares stand beside the effects above.
             let others = improved.finding.beside_shares();
@@ -87,13 +88,12 @@ pub(super) fn parameters(
     written.map(|()| page).unwrap_or_default()
 }
 
-/// A line for each condition, which stands out, and for each of the worst segments.
-fn where_it_fails(page: &mut String, passage: &Passage, worst: &str) -> std::fmt::Result {
+/// A line for each condition, which stands out.
+fn where_it_fails(page: &mut String, passage: &Passage) -> std::fmt::Result {
     writeln!(page, "**{}:**\n", passage.topic.label())?;
     for sentence in &passage.sentences {
         match sentence.rsplit_once(": ") {
             Some((when, weight)) => writeln!(page, "- **{}**: {}", prose(when), prose(weight))?,
-            None if !worst.is_empty() && sentence.starts_with(FARTHEST_OFF) => page.push_str(worst),
             None => writeln!(page, "- {}", prose(sentence))?,
         }
     }
@@ -122,7 +122,8 @@ fn what_was_found(page: &mut String, improved: &ImprovedJoint<'_>) -> std::fmt::
         writeln!(page, "Share of the first error that returns without each (shares overlap):\n")?;
     }
     for component in components {
-        let share = share_of(id(component));
+        // Of one alone it is said above.
+        let share = share_of(id(component)).filter(|_| has_shares(improved));
         let share = share.map_or_else(String::new, |share| format!(" {}", percent(share)));
         let summary = component.summary();
         writeln!(page, "- **{}**{share}: {}", plain(id(component)), prose(&summary))?;
@@ -144,7 +145,7 @@ fn worst_segments(layout: &JointLayout<'_>, comparison: &Comparison) -> String {
         } else {
             (worst_segment_text(worst), String::new())
         };
-        format!("- worst segment **{rank}**: {place}{in_plots}, {share} of its squared error\n")
+        format!("- **{rank}**: {place}{in_plots}, {share} of its squared error\n")
     };
     (1..).zip(worst_spans(layout, comparison)).take(MOST).map(line).collect()
 }

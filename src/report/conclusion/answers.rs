@@ -2,20 +2,24 @@
 
 use crate::diagnosis::failure::FailsWhere;
 use crate::explain::{Contribution, Verdict};
+use crate::report::doubt::doubted;
 use crate::report::finding::Finding;
-use crate::wording::misfit_units;
+use crate::report::{EstimatedJoint, JointSummary, dead_time_sentences};
+use crate::wording::{doubtful_sentence, misfit_units};
 
 /// What a reviewer asks of a model first: question and answer.
 pub(crate) type Answer = (&'static str, String);
 
 impl Finding<'_> {
-    /// What was found, what is still unexplained, and where the model fails.
-    pub(crate) fn answers(&self) -> [Answer; 3] {
-        [
+    /// What was found, what is still unexplained, where the model fails, and what the delays are.
+    pub(crate) fn answers(&self) -> Vec<Answer> {
+        let delays = self.delays.map(|estimate| EstimatedJoint { joint: self.joint(), estimate });
+        let of_model = [
             ("Found", self.found()),
             ("Unexplained", self.left()),
             ("Fails", self.strongest_condition()),
-        ]
+        ];
+        of_model.into_iter().chain(delays.map(|joint| ("Delays", delays_of(joint)))).collect()
     }
 
     /// What is to be said of the effects where their shares stand beside them.
@@ -23,18 +27,27 @@ impl Finding<'_> {
         self.consequence().beside_shares().join(" ")
     }
 
-    /// The effects that were added, with what could stand in the place of each, and what they explain.
+    /// The effects that were added, with what could stand in the place of each, and what they explain:
+    /// of many those that carry most.
     fn found(&self) -> String {
+        /// Names that a person takes in, and those that are said of more.
+        const MOST: usize = 4;
+        const FIRST: usize = 3;
         let found = self.attribution.map_or(&[][..], |known| &known.found);
         let Some(explained) = self.explained_share().filter(|_| !found.is_empty()) else {
             return self.follows();
         };
-        let name = |one: &Contribution| match one.alternatives.as_slice() {
+        let name = |one: &&Contribution| match one.alternatives.as_slice() {
             [] => one.effect.to_owned(),
             others => format!("{} (or {})", one.effect, others.join(" or ")),
         };
-        let names: Vec<String> = found.iter().map(name).collect();
-        format!("{}: {explained}", names.join(", "))
+        let mut found: Vec<&Contribution> = found.iter().collect();
+        found.sort_by(|a, b| b.error_share.total_cmp(&a.error_share));
+        let shown = if found.len() > MOST { FIRST } else { found.len() };
+        let more = found.len() - shown;
+        let names: Vec<String> = found.iter().take(shown).map(name).collect();
+        let more = if more > 0 { format!(" and {more} more below") } else { String::new() };
+        format!("{}{more}: {explained}", names.join(", "))
     }
 
     /// What no effect accounts for.
@@ -59,6 +72,24 @@ impl Finding<'_> {
             (None, _) => {
                 "under no condition more than under others: see the worst segments".to_owned()
             }
+        }
+    }
+}
+
+/// The delays of a joint in a line, and how many of them are doubtful.
+fn delays_of(joint: EstimatedJoint<'_>) -> String {
+    let summary = JointSummary::of(joint);
+    let dead_time = dead_time_sentences(&joint).into_iter().nth(1);
+    match (dead_time, summary.steps) {
+        (Some(dead_time), _) => dead_time,
+        (None, 0) => format!("none: {}", summary.without_steps()),
+        (None, steps) => {
+            let range = summary.delay_s.map_or_else(String::new, |range| {
+                format!(", median {:.3} s ({:.3} to {:.3} s)", range.median, range.min, range.max)
+            });
+            let all: Vec<_> = doubted(joint).map(|found| found.doubt).collect();
+            let doubtful = doubtful_sentence(all.iter());
+            format!("{} of {steps} steps accepted{range}; {doubtful}", summary.accepted)
         }
     }
 }

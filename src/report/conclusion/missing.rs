@@ -32,6 +32,7 @@ impl Finding<'_> {
         let missing = described.chain(compared).chain(self.look_alikes(best));
         let passages = [
             self.where_it_fails(),
+            self.worst_segments(),
             Passage::of(Topic::Missing, missing),
             Passage::of(Topic::Shares, self.consequence().sentences()),
         ];

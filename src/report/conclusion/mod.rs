@@ -10,8 +10,6 @@ mod place;
 mod unexplained;
 
 pub(crate) use passage::{Passage, Topic};
-#[cfg(feature = "rrd")]
-pub(crate) use place::FARTHEST_OFF;
 
 use super::EstimatedJoint;
 use super::finding::{Finding, added};

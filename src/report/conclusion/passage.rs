@@ -7,6 +7,8 @@ pub(crate) enum Topic {
     Error,
     /// In which part of the record most of the error arises.
     WhereItFails,
+    /// The parts of the record in which the simulated output is farthest off.
+    WorstSegments,
     /// The effect that is missing.
     Missing,
     /// What comes next in a search.
@@ -31,6 +33,7 @@ impl Topic {
         match self {
             Self::Error => "Error",
             Self::WhereItFails => "Where the error arises",
+            Self::WorstSegments => "Worst segments",
             Self::Missing => "What is missing",
             Self::Next => "What comes next",
             Self::Residual => "What the residual follows",

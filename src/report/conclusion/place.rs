@@ -7,9 +7,6 @@ use crate::report::consequence::{in_proportion, times_as_large};
 use crate::report::finding::Finding;
 use crate::wording::{capitalized, failure_sentences, percent, rounded, worst_segment_text};
 
-/// How the sentence on the worst segments begins.
-pub(crate) const FARTHEST_OFF: &str = "The simulated output is farthest off in";
-
 impl Finding<'_> {
     /// How large the error is.
     pub(super) fn size(&self) -> String {
@@ -25,7 +22,9 @@ impl Finding<'_> {
     /// How large the error is, and where.
     pub(in crate::report) fn fails(&self) -> Vec<Passage> {
         let size = std::iter::once(self.size()).chain(self.shown_beside_size());
-        [Passage::of(Topic::Error, size), self.where_it_fails()].into_iter().flatten().collect()
+        let passages =
+            [Passage::of(Topic::Error, size), self.where_it_fails(), self.worst_segments()];
+        passages.into_iter().flatten().collect()
     }
 
     /// What shows the lack of fit of an error that may be no larger than noise.
@@ -47,10 +46,18 @@ impl Finding<'_> {
         }
     }
 
-    /// What in the record shows it, with times to look at.
+    /// Under which conditions most of the error arises.
     pub(super) fn where_it_fails(&self) -> Option<Passage> {
         let conditions = failure_sentences(self.joint(), self.comparison());
-        let worst = self.comparison().failure.iter().flat_map(|failure| &failure.worst_segments);
+        let has_segments = self.segments().next().is_some();
+        let none = "No condition was found that holds most of the error.".to_owned();
+        let none = Some(none).filter(|_| conditions.is_empty() && has_segments);
+        let conditions = conditions.iter().map(|when| format!("{}.", capitalized(when)));
+        Passage::of(Topic::WhereItFails, conditions.chain(none))
+    }
+
+    /// Times to look at.
+    pub(super) fn worst_segments(&self) -> Option<Passage> {
         let several = self.joint().trials.len() > 1;
         let time = |(index, worst): (usize, &WorstSegment)| {
             let trial = if several { format!("trial {}, ", worst.trial) } else { String::new() };
@@ -58,12 +65,12 @@ impl Finding<'_> {
             let share = percent(worst.share_of_squared_error);
             format!("{trial}{} ({share}{of})", worst_segment_text(worst))
         };
-        let times: Vec<String> = worst.take(3).enumerate().map(time).collect();
-        let look = format!("{FARTHEST_OFF} {}.", times.join(", "));
-        let look = Some(look).filter(|_| !times.is_empty());
-        let none = "No condition was found that holds most of the error.".to_owned();
-        let none = Some(none).filter(|_| conditions.is_empty() && look.is_some());
-        let conditions = conditions.iter().map(|when| format!("{}.", capitalized(when)));
-        Passage::of(Topic::WhereItFails, conditions.chain(none).chain(look))
+        let times: Vec<String> = self.segments().take(3).enumerate().map(time).collect();
+        let look = format!("The simulated output is farthest off in {}.", times.join(", "));
+        Passage::of(Topic::WorstSegments, Some(look).filter(|_| !times.is_empty()))
+    }
+
+    fn segments(&self) -> impl Iterator<Item = &WorstSegment> {
+        self.comparison().failure.iter().flat_map(|failure| &failure.worst_segments)
     }
 }

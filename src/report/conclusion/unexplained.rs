@@ -25,7 +25,7 @@ impl Finding<'_> {
     pub(super) fn unexplained(&self) -> Vec<Passage> {
         let mut passages = self.fails();
         passages
-            .extend(Passage::of(Topic::Residual, self.shape().into_iter().chain(self.nearest())));
+            .extend(Passage::of(Topic::Residual, self.shape().into_iter().chain(self.likeliest())));
         passages.extend(Passage::of(Topic::Shares, self.consequence().sentences()));
         passages.extend(Passage::of(Topic::Next, self.several_together()));
         passages
@@ -81,27 +81,29 @@ impl Finding<'_> {
         format!("{} where it is {part}{unit}", self.output(region.mean_residual))
     }
 
-    /// The effect that comes nearest, and what is to be thought of it; nothing where it is named as of
-    /// no consequence already.
-    fn nearest(&self) -> Option<String> {
+    /// The effect that is the likeliest, and what is to be thought of it; nothing where it is named as of
+    /// no consequence already, or would explain nothing.
+    fn likeliest(&self) -> Option<String> {
         /// The share of the misfit from which a significant effect is likely one of several. Chosen: of
-        /// 30 simulated misfits from outside the catalogue the nearest effect explained 77 % at most.
+        /// 30 simulated misfits from outside the catalogue the likeliest effect explained 77 % at most.
         const ONE_OF_SEVERAL: f64 = 0.8;
-        let nearest = self.ranking.first()?;
+        /// What is no share of anything.
+        const NOTHING: f64 = 0.005;
+        let likeliest = self.ranking.first()?;
         let refinements = self.attribution.map_or(&[][..], |known| &known.refinements);
-        if nearest.effects.iter().all(|id| refinements.contains(id)) {
+        let (name, explained) = (likeliest.name(), likeliest.share_of_misfit.clamp(0.0, 1.0));
+        if explained < NOTHING || likeliest.effects.iter().all(|id| refinements.contains(id)) {
             return None;
         }
-        let (name, explained) = (nearest.name(), nearest.share_of_misfit.clamp(0.0, 1.0));
         let share = percent(explained);
-        Some(if explained >= ONE_OF_SEVERAL && nearest.is_significant() {
+        Some(if explained >= ONE_OF_SEVERAL && likeliest.is_significant() {
             format!(
-                "The nearest effect, {name}, would explain {share} of the misfit by itself, and the \
+                "The likeliest effect, {name}, would explain {share} of the misfit by itself, and the \
                  model with it still lacks something: it is likely one of several."
             )
         } else {
             format!(
-                "The nearest effect, {name}, would explain {share} of the misfit: too little or too \
+                "The likeliest effect, {name}, would explain {share} of the misfit: too little or too \
                  uncertain to be named."
             )
         })

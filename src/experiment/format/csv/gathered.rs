@@ -1,12 +1,13 @@
 //! Rows of a table of text as they come, and the words below it.
 
-use super::super::spelling::{DecimalMarks, are_units, is_remark, parse_cell, parse_time};
+use super::super::cell::{DecimalMarks, Time, parse_cell, parse_time};
+use super::super::spelling::{are_units, is_remark};
 use super::lines::Place;
 use crate::experiment::error::ReadError;
 use crate::experiment::memory::Budget;
 use crate::experiment::names::shown;
 use crate::experiment::source::Source;
-use crate::experiment::table::{Column, Labels, RowNumbers, Table, Wanted};
+use crate::experiment::table::{BadCell, Column, Labels, RowNumbers, Table, Wanted};
 
 /// Rows of words that may stand below a table.
 const MOST_REMARKS: usize = 20;
@@ -21,6 +22,8 @@ const NUMBER_SIZE: usize = 2 * size_of::<f64>();
 pub(super) struct Gathered {
     delimiter: u8,
     marks: DecimalMarks,
+    /// Whether times are dates or times of day, as the first one shows.
+    are_times_in_words: Option<bool>,
     pub(super) table: Table,
     labels: Option<Labels>,
     /// Rows of words, which belong to the table if rows of numbers follow.
@@ -41,8 +44,17 @@ impl Gathered {
             notes: Vec::new(),
         };
         let labels = wanted.label.map(|_| Labels::default());
-        let (marks, held_back) = (DecimalMarks::default(), Vec::new());
-        Self { delimiter, marks, table, labels, held_back, width: None, budget }
+        let (marks, held_back) = (DecimalMarks::of(wanted.numeric.len()), Vec::new());
+        Self {
+            delimiter,
+            marks,
+            are_times_in_words: None,
+            table,
+            labels,
+            held_back,
+            width: None,
+            budget,
+        }
     }
 
     pub(super) fn take(
@@ -57,12 +69,20 @@ impl Gathered {
         let label = wanted.label.map_or(&b""[..], cell);
         let size = wanted.numeric.len() * NUMBER_SIZE + label.len();
         self.budget.take_values(1, size).map_err(|error| error.refuse(wanted.path()))?;
+        let index = self.table.rows.len();
         self.table.rows.push(row);
-        for (column, index) in self.table.columns.iter_mut().zip(wanted.numeric) {
-            let is_time = wanted.time == Some(*index);
-            let parse = if is_time { parse_time } else { parse_cell };
-            let parsed = parse(cell(*index), self.delimiter);
-            column.push(self.marks.agreed(cell(*index), parsed), row);
+        for (place, (column, wanted_at)) in
+            self.table.columns.iter_mut().zip(wanted.numeric).enumerate()
+        {
+            let cell = cell(*wanted_at);
+            let parsed = if wanted.time == Some(*wanted_at) {
+                let time = time_in(cell, self.delimiter, &mut self.are_times_in_words);
+                column.are_dates = self.are_times_in_words == Some(true);
+                time
+            } else {
+                parse_cell(cell, self.delimiter)
+            };
+            column.push(self.marks.agreed(cell, parsed, place, (row, index)), row);
         }
         if let Some(labels) = &mut self.labels {
             let memory = (wanted.path(), &self.budget);
@@ -158,9 +178,28 @@ impl Gathered {
     /// What came so far, of this much of the file.
     pub(super) fn table_of(&mut self, source: Source) -> &Table {
         self.table.source = source;
+        for (place, column) in self.table.columns.iter_mut().enumerate() {
+            if let Some((row, index, cell)) = self.marks.doubtful(place) {
+                column.values.truncate(*index);
+                column.error = Some((*row, BadCell::Thousands(cell.clone())));
+            }
+        }
         self.table.trials = self.labels.as_ref().map_or_else(Vec::new, Labels::runs);
         &self.table
     }
+}
+
+/// The time in a cell, where it is written as the first one is: in words (`Some(true)`) or as a number.
+fn time_in(cell: &[u8], delimiter: u8, in_words: &mut Option<bool>) -> Result<f64, BadCell> {
+    let (time, is_in_words) = match parse_time(cell, delimiter)? {
+        Time::Number(missing) if missing.is_nan() => return Ok(missing),
+        Time::Number(value) => (value, false),
+        Time::Written(seconds) => (seconds, true),
+    };
+    if *in_words.get_or_insert(is_in_words) == is_in_words {
+        return Ok(time);
+    }
+    Err(BadCell::Text(String::from_utf8_lossy(cell).into_owned()))
 }
 
 /// The first cell of a row that says something.

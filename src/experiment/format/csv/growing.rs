@@ -33,7 +33,7 @@ pub(in crate::experiment) struct GrowingRows {
 impl GrowingRows {
     /// Nothing has come yet.
     pub(in crate::experiment) fn new(budget: Budget) -> Self {
-        let (spelling, text) = (Spelling::of(b""), Vec::new());
+        let (spelling, text) = (Spelling::of(b"", None), Vec::new());
         let start = Vec::new();
         Self {
             budget,
@@ -56,7 +56,7 @@ impl GrowingRows {
         }
         let (sniffed, others) = lines.split_at(lines.len().min(room));
         self.start.extend_from_slice(sniffed);
-        let spelling = Spelling::of(&self.start);
+        let spelling = Spelling::of(&self.start, None);
         if spelling != self.spelling {
             // What was a table so far stands before it, or its cells are parted otherwise.
             let all = [self.start.as_slice(), others].concat();

@@ -33,18 +33,20 @@ struct Unread {
 /// Opens the log and reads its header.
 pub(super) fn open(path: &Path, budget: Budget) -> Result<OpenTable, ReadError> {
     let (bytes, start) = Bytes::open(path)?;
-    table(path, bytes, &start, budget)
+    table(path, bytes, &start, None, budget)
 }
 
-/// Reads the header of a text that begins with `start`.
+/// Reads the header of a text that begins with `start`, whose cells are parted by `delimiter` where that
+/// is known.
 pub(super) fn table(
     path: &Path,
     mut bytes: Bytes,
     start: &[u8],
+    delimiter: Option<u8>,
     budget: Budget,
 ) -> Result<OpenTable, ReadError> {
     let io_error = |source| ReadError::Io { path: path.to_owned(), source };
-    let Spelling { delimiter, preamble: (before, lines) } = Spelling::of(start);
+    let Spelling { delimiter, preamble: (before, lines) } = Spelling::of(start, delimiter);
     io::copy(&mut bytes.by_ref().take(before as u64), &mut io::sink()).map_err(io_error)?;
     let lines = LineEnds::after(bytes, lines).within(&budget);
     let mut reader = reader(delimiter, lines);

@@ -22,6 +22,9 @@ const CELL: u32 = 1;
 const STRUCTURE: u32 = 2;
 const CHARACTERS: u32 = 4;
 
+/// The flag of an array whose numbers have an imaginary part.
+const COMPLEX: u32 = 0x800;
+
 /// Letters of a name at most; MATLAB allows 63. Names are repeated with each part of a structure.
 const LONGEST_NAME: usize = 255;
 
@@ -186,6 +189,12 @@ impl<'a> Bytes<'a> {
         Ok((kind, data))
     }
 
+    /// Whether the next element holds zeros alone.
+    fn are_zeros(&mut self) -> Result<bool, Fault> {
+        let (kind, numbers) = self.element()?;
+        Ok(self.inside(numbers).numbers(kind)?.iter().all(|number| *number == 0.0))
+    }
+
     fn inside(self, data: &'a [u8]) -> Self {
         Self { data, ..self }
     }
@@ -266,7 +275,7 @@ impl Array {
         let name = name_of(name)?;
         let size = dims.iter().try_fold(1_usize, |size, length| size.checked_mul(*length));
         let Some(size) = size else { return fault("it is larger than any memory") };
-        let value = Value::read(data, flags & 0xff, size, depth)
+        let value = Value::read(data, flags, size, depth)
             .map_err(|fault| fault.within(&format!("array `{name}`")))?;
         Ok(Self { name, dims, value })
     }
@@ -318,8 +327,8 @@ fn name_of(bytes: &[u8]) -> Result<String, Fault> {
 const OBJECT: &str = "an object of MATLAB (a timeseries or a table; save its parts as arrays)";
 
 impl Value {
-    fn read(mut data: Bytes<'_>, class: u32, size: usize, depth: usize) -> Result<Self, Fault> {
-        match class {
+    fn read(mut data: Bytes<'_>, flags: u32, size: usize, depth: usize) -> Result<Self, Fault> {
+        match flags & 0xff {
             CELL => {
                 let cells = (0..size).map(|_| data.array(depth)).collect::<Result<_, _>>()?;
                 Ok(Self::Cells(cells))
@@ -350,7 +359,12 @@ impl Value {
                 let (kind, numbers) = data.element()?;
                 let values = data.inside(numbers).numbers(kind)?;
                 if values.len() == size {
-                    return Ok(Self::Numbers(values));
+                    let is_real = flags & COMPLEX == 0 || data.are_zeros()?;
+                    return Ok(if is_real {
+                        Self::Numbers(values)
+                    } else {
+                        Self::Other("complex numbers")
+                    });
                 }
                 Err(Fault::Damaged(format!(
                     "it has {} values but should have {size}",

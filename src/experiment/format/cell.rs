@@ -1,0 +1,186 @@
+//! Cells of a text: numbers, times, and what stands for a missing value.
+
+use super::date::seconds_of_date;
+use crate::experiment::table::BadCell;
+
+/// What programs write for a value that is missing, in lower case.
+const MISSING: [&str; 9] = ["na", "n/a", "#n/a", "#nv", "null", "none", "nan", "-", "--"];
+
+/// The number in a cell; NaN where there is none. A comma may stand for the point where it
+/// does not part the cells.
+pub(super) fn parse_cell(cell: &[u8], delimiter: u8) -> Result<f64, BadCell> {
+    if cell.is_empty() {
+        return Ok(f64::NAN);
+    }
+    let text = std::str::from_utf8(cell).ok();
+    let is_missing = |text: &str| MISSING.iter().any(|word| text.eq_ignore_ascii_case(word));
+    if text.is_some_and(is_missing) {
+        return Ok(f64::NAN);
+    }
+    let number = text.and_then(|text| text.parse::<f64>().ok());
+    let with_comma = || {
+        let text = text.filter(|text| text.matches(',').count() == 1 && !text.contains('.'))?;
+        // Between quotation marks, where commas part the cells, `1,200` may be a thousand and more.
+        let is_thousands = delimiter == b',' && are_thousands(text);
+        (!is_thousands).then(|| text.replace(',', ".").parse::<f64>().ok())?
+    };
+    match number.or_else(with_comma) {
+        Some(value) if value.is_infinite() => Err(BadCell::Infinite),
+        Some(value) => Ok(value),
+        None => Err(BadCell::Text(String::from_utf8_lossy(cell).into_owned())),
+    }
+}
+
+/// Whether a comma of a number may stand between its thousands: three digits follow it, and one to
+/// three that are no zero are before it.
+fn are_thousands(text: &str) -> bool {
+    let Some((whole, rest)) = text.split_once(',') else { return false };
+    let whole = whole.trim_start_matches(['-', '+']);
+    let are_digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
+    (1..=3).contains(&whole.len())
+        && !whole.starts_with('0')
+        && rest.len() == 3
+        && are_digits(whole)
+        && are_digits(rest)
+}
+
+/// A time as it is written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Time {
+    /// A number, in the unit of its column.
+    Number(f64),
+    /// A date and time of ISO 8601 as seconds since 1970, a time of day as seconds since midnight, or a
+    /// time that has passed, in seconds.
+    Written(f64),
+}
+
+/// The time in a cell.
+pub(super) fn parse_time(cell: &[u8], delimiter: u8) -> Result<Time, BadCell> {
+    let number = parse_cell(cell, delimiter).map(Time::Number);
+    let Err(BadCell::Text(text)) = &number else { return number };
+    seconds_of_date(text).map(Time::Written).map_or(number, Ok)
+}
+
+/// Which marks stand between whole and decimal digits in the cells so far.
+#[derive(Clone, Debug, Default)]
+pub(super) struct DecimalMarks {
+    point: bool,
+    comma: bool,
+    /// Whether a comma stands where none stands between thousands.
+    decimal_comma: bool,
+    columns: Vec<WholeNumbers>,
+}
+
+/// What a column of whole numbers with commas between thousands has, as `998`, `999`, `1,000`.
+#[derive(Clone, Debug, Default)]
+struct WholeNumbers {
+    /// Whether a number of three digits or more has no comma.
+    without_comma: bool,
+    /// The row and the index of the first cell whose comma may stand between thousands, and the cell.
+    with_comma: Option<(u64, usize, String)>,
+}
+
+impl DecimalMarks {
+    /// Of so many columns.
+    pub(super) fn of(columns: usize) -> Self {
+        Self { columns: vec![WholeNumbers::default(); columns], ..Self::default() }
+    }
+
+    /// What was `parsed` of a cell of `column` in `row`, where its mark is that of the other cells:
+    /// beside `3.98`, the comma of `1,100` may as well be between thousands.
+    pub(super) fn agreed(
+        &mut self,
+        cell: &[u8],
+        parsed: Result<f64, BadCell>,
+        column: usize,
+        (row, index): (u64, usize),
+    ) -> Result<f64, BadCell> {
+        // A time of day has a mark of its own.
+        if parsed.is_err() || cell.contains(&b':') {
+            return parsed;
+        }
+        let has_comma = cell.contains(&b',');
+        self.point |= cell.contains(&b'.');
+        self.comma |= has_comma;
+        if self.point && self.comma && cell.iter().any(|byte| b".,".contains(byte)) {
+            return Err(BadCell::DecimalMark(String::from_utf8_lossy(cell).into_owned()));
+        }
+        let Some(column) = self.columns.get_mut(column) else { return parsed };
+        if has_comma && is_of_thousands(cell) {
+            let first = || (row, index, String::from_utf8_lossy(cell).into_owned());
+            column.with_comma.get_or_insert_with(first);
+        } else if has_comma {
+            self.decimal_comma = true;
+        } else if !column.without_comma {
+            let digits = cell.trim_ascii_start().strip_prefix(b"-").unwrap_or(cell);
+            column.without_comma = digits.len() > 2 && digits.iter().all(u8::is_ascii_digit);
+        }
+        parsed
+    }
+
+    /// The row, the index and the text of the first cell of `column` whose comma may stand between
+    /// thousands, where nothing says that it does not: `1,000` behind `999`, and no `0,5` anywhere.
+    pub(super) fn doubtful(&self, column: usize) -> Option<&(u64, usize, String)> {
+        let whole = self.columns.get(column).filter(|whole| whole.without_comma)?;
+        whole.with_comma.as_ref().filter(|_| !self.decimal_comma)
+    }
+}
+
+/// Whether a cell holds a number with a comma between its thousands.
+pub(super) fn is_of_thousands(cell: &[u8]) -> bool {
+    std::str::from_utf8(cell).is_ok_and(are_thousands)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cell_is_a_number_or_missing_or_wrong() {
+        let parse = |cell: &[u8]| parse_cell(cell, b',');
+        assert_eq!(parse(b"-1.5e3"), Ok(-1500.0));
+        assert!(parse(b"").unwrap().is_nan());
+        assert!(parse(b"NaN").unwrap().is_nan());
+        assert_eq!(parse(b"inf"), Err(BadCell::Infinite));
+        assert_eq!(parse(b"1e999"), Err(BadCell::Infinite));
+        for word in ["NA", "n/a", "#N/A", "#NV", "NULL", "None", "-", "--"] {
+            assert!(parse(word.as_bytes()).unwrap().is_nan(), "{word}");
+        }
+        assert_eq!(parse(b"#REF!"), Err(BadCell::Text("#REF!".to_owned())));
+        assert_eq!(parse_cell(b"-1,5", b';'), Ok(-1.5));
+        assert_eq!(parse_cell(b"1,200", b';'), Ok(1.2));
+        for (text, number) in [("1,5", 1.5), ("0,125", 0.125), ("-0,5e2", -50.0)] {
+            assert_eq!(parse(text.as_bytes()), Ok(number));
+        }
+        assert!(parse(b"1,200").is_err() && parse(b"1,5,2").is_err());
+        assert!(parse_cell(b"1.000,5", b';').is_err());
+    }
+
+    #[test]
+    fn times_may_be_dates() {
+        let time = |text: &str| match parse_time(text.as_bytes(), b';') {
+            Ok(Time::Written(seconds)) => seconds,
+            other => panic!("{text}: {other:?}"),
+        };
+        for text in
+            ["2024-05-01T12:00:00.25Z", "2024-05-01 12:00:00,25", "2024-05-01T14:00:00.25+02:00"]
+        {
+            assert!((time(text) - 1_714_564_800.25).abs() < 1e-6, "{text}: {}", time(text));
+        }
+        for (text, seconds) in [
+            ("12:00:00.5", 43_200.5),
+            ("26:00:00.25", 93_600.25),
+            ("00:01.5", 1.5),
+            ("0 days 00:00:01.010000", 1.01),
+            ("1 day, 0:00:02", 86_402.0),
+            ("-1 days +23:59:59.5", -0.5),
+        ] {
+            assert!((time(text) - seconds).abs() < 1e-9, "{text}: {}", time(text));
+        }
+        for text in ["1:2", "0:75:00", "a:00:01", "5 days", "1:1e1.5"] {
+            assert!(!matches!(parse_time(text.as_bytes(), b';'), Ok(Time::Written(_))), "{text}");
+        }
+        assert_eq!(parse_time(b"0.5", b';'), Ok(Time::Number(0.5)));
+        assert!(parse_time(b"noon", b';').is_err());
+    }
+}

@@ -1,0 +1,156 @@
+//! Clocks that run unevenly, jump, or say their times in words.
+
+use std::fmt::Write as _;
+
+use super::log::*;
+
+/// The time of row `k` as a date.
+pub(crate) fn date(k: usize) -> String {
+    let (seconds, hundredths) = (k / 100, k % 100);
+    format!("2024-05-01 12:{:02}:{:02}.{hundredths:02}", seconds / 60, seconds % 60)
+}
+
+/// Sampled when there was time: the output is that of the moment.
+fn uneven() -> Vec<Row> {
+    let clean = clean();
+    let mut now = 0.0_f64;
+    let mut rows = Vec::new();
+    for k in 0..ROWS {
+        let before = (1..ROWS).take_while(|row| *row as f64 <= now).count();
+        let after = (before + 1).min(ROWS - 1);
+        let part = now.fract();
+        let output = (1.0 - part) * clean[before].output + part * clean[after].output;
+        rows.push(Row { time: now * PERIOD, input: clean[before].input, output });
+        now += 1.0 + 0.4 * noise(k);
+        if now > (ROWS - 1) as f64 {
+            break;
+        }
+    }
+    rows
+}
+
+/// Clocks that run, but not evenly.
+pub(crate) fn clocks() -> Vec<Messy> {
+    let at = |k: usize| PERIOD * k as f64;
+    vec![
+        messy(
+            "jitter.csv",
+            plain(&timed(|k| at(k) + 8e-4 * noise(k))),
+            read(1e-3, "the clock jitters by"),
+        ),
+        messy(
+            "drift.csv",
+            plain(&timed(|k| at(k) + 0.03 * (at(k) / 6.0).sin() + 3e-4 * noise(k))),
+            read(0.002, "drifts"),
+        ),
+        messy("rounded.csv", table(HEADER, &clean(), ",", |x| format!("{x:.2}")), read(0.051, "")),
+        messy(
+            "half_seconds.csv",
+            plain(&timed(|k| (k / 50) as f64 * 0.5)),
+            read(0.002, "the times are rounded to 500 ms"),
+        ),
+        messy(
+            "late_stamps.csv",
+            plain(&timed(|k| if k % 300 > 290 { at(k - k % 300 + 300) - 1e-5 } else { at(k) })),
+            read(0.002, "the clock jitters by"),
+        ),
+        messy("uneven.csv", plain(&uneven()), read(0.055, "interpolated")),
+    ]
+}
+
+/// Clocks that jump, and rows at the wrong place.
+pub(crate) fn jumps() -> Vec<Messy> {
+    let at = |k: usize| PERIOD * k as f64;
+    let lost: Vec<Row> = clean()
+        .into_iter()
+        .enumerate()
+        .filter(|(k, _)| k % 401 != 300)
+        .map(|(_, row)| row)
+        .collect();
+    let pause = timed(|k| at(k) + if k < 870 { 0.0 } else { 12.34 });
+    let anew = timed(|k| at(if k < 870 { k } else { k - 870 }));
+    let mut twice = clean();
+    twice.insert(700, twice[699]);
+    let mut swapped = clean();
+    swapped.swap(500, 501);
+    let mut mixed = clean();
+    for k in 0..100 {
+        mixed.swap(17 * k, 1799 - 3 * k);
+    }
+    let still = timed(|k| at(if (870..901).contains(&k) { 870 } else { k }));
+    let slower: Vec<Row> = clean()
+        .into_iter()
+        .enumerate()
+        .filter(|(k, _)| *k < 900 || k % 2 == 0)
+        .map(|(_, row)| row)
+        .collect();
+    vec![
+        messy("lost_rows.csv", plain(&lost), read(0.051, "rows are lost in 4 gaps")),
+        messy("pause.csv", plain(&pause), read(0.051, "(of 12.4 s, before row 872)")),
+        messy(
+            "clock_anew.csv",
+            plain(&anew),
+            read(0.051, "the clock starts anew once (first at row 872)"),
+        ),
+        messy("row_twice.csv", plain(&twice), read(1e-3, "1 row is there twice")),
+        messy("out_of_order.csv", plain(&swapped), read(1e-3, "out of order")),
+        messy("far_out_of_order.csv", plain(&mixed), read(1e-3, "out of order")),
+        messy(
+            "clock_rests.csv",
+            plain(&still),
+            read(1e9, "30 rows are stamped while the clock stood still"),
+        ),
+        messy(
+            "other_rate.csv",
+            plain(&slower),
+            read(
+                0.055,
+                "the sample rate changes at row 903, from a sample per 10 ms to one per 20 ms",
+            ),
+        ),
+        messy(
+            "stamp_of_nonsense.csv",
+            plain(&timed(|k| if k == 60 { 4711.0 } else { at(k) })),
+            Expected::Refused(&["stamp_of_nonsense.csv", "row 63", "remove the row"]),
+        ),
+        messy(
+            "clock_stands_still.csv",
+            plain(&timed(|_| 1.5)),
+            Expected::Refused(&["clock_stands_still.csv", "row 3", "must increase"]),
+        ),
+    ]
+}
+
+/// Times in words: dates, times of day, and times that have passed.
+pub(crate) fn in_words() -> Vec<Messy> {
+    let rows = clean();
+    let with = |header: &str, time: &dyn Fn(usize) -> String| {
+        let mut text = format!("{header},boom.input,boom.output\n");
+        for (k, row) in rows.iter().enumerate() {
+            writeln!(text, "{},{:.6},{:.6}", time(k), row.input, row.output).unwrap();
+        }
+        text
+    };
+    let seconds = |k: usize| format!("{:02}.{:02}", k / 100 % 60, k % 100);
+    let mixed = with("time_s", &|k| match k {
+        617 => "2024-05-01 12:00:06.17".to_owned(),
+        _ => format!("{:.2}", k as f64 * PERIOD),
+    });
+    vec![
+        // A unit that a program writes into each header does not change what a date is.
+        messy("date_under_ms.csv", with("time [ms]", &date), read(1e-6, "times count from 2024")),
+        messy(
+            "time_of_day_under_min.csv",
+            with("time [min]", &|k| format!("10:00:{}", seconds(k))),
+            read(1e-6, "times count from 36000 s"),
+        ),
+        messy("pandas.csv", with("time", &|k| format!("0 days 00:00:{}", seconds(k))), SAME),
+        messy("minutes.csv", with("time", &|k| format!("00:{}", seconds(k))), SAME),
+        messy(
+            "more_than_a_day.csv",
+            with("time", &|k| format!("25:00:{}", seconds(k))),
+            read(1e-6, "times count from 90000 s"),
+        ),
+        messy("date_among_numbers.csv", mixed, Expected::Refused(&["row 619", "`time_s`"])),
+    ]
+}

@@ -1,0 +1,89 @@
+//! Signals, and the names and units of columns.
+
+use super::log::*;
+use tauscope::experiment::{ColumnMap, JointColumns};
+
+/// Sensors that begin anew after a turn, or say nonsense now and then.
+pub(crate) fn sensors() -> Vec<Messy> {
+    let outputs = || clean().into_iter().map(|row| row.output);
+    let (low, high) = outputs().fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
+    let turns = |row: Row| Row {
+        output: (720.0 * (row.output - low) / (high - low) + 100.0).rem_euclid(360.0),
+        ..row
+    };
+    let wrapped: Vec<Row> = clean().into_iter().map(turns).collect();
+    let mut spiky = clean();
+    for row in spiky.iter_mut().skip(40).step_by(97) {
+        row.output += 2.0 * (high - low);
+    }
+    vec![
+        messy(
+            "turns.csv",
+            table(HEADER, &wrapped, ",", |x| x.to_string()),
+            read(1e-6, "wraps at a turn of 360"),
+        ),
+        messy("spikes.csv", plain(&spiky), read(0.051, "")),
+    ]
+}
+
+/// Logs without a word on which columns are those of a joint.
+pub(crate) fn names_alone() -> Vec<Messy> {
+    let foreign = |header: &str| table(header, &clean(), ",", |x| x.to_string());
+    vec![
+        messy(
+            "names_say_it.csv",
+            foreign("t_s,u_boom_duty_pct,y_boom (deg)"),
+            read(1e-6, "joints by the names of the columns: boom (input `u_boom_duty_pct`"),
+        ),
+        messy("one_joint.csv", foreign("t_s,valve_cmd,angle"), read(1e-6, "`valve_cmd`")),
+        messy(
+            "names_say_nothing.csv",
+            foreign("t_s,a,b"),
+            Expected::Refused(&["no joint found", "the columns are: t_s, a, b"]),
+        ),
+    ]
+}
+
+pub(crate) fn units_and_names() -> Vec<Messy> {
+    let scaled = |factor: f64| timed(move |k| (PERIOD * k as f64 * factor).round());
+    let foreign = |header: &str, rows: &[Row]| table(header, rows, ",", |x| x.to_string());
+    let mapped = |log: Messy, time: Option<&str>| {
+        let joint = JointColumns::new("boom", "u_duty_pct", "angle (deg)");
+        let columns = ColumnMap {
+            time: time.map(str::to_owned),
+            joints: vec![joint],
+            ..ColumnMap::default()
+        };
+        Messy { columns, ..log }
+    };
+    let header = |time: &str| format!("{time},u_duty_pct,angle (deg)");
+    vec![
+        mapped(
+            messy("time_ms.csv", foreign(&header("time_ms"), &scaled(1e3)), SAME),
+            Some("time_ms"),
+        ),
+        Messy {
+            columns: ColumnMap {
+                joints: vec![JointColumns::new("boom", "valve", "pos")],
+                ..ColumnMap::default()
+            },
+            ..messy("bare_names.csv", foreign("t_s,valve_pct,pos_mm", &clean()), SAME)
+        },
+        mapped(messy("t_us.csv", foreign(&header("t_us"), &scaled(1e6)), SAME), None),
+        mapped(messy("Time_s.csv", foreign(&header("Time (s)"), &clean()), SAME), None),
+        mapped(messy("elapsed.csv", foreign(&header("elapsed [ms]"), &scaled(1e3)), SAME), None),
+        mapped(messy("millis.csv", foreign(&header("t"), &scaled(1e3)), SAME), Some("t [ms]")),
+        mapped(
+            messy("unit_unsaid.csv", foreign(&header("t"), &scaled(1e3)), read(1e9, "`t [ms]`")),
+            None,
+        ),
+        mapped(
+            messy(
+                "epoch_ns.csv",
+                foreign(&header("timestamp"), &timed(|k| 1.7e18 + 1e7 * k as f64)),
+                read(1e-3, "nanoseconds since 1970"),
+            ),
+            None,
+        ),
+    ]
+}

@@ -1,0 +1,277 @@
+//! Texts as loggers, spreadsheets and people write them.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+
+use super::clocks::date;
+use super::log::*;
+
+fn utf16(text: &str) -> Vec<u8> {
+    text.encode_utf16().flat_map(u16::to_le_bytes).collect()
+}
+
+fn gzip(text: &str) -> Vec<u8> {
+    let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
+    packed.write_all(text.as_bytes()).unwrap();
+    packed.finish().unwrap()
+}
+
+pub(crate) fn texts() -> Vec<Messy> {
+    let rows = clean();
+    let comma = |x: f64| format!("{x:.6}").replace('.', ",");
+    let semicolon = HEADER.replace(',', ";");
+    let mut dated = String::new();
+    for (k, row) in rows.iter().enumerate() {
+        writeln!(dated, "{},{},{}", date(k), row.input, row.output).unwrap();
+    }
+    let degrees = format!("time_s;boom.input [%];boom.output [°]\n{}", {
+        let text = table("", &rows, ";", |x| format!("{x:.6}"));
+        text.trim_start().to_owned()
+    });
+    let latin1: Vec<u8> = degrees.chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect();
+    let all = plain(&rows);
+    vec![
+        messy("decimal_comma.csv", table(&semicolon, &rows, ";", comma), SAME),
+        messy("tabs_and_commas.txt", table(&HEADER.replace(',', "\t"), &rows, "\t", comma), SAME),
+        messy("dates.csv", format!("timestamp,boom.input,boom.output\n{dated}"), read(1e-4, "")),
+        messy(
+            "preamble.csv",
+            format!("Logger 4.2\nMachine: boom, with a long name\nDate: 2024-05-01\n\n{all}"),
+            SAME,
+        ),
+        messy("row_of_units.csv", all.replacen('\n', "\ns,V,deg\n", 1), SAME),
+        messy("latin1.csv", latin1, SAME),
+        messy("utf16.csv", utf16(&format!("\u{feff}{degrees}")), SAME),
+        messy("utf16_unmarked.csv", utf16(&degrees), SAME),
+        messy("packed.csv.gz", gzip(&all), SAME),
+        messy("cut_off.csv", &all[..all.len() - 12], read(0.011, "cut off")),
+        messy(
+            "padded_preamble.csv",
+            format!("\"Run 7\";;\nDate;01.03.2026;\n;;\n{}", all.replace(',', ";")),
+            SAME,
+        ),
+        messy(
+            "footer.csv",
+            format!("{all}End of measurement\n"),
+            read(1e-3, "the last row, 1802, is left out: it holds no number"),
+        ),
+        messy(
+            "padded_footer.csv",
+            format!("{all}\nEnd of measurement,,\nCounted,by,hand\n"),
+            read(1e-3, "the last 2 rows, from 1803 on, are left out: they hold no number"),
+        ),
+        messy(
+            "unit_ends_names.csv",
+            all.replacen(HEADER, "t_s,boom.input_pct,boom.output_deg", 1),
+            SAME,
+        ),
+        messy("missing_NA.csv", cell(&all, 617, 2, "#N/A"), read(0.051, "1 cell is empty or NaN")),
+        messy("missing_dash.csv", cell(&all, 617, 2, "--"), read(0.051, "1 cell is empty or NaN")),
+        messy(
+            "missing_null.csv",
+            cell(&all, 617, 1, "null"),
+            read(0.051, "1 cell is empty or NaN"),
+        ),
+        messy("empty_cell.csv", cell(&all, 617, 2, ""), read(0.051, "1 cell is empty or NaN")),
+    ]
+}
+
+/// The first lines of a log of LabVIEW, and the header of its table.
+const LABVIEW: (&str, &str) = (
+    "LabVIEW Measurement\t\nSeparator\tTab\nDecimal_Separator\t.\n***End_of_Header***\t\n\t\n\
+     Channels\t2\t\t\nSamples\t1800\t1800\t\nDelta_X\t0.01\t0.01\t\n***End_of_Header***\t\t\t\n",
+    "X_Value\tboom.input\tboom.output\tComment",
+);
+
+/// A mark between cells at the end of each line.
+fn trailing(text: &str) -> String {
+    text.replace('\n', ",\n")
+}
+
+/// Texts as loggers and programs write them.
+pub(crate) fn programs() -> Vec<Messy> {
+    let rows = clean();
+    let all = plain(&rows);
+    let (labview, header) = LABVIEW;
+    let table_of_labview = table(header, &rows, "\t", |x| format!("{x:.6}"));
+    let (_, next_segment) = labview.split_once("***End_of_Header***\t\n").unwrap();
+    let days = |origin: f64| timed(move |k| origin + PERIOD * k as f64 / 86_400.0);
+    let dated =
+        |rows: &[Row]| table("time,boom.input,boom.output", rows, ",", |x| format!("{x:.11}"));
+    vec![
+        messy("bars.txt", all.replace(',', "|"), SAME),
+        messy("labview.lvm", format!("{labview}{table_of_labview}"), SAME),
+        messy(
+            "two_segments.lvm",
+            format!("{labview}{table_of_labview}{next_segment}{table_of_labview}"),
+            Expected::Refused(&["two_segments.lvm, row 1811"]),
+        ),
+        messy("days_of_a_sheet.csv", dated(&days(45_658.0)), read(1e-3, "as spreadsheets count")),
+        messy("datenum.csv", dated(&days(739_618.0)), read(1e-3, "MATLAB's datenum")),
+        messy(
+            "preamble_of_another_mark.csv",
+            format!("Logger 4.2, boom test\n{}", all.replace(',', ";")),
+            SAME,
+        ),
+    ]
+}
+
+/// Marks between cells behind the last one, and within numbers.
+pub(crate) fn marks() -> Vec<Messy> {
+    let rows = clean();
+    let all = plain(&rows);
+    let (_, below) = all.split_once('\n').unwrap();
+    // Counts of an encoder, between semicolons.
+    let whole = |output: &dyn Fn(f64) -> String| {
+        let row = |(k, row): (usize, &Row)| {
+            format!("{};{};{}\n", 10 * k, 100.0 * row.input, output(row.output))
+        };
+        let rows: String = rows.iter().enumerate().map(row).collect();
+        format!("t_ms;boom.input;boom.output\n{rows}")
+    };
+    let quoted = |x: f64| format!("\"{}\"", format!("{x:.6}").replace('.', ","));
+    vec![
+        messy("marks_behind_rows.csv", format!("{HEADER}\n{}", trailing(below)), SAME),
+        messy("mark_behind_header.csv", all.replacen('\n', ",\n", 1), SAME),
+        messy("marks_behind_all.csv", trailing(&all), SAME),
+        messy(
+            "lost_cell_between_marks.csv",
+            trailing(&all).replacen("\n5.000000,", "\n", 1),
+            Expected::Refused(&["row 502", "3 cells"]),
+        ),
+        messy("quoted_commas.csv", table(HEADER, &rows, ",", quoted), SAME),
+        messy(
+            "thousands.csv",
+            cell(&all, 617, 2, "here").replace("here", "\"1,234\""),
+            Expected::Refused(&["row 617", "`boom.output`", "1,234"]),
+        ),
+        messy(
+            "thousands_among_whole_numbers.csv",
+            whole(&|x| {
+                let counts = (50.0 * x).round();
+                if counts < 1000.0 {
+                    counts.to_string()
+                } else {
+                    format!("1,{:03}", counts - 1000.0)
+                }
+            }),
+            Expected::Refused(&["row 2", "`boom.output`", "1,000", "a thousand and more"]),
+        ),
+        messy(
+            "three_decimals.csv",
+            whole(&|x| format!("{x:.3}").replace('.', ",")),
+            read(0.002, ""),
+        ),
+        messy(
+            "tail_of_thousands.csv",
+            format!("{all}\"1,000\",\"2,000\",\"3,000\"\n"),
+            Expected::Refused(&["row 1802", "1,000"]),
+        ),
+    ]
+}
+
+/// Rows of words below the header, and what names the time and its unit.
+pub(crate) fn words_below() -> Vec<Messy> {
+    let all = plain(&clean());
+    let in_ms = plain(&timed(|k| 1e3 * PERIOD * k as f64)).replacen("time_s", "t", 1);
+    let below = |log: &str, rows: &str| log.replacen('\n', rows, 1);
+    let left_out = |row: u32| match row {
+        2 => read(1e-6, "row 2, below the header, is left out"),
+        _ => read(1e-6, "row 3, below the header, is left out"),
+    };
+    let named = |time: &str| in_ms.replacen("t,", time, 1);
+    let warm = |(k, row): (usize, Row)| {
+        let Row { time, input, output } = row;
+        format!("{},{time:.6},{input:.6},{output:.6}\n", 20.0 + 1e-3 * k as f64)
+    };
+    let warm: String = clean().into_iter().enumerate().map(warm).collect();
+    vec![
+        messy("types.csv", below(&all, "\ns,V,deg\nfloat,float,float\n"), left_out(3)),
+        messy("units_below.csv", below(&in_ms, "\nDOUBLE,DOUBLE,DOUBLE\nms,V,deg\n"), left_out(2)),
+        messy("one_unit.csv", below(&in_ms, "\nms,digits,Grad\n"), left_out(2)),
+        messy(
+            "described_below_padding.csv",
+            format!("Run 7,,\n{}", below(&named("t [ms],"), "\nclock,valve,angle\n")),
+            left_out(3),
+        ),
+        messy(
+            "described_below_a_mark.csv",
+            below(&named("t [ms],"), ",\nclock,valve,angle\n"),
+            left_out(2),
+        ),
+        messy("UPPER_MS.csv", named("TIME_MS,"), SAME),
+        messy("millis_itself.csv", named("millis,"), SAME),
+        messy("temperature.csv", format!("T,timestamp,boom.input,boom.output\n{warm}"), SAME),
+        messy(
+            "two_clocks.csv",
+            trailing(&all).replace(",\n", ",0\n").replacen(",0\n", ",time_s\n", 1),
+            Expected::Refused(&["two columns are named `time_s`", "rename one"]),
+        ),
+    ]
+}
+
+/// What no number can be made of.
+pub(crate) fn broken() -> Vec<Messy> {
+    let all = plain(&clean());
+    vec![
+        messy(
+            "no_number.csv",
+            cell(&all, 617, 2, "#REF!"),
+            Expected::Refused(&["row 617", "`boom.output`", "#REF!", "write a number"]),
+        ),
+        messy(
+            "infinite.csv",
+            cell(&all, 617, 1, "inf"),
+            Expected::Refused(&["row 617", "`boom.input`", "infinite", "remove the row"]),
+        ),
+        messy(
+            "short_row.csv",
+            cell(&all, 617, 1, "").replacen(",,", ",", 1),
+            Expected::Refused(&["row 617", "2 cells", "has 3"]),
+        ),
+        messy(
+            "german_dates.csv",
+            cell(&all, 617, 0, "01.03.2026 09:59:50"),
+            Expected::Refused(&["row 617", "`time_s`", "ISO 8601"]),
+        ),
+        messy(
+            "half_days.csv",
+            cell(&all, 2, 0, "03/01/2026 09:59:50 AM"),
+            Expected::Refused(&["row 2", "`time_s`", "ISO 8601"]),
+        ),
+        messy(
+            "blanks.txt",
+            all.replace(',', "  "),
+            Expected::Refused(&["blanks.txt", "parted by blanks", "commas"]),
+        ),
+        messy(
+            "no_header.csv",
+            all.split_once('\n').unwrap().1,
+            Expected::Refused(&["no_header.csv, row 1", "numbers", "write a header"]),
+        ),
+        messy(
+            "words_between.csv",
+            all.replacen("\n1.000000,", "\nhere it stopped\n1.000000,", 1),
+            Expected::Refused(&["row 102", "1 cells", "has 3"]),
+        ),
+        messy(
+            "archive.zip",
+            b"PK\x03\x04 and more".as_slice(),
+            Expected::Refused(&["archive.zip", "ZIP archive", "unpack it first"]),
+        ),
+        messy(
+            "bag.db3",
+            b"SQLite format 3\0 and more".as_slice(),
+            Expected::Refused(&["bag.db3", "ros2 bag convert", "mcap"]),
+        ),
+        messy(
+            "old.xls",
+            b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1".as_slice(),
+            Expected::Refused(&["old.xls", ".xlsx"]),
+        ),
+        messy("packed.gz", &gzip(&all)[..2000], Expected::Refused(&["packed.gz"])),
+    ]
+}
