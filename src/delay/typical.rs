@@ -92,7 +92,9 @@ impl TypicalDelay {
     /// distribution. For fewer it is Student's about their mean,
     /// `t √(max(s², ē²) / n)`, with the variance `s²` of `scatter` and the mean square `ē²` of
     /// the errors that the steps' own intervals state; it takes delays for normal, and to
-    /// scatter alike in all groups. Where nothing is known of the scatter, it is the step's own.
+    /// scatter alike in all groups. Where these scatter more, it goes from the least to the greatest
+    /// of them, which hold the median of five or fewer less often than 95 %. Where nothing is known of
+    /// the scatter, it is the step's own.
     ///
     /// # References
     /// H. A. David, H. N. Nagaraja, "Order Statistics", 3rd ed. (2003), section 7.1.
@@ -106,8 +108,14 @@ impl TypicalDelay {
             _ => ordered(&delays),
         };
         let (least, greatest) = (*delays.first()?, *delays.last()?);
-        // Student's interval does not know that an effect follows its cause.
+        // Student's interval does not know that an effect follows its cause, nor that these steps differ
+        // by more than those of other groups.
         let causal = |low: f64| low.max(least.min(0.0));
+        let is_few = delays.len() < ORDERED;
+        let of_all = |(low, high): (f64, f64)| {
+            if is_few { (low.min(least), high.max(greatest)) } else { (low, high) }
+        };
+        let interval_s = interval_s.map(of_all);
         Some(Self {
             median_s: tidy(median(&delays)?),
             interval_s: interval_s.map(|(low, high)| (tidy(causal(low)), tidy(high))),

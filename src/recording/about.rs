@@ -146,7 +146,7 @@ accepted segment, red that of a rejected one.
 first sample of the segment, q the breakpoint, δ = q − p the delay.
 - The timeline `doubt` goes through the decisions, the doubtful ones first.
 - **fit** is the part of the motion that a model follows: 100 % less its error over the standard \
-deviation of what was measured.";
+deviation of what was measured, about its mean between two restarts of the simulation.";
 
 /// How many candidates of how many are in the recording.
 fn detail(recording: &Recording<'_>, layouts: &[JointLayout<'_>]) -> String {

@@ -54,7 +54,7 @@ fn joined(spans: impl Iterator<Item = (usize, Range<usize>)>) -> Spans {
 }
 
 /// Areas of `plot` over its whole height, each filled by a line to and fro.
-pub(super) fn areas(layout: &JointLayout<'_>, plot: &Plot, spans: &Spans) -> Strips {
+pub(super) fn areas(layout: &JointLayout<'_>, plot: &Plot, from: f32, spans: &Spans) -> Strips {
     /// Areas that are as near as this on the sheet are one.
     const NEAR: f32 = 1.0;
     let ends = spans.iter().filter_map(|(index, span)| {
@@ -69,7 +69,8 @@ pub(super) fn areas(layout: &JointLayout<'_>, plot: &Plot, spans: &Spans) -> Str
             _ => areas.push((left, right)),
         }
     }
-    let Plot { top, bottom, .. } = *plot;
+    let bottom = plot.bottom;
+    let top = plot.top + from * (bottom - plot.top);
     let area = |(left, right): (f32, f32)| {
         let column = |(number, x): (usize, f32)| {
             let (from, to) = if number % 2 == 0 { (top, bottom) } else { (bottom, top) };

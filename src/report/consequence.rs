@@ -78,7 +78,8 @@ impl Consequence<'_> {
 
     /// What each of several effects carries, and what could stand in its place.
     pub(super) fn sentences(&self) -> Vec<String> {
-        self.shares().into_iter().chain(self.beside_shares()).collect()
+        let sentences = self.shares().into_iter().chain(self.alternatives());
+        sentences.chain(self.refinements()).collect()
     }
 
     /// What each of several effects carries.
@@ -95,20 +96,21 @@ impl Consequence<'_> {
         ))
     }
 
-    /// What could stand in the place of each effect, and what is of no consequence.
-    pub(super) fn beside_shares(&self) -> Vec<String> {
-        let Some(Attribution { found, refinements }) = self.attribution else { return Vec::new() };
-        let mut sentences = Vec::new();
-        for one in found.iter().filter(|one| !one.alternatives.is_empty()) {
+    /// What could stand in the place of each effect.
+    fn alternatives(&self) -> impl Iterator<Item = String> {
+        let found = self.attribution.iter().flat_map(|known| &known.found);
+        found.filter(|one| !one.alternatives.is_empty()).map(|one| {
             let others = one.alternatives.join(" or ");
-            sentences.push(format!("In the place of {}, {others} leaves as little.", one.effect));
-        }
-        if !refinements.is_empty() {
-            sentences.push(format!(
-                "Statistically significant, but of no practical consequence: {}.",
-                refinements.join(", ")
-            ));
-        }
-        sentences
+            format!("In the place of {}, {others} leaves as little.", one.effect)
+        })
+    }
+
+    /// What is of no consequence.
+    pub(super) fn refinements(&self) -> Option<String> {
+        let refinements = self.attribution.map_or(&[][..], |known| &known.refinements);
+        (!refinements.is_empty()).then(|| {
+            let names = refinements.join(", ");
+            format!("Statistically significant, but of no practical consequence: {names}.")
+        })
     }
 }

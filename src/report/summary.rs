@@ -130,8 +130,8 @@ impl JointSummary {
         match (self.is_continuous, self.levels_differ, self.gap_s) {
             (true, _, _) => "the input moves all the time".to_owned(),
             (false, true, Some(gap_s)) => format!(
-                "the input changes only between trials or in gaps of up to {gap_s} s; \
-                 `tauscope estimate` with `--fill {gap_s}` joins what gaps part"
+                "the input changes only between trials or in gaps of up to {gap_s} s, which \
+                 `tauscope estimate --fill {gap_s}` bridges"
             ),
             (false, true, None) => "the input changes only between trials".to_owned(),
             (false, false, _) => "the input never changes".to_owned(),

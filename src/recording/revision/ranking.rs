@@ -1,4 +1,4 @@
-//! The candidates for what comes next, the best one first, down to the noise.
+//! The candidates for what comes next, that with the least error first, down to the noise.
 
 use rerun::Color;
 use rerun::datatypes::Vec2D;
@@ -55,9 +55,9 @@ pub(super) fn around(
         ([], _) => "nothing more was looked for",
         (_, []) => "error at the next revision",
         _ if is_last && improved.finding.verdict == Verdict::Unexplained => {
-            "error with one effect more, likeliest first: none gains enough"
+            "error with one effect more: none gains enough"
         }
-        _ => "error with one effect more, likeliest first",
+        _ => "error with one effect more",
     };
     bars.title(labels, title);
     let own = (format!("revision {number}"), judged(&revision.comparison));
@@ -100,7 +100,9 @@ fn tried(improved: &ImprovedJoint<'_>, at: usize) -> Vec<Tried> {
         error: candidate.rmse(),
         is_taken: proposed == Some(&candidate.effects),
     };
-    ranking.iter().map(one).collect()
+    let mut all: Vec<Tried> = ranking.iter().map(one).collect();
+    all.sort_by(|a, b| a.error.total_cmp(&b.error));
+    all
 }
 
 fn bars_of(revision: &Revision, all: &[Tried]) -> Bars {

@@ -36,6 +36,9 @@ const POINTS: usize = 3000;
 /// Width of the noise band in standard deviations on each side: 95 % of normal noise.
 const BAND: f64 = 1.96;
 
+/// Part of the height of the residual that is left free above where the model fails.
+const BELOW_UNSEEN: f32 = 0.2;
+
 /// Adds the drawings of models of `joint`, which follow one another on the timeline of `rows`.
 pub(in crate::recording) fn add(
     rows: &mut Rows<'_>,
@@ -52,12 +55,13 @@ pub(in crate::recording) fn add(
     };
     let sheets = of_each().zip(&residuals).zip(&close_ups).zip(0..).map(sheet);
     let (grids, texts): (Vec<_>, Vec<_>) = sheets.unzip();
-    for (path, rgb, spans) in [
-        (record::VALIDATION, palette::UNSEEN_GROUND, validation as fn(&Comparison) -> Spans),
-        (record::FAILS, palette::FAILS_GROUND, where_it_fails),
+    // What was not fitted is seen above where the model fails.
+    for (path, rgb, from, spans) in [
+        (record::VALIDATION, palette::UNSEEN_GROUND, 0.0, validation as fn(&Comparison) -> Spans),
+        (record::FAILS, palette::FAILS_GROUND, BELOW_UNSEEN, where_it_fails),
     ] {
         let each = of_each().zip(&residuals);
-        let shaded = each.map(|(comparison, plot)| areas(layout, plot, &spans(comparison)));
+        let shaded = each.map(|(comparison, plot)| areas(layout, plot, from, &spans(comparison)));
         rows.strips(path, rgb, HATCH, shaded)?;
     }
     rows.strips(record::GRID, palette::GRID, 0.7, grids.into_iter())?;

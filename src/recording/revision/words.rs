@@ -6,6 +6,7 @@ use super::figure::noise;
 use super::record::worst_spans;
 use crate::diagnosis::Comparison;
 use crate::diagnosis::failure::WorstSegment;
+use crate::explain::{Change, Revision};
 use crate::figure::ladder::judged;
 use crate::fit::Termination;
 use crate::model::Component;
@@ -45,6 +46,9 @@ fn written(
     } else {
         writeln!(page, "**At revision {revision}:** {}\n", plain(&conclusion.headline))?;
     }
+    if is_last && let Some(sentence) = without_gain(improved) {
+        writeln!(page, "**Doubtful revisions:** {}\n", plain(&sentence))?;
+    }
     for passage in &conclusion.passages {
         if passage.topic == Topic::WhereItFails {
             where_it_fails(&mut page, passage)?;
@@ -52,10 +56,9 @@ fn written(
             let worst = worst_segments(layout, &step.comparison);
             writeln!(page, "**{}:**\n\n{worst}", passage.topic.label())?;
         } else if passage.topic == Topic::Shares && is_last {
-            // The shares stand beside the effects above.
-            let others = improved.finding.beside_shares();
-            if !others.is_empty() {
-                writeln!(page, "**{}:** {}\n", passage.topic.label(), prose(&others))?;
+            // Shares and alternatives stand beside the effects above.
+            if let Some(refinements) = improved.finding.refinements() {
+                writeln!(page, "**Refinements:** {}\n", prose(&refinements))?;
             }
         } else {
             writeln!(page, "**{}:** {}\n", passage.topic.label(), prose(&passage.text()))?;
@@ -65,7 +68,8 @@ fn written(
         writeln!(page, "    {command}\n")?;
     }
     let several = if improved.revisions.len() > 1 { SEVERAL } else { "" };
-    writeln!(page, "*{several}{HOW}*")?;
+    let decision = if layout.segments().next().is_some() { "`decision`, " } else { "" };
+    writeln!(page, "*{several}The pages behind this one follow {decision}{HOW}*")?;
     Ok(page)
 }
 
@@ -115,6 +119,11 @@ fn what_was_found(page: &mut String, improved: &ImprovedJoint<'_>) -> std::fmt::
         |id: &str| shares.iter().find(|(effect, _)| *effect == id).map(|(_, share)| *share);
     let id = |component: &Component| component.effect().spec().id;
     // What explains most comes first, behind what the model had before.
+    let others_of = |id: &str| {
+        let found = improved.finding.attribution.iter().flat_map(|all| &all.found);
+        let others = found.filter(|one| one.effect == id).flat_map(|one| &one.alternatives);
+        others.copied().collect::<Vec<_>>().join(" or ")
+    };
     let share = |component: &Component| share_of(id(component)).unwrap_or(f64::INFINITY);
     let mut components: Vec<&Component> = components.iter().collect();
     components.sort_by(|a, b| share(b).total_cmp(&share(a)));
@@ -125,8 +134,10 @@ fn what_was_found(page: &mut String, improved: &ImprovedJoint<'_>) -> std::fmt::
         // Of one alone it is said above.
         let share = share_of(id(component)).filter(|_| has_shares(improved));
         let share = share.map_or_else(String::new, |share| format!(" {}", percent(share)));
-        let summary = component.summary();
-        writeln!(page, "- **{}**{share}: {}", plain(id(component)), prose(&summary))?;
+        let others = others_of(id(component));
+        let others = if others.is_empty() { others } else { format!(" (or {})", plain(&others)) };
+        let (id, summary) = (plain(id(component)), prose(&component.summary()));
+        writeln!(page, "- **{id}**{share}{others}: {summary}")?;
     }
     writeln!(page)
 }
@@ -153,8 +164,31 @@ fn worst_segments(layout: &JointLayout<'_>, comparison: &Comparison) -> String {
 const SEVERAL: &str = "This opens on the last revision; the right arrow begins with the first one, on \
 the timeline `revision`. ";
 
-const HOW: &str = "The pages behind this one follow `decision`, `sample` or `time`: choose it at the \
-bottom.";
+const HOW: &str = "`sample` or `time`: choose it at the bottom.";
+
+/// Which revisions lower the error of what was fitted alone.
+fn without_gain(improved: &ImprovedJoint<'_>) -> Option<String> {
+    let revisions: Vec<_> = improved.numbered().collect();
+    let without =
+        revisions.iter().zip(revisions.iter().skip(1)).filter(|((_, before), (_, after))| {
+            let error = |of: &Revision| of.comparison.validation.map(|error| error.rmse);
+            let gained =
+                error(before).zip(error(after)).map(|(before, after)| 1.0 - after / before);
+            // What left the model or was exchanged for a simpler effect is to gain nothing.
+            let least = if matches!(after.change, Change::Added(_)) { GAIN } else { -GAIN };
+            gained.is_some_and(|gained| gained < least)
+        });
+    let numbers: Vec<String> = without.map(|(_, (number, _))| number.to_string()).collect();
+    let (last, before) = numbers.split_last()?;
+    let numbers = match before {
+        [] => last.clone(),
+        before => format!("{} and {last}", before.join(", ")),
+    };
+    Some(format!("{numbers}: a lower error on what was fitted, but not on what was not"))
+}
+
+/// What is a gain at all, as a part of the error.
+const GAIN: f64 = 1e-3;
 
 /// What the error is, and what it was before.
 fn fall(improved: &ImprovedJoint<'_>, place: usize) -> String {

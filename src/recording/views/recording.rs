@@ -9,7 +9,7 @@ use crate::recording::blueprint::Builder;
 use crate::recording::content::Growth;
 use crate::recording::error::RecordError;
 use crate::recording::recorded::Recording;
-use crate::report::{EstimatedJoint, doubtful_lines};
+use crate::report::{EstimatedJoint, JointSummary, doubtful_lines};
 
 /// What decides which views there are.
 pub(in crate::recording) fn in_words(recording: &Recording<'_>, growth: Growth) -> String {
@@ -63,15 +63,20 @@ pub(in crate::recording) fn messages(
     builder.tabbed(tabs, &about(recording, growth), opening, application)
 }
 
-/// The name of the page on it all: of several joints how many decisions are doubtful, which no page
-/// of a joint says.
+/// The name of the page on it all: of one joint how many steps were accepted, of several how many
+/// decisions are doubtful, which no page of a joint says.
 fn about(recording: &Recording<'_>, growth: Growth) -> String {
     let doubtful = match growth {
         Growth::Finished => doubtful_lines(recording.joints).len(),
         Growth::Growing => 0,
     };
     match (recording.joints.len(), doubtful) {
-        (0 | 1, _) => "About".to_owned(),
+        (0 | 1, _) => match recording.joints.first().map(|joint| JointSummary::of(*joint)) {
+            Some(JointSummary { steps, accepted, .. }) if steps > 0 => {
+                format!("About: {accepted} of {steps} accepted")
+            }
+            _ => "About".to_owned(),
+        },
         (_, 0) if growth == Growth::Growing => "All joints".to_owned(),
         (_, 0) if !recording.joints.iter().any(has_decisions) => {
             "All joints: no decisions".to_owned()

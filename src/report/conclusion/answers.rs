@@ -2,9 +2,10 @@
 
 use crate::diagnosis::failure::FailsWhere;
 use crate::explain::{Contribution, Verdict};
+use crate::report::dead_time::dead_time_answer;
 use crate::report::doubt::doubted;
 use crate::report::finding::Finding;
-use crate::report::{EstimatedJoint, JointSummary, dead_time_sentences};
+use crate::report::{EstimatedJoint, JointSummary};
 use crate::wording::{doubtful_sentence, misfit_units};
 
 /// What a reviewer asks of a model first: question and answer.
@@ -22,9 +23,9 @@ impl Finding<'_> {
         of_model.into_iter().chain(delays.map(|joint| ("Delays", delays_of(joint)))).collect()
     }
 
-    /// What is to be said of the effects where their shares stand beside them.
-    pub(crate) fn beside_shares(&self) -> String {
-        self.consequence().beside_shares().join(" ")
+    /// The effects that were found to be of no consequence.
+    pub(crate) fn refinements(&self) -> Option<String> {
+        self.consequence().refinements()
     }
 
     /// The effects that were added, with what could stand in the place of each, and what they explain:
@@ -47,7 +48,13 @@ impl Finding<'_> {
         let more = found.len() - shown;
         let names: Vec<String> = found.iter().take(shown).map(name).collect();
         let more = if more > 0 { format!(" and {more} more below") } else { String::new() };
-        format!("{}{more}: {explained}", names.join(", "))
+        let alone = found.iter().all(|one| one.alternatives.is_empty());
+        let alone = if alone {
+            "; nothing that was tried leaves as little in the place of one"
+        } else {
+            ""
+        };
+        format!("{}{more}: {explained}{alone}", names.join(", "))
     }
 
     /// What no effect accounts for.
@@ -79,8 +86,7 @@ impl Finding<'_> {
 /// The delays of a joint in a line, and how many of them are doubtful.
 fn delays_of(joint: EstimatedJoint<'_>) -> String {
     let summary = JointSummary::of(joint);
-    let dead_time = dead_time_sentences(&joint).into_iter().nth(1);
-    match (dead_time, summary.steps) {
+    match (dead_time_answer(joint), summary.steps) {
         (Some(dead_time), _) => dead_time,
         (None, 0) => format!("none: {}", summary.without_steps()),
         (None, steps) => {

@@ -4,7 +4,7 @@ use super::figures::ABOVE_NOISE;
 use super::{Passage, Topic};
 use crate::diagnosis::failure::Region;
 use crate::report::finding::Finding;
-use crate::wording::{misfit_units, percent, region_text, unit_suffix};
+use crate::wording::{misfit_units, percent, region_text, rounded, unit_suffix};
 
 impl Finding<'_> {
     pub(super) fn unexplained_headline(&self) -> String {
@@ -82,29 +82,31 @@ impl Finding<'_> {
     }
 
     /// The effect that is the likeliest, and what is to be thought of it; nothing where it is named as of
-    /// no consequence already, or would explain nothing.
+    /// no consequence already, or gains nothing.
     fn likeliest(&self) -> Option<String> {
         /// The share of the misfit from which a significant effect is likely one of several. Chosen: of
         /// 30 simulated misfits from outside the catalogue the likeliest effect explained 77 % at most.
         const ONE_OF_SEVERAL: f64 = 0.8;
-        /// What is no share of anything.
-        const NOTHING: f64 = 0.005;
         let likeliest = self.ranking.first()?;
         let refinements = self.attribution.map_or(&[][..], |known| &known.refinements);
         let (name, explained) = (likeliest.name(), likeliest.share_of_misfit.clamp(0.0, 1.0));
-        if explained < NOTHING || likeliest.effects.iter().all(|id| refinements.contains(id)) {
+        let with = likeliest.rmse();
+        // One that diverges has no error.
+        let gains = with < self.error() && rounded(with) != rounded(self.error());
+        if !gains || likeliest.effects.iter().all(|id| refinements.contains(id)) {
             return None;
         }
-        let share = percent(explained);
         Some(if explained >= ONE_OF_SEVERAL && likeliest.is_significant() {
+            let share = percent(explained);
             format!(
                 "The likeliest effect, {name}, would explain {share} of the misfit by itself, and the \
                  model with it still lacks something: it is likely one of several."
             )
         } else {
+            let with = self.output(with);
             format!(
-                "The likeliest effect, {name}, would explain {share} of the misfit: too little or too \
-                 uncertain to be named."
+                "The likeliest effect, {name}, would leave {with}: too little is gained, or too \
+                 uncertain, for it to be named."
             )
         })
     }
