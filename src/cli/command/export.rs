@@ -12,7 +12,7 @@ use crate::cli::args::read_model;
 use crate::cli::console::{Verbosity, message};
 use crate::cli::exit::Completion;
 use crate::cli::output::{check_outputs, write_file};
-use crate::experiment::nearest_name;
+use crate::experiment::{did_you_mean, nearest_name};
 use crate::export::{Export, File, Language, Units, by_ending, endings};
 use crate::model::{Component, JointModel, ModelFile};
 
@@ -112,9 +112,7 @@ fn joint<'a>(model: &'a ModelFile, wanted: Option<&str>) -> anyhow::Result<&'a s
         (None, _) => Err(anyhow!("it has several joints: `--joint` takes one of {}", listed())),
         (Some(wanted), names) => {
             names.iter().find(|name| **name == wanted).copied().ok_or_else(|| {
-                let near = nearest_name(wanted, names.iter().copied());
-                let near =
-                    near.map_or_else(String::new, |near| format!("; the nearest is `{near}`"));
+                let near = did_you_mean(nearest_name(wanted, names.iter().copied()));
                 anyhow!("it has no joint `{wanted}`{near}")
             })
         }
