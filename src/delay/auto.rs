@@ -50,7 +50,7 @@ use crate::experiment::Trial;
 use crate::numerics::LowPass;
 use crate::numerics::NoiseModel;
 use crate::numerics::RunningLine;
-use crate::numerics::{autocovariances, median, quantile};
+use crate::numerics::{autocovariances, median, quantile, to_digits};
 use crate::units::ceil_to_index;
 
 /// Which settings are chosen from the record.
@@ -270,7 +270,7 @@ impl<'a> Record<'a> {
             return usual;
         };
         let slowest = 1.0 / (hold * self.period_s);
-        let cutoff_hz = two_digits(motion_ends_hz?.max(slowest));
+        let cutoff_hz = to_digits(motion_ends_hz?.max(slowest), 2);
         (cutoff_hz < TOP * 0.5 / self.period_s).then_some(LowPass { cutoff_hz, order })
     }
 
@@ -325,14 +325,6 @@ fn without_line(values: &[f64]) -> Option<(f64, Vec<f64>)> {
     let middle = 0.5 * (values.len() - 1) as f64;
     let samples = values.iter().enumerate();
     Some((slope, samples.map(|(k, value)| value - mean - slope * (k as f64 - middle)).collect()))
-}
-
-/// `value` to two digits, so that it can be said and typed.
-fn two_digits(value: f64) -> f64 {
-    let unit = 10_f64.powf(value.log10().floor() - 1.0);
-    let digits = (value / unit).round();
-    // Division by a whole power of ten rounds as the decimal number does.
-    if unit < 1.0 { digits / unit.recip().round() } else { digits * unit.round() }
 }
 
 /// The spectrum of second differences, by Welch's method.
@@ -499,11 +491,5 @@ mod tests {
         let (settings, chosen) = choose(&[], &Settings::default(), ALL);
         assert_eq!((settings.alpha, settings.low_pass), (10, Settings::default().low_pass));
         assert_eq!(chosen.grounds, Grounds::default());
-    }
-
-    #[test]
-    fn two_digits_are_kept() {
-        let shown = [8.593_75, 0.123_4, 12.34, 0.996, 104.0].map(|hz| two_digits(hz).to_string());
-        assert_eq!(shown, ["8.6", "0.12", "12", "1", "100"]);
     }
 }

@@ -4,10 +4,10 @@ use std::io::Write;
 
 use serde::Serialize;
 
-use super::decisions::tidy_seconds;
 use super::doubt::all_by_doubt;
 use super::{Doubted, EstimatedJoint};
 use crate::delay::Verdict;
+use crate::numerics::{to_decimals, to_nanoseconds};
 use crate::wording::{counted, doubt_sentence};
 
 /// A row of a review sheet: what to fill in, and what the program says.
@@ -33,7 +33,7 @@ impl<'a> SheetRow<'a> {
     pub(crate) fn of(joint: &'a str, doubted: &Doubted<'a>) -> Self {
         let Doubted { trial, decision, doubt, .. } = doubted;
         let period_s = trial.period().seconds();
-        let seconds = |delay: Option<f64>| delay.map(|delay| tidy_seconds(delay * period_s));
+        let seconds = |delay: Option<f64>| delay.map(|delay| to_nanoseconds(delay * period_s));
         let program = decision.program_verdict();
         let word = decision.word.as_ref();
         let said = |accepted| if accepted { "accepted" } else { "rejected" };
@@ -48,7 +48,7 @@ impl<'a> SheetRow<'a> {
             p: decision.input_step.sample,
             program_verdict: program.to_string(),
             program_delay_s: seconds(decision.program_delay()),
-            doubt: (doubt.value() * 1e3).round() / 1e3,
+            doubt: to_decimals(doubt.value(), 3),
             why: doubt_sentence(doubt, program, period_s),
         }
     }

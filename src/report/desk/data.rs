@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::delay::{Check, Decision, Outcome};
+use crate::numerics::as_written;
 use crate::report::doubt::all_by_doubt;
 use crate::report::review::SheetRow;
 use crate::report::{Doubted, EstimatedJoint};
@@ -120,5 +121,5 @@ fn fitted_to(decision: &Decision) -> Option<usize> {
 
 /// What is drawn needs no more.
 fn six_digits(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
+    as_written(value, 6)
 }

@@ -11,8 +11,8 @@ use crate::figure::segment::SegmentFigure;
 use crate::figure::{Axis, Mark, Panel, Place, Shape};
 use crate::report::EstimatedJoint;
 use crate::wording::bracketed;
-use crate::wording::number;
 use crate::wording::rounded;
+use crate::wording::to_place;
 
 /// A decision that is worth a look, and why.
 struct Choice<'a> {
@@ -230,7 +230,7 @@ impl Choice<'_> {
 
 /// A time to the hundredth, where that is enough.
 fn rounded_time(seconds: f64) -> String {
-    if seconds.abs() < 1e6 { number((seconds * 100.0).round() / 100.0) } else { rounded(seconds) }
+    if seconds.abs() < 1e6 { to_place(seconds, 2) } else { rounded(seconds) }
 }
 
 #[cfg(test)]
