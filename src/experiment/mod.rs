@@ -38,6 +38,7 @@ pub(crate) use conditions::are_opposites;
 pub use conditions::conditions;
 pub(crate) use conditions::has_word;
 pub use error::ReadError;
+pub(crate) use format::format_names;
 pub(crate) use gaps::longest_gap_s;
 pub use growing::GrowingLog;
 pub use handed::{HandedColumn, HandedLog, HandedValues};

@@ -6,6 +6,7 @@ use clap::Args as ClapArgs;
 
 use super::values::{self, BandChoice, Levels};
 use crate::cli::args::{ReadingArgs, RunArgs};
+use crate::experiment::format_names;
 
 /// Design the next experiment: an input to play
 ///
@@ -15,9 +16,7 @@ use crate::cli::args::{ReadingArgs, RunArgs};
 /// effects, and says how surely.
 #[derive(ClapArgs, Debug)]
 pub(crate) struct Args {
-    /// Logs of earlier experiments (CSV, XLSX, Parquet, MATLAB, MCAP), or folders of logs: what they
-    /// show of the joints is used
-    #[arg(value_name = "DATA")]
+    #[arg(help = data_help(), value_name = "DATA")]
     pub(super) data: Vec<PathBuf>,
 
     #[command(flatten)]
@@ -148,4 +147,11 @@ pub(crate) struct Args {
 
     #[command(flatten)]
     pub(super) run: RunArgs,
+}
+
+fn data_help() -> String {
+    format!(
+        "Logs of earlier experiments ({}), or folders of logs: what they show of the joints is used",
+        format_names()
+    )
 }
