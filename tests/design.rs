@@ -457,7 +457,7 @@ fn what_cannot_be_designed_is_refused_in_one_message_and_leaves_no_file() {
     desk.write("late.toml", late);
     let cases = [
         ("--levels 1", "expected two levels or more"),
-        ("--trials 0", "expected a whole number from 1 on"),
+        ("--trials 0", "expected a whole number from 1 up"),
         ("--hold 2,1", "expected two numbers, the lower one first"),
         ("--output-range=-1,1", "give --model or a log"),
         ("--dead-band avoid", "no model has it"),

@@ -9,7 +9,7 @@ use anyhow::{Context as _, anyhow};
 use clap::Args as ClapArgs;
 
 use crate::cli::args::read_model;
-use crate::cli::console::{Verbosity, message};
+use crate::cli::console::message;
 use crate::cli::exit::Completion;
 use crate::cli::output::{check_outputs, write_file};
 use crate::experiment::{did_you_mean, nearest_name};
@@ -68,7 +68,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
     for file in &files {
         let path = paths(file);
         write_file(&path, |output| Ok(output.write_all(&file.content)?))?;
-        if args.verbosity() == Verbosity::Normal {
+        if !args.quiet {
             message("model", &shown(&path));
         }
         if let Some(note) = &file.note {
@@ -76,12 +76,6 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Completion> {
         }
     }
     Ok(Completion::Whole)
-}
-
-impl Args {
-    fn verbosity(&self) -> Verbosity {
-        if self.quiet { Verbosity::Quiet } else { Verbosity::Normal }
-    }
 }
 
 fn shown(path: &Path) -> String {

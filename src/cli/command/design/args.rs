@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args as ClapArgs;
 
 use super::values::{self, BandChoice, Levels};
+use crate::cli::args::number::at_least_one;
 use crate::cli::args::{ReadingArgs, RunArgs};
 use crate::experiment::format_names;
 
@@ -67,7 +68,7 @@ pub(crate) struct Args {
     /// Most trials, before each of which the joint is brought back to its start: 1 for an input
     /// without a break [default: as many as the range needs]
     #[arg(
-        long, value_name = "N", value_parser = values::trials, conflicts_with = "separate",
+        long, value_name = "N", value_parser = at_least_one, conflicts_with = "separate",
         allow_negative_numbers = true, help_heading = "Input"
     )]
     pub(super) trials: Option<usize>,

@@ -106,11 +106,6 @@ pub(crate) fn rehearsals(text: &str) -> Result<usize, String> {
     number.ok_or_else(|| format!("expected a whole number from 0 to {MOST}"))
 }
 
-pub(crate) fn trials(text: &str) -> Result<usize, String> {
-    let number = text.parse().ok().filter(|number| *number > 0);
-    number.ok_or_else(|| "expected a whole number from 1 on".to_owned())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
