@@ -73,7 +73,7 @@ impl Automatic {
 
 /// What settings were chosen from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Grounds {
+pub struct RecordStatistics {
     /// The delay that nine of ten exceed, samples.
     pub short_delay: Option<f64>,
     /// Standard deviation of the noise, output units.
@@ -90,7 +90,7 @@ pub struct Chosen {
     /// Which settings.
     pub automatic: Automatic,
     /// What the record showed.
-    pub grounds: Grounds,
+    pub statistics: RecordStatistics,
 }
 
 /// `settings` with those that are `automatic` chosen from the trials of a joint, and from
@@ -110,26 +110,26 @@ pub struct Chosen {
 /// let (settings, chosen) = choose(&made.joints[0].trials, &Settings::default(), all);
 /// assert!((10..20).contains(&settings.alpha), "a short delay: {}", settings.alpha);
 /// assert!(settings.low_pass.is_some_and(|filter| filter.cutoff_hz < 5.0));
-/// assert!((chosen.grounds.noise.unwrap_or(0.0) - 0.4).abs() < 0.02);
+/// assert!((chosen.statistics.noise.unwrap_or(0.0) - 0.4).abs() < 0.02);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn choose(trials: &[Trial], settings: &Settings, automatic: Automatic) -> (Settings, Chosen) {
     let mut chosen = settings.clone();
     let record = Record::of(trials, settings);
-    let grounds = record.grounds();
-    if let Some(delay) = grounds.short_delay.filter(|_| automatic.alpha) {
+    let statistics = record.statistics();
+    if let Some(delay) = statistics.short_delay.filter(|_| automatic.alpha) {
         chosen = chosen.with_alpha(ceil_to_index(delay).max(1).into());
     }
     if automatic.passband {
         let smooths = settings.method.spec().low_pass.is_some();
-        let low_pass = || record.low_pass(settings.low_pass, grounds.motion_ends_hz);
+        let low_pass = || record.low_pass(settings.low_pass, statistics.motion_ends_hz);
         chosen.low_pass = if smooths { low_pass() } else { None };
     }
     if automatic.beta && settings.method.spec().has_rows {
         let beta = if chosen.low_pass.is_some() { 1 } else { record.blur() };
         chosen = chosen.with_beta(beta.into());
     }
-    (chosen, Chosen { automatic, grounds })
+    (chosen, Chosen { automatic, statistics })
 }
 
 /// What broken lines show of a joint.
@@ -245,7 +245,7 @@ impl<'a> Record<'a> {
         median(&powers).unwrap_or(0.0)
     }
 
-    fn grounds(&self) -> Grounds {
+    fn statistics(&self) -> RecordStatistics {
         let samples: usize = self.quiet.iter().map(Vec::len).sum();
         let covariances = autocovariances(&self.quiet, 1);
         let correlation =
@@ -253,7 +253,7 @@ impl<'a> Record<'a> {
         let freedom = samples.saturating_sub(LINE * self.quiet.len());
         let sum = covariances.first().map(|power| power * samples as f64);
         let known = freedom > 0;
-        Grounds {
+        RecordStatistics {
             short_delay: self.short_delay(),
             noise: sum.filter(|_| known).map(|sum| (sum / freedom as f64).sqrt()),
             noise_correlation: correlation.filter(|c| known && c.is_finite()),
@@ -447,7 +447,7 @@ mod tests {
             let (settings, chosen) = choose(&[trial(noise)], &Settings::default(), ALL);
             assert!((12..=14).contains(&settings.alpha), "{chosen:?}");
             assert_eq!(settings.beta, 1);
-            let found = chosen.grounds.noise.unwrap();
+            let found = chosen.statistics.noise.unwrap();
             assert!((found / (noise / 12.0_f64.sqrt()) - 1.0).abs() < 0.1, "{found} {noise}");
             settings.low_pass.unwrap().cutoff_hz
         };
@@ -490,6 +490,6 @@ mod tests {
         }
         let (settings, chosen) = choose(&[], &Settings::default(), ALL);
         assert_eq!((settings.alpha, settings.low_pass), (10, Settings::default().low_pass));
-        assert_eq!(chosen.grounds, Grounds::default());
+        assert_eq!(chosen.statistics, RecordStatistics::default());
     }
 }

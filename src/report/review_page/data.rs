@@ -10,7 +10,7 @@ use crate::report::{Doubted, EstimatedJoint};
 
 /// All that the page is made from.
 #[derive(Debug, Serialize)]
-pub(super) struct DeskJson<'a> {
+pub(super) struct ReviewPageJson<'a> {
     /// The log.
     name: &'a str,
     /// All decisions there are; the page may hold fewer.
@@ -69,7 +69,7 @@ impl From<Check> for ConditionJson {
     }
 }
 
-impl<'a> DeskJson<'a> {
+impl<'a> ReviewPageJson<'a> {
     /// The `most` most doubtful decisions on `joints`.
     pub(super) fn of(name: &'a str, joints: &'a [EstimatedJoint<'a>], most: usize) -> Self {
         let all = all_by_doubt(joints);
